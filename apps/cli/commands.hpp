@@ -1,0 +1,43 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "scene/new_scene.hpp"
+
+/// The program's commands. Each returns an exit code and has said on stderr, in one line, what went wrong.
+namespace talus {
+
+struct RunArguments {
+    std::string scene;   ///< a scene file; empty: the built-in scene
+    std::string output;  ///< a folder; empty: talus_out/<scene name>
+    bool force = false;
+    std::optional<int> threads;
+    std::vector<std::string> overrides;  ///< "section.key=value"
+    std::string data;                    ///< value of TALUS_DATA; empty: as in the environment
+    bool quiet = false, json = false;
+};
+int run_command(const RunArguments& arguments);
+
+struct CheckArguments {
+    std::string scene;
+    std::vector<std::string> overrides;
+    std::string data;
+};
+int check_command(const CheckArguments& arguments);
+
+int new_command(const NewSceneOptions& options);
+
+int export_builtin_command(const std::string& folder, bool force);
+
+/// The reference of scene files on stdout: for the terminal, or as Markdown.
+int reference_command(bool markdown);
+
+/// Prints "talus: error: MESSAGE" as exactly one line on stderr and returns `code`.
+int fail(int code, const std::string& message);
+
+/// Makes `${TALUS_DATA}` in scene paths mean `folder`. Call before any thread starts.
+void set_data_folder(const std::string& folder);
+
+}  // namespace talus

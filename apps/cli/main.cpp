@@ -1,0 +1,150 @@
+#include <cstdio>
+#include <exception>
+#include <filesystem>
+#include <new>
+#include <signal.h>
+#include <string>
+#include <string_view>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+#include "commands.hpp"
+#include "exit_code.hpp"
+#include "params/scene_text.hpp"
+#include "scene/new_scene.hpp"
+
+namespace talus {
+namespace {
+
+constexpr const char* program_help = R"(
+Examples:
+  talus run                                 the built-in scene, into talus_out/sham_tseng
+  talus run my_scene.toml -o result         your scene, into the folder result
+  talus run my_scene.toml --set material.friction_coefficient=0.3
+  talus scene new --dem dem.tif --release scar.geojson --thickness-m 1.5 -o my_scene
+                                            a commented scene from your own terrain, ready to run
+  talus scene check my_scene/scene.toml     what a scene reads and means, without running it
+
+Exit codes:
+    0  complete
+    1  the machine failed: disk full, out of memory
+    2  bad input: command line, scene or a file it names; nothing was written
+    3  a step could not be trusted (fault); what was computed until then is written, marked partial
+  130  interrupted by Ctrl-C; what was computed until then is written, marked partial.
+       A second Ctrl-C ends at once and leaves nothing.)";
+
+constexpr const char* run_help = R"(
+Every value of the scene can be set with --set section.key=value. The result folder holds maps (GeoTIFF with QGIS
+styles), front.csv, timeseries.csv, buildings.csv, results.gpkg, manifest.json and report.html.
+)";
+
+void add_scene_inputs(CLI::App& command, std::string& data) {
+    command.add_option("--data", data, "folder that ${TALUS_DATA} in a scene's paths stands for")->type_name("DIR");
+}
+
+void add_overrides(CLI::App& command, std::vector<std::string>& overrides) {
+    command.add_option("--set", overrides, "set a value of the scene; may be given many times")
+        ->type_name("SECTION.KEY=VALUE")
+        ->allow_extra_args(false);
+}
+
+/// The command that the user got to before the error: the one whose --help is of use.
+std::string deepest_command(const CLI::App& app) {
+    std::string name = app.get_name();
+    const CLI::App* command = &app;
+    while (!command->get_subcommands().empty()) {
+        command = command->get_subcommands().front();
+        name += " " + command->get_name();
+    }
+    return name;
+}
+
+int talus_main(int argc, char** argv) {
+    CLI::App app("talus simulates landslides and debris flows on a terrain model, and writes hazard maps and a report.",
+                 "talus");
+    app.footer(program_help);
+    app.set_version_flag("--version", "talus " TALUS_VERSION);
+    app.require_subcommand(0, 1);
+
+    RunArguments run;
+    CLI::App* run_app = app.add_subcommand("run", "run a scene and write maps, tables and a report");
+    run_app->add_option("scene", run.scene, "scene file; left out: the built-in scene")->type_name("SCENE");
+    run_app->add_option("-o,--output", run.output, "result folder; left out: talus_out/<scene name>")->type_name("DIR");
+    run_app->add_flag("--force", run.force, "replace the result folder if it is already there");
+    run_app->add_option("--threads", run.threads, "number of threads; left out: all cores; the result is the same")
+        ->type_name("N");
+    add_overrides(*run_app, run.overrides);
+    add_scene_inputs(*run_app, run.data);
+    CLI::Option* quiet = run_app->add_flag("--quiet", run.quiet, "print nothing but errors");
+    run_app->add_flag("--json", run.json, "progress and result as one JSON object per line on stdout")->excludes(quiet);
+    run_app->footer([] { return run_help + scene_reference_text(); });
+
+    CLI::App* scene_app = app.add_subcommand("scene", "make, check and explain scene files");
+    scene_app->require_subcommand(1);
+
+    CheckArguments check;
+    CLI::App* check_app = scene_app->add_subcommand("check", "read a scene with all its inputs and say what it means");
+    check_app->add_option("scene", check.scene, "scene file")->required()->type_name("SCENE");
+    add_overrides(*check_app, check.overrides);
+    add_scene_inputs(*check_app, check.data);
+
+    NewSceneOptions create;
+    CLI::App* new_app = scene_app->add_subcommand("new", "write a commented scene for your own terrain");
+    new_app->add_option("--dem", create.dem, "terrain raster in a projected metric CRS")->required()->type_name("FILE");
+    new_app->add_option("--release", create.release, "polygons of the failing ground")->required()->type_name("FILE");
+    new_app->add_option("--buildings", create.buildings, "polygons of the buildings")->type_name("FILE");
+    CLI::Option* thickness =
+        new_app->add_option("--thickness-m", create.thickness, "thickness of the release normal to the slope, m")
+            ->type_name("M");
+    new_app->add_option("--volume-m3", create.volume, "volume of the release instead, m3")
+        ->type_name("M3")
+        ->excludes(thickness);
+    new_app->add_option("-o,--output", create.folder, "folder to make for the scene")->required()->type_name("DIR");
+    new_app->add_option("--particles", create.target_particle_count, "particles to aim for; more are finer and slower")
+        ->type_name("N");
+
+    std::string builtin_folder;
+    bool builtin_force = false;
+    CLI::App* export_app = scene_app->add_subcommand("export-builtin", "write the built-in scene with its data");
+    export_app->add_option("-o,--output", builtin_folder, "folder to write it to")->required()->type_name("DIR");
+    export_app->add_flag("--force", builtin_force, "write into a folder that is already there");
+
+    CLI::App* reference_app =
+        scene_app->add_subcommand("reference", "every key of a scene file with unit, default and range");
+    bool markdown = false;
+    reference_app->add_flag("--markdown", markdown, "as a Markdown document");
+
+    try {
+        app.parse(argc, argv);
+    } catch (const CLI::Success& help_or_version) {
+        return app.exit(help_or_version);
+    } catch (const CLI::ParseError& error) {
+        return fail(exit_code::bad_input, fmt::format("{}; see {} --help", error.what(), deepest_command(app)));
+    }
+
+    if (*run_app) return run_command(run);
+    if (*check_app) return check_command(check);
+    if (*new_app) return new_command(create);
+    if (*export_app) return export_builtin_command(builtin_folder, builtin_force);
+    if (*reference_app) return reference_command(markdown);
+    std::fputs(app.help().c_str(), stdout);
+    return exit_code::success;
+}
+
+}  // namespace
+}  // namespace talus
+
+int main(int argc, char** argv) {
+    // A reader that has gone and a file that may not grow are errors to report, not reasons to die.
+    signal(SIGPIPE, SIG_IGN);
+    signal(SIGXFSZ, SIG_IGN);
+    try {
+        return talus::talus_main(argc, argv);
+    } catch (const std::bad_alloc&) {
+        return talus::fail(talus::exit_code::failure,
+                           "out of memory; set a larger solver.particle_spacing_m or a smaller terrain.extent");
+    } catch (const std::exception& error) {
+        return talus::fail(talus::exit_code::failure, error.what());
+    }
+}

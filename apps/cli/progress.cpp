@@ -1,0 +1,124 @@
+#include "progress.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <string_view>
+#include <sys/ioctl.h>
+#include <unistd.h>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+namespace talus {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr auto bar_interval = 100ms;
+constexpr auto line_interval = 3s;
+constexpr auto json_interval = 500ms;
+
+int terminal_columns() {
+    winsize size{};
+    return ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0 ? size.ws_col : 80;
+}
+
+std::string front_text(const Progress& p) {
+    return std::isnan(p.front_chainage) ? "front -" : fmt::format("front {:.0f} m", p.front_chainage);
+}
+
+std::string bar_text(const Progress& p) {
+    const int columns = terminal_columns();
+    const std::string facts = fmt::format(" {:3.0f} %  t {:.1f} s  {:.2f} x real time  {}  ETA {}", 100 * p.share_done,
+                                          p.time, p.real_time_factor, front_text(p), clock_text(p.wall_remaining));
+    const int width = std::min(40, columns - 3 - static_cast<int>(facts.size()));
+    if (width < 5) return facts.substr(1, static_cast<std::size_t>(std::max(0, columns - 1)));
+    const int filled = static_cast<int>(std::lround(std::clamp(p.share_done, 0.0, 1.0) * width));
+    return "[" + std::string(filled, '#') + std::string(width - filled, '.') + "]" + facts;
+}
+
+// Not fmt::print: it throws when the reader of a pipe has gone, and that must not end a run.
+void write(std::FILE* stream, const std::string& text) {
+    (void)std::fputs(text.c_str(), stream);
+    (void)std::fflush(stream);
+}
+
+nlohmann::json number_or_null(double value) {
+    return std::isfinite(value) ? nlohmann::json(value) : nlohmann::json();
+}
+
+std::string json_text(const Progress& p) {
+    const nlohmann::ordered_json event = {
+        {"event", "progress"},
+        {"time_s", p.time},
+        {"end_time_s", p.end_time},
+        {"share_done", p.share_done},
+        {"real_time_factor", number_or_null(p.real_time_factor)},
+        {"front_chainage_m", number_or_null(p.front_chainage)},
+        {"wall_remaining_s", number_or_null(p.wall_remaining)},
+        {"step", p.step},
+        {"particles", p.particles},
+    };
+    return event.dump();
+}
+
+}  // namespace
+
+ProgressStyle progress_style(bool quiet, bool json) {
+    if (json) return ProgressStyle::json;
+    if (quiet) return ProgressStyle::none;
+    const char* terminal = std::getenv("TERM");
+    const bool can_redraw = isatty(STDERR_FILENO) == 1 && terminal != nullptr && std::string_view(terminal) != "dumb";
+    return can_redraw ? ProgressStyle::bar : ProgressStyle::lines;
+}
+
+std::string clock_text(double seconds) {
+    if (!std::isfinite(seconds) || seconds < 0) return "-";
+    const long total = std::lround(std::min(seconds, 3.6e6));
+    if (total >= 3600) return fmt::format("{}:{:02}:{:02}", total / 3600, total / 60 % 60, total % 60);
+    return fmt::format("{}:{:02}", total / 60, total % 60);
+}
+
+void ProgressReporter::report(const Progress& progress) {
+    if (style_ == ProgressStyle::none) return;
+    const auto now = std::chrono::steady_clock::now();
+    if (now < next_) return;
+    switch (style_) {
+        case ProgressStyle::none:
+            break;
+        case ProgressStyle::bar:
+            write(stderr, "\r" + bar_text(progress) + "\x1b[K");
+            drawn_ = true;
+            next_ = now + bar_interval;
+            break;
+        case ProgressStyle::lines:
+            write(stderr, fmt::format("t {:.1f} s of at most {:.0f} s, {:.2f} x real time, {}, about {} left\n",
+                                      progress.time, progress.end_time, progress.real_time_factor, front_text(progress),
+                                      clock_text(progress.wall_remaining)));
+            next_ = now + line_interval;
+            break;
+        case ProgressStyle::json:
+            write(stdout, json_text(progress) + "\n");
+            next_ = now + json_interval;
+            break;
+    }
+}
+
+void ProgressReporter::say(const std::string& what) {
+    if (style_ == ProgressStyle::bar) {
+        write(stderr, "\r" + what + "\x1b[K");
+        drawn_ = true;
+    } else if (style_ == ProgressStyle::lines) {
+        write(stderr, what + "\n");
+    }
+}
+
+void ProgressReporter::clear() {
+    if (!drawn_) return;
+    write(stderr, "\r\x1b[K");
+    drawn_ = false;
+}
+
+}  // namespace talus

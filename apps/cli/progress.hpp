@@ -1,0 +1,41 @@
+#pragma once
+
+#include <chrono>
+#include <string>
+
+#include "scene/run.hpp"
+
+namespace talus {
+
+enum class ProgressStyle {
+    none,
+    bar,    ///< one line on stderr, redrawn about ten times a second
+    lines,  ///< a line on stderr every few seconds
+    json,   ///< an object per line on stdout, about twice a second
+};
+
+/// A bar where stderr is a terminal that can redraw a line, plain lines elsewhere.
+[[nodiscard]] ProgressStyle progress_style(bool quiet, bool json);
+
+/// Tells a person or a program how far the run is.
+class ProgressReporter {
+  public:
+    explicit ProgressReporter(ProgressStyle style) : style_(style) {}
+    /// Call after every step; most calls return at once.
+    void report(const Progress& progress);
+    /// Replaces the bar by what the program is doing now ("writing maps and report"); lines print it.
+    void say(const std::string& what);
+    /// Removes the bar from the terminal.
+    void clear();
+
+  private:
+    ProgressStyle style_;
+    std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+    std::chrono::steady_clock::time_point next_ = start_;
+    bool drawn_ = false;
+};
+
+/// "0:07", "12:34", "3:00:12".
+[[nodiscard]] std::string clock_text(double seconds);
+
+}  // namespace talus

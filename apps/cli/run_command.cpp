@@ -1,0 +1,183 @@
+#include <cstdio>
+#include <filesystem>
+#include <optional>
+#include <stdlib.h>
+#include <string>
+#include <system_error>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "commands.hpp"
+#include "exit_code.hpp"
+#include "interrupt.hpp"
+#include "products/particle_series.hpp"
+#include "products/products.hpp"
+#include "progress.hpp"
+#include "scene/builtin.hpp"
+#include "scene/run.hpp"
+#include "scene/scene.hpp"
+#include "summary.hpp"
+
+namespace talus {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// A folder of the system's temporary folder, gone with this object.
+class TemporaryFolder {
+  public:
+    TemporaryFolder() {
+        std::error_code error;
+        std::string name = (fs::temp_directory_path(error) / "talus-XXXXXX").string();
+        if (!error && mkdtemp(name.data()) != nullptr) path_ = name;
+    }
+    ~TemporaryFolder() {
+        std::error_code ignored;
+        if (!path_.empty()) fs::remove_all(path_, ignored);
+    }
+    TemporaryFolder(const TemporaryFolder&) = delete;
+    TemporaryFolder& operator=(const TemporaryFolder&) = delete;
+
+    /// Empty: it could not be made.
+    [[nodiscard]] const fs::path& path() const { return path_; }
+
+  private:
+    fs::path path_;
+};
+
+/// talus_out in the current folder, made when needed and removed again if nothing came to lie in it.
+class DefaultParent {
+  public:
+    DefaultParent() : made_(fs::create_directory(name, error_)) {}
+    ~DefaultParent() {
+        std::error_code not_empty;
+        if (made_) fs::remove(name, not_empty);
+    }
+    DefaultParent(const DefaultParent&) = delete;
+    DefaultParent& operator=(const DefaultParent&) = delete;
+
+    static constexpr const char* name = "talus_out";
+
+  private:
+    std::error_code error_;  // not asked: the output folder says it better when it cannot be made
+    bool made_;
+};
+
+/// The folder's name for a file called scene.toml, the file's name without its ending for another.
+std::string scene_name(const fs::path& file) {
+    const std::string stem = file.stem().string();
+    const std::string folder = fs::absolute(file).parent_path().filename().string();
+    return stem == "scene" && !folder.empty() ? folder : stem;
+}
+
+void print(const std::string& text) {
+    (void)std::fputs(text.c_str(), stdout);
+    (void)std::fflush(stdout);
+}
+
+/// Paths into the temporary folder would mean nothing to the reader of a manifest.
+void name_builtin_inputs(Scene& scene, const fs::path& unpacked) {
+    const std::string prefix = (unpacked / "").string();
+    for (InputFile& input : scene.inputs) {
+        if (input.path.starts_with(prefix)) {
+            input.path = fmt::format("built-in:{}/{}", builtin_scene_name, input.path.substr(prefix.size()));
+        }
+    }
+}
+
+/// `shown`: the output folder as the user wrote it.
+int run_loaded(const RunArguments& arguments, const Scene& scene, OutputFolder& output, const fs::path& shown,
+               InterruptWatch& watch) {
+    ProgressReporter progress(progress_style(arguments.quiet, arguments.json));
+    Status series_status;
+    std::optional<ParticleSeries> series;
+    RunOptions options;
+    options.on_progress = [&](const Progress& now) { progress.report(now); };
+    options.stop_requested = &watch.stop_requested();
+    if (scene.spec.outputs.particle_series_interval > 0) {
+        series.emplace(output.path() / "particles");
+        options.on_frame = [&](const Model& model, const State& state) {
+            if (series_status) series_status = series->write_frame(model, state);
+            if (!series_status) watch.request_stop();
+        };
+    }
+
+    auto result = run_scene(scene, options);
+    progress.clear();
+    if (!result) return fail(exit_code::bad_input, result.error().message);
+    if (series && series_status) series_status = series->finish();
+    if (!series_status) return fail(exit_code::failure, series_status.error().message);
+
+    progress.say(result->status == RunStatus::interrupted ? "interrupted: writing what there is"
+                                                          : "writing maps, tables and report");
+    Status written = write_products(scene, *result, output.path());
+    if (written) {
+        // Replacing an earlier result takes two renames; a second Ctrl-C must not fall between them.
+        const auto lock = watch.hold();
+        written = output.commit();
+    }
+    progress.clear();
+    if (!written) return fail(exit_code::failure, written.error().message);
+
+    if (arguments.json) {
+        print(summary_json(scene, *result, output.final_path()) + "\n");
+    } else if (!arguments.quiet) {
+        print(summary_text(scene, *result, shown));
+    }
+    switch (result->status) {
+        case RunStatus::complete:
+            return exit_code::success;
+        case RunStatus::interrupted:
+            return exit_code::interrupted;
+        case RunStatus::fault:
+            break;
+    }
+    return fail(exit_code::fault, fmt::format("{}; what was computed until then is in {}, marked partial",
+                                              result->stop_reason, shown.string()));
+}
+
+}  // namespace
+
+int run_command(const RunArguments& arguments) {
+    if (!arguments.data.empty()) set_data_folder(arguments.data);
+    InterruptWatch watch;
+
+    std::optional<TemporaryFolder> unpacked;
+    fs::path file = arguments.scene;
+    std::string name;
+    if (arguments.scene.empty()) {
+        unpacked.emplace();
+        if (unpacked->path().empty()) {
+            return fail(exit_code::failure, "cannot make a temporary folder for the built-in scene; set TMPDIR");
+        }
+        watch.remove_at_once(unpacked->path());
+        auto scene_file = unpack_builtin_scene(unpacked->path());
+        if (!scene_file) return fail(exit_code::failure, scene_file.error().message);
+        file = *scene_file;
+        name = builtin_scene_name;
+    } else {
+        name = scene_name(file);
+    }
+
+    std::vector<std::string> overrides = arguments.overrides;
+    if (arguments.threads) overrides.push_back(fmt::format("solver.thread_count={}", *arguments.threads));
+    auto scene = load_scene(file, overrides);
+    if (!scene) return fail(exit_code::bad_input, scene.error().message);
+    if (unpacked) name_builtin_inputs(*scene, unpacked->path());
+    if (watch.stop_requested()) return fail(exit_code::interrupted, "interrupted before the run began");
+
+    std::optional<DefaultParent> parent;
+    if (arguments.output.empty()) parent.emplace();
+    const fs::path folder = parent ? fs::path(DefaultParent::name) / name : fs::path(arguments.output);
+    auto output = OutputFolder::create(folder, arguments.force);
+    if (!output) return fail(exit_code::bad_input, output.error().message);
+    watch.remove_at_once(output->path());
+
+    if (!arguments.quiet && !arguments.json) {
+        for (const std::string& note : scene->notes) print(fmt::format("note: {}\n", note));
+    }
+    return run_loaded(arguments, *scene, *output, folder, watch);
+}
+
+}  // namespace talus

@@ -1,0 +1,161 @@
+#include "summary.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "core/hash.hpp"
+
+namespace talus {
+namespace {
+
+constexpr double degrees = 180 / std::numbers::pi;
+
+/// The front at a chainage, or nothing where it never came.
+const FrontSample* front_at(const Observation& observation, double chainage, double interval) {
+    const FrontSample* nearest = nullptr;
+    for (const FrontSample& sample : observation.front) {
+        const double distance = std::abs(sample.chainage - chainage);
+        if (distance <= interval && (nearest == nullptr || distance < std::abs(nearest->chainage - chainage))) {
+            nearest = &sample;
+        }
+    }
+    return nearest;
+}
+
+std::vector<const BuildingImpact*> buildings_hit(const Observation& observation) {
+    std::vector<const BuildingImpact*> hit;
+    for (const BuildingImpact& building : observation.buildings) {
+        if (building.hit) hit.push_back(&building);
+    }
+    std::stable_sort(hit.begin(), hit.end(), [](const BuildingImpact* a, const BuildingImpact* b) {
+        return a->first_hit_time < b->first_hit_time;
+    });
+    return hit;
+}
+
+std::string buildings_text(const Observation& observation) {
+    constexpr std::size_t longest_list = 6;
+    const auto hit = buildings_hit(observation);
+    std::string text = fmt::format("{} of {}", hit.size(), observation.buildings.size());
+    for (std::size_t i = 0; i < std::min(hit.size(), longest_list); ++i) {
+        text += fmt::format("{}{} ({:.1f} s, {:.0f} kPa)", i == 0 ? ": " : ", ", hit[i]->name, hit[i]->first_hit_time,
+                            hit[i]->peak_pressure / 1000);
+    }
+    if (hit.size() > longest_list) text += fmt::format(" and {} more in buildings.csv", hit.size() - longest_list);
+    return text;
+}
+
+std::string speed_text(double speed) {
+    return std::isfinite(speed) ? fmt::format("{:.1f} m/s", speed) : std::string("not reached");
+}
+
+std::string line(const char* label, const std::string& text) {
+    return fmt::format("  {:<16} {}\n", label, text);
+}
+
+nlohmann::ordered_json finite(double value) {
+    return std::isfinite(value) ? nlohmann::ordered_json(value) : nlohmann::ordered_json();
+}
+
+}  // namespace
+
+std::string status_name(RunStatus status) {
+    switch (status) {
+        case RunStatus::complete:
+            return "complete";
+        case RunStatus::interrupted:
+            return "interrupted";
+        case RunStatus::fault:
+            return "fault";
+    }
+    return "";
+}
+
+std::string summary_text(const Scene& scene, const RunResult& result, const std::filesystem::path& output) {
+    const Observation& seen = result.observation;
+    const TimeSample end = seen.timeseries.empty() ? TimeSample{} : seen.timeseries.back();
+    std::string text = scene.spec.scene.title;
+    if (scene.spec.scene.reconstruction && text.find("reconstruction") == std::string::npos)
+        text += " (reconstruction)";
+    text += result.status == RunStatus::complete ? "\n" : ", PARTIAL RESULT\n";
+    text += line("stopped", result.stop_reason);
+    text += line("simulated", fmt::format("{:.1f} s in {:.1f} s: {:.2f} x real time, {} particles of {:.3g} m",
+                                          result.simulated_time, result.wall_time, result.real_time_factor(),
+                                          result.particles, result.particle_spacing));
+    for (const ObservationSpec& observed : scene.spec.observations) {
+        const FrontSample* front = front_at(seen, observed.chainage, scene.spec.outputs.chainage_interval);
+        text +=
+            line("front velocity",
+                 fmt::format("{} at {:g} m (debris there {}); observed {:g} m/s",
+                             speed_text(front == nullptr ? never : front->front_velocity), observed.chainage,
+                             speed_text(front == nullptr ? never : front->particle_speed), observed.front_velocity));
+    }
+    if (std::isfinite(seen.run_out.horizontal_distance)) {
+        text += line("run-out", fmt::format("{:.0f} m, drop {:.0f} m, runout angle {:.1f} degrees",
+                                            seen.run_out.horizontal_distance, seen.run_out.drop,
+                                            seen.run_out.runout_angle * degrees));
+    }
+    text += line("volume", fmt::format("{:.1f} m3 released: {:.1f} deposited, {:.1f} moving, {:.1f} left the terrain",
+                                       seen.volume_released, end.volume_deposited, end.volume_moving + end.volume_held,
+                                       end.volume_left));
+    if (!seen.buildings.empty()) text += line("buildings hit", buildings_text(seen));
+    text += line("report", (output / "report.html").string());
+    return text;
+}
+
+std::string summary_json(const Scene& scene, const RunResult& result, const std::filesystem::path& output) {
+    const Observation& seen = result.observation;
+    const TimeSample end = seen.timeseries.empty() ? TimeSample{} : seen.timeseries.back();
+    auto observations = nlohmann::ordered_json::array();
+    for (const ObservationSpec& observed : scene.spec.observations) {
+        const FrontSample* front = front_at(seen, observed.chainage, scene.spec.outputs.chainage_interval);
+        observations.push_back({{"name", observed.name},
+                                {"chainage_m", observed.chainage},
+                                {"observed_front_velocity_mps", observed.front_velocity},
+                                {"front_velocity_mps", finite(front == nullptr ? never : front->front_velocity)},
+                                {"particle_speed_mps", finite(front == nullptr ? never : front->particle_speed)},
+                                {"arrival_time_s", finite(front == nullptr ? never : front->arrival_time)}});
+    }
+    auto buildings = nlohmann::ordered_json::array();
+    for (const BuildingImpact* building : buildings_hit(seen)) {
+        buildings.push_back({{"name", building->name},
+                             {"first_hit_s", finite(building->first_hit_time)},
+                             {"peak_pressure_kPa", building->peak_pressure / 1000},
+                             {"peak_depth_m", building->peak_depth}});
+    }
+    const nlohmann::ordered_json event = {
+        {"event", "result"},
+        {"status", status_name(result.status)},
+        {"stop_reason", result.stop_reason},
+        {"title", scene.spec.scene.title},
+        {"reconstruction", scene.spec.scene.reconstruction},
+        {"output", output.string()},
+        {"hash", to_hex(result.hash)},
+        {"simulated_time_s", result.simulated_time},
+        {"wall_time_s", result.wall_time},
+        {"real_time_factor", result.real_time_factor()},
+        {"steps", result.steps},
+        {"particles", result.particles},
+        {"particle_spacing_m", result.particle_spacing},
+        {"thread_count", result.thread_count},
+        {"volume_released_m3", seen.volume_released},
+        {"volume_moving_m3", end.volume_moving},
+        {"volume_deposited_m3", end.volume_deposited},
+        {"volume_held_m3", end.volume_held},
+        {"volume_left_m3", end.volume_left},
+        {"front_chainage_m", finite(seen.run_out.front_chainage)},
+        {"run_out_m", finite(seen.run_out.horizontal_distance)},
+        {"drop_m", finite(seen.run_out.drop)},
+        {"runout_angle_deg", finite(seen.run_out.runout_angle * degrees)},
+        {"observations", observations},
+        {"buildings_hit", buildings},
+    };
+    return event.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
+}
+
+}  // namespace talus

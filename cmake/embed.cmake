@@ -1,0 +1,70 @@
+# Files inside the program, so that nothing has to be found at run time.
+#
+# embed_files(TARGET NAMESPACE FILES...): adds to TARGET a source that holds the bytes of FILES (relative to the current
+# folder) and a header <NAMESPACE>.hpp that declares, in talus::NAMESPACE,
+#   - a std::string_view per file, named as the file with every other character than letters and digits as "_",
+#   - `files`: all of them with their names, in the order given.
+# The source is made again when a file changes.
+
+if(CMAKE_SCRIPT_MODE_FILE)
+  # Called as `cmake -DSPACE=... -DOUTPUT=... -DFILES=a|b -P embed.cmake` by the command below.
+  string(REPLACE "|" ";" FILES "${FILES}")
+  set(bodies "")
+  set(views "")
+  set(rows "")
+  foreach(path IN LISTS FILES)
+    get_filename_component(file_name "${path}" NAME)
+    string(REGEX REPLACE "[^A-Za-z0-9]" "_" symbol "${file_name}")
+    file(READ "${path}" bytes HEX)
+    string(LENGTH "${bytes}" digits)
+    math(EXPR size "${digits} / 2")
+    string(REGEX REPLACE "(................................................................)" "\\1\n" bytes "${bytes}")
+    string(REGEX REPLACE "([0-9a-f][0-9a-f])" "0x\\1," bytes "${bytes}")
+    string(APPEND bodies "const unsigned char ${symbol}_bytes[] = {\n${bytes}0};\n")
+    string(APPEND views "const std::string_view ${symbol}{reinterpret_cast<const char*>(${symbol}_bytes), ${size}};\n")
+    string(APPEND rows "    {\"${file_name}\", {reinterpret_cast<const char*>(${symbol}_bytes), ${size}}},\n")
+  endforeach()
+  file(WRITE "${OUTPUT}" "#include \"${SPACE}.hpp\"\n\nnamespace talus::${SPACE} {\nnamespace {\n${bodies}}\n${views}\
+const std::array<File, file_count> files = {{\n${rows}}};\n}  // namespace talus::${SPACE}\n")
+  return()
+endif()
+
+set(talus_embed_script ${CMAKE_CURRENT_LIST_FILE})
+
+function(embed_files target space)
+  set(folder ${CMAKE_CURRENT_BINARY_DIR}/embedded)
+  set(paths "")
+  set(declarations "")
+  foreach(file IN LISTS ARGN)
+    get_filename_component(path "${file}" ABSOLUTE)
+    get_filename_component(file_name "${path}" NAME)
+    string(REGEX REPLACE "[^A-Za-z0-9]" "_" symbol "${file_name}")
+    list(APPEND paths "${path}")
+    string(APPEND declarations "extern const std::string_view ${symbol};\n")
+  endforeach()
+  list(LENGTH paths count)
+  file(CONFIGURE OUTPUT ${folder}/${space}.hpp @ONLY CONTENT "#pragma once
+
+#include <array>
+#include <string_view>
+
+namespace talus::@space@ {
+
+struct File {
+    std::string_view name, content;
+};
+inline constexpr std::size_t file_count = @count@;
+extern const std::array<File, file_count> files;
+@declarations@
+}  // namespace talus::@space@
+")
+  list(JOIN paths "|" joined)
+  add_custom_command(
+    OUTPUT ${folder}/${space}.cpp
+    COMMAND ${CMAKE_COMMAND} -DSPACE=${space} -DOUTPUT=${folder}/${space}.cpp "-DFILES=${joined}"
+            -P ${talus_embed_script}
+    DEPENDS ${paths} ${talus_embed_script}
+    COMMENT "Embedding ${space}" VERBATIM)
+  target_sources(${target} PRIVATE ${folder}/${space}.cpp)
+  target_include_directories(${target} PRIVATE ${folder})
+endfunction()

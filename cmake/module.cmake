@@ -1,0 +1,41 @@
+# What every target of the project shares, and a one-line way to declare a module.
+
+add_library(talus_options INTERFACE)
+target_include_directories(talus_options INTERFACE ${PROJECT_SOURCE_DIR}/src)
+# Results must not depend on the optimiser: no -ffast-math, no contraction of a*b+c.
+target_compile_options(talus_options INTERFACE -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor -ffp-contract=off -fno-math-errno
+                       -Wno-restrict)  # g++ 12 warns of std::string concatenation wrongly (GCC bug 105651)
+if(TALUS_WARNINGS_AS_ERRORS)
+  target_compile_options(talus_options INTERFACE -Werror)
+endif()
+if(TALUS_SANITIZE)
+  target_compile_options(talus_options INTERFACE -fsanitize=${TALUS_SANITIZE} -fno-omit-frame-pointer)
+  target_link_options(talus_options INTERFACE -fsanitize=${TALUS_SANITIZE})
+endif()
+
+# talus_module(NAME DEPENDS... ): the library talus_NAME from every .cpp below the current folder.
+# A module without a .cpp is an interface library.
+function(talus_module name)
+  file(GLOB_RECURSE sources CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/*.cpp)
+  if(sources)
+    add_library(talus_${name} STATIC ${sources})
+    target_link_libraries(talus_${name} PUBLIC talus_options ${ARGN})
+  else()
+    add_library(talus_${name} INTERFACE)
+    target_link_libraries(talus_${name} INTERFACE talus_options ${ARGN})
+  endif()
+endfunction()
+
+# talus_test(NAME LABEL DEPENDS...): the program test_NAME from every .cpp in the current folder, its tests labelled.
+function(talus_test name label)
+  file(GLOB sources CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/*.cpp)
+  if(NOT sources)
+    return()
+  endif()
+  add_executable(test_${name} ${sources})
+  target_link_libraries(test_${name} PRIVATE ${ARGN} GTest::gtest GTest::gtest_main GTest::gmock)
+  target_include_directories(test_${name} PRIVATE ${PROJECT_SOURCE_DIR}/tests)
+  target_compile_definitions(test_${name} PRIVATE TALUS_SOURCE_DIR="${PROJECT_SOURCE_DIR}"
+                             TALUS_PROGRAM="${CMAKE_BINARY_DIR}/bin/talus")
+  gtest_discover_tests(test_${name} TEST_PREFIX ${name}. PROPERTIES LABELS ${label} TIMEOUT 300 DISCOVERY_TIMEOUT 60)
+endfunction()

@@ -1,0 +1,38 @@
+#!/usr/bin/env bash
+# Installs the Debian or Ubuntu packages that are missing; needs neither network nor root when all are there.
+#   scripts/install_packages.sh build   what building and running needs
+#   scripts/install_packages.sh test    and what the tests need
+set -euo pipefail
+
+packages=(g++ cmake ninja-build pkg-config git libgdal-dev gdal-bin libtbb-dev libtomlplusplus-dev libcli11-dev
+          nlohmann-json3-dev libfmt-dev libgtest-dev libgmock-dev)
+if [[ ${1:-build} == test ]]; then
+    packages+=(clang-format clang-tidy python3 python3-gdal python3-numpy poppler-utils)
+    # Browser and Node.js also come from elsewhere than the distribution's packages.
+    command -v chromium >/dev/null || command -v chromium-browser >/dev/null || command -v google-chrome >/dev/null ||
+        packages+=(chromium)
+    node_version=$(node --version 2>/dev/null || echo v0)
+    node_version=${node_version#v}
+    if ((${node_version%%.*} < 18)); then packages+=(nodejs); fi
+    command -v npm >/dev/null || packages+=(npm)
+fi
+
+if ! command -v dpkg-query >/dev/null; then
+    echo "This is not Debian or Ubuntu. Make sure that the equivalents of these packages are installed:" >&2
+    echo "  ${packages[*]}" >&2
+    exit 0
+fi
+
+missing=()
+for package in "${packages[@]}"; do
+    if [[ $(dpkg-query --show --showformat '${db:Status-Status}' "$package" 2>/dev/null) != installed ]]; then
+        missing+=("$package")
+    fi
+done
+if ((${#missing[@]} == 0)); then exit 0; fi
+
+echo "Installing: ${missing[*]}"
+as_root=(env DEBIAN_FRONTEND=noninteractive)
+if ((EUID != 0)); then as_root=(sudo "${as_root[@]}"); fi
+"${as_root[@]}" apt-get update
+"${as_root[@]}" apt-get install --yes --no-install-recommends "${missing[@]}"

@@ -1,0 +1,44 @@
+#!/usr/bin/env bash
+# Installs what is missing, builds everything and passes all tests:
+#   asan     memory errors and undefined behaviour, over the fast tests
+#   tsan     data races, over the tests that run on several threads
+#   release  the tests of the program that users run
+#   dev      all tests, warnings are errors, and the checks of style and layering
+# A preset's name as argument tests that one alone: scripts/test.sh dev
+set -euo pipefail
+cd "$(dirname "${BASH_SOURCE[0]}")/.."
+
+step() {
+    echo
+    echo "== $* ($((SECONDS / 60)) min $((SECONDS % 60)) s)"
+}
+
+test_preset() {
+    local preset=$1
+    shift
+    step "build $preset"
+    cmake --preset "$preset"
+    cmake --build --preset "$preset" --parallel "$(nproc)"
+    step "test $preset"
+    ctest --preset "$preset" --parallel "$(nproc)" "$@"
+}
+
+step "packages"
+scripts/install_packages.sh test
+if [[ -f tests/browser/package-lock.json ]]; then
+    # The lock file decides what is installed; a copy of it says whether that has been done.
+    if ! cmp --silent tests/browser/package-lock.json tests/browser/node_modules/.installed-lock.json; then
+        npm ci --prefix tests/browser --no-audit --no-fund
+        cp tests/browser/package-lock.json tests/browser/node_modules/.installed-lock.json
+    fi
+fi
+
+if (($# > 0)); then
+    for preset in "$@"; do test_preset "$preset"; done
+    exit
+fi
+test_preset asan
+test_preset tsan
+test_preset release --label-regex 'slow|program'
+test_preset dev
+step "done"

@@ -1,0 +1,113 @@
+#include "geo/gdal.hpp"
+
+#include <algorithm>
+#include <cctype>
+#include <filesystem>
+#include <mutex>
+
+#include <cpl_conv.h>
+#include <cpl_error.h>
+#include <fmt/format.h>
+
+namespace talus {
+
+namespace {
+
+std::string one_line(std::string text) {
+    std::replace_if(
+        text.begin(), text.end(), [](unsigned char c) { return std::iscntrl(c) != 0; }, ' ');
+    while (!text.empty() && (text.back() == ' ' || text.back() == '.')) text.pop_back();
+    return text;
+}
+
+bool has_extension(const std::string& file, const std::string& extension) {
+    return std::filesystem::path(file).extension() == extension;
+}
+
+}  // namespace
+
+void prepare_gdal() {
+    static std::once_flag once;
+    std::call_once(once, [] {
+        // GdalMessages works per thread; this covers what GDAL says in threads of its own.
+        CPLSetErrorHandler(CPLQuietErrorHandler);
+        GDALAllRegister();
+    });
+}
+
+GdalMessages::GdalMessages() {
+    prepare_gdal();
+    CPLErrorReset();
+    CPLPushErrorHandlerEx(collect, this);
+}
+
+GdalMessages::~GdalMessages() {
+    CPLPopErrorHandler();
+}
+
+void GdalMessages::collect(CPLErr level, CPLErrorNum, const char* message) {
+    auto& self = *static_cast<GdalMessages*>(CPLGetErrorHandlerUserData());
+    if (level >= CE_Failure && self.failure_.empty()) self.failure_ = one_line(message);
+    if (level == CE_Warning) self.warning_ = one_line(message);
+}
+
+std::string GdalMessages::failure_or(const std::string& otherwise) const {
+    return failure_.empty() ? otherwise : failure_;
+}
+
+std::string GdalMessages::warning_or(const std::string& otherwise) const {
+    return warning_.empty() ? otherwise : warning_;
+}
+
+void GdalMessages::clear() {
+    failure_.clear();
+    warning_.clear();
+}
+
+Result<GDALDatasetUniquePtr> open_dataset(const std::string& file, unsigned flags, const std::string& kind) {
+    GdalMessages messages;
+    if (file.empty()) return Error{fmt::format("no file name given for a {}", kind)};
+
+    // GDAL also takes names that are no path, such as NETCDF:"file.nc":band or /vsizip/...; only what GDAL cannot open
+    // is looked at as a path, to say why.
+    GDALDatasetUniquePtr data(GDALDataset::Open(file.c_str(), flags | GDAL_OF_READONLY | GDAL_OF_VERBOSE_ERROR));
+    if (data) return Result<GDALDatasetUniquePtr>(std::move(data));
+
+    std::error_code failed;
+    const auto status = std::filesystem::status(file, failed);
+    const bool special = file.rfind("/vsi", 0) == 0;
+    if (!special && status.type() == std::filesystem::file_type::not_found) {
+        return Error{fmt::format("{}: no such file", file)};
+    }
+    if (!special && failed) return Error{fmt::format("{}: {}", file, failed.message())};
+    if (std::filesystem::is_directory(status)) {
+        return Error{fmt::format("{}: is a folder, not a {} file", file, kind)};
+    }
+    if (std::filesystem::is_regular_file(status)) {
+        if (std::filesystem::file_size(file, failed) == 0) return Error{fmt::format("{}: is empty (0 bytes)", file)};
+        VSILFILE* readable = VSIFOpenL(file.c_str(), "rb");
+        if (readable == nullptr) return Error{fmt::format("{}: may not be read (permission)", file)};
+        VSIFCloseL(readable);
+    }
+    return Error{fmt::format("{}: cannot be read as a {}: {}", file, kind,
+                             messages.failure_or("GDAL does not know the format"))};
+}
+
+std::string shell_quoted(const std::string& file) {
+    const bool plain = std::all_of(file.begin(), file.end(), [](unsigned char c) {
+        return std::isalnum(c) != 0 || std::string("_-./+:,@%").find(static_cast<char>(c)) != std::string::npos;
+    });
+    if (plain && !file.empty()) return file;
+    std::string quoted = "'";
+    for (const char c : file) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
+    return quoted + "'";
+}
+
+std::string mended_name(const std::string& file, const std::string& suffix, const std::string& extension) {
+    std::filesystem::path path(file);
+    const std::string stem =
+        path.stem().string() + (has_extension(file, extension) && suffix.empty() ? "_new" : suffix);
+    return shell_quoted((path.parent_path() / (stem + extension)).string());
+}
+
+}  // namespace talus

@@ -1,0 +1,47 @@
+#pragma once
+
+#include <string>
+
+#include <gdal_priv.h>
+
+#include "core/result.hpp"
+
+/// What the readers and writers of this module share around GDAL. Not for other modules.
+namespace talus {
+
+/// Makes the drivers known and keeps GDAL from writing to stderr by itself, in any thread. Repeated calls cost nothing.
+void prepare_gdal();
+
+/// Collects what GDAL reports in this thread while it lives, instead of letting it reach stderr.
+class GdalMessages {
+  public:
+    GdalMessages();
+    ~GdalMessages();
+    GdalMessages(const GdalMessages&) = delete;
+    GdalMessages& operator=(const GdalMessages&) = delete;
+
+    [[nodiscard]] bool has_failure() const { return !failure_.empty(); }
+    /// The first failure in one line (later ones are its consequences), or `otherwise`.
+    [[nodiscard]] std::string failure_or(const std::string& otherwise) const;
+    /// The latest warning in one line, or `otherwise`.
+    [[nodiscard]] std::string warning_or(const std::string& otherwise) const;
+    void clear();
+
+  private:
+    static void collect(CPLErr level, CPLErrorNum number, const char* message);
+
+    std::string failure_, warning_;
+};
+
+/// Opens a data set for reading. `flags`: GDAL_OF_RASTER or GDAL_OF_VECTOR; `kind`: "raster", for the messages.
+/// Errors: missing, no permission, a folder, empty, not recognised.
+[[nodiscard]] Result<GDALDatasetUniquePtr> open_dataset(const std::string& file, unsigned flags,
+                                                        const std::string& kind);
+
+/// The file name as a shell takes it: quoted where it has to be.
+[[nodiscard]] std::string shell_quoted(const std::string& file);
+
+/// A name for the mended copy of a file, quoted for a shell: "dem.tif", "_utm", ".tif" gives "dem_utm.tif".
+[[nodiscard]] std::string mended_name(const std::string& file, const std::string& suffix, const std::string& extension);
+
+}  // namespace talus

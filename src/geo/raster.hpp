@@ -1,0 +1,43 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/grid.hpp"
+#include "core/result.hpp"
+#include "geo/crs.hpp"
+
+namespace talus {
+
+/// A raster band on square north-aligned cells, and what its file says of it.
+struct Raster {
+    Grid<float> grid;  ///< NaN: no data
+    Crs crs;
+    std::string vertical_unit;           ///< "m", or as stated; "not stated"
+    double nodata_share = 0;             ///< 0 to 1
+    std::optional<double> nodata_value;  ///< as stored
+};
+
+/// Reads a band of any GDAL raster in a projected metric CRS. South-up rasters are turned, pixel-is-point is respected.
+/// `extent` (in the raster's CRS) reads that part only; it must overlap the raster.
+/// Errors, each naming the file and, where there is one, the command that mends it: missing file, a folder, empty or
+/// truncated data, no such band, all nodata, fewer than 2 x 2 cells, geographic or missing CRS, unit other than metre,
+/// rotated, cells not square.
+[[nodiscard]] Result<Raster> read_terrain_raster(const std::string& file, int band,
+                                                 const std::optional<Extent>& extent);
+
+/// Reads a band of values (release thickness) that must be in the CRS of the terrain; otherwise as above.
+[[nodiscard]] Result<Raster> read_value_raster(const std::string& file, const Crs& terrain_crs);
+
+/// One band to write.
+struct RasterBand {
+    const Grid<float>* grid = nullptr;
+    std::string description;  ///< "peak flow depth"
+    std::string unit;         ///< "m"
+};
+
+/// Writes a single-band Cloud-Optimised GeoTIFF: float32, nodata -9999 for NaN, overviews, unit and description.
+[[nodiscard]] Status write_cog(const std::string& file, const RasterBand& band, const Crs& crs);
+
+}  // namespace talus

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include <gdal_priv.h>
+#include <ogr_spatialref.h>
+
+#include "core/result.hpp"
+#include "geo/crs.hpp"
+
+/// A raster file that has passed the checks on what it is and where it lies. Not for other modules.
+namespace talus {
+
+struct RasterSource {
+    GDALDatasetUniquePtr data;
+    GDALRasterBand* band = nullptr;
+    int columns = 0, rows = 0;
+    double x_min = 0, y_min = 0;  ///< south-west corner of the south-west cell
+    double cell = 0;              ///< m
+    bool first_row_north = true, first_column_west = true;
+    Crs crs;
+    std::string value_unit;  ///< "m", as stated, or "not stated"
+    double scale = 1, offset = 0;
+    std::optional<double> nodata;  ///< as stored, before scale and offset
+};
+
+/// Opens a band of a raster on square north-aligned cells in a projected metric CRS; reads no cells yet.
+[[nodiscard]] Result<RasterSource> open_raster(const std::string& file, int band);
+
+/// The command that declares `value` as the nodata value of a file, given the name of its driver.
+[[nodiscard]] std::string declare_nodata_command(const std::string& file, const std::string& driver, double value);
+
+}  // namespace talus

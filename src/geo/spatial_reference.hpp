@@ -1,0 +1,33 @@
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include <ogr_spatialref.h>
+
+#include "core/geometry.hpp"
+#include "geo/crs.hpp"
+
+/// Coordinate reference systems as GDAL holds them. Not for other modules.
+namespace talus {
+
+/// Without its vertical part: maps of depth and speed are not heights.
+[[nodiscard]] Crs to_crs(const OGRSpatialReference& reference);
+
+/// With x east and y north, whatever axis order the authority prefers. Empty for an empty Crs.
+[[nodiscard]] OGRSpatialReference to_spatial_reference(const Crs& crs);
+
+/// Whether both mean the same place by the same x east, y north; vertical parts are not compared.
+[[nodiscard]] bool same_crs(const OGRSpatialReference& a, const OGRSpatialReference& b);
+
+/// Longitude (x) and latitude (y) in degrees of a plan position; nothing where no transformation is known.
+[[nodiscard]] std::optional<PlanPoint> to_longitude_latitude(const OGRSpatialReference& reference, const PlanPoint& p);
+
+/// A metric system that suits a place: "EPSG:32650" (UTM on WGS 84, polar stereographic near the poles);
+/// "EPSG:nnnn" for no place.
+[[nodiscard]] std::string metric_crs_for(const std::optional<PlanPoint>& longitude_latitude);
+
+/// Grid distance over true distance at a place, the mean of both axes; nothing where it cannot be had.
+[[nodiscard]] std::optional<double> scale_factor(const OGRSpatialReference& reference, const PlanPoint& p);
+
+}  // namespace talus

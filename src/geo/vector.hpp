@@ -1,0 +1,59 @@
+#pragma once
+
+#include <map>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "core/geometry.hpp"
+#include "core/result.hpp"
+#include "geo/crs.hpp"
+
+namespace talus {
+
+using Attribute = std::variant<std::monostate, double, std::string>;  ///< monostate: null
+
+/// A polygon or multi-polygon in the terrain's CRS.
+struct PolygonFeature {
+    std::vector<Polygon> parts;
+    std::map<std::string, Attribute> attributes;
+};
+
+struct PolygonLayer {
+    std::vector<PolygonFeature> features;
+    std::string reprojection;  ///< "reprojected from EPSG:4326 (WGS 84) to EPSG:2326 (...)", or empty: same CRS
+};
+
+struct LineLayer {
+    std::vector<PlanPoint> points;
+    std::string reprojection;
+};
+
+/// Reads polygons from GeoJSON, GeoPackage, Shapefile or any other OGR source; `layer` empty: the only layer.
+/// Vectors are reprojected to `terrain_crs` and say so. Errors: missing file, a folder that is no data source, no such
+/// layer or several without a name, empty layer, other geometry, missing CRS, self-intersecting polygon (names the
+/// feature and the place).
+[[nodiscard]] Result<PolygonLayer> read_polygons(const std::string& file, const std::string& layer,
+                                                 const Crs& terrain_crs);
+
+/// Reads one line (the first feature; several connected parts are joined). Errors as above.
+[[nodiscard]] Result<LineLayer> read_line(const std::string& file, const std::string& layer, const Crs& terrain_crs);
+
+/// A column of a vector layer to write.
+struct Field {
+    std::string name;
+    bool is_text = false;
+};
+
+struct OutputFeature {
+    std::vector<Polygon> polygon;   ///< either this
+    std::vector<PlanPoint> line;    ///< or this
+    std::vector<Attribute> values;  ///< one per field
+};
+
+/// Writes (appends) a layer to a GeoPackage, creating the file when needed.
+[[nodiscard]] Status write_geopackage_layer(const std::string& file, const std::string& layer,
+                                            const std::vector<Field>& fields,
+                                            const std::vector<OutputFeature>& features, const Crs& crs);
+
+}  // namespace talus

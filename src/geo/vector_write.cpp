@@ -1,0 +1,102 @@
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <memory>
+
+#include <cpl_string.h>
+#include <fmt/format.h>
+#include <ogr_geometry.h>
+#include <ogrsf_frmts.h>
+
+#include "geo/gdal.hpp"
+#include "geo/spatial_reference.hpp"
+#include "geo/vector.hpp"
+
+namespace talus {
+
+namespace {
+
+std::unique_ptr<OGRLinearRing> to_ring(const Ring& ring) {
+    auto result = std::make_unique<OGRLinearRing>();
+    for (const PlanPoint& p : ring) result->addPoint(p.x, p.y);
+    result->closeRings();
+    return result;
+}
+
+std::unique_ptr<OGRGeometry> to_geometry(const OutputFeature& feature) {
+    if (!feature.polygon.empty()) {
+        auto all = std::make_unique<OGRMultiPolygon>();
+        for (const Polygon& polygon : feature.polygon) {
+            auto part = std::make_unique<OGRPolygon>();
+            part->addRingDirectly(to_ring(polygon.outer).release());
+            for (const Ring& hole : polygon.holes) part->addRingDirectly(to_ring(hole).release());
+            all->addGeometryDirectly(part.release());
+        }
+        all->flattenTo2D();
+        return all;
+    }
+    if (feature.line.empty()) return nullptr;
+    auto line = std::make_unique<OGRLineString>();
+    for (const PlanPoint& p : feature.line) line->addPoint(p.x, p.y);
+    line->flattenTo2D();
+    return line;
+}
+
+OGRwkbGeometryType type_of(const std::vector<OutputFeature>& features) {
+    const auto is_polygon = [](const OutputFeature& f) { return !f.polygon.empty(); };
+    const auto is_line = [](const OutputFeature& f) { return f.polygon.empty() && !f.line.empty(); };
+    if (features.empty()) return wkbUnknown;
+    if (std::all_of(features.begin(), features.end(), is_polygon)) return wkbMultiPolygon;
+    if (std::all_of(features.begin(), features.end(), is_line)) return wkbLineString;
+    return wkbUnknown;
+}
+
+bool write_feature(OGRLayer& layer, const OutputFeature& from) {
+    OGRFeature feature(layer.GetLayerDefn());
+    for (std::size_t i = 0; i < from.values.size(); ++i) {
+        const int field = static_cast<int>(i);
+        if (const auto* number = std::get_if<double>(&from.values[i]); number && std::isfinite(*number))
+            feature.SetField(field, *number);
+        if (const auto* text = std::get_if<std::string>(&from.values[i])) feature.SetField(field, text->c_str());
+    }
+    if (auto geometry = to_geometry(from)) feature.SetGeometryDirectly(geometry.release());
+    return layer.CreateFeature(&feature) == OGRERR_NONE;
+}
+
+}  // namespace
+
+Status write_geopackage_layer(const std::string& file, const std::string& layer, const std::vector<Field>& fields,
+                              const std::vector<OutputFeature>& features, const Crs& crs) {
+    GdalMessages messages;
+    const auto failed = [&] {
+        return Error{fmt::format("{}: layer \"{}\" cannot be written: {}", file, layer,
+                                 messages.failure_or("GDAL gave no reason"))};
+    };
+    GDALDatasetUniquePtr data;
+    VSIStatBufL existing;
+    if (VSIStatL(file.c_str(), &existing) == 0) {
+        data.reset(GDALDataset::Open(file.c_str(), GDAL_OF_VECTOR | GDAL_OF_UPDATE | GDAL_OF_VERBOSE_ERROR));
+    } else if (GDALDriver* driver = GetGDALDriverManager()->GetDriverByName("GPKG")) {
+        data.reset(driver->Create(file.c_str(), 0, 0, 0, GDT_Unknown, nullptr));
+    }
+    if (!data) return failed();
+
+    OGRSpatialReference reference = to_spatial_reference(crs);
+    OGRLayer* target =
+        data->CreateLayer(layer.c_str(), reference.IsEmpty() == 0 ? &reference : nullptr, type_of(features), nullptr);
+    if (target == nullptr) return failed();
+    for (const Field& field : fields) {
+        OGRFieldDefn column(field.name.c_str(), field.is_text ? OFTString : OFTReal);
+        if (target->CreateField(&column) != OGRERR_NONE) return failed();
+    }
+    if (data->StartTransaction() != OGRERR_NONE) return failed();
+    for (const OutputFeature& feature : features) {
+        if (!write_feature(*target, feature)) return failed();
+    }
+    if (data->CommitTransaction() != OGRERR_NONE) return failed();
+    data.reset();  // what is wrong with the disk may show only here
+    if (messages.has_failure()) return failed();
+    return {};
+}
+
+}  // namespace talus

@@ -1,0 +1,54 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "observe/observation.hpp"
+#include "sim/model.hpp"
+#include "sim/state.hpp"
+#include "terrain/flow_path.hpp"
+
+namespace talus {
+
+/// Particles that have to lie beyond a position for it to count as reached: 5, or 0.1 % of the released volume if that
+/// is more, so that a single stray makes no front.
+[[nodiscard]] std::uint32_t front_particle_count(const State& state);
+
+/// The front along the flow path: where it is, when it first reached each chainage and how fast it was there.
+///
+/// A release covers part of the path when it starts; what it covers then is not an arrival.
+class FrontTracker {
+  public:
+    /// `flow_path` may be empty: then nothing is tracked. Intervals and window in m of chainage.
+    FrontTracker(const Model& model, const State& state, FlowPath flow_path, double chainage_interval,
+                 double velocity_window);
+
+    void after_step(const Model& model, const State& state);
+
+    [[nodiscard]] const FlowPath& flow_path() const { return flow_path_; }
+    /// Chainage of the front now, m; NaN: none on the path.
+    [[nodiscard]] double current() const { return current_; }
+    /// Farthest chainage so far, m; NaN: none yet.
+    [[nodiscard]] double farthest() const { return farthest_; }
+    /// Arrivals by chainage, with velocities.
+    [[nodiscard]] std::vector<FrontSample> samples() const;
+
+  private:
+    /// Fills chainage_ and returns how many particles are held.
+    std::uint32_t locate_particles(const Model& model, const State& state);
+    [[nodiscard]] double find_front();
+    [[nodiscard]] double speed_behind(double front, const State& state) const;
+    [[nodiscard]] double fitted_velocity(std::size_t middle) const;
+
+    FlowPath flow_path_;
+    double interval_ = 1, window_ = 10, head_length_ = 0;
+    std::size_t front_count_ = 1;
+    std::uint32_t held_ = 0;
+    double current_ = never, farthest_ = never;
+    std::vector<float> chainage_;    // by sorted index; -1: held, or outside the corridor
+    std::vector<float> candidates_;  // reused
+    std::vector<double> arrival_;    // by chainage / interval; NaN: not yet
+    std::vector<double> speed_;
+};
+
+}  // namespace talus

@@ -1,0 +1,76 @@
+#pragma once
+
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "core/grid.hpp"
+
+/// What a run measured: plain results in SI units, for products to write and people to read.
+namespace talus {
+
+inline constexpr double never = std::numeric_limits<double>::quiet_NaN();
+
+/// Rasters over the part of the terrain that debris reached, grown by a margin. NaN: debris never came there.
+struct HazardMaps {
+    Grid<float> peak_depth;     ///< vertical flow depth, m
+    Grid<float> peak_speed;     ///< depth-averaged speed, m/s
+    Grid<float> peak_pressure;  ///< rest_density * speed^2, Pa
+    Grid<float> arrival_time;   ///< first time above the arrival depth, s
+    Grid<float> deposit_depth;  ///< depth at the end of the run, m
+};
+
+/// The front at one chainage of the flow path.
+struct FrontSample {
+    double chainage = 0;            ///< m
+    double arrival_time = 0;        ///< s, of the first debris
+    double front_velocity = never;  ///< m/s, slope of chainage against arrival time over the window
+    double particle_speed = never;  ///< m/s, mean speed of the debris at the front on arrival
+};
+
+/// How far debris ran. Angles in radians, from the crown (highest released debris) to the farthest debris.
+struct RunOut {
+    double front_chainage = never;       ///< m, farthest chainage reached by the front
+    double horizontal_distance = never;  ///< m along the flow path (straight where there is none) from crown to toe
+    double drop = never;                 ///< m, from crown to toe
+    double runout_angle = never;         ///< atan(drop / distance along the path): Fahrboeschung
+    double travel_angle = never;         ///< the same between the centres of mass of release and deposit
+};
+
+struct BuildingImpact {
+    std::string name;
+    bool hit = false;
+    double first_hit_time = never;     ///< s
+    double peak_force = 0;             ///< N, normal to the walls, filtered
+    double peak_pressure = 0;          ///< Pa, filtered force over the wall area in contact
+    double peak_depth = 0;             ///< m, highest debris at the walls above the ground
+    double peak_dynamic_pressure = 0;  ///< Pa, rest_density * speed^2 of debris within a cell of the walls
+};
+
+/// A row of the time series. Volumes add up exactly: released = held + moving + deposited + left.
+struct TimeSample {
+    double time = 0;
+    double front_chainage = never;  ///< m, of the moving front now; NaN: none on the path
+    double volume_held = 0;         ///< m3, in releases that have not started
+    double volume_moving = 0;
+    double volume_deposited = 0;
+    double volume_left = 0;
+    double kinetic_energy = 0;    ///< J
+    double potential_energy = 0;  ///< J, above the lowest terrain
+    double largest_speed = 0;     ///< m/s
+    double mean_compression = 0, max_compression = 0;
+    double time_step = 0;         ///< s
+    double steps_per_second = 0;  ///< of wall time
+};
+
+struct Observation {
+    HazardMaps maps;
+    std::vector<FrontSample> front;  ///< by chainage
+    RunOut run_out;
+    std::vector<BuildingImpact> buildings;  ///< as in Model::buildings
+    std::vector<TimeSample> timeseries;
+    double volume_released = 0;                                    ///< m3
+    double worst_mean_compression = 0, worst_max_compression = 0;  ///< over all steps
+};
+
+}  // namespace talus

@@ -1,0 +1,146 @@
+#include "observe/observer.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "observe/building_impact.hpp"
+#include "observe/front_tracker.hpp"
+#include "observe/map_accumulator.hpp"
+#include "observe/run_out.hpp"
+#include "sim/cpu/parallel.hpp"
+
+namespace talus {
+namespace {
+
+/// Counts and energies over the particles, as far as they are summed up anew for every row.
+struct Totals {
+    std::uint32_t held = 0, moving = 0, deposited = 0;
+    double speed_squared = 0;  ///< sum, m2/s2
+    double height = 0;         ///< sum over the particles, m above the lowest terrain
+};
+
+Totals sum_up(const State& state, double deposited_speed) {
+    return cpu::reduce_ranges(
+        state.count, 1024, Totals{},
+        [&](std::size_t first, std::size_t last, Totals sum) {
+            for (std::size_t i = first; i < last; ++i) {
+                const LocalPoint v = state.velocity.at(i);
+                const double speed_squared = dot(v, v);
+                sum.speed_squared += speed_squared;
+                sum.height += state.position.z[i];
+                if (state.held[i] != 0) {
+                    ++sum.held;
+                } else if (speed_squared < deposited_speed * deposited_speed) {
+                    ++sum.deposited;
+                } else {
+                    ++sum.moving;
+                }
+            }
+            return sum;
+        },
+        [](const Totals& a, const Totals& b) {
+            return Totals{a.held + b.held, a.moving + b.moving, a.deposited + b.deposited,
+                          a.speed_squared + b.speed_squared, a.height + b.height};
+        });
+}
+
+TimeSample make_sample(const Model& model, const State& state, double deposited_speed, double front_chainage,
+                       double steps_per_second) {
+    const Totals totals = sum_up(state, deposited_speed);
+    TimeSample sample;
+    sample.time = state.time;
+    sample.front_chainage = front_chainage;
+    sample.volume_held = totals.held * model.particle_volume();
+    sample.volume_moving = totals.moving * model.particle_volume();
+    sample.volume_deposited = totals.deposited * model.particle_volume();
+    sample.volume_left = state.left * model.particle_volume();
+    sample.kinetic_energy = 0.5 * model.particle_mass() * totals.speed_squared;
+    sample.potential_energy = model.particle_mass() * model.gravity * totals.height;
+    sample.largest_speed = state.largest_speed;
+    sample.mean_compression = state.mean_compression;
+    sample.max_compression = state.max_compression;
+    sample.time_step = state.time_step;
+    sample.steps_per_second = steps_per_second;
+    return sample;
+}
+
+}  // namespace
+
+struct Observer::Parts {
+    Parts(const Model& model, const State& state, const FlowPath& flow_path, const OutputSpec& o, double map_cell)
+        : outputs(o),
+          maps(model, state, map_cell, o.arrival_depth),
+          front(model, state, flow_path, o.chainage_interval, o.front_velocity_window),
+          impact(model, state, o.impact_filter_window),
+          released(measure_release(model, state, flow_path)) {}
+
+    void add_row(const Model& model, const State& state) {
+        timeseries.push_back(make_sample(model, state, outputs.deposited_speed, front.current(), steps_per_second));
+    }
+
+    OutputSpec outputs;
+    MapAccumulator maps;
+    FrontTracker front;
+    ImpactRecorder impact;
+    ReleasedMass released;
+    std::vector<TimeSample> timeseries;
+    std::uint64_t next_row = 1;  ///< due at next_row * sample_interval
+    double steps_per_second = 0;
+    double worst_mean_compression = 0, worst_max_compression = 0;
+};
+
+Observer::Observer(const Model& model, const State& state, const FlowPath& flow_path, const OutputSpec& outputs,
+                   double map_cell)
+    : parts_(std::make_unique<Parts>(model, state, flow_path, outputs, map_cell)) {
+    parts_->maps.add(state);
+    parts_->add_row(model, state);
+}
+
+Observer::~Observer() = default;
+
+void Observer::after_step(const Model& model, const State& state, double steps_per_second) {
+    Parts& p = *parts_;
+    p.maps.add(state);
+    p.front.after_step(model, state);
+    p.impact.after_step(model, state, p.maps);
+    p.worst_mean_compression = std::max(p.worst_mean_compression, state.mean_compression);
+    p.worst_max_compression = std::max(p.worst_max_compression, state.max_compression);
+    p.steps_per_second = steps_per_second;
+    // Rows at multiples of the interval, or right after where a step is longer; a millionth of it absorbs rounding.
+    const double intervals = state.time / p.outputs.sample_interval + 1e-6;
+    if (intervals >= static_cast<double>(p.next_row)) {
+        p.add_row(model, state);
+        p.next_row = static_cast<std::uint64_t>(intervals) + 1;
+    }
+}
+
+double Observer::front_chainage() const {
+    return parts_->front.farthest();
+}
+
+const TimeSample& Observer::latest() const {
+    return parts_->timeseries.back();
+}
+
+Observation Observer::finish(const Model& model, const State& state) {
+    Parts& p = *parts_;
+    if (p.timeseries.back().time != state.time) p.add_row(model, state);
+    Observation observation;
+    observation.maps = p.maps.maps();
+    observation.front = p.front.samples();
+    observation.run_out = measure_run_out(model, state, p.front.flow_path(), p.released, p.front.farthest());
+    observation.buildings = p.impact.impacts();
+    observation.timeseries = p.timeseries;
+    observation.volume_released = state.seeded * model.particle_volume();
+    observation.worst_mean_compression = p.worst_mean_compression;
+    observation.worst_max_compression = p.worst_max_compression;
+    return observation;
+}
+
+double default_map_cell(double terrain_cell, double particle_spacing) {
+    const double wanted = 2.5 * particle_spacing;
+    if (wanted < terrain_cell) return terrain_cell / std::max(1.0, std::round(terrain_cell / wanted));
+    return terrain_cell * std::max(1.0, std::round(wanted / terrain_cell));
+}
+
+}  // namespace talus

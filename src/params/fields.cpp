@@ -1,0 +1,374 @@
+#include "params/fields.hpp"
+
+#include <optional>
+#include <type_traits>
+#include <utility>
+
+namespace talus {
+namespace {
+
+constexpr Range above(double low) {
+    return {.low = low, .low_included = false};
+}
+constexpr Range at_least(double low) {
+    return {.low = low};
+}
+constexpr Range between(double low, double high) {
+    return {.low = low, .high = high};
+}
+constexpr Range above_to(double low, double high) {
+    return {.low = low, .high = high, .low_included = false};
+}
+constexpr Range from_to_below(double low, double high) {
+    return {.low = low, .high = high, .high_included = false};
+}
+constexpr Range anything() {
+    return {};
+}
+
+template <class Member>
+constexpr ParameterKind kind_of() {
+    if constexpr (std::is_same_v<Member, bool>) return ParameterKind::boolean;
+    if constexpr (std::is_same_v<Member, int>) return ParameterKind::integer;
+    if constexpr (std::is_same_v<Member, std::string>) return ParameterKind::text;
+    if constexpr (std::is_same_v<Member, std::vector<std::string>>) return ParameterKind::text_list;
+    if constexpr (std::is_same_v<Member, Extent>) return ParameterKind::extent;
+    return ParameterKind::number;
+}
+
+template <class Member>
+ParameterValue to_value(const Member& member) {
+    if constexpr (std::is_same_v<Member, int>) {
+        return static_cast<std::int64_t>(member);
+    } else {
+        return member;
+    }
+}
+
+template <class Member>
+Member from_value(const ParameterValue& value) {
+    if constexpr (std::is_same_v<Member, int>) {
+        return static_cast<int>(std::get<std::int64_t>(value));
+    } else {
+        return std::get<Member>(value);
+    }
+}
+
+/// Declares the keys of one section; `Struct` is its part of the SceneSpec.
+template <class Struct>
+class Declaration {
+  public:
+    Declaration(std::string name, std::string help, Struct SceneSpec::*part) {
+        section_.name = std::move(name);
+        section_.help = std::move(help);
+        section_.count = [](const SceneSpec&) { return std::size_t{1}; };
+        part_ = [part](SceneSpec& spec, std::size_t) -> Struct& { return spec.*part; };
+    }
+
+    Declaration(std::string name, std::string help, std::vector<Struct> SceneSpec::*parts) {
+        section_.name = std::move(name);
+        section_.help = std::move(help);
+        section_.repeats = true;
+        section_.count = [parts](const SceneSpec& spec) { return (spec.*parts).size(); };
+        section_.append = [parts](SceneSpec& spec) { (spec.*parts).emplace_back(); };
+        part_ = [parts](SceneSpec& spec, std::size_t index) -> Struct& { return (spec.*parts)[index]; };
+    }
+
+    /// A key that always has a value.
+    template <class Member>
+    Parameter& key(std::string name, std::string unit, Member Struct::*member, Range range, std::string help) {
+        Parameter& p = add(std::move(name), std::move(unit), kind_of<Member>(), range, std::move(help));
+        p.get = [part = part_, member](const SceneSpec& spec, std::size_t index) {
+            return to_value(part(const_cast<SceneSpec&>(spec), index).*member);
+        };
+        p.set = [part = part_, member](SceneSpec& spec, std::size_t index, const ParameterValue& value) {
+            part(spec, index).*member = from_value<Member>(value);
+        };
+        return p;
+    }
+
+    /// A key without a default value; `absent` says what happens then.
+    template <class Member>
+    Parameter& optional_key(std::string name, std::string unit, std::optional<Member> Struct::*member, Range range,
+                            std::string absent, std::string help) {
+        Parameter& p = add(std::move(name), std::move(unit), kind_of<Member>(), range, std::move(help));
+        p.absent = std::move(absent);
+        p.get = [part = part_, member](const SceneSpec& spec, std::size_t index) -> ParameterValue {
+            const std::optional<Member>& value = part(const_cast<SceneSpec&>(spec), index).*member;
+            return value ? to_value(*value) : ParameterValue{};
+        };
+        p.set = [part = part_, member](SceneSpec& spec, std::size_t index, const ParameterValue& value) {
+            std::optional<Member>& target = part(spec, index).*member;
+            if (std::holds_alternative<std::monostate>(value)) {
+                target.reset();
+            } else {
+                target = from_value<Member>(value);
+            }
+        };
+        return p;
+    }
+
+    /// A text whose emptiness means "not given".
+    Parameter& text(std::string name, std::string Struct::*member, std::string absent, std::string help) {
+        Parameter& p = add(std::move(name), "", ParameterKind::text, {}, std::move(help));
+        p.absent = std::move(absent);
+        p.get = [part = part_, member](const SceneSpec& spec, std::size_t index) -> ParameterValue {
+            const std::string& value = part(const_cast<SceneSpec&>(spec), index).*member;
+            return value.empty() ? ParameterValue{} : ParameterValue{value};
+        };
+        p.set = [part = part_, member](SceneSpec& spec, std::size_t index, const ParameterValue& value) {
+            const auto* given = std::get_if<std::string>(&value);
+            part(spec, index).*member = given ? *given : std::string{};
+        };
+        return p;
+    }
+
+    /// A file; relative ones are taken from the scene file's folder.
+    Parameter& path(std::string name, std::string Struct::*member, std::string absent, std::string help) {
+        Parameter& p = text(std::move(name), member, std::move(absent), std::move(help));
+        p.kind = ParameterKind::path;
+        return p;
+    }
+
+    /// One of several texts, in the order of the enumeration.
+    template <class Enum>
+    Parameter& choice(std::string name, Enum Struct::*member, std::vector<std::string> choices, std::string help) {
+        Parameter& p = add(std::move(name), "", ParameterKind::choice, {}, std::move(help));
+        p.choices = choices;
+        p.get = [part = part_, member, choices](const SceneSpec& spec, std::size_t index) -> ParameterValue {
+            return choices[static_cast<std::size_t>(part(const_cast<SceneSpec&>(spec), index).*member)];
+        };
+        p.set = [part = part_, member, choices](SceneSpec& spec, std::size_t index, const ParameterValue& value) {
+            for (std::size_t i = 0; i < choices.size(); ++i) {
+                if (choices[i] == std::get<std::string>(value)) part(spec, index).*member = static_cast<Enum>(i);
+            }
+        };
+        return p;
+    }
+
+    [[nodiscard]] Section take() { return std::move(section_); }
+
+  private:
+    Parameter& add(std::string name, std::string unit, ParameterKind kind, Range range, std::string help) {
+        Parameter& p = section_.parameters.emplace_back();
+        p.key = std::move(name);
+        p.unit = std::move(unit);
+        p.kind = kind;
+        p.range = range;
+        p.help = std::move(help);
+        return p;
+    }
+
+    Section section_;
+    std::function<Struct&(SceneSpec&, std::size_t)> part_;
+};
+
+// clang-format off: one declaration per key, help on its own line, reads as a table.
+
+Section declare_scene() {
+    Declaration<SceneInfo> s("scene", "What the run is about; all of it is printed in the report.", &SceneSpec::scene);
+    s.text("title", &SceneInfo::title, "the scene file's name", "Title of the report.");
+    s.text("description", &SceneInfo::description, "none", "What is simulated and why, in a few sentences.");
+    s.key("reconstruction", "", &SceneInfo::reconstruction, anything(),
+          "Whether the inputs are reconstructed rather than surveyed; every product then says so.");
+    s.key("assumptions", "", &SceneInfo::assumptions, anything(), "What was assumed, one sentence each.");
+    s.key("sources", "", &SceneInfo::sources, anything(),
+          "Where facts and data come from, with the attribution their licences ask for.");
+    return s.take();
+}
+
+Section declare_terrain() {
+    Declaration<TerrainSpec> s("terrain",
+                               "The ground, as a raster of elevations in a projected metric reference system.",
+                               &SceneSpec::terrain);
+    s.path("file", &TerrainSpec::file, "", "Any raster that GDAL reads; its reference system is that of the whole run.")
+        .required = true;
+    s.key("band", "", &TerrainSpec::band, at_least(1), "The raster's band that holds elevations.");
+    s.optional_key("extent_m", "m", &TerrainSpec::extent, anything(), "the whole raster",
+                   "The part of the terrain to use, in its own coordinates.");
+    s.text("obtain", &TerrainSpec::obtain, "nothing is said", "Where the file is to be had, told to whoever lacks it.");
+    return s.take();
+}
+
+Section declare_release() {
+    Declaration<ReleaseSpec> s("release",
+                               "A body of debris that starts to move at one moment; at least one. Exactly one of "
+                               "thickness_m, thickness_attribute, thickness_raster and volume_m3 says how much it is.",
+                               &SceneSpec::releases);
+    s.text("name", &ReleaseSpec::name, "\"release N\"", "Name in reports and messages.");
+    s.path("file", &ReleaseSpec::file, "", "Polygons of the release area: GeoJSON, GeoPackage, Shapefile.").required =
+        true;
+    s.text("layer", &ReleaseSpec::layer, "the only layer", "Layer of the file.");
+    s.optional_key("thickness_m", "m", &ReleaseSpec::thickness, above_to(0, 1000), "one of the other three is given",
+                   "Uniform thickness, normal to the slope.");
+    s.text("thickness_attribute", &ReleaseSpec::thickness_attribute, "one of the other three is given",
+           "Attribute of the polygons that holds their thickness normal to the slope in metres.");
+    s.path("thickness_raster", &ReleaseSpec::thickness_raster, "one of the other three is given",
+           "Raster of thickness normal to the slope in metres, in the terrain's reference system.");
+    s.optional_key("volume_m3", "m3", &ReleaseSpec::volume, above(0), "one of the other three is given",
+                   "Volume to release, spread as a uniform thickness over the polygons.");
+    s.key("start_time_s", "s", &ReleaseSpec::start_time, at_least(0),
+          "When the body starts to move; until then it is held in place.");
+    return s.take();
+}
+
+Section declare_buildings() {
+    Declaration<BuildingsSpec> s("buildings", "Solid obstacles with vertical walls and flat roofs.",
+                                 &SceneSpec::buildings);
+    s.path("file", &BuildingsSpec::file, "no buildings", "Footprint polygons: GeoJSON, GeoPackage, Shapefile.");
+    s.text("layer", &BuildingsSpec::layer, "the only layer", "Layer of the file.");
+    s.text("height_attribute", &BuildingsSpec::height_attribute, "every building has the default height",
+           "Attribute that holds a building's height above the mean ground of its footprint in metres.");
+    s.text("name_attribute", &BuildingsSpec::name_attribute, "\"building N\"",
+           "Attribute that holds a building's name.");
+    s.key("default_height_m", "m", &BuildingsSpec::default_height, above_to(0, 1000),
+          "Height where the attribute is absent, empty or not above zero; counted as assumed.");
+    return s.take();
+}
+
+Section declare_flow_path() {
+    Declaration<FlowPathSpec> s("flow_path", "The line along which chainage is measured.", &SceneSpec::flow_path);
+    s.path("file", &FlowPathSpec::file, "traced downhill from the release",
+           "A line from the crown downstream: GeoJSON, GeoPackage, Shapefile.");
+    s.text("layer", &FlowPathSpec::layer, "the only layer", "Layer of the file.");
+    s.key("corridor_width_m", "m", &FlowPathSpec::corridor_width, above(0),
+          "Debris farther than half of this from the line does not count as front.");
+    return s.take();
+}
+
+Section declare_material() {
+    Declaration<MaterialSpec> s("material", "What moves.", &SceneSpec::material);
+    s.key("rest_density_kgpm3", "kg/m3", &MaterialSpec::rest_density, above_to(0, 30000),
+          "Bulk density of the debris.");
+    s.key("friction_coefficient", "", &MaterialSpec::friction_coefficient, between(0, 10),
+          "Coulomb friction on ground and buildings (tangent of the friction angle), and inside unless set apart.");
+    s.optional_key("internal_friction_coefficient", "", &MaterialSpec::internal_friction_coefficient, between(0, 10),
+                   "equal to friction_coefficient", "Coulomb friction of debris on debris.");
+    s.key("viscosity", "", &MaterialSpec::viscosity, from_to_below(0, 1),
+          "Share of the velocity difference to its neighbours that debris loses per 1/60 s, whatever the time step.");
+    return s.take();
+}
+
+Section declare_solver() {
+    Declaration<SolverSpec> s("solver", "How it is computed.", &SceneSpec::solver);
+    s.optional_key("particle_spacing_m", "m", &SolverSpec::particle_spacing, above(0),
+                   "from target_particle_count and the released volume",
+                   "Edge of the cube of debris that a particle stands for.");
+    s.key("target_particle_count", "", &SolverSpec::target_particle_count, between(1, 1e9),
+          "Particles to aim for where particle_spacing_m is not given.");
+    s.key("particle_limit", "", &SolverSpec::particle_limit, between(1, 1e9),
+          "More particles than this are refused before the run.");
+    s.optional_key("time_step_s", "s", &SolverSpec::time_step, above_to(0, 1),
+                   "adaptive: a particle moves at most half a spacing per step", "Fixed time step.");
+    s.key("largest_time_step_s", "s", &SolverSpec::largest_time_step, above_to(0, 1),
+          "Upper bound of the adaptive time step.");
+    s.key("smallest_time_step_s", "s", &SolverSpec::smallest_time_step, above_to(0, 1),
+          "An adaptive time step below this stops the run as a fault.");
+    s.key("iteration_count", "", &SolverSpec::iteration_count, between(1, 1000), "Solver iterations per time step.");
+    s.choice("kernel", &SolverSpec::kernel, {"wendland_c2", "cubic_spline", "spiky", "poly6_spiky"},
+             "Smoothing kernel; poly6_spiky is the published pair of density kernel and gradient kernel.");
+    s.key("support_ratio", "", &SolverSpec::support_ratio, between(1.5, 4),
+          "Support radius of the kernel over the particle spacing.");
+    s.key("under_relaxation", "", &SolverSpec::under_relaxation, above_to(0, 1),
+          "Factor on every multiplier update of the Jacobi iteration.");
+    s.key("constraint_relaxation", "", &SolverSpec::constraint_relaxation, at_least(0),
+          "Softens the density constraint: term in the multiplier's denominator relative to its rest value.");
+    s.key("depenetration_speed_mps", "m/s", &SolverSpec::depenetration_speed, above(0),
+          "The fastest that an overlap present at the start of a step is pushed out.");
+    s.key("end_time_s", "s", &SolverSpec::end_time, above(0), "Simulated time at which the run ends at the latest.");
+    s.key("stop_momentum_fraction", "", &SolverSpec::stop_momentum_fraction, from_to_below(0, 1),
+          "Ends the run when momentum stays below this share of its peak; 0 never does.");
+    s.key("stop_duration_s", "s", &SolverSpec::stop_duration, at_least(0),
+          "For how long momentum must stay below that share.");
+    s.key("compression_limit", "", &SolverSpec::compression_limit, above(0),
+          "Mean over-density (density over rest density, less 1) above which the run stops as a fault.");
+    s.key("thread_count", "", &SolverSpec::thread_count, between(0, 4096),
+          "Threads to compute with; 0 takes all cores. Results do not depend on it.");
+    return s.take();
+}
+
+Section declare_outputs() {
+    Declaration<OutputSpec> s("outputs", "What is written.", &SceneSpec::outputs);
+    s.optional_key("map_cell_m", "m", &OutputSpec::map_cell, above(0),
+                   "a whole fraction or multiple of the terrain's cell near 2.5 particle spacings",
+                   "Cell of the hazard maps.");
+    s.key("sample_interval_s", "s", &OutputSpec::sample_interval, above(0),
+          "Simulated time between rows of timeseries.csv.");
+    s.key("chainage_interval_m", "m", &OutputSpec::chainage_interval, above(0), "Chainage between rows of front.csv.");
+    s.key("front_velocity_window_m", "m", &OutputSpec::front_velocity_window, above(0),
+          "Chainage over which front velocity is fitted to the arrival times.");
+    s.key("arrival_depth_m", "m", &OutputSpec::arrival_depth, at_least(0),
+          "Debris has arrived in a map cell once it is deeper than this.");
+    s.key("impact_filter_window_s", "s", &OutputSpec::impact_filter_window, above(0),
+          "Averaging window of force and pressure on buildings.");
+    s.key("deposited_speed_mps", "m/s", &OutputSpec::deposited_speed, above(0), "Slower debris counts as deposited.");
+    s.key("particle_series_interval_s", "s", &OutputSpec::particle_series_interval, at_least(0),
+          "Simulated time between particle frames for ParaView; 0 writes none.");
+    return s.take();
+}
+
+Section declare_observation() {
+    Declaration<ObservationSpec> s("observation",
+                                   "A front velocity measured in the field, drawn beside the computed one; any number.",
+                                   &SceneSpec::observations);
+    s.text("name", &ObservationSpec::name, "none", "Label in plots and tables.");
+    s.key("chainage_m", "m", &ObservationSpec::chainage, at_least(0),
+          "Horizontal distance along the flow path from its first point.")
+        .required = true;
+    s.key("front_velocity_mps", "m/s", &ObservationSpec::front_velocity, above(0),
+          "Velocity at which debris first reached this chainage.")
+        .required = true;
+    s.text("source", &ObservationSpec::source, "none", "Who measured it and how.");
+    return s.take();
+}
+
+// clang-format on
+
+}  // namespace
+
+const std::vector<Section>& scene_sections() {
+    static const std::vector<Section> sections = {
+        declare_scene(),    declare_terrain(), declare_release(), declare_buildings(),   declare_flow_path(),
+        declare_material(), declare_solver(),  declare_outputs(), declare_observation(),
+    };
+    return sections;
+}
+
+const Section* find_section(std::string_view name) {
+    for (const Section& section : scene_sections()) {
+        if (section.name == name) return &section;
+    }
+    return nullptr;
+}
+
+const Parameter* Section::find(std::string_view key) const {
+    for (const Parameter& parameter : parameters) {
+        if (parameter.key == key) return &parameter;
+    }
+    return nullptr;
+}
+
+ParameterValue default_value(const Section& section, const Parameter& parameter) {
+    if (parameter.required) return {};
+    SceneSpec spec;
+    if (section.repeats) section.append(spec);
+    return parameter.get(spec, 0);
+}
+
+std::string key_path(const Section& section, std::size_t index, const Parameter& parameter) {
+    return section.name + (section.repeats ? "[" + std::to_string(index) + "]" : "") + "." + parameter.key;
+}
+
+void for_each_value(
+    const SceneSpec& spec,
+    const std::function<void(const Section&, std::size_t, const Parameter&, const ParameterValue&)>& visit) {
+    for (const Section& section : scene_sections()) {
+        for (std::size_t index = 0; index < section.count(spec); ++index) {
+            for (const Parameter& parameter : section.parameters) {
+                visit(section, index, parameter, parameter.get(spec, index));
+            }
+        }
+    }
+}
+
+}  // namespace talus

@@ -1,0 +1,97 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <limits>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+#include "params/spec.hpp"
+
+/// The field table: every tunable of a scene, declared once in fields.cpp. The parser, the scene writer, --help,
+/// docs/scene-reference.md and the manifest all read it. Defaults are the member initialisers in spec.hpp.
+namespace talus {
+
+enum class ParameterKind { boolean, integer, number, text, path, choice, text_list, extent };
+
+/// A value as it crosses the boundary, in the unit of its key. monostate: not given. A choice travels as its text.
+using ParameterValue =
+    std::variant<std::monostate, bool, std::int64_t, double, std::string, std::vector<std::string>, Extent>;
+
+/// The values a number may have.
+struct Range {
+    double low = -std::numeric_limits<double>::infinity();
+    double high = std::numeric_limits<double>::infinity();
+    bool low_included = true;
+    bool high_included = true;
+
+    [[nodiscard]] bool contains(double value) const;
+    /// "above 0", "0 to below 1", "at least 1", "" when everything is allowed.
+    [[nodiscard]] std::string text() const;
+};
+
+/// One key of a scene file.
+struct Parameter {
+    std::string key;   ///< with its unit: "particle_spacing_m"
+    std::string unit;  ///< "m", "" for a pure number or text
+    ParameterKind kind = ParameterKind::number;
+    bool required = false;
+    Range range;
+    std::vector<std::string> choices;
+    std::string absent;  ///< what happens when it is not given, where there is no default value
+    std::string help;    ///< one sentence
+
+    /// The value in the `index`-th entry of the section (0 where it does not repeat).
+    std::function<ParameterValue(const SceneSpec&, std::size_t index)> get;
+    /// Takes a value that `problem_with` accepts; monostate only where the parameter is optional.
+    std::function<void(SceneSpec&, std::size_t index, const ParameterValue&)> set;
+};
+
+/// A table of a scene file: `[name]`, or `[[name]]` where it repeats.
+struct Section {
+    std::string name;
+    bool repeats = false;
+    std::string help;
+    std::vector<Parameter> parameters;
+    std::function<std::size_t(const SceneSpec&)> count;  ///< entries; 1 where it does not repeat
+    std::function<void(SceneSpec&)> append;              ///< adds an entry with default values, where it repeats
+
+    [[nodiscard]] const Parameter* find(std::string_view key) const;
+};
+
+/// All sections in the order of the scene file.
+[[nodiscard]] const std::vector<Section>& scene_sections();
+[[nodiscard]] const Section* find_section(std::string_view name);
+
+/// The default, monostate where there is none.
+[[nodiscard]] ParameterValue default_value(const Section& section, const Parameter& parameter);
+
+/// "release[0].thickness_m", "terrain.file".
+[[nodiscard]] std::string key_path(const Section& section, std::size_t index, const Parameter& parameter);
+
+/// What is allowed, as the end of "must be ...": "a number above 0 (m)", "one of \"spiky\", ...".
+[[nodiscard]] std::string allowed_text(const Parameter& parameter);
+
+/// Empty if the value (of the parameter's kind) is allowed, otherwise `allowed_text`.
+[[nodiscard]] std::string problem_with(const Parameter& parameter, const ParameterValue& value);
+
+/// The value as TOML writes it, exactly; "" for monostate.
+[[nodiscard]] std::string toml_text(const ParameterValue& value);
+
+/// The value for people: six digits, no quotes; "" for monostate.
+[[nodiscard]] std::string plain_text(const ParameterValue& value);
+
+/// Calls `visit(section, index, parameter, value)` for every key of the scene in file order.
+void for_each_value(const SceneSpec& spec,
+                    const std::function<void(const Section& section, std::size_t index, const Parameter& parameter,
+                                             const ParameterValue& value)>& visit);
+
+/// The candidate with the smallest edit distance to `word`; empty without candidates.
+[[nodiscard]] std::string nearest_word(std::string_view word, const std::vector<std::string>& candidates);
+
+/// Levenshtein's distance: insertions, deletions and replacements that turn `a` into `b`.
+[[nodiscard]] std::size_t edit_distance(std::string_view a, std::string_view b);
+
+}  // namespace talus

@@ -1,0 +1,20 @@
+#pragma once
+
+#include <string>
+
+#include "params/fields.hpp"
+
+/// What the field table is turned into for people.
+namespace talus {
+
+/// A commented scene file. Values that differ from the default are set; every other key is there as a comment with its
+/// default, unit, allowed range and help. `header`: comment lines at the top, without the "# ".
+[[nodiscard]] std::string write_scene(const SceneSpec& spec, const std::string& header = "");
+
+/// docs/scene-reference.md.
+[[nodiscard]] std::string scene_reference_markdown();
+
+/// The same for a terminal.
+[[nodiscard]] std::string scene_reference_text();
+
+}  // namespace talus

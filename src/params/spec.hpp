@@ -1,0 +1,132 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/geometry.hpp"
+
+/// What a scene file says, in SI units and radians. Plain data: the field table (fields.hpp) declares key, unit,
+/// default, range and help of every member once, and parser, --help, documentation and manifest are made from it.
+namespace talus {
+
+/// `[scene]`: what the run is about.
+struct SceneInfo {
+    std::string title;
+    std::string description;
+    bool reconstruction = false;           ///< the inputs are reconstructed, not surveyed: said on every product
+    std::vector<std::string> assumptions;  ///< one sentence each, printed in the report
+    std::vector<std::string> sources;      ///< where facts and data come from, printed in the report
+};
+
+/// `[terrain]`
+struct TerrainSpec {
+    std::string file;
+    int band = 1;
+    std::optional<Extent> extent;  ///< the part to use, in the terrain's CRS; absent: all of it
+    std::string obtain;            ///< where the file is to be had, said when it is missing
+};
+
+/// `[[release]]`: exactly one of thickness, thickness_attribute, thickness_raster, volume.
+struct ReleaseSpec {
+    std::string name;
+    std::string file;
+    std::string layer;
+    std::optional<double> thickness;  ///< normal to the slope, m
+    std::string thickness_attribute;
+    std::string thickness_raster;
+    std::optional<double> volume;  ///< m3, spread as a uniform thickness
+    double start_time = 0;         ///< s
+};
+
+/// `[buildings]`: no file means no buildings.
+struct BuildingsSpec {
+    std::string file;
+    std::string layer;
+    std::string height_attribute;
+    std::string name_attribute;
+    double default_height = 6;  ///< m, where the attribute is absent or empty
+};
+
+/// `[flow_path]`: no file means traced by steepest descent from the release.
+struct FlowPathSpec {
+    std::string file;
+    std::string layer;
+    double corridor_width = 60;  ///< m, debris farther than half of it from the line does not count as front
+};
+
+/// `[material]`
+struct MaterialSpec {
+    double rest_density = 2000;                           ///< kg/m3
+    double friction_coefficient = 0.4;                    ///< on ground and buildings, and inside unless set apart
+    std::optional<double> internal_friction_coefficient;  ///< absent: equal to friction_coefficient
+    double viscosity = 0.1;                               ///< XSPH smoothing per 1/60 s, 0 to below 1
+};
+
+enum class KernelChoice {
+    wendland_c2,  ///< one kernel with its own gradient
+    cubic_spline,
+    spiky,
+    poly6_spiky,  ///< the published pair: Poly6 density, Spiky gradient
+};
+
+enum class InternalFriction {
+    stress,  ///< a deviatoric stress per particle that persists between steps, limited by Drucker & Prager
+    pair,    ///< the published correction per pair of particles
+};
+
+/// `[solver]`: an absent optional is chosen by the program and reported.
+struct SolverSpec {
+    std::optional<double> particle_spacing;  ///< m; absent: from target_particle_count and the released volume
+    int target_particle_count = 10000;
+    int particle_limit = 2000000;
+    std::optional<double> time_step;         ///< s, fixed; absent: adaptive, a particle moves at most half a spacing
+    double largest_time_step = 1.0 / 60;     ///< s, upper bound of the adaptive step
+    double smallest_time_step = 1.0 / 3840;  ///< s, an adaptive step below it stops the run as a fault
+    int iteration_count = 4;
+    KernelChoice kernel = KernelChoice::wendland_c2;
+    InternalFriction internal_friction = InternalFriction::stress;
+    double support_ratio = 2.2;            ///< support radius / particle spacing
+    double under_relaxation = 0.4;         ///< factor on every multiplier update of the Jacobi iteration
+    double constraint_relaxation = 0.1;      ///< XPBD-like term in the denominator of lambda, relative to its rest value
+    double depenetration_speed = 0.5;      ///< m/s, the fastest that an overlap present at step start is pushed out
+    double end_time = 120;                 ///< s
+    double stop_momentum_fraction = 0.02;  ///< ends the run when momentum stays below this share of its peak; 0: never
+    double stop_duration = 3;              ///< s, for how long
+    double compression_limit = 0.5;        ///< mean of max(0, density/rest density - 1) above which the run is a fault
+    int thread_count = 0;                  ///< 0: all cores
+};
+
+/// `[outputs]`
+struct OutputSpec {
+    std::optional<double> map_cell;       ///< m; absent: a whole fraction of the terrain's cell, near 2.5 spacings
+    double sample_interval = 0.1;         ///< s, rows of timeseries.csv
+    double chainage_interval = 1;         ///< m, rows of front.csv
+    double front_velocity_window = 10;    ///< m of chainage over which d(chainage)/dt is fitted
+    double arrival_depth = 0.1;           ///< m, debris has arrived in a map cell above this depth
+    double impact_filter_window = 0.2;    ///< s, averaging window of force and pressure on buildings
+    double deposited_speed = 0.1;         ///< m/s, slower debris counts as deposited
+    double particle_series_interval = 0;  ///< s between ParaView frames; 0: none
+};
+
+/// `[[observation]]`: a field measurement to draw beside the result.
+struct ObservationSpec {
+    std::string name;
+    double chainage = 0;        ///< m along the flow path
+    double front_velocity = 0;  ///< m/s
+    std::string source;
+};
+
+struct SceneSpec {
+    SceneInfo scene;
+    TerrainSpec terrain;
+    std::vector<ReleaseSpec> releases;
+    BuildingsSpec buildings;
+    FlowPathSpec flow_path;
+    MaterialSpec material;
+    SolverSpec solver;
+    OutputSpec outputs;
+    std::vector<ObservationSpec> observations;
+};
+
+}  // namespace talus

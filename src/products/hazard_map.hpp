@@ -1,0 +1,35 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "observe/observation.hpp"
+#include "products/report_colour.hpp"
+
+namespace talus {
+
+/// A map among the products: where it comes from, what it is called, how it is coloured.
+struct HazardMap {
+    const char* file;         ///< without extension: "peak_depth"
+    const char* title;        ///< "Peak depth"
+    const char* description;  ///< of the band
+    const char* unit;         ///< of the band and of `breaks`
+    double factor;            ///< from SI to `unit`
+    Grid<float> HazardMaps::*grid;
+    std::vector<double> breaks;  ///< lower limits of the classes; below the first: not drawn. Empty: even classes
+    report::Ramp ramp;
+};
+
+/// All maps, in the order in which they are written.
+[[nodiscard]] const std::vector<HazardMap>& hazard_maps();
+
+/// The map in its own unit.
+[[nodiscard]] Grid<float> in_unit(const Grid<float>& si, double factor);
+
+/// Greatest value of a grid; 0 where it has none.
+[[nodiscard]] double greatest(const Grid<float>& grid);
+
+/// A QGIS 3 layer style: classes with labels in the map's unit, transparent below the first one and at nodata.
+[[nodiscard]] std::string qgis_style(const HazardMap& map, double largest);
+
+}  // namespace talus

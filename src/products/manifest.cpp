@@ -1,0 +1,235 @@
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+#include <fmt/chrono.h>
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+#include <tbb/version.h>
+
+#include "core/hash.hpp"
+#include "geo/versions.hpp"
+#include "params/fields.hpp"
+#include "products/hardware.hpp"
+#include "products/hazard_map.hpp"
+#include "products/text_file.hpp"
+#include "products/writers.hpp"
+
+namespace talus {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr double degrees = 180 / std::numbers::pi;
+
+struct ToJson {
+    Json operator()(std::monostate) const { return nullptr; }
+    Json operator()(const Extent& e) const { return {e.x_min, e.y_min, e.x_max, e.y_max}; }
+    template <class T>
+    Json operator()(const T& value) const {
+        return value;
+    }
+};
+
+/// As in the scene file: a table per section, a list of tables where it repeats.
+Json parameters(const SceneSpec& spec) {
+    Json all = Json::object();
+    for (const Section& section : scene_sections())
+        all[section.name] = section.repeats ? Json::array() : Json::object();
+    for_each_value(
+        spec, [&](const Section& section, std::size_t index, const Parameter& parameter, const ParameterValue& value) {
+            Json& table = section.repeats ? all[section.name][index] : all[section.name];
+            table[parameter.key] = std::visit(ToJson{}, value);
+        });
+    return all;
+}
+
+/// What the program chose where the scene left it open.
+Json resolved(const Scene& scene, const RunResult& result) {
+    Json releases = Json::array();
+    for (const Release& release : scene.releases) {
+        releases.push_back(
+            {{"name", release.name}, {"start_time_s", release.start_time}, {"volume_m3", release.volume}});
+    }
+    return {{"particle_spacing_m", result.particle_spacing},
+            {"support_radius_m", result.support_radius},
+            {"particle_count", result.particles},
+            {"kinematic_viscosity_m2ps", result.kinematic_viscosity},
+            {"map_cell_m", result.map_cell},
+            {"smallest_time_step_s", result.smallest_time_step},
+            {"largest_time_step_s", result.largest_time_step},
+            {"thread_count", result.thread_count},
+            {"flow_path", scene.flow_path.empty()  ? "none"
+                          : scene.flow_path_traced ? "traced"
+                                                   : "given"},
+            {"flow_path_length_m", scene.flow_path.length()},
+            {"releases", releases}};
+}
+
+Json terrain(const Scene& scene) {
+    const GridGeometry& g = scene.terrain.elevation().geometry;
+    const WorldPoint origin = scene.terrain.frame().origin;
+    return {{"crs", scene.crs.label()},
+            {"crs_wkt", scene.crs.wkt},
+            {"vertical_unit", scene.vertical_unit},
+            {"columns", g.columns},
+            {"rows", g.rows},
+            {"cell_m", g.cell},
+            {"x_min_m", g.x_min},
+            {"y_min_m", g.y_min},
+            {"nodata_share", scene.nodata_share},
+            {"local_origin_m", {origin.x, origin.y, origin.z}}};
+}
+
+Json inputs(const Scene& scene) {
+    Json all = Json::array();
+    for (const InputFile& input : scene.inputs) {
+        all.push_back({{"role", input.role}, {"path", input.path}, {"bytes", input.bytes}, {"fnv1a_64", input.hash}});
+    }
+    return all;
+}
+
+Json results(const RunResult& result) {
+    const Observation& o = result.observation;
+    Json peaks = Json::object();
+    for (const HazardMap& map : hazard_maps()) {
+        std::string suffix = map.unit;
+        suffix = suffix == "m/s" ? "mps" : suffix;
+        peaks[std::string("greatest_") + map.file + "_" + suffix] = greatest(o.maps.*map.grid) * map.factor;
+    }
+    Json volumes = {{"released_m3", o.volume_released}};
+    if (!o.timeseries.empty()) {
+        const TimeSample& last = o.timeseries.back();
+        volumes["held_m3"] = last.volume_held;
+        volumes["moving_m3"] = last.volume_moving;
+        volumes["deposited_m3"] = last.volume_deposited;
+        volumes["left_m3"] = last.volume_left;
+    }
+    const auto hit = std::count_if(o.buildings.begin(), o.buildings.end(), [](const auto& b) { return b.hit; });
+    return {{"front_chainage_m", o.run_out.front_chainage},
+            {"horizontal_distance_m", o.run_out.horizontal_distance},
+            {"drop_m", o.run_out.drop},
+            {"runout_angle_deg", o.run_out.runout_angle * degrees},
+            {"travel_angle_deg", o.run_out.travel_angle * degrees},
+            {"peaks", peaks},
+            {"volumes", volumes},
+            {"buildings", o.buildings.size()},
+            {"buildings_hit", hit},
+            {"worst_mean_compression", o.worst_mean_compression},
+            {"worst_max_compression", o.worst_max_compression}};
+}
+
+Json performance(const RunResult& result) {
+    const double steps = static_cast<double>(result.steps);
+    const double per_step = steps > 0 ? 1 / steps : never;
+    const double per_wall = result.wall_time > 0 ? 1 / result.wall_time : never;
+    Json stages = Json::array();
+    double rest = result.wall_time;
+    const auto add = [&](std::string_view name, double seconds) {
+        stages.push_back({{"stage", name},
+                          {"total_s", seconds},
+                          {"per_step_ms", 1e3 * seconds * per_step},
+                          {"share", seconds * per_wall}});
+    };
+    for (std::size_t i = 0; i < stage_names.size(); ++i) {
+        add(stage_names[i], result.stage_times.seconds[i]);
+        rest -= result.stage_times.seconds[i];
+    }
+    add("other", std::max(0.0, rest));
+    return {{"simulated_time_s", result.simulated_time},
+            {"wall_time_s", result.wall_time},
+            {"real_time_factor", result.real_time_factor()},
+            {"steps", result.steps},
+            {"steps_per_second", steps * per_wall},
+            {"step_ms", 1e3 * result.wall_time * per_step},
+            {"stages", stages}};
+}
+
+Json versions() {
+    return {{"talus", TALUS_VERSION},    {"gdal", gdal_version()},         {"proj", proj_version()},
+            {"tbb", TBB_VERSION_STRING}, {"compiler", compiler_version()},
+#ifdef NDEBUG
+            {"assertions", false}
+#else
+            {"assertions", true}
+#endif
+    };
+}
+
+Json hardware() {
+    const Hardware machine = this_machine();
+    return {{"cpu", machine.cpu},
+            {"logical_cores", machine.logical_cores},
+            {"memory_GiB", machine.memory_GiB},
+            {"system", machine.system}};
+}
+
+/// The files in the folder, so that a reader knows whether any went missing.
+Json files_in(const std::filesystem::path& folder) {
+    std::vector<std::string> names;
+    std::error_code failed;
+    for (const auto& entry : std::filesystem::recursive_directory_iterator(folder, failed)) {
+        if (entry.is_regular_file(failed)) {
+            names.push_back(entry.path().lexically_relative(folder).generic_string());
+        }
+    }
+    std::sort(names.begin(), names.end());
+    return names;
+}
+
+}  // namespace
+
+const char* status_text(RunStatus status) {
+    switch (status) {
+        case RunStatus::complete:
+            return "complete";
+        case RunStatus::interrupted:
+            return "interrupted";
+        case RunStatus::fault:
+            return "fault";
+    }
+    return "";
+}
+
+std::string caveat(const Scene& scene, const RunResult& result) {
+    std::string text = scene.spec.scene.reconstruction ? "reconstruction" : "";
+    if (result.status != RunStatus::complete) {
+        text += (text.empty() ? "" : ", ") + std::string("partial result: ") + status_text(result.status);
+    }
+    return text.empty() ? "" : " (" + text + ")";
+}
+
+Status write_manifest(const Scene& scene, const RunResult& result, const std::filesystem::path& folder) {
+    const SceneInfo& info = scene.spec.scene;
+    const Json manifest = {
+        {"program", "talus"},
+        {"title", info.title},
+        {"created", fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::chrono::system_clock::now()))},
+        {"status", status_text(result.status)},
+        {"partial", result.status != RunStatus::complete},
+        {"stop_reason", result.stop_reason},
+        {"reconstruction", info.reconstruction},
+        {"result_hash", to_hex(result.hash)},
+        {"results", results(result)},
+        {"performance", performance(result)},
+        {"hardware", hardware()},
+        {"versions", versions()},
+        {"scene_file", scene.file.string()},
+        {"inputs", inputs(scene)},
+        {"terrain", terrain(scene)},
+        {"resolved", resolved(scene, result)},
+        {"parameters", parameters(scene.spec)},
+        {"assumptions", info.assumptions},
+        {"notes", scene.notes},
+        {"sources", info.sources},
+        {"files", files_in(folder)},
+    };
+    // Names from attribute tables need not be valid UTF-8; the manifest is.
+    const std::string text = manifest.dump(2, ' ', false, Json::error_handler_t::replace);
+    return write_text_file(folder / "manifest.json", text + "\n");
+}
+
+}  // namespace talus

@@ -1,0 +1,25 @@
+#pragma once
+
+#include <filesystem>
+#include <vector>
+
+#include "core/result.hpp"
+#include "sim/model.hpp"
+#include "sim/state.hpp"
+
+namespace talus {
+
+/// Particles over time for ParaView: a .vtp per frame and a .pvd that lists them. Positions are local; the origin is
+/// stored as field data of every frame.
+class ParticleSeries {
+  public:
+    explicit ParticleSeries(std::filesystem::path folder);
+    [[nodiscard]] Status write_frame(const Model& model, const State& state);
+    [[nodiscard]] Status finish();
+
+  private:
+    std::filesystem::path folder_;
+    std::vector<double> times_;
+};
+
+}  // namespace talus

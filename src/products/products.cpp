@@ -1,0 +1,40 @@
+#include "products/products.hpp"
+
+#include <fmt/format.h>
+
+#include "products/text_file.hpp"
+#include "products/writers.hpp"
+
+namespace talus {
+
+namespace {
+
+/// A file whose very name says that the run did not end by itself.
+Status write_partial_note(const RunResult& result, const std::filesystem::path& folder) {
+    if (result.status == RunStatus::complete) return {};
+    const std::string text = fmt::format(
+        "These results are partial: the run ended after {:.6g} s of simulated time ({}).\n{}\n"
+        "Peaks, run-out and impacts are those up to then; the deposit is where debris was at that moment.\n",
+        result.simulated_time, status_text(result.status), result.stop_reason);
+    return write_text_file(folder / "PARTIAL.txt", text);
+}
+
+Status write_report(const Scene& scene, const RunResult& result, const std::filesystem::path& folder) {
+    const auto report = render_report(scene, result);
+    if (!report) return report.error();
+    return write_text_file(folder / "report.html", *report);
+}
+
+}  // namespace
+
+Status write_products(const Scene& scene, const RunResult& result, const std::filesystem::path& folder) {
+    if (Status s = write_partial_note(result, folder); !s) return s;
+    if (Status s = write_maps(scene, result, folder); !s) return s;
+    if (Status s = write_tables(scene, result, folder); !s) return s;
+    if (Status s = write_vectors(scene, result, folder); !s) return s;
+    if (Status s = write_report(scene, result, folder); !s) return s;
+    // Last, as it lists the files; a folder that has one is complete.
+    return write_manifest(scene, result, folder);
+}
+
+}  // namespace talus

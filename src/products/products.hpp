@@ -1,0 +1,44 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "core/result.hpp"
+#include "scene/run.hpp"
+#include "scene/scene.hpp"
+
+namespace talus {
+
+/// A result folder in the making: files are written under a temporary name beside the final one, and the folder gets
+/// its name when complete, so nothing half-written ever bears it.
+class OutputFolder {
+  public:
+    /// Errors: not writable, already there without `force`, parent missing.
+    [[nodiscard]] static Result<OutputFolder> create(const std::filesystem::path& final_path, bool force);
+
+    OutputFolder(OutputFolder&& other) noexcept;
+    OutputFolder& operator=(OutputFolder&&) = delete;
+    OutputFolder(const OutputFolder&) = delete;
+    OutputFolder& operator=(const OutputFolder&) = delete;
+    /// Deletes the temporary folder unless committed.
+    ~OutputFolder();
+
+    [[nodiscard]] const std::filesystem::path& path() const { return temporary_; }
+    [[nodiscard]] const std::filesystem::path& final_path() const { return final_; }
+    /// Renames to the final name, replacing an earlier result if `force` was given.
+    [[nodiscard]] Status commit();
+
+  private:
+    OutputFolder() = default;
+    std::filesystem::path temporary_, final_;
+    bool force_ = false;
+};
+
+/// Writes maps (.tif + .qml), front.csv, buildings.csv, results.gpkg, timeseries.csv, manifest.json, report.html.
+/// Errors name the file and the cause (disk full, ...).
+[[nodiscard]] Status write_products(const Scene& scene, const RunResult& result, const std::filesystem::path& folder);
+
+/// The self-contained report.
+[[nodiscard]] Result<std::string> render_report(const Scene& scene, const RunResult& result);
+
+}  // namespace talus

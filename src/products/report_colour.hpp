@@ -1,0 +1,49 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+/// Colours and class breaks of the report's maps.
+namespace talus::report {
+
+struct Colour {
+    std::uint8_t red = 0, green = 0, blue = 0;
+
+    [[nodiscard]] std::string hex() const;
+    friend bool operator==(const Colour&, const Colour&) = default;
+};
+
+/// A colour ramp that falls in lightness from its low to its high end by equal perceived steps, so that it reads the
+/// same to colour-blind eyes and in grey print. Hue in degrees and chroma of the ends in OKLCh (Ottosson 2020, "A
+/// perceptual color space for image processing").
+struct Ramp {
+    double low_hue, low_chroma, high_hue, high_chroma;
+    double low_lightness = 0.93, high_lightness = 0.30;
+
+    /// `share`: 0 (low end) to 1. Chroma is reduced where sRGB cannot show it; lightness is kept.
+    [[nodiscard]] Colour at(double share) const;
+};
+
+/// Lightness in OKLab, 0 (black) to 1 (white).
+[[nodiscard]] double lightness(const Colour& colour);
+
+/// Values between breaks[k] and breaks[k + 1] are of class k; the last class is open upward.
+struct Classes {
+    std::vector<double> breaks;   ///< lower limit of each class, ascending
+    std::vector<Colour> colours;  ///< one per class
+
+    /// -1: below the lowest break or NaN.
+    [[nodiscard]] int of(double value) const;
+};
+
+/// Classes from a fixed list of breaks, cut off above `largest` so that every class occurs or lies below one that does.
+[[nodiscard]] Classes fixed_classes(const std::vector<double>& breaks, double largest, const Ramp& ramp);
+
+/// Classes of equal round width from 0, at most about eight.
+[[nodiscard]] Classes even_classes(double largest, const Ramp& ramp);
+
+/// The round number (1, 2, 2.5 or 5 times a power of ten) at or above `value`.
+[[nodiscard]] double round_step(double value);
+
+}  // namespace talus::report

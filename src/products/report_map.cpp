@@ -1,0 +1,352 @@
+#include "products/report_map.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "products/report_colour.hpp"
+#include "products/report_image.hpp"
+#include "products/report_relief.hpp"
+#include "products/report_text.hpp"
+
+namespace talus::report {
+namespace {
+
+/// A map of the report. Breaks are in the unit shown; empty: even classes.
+struct Layer {
+    const char* id;
+    const char* name;
+    const char* caption;
+    const char* unit;
+    double factor;  ///< from SI to the unit shown
+    Grid<float> HazardMaps::*map;
+    std::vector<double> breaks;
+    Ramp ramp;
+    int digits;  ///< of the read-out
+};
+
+const std::vector<Layer>& layers() {
+    static const std::vector<Layer> all = {
+        {"peak-depth",
+         "Peak depth",
+         "Greatest vertical flow depth at each place during the run.",
+         "m",
+         1,
+         &HazardMaps::peak_depth,
+         {0, 0.1, 0.25, 0.5, 1, 2, 3, 5, 10, 20},
+         {205, 0.05, 268, 0.15, 0.90, 0.28},
+         2},
+        {"peak-speed",
+         "Peak speed",
+         "Greatest depth-averaged speed at each place during the run.",
+         "m/s",
+         1,
+         &HazardMaps::peak_speed,
+         {0, 1, 2, 4, 6, 8, 10, 15, 20, 30},
+         {104, 0.11, 8, 0.13, 0.93, 0.28},
+         1},
+        {"peak-pressure",
+         "Peak pressure",
+         "Greatest impact pressure of the free flow at each place, density times the square of the speed.",
+         "kPa",
+         1e-3,
+         &HazardMaps::peak_pressure,
+         {0, 5, 15, 30, 50, 100, 200, 400, 800},
+         {88, 0.08, -48, 0.14, 0.93, 0.26},
+         0},
+        {"arrival",
+         "Arrival time",
+         "Time from the start of the run until debris first stands at each place.",
+         "s",
+         1,
+         &HazardMaps::arrival_time,
+         {},
+         {215, 0.06, 118, 0.10, 0.30, 0.92},
+         1},
+        {"deposit",
+         "Deposit",
+         "Vertical depth of debris at the end of the run. Below 0.05 m nothing is drawn.",
+         "m",
+         1,
+         &HazardMaps::deposit_depth,
+         {0.05, 0.1, 0.25, 0.5, 1, 2, 3, 5, 10, 20},
+         {92, 0.07, 42, 0.09, 0.92, 0.28},
+         2},
+    };
+    return all;
+}
+
+double largest(const Grid<float>& grid) {
+    double most = std::numeric_limits<double>::quiet_NaN();
+    for (const float v : grid.values) {
+        if (!std::isnan(v) && !(v <= most)) most = v;
+    }
+    return most;
+}
+
+/// The smallest extent around the cells that have a value.
+std::optional<Extent> wet_extent(const Grid<float>& grid) {
+    std::optional<Extent> out;
+    for (int r = 0; r < grid.geometry.rows; ++r) {
+        for (int c = 0; c < grid.geometry.columns; ++c) {
+            if (std::isnan(grid.at(c, r))) continue;
+            const PlanPoint p = grid.geometry.centre(c, r);
+            if (!out) out = Extent{p.x, p.y, p.x, p.y};
+            out->include(p);
+        }
+    }
+    return out;
+}
+
+/// Widens the shorter side so that no map is a ribbon, then keeps the area within the terrain.
+Extent well_proportioned(Extent area, const Extent& terrain) {
+    constexpr double widest = 1.75, narrowest = 0.85;  // width over height
+    const double ratio = area.width() / area.height();
+    if (ratio > widest) {
+        const double more = (area.width() / widest - area.height()) / 2;
+        area.y_min -= more;
+        area.y_max += more;
+    } else if (ratio < narrowest) {
+        const double more = (area.height() * narrowest - area.width()) / 2;
+        area.x_min -= more;
+        area.x_max += more;
+    }
+    // Shifted inward first, so that the margin lost on one side is won on the other; then cut.
+    const auto keep = [](double& low, double& high, double terrain_low, double terrain_high) {
+        if (low < terrain_low) {
+            high += terrain_low - low;
+            low = terrain_low;
+        }
+        if (high > terrain_high) {
+            low = std::max(terrain_low, low - (high - terrain_high));
+            high = terrain_high;
+        }
+    };
+    keep(area.x_min, area.x_max, terrain.x_min, terrain.x_max);
+    keep(area.y_min, area.y_max, terrain.y_min, terrain.y_max);
+    return area;
+}
+
+/// Classes of a layer over its part inside the frame, finer than its cells: values are interpolated between them.
+ClassImage paint(const Layer& layer, const Grid<float>& map, const Classes& classes) {
+    const GridGeometry& g = map.geometry;
+    const int longest = std::max(g.columns, g.rows);
+    const int finer = std::clamp(1200 / std::max(1, longest), 1, 8);
+    ClassImage image{g.columns * finer, g.rows * finer, {}, classes.colours};
+    image.pixels.reserve(static_cast<std::size_t>(image.width) * image.height);
+    const double pixel = g.cell / finer, north = g.y_min + g.rows * g.cell;
+    for (int y = 0; y < image.height; ++y) {
+        for (int x = 0; x < image.width; ++x) {
+            const double v = interpolate(map, {g.x_min + (x + 0.5) * pixel, north - (y + 0.5) * pixel});
+            image.pixels.push_back(static_cast<std::uint8_t>(classes.of(v * layer.factor) + 1));
+        }
+    }
+    return image;
+}
+
+struct ReadOut {
+    ValueImage image;
+    double base = 0, resolution = 1;
+};
+
+/// Values in steps of a 65 534th of their range, for the page's script.
+ReadOut read_out_of(const Grid<float>& grid, double factor) {
+    double low = std::numeric_limits<double>::infinity(), high = -low;
+    for (const float v : grid.values) {
+        if (std::isnan(v)) continue;
+        low = std::min(low, v * factor);
+        high = std::max(high, v * factor);
+    }
+    ReadOut out;
+    if (low <= high) {
+        out.base = low;
+        // Centimetres are enough, and repeat more often than millimetres, so that the picture stays small.
+        out.resolution = std::max(0.01, (high - low) / 65000);
+    }
+    out.image.width = grid.geometry.columns;
+    out.image.height = grid.geometry.rows;
+    for (int r = grid.geometry.rows; r-- > 0;) {
+        for (int c = 0; c < grid.geometry.columns; ++c) {
+            const float v = grid.at(c, r);
+            const long step = std::isnan(v) ? 0 : 1 + std::lround((v * factor - out.base) / out.resolution);
+            out.image.pixels.insert(out.image.pixels.end(), {static_cast<std::uint8_t>(step >> 8 & 255),
+                                                             static_cast<std::uint8_t>(step & 255), 0});
+        }
+    }
+    return out;
+}
+
+nlohmann::json placed(const Grid<float>& grid, const ReadOut& values, const std::string& uri) {
+    const GridGeometry& g = grid.geometry;
+    return {{"values", uri},
+            {"x_min", g.x_min},
+            {"y_max", g.y_min + g.rows * g.cell},
+            {"cell", g.cell},
+            {"columns", g.columns},
+            {"rows", g.rows},
+            {"base", values.base},
+            {"resolution", values.resolution}};
+}
+
+std::string limit(double value) {
+    return coordinate(value);
+}
+
+std::string draw_classes(const Layer& layer, const Classes& classes, double most, const MapFrame& frame) {
+    const double x = frame.right() + 20;
+    std::string svg = fmt::format(
+        R"(<text class="legend-title" x="{0}" y="{1}">{2}</text><text class="legend-unit" x="{0}" y="{3}">{4}</text>)",
+        coordinate(x), coordinate(frame.top + 13), layer.name, coordinate(frame.top + 31),
+        std::isfinite(most) ? fmt::format("{}, at most {} {}", layer.unit, fixed(most, layer.digits), layer.unit)
+                            : std::string(layer.unit));
+    const std::size_t n = classes.breaks.size();
+    for (std::size_t k = n; k-- > 0;) {
+        const double y = frame.top + 44 + 18.0 * static_cast<double>(n - 1 - k);
+        std::string text;
+        if (k + 1 < n) {
+            text = fmt::format("{} – {}", limit(classes.breaks[k]), limit(classes.breaks[k + 1]));
+        } else {
+            text = n > 1 ? fmt::format("over {}", limit(classes.breaks[k]))
+                         : fmt::format("from {}", limit(classes.breaks[k]));
+        }
+        svg += fmt::format(
+            R"(<rect class="swatch-base" x="{0}" y="{1}" width="30" height="18"/><rect class="swatch layer" x="{0}" y="{1}" width="30" height="18" fill="{2}"/><text class="legend" x="{3}" y="{4}">{5}</text>)",
+            coordinate(x), coordinate(y), classes.colours[k].hex(), coordinate(x + 39), coordinate(y + 13.5), text);
+    }
+    return svg;
+}
+
+Classes classes_of(const Layer& layer, double most) {
+    if (layer.breaks.empty()) return even_classes(most, layer.ramp);
+    return fixed_classes(layer.breaks, std::isnan(most) ? 0 : most, layer.ramp);
+}
+
+}  // namespace
+
+int impact_class(const BuildingImpact& impact) {
+    if (!impact.hit) return 0;
+    return impact.peak_pressure < 15e3 ? 1 : impact.peak_pressure < 30e3 ? 2 : 3;
+}
+
+MapFrame map_frame(const Scene& scene, const RunResult& result) {
+    const Extent terrain = scene.terrain.elevation().geometry.extent();
+    std::vector<Extent> parts;
+    if (const auto wet = wet_extent(result.observation.maps.peak_depth)) parts.push_back(*wet);
+    for (const Release& release : scene.releases) {
+        if (!release.patches.empty() || release.thickness_raster) parts.push_back(release.extent());
+    }
+    if (!scene.flow_path.empty()) {
+        double last = result.observation.run_out.front_chainage;
+        for (const ObservationSpec& o : scene.spec.observations)
+            last = std::isnan(last) ? o.chainage : std::max(last, o.chainage);
+        const double end = std::isnan(last) ? scene.flow_path.length() : std::min(scene.flow_path.length(), 1.2 * last);
+        for (int k = 0; k <= 100; ++k) {
+            const PlanPoint p = scene.flow_path.point_at(end * k / 100);
+            parts.push_back({p.x, p.y, p.x, p.y});
+        }
+    }
+    for (std::size_t i = 0; i < std::min(scene.buildings.size(), result.observation.buildings.size()); ++i) {
+        if (!result.observation.buildings[i].hit) continue;
+        for (const Polygon& polygon : scene.buildings[i].footprint) parts.push_back(extent_of(polygon));
+    }
+    Extent area = parts.empty() ? terrain : parts.front();
+    for (const Extent& e : parts) {
+        area.include({e.x_min, e.y_min});
+        area.include({e.x_max, e.y_max});
+    }
+    area = well_proportioned(area.grown(10 + 0.06 * std::max(area.width(), area.height())), terrain);
+    MapFrame frame;
+    frame.area = area;
+    const double widest = 1000 - frame.left - 20 - MapFrame::key_width;
+    frame.scale = std::min(widest / area.width(), 700 / area.height());
+    return frame;
+}
+
+Result<MapFigures> render_maps(const Scene& scene, const RunResult& result) {
+    const MapFrame frame = map_frame(scene, result);
+    const Grid<float> ground = crop(scene.terrain.elevation(), frame.area, 900);
+    const double pixels_per_metre = 1150 / std::max(frame.area.width(), frame.area.height());
+    auto relief = png_uri(hillshade(ground, frame.area, pixels_per_metre));
+    if (!relief) return relief.error();
+
+    double contour_interval = 0;
+    const std::string contour_lines = draw_contours(scene, frame, contour_interval);
+    const double width = frame.right() + 20 + MapFrame::key_width;
+    std::size_t most_classes = 0;
+    for (const Layer& layer : layers()) {
+        const double most = largest(result.observation.maps.*layer.map) * layer.factor;
+        most_classes = std::max(most_classes, classes_of(layer, most).breaks.size());
+    }
+    const double key_top = frame.top + 44 + 18.0 * static_cast<double>(most_classes) + 14;
+    const double height = std::max(frame.bottom() + 30, key_top + key_height(scene));
+
+    MapFigures out;
+    out.definitions = fmt::format(
+        R"svg(<svg class="definitions" width="0" height="0" aria-hidden="true"><defs><clipPath id="map-clip"><rect x="{0}" y="{1}" width="{2}" height="{3}"/></clipPath>
+<g id="map-base" clip-path="url(#map-clip)"><rect class="no-data" x="{0}" y="{1}" width="{2}" height="{3}"/><image x="{0}" y="{1}" width="{2}" height="{3}" preserveAspectRatio="none" href="{4}"/></g>
+<g id="map-over"><g clip-path="url(#map-clip)">{5}{6}</g>{7}</g>
+<g id="map-key" transform="translate(0 {8})">{9}</g></defs></svg>)svg",
+        coordinate(frame.left), coordinate(frame.top), coordinate(frame.width()), coordinate(frame.height()), *relief,
+        contour_lines, draw_vectors(scene, result, frame), draw_frame(scene, frame), coordinate(key_top),
+        draw_key(scene, frame, contour_interval));
+
+    const Grid<float> coarse_ground = crop(scene.terrain.elevation(), frame.area, 260);
+    const ReadOut ground_values = read_out_of(coarse_ground, 1);
+    auto ground_uri = png_uri(ground_values.image);
+    if (!ground_uri) return ground_uri.error();
+    nlohmann::json page = {{"left", frame.left},
+                           {"top", frame.top},
+                           {"width", frame.width()},
+                           {"height", frame.height()},
+                           {"x_min", frame.area.x_min},
+                           {"y_max", frame.area.y_max},
+                           {"scale", frame.scale},
+                           {"ground", placed(coarse_ground, ground_values, *ground_uri)},
+                           {"layers", nlohmann::json::array()}};
+
+    for (const Layer& layer : layers()) {
+        const Grid<float>& map = result.observation.maps.*layer.map;
+        const double most = largest(map) * layer.factor;
+        const Classes classes = classes_of(layer, most);
+        std::string picture;
+        if (std::isfinite(most)) {
+            const Grid<float> part = crop(map, frame.area, 1200);
+            const Extent e = part.geometry.extent();
+            auto uri = png_uri(paint(layer, part, classes));
+            if (!uri) return uri.error();
+            picture = fmt::format(
+                R"svg(<g clip-path="url(#map-clip)"><image class="layer" x="{}" y="{}" width="{}" height="{}" preserveAspectRatio="none" href="{}"/></g>)svg",
+                coordinate(frame.x(e.x_min)), coordinate(frame.y(e.y_max)), coordinate(e.width() * frame.scale),
+                coordinate(e.height() * frame.scale), *uri);
+            const Grid<float> coarse = crop(map, frame.area, 500);
+            const ReadOut values = read_out_of(coarse, layer.factor);
+            auto values_uri = png_uri(values.image);
+            if (!values_uri) return values_uri.error();
+            nlohmann::json entry = placed(coarse, values, *values_uri);
+            entry["id"] = layer.id;
+            entry["name"] = layer.name;
+            entry["unit"] = layer.unit;
+            entry["digits"] = layer.digits;
+            page["layers"].push_back(std::move(entry));
+        }
+        ++out.count;
+        const std::string flag = scene.spec.scene.reconstruction ? R"(<span class="flag">reconstruction</span> )" : "";
+        out.figures += fmt::format(
+            R"(<figure class="map" data-layer="{0}" data-name="{1}"><svg class="figure" viewBox="0 0 {2} {3}" style="max-width:{10}px" role="img" aria-label="Map: {1}"><use href="#map-base"/>{4}<use href="#map-over"/>{5}<use href="#map-key"/></svg><figcaption>{6}<b>Figure {7}. {1}.</b> {8} Cells of {9} m, interpolated for display.</figcaption></figure>
+)",
+            layer.id, layer.name, coordinate(width), coordinate(height), picture,
+            draw_classes(layer, classes, most, frame), flag, out.count, layer.caption,
+            plain(result.map_cell > 0 ? result.map_cell : map.geometry.cell), coordinate(1.04 * width));
+    }
+    out.read_out = page.dump();
+    // Inside a script element only "<" could end it; JSON may write it as an escape.
+    for (std::size_t at = 0; (at = out.read_out.find('<', at)) != std::string::npos;)
+        out.read_out.replace(at, 1, "\\u003c");
+    return out;
+}
+
+}  // namespace talus::report

@@ -1,0 +1,55 @@
+#pragma once
+
+#include <string>
+
+#include "core/geometry.hpp"
+#include "core/result.hpp"
+#include "scene/run.hpp"
+#include "scene/scene.hpp"
+
+/// The report's maps: rasters as PNG, everything else as SVG on top, in the same coordinates.
+namespace talus::report {
+
+/// Places the part of the world that the maps show inside the SVG.
+struct MapFrame {
+    Extent area;                              ///< shown, world
+    double left = 34, top = 8;                ///< SVG units
+    double scale = 1;                         ///< SVG units per metre
+    static constexpr double key_width = 196;  ///< of the column to the right with the legend
+
+    [[nodiscard]] double width() const { return area.width() * scale; }
+    [[nodiscard]] double height() const { return area.height() * scale; }
+    [[nodiscard]] double right() const { return left + width(); }
+    [[nodiscard]] double bottom() const { return top + height(); }
+    [[nodiscard]] double x(double east) const { return left + (east - area.x_min) * scale; }
+    [[nodiscard]] double y(double north) const { return top + (area.y_max - north) * scale; }
+};
+
+/// The area of interest: where debris came, the releases, the flow path as far as it matters (to a fifth beyond the
+/// run-out and the last observation), the buildings hit, and a margin, kept within the terrain.
+[[nodiscard]] MapFrame map_frame(const Scene& scene, const RunResult& result);
+
+struct MapFigures {
+    std::string definitions;  ///< an unseen <svg> with what all maps share
+    std::string figures;      ///< a <figure> per layer
+    std::string read_out;     ///< JSON for the page's script: where the maps lie and their values
+    int count = 0;
+};
+
+/// Errors: a picture could not be encoded.
+[[nodiscard]] Result<MapFigures> render_maps(const Scene& scene, const RunResult& result);
+
+/// How hard a building was hit: 0 not at all, 1 below 15 kPa, 2 to 30 kPa, 3 above. The limits are those between
+/// slight, extensive and complete damage to buildings not of reinforced concrete (Kang & Kim 2014).
+[[nodiscard]] int impact_class(const BuildingImpact& impact);
+
+// The parts of the drawing that all maps share; SVG.
+[[nodiscard]] std::string draw_contours(const Scene& scene, const MapFrame& frame, double& interval);
+[[nodiscard]] std::string draw_vectors(const Scene& scene, const RunResult& result, const MapFrame& frame);
+[[nodiscard]] std::string draw_frame(const Scene& scene, const MapFrame& frame);
+[[nodiscard]] std::string draw_key(const Scene& scene, const MapFrame& frame, double contour_interval);
+
+/// Height of what draw_key draws, SVG units.
+[[nodiscard]] double key_height(const Scene& scene);
+
+}  // namespace talus::report

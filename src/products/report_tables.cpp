@@ -1,0 +1,188 @@
+#include <cmath>
+#include <fstream>
+#include <string>
+#include <thread>
+
+#include <fmt/format.h>
+
+#include "geo/versions.hpp"
+#include "params/fields.hpp"
+#include "products/report_sections.hpp"
+#include "products/report_text.hpp"
+#include "report_files.hpp"
+#include "sim/stage_times.hpp"
+
+namespace talus::report {
+namespace {
+
+std::string row(std::string_view name, const std::string& value) {
+    return fmt::format("<tr><th scope=\"row\">{}</th><td>{}</td></tr>\n", name, value);
+}
+
+std::string items(const std::vector<std::string>& texts, std::string_view none) {
+    if (texts.empty()) return fmt::format("<p>{}</p>", none);
+    std::string html = "<ul>";
+    for (const std::string& text : texts) html += "<li>" + escape(text) + "</li>\n";
+    return html + "</ul>";
+}
+
+/// As the system names it; empty where it does not.
+std::string processor_name() {
+    std::ifstream file("/proc/cpuinfo");
+    for (std::string line; std::getline(file, line);) {
+        if (line.starts_with("model name")) {
+            const std::size_t colon = line.find(": ");
+            if (colon != std::string::npos) return line.substr(colon + 2);
+        }
+    }
+    return "";
+}
+
+std::string_view kernel_name(KernelChoice kernel) {
+    switch (kernel) {
+        case KernelChoice::wendland_c2:
+            return "Wendland C2 with its own gradient";
+        case KernelChoice::cubic_spline:
+            return "cubic spline with its own gradient";
+        case KernelChoice::spiky:
+            return "spiky with its own gradient";
+        case KernelChoice::poly6_spiky:
+            return "published pair: Poly6 density, spiky gradient";
+    }
+    return "";
+}
+
+std::string bytes_text(std::uint64_t bytes) {
+    if (bytes < 10'000) return fmt::format("{} B", bytes);
+    return bytes < 10'000'000 ? fmt::format("{} kB", bytes / 1000) : fmt::format("{} MB", bytes / 1'000'000);
+}
+
+}  // namespace
+
+std::string chosen_values(const Scene& scene, const RunResult& result) {
+    const SolverSpec& solver = scene.spec.solver;
+    const MaterialSpec& material = scene.spec.material;
+    std::string html = row("Particle spacing", fmt::format("{} m", plain(result.particle_spacing)));
+    html += row("Support radius", fmt::format("{} m", plain(result.support_radius)));
+    html += row("Kernel", std::string(kernel_name(solver.kernel)));
+    html +=
+        row("Time step", fmt::format("{} to {} ms, {}", fixed(1e3 * result.smallest_time_step, 3),
+                                     fixed(1e3 * result.largest_time_step, 3),
+                                     solver.time_step ? "fixed" : "adaptive: a particle moves at most half a spacing"));
+    html += row("Iterations per step", fmt::format("{}", solver.iteration_count));
+    html += row("Rest density", fmt::format("{} kg/m³", fixed(material.rest_density, 0)));
+    html += row("Friction on the ground", fmt::format("f = {}", plain(material.friction_coefficient)));
+    html += row(
+        "Friction inside",
+        fmt::format("f = {}", plain(material.internal_friction_coefficient.value_or(material.friction_coefficient))));
+    html += row("Viscosity, as smoothing", fmt::format("μ = {} per 1/60 s", plain(material.viscosity)));
+    html += row("Viscosity, kinematic",
+                fmt::format("{} m²/s at this support radius", significant(result.kinematic_viscosity, 3)));
+    html += row("Cell of the maps", fmt::format("{} m", plain(result.map_cell)));
+    return html;
+}
+
+std::string parameter_table(const Scene& scene) {
+    std::string html;
+    std::string open;
+    for_each_value(scene.spec, [&](const Section& section, std::size_t index, const Parameter& parameter,
+                                   const ParameterValue& value) {
+        // Printed in full elsewhere: at the top, under Assumptions, beside the computed front velocities.
+        if (section.name == "scene" || section.name == "observation") return;
+        const std::string heading = section.repeats ? fmt::format("{} {}", section.name, index + 1) : section.name;
+        if (heading != open) {
+            html += fmt::format(
+                "<tr class=\"section\"><th colspan=\"4\" scope=\"colgroup\">[{}] <small>{}</small></th></tr>\n",
+                escape(heading), index == 0 ? escape(section.help) : "");
+            open = heading;
+        }
+        const std::string text = plain_text(value);
+        const bool set = !text.empty();
+        const bool differs = set && text != plain_text(default_value(section, parameter));
+        html += fmt::format(
+            "<tr><td><code>{}</code></td><td class=\"value{}\">{}</td><td>{}</td><td class=\"help\">{}</td></tr>\n",
+            escape(parameter.key), differs ? " differs" : "",
+            set ? escape(text)
+                : "<span class=\"absent\">" + escape(parameter.absent.empty() ? "not given" : parameter.absent) +
+                      "</span>",
+            escape(parameter.unit), escape(parameter.help));
+    });
+    return html;
+}
+
+std::string method(const Scene& scene) {
+    const bool pairwise = scene.spec.solver.internal_friction == InternalFriction::pair;
+    return fill(
+        report_files::method_html,
+        {{"internal_friction",
+          pairwise
+              ? "Between particles the same law acts pair by pair, limited by the normal correction of the pair."
+              : "Inside the debris every particle carries a shear stress from step to step, limited by the internal "
+                "friction coefficient times the pressure (Drucker &amp; Prager 1952, without cohesion)."},
+         {"deposits",
+          pairwise
+              ? "<b>Deposits creep.</b> Friction between pairs of particles is built anew in every step and acts like "
+                "a "
+                "high viscosity at rest: a heap that should stand spreads on, ever more slowly, rather than stopping. "
+                "The "
+                "run-out of the slow tail is overestimated and the deposit too thin; the fast front is hardly affected."
+              : "<b>Deposits settle gradually.</b> The stress that persists holds a heap on a slope, but a slow creep "
+                "remains: deposits spread more slowly than they stop. The run ends when the momentum has died down, "
+                "and "
+                "the deposit is shown as it lies at that moment."}});
+}
+
+std::string assumptions(const Scene& scene) {
+    std::string html = "<h3 id=\"assumptions\">Assumptions of this scene</h3>" +
+                       items(scene.spec.scene.assumptions, "The scene states none.");
+    html += "<h3>What was done to the inputs</h3>" + items(scene.notes, "Nothing: all inputs were used as they are.");
+    html += "<h3>Sources and attribution</h3>" + items(scene.spec.scene.sources, "The scene names none.");
+    return html;
+}
+
+std::string input_table(const Scene& scene) {
+    std::string html;
+    for (const InputFile& input : scene.inputs) {
+        html += fmt::format(
+            "<tr><td>{}</td><td class=\"path\">{}</td><td class=\"n\">{}</td><td><code>{}</code></td></tr>\n",
+            escape(input.role), escape(input.path), bytes_text(input.bytes), escape(input.hash));
+    }
+    return html;
+}
+
+std::string computation_table(const Scene& scene, const RunResult& result) {
+    std::string html = row(
+        "Result hash",
+        fmt::format("<code>{:016x}</code> <small>of time, positions and velocities at the end</small>", result.hash));
+    html += row("Program", fmt::format("talus {}, GDAL {}, PROJ {}, compiled with {}", TALUS_VERSION, gdal_version(),
+                                       proj_version(),
+#if defined(__clang__)
+                                       "clang " __clang_version__
+#elif defined(__GNUC__)
+                                       "GCC " __VERSION__
+#else
+                                       "another compiler"
+#endif
+                                       ));
+    const std::string processor = processor_name();
+    html += row("Hardware", fmt::format("{}, {} of {} threads, 32-bit arithmetic on a 64-bit origin",
+                                        processor.empty() ? "processor not named by the system" : escape(processor),
+                                        result.thread_count, std::thread::hardware_concurrency()));
+    html += row("Reference system", escape(scene.crs.label()));
+    html += row("Terrain", fmt::format("{} × {} cells of {} m, {} % without data, elevations in {}",
+                                       scene.terrain.elevation().geometry.columns,
+                                       scene.terrain.elevation().geometry.rows, plain(scene.terrain.cell()),
+                                       fixed(100 * scene.nodata_share, 1), escape(scene.vertical_unit)));
+    double total = 0;
+    for (const double s : result.stage_times.seconds) total += s;
+    std::string stages;
+    for (int k = 0; total > 0 && k < stage_count; ++k) {
+        const double share = 100 * result.stage_times.seconds[static_cast<std::size_t>(k)] / total;
+        stages += fmt::format("<span class=\"stage\">{} <b>{} %</b></span> ", stage_names[static_cast<std::size_t>(k)],
+                              fixed(share, 0));
+    }
+    if (!stages.empty()) html += row("Time per stage", stages);
+    return html;
+}
+
+}  // namespace talus::report

@@ -1,0 +1,113 @@
+#include <cmath>
+#include <initializer_list>
+#include <numbers>
+#include <string_view>
+
+#include <fmt/format.h>
+
+#include "products/text_file.hpp"
+#include "products/writers.hpp"
+
+namespace talus {
+
+namespace {
+
+/// A table as RFC 4180 has it: comma, point, quotes only where needed, UTF-8.
+class Csv {
+  public:
+    explicit Csv(std::string_view header) : text_(std::string(header) + "\n") {}
+
+    Csv& number(double value) {
+        separate();
+        if (std::isfinite(value)) text_ += fmt::format("{:.9g}", value);
+        return *this;
+    }
+    Csv& word(std::string_view value) {
+        separate();
+        if (value.find_first_of(",\"\r\n") == std::string_view::npos) {
+            text_ += value;
+            return *this;
+        }
+        text_ += '"';
+        for (const char c : value) text_ += c == '"' ? std::string("\"\"") : std::string(1, c);
+        text_ += '"';
+        return *this;
+    }
+    void end_row() {
+        text_ += '\n';
+        first_ = true;
+    }
+    void row(std::initializer_list<double> values) {
+        for (const double value : values) number(value);
+        end_row();
+    }
+    [[nodiscard]] const std::string& text() const { return text_; }
+
+  private:
+    void separate() {
+        if (!first_) text_ += ',';
+        first_ = false;
+    }
+    std::string text_;
+    bool first_ = true;
+};
+
+constexpr double degrees = 180 / std::numbers::pi;
+
+std::string front_table(const Observation& observation) {
+    Csv csv("chainage_m,first_arrival_time_s,front_velocity_mps,front_particle_speed_mps");
+    for (const FrontSample& f : observation.front) {
+        csv.row({f.chainage, f.arrival_time, f.front_velocity, f.particle_speed});
+    }
+    return csv.text();
+}
+
+std::string run_out_table(const RunOut& r) {
+    Csv csv("front_chainage_m,horizontal_distance_m,drop_m,runout_angle_deg,travel_angle_deg");
+    csv.row({r.front_chainage, r.horizontal_distance, r.drop, r.runout_angle * degrees, r.travel_angle * degrees});
+    return csv.text();
+}
+
+std::string building_table(const Scene& scene, const Observation& observation) {
+    Csv csv(
+        "name,hit,first_hit_time_s,peak_force_kN,peak_pressure_kPa,peak_dynamic_pressure_kPa,peak_depth_m,"
+        "filter_window_s,height_m,height_assumed");
+    for (std::size_t i = 0; i < observation.buildings.size(); ++i) {
+        const BuildingImpact& b = observation.buildings[i];
+        csv.word(b.name).word(b.hit ? "yes" : "no").number(b.first_hit_time);
+        csv.number(b.peak_force / 1e3).number(b.peak_pressure / 1e3).number(b.peak_dynamic_pressure / 1e3);
+        csv.number(b.peak_depth).number(scene.spec.outputs.impact_filter_window);
+        const Building* building = i < scene.buildings.size() ? &scene.buildings[i] : nullptr;
+        csv.number(building != nullptr ? building->height : never);
+        csv.word(building != nullptr && building->height_assumed ? "yes" : "no");
+        csv.end_row();
+    }
+    return csv.text();
+}
+
+std::string time_table(const Observation& observation) {
+    Csv csv(
+        "time_s,front_chainage_m,volume_held_m3,volume_moving_m3,volume_deposited_m3,volume_left_m3,"
+        "volume_balance_m3,kinetic_energy_J,potential_energy_J,largest_speed_mps,mean_compression,max_compression,"
+        "time_step_s,steps_per_second");
+    for (const TimeSample& s : observation.timeseries) {
+        const double balance =
+            observation.volume_released - (s.volume_held + s.volume_moving + s.volume_deposited + s.volume_left);
+        csv.row({s.time, s.front_chainage, s.volume_held, s.volume_moving, s.volume_deposited, s.volume_left, balance,
+                 s.kinetic_energy, s.potential_energy, s.largest_speed, s.mean_compression, s.max_compression,
+                 s.time_step, s.steps_per_second});
+    }
+    return csv.text();
+}
+
+}  // namespace
+
+Status write_tables(const Scene& scene, const RunResult& result, const std::filesystem::path& folder) {
+    const Observation& observation = result.observation;
+    if (Status s = write_text_file(folder / "front.csv", front_table(observation)); !s) return s;
+    if (Status s = write_text_file(folder / "run_out.csv", run_out_table(observation.run_out)); !s) return s;
+    if (Status s = write_text_file(folder / "buildings.csv", building_table(scene, observation)); !s) return s;
+    return write_text_file(folder / "timeseries.csv", time_table(observation));
+}
+
+}  // namespace talus

@@ -1,0 +1,100 @@
+#include <algorithm>
+#include <cmath>
+
+#include "geo/vector.hpp"
+#include "products/writers.hpp"
+
+namespace talus {
+
+namespace {
+
+Attribute yes_or_no(bool value) {
+    return std::string(value ? "yes" : "no");
+}
+
+/// The columns are those of buildings.csv.
+Status write_buildings(const Scene& scene, const Observation& observation, const std::string& file) {
+    const std::vector<Field> fields = {{"name", true},          {"hit", true},         {"first_hit_time_s"},
+                                       {"peak_force_kN"},       {"peak_pressure_kPa"}, {"peak_dynamic_pressure_kPa"},
+                                       {"peak_depth_m"},        {"filter_window_s"},   {"height_m"},
+                                       {"height_assumed", true}};
+    std::vector<OutputFeature> features;
+    for (std::size_t i = 0; i < scene.buildings.size() && i < observation.buildings.size(); ++i) {
+        const Building& building = scene.buildings[i];
+        const BuildingImpact& b = observation.buildings[i];
+        features.push_back({building.footprint,
+                            {},
+                            {b.name, yes_or_no(b.hit), b.first_hit_time, b.peak_force / 1e3, b.peak_pressure / 1e3,
+                             b.peak_dynamic_pressure / 1e3, b.peak_depth, scene.spec.outputs.impact_filter_window,
+                             building.height, yes_or_no(building.height_assumed)}});
+    }
+    return write_geopackage_layer(file, "buildings", fields, features, scene.crs);
+}
+
+/// A polygon per patch; `volume_m3` is that of the whole release.
+Status write_releases(const Scene& scene, const std::string& file) {
+    std::vector<OutputFeature> features;
+    for (const Release& release : scene.releases) {
+        for (const ReleasePatch& patch : release.patches) {
+            // Where a raster gives the thickness there is no single value.
+            const double thickness = release.thickness_raster ? never : patch.thickness;
+            features.push_back({{patch.polygon}, {}, {release.name, release.start_time, thickness, release.volume}});
+        }
+    }
+    return write_geopackage_layer(file, "release",
+                                  {{"name", true}, {"start_time_s"}, {"thickness_m"}, {"release_volume_m3"}}, features,
+                                  scene.crs);
+}
+
+/// The front sample nearest to a chainage; null beyond the front.
+const FrontSample* front_near(const std::vector<FrontSample>& front, double chainage, double reach) {
+    const auto after = std::lower_bound(front.begin(), front.end(), chainage,
+                                        [](const FrontSample& f, double c) { return f.chainage < c; });
+    const FrontSample* best = nullptr;
+    for (const auto it : {after, after == front.begin() ? after : after - 1}) {
+        if (it == front.end() || std::abs(it->chainage - chainage) > reach) continue;
+        if (best == nullptr || std::abs(it->chainage - chainage) < std::abs(best->chainage - chainage)) best = &*it;
+    }
+    return best;
+}
+
+/// A short line across the path every 10 m, with what the front did there.
+std::vector<OutputFeature> chainage_marks(const Scene& scene, const Observation& observation) {
+    constexpr double spacing = 10, half_width = 3, half_span = 1;  // m
+    const FlowPath& path = scene.flow_path;
+    std::vector<OutputFeature> features;
+    for (int k = 0; k * spacing <= path.length(); ++k) {
+        const double chainage = k * spacing;
+        const PlanPoint middle = path.point_at(chainage);
+        const PlanPoint before = path.point_at(chainage - half_span), after = path.point_at(chainage + half_span);
+        const double span = std::hypot(after.x - before.x, after.y - before.y);
+        if (!(span > 0)) continue;
+        const double across_x = -(after.y - before.y) / span * half_width;
+        const double across_y = (after.x - before.x) / span * half_width;
+        const FrontSample* front = front_near(observation.front, chainage, 0.51 * scene.spec.outputs.chainage_interval);
+        features.push_back({{},
+                            {{middle.x - across_x, middle.y - across_y}, {middle.x + across_x, middle.y + across_y}},
+                            {chainage, front != nullptr ? front->arrival_time : never,
+                             front != nullptr ? front->front_velocity : never}});
+    }
+    return features;
+}
+
+}  // namespace
+
+Status write_vectors(const Scene& scene, const RunResult& result, const std::filesystem::path& folder) {
+    const std::string file = (folder / "results.gpkg").string();
+    const Observation& observation = result.observation;
+    if (Status s = write_buildings(scene, observation, file); !s) return s;
+    if (Status s = write_releases(scene, file); !s) return s;
+    if (scene.flow_path.empty()) return {};
+    const OutputFeature line{
+        {}, scene.flow_path.points(), {scene.flow_path.length(), yes_or_no(scene.flow_path_traced)}};
+    if (Status s = write_geopackage_layer(file, "flow_path", {{"length_m"}, {"traced", true}}, {line}, scene.crs); !s) {
+        return s;
+    }
+    return write_geopackage_layer(file, "chainage", {{"chainage_m"}, {"first_arrival_time_s"}, {"front_velocity_mps"}},
+                                  chainage_marks(scene, observation), scene.crs);
+}
+
+}  // namespace talus

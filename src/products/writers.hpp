@@ -1,0 +1,31 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "core/result.hpp"
+#include "scene/run.hpp"
+#include "scene/scene.hpp"
+
+/// The parts of write_products, one per kind of file. Lengths in m, times in s unless a suffix says otherwise.
+namespace talus {
+
+/// peak_depth.tif, ... each with a QGIS style beside it.
+[[nodiscard]] Status write_maps(const Scene& scene, const RunResult& result, const std::filesystem::path& folder);
+
+/// front.csv, run_out.csv, buildings.csv, timeseries.csv. A value that does not exist is an empty field.
+[[nodiscard]] Status write_tables(const Scene& scene, const RunResult& result, const std::filesystem::path& folder);
+
+/// results.gpkg with the layers buildings, release, flow_path and chainage (a short line across the path per mark).
+[[nodiscard]] Status write_vectors(const Scene& scene, const RunResult& result, const std::filesystem::path& folder);
+
+/// manifest.json: all that is needed to repeat the run and to judge it. A value that does not exist is null.
+[[nodiscard]] Status write_manifest(const Scene& scene, const RunResult& result, const std::filesystem::path& folder);
+
+/// "complete", "interrupted" or "fault".
+[[nodiscard]] const char* status_text(RunStatus status);
+
+/// What a product must say of itself wherever it goes: " (reconstruction, partial: interrupted)", or nothing.
+[[nodiscard]] std::string caveat(const Scene& scene, const RunResult& result);
+
+}  // namespace talus

@@ -1,0 +1,117 @@
+#include "scene/load.hpp"
+
+#include <filesystem>
+#include <fstream>
+#include <system_error>
+
+#include <fmt/format.h>
+
+#include "core/hash.hpp"
+
+namespace talus {
+namespace {
+
+Status load_terrain(const ParsedScene& parsed, Scene& scene) {
+    const TerrainSpec& spec = parsed.spec.terrain;
+    Result<Raster> raster = read_terrain_raster(spec.file, spec.band, spec.extent);
+    if (!raster) {
+        std::string message = parsed.at("terrain.file") + ": " + raster.error().message;
+        std::error_code code;
+        if (!spec.obtain.empty() && !std::filesystem::exists(spec.file, code)) {
+            message += "; to obtain the file: " + spec.obtain;
+        }
+        return Error{message};
+    }
+    record_input("terrain", spec.file, scene);
+    scene.crs = raster->crs;
+    scene.vertical_unit = raster->vertical_unit;
+    scene.nodata_share = raster->nodata_share;
+    if (scene.vertical_unit == "not stated") {
+        scene.notes.emplace_back("terrain: the file does not state its vertical unit, taken as metres");
+    }
+    if (scene.nodata_share > 0) {
+        scene.notes.push_back(
+            fmt::format("terrain: {:.2g} % of it has no data; debris that gets there has left the terrain",
+                        100 * scene.nodata_share));
+    }
+    scene.terrain = Terrain(std::move(raster->grid));
+    return {};
+}
+
+void note_observations(Scene& scene) {
+    for (std::size_t i = 0; i < scene.spec.observations.size(); ++i) {
+        const ObservationSpec& observation = scene.spec.observations[i];
+        if (scene.flow_path.empty() || observation.chainage <= scene.flow_path.length()) continue;
+        scene.notes.push_back(
+            fmt::format("observation[{}]: chainage {:.6g} m lies beyond the flow path's end at {:.1f} m", i,
+                        observation.chainage, scene.flow_path.length()));
+    }
+}
+
+/// "scene.toml" in the folder "valley" is called valley, "valley.toml" too.
+std::string title_from(const std::filesystem::path& file) {
+    const std::string stem = file.stem().string();
+    if (stem != "scene") return stem;
+    const std::string folder = std::filesystem::absolute(file).lexically_normal().parent_path().filename().string();
+    return folder.empty() ? stem : folder;
+}
+
+void hash_file(InputFile& input) {
+    std::ifstream in(input.path, std::ios::binary);
+    std::vector<char> block(1 << 20);
+    StateHash hash;
+    while (in.read(block.data(), static_cast<std::streamsize>(block.size())), in.gcount() > 0) {
+        hash.add(block.data(), static_cast<std::size_t>(in.gcount()));
+        input.bytes += static_cast<std::uint64_t>(in.gcount());
+    }
+    input.hash = to_hex(hash.value());
+}
+
+}  // namespace
+
+void record_input(const std::string& role, const std::string& path, Scene& scene) {
+    std::error_code code;
+    if (!std::filesystem::is_regular_file(path, code)) return;  // a GDAL name such as /vsizip/...: nothing to hash
+    hash_file(scene.inputs.emplace_back(InputFile{role, path, 0, ""}));
+    std::filesystem::path companion = path;
+    if (companion.extension() != ".shp") return;
+    for (const char* extension : {".dbf", ".shx", ".prj", ".cpg"}) {
+        companion.replace_extension(extension);
+        if (!std::filesystem::is_regular_file(companion, code)) continue;
+        hash_file(scene.inputs.emplace_back(InputFile{role + " (" + extension + ")", companion.string(), 0, ""}));
+    }
+}
+
+std::string place_text(const PlanPoint& p) {
+    return fmt::format("({:.1f}, {:.1f})", p.x, p.y);
+}
+
+std::string extent_text(const Extent& e) {
+    return fmt::format("x {:.1f} to {:.1f}, y {:.1f} to {:.1f}", e.x_min, e.x_max, e.y_min, e.y_max);
+}
+
+Extent covered_extent(const Terrain& terrain) {
+    return terrain.elevation().geometry.extent().grown(-terrain.cell() / 2);
+}
+
+Result<Scene> assemble_scene(ParsedScene parsed) {
+    Scene scene;
+    scene.file = parsed.file;
+    scene.spec = parsed.spec;
+    if (scene.spec.scene.title.empty()) scene.spec.scene.title = title_from(parsed.file);
+    record_input("scene", parsed.file.string(), scene);
+    if (Status s = load_terrain(parsed, scene); !s) return s.error();
+    if (Status s = load_releases(parsed, scene); !s) return s.error();
+    if (Status s = load_buildings(parsed, scene); !s) return s.error();
+    if (Status s = load_flow_path(parsed, scene); !s) return s.error();
+    note_observations(scene);
+    return Result<Scene>(std::move(scene));
+}
+
+Result<Scene> load_scene(const std::filesystem::path& file, const std::vector<std::string>& overrides) {
+    Result<ParsedScene> parsed = parse_scene_with_places(file, overrides);
+    if (!parsed) return parsed.error();
+    return assemble_scene(std::move(*parsed));
+}
+
+}  // namespace talus

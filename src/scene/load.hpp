@@ -1,0 +1,36 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "scene/parse.hpp"
+#include "scene/scene.hpp"
+
+/// The parts of load_scene. Each adds what it did to the inputs to the scene's notes.
+namespace talus {
+
+/// Everything that the parsed scene names, loaded and checked.
+[[nodiscard]] Result<Scene> assemble_scene(ParsedScene parsed);
+
+/// Fills scene.releases. The terrain is loaded.
+[[nodiscard]] Status load_releases(const ParsedScene& parsed, Scene& scene);
+
+/// Fills scene.buildings. The terrain and the releases are loaded.
+[[nodiscard]] Status load_buildings(const ParsedScene& parsed, Scene& scene);
+
+/// Fills scene.flow_path from its file, or traced. The terrain and the releases are loaded.
+[[nodiscard]] Status load_flow_path(const ParsedScene& parsed, Scene& scene);
+
+/// Adds the file, and for a Shapefile the files that belong to it, to scene.inputs.
+void record_input(const std::string& role, const std::string& path, Scene& scene);
+
+/// "(824355.0, 825830.0)".
+[[nodiscard]] std::string place_text(const PlanPoint& p);
+
+/// "x 822497.5 to 826497.5, y 823997.5 to 828497.5".
+[[nodiscard]] std::string extent_text(const Extent& extent);
+
+/// Where ground is known at best: the hull of the cell centres.
+[[nodiscard]] Extent covered_extent(const Terrain& terrain);
+
+}  // namespace talus

@@ -1,0 +1,221 @@
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include <fmt/format.h>
+
+#include "geo/vector.hpp"
+#include "scene/load.hpp"
+#include "scene/polygons.hpp"
+
+namespace talus {
+namespace {
+
+constexpr double thickest = 1000;  // m, as release.thickness_m allows
+
+std::string attribute_names(const PolygonLayer& layer) {
+    std::string names;
+    for (const auto& [name, value] : layer.features.front().attributes) names += (names.empty() ? "" : ", ") + name;
+    return names.empty() ? "none" : names;
+}
+
+/// The attribute as a number, also from a text column that holds one.
+std::optional<double> number_of(const Attribute& attribute) {
+    if (const auto* number = std::get_if<double>(&attribute)) return *number;
+    const auto* text = std::get_if<std::string>(&attribute);
+    if (!text || text->empty()) return std::nullopt;
+    std::size_t used = 0;
+    try {
+        const double number = std::stod(*text, &used);
+        return used == text->size() ? std::optional(number) : std::nullopt;
+    } catch (const std::exception&) {
+        return std::nullopt;
+    }
+}
+
+std::string attribute_text(const Attribute& attribute) {
+    if (const auto* number = std::get_if<double>(&attribute)) return fmt::format("{}", *number);
+    if (const auto* text = std::get_if<std::string>(&attribute)) return "\"" + *text + "\"";
+    return "empty";
+}
+
+Result<double> feature_thickness(const ReleaseSpec& spec, const PolygonLayer& layer, std::size_t feature) {
+    if (spec.thickness) return *spec.thickness;
+    if (spec.thickness_attribute.empty()) return 1.0;  // a raster replaces it, a target volume scales it
+    const auto& attributes = layer.features[feature].attributes;
+    const auto found = attributes.find(spec.thickness_attribute);
+    if (found == attributes.end()) {
+        return Error{fmt::format("{}: has no attribute \"{}\"; its attributes: {}", spec.file, spec.thickness_attribute,
+                                 attribute_names(layer))};
+    }
+    const std::optional<double> thickness = number_of(found->second);
+    if (!thickness || !(*thickness > 0) || *thickness > thickest) {
+        return Error{fmt::format("{}: feature {} has {} = {}; it must be a thickness above 0 to {:.0f} (m)", spec.file,
+                                 feature + 1, spec.thickness_attribute, attribute_text(found->second), thickest)};
+    }
+    return *thickness;
+}
+
+/// Every point of the polygon must lie on known ground.
+Status check_covered(const Polygon& polygon, const std::string& label, const Scene& scene) {
+    std::optional<PlanPoint> bare;
+    const auto test = [&](const PlanPoint& p) {
+        if (!bare && std::isnan(scene.terrain.elevation_at(p))) bare = p;
+    };
+    for_each_on_rings(polygon, scene.terrain.cell() / 2, test);
+    for_each_inside(polygon, scene.terrain.cell() / 2, test);
+    if (!bare) return {};
+    const Extent hull = covered_extent(scene.terrain);
+    if (hull.contains(*bare)) {
+        return Error{
+            fmt::format("{} lies over nodata of the terrain at {}; fill the terrain there or redraw the release", label,
+                        place_text(*bare))};
+    }
+    const Extent extent = extent_of(polygon);
+    const bool wholly = extent.x_max < hull.x_min || extent.x_min > hull.x_max || extent.y_max < hull.y_min ||
+                        extent.y_min > hull.y_max;
+    return Error{fmt::format("{} {} the terrain: {} is not in {} ({}); {}", label,
+                             wholly ? "lies outside" : "reaches beyond", place_text(*bare), extent_text(hull),
+                             scene.crs.label(),
+                             scene.spec.terrain.extent ? "redraw the release or widen terrain.extent_m"
+                                                       : "redraw the release or use a larger terrain")};
+}
+
+/// The raster must hold thickness somewhere on the patches; what it lacks is noted.
+Status check_thickness_raster(const ReleaseSpec& spec, const std::string& label, const Release& release, Scene& scene) {
+    std::size_t points = 0, with_thickness = 0;
+    double thickest_here = 0;
+    const double step = std::min(scene.terrain.cell(), release.thickness_raster->geometry.cell) / 2;
+    for (const ReleasePatch& patch : release.patches) {
+        for_each_inside(patch.polygon, step, [&](const PlanPoint& p) {
+            const double thickness = release.thickness_at(p);
+            ++points;
+            if (thickness > 0) ++with_thickness;
+            thickest_here = std::max(thickest_here, thickness);
+        });
+    }
+    if (with_thickness == 0) {
+        return Error{
+            fmt::format("{}: has no thickness above 0 inside the polygons of {}", spec.thickness_raster, spec.file)};
+    }
+    if (thickest_here > thickest) {
+        return Error{fmt::format("{}: holds a thickness of {:.6g}; it must be at most {:.0f} (m)",
+                                 spec.thickness_raster, thickest_here, thickest)};
+    }
+    if (with_thickness < points) {
+        const auto bare = static_cast<double>(points - with_thickness) / static_cast<double>(points);
+        scene.notes.push_back(fmt::format(
+            "{}: {:.2g} % of its area has no thickness in the raster and releases nothing", label, 100 * bare));
+    }
+    return {};
+}
+
+/// Sets the uniform thickness that makes the target volume.
+Status spread_volume(const ReleaseSpec& spec, const std::string& label, Release& release, Scene& scene) {
+    const double slope_area = release_volume(scene.terrain, release);  // the patches are 1 m thick so far
+    const double thickness = slope_area > 0 ? *spec.volume / slope_area : 0;
+    if (!(thickness > 0) || thickness > thickest) {
+        return Error{
+            fmt::format("{} of {:.6g} m3 over {:.6g} m2 of slope would be {:.6g} m thick; it must be above 0 to "
+                        "{:.0f} m",
+                        label, *spec.volume, slope_area, thickness, thickest)};
+    }
+    for (ReleasePatch& patch : release.patches) patch.thickness = thickness;
+    scene.notes.push_back(fmt::format("{}: {:.6g} m3 over {:.4g} m2 of slope is a uniform thickness of {:.4g} m", label,
+                                      *spec.volume, slope_area, thickness));
+    return {};
+}
+
+Result<Release> load_release(const ParsedScene& parsed, std::size_t index, Scene& scene) {
+    ReleaseSpec& spec = scene.spec.releases[index];
+    if (spec.name.empty()) spec.name = fmt::format("release {}", index + 1);
+    const std::string label = fmt::format("release \"{}\"", spec.name);
+    const std::string path = fmt::format("release[{}].", index);
+    const auto refused = [&](const std::string& key, const Error& error) {
+        return Error{parsed.at(path + key) + ": " + error.message};
+    };
+
+    const Result<PolygonLayer> layer = read_polygons(spec.file, spec.layer, scene.crs);
+    if (!layer) return refused("file", layer.error());
+    record_input(label, spec.file, scene);
+    if (!layer->reprojection.empty()) scene.notes.push_back(label + ": " + layer->reprojection);
+
+    Release release;
+    release.name = spec.name;
+    release.start_time = spec.start_time;
+    for (std::size_t feature = 0; feature < layer->features.size(); ++feature) {
+        const Result<double> thickness = feature_thickness(spec, *layer, feature);
+        if (!thickness) return refused("thickness_attribute", thickness.error());
+        for (const Polygon& part : layer->features[feature].parts) release.patches.push_back({part, *thickness});
+    }
+    for (const ReleasePatch& patch : release.patches) {
+        if (Status s = check_covered(patch.polygon, label, scene); !s) return refused("file", s.error());
+    }
+    if (!spec.thickness_raster.empty()) {
+        Result<Raster> raster = read_value_raster(spec.thickness_raster, scene.crs);
+        if (!raster) return refused("thickness_raster", raster.error());
+        record_input(label + " thickness", spec.thickness_raster, scene);
+        release.thickness_raster = std::move(raster->grid);
+        if (Status s = check_thickness_raster(spec, label, release, scene); !s) {
+            return refused("thickness_raster", s.error());
+        }
+    }
+    if (spec.volume) {
+        if (Status s = spread_volume(spec, label, release, scene); !s) return refused("volume_m3", s.error());
+    }
+    release.volume = release_volume(scene.terrain, release);
+    if (!(release.volume > 0)) return refused("file", Error{label + " has no volume; its polygons have no area"});
+    return Result<Release>(std::move(release));
+}
+
+/// Debris must not be released twice from the same ground.
+Status check_overlaps(const ParsedScene& parsed, const Scene& scene) {
+    struct Item {
+        std::size_t release, patch;
+        Extent extent;
+    };
+    std::vector<Item> items;
+    for (std::size_t r = 0; r < scene.releases.size(); ++r) {
+        for (std::size_t p = 0; p < scene.releases[r].patches.size(); ++p) {
+            items.push_back({r, p, extent_of(scene.releases[r].patches[p].polygon)});
+        }
+    }
+    std::sort(items.begin(), items.end(), [](const Item& a, const Item& b) { return a.extent.x_min < b.extent.x_min; });
+    for (std::size_t i = 0; i < items.size(); ++i) {
+        for (std::size_t k = i + 1; k < items.size() && items[k].extent.x_min < items[i].extent.x_max; ++k) {
+            const Item &first = items[i], &second = items[k];
+            const Polygon& a = scene.releases[first.release].patches[first.patch].polygon;
+            const Polygon& b = scene.releases[second.release].patches[second.patch].polygon;
+            const Overlap overlap = overlap_of(a, b);
+            if (!is_true_overlap(overlap, a, b)) continue;
+            const std::string where = fmt::format("by {:.4g} m2 around {}", overlap.area, place_text(overlap.place));
+            const std::size_t later = std::max(first.release, second.release);
+            const std::size_t earlier = std::min(first.release, second.release);
+            const std::string at = parsed.at(fmt::format("release[{}].file", later));
+            if (later == earlier) {
+                return Error{
+                    fmt::format("{}: polygons of release \"{}\" overlap {}; the same ground cannot fail twice, "
+                                "merge or trim them",
+                                at, scene.releases[later].name, where)};
+            }
+            return Error{
+                fmt::format("{}: releases \"{}\" and \"{}\" overlap {}; the same ground cannot fail twice, trim "
+                            "one of them",
+                            at, scene.releases[earlier].name, scene.releases[later].name, where)};
+        }
+    }
+    return {};
+}
+
+}  // namespace
+
+Status load_releases(const ParsedScene& parsed, Scene& scene) {
+    for (std::size_t i = 0; i < scene.spec.releases.size(); ++i) {
+        Result<Release> release = load_release(parsed, i, scene);
+        if (!release) return release.error();
+        scene.releases.push_back(std::move(*release));
+    }
+    return check_overlaps(parsed, scene);
+}
+
+}  // namespace talus

@@ -1,0 +1,30 @@
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "core/result.hpp"
+#include "params/fields.hpp"
+
+namespace talus {
+
+/// A scene's values and where each was given, for messages that come up later than parsing.
+struct ParsedScene {
+    std::filesystem::path file;
+    SceneSpec spec;
+    std::map<std::string, std::string> places;  ///< key path ("release[0].file") -> "scene.toml:12" or "--set ..."
+
+    /// "scene.toml:12: release[0].file"; for a key that was not given, the scene file and the key.
+    [[nodiscard]] std::string at(const std::string& key_path) const;
+};
+
+/// As parse_scene, with the places.
+[[nodiscard]] Result<ParsedScene> parse_scene_with_places(const std::filesystem::path& file,
+                                                          const std::vector<std::string>& overrides);
+
+/// Checks that concern several keys at once, makes paths absolute and expands `${NAME}` in them.
+[[nodiscard]] Status finish_scene(ParsedScene& scene);
+
+}  // namespace talus

@@ -1,0 +1,52 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "core/result.hpp"
+#include "geo/raster.hpp"
+#include "params/spec.hpp"
+#include "terrain/buildings.hpp"
+#include "terrain/flow_path.hpp"
+#include "terrain/release.hpp"
+#include "terrain/terrain.hpp"
+
+namespace talus {
+
+/// A file that the scene read.
+struct InputFile {
+    std::string role;  ///< "terrain", "release head scarp", ...
+    std::string path;
+    std::uint64_t bytes = 0;
+    std::string hash;  ///< FNV-1a 64, hexadecimal
+};
+
+/// A scene file with all its inputs loaded, checked and brought into the terrain's CRS.
+struct Scene {
+    std::filesystem::path file;
+    SceneSpec spec;
+    Crs crs;
+    std::string vertical_unit;
+    double nodata_share = 0;
+    Terrain terrain;
+    std::vector<Release> releases;
+    std::vector<Building> buildings;
+    FlowPath flow_path;
+    bool flow_path_traced = false;
+    std::vector<InputFile> inputs;
+    std::vector<std::string> notes;  ///< what was done to the inputs: reprojections, defaults, traced path
+};
+
+/// Reads a scene file, its values checked against the field table; relative paths are resolved against its folder,
+/// `${NAME}` in a path against the environment. `overrides`: "section.key=value", applied after the file.
+[[nodiscard]] Result<SceneSpec> parse_scene(const std::filesystem::path& file,
+                                            const std::vector<std::string>& overrides = {});
+
+/// Loads everything that the scene names. Errors as listed at the readers, and: release outside the terrain or over
+/// nodata, no thickness above zero, overlapping releases, buildings outside.
+[[nodiscard]] Result<Scene> load_scene(const std::filesystem::path& file,
+                                       const std::vector<std::string>& overrides = {});
+
+}  // namespace talus

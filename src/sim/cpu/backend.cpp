@@ -1,0 +1,446 @@
+#include "sim/cpu/backend.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "sim/cpu/parallel.hpp"
+#include "sim/physics/contact.hpp"
+#include "sim/physics/viscosity.hpp"
+
+namespace talus::cpu {
+namespace {
+
+constexpr std::size_t particle_grain = 256;
+
+/// Start time of the release that a particle belongs to.
+double start_time_of(const Model& model, std::uint32_t id) {
+    for (const ReleaseGroup& release : model.releases) {
+        if (id >= release.first_particle && id < release.last_particle) return release.start_time;
+    }
+    return 0;
+}
+
+}  // namespace
+
+Backend::Backend(std::size_t capacity)
+    : cell_sort_(capacity),
+      neighbours_(capacity),
+      multiplier_change_(capacity),
+      compression_(capacity),
+      tolerated_compression_(capacity),
+      ground_contact_(capacity),
+      building_contact_(capacity),
+      building_(capacity),
+      gone_(capacity),
+      id_scratch_(capacity),
+      byte_scratch_(capacity) {
+    for (VectorArray* array : {&displacement_, &displacement_next_, &predicted_, &ground_gradient_, &building_gradient_,
+                               &ground_friction_, &building_friction_, &vector_scratch_}) {
+        array->resize(capacity);
+    }
+    stress_start_.resize(capacity);
+    stress_change_.resize(capacity);
+    grid_.key.reserve(capacity);
+    grid_.start.reserve(capacity + 1);
+}
+
+void Backend::predict_positions(const Model& model, State& state) {
+    const auto dt = static_cast<float>(state.time_step);
+    const auto fall = static_cast<float>(model.gravity * state.time_step);
+    parallel_ranges(state.count, particle_grain, [&](std::size_t first, std::size_t last) {
+        for (std::size_t i = first; i < last; ++i) {
+            if (state.held[i] && state.time >= start_time_of(model, state.id[i])) state.held[i] = 0;
+            Vec3<float> displacement{};
+            if (!state.held[i]) {
+                state.velocity.z[i] -= fall;
+                displacement = state.velocity.at(i) * dt;
+            }
+            displacement_.set(i, displacement);
+            predicted_.set(i, state.position.at(i) + displacement);
+            ground_contact_[i] = building_contact_[i] = 0;
+            ground_friction_.set(i, {});
+            building_friction_.set(i, {});
+            building_[i] = -1;
+        }
+    });
+}
+
+void Backend::find_neighbours(const Model& model, State& state) {
+    reorder(state, cell_sort_.sort(predicted_, state.count, model.support_radius, grid_));
+    neighbours_.build(predicted_, grid_, static_cast<float>(model.support_radius));
+}
+
+void Backend::reorder(State& state, std::span<const std::uint32_t> order) {
+    const auto gather = [&](auto& values, auto& scratch) {
+        parallel_ranges(order.size(), 4096, [&](std::size_t first, std::size_t last) {
+            for (std::size_t i = first; i < last; ++i) scratch[i] = values[order[i]];
+        });
+        values.swap(scratch);
+    };
+    const auto gather_vectors = [&](VectorArray& array) {
+        gather(array.x, vector_scratch_.x);
+        gather(array.y, vector_scratch_.y);
+        gather(array.z, vector_scratch_.z);
+    };
+    gather_vectors(state.position);
+    gather_vectors(state.velocity);
+    gather_vectors(displacement_);
+    gather_vectors(predicted_);
+    gather(state.multiplier, vector_scratch_.x);
+    gather(state.pressure, vector_scratch_.x);
+    for (auto* component : {&state.stress.xx, &state.stress.yy, &state.stress.xy, &state.stress.xz, &state.stress.yz}) {
+        gather(*component, vector_scratch_.x);
+    }
+    gather(state.id, id_scratch_);
+    gather(state.held, byte_scratch_);
+}
+
+/// Compression that a step begins with may be undone only slowly, since a correction turns into velocity: what the
+/// density constraint tolerates in this step.
+void Backend::measure_start_compression(const Model& model, const State& state) {
+    const float r = static_cast<float>(model.support_radius), inverse_r = 1 / r;
+    const float value_scale = static_cast<float>(model.kernel.particle_volume) / (r * r * r);
+    const auto undone = static_cast<float>(model.solver.depenetration_speed * state.time_step / model.particle_spacing);
+    const float *x = state.position.x.data(), *y = state.position.y.data(), *z = state.position.z.data();
+    with_kernel(model.kernel.choice, [&](auto kernel) {
+        parallel_ranges(state.count, particle_grain, [&](std::size_t first, std::size_t last) {
+            for (std::size_t i = first; i < last; ++i) {
+                const Vec3<float> p = state.position.at(i);
+                float density = kernel.value(0.0f);
+                for (const std::uint32_t j : neighbours_.of(i)) {
+                    const float dx = p.x - x[j], dy = p.y - y[j], dz = p.z - z[j];
+                    density += kernel.value(std::min(1.0f, std::sqrt(dx * dx + dy * dy + dz * dz) * inverse_r));
+                }
+                const float share = boundary_density(model, sample_boundary(model, p)).density;
+                tolerated_compression_[i] = std::max(0.0f, density * value_scale + share - 1 - undone);
+            }
+        });
+    });
+}
+
+/// What persists is a starting guess. Multipliers and stresses are pressures times dt^2, so they scale with the step.
+void Backend::warm_start(const Model& model, State& state) {
+    const bool keeps_stress = model.solver.internal_friction == InternalFriction::stress;
+    const double ratio = state.previous_time_step > 0 ? state.time_step / state.previous_time_step : 0;
+    const auto scale = static_cast<float>(keeps_stress ? ratio * ratio : 0);
+    state.previous_time_step = state.time_step;
+    measure_start_compression(model, state);
+    parallel_ranges(state.count, particle_grain, [&](std::size_t first, std::size_t last) {
+        for (std::size_t i = first; i < last; ++i) {
+            // Debris that is held keeps what it carries, ready for its start, and presses on nothing.
+            const float kept = state.held[i] ? 1.0f : static_cast<float>(StressConstants::warm_start);
+            state.multiplier[i] *= scale * kept;
+            state.pressure[i] *= scale;
+            const Deviator<float> stress = state.stress.at(i) * scale;
+            state.stress.set(i, stress);
+            stress_start_.set(i, stress);
+            stress_change_.set(i, state.held[i] ? Deviator<float>{} : stress);
+            multiplier_change_[i] = state.held[i] ? 0.0f : state.multiplier[i];
+            if (!keeps_stress) continue;
+            const auto boundary = boundary_density(model, sample_boundary(model, predicted_.at(i)));
+            ground_gradient_.set(i, boundary.ground_gradient);
+            building_gradient_.set(i, boundary.building_gradient);
+        }
+    });
+    if (!keeps_stress) return;
+    correct_displacements<InternalFriction::stress>(model, state);
+    std::swap(displacement_, displacement_next_);
+    parallel_ranges(state.count, particle_grain, [&](std::size_t first, std::size_t last) {
+        for (std::size_t i = first; i < last; ++i) {
+            predicted_.set(i, state.position.at(i) + displacement_.at(i));
+        }
+    });
+}
+
+void Backend::solve_density(const Model& model, State& state) {
+    if (model.solver.internal_friction == InternalFriction::stress) {
+        update_multipliers<InternalFriction::stress>(model, state);
+        correct_displacements<InternalFriction::stress>(model, state);
+    } else {
+        update_multipliers<InternalFriction::pair>(model, state);
+        correct_displacements<InternalFriction::pair>(model, state);
+    }
+    measure_compression(state);
+}
+
+/// Eqs. (1) and (2): the density constraint G and its multiplier lambda, unilateral: debris resists compression only.
+/// With stresses also the shear of this step and the stress that answers it: elastic from the step's start, then
+/// limited by friction.
+template <InternalFriction friction>
+void Backend::update_multipliers(const Model& model, State& state) {
+    constexpr bool keeps_stress = friction == InternalFriction::stress;
+    const float r = static_cast<float>(model.support_radius), inverse_r = 1 / r;
+    const float value_scale = static_cast<float>(model.kernel.particle_volume) / (r * r * r);
+    const float gradient_scale = value_scale / (r * r);
+    const float softness = static_cast<float>(model.solver.constraint_relaxation * model.kernel.rest_gradient_sum);
+    const auto under_relaxation = static_cast<float>(model.solver.under_relaxation);
+    const auto internal_friction = static_cast<float>(model.internal_friction_coefficient);
+    const float *x = predicted_.x.data(), *y = predicted_.y.data(), *z = predicted_.z.data();
+    const float *ux = displacement_.x.data(), *uy = displacement_.y.data(), *uz = displacement_.z.data();
+
+    with_kernel(model.kernel.choice, [&](auto kernel) {
+        parallel_ranges(state.count, particle_grain, [&](std::size_t first, std::size_t last) {
+            for (std::size_t i = first; i < last; ++i) {
+                if (state.held[i]) {
+                    multiplier_change_[i] = 0;
+                    stress_change_.set(i, {});
+                    compression_[i] = 0;
+                    continue;
+                }
+                const Vec3<float> p = predicted_.at(i), moved = displacement_.at(i);
+                float density = kernel.value(0.0f), pair_square = softness;
+                Vec3<float> gradient{};
+                DisplacementGradient<float> deformation;
+                for (const std::uint32_t j : neighbours_.of(i)) {
+                    const Vec3<float> separation{p.x - x[j], p.y - y[j], p.z - z[j]};
+                    const float square = dot(separation, separation);
+                    const float q = std::min(1.0f, std::sqrt(square) * inverse_r);
+                    density += kernel.value(q);
+                    const float slope = gradient_scale * kernel.slope_over_q(q);
+                    const Vec3<float> pair_gradient = separation * -slope;
+                    gradient += pair_gradient;
+                    pair_square += slope * slope * square;
+                    if constexpr (keeps_stress) {
+                        deformation.add({ux[j] - moved.x, uy[j] - moved.y, uz[j] - moved.z}, pair_gradient);
+                    }
+                }
+                const auto boundary = boundary_density(model, sample_boundary(model, p));
+                ground_gradient_.set(i, boundary.ground_gradient);
+                building_gradient_.set(i, boundary.building_gradient);
+                gradient += boundary.ground_gradient + boundary.building_gradient;
+
+                const float constraint = density * value_scale + boundary.density - 1;
+                const float gradient_square = pair_square + dot(gradient, gradient);
+                const float before = state.multiplier[i];
+                const float after =
+                    gradient_square > 0
+                        ? std::min(0.0f, before - under_relaxation * (constraint - tolerated_compression_[i]) /
+                                                      gradient_square)
+                        : before;
+                state.multiplier[i] = after;
+                multiplier_change_[i] = after - before;
+                compression_[i] = std::max(0.0f, constraint);
+
+                if constexpr (keeps_stress) {
+                    Deviator<float> stress = stress_start_.at(i);
+                    if (pair_square > 0) {
+                        const float stiffness = static_cast<float>(StressConstants::stiffness) / pair_square;
+                        stress = stress + deformation.shear() * stiffness;
+                    }
+                    stress = limit_to_friction(stress, internal_friction, state.pressure[i]);
+                    stress_change_.set(i, stress - state.stress.at(i));
+                    state.stress.set(i, stress);
+                }
+            }
+        });
+    });
+}
+
+void Backend::measure_compression(State& state) {
+    struct Sum {
+        double sum = 0;
+        float greatest = 0;
+    };
+    const Sum compression = reduce_ranges(
+        state.count, 4096, Sum{},
+        [&](std::size_t first, std::size_t last, Sum s) {
+            for (std::size_t i = first; i < last; ++i) {
+                s.sum += compression_[i];
+                s.greatest = std::max(s.greatest, compression_[i]);
+            }
+            return s;
+        },
+        [](const Sum& a, const Sum& b) {
+            return Sum{a.sum + b.sum, std::max(a.greatest, b.greatest)};
+        });
+    state.mean_compression = state.count > 0 ? compression.sum / state.count : 0;
+    state.max_compression = compression.greatest;
+}
+
+/// Eq. (3) and the particle-particle part of friction. All are equal and opposite for the two particles of a pair.
+template <InternalFriction friction>
+void Backend::correct_displacements(const Model& model, const State& state) {
+    constexpr bool keeps_stress = friction == InternalFriction::stress;
+    const float r = static_cast<float>(model.support_radius), inverse_r = 1 / r;
+    const float value_scale = static_cast<float>(model.kernel.particle_volume) / (r * r * r);
+    const float gradient_scale = value_scale / (r * r);
+    const auto cap = static_cast<float>(pair_friction_cap(model.internal_friction_coefficient));
+    const float *x = predicted_.x.data(), *y = predicted_.y.data(), *z = predicted_.z.data();
+    const float *ux = displacement_.x.data(), *uy = displacement_.y.data(), *uz = displacement_.z.data();
+
+    with_kernel(model.kernel.choice, [&](auto kernel) {
+        parallel_ranges(state.count, particle_grain, [&](std::size_t first, std::size_t last) {
+            for (std::size_t i = first; i < last; ++i) {
+                const Vec3<float> moved = displacement_.at(i);
+                if (state.held[i]) {
+                    displacement_next_.set(i, moved);
+                    continue;
+                }
+                const Vec3<float> p = predicted_.at(i);
+                const float own_change = multiplier_change_[i];
+                [[maybe_unused]] const Deviator<float> own_stress = stress_change_.at(i);
+                Vec3<float> correction = (ground_gradient_.at(i) + building_gradient_.at(i)) * own_change;
+                for (const std::uint32_t j : neighbours_.of(i)) {
+                    const float change = own_change + multiplier_change_[j];
+                    if (!keeps_stress && change == 0) continue;
+                    const Vec3<float> separation{p.x - x[j], p.y - y[j], p.z - z[j]};
+                    const float square = dot(separation, separation);
+                    const float distance = std::sqrt(square);
+                    const float q = std::min(1.0f, distance * inverse_r);
+                    const float slope = gradient_scale * kernel.slope_over_q(q);
+                    if constexpr (keeps_stress) {
+                        const Vec3<float> pair_gradient = separation * -slope;
+                        correction += pair_gradient * change + (own_stress + stress_change_.at(j)) * pair_gradient;
+                    } else {
+                        correction -= separation * (change * slope);
+                        const float normal = -change * slope * distance;  // > 0: pressing together
+                        if (normal > 0 && cap > 0) {
+                            const Vec3<float> relative{moved.x - ux[j], moved.y - uy[j], moved.z - uz[j]};
+                            correction += pair_friction(separation, square, relative, cap * normal,
+                                                        value_scale * kernel.value(q));
+                        }
+                    }
+                }
+                displacement_next_.set(i, moved + correction);
+            }
+        });
+    });
+}
+
+/// Contact with ground and buildings, and the basal part of eq. (4).
+void Backend::solve_contacts(const Model& model, State& state) {
+    const auto depenetration = static_cast<float>(model.solver.depenetration_speed * state.time_step);
+    parallel_ranges(state.count, particle_grain, [&](std::size_t first, std::size_t last) {
+        for (std::size_t i = first; i < last; ++i) {
+            if (state.held[i]) continue;
+            ContactMemory<float> ground{ground_contact_[i], ground_friction_.at(i)};
+            ContactMemory<float> wall{building_contact_[i], building_friction_.at(i)};
+            const float ground_push = -state.multiplier[i] * length(ground_gradient_.at(i));
+            const float building_push = -state.multiplier[i] * length(building_gradient_.at(i));
+            const Vec3<float> start = state.position.at(i);
+            const Vec3<float> displacement = resolve_contacts(model, start, displacement_next_.at(i), depenetration,
+                                                              ground_push, building_push, ground, wall, building_[i]);
+            ground_contact_[i] = ground.normal;
+            ground_friction_.set(i, ground.friction);
+            building_contact_[i] = wall.normal;
+            building_friction_.set(i, wall.friction);
+            displacement_next_.set(i, displacement);
+            predicted_.set(i, start + displacement);
+        }
+    });
+    std::swap(displacement_, displacement_next_);
+}
+
+void Backend::enforce_boundaries(const Model& model, State& state) {
+    parallel_ranges(state.count, particle_grain, [&](std::size_t first, std::size_t last) {
+        for (std::size_t i = first; i < last; ++i) {
+            if (state.held[i]) continue;
+            const Vec3<float> start = state.position.at(i), displacement = displacement_.at(i);
+            const Vec3<float> wanted = start + displacement;
+            const Vec3<float> end = free_end(model, start, displacement);
+            predicted_.set(i, end);
+            if (end.x != wanted.x || end.y != wanted.y || end.z != wanted.z) displacement_.set(i, end - start);
+        }
+    });
+}
+
+void Backend::update_velocities(const Model& model, State& state) {
+    const auto inverse_dt = static_cast<float>(1 / state.time_step);
+    constexpr auto smoothing = static_cast<float>(StressConstants::pressure_smoothing);
+    state.largest_speed = reduce_ranges(
+        state.count, 4096, 0.0f,
+        [&](std::size_t first, std::size_t last, float largest) {
+            for (std::size_t i = first; i < last; ++i) {
+                if (state.held[i]) continue;
+                const Vec3<float> velocity = displacement_.at(i) * inverse_dt;
+                state.velocity.set(i, velocity);
+                state.position.set(i, predicted_.at(i));
+                state.pressure[i] += smoothing * (-state.multiplier[i] - state.pressure[i]);
+                const float speed = length(velocity);
+                // A NaN must win, or it would go unseen.
+                largest = std::isnan(largest) || speed <= largest ? largest : speed;
+            }
+            return largest;
+        },
+        [](float a, float b) { return std::isnan(a) || b <= a ? a : b; });
+
+    state.building_contacts.clear();
+    if (model.solids.empty()) return;
+    const double mass = model.particle_mass();
+    for (std::uint32_t i = 0; i < state.count; ++i) {
+        if (building_[i] < 0) continue;
+        const float normal = building_contact_[i] - state.multiplier[i] * length(building_gradient_.at(i));
+        if (normal <= 0) continue;
+        state.building_contacts.push_back({i, building_[i], static_cast<float>(mass * normal / state.time_step)});
+    }
+}
+
+/// Eq. (5) as XSPH smoothing; the sum weighs both particles of a pair alike, so momentum is conserved.
+void Backend::apply_viscosity(const Model& model, State& state) {
+    if (model.viscosity <= 0) return;
+    const float r = static_cast<float>(model.support_radius), inverse_r = 1 / r;
+    const auto scale = static_cast<float>(step_smoothing(model.viscosity, state.time_step) *
+                                          model.kernel.particle_volume / (double(r) * r * r));
+    const float *x = state.position.x.data(), *y = state.position.y.data(), *z = state.position.z.data();
+    const float *vx = state.velocity.x.data(), *vy = state.velocity.y.data(), *vz = state.velocity.z.data();
+    with_kernel(model.kernel.choice, [&](auto kernel) {
+        parallel_ranges(state.count, particle_grain, [&](std::size_t first, std::size_t last) {
+            for (std::size_t i = first; i < last; ++i) {
+                const Vec3<float> p = state.position.at(i), velocity = state.velocity.at(i);
+                Vec3<float> change{};
+                if (!state.held[i]) {
+                    for (const std::uint32_t j : neighbours_.of(i)) {
+                        const float dx = p.x - x[j], dy = p.y - y[j], dz = p.z - z[j];
+                        const float q = std::min(1.0f, std::sqrt(dx * dx + dy * dy + dz * dz) * inverse_r);
+                        const float weight = scale * kernel.value(q);
+                        change += Vec3<float>{vx[j] - velocity.x, vy[j] - velocity.y, vz[j] - velocity.z} * weight;
+                    }
+                }
+                vector_scratch_.set(i, velocity + change);
+            }
+        });
+    });
+    std::swap(state.velocity, vector_scratch_);
+}
+
+void Backend::remove_left(const Model& model, State& state) {
+    const bool any = reduce_ranges(
+        state.count, 4096, false,
+        [&](std::size_t first, std::size_t last, bool found) {
+            for (std::size_t i = first; i < last; ++i) {
+                gone_[i] = !model.terrain.covers(state.position.x[i], state.position.y[i]);
+                found = found || gone_[i];
+            }
+            return found;
+        },
+        [](bool a, bool b) { return a || b; });
+    if (!any) return;
+    std::vector<std::uint32_t>& moved_to = id_scratch_;
+    std::uint32_t kept = 0;
+    for (std::uint32_t i = 0; i < state.count; ++i) {
+        moved_to[i] = kept;
+        if (gone_[i]) continue;
+        state.position.set(kept, state.position.at(i));
+        state.velocity.set(kept, state.velocity.at(i));
+        state.multiplier[kept] = state.multiplier[i];
+        state.pressure[kept] = state.pressure[i];
+        state.stress.set(kept, state.stress.at(i));
+        state.id[kept] = state.id[i];
+        state.held[kept] = state.held[i];
+        ++kept;
+    }
+    std::erase_if(state.building_contacts, [&](const BuildingContact& c) { return gone_[c.particle] != 0; });
+    for (BuildingContact& contact : state.building_contacts) contact.particle = moved_to[contact.particle];
+    state.left += state.count - kept;
+    state.count = kept;
+}
+
+double choose_time_step(const Model& model, const State& state) {
+    if (model.solver.time_step) return *model.solver.time_step;
+    const double reach = model.particle_spacing / 2;
+    double dt = model.solver.largest_time_step;
+    while (dt > model.solver.smallest_time_step && dt * (state.largest_speed + model.gravity * dt) > reach) dt /= 2;
+    return dt;
+}
+
+}  // namespace talus::cpu

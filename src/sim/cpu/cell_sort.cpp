@@ -1,0 +1,129 @@
+#include "sim/cpu/cell_sort.hpp"
+
+#include <algorithm>
+#include <limits>
+
+#include "sim/cpu/parallel.hpp"
+
+namespace talus::cpu {
+namespace {
+
+constexpr int digit_bits = 11;
+constexpr std::size_t digit_count = std::size_t{1} << digit_bits;
+constexpr std::size_t block_size =
+    16384;  // particles per histogram; fixed, so the work is the same on any thread count
+
+struct Bounds {
+    float x_min = std::numeric_limits<float>::max(), y_min = x_min, z_min = x_min;
+    float x_max = std::numeric_limits<float>::lowest(), y_max = x_max;
+    float z_max = x_max;
+};
+
+Bounds bounds_of(const VectorArray& points, std::size_t count) {
+    const auto join = [](const Bounds& a, const Bounds& b) {
+        return Bounds{std::min(a.x_min, b.x_min), std::min(a.y_min, b.y_min), std::min(a.z_min, b.z_min),
+                      std::max(a.x_max, b.x_max), std::max(a.y_max, b.y_max), std::max(a.z_max, b.z_max)};
+    };
+    return reduce_ranges(
+        count, 4096, Bounds{},
+        [&](std::size_t first, std::size_t last, Bounds b) {
+            for (std::size_t i = first; i < last; ++i) {
+                b.x_min = std::min(b.x_min, points.x[i]);
+                b.x_max = std::max(b.x_max, points.x[i]);
+                b.y_min = std::min(b.y_min, points.y[i]);
+                b.y_max = std::max(b.y_max, points.y[i]);
+                b.z_min = std::min(b.z_min, points.z[i]);
+                b.z_max = std::max(b.z_max, points.z[i]);
+            }
+            return b;
+        },
+        join);
+}
+
+}  // namespace
+
+CellSort::CellSort(std::size_t capacity)
+    : key_(capacity),
+      key_swap_(capacity),
+      order_(capacity),
+      order_swap_(capacity),
+      histogram_((capacity / block_size + 1) * digit_count) {}
+
+std::span<const std::uint32_t> CellSort::sort(const VectorArray& points, std::size_t count, double cell,
+                                              CellGrid& grid) {
+    const Bounds box = bounds_of(points, count);
+    grid.inverse_cell = 1 / cell;
+    // One empty cell of padding on each side: the key of a neighbour cell is then a plain sum that never wraps.
+    grid.x_min = box.x_min - cell;
+    grid.y_min = box.y_min - cell;
+    grid.z_min = box.z_min - cell;
+    const auto cells_along = [&](float low, float high) {
+        return static_cast<std::uint64_t>((double(high) - low) * grid.inverse_cell) + 3;
+    };
+    grid.columns = cells_along(box.x_min, box.x_max);
+    grid.rows = cells_along(box.y_min, box.y_max);
+    const std::uint64_t layers = cells_along(box.z_min, box.z_max);
+
+    parallel_ranges(count, 4096, [&](std::size_t first, std::size_t last) {
+        for (std::size_t i = first; i < last; ++i) {
+            const auto cx = static_cast<std::uint64_t>((points.x[i] - grid.x_min) * grid.inverse_cell);
+            const auto cy = static_cast<std::uint64_t>((points.y[i] - grid.y_min) * grid.inverse_cell);
+            const auto cz = static_cast<std::uint64_t>((points.z[i] - grid.z_min) * grid.inverse_cell);
+            key_[i] = (cz * grid.rows + cy) * grid.columns + cx;
+            order_[i] = static_cast<std::uint32_t>(i);
+        }
+    });
+    radix_sort(count, grid.columns * grid.rows * layers);
+
+    grid.key.clear();
+    grid.start.clear();
+    for (std::size_t i = 0; i < count; ++i) {
+        if (i == 0 || key_[i] != key_[i - 1]) {
+            grid.key.push_back(key_[i]);
+            grid.start.push_back(static_cast<std::uint32_t>(i));
+        }
+    }
+    grid.start.push_back(static_cast<std::uint32_t>(count));
+    return {order_.data(), count};
+}
+
+void CellSort::radix_sort(std::size_t count, std::uint64_t greatest_key) {
+    const std::size_t blocks = (count + block_size - 1) / block_size;
+    for (int shift = 0; shift < 64 && (greatest_key >> shift) != 0; shift += digit_bits) {
+        const auto digit = [shift](std::uint64_t key) {
+            return static_cast<std::size_t>(key >> shift) & (digit_count - 1);
+        };
+        parallel_ranges(blocks, 1, [&](std::size_t first, std::size_t last) {
+            for (std::size_t block = first; block < last; ++block) {
+                std::uint32_t* histogram = histogram_.data() + block * digit_count;
+                std::fill_n(histogram, digit_count, 0);
+                const std::size_t end = std::min(count, (block + 1) * block_size);
+                for (std::size_t i = block * block_size; i < end; ++i) ++histogram[digit(key_[i])];
+            }
+        });
+        std::uint32_t sum = 0;
+        for (std::size_t d = 0; d < digit_count; ++d) {
+            for (std::size_t block = 0; block < blocks; ++block) {
+                std::uint32_t& entry = histogram_[block * digit_count + d];
+                const std::uint32_t here = entry;
+                entry = sum;
+                sum += here;
+            }
+        }
+        parallel_ranges(blocks, 1, [&](std::size_t first, std::size_t last) {
+            for (std::size_t block = first; block < last; ++block) {
+                std::uint32_t* next = histogram_.data() + block * digit_count;
+                const std::size_t end = std::min(count, (block + 1) * block_size);
+                for (std::size_t i = block * block_size; i < end; ++i) {
+                    const std::uint32_t to = next[digit(key_[i])]++;
+                    key_swap_[to] = key_[i];
+                    order_swap_[to] = order_[i];
+                }
+            }
+        });
+        key_.swap(key_swap_);
+        order_.swap(order_swap_);
+    }
+}
+
+}  // namespace talus::cpu

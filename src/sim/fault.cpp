@@ -1,0 +1,53 @@
+#include "sim/fault.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+namespace talus {
+
+double speed_bound(const Model& model, double highest_energy_head, double lowest_particle) {
+    const double fall = std::max(0.0, highest_energy_head - lowest_particle) + model.particle_spacing;
+    return 1.5 * std::sqrt(2 * model.gravity * fall) + 1;
+}
+
+std::optional<std::string> find_fault(const Model& model, const State& state, double highest_energy_head) {
+    char text[400];
+    const auto fault = [&](const char* format, auto... values) {
+        std::snprintf(text, sizeof text, format, state.time, values...);
+        return std::optional<std::string>(text);
+    };
+    if (!std::isfinite(state.largest_speed) || !std::isfinite(state.mean_compression)) {
+        return fault(
+            "at t = %.4g s positions are no longer finite numbers: lower solver.largest_time_step_s or "
+            "solver.under_relaxation");
+    }
+    if (state.mean_compression > model.solver.compression_limit) {
+        return fault(
+            "at t = %.4g s debris is compressed by %.3g on average, over solver.compression_limit = %.3g: raise "
+            "solver.iteration_count or lower solver.largest_time_step_s",
+            state.mean_compression, model.solver.compression_limit);
+    }
+    if (!model.solver.time_step) {
+        const double smallest = model.solver.smallest_time_step;
+        const double moved = smallest * (state.largest_speed + model.gravity * smallest);
+        if (moved > model.particle_spacing / 2) {
+            return fault(
+                "at t = %.4g s a particle at %.4g m/s moves more than half a spacing in the smallest step: lower "
+                "solver.smallest_time_step_s = %.3g or raise solver.particle_spacing_m",
+                state.largest_speed, smallest);
+        }
+    }
+    double lowest = highest_energy_head;
+    for (std::uint32_t i = 0; i < state.count; ++i) lowest = std::min<double>(lowest, state.position.z[i]);
+    const double bound = speed_bound(model, highest_energy_head, lowest);
+    if (state.largest_speed > bound) {
+        return fault(
+            "at t = %.4g s a particle moves at %.4g m/s, more than its fall can explain (%.4g m/s): lower "
+            "solver.largest_time_step_s or solver.under_relaxation",
+            state.largest_speed, bound);
+    }
+    return std::nullopt;
+}
+
+}  // namespace talus

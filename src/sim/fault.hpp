@@ -1,0 +1,19 @@
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "sim/model.hpp"
+#include "sim/state.hpp"
+
+namespace talus {
+
+/// The speed, m/s, above which a particle has more energy than the fall from the highest debris explains. Pressure can
+/// hand energy from the tail to the front, hence the margin of half as much again.
+[[nodiscard]] double speed_bound(const Model& model, double highest_energy_head, double lowest_particle);
+
+/// Why the last step cannot be trusted, with the time and the parameter to change; nothing if it can.
+/// `highest_energy_head`: greatest z + v^2 / 2g of any particle when it was released, local m.
+[[nodiscard]] std::optional<std::string> find_fault(const Model& model, const State& state, double highest_energy_head);
+
+}  // namespace talus

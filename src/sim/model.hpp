@@ -1,0 +1,50 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "core/geometry.hpp"
+#include "params/spec.hpp"
+#include "sim/physics/boundary_table.hpp"
+#include "sim/physics/kernel.hpp"
+#include "terrain/buildings.hpp"
+#include "terrain/terrain.hpp"
+
+namespace talus {
+
+/// When a release starts and which particles are its own: ids [first_particle, last_particle).
+struct ReleaseGroup {
+    std::string name;
+    double start_time = 0;  ///< s
+    std::uint32_t first_particle = 0, last_particle = 0;
+};
+
+/// Everything that stays constant during a run.
+struct Model {
+    Terrain terrain;
+    std::vector<Building> buildings;
+    BuildingSolids solids;
+    std::vector<ReleaseGroup> releases;
+
+    double particle_spacing = 0;  ///< m
+    double support_radius = 0;    ///< m
+    double rest_density = 0;      ///< kg/m3
+    double friction_coefficient = 0;
+    double internal_friction_coefficient = 0;
+    double viscosity = 0;            ///< XSPH smoothing per 1/60 s
+    double kinematic_viscosity = 0;  ///< m2/s, the same thing at this support radius
+    double gravity = 9.80665;        ///< m/s2
+
+    SolverSpec solver;
+
+    Kernel kernel;           ///< density and gradient, with the calibrated particle volume folded in
+    BoundaryTable boundary;  ///< density share of a half-space of ground
+
+    /// The distance, m, at which a particle touches ground and walls: half its own size.
+    [[nodiscard]] double contact_distance() const { return particle_spacing / 2; }
+    [[nodiscard]] double particle_volume() const { return particle_spacing * particle_spacing * particle_spacing; }
+    [[nodiscard]] double particle_mass() const { return rest_density * particle_volume(); }
+};
+
+}  // namespace talus

@@ -1,0 +1,118 @@
+#pragma once
+
+#include "core/geometry.hpp"
+#include "sim/physics/boundary.hpp"
+#include "sim/physics/friction.hpp"
+
+namespace talus {
+
+/// What a particle's contact with ground or a wall has done so far in this step.
+template <class Real>
+struct ContactMemory {
+    Real normal{};          ///< accumulated correction along the normal, m, >= 0
+    Vec3<Real> friction{};  ///< accumulated friction correction, m
+};
+
+/// Hard contact and Coulomb friction with one face.
+///
+/// Normal: the accumulated correction that keeps the particle at its touching distance, taken back when the particle
+/// would hover. Friction: limited by the whole normal correction of the step, hard contact and `density_push` (what the
+/// face's share of the density constraint has pushed) together.
+/// Returns the change of displacement; updates `memory`.
+template <class Real>
+Vec3<Real> resolve_contact(Real distance, Real target, const Vec3<Real>& normal, const Vec3<Real>& displacement,
+                           Real density_push, Real friction_coefficient, ContactMemory<Real>& memory) {
+    const Real wanted = memory.normal + (target - distance);
+    const Real accumulated = wanted > 0 ? wanted : Real(0);
+    Vec3<Real> change = normal * (accumulated - memory.normal);
+    memory.normal = accumulated;
+    const Vec3<Real> moved = displacement + change;
+    const Vec3<Real> tangential = moved - normal * dot(moved, normal);
+    change += friction_change(tangential, friction_coefficient * (accumulated + density_push), memory.friction);
+    return change;
+}
+
+/// Resolves the contact with the ground and the nearest building of a particle that started the step at `start` and is
+/// now displaced by `displacement`. Pushes are `-lambda |gradient|` of the face's share in the density constraint.
+template <class Real>
+Vec3<Real> resolve_contacts(const Model& model, const Vec3<Real>& start, Vec3<Real> displacement, Real depenetration,
+                            Real ground_push, Real building_push, ContactMemory<Real>& ground,
+                            ContactMemory<Real>& wall, int& building_touched) {
+    const Real touching = Real(model.contact_distance());
+    const Real friction = Real(model.friction_coefficient);
+    const BoundarySample<Real> now = sample_boundary(model, start + displacement);
+    const bool near_ground = now.ground_distance < touching || ground.normal > 0 || ground_push > 0;
+    const bool near_wall =
+        now.building >= 0 && (now.building_distance < touching || wall.normal > 0 || building_push > 0);
+    if (!near_ground && !near_wall) return displacement;
+
+    const BoundarySample<Real> before = sample_boundary(model, start);
+    if (near_ground) {
+        // Ground without data has a NaN distance: the particle is about to leave.
+        if (!(now.ground_distance == now.ground_distance)) return displacement;
+        const Real target = contact_target(touching, before.ground_distance, depenetration);
+        displacement += resolve_contact(now.ground_distance, target, now.ground_normal, displacement, ground_push,
+                                        friction, ground);
+    }
+    if (near_wall) {
+        const Real target = before.building == now.building
+                                ? contact_target(touching, before.building_distance, depenetration)
+                                : touching;
+        displacement += resolve_contact(now.building_distance, target, now.building_normal, displacement, building_push,
+                                        friction, wall);
+        building_touched = now.building;
+    }
+    return displacement;
+}
+
+/// Whether a position is free: not below ground that is known, not inside a building.
+template <class Real>
+bool is_free(const Model& model, const Vec3<Real>& p) {
+    if (p.z < model.terrain.sample(p.x, p.y).height) return false;
+    return model.solids.empty() || !model.solids.inside(p);
+}
+
+/// Where a particle may end its step: `start + displacement` if the way there is free, else a place on this side of
+/// what it would have run through. Swept in parts of at most a quarter spacing, so it holds at any speed and step.
+/// `start` must be free; the result is.
+template <class Real>
+Vec3<Real> free_end(const Model& model, const Vec3<Real>& start, const Vec3<Real>& displacement) {
+    const Vec3<Real> end = start + displacement;
+    const Real longest_part = Real(model.particle_spacing / 4);
+    const Real distance = length(displacement);
+    const int parts = distance > longest_part ? static_cast<int>(distance / longest_part) + 1 : 1;
+    Real clear = 0;  // share of the way known to be free
+    Real blocked = -1;
+    for (int part = 1; part <= parts; ++part) {
+        const Real share = Real(part) / Real(parts);
+        if (!is_free(model, part == parts ? end : start + displacement * share)) {
+            blocked = share;
+            break;
+        }
+        clear = share;
+    }
+    if (blocked < 0) return end;
+    if (parts == 1) {
+        // A small step that ends below ground: lift it along the normal, which costs it no tangential motion.
+        const GroundSample<Real> ground = model.terrain.sample(end.x, end.y);
+        const Real depth = (ground.height - end.z) * ground.normal.z;
+        Vec3<Real> lifted = end + ground.normal * (depth > 0 ? depth : Real(0));
+        const Real height = model.terrain.sample(lifted.x, lifted.y).height;
+        if (lifted.z < height && height - lifted.z < longest_part) lifted.z = height;
+        if (is_free(model, lifted)) return lifted;
+    }
+    Vec3<Real> reached = start + displacement * clear;
+    for (int bisection = 0; bisection < 12; ++bisection) {
+        const Real middle = (clear + blocked) / 2;
+        const Vec3<Real> p = start + displacement * middle;
+        if (is_free(model, p)) {
+            clear = middle;
+            reached = p;
+        } else {
+            blocked = middle;
+        }
+    }
+    return clear > 0 ? reached : start;
+}
+
+}  // namespace talus

@@ -1,0 +1,205 @@
+#include "sim/seed.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <numeric>
+
+#include "sim/cpu/backend.hpp"
+#include "sim/physics/viscosity.hpp"
+#include "sim/step.hpp"
+
+namespace talus {
+namespace {
+
+/// A column of the seeding lattice.
+struct Column {
+    PlanPoint centre;
+    int particles = 0;
+    double leftover = 0;  ///< the fraction that rounding left out, [0, 1)
+};
+
+double vertical_depth(const Terrain& terrain, const Release& release, const PlanPoint& p) {
+    const double thickness = release.thickness_at(p);
+    if (!(thickness > 0)) return 0;
+    const double cosine = terrain.slope_cosine_at(p);
+    return std::isnan(cosine) ? 0 : thickness / cosine;
+}
+
+/// Columns with their particle counts, adding up to `target`.
+std::vector<Column> fill_columns(const Terrain& terrain, const Release& release, double spacing, long target) {
+    std::vector<Column> columns;
+    const Extent extent = release.extent();
+    const int across = static_cast<int>(std::ceil(extent.width() / spacing)) + 1;
+    const int along = static_cast<int>(std::ceil(extent.height() / spacing)) + 1;
+    long total = 0;
+    for (int row = 0; row < along; ++row) {
+        for (int column = 0; column < across; ++column) {
+            const PlanPoint centre{extent.x_min + (column + 0.5) * spacing, extent.y_min + (row + 0.5) * spacing};
+            constexpr int parts = 3;  // sub-samples per side, so that columns on the outline get their share
+            double depth = 0;
+            for (int part = 0; part < parts * parts; ++part) {
+                const double dx = ((part % parts + 0.5) / parts - 0.5) * spacing;
+                const double dy = ((part / parts + 0.5) / parts - 0.5) * spacing;
+                depth += vertical_depth(terrain, release, {centre.x + dx, centre.y + dy}) / (parts * parts);
+            }
+            if (depth <= 0) continue;
+            // Rounding by an additive low-discrepancy sequence (Roberts 2018) spreads the odd particles evenly.
+            double whole = 0;
+            const double threshold = std::modf(column * 0.7548776662466927 + row * 0.5698402909980532, &whole);
+            const double share = depth / spacing + threshold;
+            Column entry{centre, static_cast<int>(share), 0};
+            entry.leftover = share - entry.particles;
+            total += entry.particles;
+            columns.push_back(entry);
+        }
+    }
+    // What the rounding still misses goes to the columns that were nearest to another particle, or is taken from those
+    // nearest to one less.
+    std::vector<std::size_t> order(columns.size());
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    std::stable_sort(order.begin(), order.end(),
+                     [&](std::size_t a, std::size_t b) { return columns[a].leftover > columns[b].leftover; });
+    while (total != target && !columns.empty()) {
+        const long before = total;
+        if (total < target) {
+            for (auto at = order.begin(); at != order.end() && total < target; ++at, ++total) ++columns[*at].particles;
+        } else {
+            for (auto at = order.rbegin(); at != order.rend() && total > target; ++at) {
+                if (columns[*at].particles == 0) continue;
+                --columns[*at].particles;
+                --total;
+            }
+        }
+        if (total == before) break;
+    }
+    return columns;
+}
+
+/// Runs rounds of a step without inertia until `done` says so: velocities are forgotten after each.
+template <class Done>
+void creep(const Model& model, State& state, int most_rounds, const Done& done) {
+    cpu::Backend backend(state.count);
+    StageTimes times;
+    for (int round = 0; round < most_rounds; ++round) {
+        step(backend, model, state, times);
+        for (auto* component : {&state.velocity.x, &state.velocity.y, &state.velocity.z}) {
+            std::fill(component->begin(), component->end(), 0.0f);
+        }
+        if (done(state)) break;
+    }
+}
+
+/// Brings the seeded lattice to rest: first pushed apart, without gravity, until it is nowhere denser than rest; then
+/// loaded by gravity on ground too rough to slide on, until it carries its own weight. Without the second part friction
+/// would find no pressure to work with in the first steps, and the mass would start with a jolt.
+void relax(const Model& model, State& state) {
+    constexpr double dense_enough = 0.005;
+    constexpr int most_rounds = 400, loading_rounds = 80;
+    Model still = model;
+    still.viscosity = 0;
+    for (ReleaseGroup& release : still.releases) release.start_time = 0;
+
+    still.solver.depenetration_speed = 1e3;  // without inertia nothing can fly apart
+    still.gravity = 0;
+    still.friction_coefficient = still.internal_friction_coefficient = 0;
+    still.solver.internal_friction = InternalFriction::pair;
+    state.time_step = model.solver.largest_time_step;
+    creep(still, state, most_rounds, [](const State& s) { return s.max_compression < dense_enough; });
+
+    constexpr double rough = 10;
+    still.gravity = model.gravity;
+    still.internal_friction_coefficient = model.internal_friction_coefficient;
+    still.solver.internal_friction = model.solver.internal_friction;
+    still.friction_coefficient = rough;
+    state.time_step = model.solver.largest_time_step;
+    creep(still, state, loading_rounds, [](const State&) { return false; });
+    state.time = 0;
+    state.step = 0;
+}
+
+}  // namespace
+
+double choose_particle_spacing(const SolverSpec& solver, double released_volume) {
+    if (solver.particle_spacing) return *solver.particle_spacing;
+    return std::cbrt(released_volume / solver.target_particle_count);
+}
+
+Model make_model(const MaterialSpec& material, const SolverSpec& solver, Terrain terrain,
+                 std::vector<Building> buildings, double particle_spacing) {
+    Model model;
+    model.particle_spacing = particle_spacing;
+    model.support_radius = solver.support_ratio * particle_spacing;
+    model.rest_density = material.rest_density;
+    model.friction_coefficient = material.friction_coefficient;
+    model.internal_friction_coefficient =
+        material.internal_friction_coefficient.value_or(material.friction_coefficient);
+    model.solver = solver;
+    model.kernel = make_kernel(solver.kernel, particle_spacing, model.support_radius);
+    model.boundary = BoundaryTable(model.kernel, particle_spacing);
+    model.viscosity = material.viscosity;
+    model.kinematic_viscosity = kinematic_viscosity(material.viscosity, model.kernel.second_moment);
+    model.solids = BuildingSolids(terrain, buildings, model.support_radius);
+    model.buildings = std::move(buildings);
+    model.terrain = std::move(terrain);
+    return model;
+}
+
+Result<State> seed_releases(Model& model, const std::vector<Release>& releases) {
+    const double spacing = model.particle_spacing;
+    std::vector<long> targets;
+    double volume = 0, particles = 0;
+    for (const Release& release : releases) {
+        const double count = std::round(release.volume / model.particle_volume());
+        char text[256];
+        if (count < 1) {
+            std::snprintf(text, sizeof text,
+                          "release '%s': %.4g m3 is less than one particle of solver.particle_spacing_m = %.4g",
+                          release.name.c_str(), release.volume, spacing);
+            return Error{text};
+        }
+        targets.push_back(static_cast<long>(std::min(count, 1e15)));
+        volume += release.volume;
+        particles += count;
+    }
+    if (particles > model.solver.particle_limit) {
+        char text[320];
+        std::snprintf(text, sizeof text,
+                      "%.4g m3 at solver.particle_spacing_m = %.4g would need %.0f particles, more than "
+                      "solver.particle_limit = %d; a spacing of %.4g m or more would fit",
+                      volume, spacing, particles, model.solver.particle_limit,
+                      std::ceil(std::cbrt(volume / model.solver.particle_limit) * 1000) / 1000);
+        return Error{text};
+    }
+
+    State state;
+    const auto count = static_cast<std::uint32_t>(particles);
+    state.resize(count);
+    std::iota(state.id.begin(), state.id.end(), 0u);
+    model.releases.clear();
+    std::uint32_t next = 0;
+    for (std::size_t r = 0; r < releases.size(); ++r) {
+        const std::uint32_t first = next;
+        for (const Column& column : fill_columns(model.terrain, releases[r], spacing, targets[r])) {
+            const LocalPoint plan = model.terrain.frame().to_local({column.centre.x, column.centre.y, 0});
+            const GroundSample<float> ground = model.terrain.sample(plan.x, plan.y);
+            // The first particle touches the ground: half a spacing along the normal.
+            const double bottom = ground.height + spacing / 2 / ground.normal.z;
+            for (int layer = 0; layer < column.particles && next < count; ++layer, ++next) {
+                state.position.set(next, {plan.x, plan.y, static_cast<float>(bottom + layer * spacing)});
+            }
+        }
+        model.releases.push_back({releases[r].name, releases[r].start_time, first, next});
+    }
+    state.seeded = state.count = next;
+    relax(model, state);
+    for (std::uint32_t i = 0; i < state.count; ++i) {
+        for (const ReleaseGroup& release : model.releases) {
+            const bool own = state.id[i] >= release.first_particle && state.id[i] < release.last_particle;
+            if (own) state.held[i] = release.start_time > 0;
+        }
+    }
+    return state;
+}
+
+}  // namespace talus

@@ -1,0 +1,29 @@
+#pragma once
+
+#include <vector>
+
+#include "core/result.hpp"
+#include "params/spec.hpp"
+#include "sim/model.hpp"
+#include "sim/state.hpp"
+#include "terrain/release.hpp"
+
+namespace talus {
+
+/// The scene's spacing, or the one that makes `target_particle_count` particles of the volume, m.
+[[nodiscard]] double choose_particle_spacing(const SolverSpec& solver, double released_volume);
+
+/// Everything constant, from the scene's material and solver sections.
+[[nodiscard]] Model make_model(const MaterialSpec& material, const SolverSpec& solver, Terrain terrain,
+                               std::vector<Building> buildings, double particle_spacing);
+
+/// Fills the releases with particles at rest, and the model's release groups.
+///
+/// Every column of the spacing's lattice gets as many particles as its share of volume, stacked on the ground; each
+/// release gets volume / spacing^3 particles, to the nearest whole one. The mass is then relaxed without gravity until
+/// it is nowhere denser than rest: started over-dense, it would be thrown apart within a step.
+/// Errors: more particles than the solver's limit (says how many, and which spacing would fit); a release that is
+/// smaller than one particle.
+[[nodiscard]] Result<State> seed_releases(Model& model, const std::vector<Release>& releases);
+
+}  // namespace talus

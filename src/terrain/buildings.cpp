@@ -1,0 +1,283 @@
+#include "terrain/buildings.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+namespace talus {
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+constexpr double touching = 1e-6;        ///< m, walls closer than this touch
+constexpr double on_the_surface = 1e-9;  ///< m, closer than this the direction to the surface is noise
+
+double signed_area(const Ring& ring) {
+    double twice = 0;
+    for (std::size_t i = 0; i < ring.size(); ++i) {
+        const PlanPoint &a = ring[i], &b = ring[(i + 1) % ring.size()];
+        twice += (a.x - ring[0].x) * (b.y - ring[0].y) - (b.x - ring[0].x) * (a.y - ring[0].y);
+    }
+    return twice / 2;
+}
+
+/// Appends the ring's edges, turned so that the solid lies to their left: outer rings run counter-clockwise, holes not.
+template <class Edge>
+void append_edges(const Ring& world, const LocalFrame& frame, bool hole, std::vector<Edge>& edges) {
+    Ring ring;
+    for (const PlanPoint& p : world) {
+        const PlanPoint local{p.x - frame.origin.x, p.y - frame.origin.y};
+        if (ring.empty() || ring.back().x != local.x || ring.back().y != local.y) ring.push_back(local);
+    }
+    while (ring.size() > 1 && ring.front().x == ring.back().x && ring.front().y == ring.back().y) ring.pop_back();
+    if (ring.size() < 3) return;
+    if ((signed_area(ring) < 0) != hole) std::reverse(ring.begin(), ring.end());
+    for (std::size_t i = 0; i < ring.size(); ++i) {
+        const PlanPoint &a = ring[i], &b = ring[(i + 1) % ring.size()];
+        edges.push_back({a.x, a.y, b.x, b.y, -infinity});
+    }
+}
+
+/// Appends the parameters in (0, 1) at which edge `e` meets another edge or its start.
+template <class Edge>
+void append_meeting_points(const Edge& e, const Edge& other, std::vector<double>& at) {
+    const double dx = e.bx - e.ax, dy = e.by - e.ay, length = std::hypot(dx, dy);
+    const double rx = other.ax - e.ax, ry = other.ay - e.ay;
+    const auto append = [&](double t) {
+        if (t * length > touching && (1 - t) * length > touching) at.push_back(t);
+    };
+    if (std::abs(rx * dy - ry * dx) <= touching * length) append((rx * dx + ry * dy) / (length * length));
+    const double ox = other.bx - other.ax, oy = other.by - other.ay, cross = dx * oy - dy * ox;
+    if (cross == 0) return;
+    const double s = (rx * dy - ry * dx) / cross;
+    if (s >= 0 && s <= 1) append((rx * oy - ry * ox) / cross);
+}
+
+double mean_ground(const Terrain& terrain, const std::vector<Polygon>& footprint) {
+    double sum = 0, area = 0;
+    const auto add = [&](const PlanPoint& p, double weight) {
+        const double z = terrain.elevation_at(p);
+        if (std::isnan(z)) return;
+        sum += weight * z;
+        area += weight;
+    };
+    for (const Polygon& part : footprint) {
+        const Extent extent = extent_of(part);
+        const double size = std::max(extent.width(), extent.height());
+        const double step = std::max(std::min(terrain.cell() / 2, size / 32), size / 512);
+        if (!(step > 0)) continue;
+        const int columns = static_cast<int>(std::ceil(extent.width() / step));
+        const int rows = static_cast<int>(std::ceil(extent.height() / step));
+        const double dx = extent.width() / columns, dy = extent.height() / rows;
+        for (int r = 0; r < rows; ++r) {
+            for (int c = 0; c < columns; ++c) {
+                const PlanPoint p{extent.x_min + (c + 0.5) * dx, extent.y_min + (r + 0.5) * dy};
+                if (contains(part, p)) add(p, dx * dy);
+            }
+        }
+    }
+    if (area == 0) {  // too thin for any sample
+        for (const Polygon& part : footprint) {
+            for (const PlanPoint& p : part.outer) add(p, 1);
+        }
+    }
+    return area > 0 ? sum / area : std::numeric_limits<double>::quiet_NaN();
+}
+
+}  // namespace
+
+void place_buildings(const Terrain& terrain, std::vector<Building>& buildings) {
+    for (Building& building : buildings) {
+        building.roof_elevation = mean_ground(terrain, building.footprint) + building.height;
+    }
+}
+
+BuildingSolids::BuildingSolids(const Terrain& terrain, const std::vector<Building>& buildings, double range)
+    : range_(range) {
+    // A solid per part of a footprint: parts may touch or overlap like different buildings.
+    for (std::size_t b = 0; b < buildings.size(); ++b) {
+        const double roof = buildings[b].roof_elevation - terrain.frame().origin.z;
+        if (!std::isfinite(roof)) continue;
+        for (const Polygon& part : buildings[b].footprint) {
+            const std::size_t first = edges_.size();
+            append_edges(part.outer, terrain.frame(), false, edges_);
+            if (edges_.size() == first) continue;
+            for (const Ring& hole : part.holes) append_edges(hole, terrain.frame(), true, edges_);
+            Solid solid{static_cast<std::uint32_t>(first),
+                        static_cast<std::uint32_t>(edges_.size()),
+                        static_cast<int>(b),
+                        edges_[first].ax,
+                        edges_[first].ay,
+                        edges_[first].ax,
+                        edges_[first].ay,
+                        roof};
+            for (std::size_t e = first; e < edges_.size(); ++e) {
+                solid.x_min = std::min(solid.x_min, edges_[e].ax);
+                solid.y_min = std::min(solid.y_min, edges_[e].ay);
+                solid.x_max = std::max(solid.x_max, edges_[e].ax);
+                solid.y_max = std::max(solid.y_max, edges_[e].ay);
+            }
+            solids_.push_back(solid);
+        }
+    }
+    split_walls();
+    fill_bins();
+}
+
+/// Cuts every wall where other solids meet it and notes how high each piece is hidden by them. Without this, debris
+/// inside one of two terraced houses would be pushed through their common wall into the other, and back.
+void BuildingSolids::split_walls() {
+    std::vector<Edge> pieces;
+    std::vector<Solid> solids = solids_;
+    std::vector<std::uint32_t> near;
+    std::vector<double> cuts;
+    for (std::size_t s = 0; s < solids_.size(); ++s) {
+        const Solid& solid = solids_[s];
+        near.clear();
+        for (std::uint32_t o = 0; o < solids_.size(); ++o) {
+            const Solid& other = solids_[o];
+            if (o != s && other.x_min <= solid.x_max + touching && other.x_max >= solid.x_min - touching &&
+                other.y_min <= solid.y_max + touching && other.y_max >= solid.y_min - touching) {
+                near.push_back(o);
+            }
+        }
+        solids[s].first_edge = static_cast<std::uint32_t>(pieces.size());
+        for (std::uint32_t i = solid.first_edge; i < solid.last_edge; ++i) {
+            const Edge& edge = edges_[i];
+            const double dx = edge.bx - edge.ax, dy = edge.by - edge.ay, length = std::hypot(dx, dy);
+            cuts.assign({0.0, 1.0});
+            for (const std::uint32_t o : near) {
+                for (std::uint32_t k = solids_[o].first_edge; k < solids_[o].last_edge; ++k) {
+                    append_meeting_points(edge, edges_[k], cuts);
+                }
+            }
+            std::sort(cuts.begin(), cuts.end());
+            cuts.erase(std::unique(cuts.begin(), cuts.end()), cuts.end());
+            for (std::size_t c = 0; c + 1 < cuts.size(); ++c) {
+                Edge piece{edge.ax + cuts[c] * dx, edge.ay + cuts[c] * dy, edge.ax + cuts[c + 1] * dx,
+                           edge.ay + cuts[c + 1] * dy, -infinity};
+                if (cuts[c + 1] == 1) piece.bx = edge.bx, piece.by = edge.by;
+                const double outside_x = (piece.ax + piece.bx) / 2 + 2 * touching * dy / length;
+                const double outside_y = (piece.ay + piece.by) / 2 - 2 * touching * dx / length;
+                for (const std::uint32_t o : near) {
+                    if (in_plan(solids_[o], outside_x, outside_y)) {
+                        piece.hidden_below = std::max(piece.hidden_below, solids_[o].roof);
+                    }
+                }
+                pieces.push_back(piece);
+            }
+        }
+        solids[s].last_edge = static_cast<std::uint32_t>(pieces.size());
+    }
+    edges_ = std::move(pieces);
+    solids_ = std::move(solids);
+}
+
+void BuildingSolids::fill_bins() {
+    if (solids_.empty()) return;
+    double x_max = -infinity, y_max = -infinity;
+    bin_x_min_ = bin_y_min_ = infinity;
+    for (const Solid& solid : solids_) {
+        bin_x_min_ = std::min(bin_x_min_, solid.x_min - range_);
+        bin_y_min_ = std::min(bin_y_min_, solid.y_min - range_);
+        x_max = std::max(x_max, solid.x_max + range_);
+        y_max = std::max(y_max, solid.y_max + range_);
+    }
+    const double area = (x_max - bin_x_min_) * (y_max - bin_y_min_);
+    bin_size_ = std::max({range_, 2.0, std::sqrt(area / 1e6)});  // about a million bins at most
+    bin_columns_ = static_cast<int>((x_max - bin_x_min_) / bin_size_) + 1;
+    bin_rows_ = static_cast<int>((y_max - bin_y_min_) / bin_size_) + 1;
+
+    const auto for_each_bin = [&](const Solid& solid, const auto& f) {
+        const auto column = [&](double x) { return static_cast<int>((x - bin_x_min_) / bin_size_); };
+        const auto row = [&](double y) { return static_cast<int>((y - bin_y_min_) / bin_size_); };
+        for (int r = row(solid.y_min - range_); r <= row(solid.y_max + range_); ++r) {
+            for (int c = column(solid.x_min - range_); c <= column(solid.x_max + range_); ++c) {
+                f(static_cast<std::size_t>(r) * static_cast<std::size_t>(bin_columns_) + static_cast<std::size_t>(c));
+            }
+        }
+    };
+    bin_start_.assign(static_cast<std::size_t>(bin_columns_) * static_cast<std::size_t>(bin_rows_) + 1, 0);
+    for (const Solid& solid : solids_) for_each_bin(solid, [&](std::size_t bin) { ++bin_start_[bin + 1]; });
+    for (std::size_t bin = 1; bin < bin_start_.size(); ++bin) bin_start_[bin] += bin_start_[bin - 1];
+    bin_solids_.resize(bin_start_.back());
+    std::vector<std::uint32_t> next = bin_start_;
+    for (std::uint32_t s = 0; s < solids_.size(); ++s) {
+        for_each_bin(solids_[s], [&](std::size_t bin) { bin_solids_[next[bin]++] = s; });
+    }
+}
+
+bool BuildingSolids::in_plan(const Solid& solid, double x, double y) const {
+    if (x < solid.x_min || x > solid.x_max || y < solid.y_min || y > solid.y_max) return false;
+    bool in = false;
+    for (std::uint32_t i = solid.first_edge; i < solid.last_edge; ++i) {
+        const Edge& e = edges_[i];
+        if ((e.ay > y) != (e.by > y) && x < (e.bx - e.ax) * (y - e.ay) / (e.by - e.ay) + e.ax) in = !in;
+    }
+    return in;
+}
+
+std::pair<std::uint32_t, std::uint32_t> BuildingSolids::candidates(double x, double y) const {
+    const double u = (x - bin_x_min_) / bin_size_, v = (y - bin_y_min_) / bin_size_;
+    if (!(u >= 0 && v >= 0 && u < bin_columns_ && v < bin_rows_)) return {0, 0};  // NaN comes here too
+    const std::size_t bin =
+        static_cast<std::size_t>(v) * static_cast<std::size_t>(bin_columns_) + static_cast<std::size_t>(u);
+    return {bin_start_[bin], bin_start_[bin + 1]};
+}
+
+template <class Real>
+SolidSample<Real> BuildingSolids::nearest(const Vec3<Real>& p) const {
+    // In double throughout: a float position is exact in it, so that normals hold down to a nanometre from a wall.
+    const double x = p.x, y = p.y, z = p.z;
+    const auto [first, last] = candidates(x, y);
+    if (first == last) return {};
+
+    // Above or below the highest roof at this plan position; below it, the position is inside.
+    int roof_building = -1;
+    double roof = -infinity;
+    for (std::uint32_t k = first; k < last; ++k) {
+        const Solid& solid = solids_[bin_solids_[k]];
+        if (solid.roof > roof && in_plan(solid, x, y)) roof = solid.roof, roof_building = solid.building;
+    }
+    const bool inside = z < roof;
+    int building = roof_building;
+    double best = roof_building < 0 ? infinity : std::abs(z - roof);
+    Vec3<double> normal{0, 0, 1};
+
+    for (std::uint32_t k = first; k < last; ++k) {
+        const Solid& solid = solids_[bin_solids_[k]];
+        for (std::uint32_t i = solid.first_edge; i < solid.last_edge; ++i) {
+            const Edge& e = edges_[i];
+            // From inside, only what other solids do not hide is a way out. From outside hidden walls are never nearer.
+            const double bottom = inside ? e.hidden_below : -infinity;
+            if (bottom >= solid.roof) continue;
+            const double dx = e.bx - e.ax, dy = e.by - e.ay, length_squared = dx * dx + dy * dy;
+            const double t = std::clamp(((x - e.ax) * dx + (y - e.ay) * dy) / length_squared, 0.0, 1.0);
+            const Vec3<double> to{e.ax + t * dx - x, e.ay + t * dy - y, std::clamp(z, bottom, solid.roof) - z};
+            const double distance = length(to);
+            if (distance >= best) continue;
+            best = distance;
+            building = solid.building;
+            const double edge_length = std::sqrt(length_squared);
+            normal = distance > on_the_surface ? (inside ? 1 / distance : -1 / distance) * to
+                                               : Vec3<double>{dy / edge_length, -dx / edge_length, 0};
+        }
+    }
+    if (building < 0 || (!inside && best > range_)) return {};
+    return {building,
+            static_cast<Real>(inside ? -best : best),
+            {static_cast<Real>(normal.x), static_cast<Real>(normal.y), static_cast<Real>(normal.z)}};
+}
+
+template <class Real>
+bool BuildingSolids::inside(const Vec3<Real>& p) const {
+    const SolidSample<Real> sample = nearest(p);
+    return sample.building >= 0 && sample.distance < 0;
+}
+
+template SolidSample<float> BuildingSolids::nearest(const Vec3<float>&) const;
+template SolidSample<double> BuildingSolids::nearest(const Vec3<double>&) const;
+template bool BuildingSolids::inside(const Vec3<float>&) const;
+template bool BuildingSolids::inside(const Vec3<double>&) const;
+
+}  // namespace talus

@@ -1,0 +1,80 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "core/geometry.hpp"
+#include "terrain/terrain.hpp"
+
+namespace talus {
+
+/// A solid with vertical walls and a flat roof, from below the ground up to `roof_elevation` (not finite: no solid).
+struct Building {
+    std::string name;
+    std::vector<Polygon> footprint;  ///< world plan coordinates
+    double height = 0;               ///< m above the mean ground of the footprint
+    bool height_assumed = false;     ///< from the default, not from the data
+    double roof_elevation = 0;       ///< m, world; set by place_buildings
+};
+
+/// Sets every roof to the mean ground elevation of its footprint plus its height; NaN where the ground is not known.
+void place_buildings(const Terrain& terrain, std::vector<Building>& buildings);
+
+/// The nearest face of a building.
+template <class Real>
+struct SolidSample {
+    int building = -1;    ///< index, or -1: none within range
+    Real distance{};      ///< to the surface, m; negative inside
+    Vec3<Real> normal{};  ///< unit, out of the solid
+};
+
+/// Answers how far a local position is from the buildings. Cost away from all buildings: one table look-up.
+/// Buildings that touch or overlap act as one solid: a wall between two of them is no surface.
+class BuildingSolids {
+  public:
+    BuildingSolids() = default;
+    /// `range`: the greatest distance, m, at which `nearest` must still report a building.
+    BuildingSolids(const Terrain& terrain, const std::vector<Building>& buildings, double range);
+
+    [[nodiscard]] bool empty() const { return edges_.empty(); }
+
+    /// The building whose surface is nearest to the local position, if within range or inside. On an edge of a solid
+    /// the normal is that of one of the faces that meet there.
+    template <class Real>
+    [[nodiscard]] SolidSample<Real> nearest(const Vec3<Real>& p) const;
+
+    /// Whether the local position lies strictly inside any building.
+    template <class Real>
+    [[nodiscard]] bool inside(const Vec3<Real>& p) const;
+
+  private:
+    /// A piece of a footprint's outline in local plan coordinates, the solid to its left.
+    struct Edge {
+        double ax, ay, bx, by;
+        double hidden_below;  ///< local z: up to here the wall lies against or within another solid
+    };
+    /// A part of a building's footprint.
+    struct Solid {
+        std::uint32_t first_edge, last_edge;
+        int building;
+        double x_min, y_min, x_max, y_max;  ///< local, not grown
+        double roof;                        ///< local z
+    };
+
+    void split_walls();
+    void fill_bins();
+    [[nodiscard]] bool in_plan(const Solid& solid, double x, double y) const;
+    /// Indices [first, last) into bin_solids_ of the solids near a local plan position.
+    [[nodiscard]] std::pair<std::uint32_t, std::uint32_t> candidates(double x, double y) const;
+
+    std::vector<Edge> edges_;
+    std::vector<Solid> solids_;
+    double range_ = 0;
+    double bin_x_min_ = 0, bin_y_min_ = 0, bin_size_ = 1;
+    int bin_columns_ = 0, bin_rows_ = 0;
+    std::vector<std::uint32_t> bin_start_, bin_solids_;
+};
+
+}  // namespace talus

@@ -1,0 +1,35 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/geometry.hpp"
+#include "core/grid.hpp"
+#include "terrain/terrain.hpp"
+
+namespace talus {
+
+/// A polygon of failing ground with its thickness normal to the slope, m.
+struct ReleasePatch {
+    Polygon polygon;
+    double thickness = 0;
+};
+
+/// A body of debris that starts to move at one moment.
+struct Release {
+    std::string name;
+    double start_time = 0;                        ///< s
+    std::vector<ReleasePatch> patches;            ///< not overlapping
+    std::optional<Grid<float>> thickness_raster;  ///< if present, replaces the patches' thickness (NaN, <= 0: none)
+    double volume = 0;                            ///< m3, as integrated by release_volume
+
+    /// Thickness normal to the slope at a world plan position; 0 outside the patches.
+    [[nodiscard]] double thickness_at(const PlanPoint& p) const;
+    [[nodiscard]] Extent extent() const;
+};
+
+/// Integral of thickness / cos(slope) over the plan area, m3; ground that the terrain does not cover counts nothing.
+[[nodiscard]] double release_volume(const Terrain& terrain, const Release& release);
+
+}  // namespace talus

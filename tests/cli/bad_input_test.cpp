@@ -1,0 +1,208 @@
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "cli/program.hpp"
+#include "cli/small_scene.hpp"
+
+// Whatever is wrong with the input, the program says so in exactly one line, returns 2 and leaves nothing behind.
+namespace talus::test {
+namespace {
+
+constexpr double nothing = std::numeric_limits<double>::quiet_NaN();
+
+struct BadInput {
+    const char* name;
+    std::function<void(const SmallScene&)> spoil;
+    std::vector<std::string> said;  ///< what the line must name
+    std::vector<std::string> arguments = {"run", "slope.toml", "-o", "result"};
+};
+
+void PrintTo(const BadInput& input, std::ostream* stream) {
+    *stream << input.name;
+}
+
+class BadInputTest : public testing::TestWithParam<BadInput> {};
+
+TEST_P(BadInputTest, IsSaidInOneLineAndNothingIsLeft) {
+    const SmallScene scene;
+    GetParam().spoil(scene);
+    const auto before = scene.files();
+    const auto outcome = run_program(GetParam().arguments, {.folder = scene.folder()});
+    EXPECT_EQ(outcome.exit_code, 2);
+    EXPECT_EQ(outcome.out, "");
+    const auto lines = lines_of(outcome.error);
+    ASSERT_EQ(lines.size(), 1u) << outcome.error;
+    EXPECT_THAT(lines[0], testing::StartsWith("talus: error: "));
+    for (const std::string& part : GetParam().said) EXPECT_THAT(lines[0], testing::HasSubstr(part));
+    EXPECT_EQ(scene.files(), before);
+}
+
+void nothing_spoiled(const SmallScene&) {}
+
+void terrain_with(const SmallScene& scene, const std::function<void(RasterOptions&)>& change) {
+    RasterOptions options = SmallScene::terrain();
+    change(options);
+    write_plane(scene.input("terrain.tif"), options);
+}
+
+void release_polygon(const SmallScene& scene, const std::string& wkt) {
+    write_vector(scene.input("release.geojson"), {}, {{wkt, {}}});
+}
+
+const std::vector<BadInput> bad_inputs = {
+    // The command line
+    {"UnknownCommand", nothing_spoiled, {"fly"}, {"fly"}},
+    {"UnknownOption", nothing_spoiled, {"--treads", "talus run --help"}, {"run", "slope.toml", "--treads", "2"}},
+    {"OptionWithoutItsValue", nothing_spoiled, {"--output"}, {"run", "slope.toml", "-o"}},
+    {"ThreadsNotANumber", nothing_spoiled, {"--threads", "many"}, {"run", "slope.toml", "--threads", "many"}},
+    {"NegativeThreads", nothing_spoiled, {"thread_count", "-2"}, {"run", "slope.toml", "--threads", "-2"}},
+    {"OverrideOfUnknownKey",
+     nothing_spoiled,
+     {"friction_coeficient", "friction_coefficient"},
+     {"run", "slope.toml", "--set", "material.friction_coeficient=0.3"}},
+    {"OverrideOutOfRange",
+     nothing_spoiled,
+     {"rest_density_kgpm3", "-5", "above 0"},
+     {"run", "slope.toml", "--set", "material.rest_density_kgpm3=-5"}},
+    {"OverrideWithoutValue", nothing_spoiled, {"end_time_s"}, {"run", "slope.toml", "--set", "solver.end_time_s"}},
+    {"QuietAndJson", nothing_spoiled, {"--quiet", "--json"}, {"run", "slope.toml", "--quiet", "--json"}},
+
+    // The scene file
+    {"MissingScene", nothing_spoiled, {"nowhere.toml"}, {"run", "nowhere.toml"}},
+    {"FolderInsteadOfScene",
+     [](const SmallScene& s) { std::filesystem::create_directory(s.input("folder.toml")); },
+     {"folder.toml"},
+     {"run", "folder.toml"}},
+    {"EmptyScene", [](const SmallScene& s) { s.write(""); }, {"slope.toml", "terrain"}},
+    {"BrokenToml", [](const SmallScene& s) { s.replace("[solver]", "[solver"); }, {"slope.toml", "11"}},
+    {"UnknownKey",
+     [](const SmallScene& s) { s.replace("thickness_m", "thicknes_m"); },
+     {"slope.toml", "8", "thicknes_m", "thickness_m"}},
+    {"WrongType",
+     [](const SmallScene& s) { s.replace("end_time_s = 1", "end_time_s = \"long\""); },
+     {"slope.toml", "13", "end_time_s", "long"}},
+    {"OutOfRange",
+     [](const SmallScene& s) { s.replace("end_time_s = 1", "end_time_s = -1"); },
+     {"slope.toml", "13", "end_time_s", "-1", "above 0"}},
+
+    // Terrain
+    {"MissingTerrain", [](const SmallScene& s) { std::filesystem::remove(s.input("terrain.tif")); }, {"terrain.tif"}},
+    {"FolderInsteadOfTerrain",
+     [](const SmallScene& s) {
+         std::filesystem::remove(s.input("terrain.tif"));
+         std::filesystem::create_directory(s.input("terrain.tif"));
+     },
+     {"terrain.tif"}},
+    {"EmptyTerrainFile", [](const SmallScene& s) { write_text(s.input("terrain.tif"), ""); }, {"terrain.tif"}},
+    {"TruncatedTerrain",
+     [](const SmallScene& s) { std::filesystem::resize_file(s.input("terrain.tif"), 2000); },
+     {"terrain.tif"}},
+    {"TerrainWithoutData",
+     [](const SmallScene& s) {
+         write_raster(s.input("terrain.tif"), SmallScene::terrain(), [](int, int) { return nothing; });
+     },
+     {"terrain.tif", "no"}},
+    {"NoSuchBand",
+     [](const SmallScene& s) { s.replace("\"terrain.tif\"", "\"terrain.tif\"\nband = 3"); },
+     {"terrain.tif", "3"}},
+    {"GeographicTerrain",
+     [](const SmallScene& s) {
+         terrain_with(s, [](RasterOptions& o) {
+             o.epsg = 4326;
+             o.x_min = 114.06;
+             o.y_min = 22.37;
+             o.cell = 0.00005;
+         });
+     },
+     {"terrain.tif", "gdalwarp"}},
+    {"TerrainInFeet",
+     [](const SmallScene& s) { terrain_with(s, [](RasterOptions& o) { o.epsg = 2277; }); },
+     {"terrain.tif", "gdalwarp"}},
+    {"TerrainWithoutReferenceSystem",
+     [](const SmallScene& s) { terrain_with(s, [](RasterOptions& o) { o.epsg = 0; }); },
+     {"terrain.tif", "gdal"}},
+    {"RotatedTerrain",
+     [](const SmallScene& s) { terrain_with(s, [](RasterOptions& o) { o.rotation = 1; }); },
+     {"terrain.tif", "gdalwarp"}},
+
+    // Release
+    {"MissingRelease",
+     [](const SmallScene& s) { std::filesystem::remove(s.input("release.geojson")); },
+     {"release.geojson"}},
+    {"ReleaseOutsideTheTerrain",
+     [](const SmallScene& s) { release_polygon(s, rectangle_wkt(834200, 825090, 834220, 825110)); },
+     {"scar", "outside"}},
+    {"ReleaseOverNodata",
+     [](const SmallScene& s) {
+         write_raster(s.input("terrain.tif"), SmallScene::terrain(),
+                      [](int column, int) { return column > 39 && column < 45 ? nothing : 100 + 2.5 * column; });
+     },
+     {"scar", "no data"}},
+    {"SelfIntersectingRelease",
+     [](const SmallScene& s) {
+         release_polygon(s, "POLYGON ((824200 825090, 824220 825110, 824220 825090, 824200 825110, 824200 825090))");
+     },
+     {"release.geojson", "intersect"}},
+    {"EmptyReleaseLayer",
+     [](const SmallScene& s) { write_vector(s.input("release.geojson"), {}, {}); },
+     {"release.geojson"}},
+    {"ZeroThickness",
+     [](const SmallScene& s) { s.replace("thickness_m = 0.3", "thickness_m = 0"); },
+     {"slope.toml", "thickness_m", "above 0"}},
+    {"NegativeThickness",
+     [](const SmallScene& s) { s.replace("thickness_m = 0.3", "thickness_m = -2"); },
+     {"slope.toml", "thickness_m", "-2"}},
+    {"NoThickness",
+     [](const SmallScene& s) { s.replace("thickness_m = 0.3\n", ""); },
+     {"slope.toml", "thickness_m", "volume_m3"}},
+    {"OverlappingReleases",
+     [](const SmallScene& s) {
+         write_vector(s.input("other.geojson"), {}, {{rectangle_wkt(824210, 825100, 824230, 825120), {}}});
+         s.replace("[buildings]",
+                   "[[release]]\nname = \"second\"\nfile = \"other.geojson\"\nvolume_m3 = 50\n[buildings]");
+     },
+     {"scar", "second", "overlap"}},
+    {"MoreParticlesThanTheLimit",
+     [](const SmallScene& s) { s.replace("spacing_m = 0.8", "spacing_m = 0.1\nparticle_limit = 1000"); },
+     {"particle_limit", "1000", "spacing"}},
+
+    // Buildings
+    {"BuildingsOutsideTheTerrain",
+     [](const SmallScene& s) {
+         write_vector(s.input("buildings.geojson"), {}, {{rectangle_wkt(924200, 825090, 924220, 825110), {}}});
+     },
+     {"buildings.geojson", "outside"}},
+
+    // Result folder
+    {"ResultAlreadyThere",
+     [](const SmallScene& s) { std::filesystem::create_directory(s.input("result")); },
+     {"result", "--force"}},
+    {"ResultIsAFile", [](const SmallScene& s) { write_text(s.input("result"), "precious"); }, {"result"}},
+    {"ResultBelowAFile", nothing_spoiled, {"terrain.tif/result"}, {"run", "slope.toml", "-o", "terrain.tif/result"}},
+    {"ResultNotWritable", nothing_spoiled, {"/proc/result"}, {"run", "slope.toml", "-o", "/proc/result"}},
+};
+
+INSTANTIATE_TEST_SUITE_P(Item, BadInputTest, testing::ValuesIn(bad_inputs),
+                         [](const auto& bad) { return std::string(bad.param.name); });
+
+TEST(FullDisk, IsSaidInOneLineAndNothingIsLeft) {
+    const SmallScene scene;
+    const auto before = scene.files();
+    const auto outcome =
+        run_program({"run", "slope.toml", "-o", "result", "--json"}, {.folder = scene.folder(), .largest_file = 4096});
+    EXPECT_EQ(outcome.exit_code, 1);
+    const auto lines = lines_of(outcome.error);
+    ASSERT_EQ(lines.size(), 1u) << outcome.error;
+    EXPECT_THAT(lines[0], testing::StartsWith("talus: error: "));
+    EXPECT_THAT(lines[0], testing::HasSubstr("result"));
+    EXPECT_EQ(scene.files(), before);
+}
+
+}  // namespace
+}  // namespace talus::test

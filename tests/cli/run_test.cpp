@@ -1,0 +1,238 @@
+#include <filesystem>
+#include <signal.h>
+#include <string>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "cli/program.hpp"
+#include "cli/small_scene.hpp"
+#include "params/fields.hpp"
+
+namespace talus::test {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::HasSubstr;
+using testing::Not;
+
+nlohmann::json result_of(const ProgramOutcome& outcome) {
+    const auto lines = lines_of(outcome.out);
+    return lines.empty() ? nlohmann::json() : nlohmann::json::parse(lines.back(), nullptr, false);
+}
+
+TEST(Run, WritesEveryProductAndSaysWhereTheReportIs) {
+    const SmallScene scene;
+    const auto outcome = run_program({"run", "slope.toml"}, {.folder = scene.folder()});
+    ASSERT_EQ(outcome.exit_code, 0) << outcome.error;
+    for (const char* name :
+         {"peak_depth.tif", "peak_depth.qml", "peak_speed.tif", "peak_speed.qml", "peak_pressure.tif",
+          "peak_pressure.qml", "arrival_time.tif", "arrival_time.qml", "deposit_depth.tif", "deposit_depth.qml",
+          "front.csv", "buildings.csv", "results.gpkg", "timeseries.csv", "manifest.json", "report.html"}) {
+        EXPECT_TRUE(fs::exists(scene.folder() / "talus_out/slope" / name)) << name;
+    }
+    EXPECT_THAT(outcome.out, HasSubstr("talus_out/slope/report.html"));
+    EXPECT_THAT(outcome.out, HasSubstr("at 5 m"));
+    EXPECT_THAT(outcome.out, HasSubstr("observed 3 m/s"));
+    EXPECT_THAT(outcome.out, HasSubstr("runout angle"));
+    EXPECT_THAT(outcome.out, HasSubstr("x real time"));
+    EXPECT_THAT(outcome.out, Not(HasSubstr("PARTIAL")));
+    EXPECT_THAT(outcome.error, HasSubstr("t "));
+    EXPECT_THAT(outcome.error, Not(HasSubstr("\r"))) << "no bar where stderr is no terminal";
+}
+
+TEST(Run, QuietPrintsNothing) {
+    const SmallScene scene;
+    const auto outcome = run_program({"run", "slope.toml", "--quiet", "-o", "result"}, {.folder = scene.folder()});
+    EXPECT_EQ(outcome.exit_code, 0);
+    EXPECT_EQ(outcome.out, "");
+    EXPECT_EQ(outcome.error, "");
+    EXPECT_TRUE(fs::exists(scene.folder() / "result/report.html"));
+}
+
+TEST(Run, JsonIsOneObjectPerLineWithTheResultLast) {
+    const SmallScene scene;
+    const auto outcome = run_program({"run", "slope.toml", "--json", "-o", "result"}, {.folder = scene.folder()});
+    ASSERT_EQ(outcome.exit_code, 0) << outcome.error;
+    EXPECT_EQ(outcome.error, "");
+    const auto lines = lines_of(outcome.out);
+    ASSERT_GE(lines.size(), 2u);
+    for (std::size_t i = 0; i < lines.size(); ++i) {
+        const auto event = nlohmann::json::parse(lines[i], nullptr, false);
+        ASSERT_TRUE(event.is_object()) << lines[i];
+        EXPECT_EQ(event.at("event"), i + 1 < lines.size() ? "progress" : "result");
+    }
+    const auto result = result_of(outcome);
+    EXPECT_EQ(result.at("status"), "complete");
+    EXPECT_EQ(result.at("output"), fs::canonical(scene.folder() / "result").string());
+    EXPECT_DOUBLE_EQ(result.at("volume_released_m3").get<double>(),
+                     result.at("volume_moving_m3").get<double>() + result.at("volume_deposited_m3").get<double>() +
+                         result.at("volume_held_m3").get<double>() + result.at("volume_left_m3").get<double>());
+    EXPECT_EQ(result.at("observations").at(0).at("chainage_m"), 5);
+}
+
+TEST(Run, GivesTheSameResultOnOneAndTwoThreads) {
+    const SmallScene scene;
+    const auto one =
+        run_program({"run", "slope.toml", "--json", "-o", "one", "--threads", "1"}, {.folder = scene.folder()});
+    const auto two =
+        run_program({"run", "slope.toml", "--json", "-o", "two", "--threads", "2"}, {.folder = scene.folder()});
+    ASSERT_TRUE(result_of(one).is_object());
+    ASSERT_TRUE(result_of(two).is_object());
+    EXPECT_EQ(result_of(one).at("hash"), result_of(two).at("hash"));
+    EXPECT_EQ(result_of(one).at("thread_count"), 1);
+    EXPECT_EQ(result_of(two).at("thread_count"), 2);
+}
+
+TEST(Run, DrawsABarOnATerminalAndRemovesIt) {
+    const SmallScene scene;
+    const auto outcome =
+        run_program({"run", "slope.toml", "-o", "result"},
+                    {.folder = scene.folder(), .environment = {"TERM=xterm"}, .error_is_terminal = true});
+    ASSERT_EQ(outcome.exit_code, 0) << outcome.error;
+    EXPECT_THAT(outcome.error, HasSubstr("\r["));
+    EXPECT_THAT(outcome.error, HasSubstr("x real time"));
+    EXPECT_THAT(outcome.error, HasSubstr("ETA "));
+    EXPECT_THAT(outcome.error, testing::EndsWith("\r\x1b[K"));
+    EXPECT_THAT(outcome.error, Not(HasSubstr("\n"))) << "the bar keeps to one line";
+}
+
+TEST(Run, ForceReplacesAnEarlierResultWhole) {
+    const SmallScene scene;
+    const std::vector<std::string> arguments{"run", "slope.toml", "-o", "result", "--quiet"};
+    ASSERT_EQ(run_program(arguments, {.folder = scene.folder()}).exit_code, 0);
+    write_text(scene.input("result/stale.txt"), "from before");
+    EXPECT_EQ(run_program(arguments, {.folder = scene.folder()}).exit_code, 2);
+    EXPECT_TRUE(fs::exists(scene.input("result/stale.txt")));
+    auto forced = arguments;
+    forced.emplace_back("--force");
+    EXPECT_EQ(run_program(forced, {.folder = scene.folder()}).exit_code, 0);
+    EXPECT_FALSE(fs::exists(scene.input("result/stale.txt")));
+    EXPECT_TRUE(fs::exists(scene.input("result/report.html")));
+}
+
+TEST(Run, ForceNeverReplacesWhatIsNoResult) {
+    const SmallScene scene;
+    fs::create_directory(scene.folder() / "photos");
+    write_text(scene.input("photos/cat.jpg"), "precious");
+    const auto outcome = run_program({"run", "slope.toml", "-o", "photos", "--force"}, {.folder = scene.folder()});
+    EXPECT_EQ(outcome.exit_code, 2);
+    EXPECT_EQ(lines_of(outcome.error).size(), 1u) << outcome.error;
+    EXPECT_EQ(read_text(scene.input("photos/cat.jpg")), "precious");
+}
+
+TEST(Run, SetReplacesAValueOfTheScene) {
+    const SmallScene scene;
+    const auto outcome = run_program({"run", "slope.toml", "--json", "--set", "solver.end_time_s=0.25", "--set",
+                                      "solver.particle_spacing_m=1.5", "-o", "result"},
+                                     {.folder = scene.folder()});
+    ASSERT_EQ(outcome.exit_code, 0) << outcome.error;
+    EXPECT_NEAR(result_of(outcome).at("simulated_time_s").get<double>(), 0.25, 0.02);
+    EXPECT_DOUBLE_EQ(result_of(outcome).at("particle_spacing_m").get<double>(), 1.5);
+}
+
+TEST(Run, DataIsWhatTheSceneCallsTalusData) {
+    const SmallScene scene;
+    fs::create_directory(scene.folder() / "elsewhere");
+    fs::rename(scene.input("terrain.tif"), scene.input("elsewhere/terrain.tif"));
+    scene.replace("\"terrain.tif\"", "\"${TALUS_DATA}/terrain.tif\"");
+    const auto outcome =
+        run_program({"run", "slope.toml", "-o", "result", "--quiet", "--data", scene.input("elsewhere")},
+                    {.folder = scene.folder()});
+    EXPECT_EQ(outcome.exit_code, 0) << outcome.error;
+}
+
+TEST(Run, AFaultWritesWhatThereIsAndSaysWhy) {
+    const SmallScene scene;
+    const auto outcome =
+        run_program({"run", "slope.toml", "-o", "result", "--json", "--set", "solver.compression_limit=1e-9"},
+                    {.folder = scene.folder()});
+    EXPECT_EQ(outcome.exit_code, 3);
+    const auto lines = lines_of(outcome.error);
+    ASSERT_EQ(lines.size(), 1u) << outcome.error;
+    EXPECT_THAT(lines[0], testing::StartsWith("talus: error: "));
+    EXPECT_THAT(lines[0], HasSubstr("compression_limit"));
+    EXPECT_THAT(lines[0], HasSubstr("partial"));
+    EXPECT_EQ(result_of(outcome).at("status"), "fault");
+    EXPECT_THAT(read_text(scene.input("result/manifest.json")), HasSubstr("partial"));
+}
+
+class Interrupted : public testing::Test {
+  protected:
+    Interrupted() {
+        scene_.replace("end_time_s = 1", "end_time_s = 1000");
+        scene_.replace("thickness_m = 0.3", "thickness_m = 3");
+    }
+    [[nodiscard]] ProgramOutcome run(const std::function<void(int)>& interrupt) const {
+        return run_program({"run", "slope.toml", "--json", "-o", "result"},
+                           {.folder = scene_.folder(), .while_running = interrupt, .wait_for = "progress"});
+    }
+    SmallScene scene_;
+};
+
+TEST_F(Interrupted, ByCtrlCWritesWhatThereIsMarkedPartial) {
+    const auto outcome = run([](int process) { kill(process, SIGINT); });
+    EXPECT_EQ(outcome.exit_code, 130);
+    EXPECT_EQ(result_of(outcome).at("status"), "interrupted");
+    EXPECT_THAT(read_text(scene_.input("result/manifest.json")), HasSubstr("partial"));
+    EXPECT_TRUE(fs::exists(scene_.input("result/report.html")));
+}
+
+TEST_F(Interrupted, ByTerminationToo) {
+    const auto outcome = run([](int process) { kill(process, SIGTERM); });
+    EXPECT_EQ(outcome.exit_code, 130);
+    EXPECT_TRUE(fs::exists(scene_.input("result/report.html")));
+}
+
+TEST_F(Interrupted, TwiceEndsAtOnceAndLeavesNothing) {
+    const auto before = scene_.files();
+    const auto outcome = run([](int process) {
+        // Both are pending when it goes on, so the second arrives before anything can have been written.
+        kill(process, SIGSTOP);
+        kill(process, SIGINT);
+        kill(process, SIGTERM);
+        kill(process, SIGCONT);
+    });
+    EXPECT_EQ(outcome.exit_code, 130);
+    EXPECT_THAT(outcome.out, Not(HasSubstr("\"result\"")));
+    EXPECT_EQ(scene_.files(), before);
+}
+
+TEST(BuiltinScene, RunsWithoutAnyFileAndLeavesNoTemporaryFolder) {
+    const TemporaryFolder folder;
+    fs::create_directory(folder.path() / "tmp");
+    const auto outcome =
+        run_program({"run", "--quiet", "--set", "solver.end_time_s=0.5", "--set", "solver.target_particle_count=500"},
+                    {.folder = folder.path(), .environment = {"TMPDIR=" + folder.file("tmp")}});
+    ASSERT_EQ(outcome.exit_code, 0) << outcome.error;
+    EXPECT_TRUE(fs::exists(folder.path() / "talus_out/sham_tseng/report.html"));
+    EXPECT_TRUE(fs::is_empty(folder.path() / "tmp"));
+    EXPECT_THAT(read_text(folder.path() / "talus_out/sham_tseng/manifest.json"), Not(HasSubstr(folder.file("tmp"))));
+}
+
+TEST(Help, TeachesCommandsExitCodesAndEveryTunable) {
+    const auto general = run_program({"--help"});
+    EXPECT_EQ(general.exit_code, 0);
+    for (const char* part : {"talus run", "scene new", "scene check", "Exit codes", "130"}) {
+        EXPECT_THAT(general.out, HasSubstr(part));
+    }
+    const auto run = run_program({"run", "--help"});
+    EXPECT_EQ(run.exit_code, 0);
+    for (const Section& section : scene_sections()) {
+        for (const Parameter& parameter : section.parameters) {
+            EXPECT_THAT(run.out, HasSubstr("\n  " + parameter.key + "\n")) << section.name;
+        }
+    }
+    EXPECT_EQ(run_program({}).out, general.out) << "without a command the program explains itself";
+}
+
+TEST(Version, IsPrinted) {
+    const auto outcome = run_program({"--version"});
+    EXPECT_EQ(outcome.exit_code, 0);
+    EXPECT_THAT(outcome.out, testing::MatchesRegex("talus [0-9]+\\.[0-9]+\\.[0-9]+\n"));
+}
+
+}  // namespace
+}  // namespace talus::test

@@ -1,0 +1,83 @@
+#include <filesystem>
+#include <string>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "cli/program.hpp"
+#include "cli/small_scene.hpp"
+#include "params/scene_text.hpp"
+
+namespace talus::test {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::HasSubstr;
+
+TEST(SceneNew, WritesASceneThatChecksAndRuns) {
+    const SmallScene inputs;
+    const auto created = run_program({"scene", "new", "--dem", "terrain.tif", "--release", "release.geojson",
+                                      "--buildings", "buildings.geojson", "--volume-m3", "120", "-o", "mine"},
+                                     {.folder = inputs.folder()});
+    ASSERT_EQ(created.exit_code, 0) << created.error;
+    EXPECT_EQ(created.error, "");
+    const auto checked = run_program({"scene", "check", "mine/scene.toml"}, {.folder = inputs.folder()});
+    EXPECT_EQ(checked.exit_code, 0) << checked.error;
+    EXPECT_THAT(checked.out, HasSubstr("120"));
+    const auto run = run_program({"run", "mine/scene.toml", "--quiet", "--set", "solver.end_time_s=0.2", "--set",
+                                  "solver.target_particle_count=300"},
+                                 {.folder = inputs.folder()});
+    EXPECT_EQ(run.exit_code, 0) << run.error;
+    EXPECT_TRUE(fs::exists(inputs.folder() / "talus_out/mine/report.html")) << "named after the scene's folder";
+}
+
+TEST(SceneNew, RefusesAFolderThatIsThere) {
+    const SmallScene inputs;
+    fs::create_directory(inputs.folder() / "mine");
+    write_text(inputs.input("mine/scene.toml"), "precious");
+    const auto outcome = run_program(
+        {"scene", "new", "--dem", "terrain.tif", "--release", "release.geojson", "--thickness-m", "1", "-o", "mine"},
+        {.folder = inputs.folder()});
+    EXPECT_EQ(outcome.exit_code, 2);
+    EXPECT_EQ(lines_of(outcome.error).size(), 1u) << outcome.error;
+    EXPECT_EQ(read_text(inputs.input("mine/scene.toml")), "precious");
+}
+
+TEST(SceneCheck, SaysWhatASceneMeans) {
+    const SmallScene scene;
+    const auto outcome = run_program({"scene", "check", "slope.toml"}, {.folder = scene.folder()});
+    EXPECT_EQ(outcome.exit_code, 0) << outcome.error;
+    EXPECT_EQ(outcome.error, "");
+    for (const char* part : {"EPSG:2326", "scar", "terrain.tif", "buildings"})
+        EXPECT_THAT(outcome.out, HasSubstr(part));
+}
+
+TEST(SceneCheck, RefusesWhatARunWouldRefuse) {
+    const SmallScene scene;
+    fs::remove(scene.input("terrain.tif"));
+    const auto outcome = run_program({"scene", "check", "slope.toml"}, {.folder = scene.folder()});
+    EXPECT_EQ(outcome.exit_code, 2);
+    ASSERT_EQ(lines_of(outcome.error).size(), 1u) << outcome.error;
+    EXPECT_THAT(outcome.error, HasSubstr("terrain.tif"));
+}
+
+TEST(SceneExportBuiltin, WritesASceneThatChecks) {
+    const TemporaryFolder folder;
+    const auto exported = run_program({"scene", "export-builtin", "-o", "copy"}, {.folder = folder.path()});
+    ASSERT_EQ(exported.exit_code, 0) << exported.error;
+    const auto checked = run_program({"scene", "check", "copy/scene.toml"}, {.folder = folder.path()});
+    EXPECT_EQ(checked.exit_code, 0) << checked.error;
+    const auto again = run_program({"scene", "export-builtin", "-o", "copy"}, {.folder = folder.path()});
+    EXPECT_EQ(again.exit_code, 2);
+    EXPECT_THAT(again.error, HasSubstr("--force"));
+    EXPECT_EQ(run_program({"scene", "export-builtin", "-o", "copy", "--force"}, {.folder = folder.path()}).exit_code,
+              0);
+}
+
+TEST(SceneReference, IsTheFieldTable) {
+    EXPECT_EQ(run_program({"scene", "reference", "--markdown"}).out, scene_reference_markdown());
+    EXPECT_EQ(run_program({"scene", "reference"}).out, scene_reference_text());
+}
+
+}  // namespace
+}  // namespace talus::test

@@ -1,0 +1,73 @@
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "core/grid.hpp"
+#include "core/hash.hpp"
+#include "core/result.hpp"
+
+namespace talus {
+namespace {
+
+Result<int> half(int n) {
+    if (n % 2 != 0) return Error{"odd: " + std::to_string(n)};
+    return n / 2;
+}
+
+TEST(Result, carries_a_value_or_the_error) {
+    EXPECT_TRUE(half(4).ok());
+    EXPECT_EQ(*half(4), 2);
+    EXPECT_FALSE(half(3));
+    EXPECT_EQ(half(3).error().message, "odd: 3");
+}
+
+TEST(Result, gives_up_values_that_can_only_be_moved) {
+    Result<std::unique_ptr<int>> made = std::make_unique<int>(7);
+    const std::unique_ptr<int> taken = std::move(made).value();
+    EXPECT_EQ(*taken, 7);
+}
+
+TEST(Status, is_success_unless_given_an_error) {
+    EXPECT_TRUE(Status{}.ok());
+    const Status failed = Error{"disk full"};
+    EXPECT_FALSE(failed);
+    EXPECT_EQ(failed.error().message, "disk full");
+}
+
+TEST(Grid, row_zero_is_the_southernmost) {
+    Grid<int> grid(GridGeometry{100, 200, 5, 4, 3}, -1);
+    ASSERT_EQ(grid.values.size(), 12U);
+    grid.at(3, 2) = 7;
+    EXPECT_EQ(grid.values.back(), 7);
+    const PlanPoint first = grid.geometry.centre(0, 0);
+    EXPECT_EQ(first.x, 102.5);
+    EXPECT_EQ(first.y, 202.5);
+    EXPECT_EQ(grid.geometry.extent().x_max, 120);
+    EXPECT_EQ(grid.geometry.extent().y_max, 215);
+}
+
+// Published test values of FNV-1a 64.
+TEST(StateHash, agrees_with_the_published_values) {
+    const auto hash_of = [](const std::string& text) {
+        StateHash hash;
+        hash.add(text.data(), text.size());
+        return to_hex(hash.value());
+    };
+    EXPECT_EQ(hash_of(""), "cbf29ce484222325");
+    EXPECT_EQ(hash_of("a"), "af63dc4c8601ec8c");
+    EXPECT_EQ(hash_of("foobar"), "85944171f73967e8");
+}
+
+TEST(StateHash, in_pieces_as_in_one) {
+    const std::vector<float> values{1, 2, 3, 4};
+    StateHash whole, pieces;
+    whole.add(std::span<const float>(values));
+    pieces.add(std::span<const float>(values).first(1));
+    pieces.add(std::span<const float>(values).last(3));
+    EXPECT_EQ(whole.value(), pieces.value());
+}
+
+}  // namespace
+}  // namespace talus

@@ -1,0 +1,95 @@
+"""Rejects includes that point the wrong way through the layers of src/ and apps/.
+
+    check_includes.py ROOT        checks the sources, prints every offence
+    check_includes.py --self-test checks that the rules below reject what they should
+"""
+
+import pathlib
+import re
+import sys
+
+# A layer may include those named here and itself; sim and geo, products and calibrate do not know each other.
+BELOW = {
+    "core": [],
+    "params": ["core"],
+    "terrain": ["core", "params"],
+    "sim": ["core", "params", "terrain"],
+    "geo": ["core", "params", "terrain"],
+    "observe": ["core", "params", "terrain", "sim", "geo"],
+    "scene": ["core", "params", "terrain", "sim", "geo", "observe"],
+    "products": ["core", "params", "terrain", "sim", "geo", "observe", "scene"],
+    "calibrate": ["core", "params", "terrain", "sim", "geo", "observe", "scene"],
+    "apps": ["core", "params", "terrain", "sim", "geo", "observe", "scene", "products", "calibrate"],
+}
+INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]')
+GDAL = re.compile(r"^(gdal|ogr|cpl_|proj\b|proj\.h)")
+TESTING = re.compile(r"^(tests|support|gtest|gmock)/")
+THIRD_PARTY = re.compile(r"^(fmt|spdlog|nlohmann|toml\+\+|CLI|tbb|oneapi|boost)/|^toml\.hpp")
+
+
+def offence(layer, name):
+    """Why a file of `layer` may not include `name`; None if it may."""
+    if TESTING.match(name):
+        return "only tests include tests"
+    if GDAL.match(name) and layer != "geo":
+        return "only src/geo includes GDAL and PROJ"
+    if THIRD_PARTY.match(name) and layer == "core":
+        return "core uses the standard library only"
+    if name.startswith("../"):
+        return "write the path from src/, without .."
+    target = name.split("/")[0]
+    if "/" in name and target in BELOW and target != layer and target not in BELOW[layer]:
+        return f"{layer} lies below {target} or beside it"
+    return None
+
+
+def layer_of(path):
+    """The layer of a source file, given relative to the root; None outside the layers."""
+    parts = path.parts
+    if parts[0] == "apps":
+        return "apps"
+    return parts[1] if parts[0] == "src" and parts[1] in BELOW else None
+
+
+def check(root):
+    offences = []
+    files = [f for top in ("src", "apps") for f in (root / top).rglob("*") if f.suffix in (".hpp", ".cpp", ".cu")]
+    for file in sorted(files):
+        path = file.relative_to(root)
+        layer = layer_of(path)
+        if layer is None:
+            offences.append(f"{path}: this folder is in no layer; name it in tests/layering/check_includes.py")
+            continue
+        for number, line in enumerate(file.read_text().splitlines(), 1):
+            match = INCLUDE.match(line)
+            reason = match and offence(layer, match[2])
+            if reason:
+                offences.append(f"{path}:{number}: includes {match[2]}: {reason}")
+    if not files:
+        offences.append(f"{root}: no sources found")
+    return offences
+
+
+def self_test():
+    rejected = [("core", "params/spec.hpp"), ("core", "fmt/format.h"), ("sim", "geo/raster.hpp"),
+                ("geo", "sim/state.hpp"), ("observe", "scene/run.hpp"), ("scene", "products/products.hpp"),
+                ("products", "gdal_priv.h"), ("apps", "ogrsf_frmts.h"), ("scene", "cpl_conv.h"), ("products", "proj.h"),
+                ("sim", "gtest/gtest.h"), ("scene", "support/fixtures.hpp"), ("sim", "../core/grid.hpp"),
+                ("products", "calibrate/misfit.hpp"), ("calibrate", "products/products.hpp")]
+    accepted = [("params", "core/result.hpp"), ("sim", "sim/model.hpp"), ("sim", "terrain/terrain.hpp"),
+                ("geo", "gdal_priv.h"), ("geo", "proj.h"), ("scene", "geo/raster.hpp"), ("apps", "products/products.hpp"),
+                ("scene", "fmt/format.h"), ("core", "vector"), ("apps", "progress.hpp")]
+    wrong = [f"{layer} <- {name} passes" for layer, name in rejected if offence(layer, name) is None]
+    wrong += [f"{layer} <- {name} is rejected" for layer, name in accepted if offence(layer, name) is not None]
+    return wrong
+
+
+def main():
+    offences = self_test() if sys.argv[1:] == ["--self-test"] else check(pathlib.Path(sys.argv[1]).resolve())
+    for line in offences:
+        print(line)
+    return 1 if offences else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,69 @@
+#pragma once
+
+#include <cstdint>
+
+#include "sim/model.hpp"
+#include "sim/state.hpp"
+
+namespace talus::test {
+
+/// Ground of 200 x 200 m at `slope` (rising westward, so that debris runs east), its middle the world's (1000, 2000).
+inline Terrain ground(double slope = 0, double cell = 2) {
+    const int cells = static_cast<int>(200 / cell);
+    Grid<float> grid(GridGeometry{900, 1900, cell, cells, cells});
+    for (int r = 0; r < cells; ++r) {
+        for (int c = 0; c < cells; ++c)
+            grid.at(c, r) = static_cast<float>(50 + slope * (1100 - grid.geometry.centre(c, r).x));
+    }
+    return Terrain(grid);
+}
+
+inline Model make_model(double spacing = 0.4, double slope = 0) {
+    Model model;
+    model.terrain = ground(slope);
+    model.particle_spacing = spacing;
+    model.support_radius = 2.2 * spacing;
+    model.rest_density = 2000;
+    return model;
+}
+
+inline void add_particle(State& state, const LocalPoint& p, const LocalPoint& v = {}, bool held = false) {
+    state.id.push_back(state.count);
+    state.held.push_back(held ? 1 : 0);
+    ++state.count;
+    ++state.seeded;
+    state.position.resize(state.count);
+    state.velocity.resize(state.count);
+    state.position.set(state.count - 1, p);
+    state.velocity.set(state.count - 1, v);
+}
+
+/// A block of particles on the lattice of the spacing, from (x, y) eastward, northward and up from z = 0.
+inline State block(double spacing, double x, double y, int columns, int rows, int layers,
+                   const LocalPoint& velocity = {}) {
+    State state;
+    for (int k = 0; k < layers; ++k) {
+        for (int j = 0; j < rows; ++j) {
+            for (int i = 0; i < columns; ++i) {
+                add_particle(state,
+                             {static_cast<float>(x + (i + 0.5) * spacing), static_cast<float>(y + (j + 0.5) * spacing),
+                              static_cast<float>((k + 0.5) * spacing)},
+                             velocity);
+            }
+        }
+    }
+    return state;
+}
+
+/// Free flight for one step: positions follow velocities.
+inline void advance(State& state, double time_step) {
+    for (std::uint32_t i = 0; i < state.count; ++i) {
+        if (state.held[i] != 0) continue;
+        state.position.set(i, state.position.at(i) + static_cast<float>(time_step) * state.velocity.at(i));
+    }
+    state.time_step = time_step;
+    state.time += time_step;
+    ++state.step;
+}
+
+}  // namespace talus::test

@@ -1,0 +1,170 @@
+#include <cmath>
+#include <cstddef>
+
+#include <gtest/gtest.h>
+
+#include "observe/map_accumulator.hpp"
+#include "observe/particles.hpp"
+
+namespace talus {
+namespace {
+
+using test::advance;
+using test::block;
+
+/// The value of a map at a local position (world = local + (1000, 2000)).
+float value_at(const Grid<float>& map, double x, double y) {
+    const GridGeometry& g = map.geometry;
+    return map.at(static_cast<int>(std::floor((1000 + x - g.x_min) / g.cell)),
+                  static_cast<int>(std::floor((2000 + y - g.y_min) / g.cell)));
+}
+
+TEST(MapAccumulator, depth_of_a_slab_is_its_layers_thick_wherever_it_lies_on_the_map) {
+    const Model model = test::make_model(0.4);
+    for (const double shift : {0.0, 0.13, 0.27, 0.5, 0.71}) {
+        const State state = block(0.4, -12 + shift, -12 + shift, 60, 60, 5);
+        MapAccumulator maps(model, state, 1, 0.1);
+        maps.add(state);
+        const HazardMaps result = maps.maps();
+        for (double x = -9.5; x < 9; ++x) {
+            for (double y = -9.5; y < 9; ++y) EXPECT_NEAR(value_at(result.peak_depth, x, y), 2.0, 0.04);
+        }
+        EXPECT_TRUE(std::isnan(value_at(result.peak_depth, -18, 0)));
+    }
+}
+
+TEST(MapAccumulator, the_map_holds_exactly_the_volume_of_the_particles) {
+    const Model model = test::make_model(0.4);
+    State state = block(0.4, -3.17, -3.03, 17, 13, 3, {1.3F, 0.2F, 0});
+    test::add_particle(state, {99.9F, -99.9F, 0});  // in the map's corner
+    MapAccumulator maps(model, state, 1, 0.1);
+    for (int step = 0; step < 30; ++step) {
+        maps.add(state);
+        EXPECT_EQ(maps.volume(), state.count * model.particle_volume());
+        advance(state, 0.37);
+    }
+}
+
+TEST(MapAccumulator, deposit_is_where_debris_lies_at_the_end_and_keeps_its_volume) {
+    const Model model = test::make_model(0.4);
+    State state = block(0.4, -20, -4, 20, 20, 4, {10, 0, 0});
+    MapAccumulator maps(model, state, 1, 0.1);
+    for (int step = 0; step <= 20; ++step) {
+        if (step > 0) advance(state, 0.1);
+        maps.add(state);
+    }
+    const HazardMaps result = maps.maps();
+    EXPECT_NEAR(value_at(result.deposit_depth, 4.5, 0.5), 1.6, 0.04);
+    EXPECT_EQ(value_at(result.deposit_depth, -16.5, 0.5), 0) << "reached, but nothing stayed";
+    EXPECT_NEAR(value_at(result.peak_depth, -16.5, 0.5), 1.6, 0.04);
+    double volume = 0;
+    for (const float depth : result.deposit_depth.values) volume += std::isnan(depth) ? 0 : depth;
+    EXPECT_NEAR(volume, state.count * model.particle_volume(), 1e-3 * volume);
+}
+
+TEST(MapAccumulator, speed_is_averaged_over_depth_and_pressure_follows_from_it) {
+    const Model model = test::make_model(0.4);
+    State state = block(0.4, -8, -8, 40, 40, 4);
+    for (std::uint32_t i = 0; i < state.count; ++i) {  // 2 m/s in the lowest layer, 8 in the highest
+        state.velocity.x[i] = 2 + 2 * std::floor(state.position.z[i] / 0.4F);
+    }
+    MapAccumulator maps(model, state, 1, 0.1);
+    maps.add(state);
+    const HazardMaps result = maps.maps();
+    EXPECT_NEAR(value_at(result.peak_speed, 0.5, 0.5), 5, 1e-3);
+    EXPECT_NEAR(value_at(result.peak_pressure, 0.5, 0.5), 2000 * 25, 20);
+    EXPECT_NEAR(maps.speed_at({0.5F, 0.5F, 0}), 5, 1e-3);
+    EXPECT_EQ(maps.speed_at({50, 50, 0}), 0);
+}
+
+TEST(MapAccumulator, peaks_are_over_all_steps_and_speed_and_volume_of_the_last_step_alone) {
+    const Model model = test::make_model(0.4);
+    State state = block(0.4, -8, -8, 40, 40, 2, {3, 0, 0});
+    MapAccumulator maps(model, state, 1, 0.1);
+    maps.add(state);
+    for (float& v : state.velocity.x) v = 1;
+    maps.add(state);
+    EXPECT_NEAR(value_at(maps.maps().peak_speed, 0.5, 0.5), 3, 1e-3);
+    EXPECT_NEAR(maps.speed_at({0.5F, 0.5F, 0}), 1, 1e-3);
+    for (float& x : state.position.x) x += 40;
+    maps.add(state);
+    EXPECT_EQ(maps.speed_at({0.5F, 0.5F, 0}), 0);
+    EXPECT_NEAR(value_at(maps.maps().peak_depth, 0.5, 0.5), 0.8, 0.02);
+}
+
+TEST(MapAccumulator, debris_arrives_when_it_is_deeper_than_the_arrival_depth) {
+    const Model model = test::make_model(0.4);
+    State state = block(0.4, -30, -8, 50, 40, 4, {5, 0, 0});  // front edge at x = -10, 1.6 m deep
+    MapAccumulator maps(model, state, 1, 0.8);
+    maps.add(state);
+    for (int step = 0; step < 400; ++step) {
+        advance(state, 0.01);
+        maps.add(state);
+    }
+    const HazardMaps result = maps.maps();
+    EXPECT_EQ(value_at(result.arrival_time, -15.5, 0.5), 0);
+    // Half the depth: when the front edge passes the cell's middle.
+    for (double x = -5.5; x < 9; ++x) EXPECT_NEAR(value_at(result.arrival_time, x, 0.5), (x + 10) / 5, 0.05);
+}
+
+TEST(MapAccumulator, a_lone_particle_makes_no_peak) {
+    const Model model = test::make_model(0.4);
+    State state = block(0.4, -8, -8, 40, 40, 2);
+    test::add_particle(state, {40.1F, 0.1F, 0}, {50, 0, 0});
+    MapAccumulator maps(model, state, 1, 0.1);
+    for (int step = 0; step < 50; ++step) {
+        maps.add(state);
+        advance(state, 0.003);
+    }
+    for (const float speed : maps.maps().peak_speed.values) EXPECT_FALSE(speed > 1e-3);
+}
+
+TEST(MapAccumulator, held_and_broken_particles_do_not_count) {
+    const Model model = test::make_model(0.4);
+    State state = block(0.4, -8, -8, 10, 10, 2);
+    state.held.assign(state.count, 1);
+    state.held[0] = 0;
+    state.held[1] = 0;
+    state.position.x[1] = std::nanf("");
+    state.velocity.y[0] = std::nanf("");
+    MapAccumulator maps(model, state, 1, 0.1);
+    maps.add(state);
+    EXPECT_EQ(maps.volume(), model.particle_volume());
+}
+
+TEST(MapAccumulator, maps_share_a_frame_on_the_terrains_raster_around_the_debris) {
+    const Model model = test::make_model(0.4);
+    const State state = block(0.4, 0, 0, 25, 25, 2);  // 10 m square
+    MapAccumulator maps(model, state, 0.5, 0.1);
+    maps.add(state);
+    const HazardMaps result = maps.maps();
+    const GridGeometry& g = result.peak_depth.geometry;
+    for (const Grid<float>* map :
+         {&result.peak_speed, &result.peak_pressure, &result.arrival_time, &result.deposit_depth}) {
+        EXPECT_EQ(map->geometry, g);
+        EXPECT_EQ(map->values.size(), g.size());
+    }
+    EXPECT_EQ(std::fmod(g.x_min - 900, 0.5), 0);
+    EXPECT_EQ(std::fmod(g.y_min - 1900, 0.5), 0);
+    EXPECT_NEAR(g.x_min, 1000 - 20, 1);
+    EXPECT_NEAR(g.extent().x_max, 1010 + 20, 1);
+    EXPECT_NEAR(g.extent().y_max, 2010 + 20, 1);
+}
+
+TEST(MapAccumulator, maps_end_at_the_terrain_and_exist_even_without_debris) {
+    const Model model = test::make_model(0.4);
+    State state = block(0.4, -99, -99, 10, 10, 2);
+    MapAccumulator near_corner(model, state, 1, 0.1);
+    near_corner.add(state);
+    EXPECT_EQ(near_corner.maps().peak_depth.geometry.x_min, 900);
+    EXPECT_EQ(near_corner.maps().peak_depth.geometry.y_min, 1900);
+    state.held.assign(state.count, 1);
+    MapAccumulator nothing(model, state, 1, 0.1);
+    nothing.add(state);
+    const HazardMaps result = nothing.maps();
+    EXPECT_GT(result.peak_depth.geometry.size(), 4U);
+    for (const float depth : result.peak_depth.values) EXPECT_TRUE(std::isnan(depth));
+}
+
+}  // namespace
+}  // namespace talus

@@ -1,0 +1,168 @@
+#include "params/fields.hpp"
+
+#include <cmath>
+#include <limits>
+#include <set>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace talus {
+namespace {
+
+const Parameter& parameter(const std::string& section, const std::string& key) {
+    const Section* found = find_section(section);
+    EXPECT_NE(found, nullptr) << section;
+    const Parameter* p = found->find(key);
+    EXPECT_NE(p, nullptr) << key;
+    return *p;
+}
+
+TEST(FieldTable, EveryKeyHasHelpAndAUniqueName) {
+    for (const Section& section : scene_sections()) {
+        EXPECT_FALSE(section.help.empty()) << section.name;
+        std::set<std::string> keys;
+        for (const Parameter& p : section.parameters) {
+            EXPECT_TRUE(keys.insert(p.key).second) << section.name << "." << p.key;
+            EXPECT_TRUE(!p.help.empty() && p.help.back() == '.') << section.name << "." << p.key;
+        }
+    }
+}
+
+TEST(FieldTable, KeysOfMeasuresEndInTheirUnit) {
+    const std::vector<std::pair<std::string, std::string>> suffixes = {
+        {"m", "_m"}, {"s", "_s"}, {"m/s", "_mps"}, {"kg/m3", "_kgpm3"}, {"m3", "_m3"}};
+    for (const Section& section : scene_sections()) {
+        for (const Parameter& p : section.parameters) {
+            for (const auto& [unit, suffix] : suffixes) {
+                if (p.unit == unit) {
+                    EXPECT_THAT(p.key, testing::EndsWith(suffix));
+                }
+            }
+        }
+    }
+}
+
+TEST(FieldTable, EveryDefaultIsAllowed) {
+    for (const Section& section : scene_sections()) {
+        for (const Parameter& p : section.parameters) {
+            const ParameterValue value = default_value(section, p);
+            if (std::holds_alternative<std::monostate>(value)) {
+                EXPECT_TRUE(p.required || !p.absent.empty())
+                    << section.name << "." << p.key << " says not what happens";
+            } else {
+                EXPECT_EQ(problem_with(p, value), "") << section.name << "." << p.key;
+            }
+        }
+    }
+}
+
+/// A value of the parameter's kind that is allowed and is not its default.
+ParameterValue other_value(const Section& section, const Parameter& p) {
+    const ParameterValue usual = default_value(section, p);
+    switch (p.kind) {
+        case ParameterKind::boolean:
+            return !std::get<bool>(usual);
+        case ParameterKind::integer:
+            return std::get<std::int64_t>(usual) + 1;
+        case ParameterKind::number:
+            for (const double candidate : {0.75, 1.75, 0.25}) {
+                if (p.range.contains(candidate) && toml_text(candidate) != toml_text(usual)) return candidate;
+            }
+            break;
+        case ParameterKind::choice:
+            return p.choices.back();
+        case ParameterKind::text:
+        case ParameterKind::path:
+            return std::string("other");
+        case ParameterKind::text_list:
+            return std::vector<std::string>{"one", "two"};
+        case ParameterKind::extent:
+            return Extent{1, 2, 3, 4};
+    }
+    ADD_FAILURE() << p.key;
+    return {};
+}
+
+bool same(const ParameterValue& a, const ParameterValue& b) {
+    return a.index() == b.index() && toml_text(a) == toml_text(b);
+}
+
+TEST(FieldTable, EveryKeySetsItsOwnMemberAndNoOther) {
+    for (const Section& section : scene_sections()) {
+        for (const Parameter& p : section.parameters) {
+            SceneSpec spec;
+            spec.releases.resize(2);
+            spec.observations.resize(2);
+            const SceneSpec before = spec;
+            const std::size_t index = section.repeats ? 1 : 0;
+            const ParameterValue value = other_value(section, p);
+            p.set(spec, index, value);
+            int changed = 0;
+            for_each_value(spec, [&](const Section& s, std::size_t i, const Parameter& q, const ParameterValue& now) {
+                if (!same(now, q.get(before, i))) {
+                    ++changed;
+                    EXPECT_EQ(key_path(s, i, q), key_path(section, index, p));
+                    EXPECT_TRUE(same(now, value));
+                }
+            });
+            EXPECT_EQ(changed, 1) << key_path(section, index, p);
+        }
+    }
+}
+
+TEST(FieldTable, AnAbsentValueCanBeTakenBack) {
+    SceneSpec spec;
+    const Parameter& p = parameter("solver", "time_step_s");
+    p.set(spec, 0, 0.01);
+    ASSERT_TRUE(spec.solver.time_step.has_value());
+    p.set(spec, 0, {});
+    EXPECT_FALSE(spec.solver.time_step.has_value());
+}
+
+TEST(FieldTable, ValuesOutOfRangeNameTheRange) {
+    const Parameter& spacing = parameter("solver", "particle_spacing_m");
+    EXPECT_EQ(problem_with(spacing, 0.5), "");
+    EXPECT_EQ(problem_with(spacing, 0.0), "a number above 0 (m)");
+    const Parameter& viscosity = parameter("material", "viscosity");
+    EXPECT_EQ(problem_with(viscosity, 0.0), "");
+    EXPECT_EQ(problem_with(viscosity, 1.0), "a number from 0 to below 1");
+    const Parameter& band = parameter("terrain", "band");
+    EXPECT_EQ(problem_with(band, std::int64_t{0}), "a whole number at least 1");
+    EXPECT_EQ(problem_with(parameter("solver", "kernel"), std::string("gauss")),
+              R"(one of "wendland_c2", "cubic_spline", "spiky", "poly6_spiky")");
+}
+
+TEST(FieldTable, NumbersThatAreNotFiniteAreRefused) {
+    const double nan = std::nan(""), infinity = std::numeric_limits<double>::infinity();
+    EXPECT_NE(problem_with(parameter("release", "start_time_s"), infinity), "");
+    EXPECT_NE(problem_with(parameter("release", "start_time_s"), nan), "");
+    EXPECT_NE(problem_with(parameter("terrain", "extent_m"), Extent{0, 0, infinity, 1}), "");
+}
+
+TEST(FieldTable, AnExtentMustHaveAnArea) {
+    const Parameter& extent = parameter("terrain", "extent_m");
+    EXPECT_EQ(problem_with(extent, Extent{0, 0, 1, 1}), "");
+    EXPECT_NE(problem_with(extent, Extent{1, 0, 0, 1}), "");
+    EXPECT_NE(problem_with(extent, Extent{0, 1, 1, 1}), "");
+}
+
+TEST(FieldTable, ChoicesFollowTheEnumeration) {
+    SceneSpec spec;
+    const Parameter& kernel = parameter("solver", "kernel");
+    EXPECT_EQ(kernel.choices.size(), 4U);
+    kernel.set(spec, 0, std::string("cubic_spline"));
+    EXPECT_EQ(spec.solver.kernel, KernelChoice::cubic_spline);
+    kernel.set(spec, 0, std::string("poly6_spiky"));
+    EXPECT_EQ(spec.solver.kernel, KernelChoice::poly6_spiky);
+    EXPECT_EQ(plain_text(kernel.get(spec, 0)), "poly6_spiky");
+}
+
+TEST(NearestWord, TakesTheSmallestEditDistance) {
+    EXPECT_EQ(edit_distance("kitten", "sitting"), 3U);
+    EXPECT_EQ(edit_distance("", "abc"), 3U);
+    EXPECT_EQ(nearest_word("viscocity", {"friction_coefficient", "viscosity"}), "viscosity");
+}
+
+}  // namespace
+}  // namespace talus

@@ -1,0 +1,73 @@
+#include "params/scene_text.hpp"
+
+#include <fstream>
+#include <iterator>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace talus {
+namespace {
+
+using testing::HasSubstr;
+
+TEST(SceneReference, TheCommittedPageIsTheGeneratedOne) {
+    const std::string file = std::string(TALUS_SOURCE_DIR) + "/docs/scene-reference.md";
+    std::ifstream in(file);
+    ASSERT_TRUE(in) << file;
+    const std::string committed{std::istreambuf_iterator<char>(in), {}};
+    EXPECT_EQ(committed, scene_reference_markdown())
+        << "run: talus scene reference --markdown > docs/scene-reference.md";
+}
+
+TEST(SceneReference, NamesEveryKeyWithUnitDefaultAndRange) {
+    const std::string page = scene_reference_markdown(), text = scene_reference_text();
+    for (const Section& section : scene_sections()) {
+        for (const Parameter& p : section.parameters) {
+            EXPECT_THAT(page, HasSubstr("| `" + p.key + "` | " + p.unit + " |"));
+            EXPECT_THAT(text, HasSubstr("  " + p.key + "\n"));
+        }
+    }
+    EXPECT_THAT(page, HasSubstr("| `viscosity` |  | `0.1` | a number from 0 to below 1 |"));
+    EXPECT_THAT(page, HasSubstr("| from target_particle_count and the released volume |"));
+}
+
+TEST(WriteScene, SetsWhatDiffersAndCommentsTheRest) {
+    SceneSpec spec;
+    spec.terrain.file = "dem.tif";
+    spec.releases.resize(1);
+    spec.releases[0].file = "release.geojson";
+    spec.releases[0].volume = 600;
+    spec.material.viscosity = 0.05;
+    spec.scene.assumptions = {"One \"quoted\" sentence.", "Another."};
+    const std::string text = write_scene(spec, "A header.");
+    EXPECT_THAT(text, testing::StartsWith("# A header.\n"));
+    EXPECT_THAT(text, HasSubstr("\n[terrain]\n"));
+    EXPECT_THAT(text, HasSubstr("\nfile = \"dem.tif\"\n"));
+    EXPECT_THAT(text, HasSubstr("\n[[release]]\n"));
+    EXPECT_THAT(text, HasSubstr("\nvolume_m3 = 600\n"));
+    EXPECT_THAT(text, HasSubstr("\nviscosity = 0.05\n"));
+    EXPECT_THAT(text, HasSubstr("\n# friction_coefficient = 0.4\n"));
+    EXPECT_THAT(text, HasSubstr("\n# [[observation]]\n"));
+    EXPECT_THAT(text, HasSubstr("    \"One \\\"quoted\\\" sentence.\",\n"));
+}
+
+TEST(WriteScene, LinesStayWithinAPage) {
+    const std::string text = write_scene(SceneSpec{});
+    std::size_t begin = 0;
+    while (begin < text.size()) {
+        const std::size_t end = text.find('\n', begin);
+        EXPECT_LE(end - begin, 110U) << text.substr(begin, end - begin);
+        begin = end + 1;
+    }
+}
+
+TEST(TomlText, WritesNumbersExactlyAndEscapesText) {
+    EXPECT_EQ(toml_text(1.0 / 60), "0.016666666666666666");
+    EXPECT_EQ(plain_text(1.0 / 60), "0.0166667");
+    EXPECT_EQ(toml_text(std::string("a\"b\\c\nd\x01")), "\"a\\\"b\\\\c\\nd\\u0001\"");
+    EXPECT_EQ(toml_text(Extent{1, 2, 3.5, 4}), "[1, 2, 3.5, 4]");
+}
+
+}  // namespace
+}  // namespace talus

@@ -1,0 +1,243 @@
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "scene/scene.hpp"
+#include "scene_folder.hpp"
+
+namespace talus {
+namespace {
+
+using testing::AllOf;
+using testing::AnyOf;
+using testing::Contains;
+using testing::EndsWith;
+using testing::HasSubstr;
+using testing::StartsWith;
+
+class LoadScene : public SceneFolder {
+  protected:
+    [[nodiscard]] Scene loaded(const std::vector<std::string>& overrides = {}) const {
+        auto scene = load_scene(folder / "scene.toml", overrides);
+        if (!scene) throw std::runtime_error(scene.error().message);
+        return std::move(*scene);
+    }
+    [[nodiscard]] std::string line(int number) const {
+        return path("scene.toml") + ":" + std::to_string(number) + ": ";
+    }
+};
+
+TEST_F(LoadScene, BringsTerrainReleaseAndPathTogether) {
+    write_valley();
+    const Scene scene = loaded();
+    EXPECT_EQ(scene.terrain.elevation().geometry.columns, columns);
+    EXPECT_EQ(scene.crs.epsg, 2326);
+    ASSERT_EQ(scene.releases.size(), 1U);
+    // 20 m x 20 m on two facets, sloping 0.5 along and 0.2 across: 400 m2 / cos(slope) x 2 m.
+    EXPECT_NEAR(scene.releases[0].volume, 800 * std::sqrt(1 + 0.25 + 0.04), 8);
+    EXPECT_EQ(scene.spec.scene.title.rfind("LoadScene-", 0), 0U) << scene.spec.scene.title;
+    ASSERT_EQ(scene.inputs.size(), 3U);
+    EXPECT_EQ(scene.inputs[1].role, "terrain");
+    EXPECT_EQ(scene.inputs[2].role, "release \"scarp\"");
+    EXPECT_EQ(scene.inputs[2].bytes, std::filesystem::file_size(path("release.geojson")));
+    EXPECT_EQ(scene.inputs[2].hash.size(), 16U);
+}
+
+TEST_F(LoadScene, TracesThePathFromTheCrown) {
+    write_valley();
+    const Scene scene = loaded();
+    EXPECT_TRUE(scene.flow_path_traced);
+    // The crown is where the release is highest: at its western edge, on a flank.
+    EXPECT_NEAR(scene.flow_path.points().front().x, west + 20, 1.5);
+    EXPECT_NEAR(scene.flow_path.points().back().x, west + columns * cell, 2 * cell);
+    EXPECT_NEAR(scene.flow_path.points().back().y, south + rows * cell / 2.0, 2 * cell);
+    EXPECT_THAT(scene.notes, Contains(HasSubstr("flow path: traced downhill from release \"scarp\"")));
+}
+
+TEST_F(LoadScene, TheTerrainIsCroppedToItsExtent) {
+    write_valley();
+    const Scene scene = loaded({"terrain.extent_m=[824000, 825050, 824200, 825150]"});
+    EXPECT_EQ(scene.terrain.elevation().geometry.columns, 40);
+    EXPECT_EQ(scene.terrain.elevation().geometry.rows, 20);
+}
+
+TEST_F(LoadScene, AMissingTerrainSaysWhereToObtainIt) {
+    write_valley();
+    write("scene.toml",
+          "[terrain]\nfile = \"absent.tif\"\nobtain = \"the survey's open data page\"\n[[release]]\n"
+          "file = \"release.geojson\"\nthickness_m = 1\n");
+    EXPECT_THAT(load_error(), AllOf(StartsWith(line(2) + "terrain.file: "), HasSubstr("absent.tif"),
+                                    EndsWith("to obtain the file: the survey's open data page")));
+}
+
+TEST_F(LoadScene, TerrainErrorsNameTheLineOfTheKey) {
+    write_valley();
+    EXPECT_THAT(load_error({"terrain.band=7"}), AllOf(StartsWith(line(2) + "terrain.file: "), HasSubstr("band = 7")));
+    EXPECT_THAT(load_error({"terrain.file=" + folder.string()}), StartsWith("--set terrain.file="));
+    write("dem.tif", "");
+    EXPECT_THAT(load_error(), AllOf(StartsWith(line(2) + "terrain.file: "), HasSubstr("dem.tif")));
+}
+
+TEST_F(LoadScene, ATargetVolumeIsMetByAUniformThickness) {
+    write_valley("", "volume_m3 = 600");
+    const Scene scene = loaded();
+    EXPECT_NEAR(scene.releases[0].volume, 600, 0.01);
+    EXPECT_NEAR(scene.releases[0].patches[0].thickness, 600 / (400 * std::sqrt(1.29)), 0.01);
+    EXPECT_THAT(scene.notes, Contains(HasSubstr("uniform thickness of 1.3")));
+    write_valley("", "volume_m3 = 1e9");
+    EXPECT_THAT(load_error(), AllOf(StartsWith(line(6) + "release[0].volume_m3: "), HasSubstr("m thick")));
+}
+
+TEST_F(LoadScene, ThicknessComesFromTheAttributeOfEachPolygon) {
+    write_valley("", "thickness_attribute = \"d\"");
+    write_features("release.geojson",
+                   {rectangle(20, 90, 40, 100, "\"d\": 1.5"), rectangle(20, 100, 40, 110, "\"d\": 0.5")});
+    const Scene scene = loaded();
+    ASSERT_EQ(scene.releases[0].patches.size(), 2U);
+    EXPECT_EQ(scene.releases[0].patches[0].thickness, 1.5);
+    EXPECT_EQ(scene.releases[0].patches[1].thickness, 0.5);
+}
+
+TEST_F(LoadScene, AThicknessAttributeThatIsAbsentOrNotAboveZeroNamesTheFeature) {
+    write_valley("", "thickness_attribute = \"d\"");
+    const std::string place = line(6) + "release[0].thickness_attribute: ";
+    for (const std::string value : {"0", "-1", "null", "\"thick\"", "1e9"}) {
+        write_features("release.geojson",
+                       {rectangle(20, 90, 40, 100, "\"d\": 1.5"), rectangle(20, 100, 40, 110, "\"d\": " + value)});
+        EXPECT_THAT(load_error(), AllOf(StartsWith(place), HasSubstr("feature 2 has d = "), HasSubstr("above 0")));
+    }
+    write_features("release.geojson", {rectangle(20, 90, 40, 100, "\"depth\": 1.5")});
+    EXPECT_THAT(load_error(), AllOf(StartsWith(place), EndsWith("its attributes: depth")));
+}
+
+TEST_F(LoadScene, AThicknessRasterGivesThicknessWhereItIsAboveZero) {
+    write_valley("", "thickness_raster = \"thickness.tif\"");
+    const double nan = std::numeric_limits<double>::quiet_NaN();
+    write_terrain("thickness.tif", [&](double x, double) { return x < west + 30 ? 2.0 : nan; });
+    const Scene scene = loaded();
+    EXPECT_NEAR(scene.releases[0].volume, 400 * std::sqrt(1.29), 4);
+    EXPECT_THAT(scene.notes, Contains(HasSubstr("50 % of its area has no thickness")));
+    write_terrain("thickness.tif", [&](double, double) { return 0.0; });
+    EXPECT_THAT(load_error(), AllOf(StartsWith(line(6)), HasSubstr("no thickness above 0")));
+}
+
+TEST_F(LoadScene, AReleaseOutsideTheTerrainIsNamedWithPlaceAndExtent) {
+    write_valley();
+    write_features("release.geojson", {rectangle(-100, 90, -80, 110)});
+    EXPECT_THAT(load_error(),
+                AllOf(StartsWith(line(5) + "release[0].file: release \"scarp\" lies outside the terrain"),
+                      HasSubstr("(823900.0, 825090.0)"), HasSubstr("x 824002.5 to 824297.5"), HasSubstr("EPSG:2326")));
+    write_features("release.geojson", {rectangle(-10, 90, 20, 110)});
+    EXPECT_THAT(load_error(), HasSubstr("release \"scarp\" reaches beyond the terrain"));
+    write_features("release.geojson", {rectangle(20, 90, 40, 110)});
+    EXPECT_THAT(load_error({"terrain.extent_m=[824100, 825000, 824300, 825200]"}), HasSubstr("widen terrain.extent_m"));
+}
+
+TEST_F(LoadScene, AReleaseOverNodataIsNamedWithThePlace) {
+    write_valley();
+    write_terrain("dem.tif", [](double x, double y) {
+        const bool hole = std::abs(x - (west + 32.5)) < 1 && std::abs(y - (south + 102.5)) < 1;
+        return hole ? std::numeric_limits<double>::quiet_NaN() : valley(x, y);
+    });
+    EXPECT_THAT(load_error(), AllOf(StartsWith(line(5)), HasSubstr("release \"scarp\" lies over nodata")));
+}
+
+TEST_F(LoadScene, EmptyAndBrokenReleaseLayersAreRefused) {
+    write_valley();
+    write_features("release.geojson", {});
+    EXPECT_THAT(load_error(), AllOf(StartsWith(line(5) + "release[0].file: "), HasSubstr("release.geojson")));
+    write_features("release.geojson", {R"({"type": "Feature", "properties": {}, "geometry": {"type": "Polygon",
+        "coordinates": [[[824020, 825090], [824040, 825110], [824040, 825090], [824020, 825110], [824020, 825090]]]}})"});
+    EXPECT_THAT(load_error(), AllOf(StartsWith(line(5) + "release[0].file: "), HasSubstr("feature 1")));
+    std::filesystem::remove(path("release.geojson"));
+    EXPECT_THAT(load_error(), StartsWith(line(5) + "release[0].file: "));
+}
+
+TEST_F(LoadScene, OverlappingReleasesAreNamed) {
+    const std::string second = "[[release]]\nname = \"flank\"\nfile = \"flank.geojson\"\nthickness_m = 1\n";
+    write_valley(second);
+    write_features("flank.geojson", {rectangle(39, 90, 60, 110)});
+    EXPECT_THAT(load_error(),
+                AllOf(StartsWith(line(9) + "release[1].file: releases \"scarp\" and \"flank\" overlap by 20 m2"),
+                      HasSubstr("(824039.5")));
+    write_features("flank.geojson", {rectangle(40, 90, 60, 110)});  // shares an edge only
+    EXPECT_EQ(loaded().releases.size(), 2U);
+}
+
+TEST_F(LoadScene, OverlappingPolygonsOfOneReleaseAreRefused) {
+    write_valley();
+    write_features("release.geojson", {rectangle(20, 90, 40, 110), rectangle(25, 95, 30, 100)});
+    EXPECT_THAT(load_error(), AllOf(StartsWith(line(5)), HasSubstr("polygons of release \"scarp\" overlap by 25 m2")));
+}
+
+TEST_F(LoadScene, BuildingsTakeHeightAndNameOrSayWhatIsAssumed) {
+    write_valley("[buildings]\nfile = \"houses.geojson\"\nheight_attribute = \"h\"\nname_attribute = \"n\"\n");
+    write_features("houses.geojson", {rectangle(200, 90, 210, 100, "\"h\": 9, \"n\": \"House 38\""),
+                                      rectangle(220, 90, 230, 100, "\"h\": null, \"n\": null"),
+                                      rectangle(240, 90, 250, 100, "\"h\": 0, \"n\": \"\""),
+                                      rectangle(900, 90, 910, 100, "\"h\": 5, \"n\": \"far\"")});
+    const Scene scene = loaded();
+    ASSERT_EQ(scene.buildings.size(), 3U);
+    EXPECT_EQ(scene.buildings[0].name, "House 38");
+    EXPECT_EQ(scene.buildings[0].height, 9);
+    EXPECT_FALSE(scene.buildings[0].height_assumed);
+    EXPECT_NEAR(scene.buildings[0].roof_elevation, valley(west + 205, south + 95) + 9, 0.5);
+    EXPECT_EQ(scene.buildings[1].name, "building 2");
+    EXPECT_EQ(scene.buildings[1].height, 6);
+    EXPECT_TRUE(scene.buildings[2].height_assumed);
+    EXPECT_THAT(scene.notes, Contains("buildings: 1 of 4 lie outside the terrain and were left out"));
+    EXPECT_THAT(scene.notes, Contains("buildings: the height of 2 of 3 is assumed to be 6 m"));
+}
+
+TEST_F(LoadScene, BuildingsThatCannotBeUsedAreRefused) {
+    write_valley("[buildings]\nfile = \"houses.geojson\"\n");
+    write_features("houses.geojson", {rectangle(900, 90, 910, 100)});
+    EXPECT_THAT(load_error(),
+                AllOf(StartsWith(line(8) + "buildings.file: "), HasSubstr("all 1 buildings lie outside")));
+    write_features("houses.geojson", {rectangle(200, 90, 210, 100, "\"height\": 4")});
+    EXPECT_THAT(load_error({"buildings.height_attribute=h"}),
+                AllOf(StartsWith("--set buildings.height_attribute=h: "), EndsWith("its attributes: height")));
+}
+
+TEST_F(LoadScene, AReleaseOverABuildingIsNoted) {
+    write_valley("[buildings]\nfile = \"houses.geojson\"\n");
+    write_features("houses.geojson", {rectangle(35, 90, 45, 100)});
+    EXPECT_THAT(loaded().notes, Contains(HasSubstr("release \"scarp\" overlaps building \"building 1\" by 50 m2")));
+}
+
+TEST_F(LoadScene, AFlowPathFromAFileIsTurnedDownstream) {
+    write_valley("[flow_path]\nfile = \"path.geojson\"\n[[observation]]\nchainage_m = 500\nfront_velocity_mps = 5\n");
+    write_features("path.geojson", {R"({"type": "Feature", "properties": {}, "geometry": {"type": "LineString",
+        "coordinates": [[824250, 825100], [824130, 825100], [824030, 825100]]}})"});
+    const Scene scene = loaded();
+    EXPECT_FALSE(scene.flow_path_traced);
+    EXPECT_EQ(scene.flow_path.points().front().x, 824030);
+    EXPECT_NEAR(scene.flow_path.length(), 220, 1e-6);
+    EXPECT_THAT(scene.notes, Contains(HasSubstr("has been turned")));
+    EXPECT_THAT(scene.notes, Contains(HasSubstr("observation[0]: chainage 500 m lies beyond")));
+}
+
+TEST_F(LoadScene, AFlowPathFarFromTheReleaseIsNoted) {
+    write_valley("[flow_path]\nfile = \"path.geojson\"\n");
+    write_features("path.geojson", {R"({"type": "Feature", "properties": {}, "geometry": {"type": "LineString",
+        "coordinates": [[824030, 825180], [824250, 825180]]}})"});
+    EXPECT_THAT(loaded().notes, Contains(HasSubstr("outside the corridor of 60 m")));
+    write_features("path.geojson", {R"({"type": "Feature", "properties": {}, "geometry": {"type": "LineString",
+        "coordinates": [[834030, 825180], [834250, 825180]]}})"});
+    EXPECT_THAT(load_error(), AllOf(StartsWith(line(8) + "flow_path.file: "), HasSubstr("lies outside the terrain")));
+}
+
+TEST_F(LoadScene, ReprojectedVectorsAreNoted) {
+    write_valley();
+    // About 24 m x 22 m near the valley's top, in longitude and latitude.
+    write("release.geojson", R"({"type": "FeatureCollection", "features": [{"type": "Feature", "properties": {},
+        "geometry": {"type": "Polygon", "coordinates": [[[114.0580, 22.3651], [114.0582, 22.3651],
+        [114.0582, 22.3653], [114.0580, 22.3653], [114.0580, 22.3651]]]}}]})");
+    EXPECT_THAT(loaded().notes, Contains(HasSubstr("release \"scarp\": reprojected from EPSG:4326")));
+}
+
+}  // namespace
+}  // namespace talus

@@ -1,0 +1,179 @@
+// The ready-made scenes: what they claim to contain, and that their files are what their scripts make.
+
+#include <array>
+#include <cstdlib>
+#include <filesystem>
+#include <string>
+
+#include <gtest/gtest.h>
+
+#include "geo/raster.hpp"
+#include "geo/vector.hpp"
+#include "scene/scene.hpp"
+#include "support/fixtures.hpp"
+#include "terrain/flow_path.hpp"
+#include "terrain/terrain.hpp"
+
+namespace talus {
+namespace {
+
+const std::filesystem::path scenes = std::filesystem::path(TALUS_SOURCE_DIR) / "scenes";
+
+/// The reconstruction's ground and trail, read as a run reads them.
+class Reconstruction : public testing::Test {
+  protected:
+    void SetUp() override {
+        auto raster = read_terrain_raster((scenes / "sham_tseng/terrain.tif").string(), 1, std::nullopt);
+        ASSERT_TRUE(raster.ok()) << raster.error().message;
+        crs = raster->crs;
+        terrain = Terrain(raster->grid);
+        auto line = read_line((scenes / "sham_tseng/flow_path.geojson").string(), "", crs);
+        ASSERT_TRUE(line.ok()) << line.error().message;
+        EXPECT_EQ(line->reprojection, "");
+        path = FlowPath(line->points, 50);
+    }
+
+    [[nodiscard]] double bed(double chainage) const { return terrain.elevation_at(path.point_at(chainage)); }
+
+    Crs crs;
+    Terrain terrain;
+    FlowPath path;
+};
+
+TEST_F(Reconstruction, IsInHongKongGridAndHasNoGaps) {
+    EXPECT_EQ(crs.epsg, 2326);
+    EXPECT_EQ(terrain.cell(), 1.0);
+    for (const float elevation : terrain.elevation().values) ASSERT_FALSE(std::isnan(elevation));
+}
+
+TEST_F(Reconstruction, BedHasThePublishedElevations) {
+    constexpr double chainage_and_elevation[][2] = {{0, 153},   {22, 146}, {45, 132}, {67, 119}, {88, 112}, {98, 112},
+                                                    {130, 102}, {162, 88}, {193, 62}, {225, 44}, {258, 29}, {290, 18}};
+    // Whole metres are published.
+    for (const auto& [chainage, elevation] : chainage_and_elevation) EXPECT_NEAR(bed(chainage), elevation, 0.5);
+}
+
+TEST_F(Reconstruction, GullyPassesThePublishedPlanPositions) {
+    struct Place {
+        PlanPoint point;
+        double elevation;
+    };
+    constexpr Place places[] = {{{824255, 825780}, 102}, {{824240, 825750}, 88}, {{824230, 825720}, 62},
+                                {{824220, 825690}, 44},  {{824205, 825660}, 29}, {{824195, 825630}, 18}};
+    for (const Place& place : places) {
+        const auto position = path.locate(place.point);
+        ASSERT_TRUE(position);
+        EXPECT_LT(position->offset, 3) << "at elevation " << place.elevation;
+        EXPECT_NEAR(terrain.elevation_at(place.point), place.elevation, 2);
+    }
+    const auto bend = path.locate({824262, 825805});
+    ASSERT_TRUE(bend);
+    EXPECT_NEAR(bend->chainage, 98, 3);
+}
+
+TEST_F(Reconstruction, WaterfallIsTenMetresHighAndNearlyVertical) {
+    // Terrain cells of 1 m spread a step of 2 m over 4 m.
+    EXPECT_NEAR(bed(167) - bed(171), 11, 1);
+    double steepest = 0;
+    for (double chainage = 164; chainage < 174; chainage += 0.25) {
+        steepest = std::max(steepest, bed(chainage) - bed(chainage + 1));
+    }
+    EXPECT_GT(steepest, std::tan(70 * M_PI / 180));
+}
+
+TEST_F(Reconstruction, BedDescendsAllTheWay) {
+    for (double chainage = 0; chainage + 1 < path.length(); chainage += 1) {
+        EXPECT_LT(bed(chainage + 1), bed(chainage)) << "at chainage " << chainage;
+    }
+}
+
+TEST_F(Reconstruction, BankOppositeTheHillsideReachIsHighEnoughForTheImpactMarks) {
+    // Straight on down the hillside reach and across the gully, 12 m beyond where the trail turns.
+    const PlanPoint before = path.point_at(75), at = path.point_at(85);
+    const double ahead = 33 / std::hypot(at.x - before.x, at.y - before.y);
+    const PlanPoint bank{at.x + ahead * (at.x - before.x), at.y + ahead * (at.y - before.y)};
+    EXPECT_GT(terrain.elevation_at(bank) - bed(98), 3);
+}
+
+TEST(SceneScripts, MakeExactlyTheCommittedFiles) {
+    if (std::system("/usr/bin/python3 -c 'import numpy; from osgeo import gdal' >/dev/null 2>&1") != 0) {
+        GTEST_SKIP() << "scene scripts not checked: /usr/bin/python3 lacks GDAL or numpy (install python3-gdal)";
+    }
+    const std::array<std::pair<std::string, std::string>, 2> scripts{
+        {{"sham_tseng", "make_terrain.py"}, {"sham_tseng_real", "make_inputs.py"}}};
+    for (const auto& [scene, script] : scripts) {
+        const test::TemporaryFolder folder;
+        const std::filesystem::path& made = folder.path();
+        const std::string command =
+            "/usr/bin/python3 '" + (scenes / scene / script).string() + "' '" + made.string() + "'";
+        ASSERT_EQ(std::system(command.c_str()), 0) << command;
+        for (const char* file : {"release.geojson", "buildings.geojson", "flow_path.geojson"}) {
+            EXPECT_EQ(test::read_text(made / file), test::read_text(scenes / scene / file)) << scene << "/" << file;
+        }
+        if (scene == "sham_tseng") {
+            auto again = read_terrain_raster((made / "terrain.tif").string(), 1, std::nullopt);
+            auto committed = read_terrain_raster((scenes / scene / "terrain.tif").string(), 1, std::nullopt);
+            ASSERT_TRUE(again.ok() && committed.ok());
+            EXPECT_EQ(again->grid.geometry, committed->grid.geometry);
+            EXPECT_EQ(again->grid.values, committed->grid.values);
+            EXPECT_EQ(again->crs.epsg, committed->crs.epsg);
+        }
+    }
+}
+
+void expect_the_landslide(const Scene& scene) {
+    EXPECT_TRUE(scene.spec.scene.reconstruction);
+    EXPECT_GE(scene.spec.scene.assumptions.size(), 8U);
+    EXPECT_FALSE(scene.spec.scene.sources.empty());
+    EXPECT_EQ(scene.crs.epsg, 2326);
+    ASSERT_EQ(scene.releases.size(), 1U);
+    EXPECT_NEAR(scene.releases[0].volume, 600, 6);
+    EXPECT_EQ(scene.spec.material.friction_coefficient, 0.4);
+    EXPECT_EQ(scene.spec.material.viscosity, 0.1);
+    EXPECT_EQ(scene.spec.material.rest_density, 2000);
+    ASSERT_EQ(scene.spec.observations.size(), 2U);
+    EXPECT_EQ(scene.spec.observations[0].chainage, 121);
+    EXPECT_EQ(scene.spec.observations[0].front_velocity, 11);
+    EXPECT_EQ(scene.spec.observations[1].chainage, 217);
+    EXPECT_EQ(scene.spec.observations[1].front_velocity, 7);
+    bool kitchen = false;
+    for (const Building& building : scene.buildings) kitchen |= building.name == "House 38, kitchen";
+    EXPECT_TRUE(kitchen);
+    EXPECT_FALSE(scene.flow_path_traced);
+}
+
+TEST(Scenes, ReconstructionLoads) {
+    const auto scene = load_scene(scenes / "sham_tseng/scene.toml");
+    ASSERT_TRUE(scene.ok()) << scene.error().message;
+    expect_the_landslide(*scene);
+}
+
+TEST(Scenes, OfficialTerrainLoads) {
+    const char* folder = std::getenv("TALUS_DATA");
+    if (folder == nullptr || *folder == 0) {
+        GTEST_SKIP() << "sham_tseng_real not checked: TALUS_DATA does not say where hk_sham_tseng/ lies";
+    }
+    const auto scene = load_scene(scenes / "sham_tseng_real/scene.toml");
+    ASSERT_TRUE(scene.ok()) << scene.error().message;
+    expect_the_landslide(*scene);
+    // The trail is drawn along the thalweg: on average downhill over every 20 m.
+    for (double chainage = 0; chainage + 20 < 320; chainage += 5) {
+        EXPECT_GT(scene->terrain.elevation_at(scene->flow_path.point_at(chainage)),
+                  scene->terrain.elevation_at(scene->flow_path.point_at(chainage + 20)))
+            << "at chainage " << chainage;
+    }
+}
+
+TEST(Scenes, WithoutTheOfficialTerrainItSaysWhereToGetIt) {
+    const char* folder = std::getenv("TALUS_DATA");
+    const std::string before = folder != nullptr ? folder : "";
+    unsetenv("TALUS_DATA");
+    const auto scene = load_scene(scenes / "sham_tseng_real/scene.toml");
+    if (folder != nullptr) setenv("TALUS_DATA", before.c_str(), 1);
+    ASSERT_FALSE(scene.ok());
+    EXPECT_NE(scene.error().message.find("TALUS_DATA"), std::string::npos) << scene.error().message;
+    EXPECT_NE(scene.error().message.find("data.gov.hk"), std::string::npos) << scene.error().message;
+}
+
+}  // namespace
+}  // namespace talus

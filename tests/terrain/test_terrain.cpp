@@ -1,0 +1,133 @@
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <random>
+
+#include <gtest/gtest.h>
+
+#include "terrain/terrain.hpp"
+
+namespace talus {
+namespace {
+
+constexpr float nodata = std::numeric_limits<float>::quiet_NaN();
+
+Grid<float> make(const GridGeometry& g, const std::function<double(double, double)>& height) {
+    Grid<float> grid(g);
+    for (int r = 0; r < g.rows; ++r) {
+        for (int c = 0; c < g.columns; ++c) {
+            const PlanPoint p = g.centre(c, r);
+            grid.at(c, r) = static_cast<float>(height(p.x, p.y));
+        }
+    }
+    return grid;
+}
+
+TEST(Terrain, a_plane_is_reproduced_exactly_everywhere_between_cell_centres) {
+    const GridGeometry g{820000, 825000, 5, 40, 30};
+    const Terrain terrain(make(g, [](double x, double y) { return 100 + 0.5 * (x - 820000) - 0.25 * (y - 825000); }));
+    const double inverse_length = 1 / std::sqrt(1 + 0.5 * 0.5 + 0.25 * 0.25);
+    std::mt19937 random(1);
+    std::uniform_real_distribution<double> in_x(2.5, 197.5), in_y(2.5, 147.5);
+    for (int i = 0; i < 1000; ++i) {
+        const double x = in_x(random), y = in_y(random);
+        EXPECT_NEAR(terrain.elevation_at({820000 + x, 825000 + y}), 100 + 0.5 * x - 0.25 * y, 2e-5);
+        EXPECT_NEAR(terrain.slope_cosine_at({820000 + x, 825000 + y}), inverse_length, 1e-6);
+    }
+    const auto normal = terrain.sample(1.0F, 2.0F).normal;
+    EXPECT_NEAR(normal.x, -0.5 * inverse_length, 1e-6);
+    EXPECT_NEAR(normal.y, 0.25 * inverse_length, 1e-6);
+    EXPECT_NEAR(normal.z, inverse_length, 1e-6);
+}
+
+TEST(Terrain, frame_is_the_middle_of_the_grid_at_the_lowest_elevation) {
+    const Terrain terrain(make({1000, 2000, 2, 10, 20}, [](double x, double) { return x; }));
+    EXPECT_EQ(terrain.frame().origin.x, 1010);
+    EXPECT_EQ(terrain.frame().origin.y, 2020);
+    EXPECT_EQ(terrain.frame().origin.z, 1001);
+    EXPECT_NEAR(terrain.sample(-9.0F, 0.0F).height, 0, 1e-6);
+}
+
+TEST(Terrain, heights_agree_from_both_sides_of_every_cell_edge) {
+    std::mt19937 random(2);
+    std::uniform_real_distribution<float> any(0, 50);
+    Grid<float> grid(GridGeometry{0, 0, 5, 20, 20});
+    for (float& z : grid.values) z = any(random);
+    const Terrain terrain(grid);
+    for (int c = 1; c < 18; ++c) {
+        const float x = -47.5F + 5 * static_cast<float>(c);
+        for (float y = -40; y < 40; y += 1.3F) {
+            const float on = terrain.sample(x, y).height;
+            EXPECT_NEAR(terrain.sample(std::nextafter(x, -100.0F), y).height, on, 1e-3);
+            EXPECT_NEAR(terrain.sample(std::nextafter(x, 100.0F), y).height, on, 1e-3);
+        }
+    }
+}
+
+TEST(Terrain, cell_centres_carry_their_own_elevation) {
+    std::mt19937 random(3);
+    std::uniform_real_distribution<float> any(0, 50);
+    Grid<float> grid(GridGeometry{0, 0, 0.7, 15, 12});
+    for (float& z : grid.values) z = any(random);
+    const Terrain terrain(grid);
+    for (int r = 0; r < 12; ++r) {
+        for (int c = 0; c < 15; ++c) {
+            const PlanPoint p = grid.geometry.centre(c, r);
+            const auto sample = terrain.sample(p.x - terrain.frame().origin.x, p.y - terrain.frame().origin.y);
+            EXPECT_NEAR(sample.height + terrain.frame().origin.z, grid.at(c, r), 1e-3);
+        }
+    }
+}
+
+TEST(Terrain, normal_is_the_gradient_of_the_height) {
+    const Terrain terrain(
+        make({0, 0, 1, 50, 50}, [](double x, double y) { return 0.02 * x * y + 3 * std::sin(x / 7); }));
+    std::mt19937 random(4);
+    std::uniform_real_distribution<double> at(-24, 24), fraction(0.1, 0.9);
+    for (int i = 0; i < 200; ++i) {
+        // Well within a cell: across an edge the slope jumps.
+        const double x = std::floor(at(random)) - 0.5 + fraction(random);
+        const double y = std::floor(at(random)) - 0.5 + fraction(random);
+        const double h = 1e-3;
+        const double slope_x = (terrain.sample(x + h, y).height - terrain.sample(x - h, y).height) / (2 * h);
+        const double slope_y = (terrain.sample(x, y + h).height - terrain.sample(x, y - h).height) / (2 * h);
+        const auto n = terrain.sample(x, y).normal;
+        EXPECT_NEAR(-n.x / n.z, slope_x, 1e-6);
+        EXPECT_NEAR(-n.y / n.z, slope_y, 1e-6);
+        EXPECT_NEAR(length(n), 1, 1e-12);
+    }
+}
+
+TEST(Terrain, covers_the_hull_of_cell_centres_and_nothing_else) {
+    const Terrain terrain(make({0, 0, 2, 10, 10}, [](double, double) { return 5; }));
+    EXPECT_TRUE(terrain.covers(-9.0F, -9.0F));
+    EXPECT_TRUE(terrain.covers(9.0F, 9.0F));
+    EXPECT_FALSE(terrain.covers(-9.01F, 0.0F));
+    EXPECT_FALSE(terrain.covers(0.0F, 9.01F));
+    EXPECT_FALSE(terrain.covers(std::numeric_limits<float>::quiet_NaN(), 0.0F));
+    EXPECT_FALSE(terrain.covers(std::numeric_limits<float>::infinity(), 0.0F));
+    EXPECT_TRUE(std::isnan(terrain.elevation_at({0.5, 10})));
+    EXPECT_TRUE(std::isnan(terrain.slope_cosine_at({0.5, 10})));
+}
+
+TEST(Terrain, does_not_cover_cells_with_a_nodata_corner) {
+    Grid<float> grid = make({0, 0, 1, 10, 10}, [](double, double) { return 5; });
+    grid.at(4, 4) = nodata;  // centre at local (-0.5, -0.5)
+    const Terrain terrain(grid);
+    for (const float dx : {-0.9F, 0.9F}) {
+        for (const float dy : {-0.9F, 0.9F}) EXPECT_FALSE(terrain.covers(-0.5F + dx, -0.5F + dy));
+    }
+    EXPECT_TRUE(terrain.covers(-0.5F + 1.01F, -0.5F));
+    EXPECT_TRUE(terrain.covers(-0.5F, -0.5F - 1.01F));
+    EXPECT_TRUE(std::isnan(terrain.elevation_at({4.5, 4.9})));
+    EXPECT_EQ(terrain.frame().origin.z, 5) << "nodata must not become the lowest elevation";
+}
+
+TEST(Terrain, beyond_the_grid_the_edge_cell_goes_on) {
+    const Terrain terrain(make({0, 0, 2, 10, 10}, [](double x, double) { return 2 * x; }));
+    EXPECT_NEAR(terrain.sample(15.0F, 0.0F).height, 2 * (15 + 9), 1e-4);
+    EXPECT_NEAR(terrain.sample(-15.0F, 0.0F).height, 2 * (-15 + 9), 1e-4);
+}
+
+}  // namespace
+}  // namespace talus
