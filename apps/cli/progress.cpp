@@ -81,6 +81,10 @@ std::string clock_text(double seconds) {
     return fmt::format("{}:{:02}", total / 60, total % 60);
 }
 
+ProgressReporter::ProgressReporter(ProgressStyle style) : style_(style) {
+    if (style == ProgressStyle::lines) next_ += 1s;  // a short run needs none, and the first estimates are poor
+}
+
 void ProgressReporter::report(const Progress& progress) {
     if (style_ == ProgressStyle::none) return;
     const auto now = std::chrono::steady_clock::now();

@@ -20,7 +20,7 @@ enum class ProgressStyle {
 /// Tells a person or a program how far the run is.
 class ProgressReporter {
   public:
-    explicit ProgressReporter(ProgressStyle style) : style_(style) {}
+    explicit ProgressReporter(ProgressStyle style);
     /// Call after every step; most calls return at once.
     void report(const Progress& progress);
     /// Replaces the bar by what the program is doing now ("writing maps and report"); lines print it.
@@ -30,8 +30,7 @@ class ProgressReporter {
 
   private:
     ProgressStyle style_;
-    std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
-    std::chrono::steady_clock::time_point next_ = start_;
+    std::chrono::steady_clock::time_point next_ = std::chrono::steady_clock::now();
     bool drawn_ = false;
 };
 

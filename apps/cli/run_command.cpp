@@ -11,6 +11,7 @@
 #include "commands.hpp"
 #include "exit_code.hpp"
 #include "interrupt.hpp"
+#include "params/fields.hpp"
 #include "products/particle_series.hpp"
 #include "products/products.hpp"
 #include "progress.hpp"
@@ -77,11 +78,21 @@ void print(const std::string& text) {
 }
 
 /// Paths into the temporary folder would mean nothing to the reader of a manifest.
-void name_builtin_inputs(Scene& scene, const fs::path& unpacked) {
+void name_builtin_files(Scene& scene, const fs::path& unpacked) {
     const std::string prefix = (unpacked / "").string();
-    for (InputFile& input : scene.inputs) {
-        if (input.path.starts_with(prefix)) {
-            input.path = fmt::format("built-in:{}/{}", builtin_scene_name, input.path.substr(prefix.size()));
+    const auto named = [&](const std::string& path) {
+        if (!path.starts_with(prefix)) return path;
+        return fmt::format("built-in:{}/{}", builtin_scene_name, path.substr(prefix.size()));
+    };
+    scene.file = named(scene.file.string());
+    for (InputFile& input : scene.inputs) input.path = named(input.path);
+    for (const Section& section : scene_sections()) {
+        for (std::size_t index = 0; index < section.count(scene.spec); ++index) {
+            for (const Parameter& parameter : section.parameters) {
+                const ParameterValue value = parameter.get(scene.spec, index);
+                const auto* path = std::get_if<std::string>(&value);
+                if (parameter.kind == ParameterKind::path && path) parameter.set(scene.spec, index, named(*path));
+            }
         }
     }
 }
@@ -93,7 +104,14 @@ int run_loaded(const RunArguments& arguments, const Scene& scene, OutputFolder& 
     Status series_status;
     std::optional<ParticleSeries> series;
     RunOptions options;
-    options.on_progress = [&](const Progress& now) { progress.report(now); };
+    bool notes_said = arguments.quiet || arguments.json;
+    options.on_progress = [&](const Progress& now) {
+        // Not before: an input that cannot be run is refused with one line alone.
+        if (!std::exchange(notes_said, true)) {
+            for (const std::string& note : scene.notes) print(fmt::format("note: {}\n", note));
+        }
+        progress.report(now);
+    };
     options.stop_requested = &watch.stop_requested();
     if (scene.spec.outputs.particle_series_interval > 0) {
         series.emplace(output.path() / "particles");
@@ -164,7 +182,7 @@ int run_command(const RunArguments& arguments) {
     if (arguments.threads) overrides.push_back(fmt::format("solver.thread_count={}", *arguments.threads));
     auto scene = load_scene(file, overrides);
     if (!scene) return fail(exit_code::bad_input, scene.error().message);
-    if (unpacked) name_builtin_inputs(*scene, unpacked->path());
+    if (unpacked) name_builtin_files(*scene, unpacked->path());
     if (watch.stop_requested()) return fail(exit_code::interrupted, "interrupted before the run began");
 
     std::optional<DefaultParent> parent;
@@ -174,9 +192,6 @@ int run_command(const RunArguments& arguments) {
     if (!output) return fail(exit_code::bad_input, output.error().message);
     watch.remove_at_once(output->path());
 
-    if (!arguments.quiet && !arguments.json) {
-        for (const std::string& note : scene->notes) print(fmt::format("note: {}\n", note));
-    }
     return run_loaded(arguments, *scene, *output, folder, watch);
 }
 

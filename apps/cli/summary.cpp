@@ -51,7 +51,7 @@ std::string buildings_text(const Observation& observation) {
 }
 
 std::string speed_text(double speed) {
-    return std::isfinite(speed) ? fmt::format("{:.1f} m/s", speed) : std::string("not reached");
+    return std::isfinite(speed) ? fmt::format("{:.1f} m/s", speed) : std::string("not known");
 }
 
 std::string line(const char* label, const std::string& text) {
@@ -80,8 +80,8 @@ std::string summary_text(const Scene& scene, const RunResult& result, const std:
     const Observation& seen = result.observation;
     const TimeSample end = seen.timeseries.empty() ? TimeSample{} : seen.timeseries.back();
     std::string text = scene.spec.scene.title;
-    if (scene.spec.scene.reconstruction && text.find("reconstruction") == std::string::npos)
-        text += " (reconstruction)";
+    const bool said = text.find("reconstruction") != std::string::npos;
+    if (scene.spec.scene.reconstruction && !said) text += " (reconstruction)";
     text += result.status == RunStatus::complete ? "\n" : ", PARTIAL RESULT\n";
     text += line("stopped", result.stop_reason);
     text += line("simulated", fmt::format("{:.1f} s in {:.1f} s: {:.2f} x real time, {} particles of {:.3g} m",
@@ -89,11 +89,12 @@ std::string summary_text(const Scene& scene, const RunResult& result, const std:
                                           result.particles, result.particle_spacing));
     for (const ObservationSpec& observed : scene.spec.observations) {
         const FrontSample* front = front_at(seen, observed.chainage, scene.spec.outputs.chainage_interval);
-        text +=
-            line("front velocity",
-                 fmt::format("{} at {:g} m (debris there {}); observed {:g} m/s",
-                             speed_text(front == nullptr ? never : front->front_velocity), observed.chainage,
-                             speed_text(front == nullptr ? never : front->particle_speed), observed.front_velocity));
+        const std::string computed = front == nullptr
+                                         ? "not reached"
+                                         : fmt::format("{}, debris there {}", speed_text(front->front_velocity),
+                                                       speed_text(front->particle_speed));
+        text += line("front velocity", fmt::format("at {:g} m: {}; observed {:g} m/s", observed.chainage, computed,
+                                                   observed.front_velocity));
     }
     if (std::isfinite(seen.run_out.horizontal_distance)) {
         text += line("run-out", fmt::format("{:.0f} m, drop {:.0f} m, runout angle {:.1f} degrees",

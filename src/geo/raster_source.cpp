@@ -145,6 +145,18 @@ Status check_cells(const std::string& file, const Position& position, int column
     return {};
 }
 
+struct Scaling {
+    double scale = 1, offset = 0;
+};
+
+Scaling scaling_of(GDALRasterBand& band) {
+    Scaling scaling;
+    int given = 0;
+    if (const double scale = band.GetScale(&given); given != 0) scaling.scale = scale;
+    if (const double offset = band.GetOffset(&given); given != 0) scaling.offset = offset;
+    return scaling;
+}
+
 /// "m", the unit as stated if it is none that is known, or "not stated". Refuses other known units.
 Result<std::string> value_unit_of(const std::string& file, int band_number, GDALRasterBand& band,
                                   const OGRSpatialReference& reference, const Crs& crs) {
@@ -162,11 +174,15 @@ Result<std::string> value_unit_of(const std::string& file, int band_number, GDAL
     if (!metres) return stated;
     if (std::abs(*metres - 1) < 1e-9) return std::string("m");
     const std::string mended = mended_name(file, "_m", ".tif");
+    // gdal_calc.py works on the stored numbers, before scale and offset.
+    const Scaling scaling = scaling_of(band);
+    const std::string offset = scaling.offset != 0 ? fmt::format("{:+.10g}", scaling.offset * *metres) : "";
     const std::string crs_option = crs.epsg != 0 ? fmt::format(" -a_srs EPSG:{}", crs.epsg) : "";
     return Error{fmt::format(
-        "{}: values are in {} of {:.8g} m, metres are needed: gdal_calc.py -A {} --A_band={} --calc='A*{:.10g}' "
+        "{}: values are in {} of {:.8g} m, metres are needed: gdal_calc.py -A {} --A_band={} --calc='A*{:.10g}{}' "
         "--type=Float32 --NoDataValue=-9999 --outfile={} && gdal_edit.py -units m{} {}",
-        file, stated, *metres, shell_quoted(file), band_number, *metres, mended, crs_option, mended)};
+        file, stated, *metres, shell_quoted(file), band_number, scaling.scale * *metres, offset, mended, crs_option,
+        mended)};
 }
 
 /// GDAL reads zeros where a raw file ends too early; its size tells.
@@ -262,11 +278,10 @@ Result<RasterSource> open_raster(const std::string& file, int band) {
     source.x_min = source.first_column_west ? g[0] : g[0] + source.columns * g[1];
     source.y_min = source.first_row_north ? g[3] + source.rows * g[5] : g[3];
 
+    const Scaling scaling = scaling_of(*source.band);
+    source.scale = scaling.scale;
+    source.offset = scaling.offset;
     int given = 0;
-    source.scale = source.band->GetScale(&given);
-    if (given == 0) source.scale = 1;
-    source.offset = source.band->GetOffset(&given);
-    if (given == 0) source.offset = 0;
     const double nodata = source.band->GetNoDataValue(&given);
     if (given != 0) source.nodata = nodata;
     return Result<RasterSource>(std::move(source));

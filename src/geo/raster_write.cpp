@@ -69,6 +69,7 @@ Status write_bytes(const std::string& file, const GByte* bytes, std::size_t coun
 }  // namespace
 
 Status write_cog(const std::string& file, const RasterBand& band, const Crs& crs) {
+    if (band.grid->values.empty()) return Error{fmt::format("{}: cannot be made: the map has no cells", file)};
     GdalMessages messages;
     const GDALDatasetUniquePtr source = to_dataset(band, crs);
     if (!source) return Error{fmt::format("{}: cannot be made: {}", file, messages.failure_or("out of memory"))};

@@ -39,8 +39,8 @@ bool identify(const OGRSpatialReference& reference, Crs& crs) {
 
 std::string Crs::label() const {
     if (wkt.empty() && epsg == 0) return "no CRS";
-    const std::string shown = name.empty() ? "unnamed" : name;
-    return epsg != 0 ? fmt::format("EPSG:{} ({})", epsg, shown) : shown;
+    if (epsg == 0) return name.empty() ? "unnamed CRS" : name;
+    return name.empty() ? fmt::format("EPSG:{}", epsg) : fmt::format("EPSG:{} ({})", epsg, name);
 }
 
 Crs to_crs(const OGRSpatialReference& reference) {

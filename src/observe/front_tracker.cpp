@@ -27,11 +27,11 @@ FrontTracker::FrontTracker(const Model& model, const State& state, FlowPath flow
     const auto bins = static_cast<std::size_t>(flow_path_.length() / interval_) + 1;
     arrival_.assign(bins, never);
     speed_.assign(bins, never);
-    held_ = locate_particles(model, state);
-    current_ = farthest_ = find_front();
+    held_ = find_front(model, state);
+    farthest_ = current_;
 }
 
-std::uint32_t FrontTracker::locate_particles(const Model& model, const State& state) {
+std::uint32_t FrontTracker::locate_particles(const Model& model, const State& state, double from) {
     chainage_.resize(state.count);  // never grows: particles only leave
     const WorldPoint& origin = model.terrain.frame().origin;
     return cpu::reduce_ranges(
@@ -41,30 +41,38 @@ std::uint32_t FrontTracker::locate_particles(const Model& model, const State& st
                 chainage_[i] = -1;
                 if (state.held[i] != 0) {
                     ++held;
-                } else if (const auto at =
-                               flow_path_.locate({origin.x + state.position.x[i], origin.y + state.position.y[i]})) {
-                    chainage_[i] = static_cast<float>(at->chainage);
+                    continue;
                 }
+                const PlanPoint p{origin.x + state.position.x[i], origin.y + state.position.y[i]};
+                const float bound = flow_path_.chainage_bound(p);
+                if (bound < 0 || bound < from) continue;
+                if (const auto at = flow_path_.locate(p)) chainage_[i] = static_cast<float>(at->chainage);
             }
             return held;
         },
         std::plus<>{});
 }
 
-double FrontTracker::find_front() {
-    // The front hardly moves within a step: what lies well behind where it was need not be looked at.
-    const auto collect = [&](float from) {
+std::uint32_t FrontTracker::find_front(const Model& model, const State& state) {
+    std::uint32_t held = 0;
+    const auto collect = [&](double from) {
+        held = locate_particles(model, state, from);
         candidates_.clear();
         for (const float c : chainage_) {
-            if (c >= from) candidates_.push_back(c);
+            if (c >= 0 && c >= from) candidates_.push_back(c);
         }
         return candidates_.size() >= front_count_;
     };
+    // The front hardly moves within a step: debris well behind where it was need not be located.
     const double nearly = std::isnan(current_) ? 0 : std::max(0.0, current_ - head_length_);
-    if (!collect(static_cast<float>(nearly)) && !collect(0)) return never;
-    const auto front = candidates_.begin() + static_cast<std::ptrdiff_t>(front_count_) - 1;
-    std::nth_element(candidates_.begin(), front, candidates_.end(), std::greater<>{});
-    return *front;
+    if (collect(nearly) || (nearly > 0 && collect(0))) {
+        const auto front = candidates_.begin() + static_cast<std::ptrdiff_t>(front_count_) - 1;
+        std::nth_element(candidates_.begin(), front, candidates_.end(), std::greater<>{});
+        current_ = *front;
+    } else {
+        current_ = never;
+    }
+    return held;
 }
 
 double FrontTracker::speed_behind(double front, const State& state) const {
@@ -81,9 +89,8 @@ double FrontTracker::speed_behind(double front, const State& state) const {
 
 void FrontTracker::after_step(const Model& model, const State& state) {
     if (flow_path_.empty()) return;
-    const std::uint32_t held = locate_particles(model, state);
     const double before = current_;
-    current_ = find_front();
+    const std::uint32_t held = find_front(model, state);
     const bool release_started = held != held_;
     held_ = held;
     if (std::isnan(current_) || current_ <= farthest_) return;

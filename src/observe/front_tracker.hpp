@@ -34,9 +34,10 @@ class FrontTracker {
     [[nodiscard]] std::vector<FrontSample> samples() const;
 
   private:
-    /// Fills chainage_ and returns how many particles are held.
-    std::uint32_t locate_particles(const Model& model, const State& state);
-    [[nodiscard]] double find_front();
+    /// Fills chainage_ for the particles beyond `from` and returns how many particles are held.
+    std::uint32_t locate_particles(const Model& model, const State& state, double from);
+    /// Sets current_ and returns how many particles are held.
+    std::uint32_t find_front(const Model& model, const State& state);
     [[nodiscard]] double speed_behind(double front, const State& state) const;
     [[nodiscard]] double fitted_velocity(std::size_t middle) const;
 
@@ -45,7 +46,7 @@ class FrontTracker {
     std::size_t front_count_ = 1;
     std::uint32_t held_ = 0;
     double current_ = never, farthest_ = never;
-    std::vector<float> chainage_;    // by sorted index; -1: held, or outside the corridor
+    std::vector<float> chainage_;    // by sorted index; -1: held, outside the corridor, or far behind the front
     std::vector<float> candidates_;  // reused
     std::vector<double> arrival_;    // by chainage / interval; NaN: not yet
     std::vector<double> speed_;

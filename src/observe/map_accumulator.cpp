@@ -18,8 +18,20 @@ constexpr double margin = 20;         ///< m around the reached cells
 constexpr std::size_t grain = 1024;   ///< particles per task
 constexpr float not_a_number = std::numeric_limits<float>::quiet_NaN();
 
-std::uint32_t increment(std::uint32_t& counter) {
-    return std::atomic_ref<std::uint32_t>(counter).fetch_add(1, std::memory_order_relaxed);
+std::uint32_t fetch_add(std::uint32_t& counter, std::uint32_t n) {
+    return std::atomic_ref<std::uint32_t>(counter).fetch_add(n, std::memory_order_relaxed);
+}
+
+/// Whole-number weights of the cells before, at and after a position along one axis: a quadratic B-spline. What would
+/// fall off the map's rim stays in its outermost cell. `offset`: from the cell's centre, in cells.
+std::array<int, 3> weights(double offset, int cell, int cells) {
+    const double f = std::clamp(offset, -0.5, 0.5);
+    std::array<int, 3> weight{static_cast<int>(0.5 * (0.5 - f) * (0.5 - f) * one), 0,
+                              static_cast<int>(0.5 * (0.5 + f) * (0.5 + f) * one)};
+    if (cell == 0) weight[0] = 0;
+    if (cell == cells - 1) weight[2] = 0;
+    weight[1] = one - weight[0] - weight[2];
+    return weight;
 }
 
 }  // namespace
@@ -49,40 +61,52 @@ MapAccumulator::MapAccumulator(const Model& model, const State& state, double ma
     active_.resize(std::min(positions, most_entries));
     entry_start_.resize(active_.size() + 1);
     entries_.resize(most_entries);
+    cell_.resize(state.count);
     if (state.count > 0) first_particle_ = {origin.x + state.position.x[0], origin.y + state.position.y[0]};
 }
 
-bool MapAccumulator::counts(const State& state, std::size_t i) const {
-    return state.held[i] == 0 && std::isfinite(state.position.x[i]) && std::isfinite(state.position.y[i]);
+MapAccumulator::Cell MapAccumulator::cell_of(const LocalPoint& p) const {
+    const double u = (p.x + x_offset_) * inverse_cell_, v = (p.y + y_offset_) * inverse_cell_;
+    return {static_cast<int>(std::clamp(u, 0.0, geometry_.columns - 1.0)),
+            static_cast<int>(std::clamp(v, 0.0, geometry_.rows - 1.0))};
 }
 
-MapAccumulator::Share MapAccumulator::share_of(const LocalPoint& p) const {
-    const auto axis = [](double u, int cells, std::array<int, 3>& weight) {
-        const double cell = std::clamp(std::floor(u), 0.0, cells - 1.0);
-        const double f = std::clamp(u - cell - 0.5, -0.5, 0.5);  // from the cell's centre
-        weight[0] = static_cast<int>(0.5 * (0.5 - f) * (0.5 - f) * one + 0.5);
-        weight[2] = static_cast<int>(0.5 * (0.5 + f) * (0.5 + f) * one + 0.5);
-        weight[1] = one - weight[0] - weight[2];
-        return static_cast<int>(cell) - 1;
-    };
-    Share share{};
-    share.column = axis((p.x + x_offset_) * inverse_cell_, geometry_.columns, share.weight_x);
-    share.row = axis((p.y + y_offset_) * inverse_cell_, geometry_.rows, share.weight_y);
-    return share;
+void MapAccumulator::locate_particles(const State& state) {
+    cpu::parallel_ranges(state.count, grain, [&](std::size_t first, std::size_t last) {
+        for (std::size_t i = first; i < last; ++i) {
+            const LocalPoint p = state.position.at(i);
+            const bool counts = state.held[i] == 0 && std::isfinite(p.x) && std::isfinite(p.y);
+            cell_[i] = counts ? cell_of(p) : Cell{-1, -1};
+        }
+    });
 }
 
 template <class F>
-void MapAccumulator::for_each_tile(const LocalPoint& p, const F& f) const {
-    const Share share = share_of(p);
-    const int first_column = std::max(share.column, 0) / tile_size, first_row = std::max(share.row, 0) / tile_size;
-    const int last_column = std::min(share.column + 2, geometry_.columns - 1) / tile_size;
-    const int last_row = std::min(share.row + 2, geometry_.rows - 1) / tile_size;
-    for (int row = first_row; row <= last_row; ++row) {
-        for (int column = first_column; column <= last_column; ++column) {
-            f(static_cast<std::size_t>(row) * static_cast<std::size_t>(tile_columns_) +
-              static_cast<std::size_t>(column));
+void MapAccumulator::for_each_run(std::size_t first, std::size_t last, const F& f) const {
+    std::array<std::uint32_t, 64> run{};
+    std::uint32_t length = 0;
+    std::size_t run_position = 0;
+    for (std::size_t i = first; i < last; ++i) {
+        const Cell cell = cell_[i];
+        if (cell.column < 0) continue;
+        const int first_column = std::max(cell.column - 1, 0) / tile_size;
+        const int last_column = std::min(cell.column + 1, geometry_.columns - 1) / tile_size;
+        const int first_row = std::max(cell.row - 1, 0) / tile_size;
+        const int last_row = std::min(cell.row + 1, geometry_.rows - 1) / tile_size;
+        for (int row = first_row; row <= last_row; ++row) {
+            for (int column = first_column; column <= last_column; ++column) {
+                const std::size_t position = static_cast<std::size_t>(row) * static_cast<std::size_t>(tile_columns_) +
+                                             static_cast<std::size_t>(column);
+                if (length == run.size() || (length > 0 && position != run_position)) {
+                    f(run_position, run.data(), length);
+                    length = 0;
+                }
+                run_position = position;
+                run[length++] = static_cast<std::uint32_t>(i);
+            }
         }
     }
+    if (length > 0) f(run_position, run.data(), length);
 }
 
 void MapAccumulator::sort_into_tiles(const State& state) {
@@ -95,15 +119,13 @@ void MapAccumulator::sort_into_tiles(const State& state) {
         }
     });
     active_count_ = 0;
+    locate_particles(state);
     cpu::parallel_ranges(state.count, grain, [&](std::size_t first, std::size_t last) {
-        for (std::size_t i = first; i < last; ++i) {
-            if (!counts(state, i)) continue;
-            for_each_tile(state.position.at(i), [&](std::size_t position) {
-                if (increment(tile_count_[position]) == 0) {
-                    active_[increment(active_count_)] = static_cast<std::uint32_t>(position);
-                }
-            });
-        }
+        for_each_run(first, last, [&](std::size_t position, const std::uint32_t*, std::uint32_t n) {
+            if (fetch_add(tile_count_[position], n) == 0) {
+                active_[fetch_add(active_count_, 1)] = static_cast<std::uint32_t>(position);
+            }
+        });
     });
     std::uint32_t start = 0;
     for (std::uint32_t k = 0; k < active_count_; ++k) {
@@ -123,12 +145,9 @@ void MapAccumulator::sort_into_tiles(const State& state) {
     }
     entry_start_[active_count_] = start;
     cpu::parallel_ranges(state.count, grain, [&](std::size_t first, std::size_t last) {
-        for (std::size_t i = first; i < last; ++i) {
-            if (!counts(state, i)) continue;
-            for_each_tile(state.position.at(i), [&](std::size_t position) {
-                entries_[increment(tile_count_[position])] = static_cast<std::uint32_t>(i);
-            });
-        }
+        for_each_run(first, last, [&](std::size_t position, const std::uint32_t* particles, std::uint32_t n) {
+            std::copy_n(particles, n, entries_.begin() + fetch_add(tile_count_[position], n));
+        });
     });
     for (std::uint32_t k = 0; k < active_count_; ++k) tile_count_[active_[k]] = 0;
 }
@@ -136,21 +155,25 @@ void MapAccumulator::sort_into_tiles(const State& state) {
 void MapAccumulator::sum_up(Tile& tile, const State& state, std::size_t first, std::size_t last) const {
     for (std::size_t k = first; k < last; ++k) {
         const std::size_t i = entries_[k];
-        const Share share = share_of(state.position.at(i));
+        const Cell cell = cell_[i];
+        const auto weight_x = weights((state.position.x[i] + x_offset_) * inverse_cell_ - cell.column - 0.5,
+                                      cell.column, geometry_.columns);
+        const auto weight_y =
+            weights((state.position.y[i] + y_offset_) * inverse_cell_ - cell.row - 0.5, cell.row, geometry_.rows);
         const double speed = length(state.velocity.at(i));
-        const auto whole_speed = static_cast<std::int64_t>((speed < fastest ? speed : fastest) * speed_units + 0.5);
-        for (int r = 0; r < 3; ++r) {
-            // What would fall off the map's rim stays in its outermost cells.
-            const int row = std::clamp(share.row + r, 0, geometry_.rows - 1) - tile.row;
-            if (row < 0 || row >= tile_size) continue;
-            for (int c = 0; c < 3; ++c) {
-                const int column = std::clamp(share.column + c, 0, geometry_.columns - 1) - tile.column;
-                if (column < 0 || column >= tile_size) continue;
-                const std::int64_t weight = share.weight_x[static_cast<std::size_t>(c)] *
-                                            static_cast<std::int64_t>(share.weight_y[static_cast<std::size_t>(r)]);
-                const auto cell = static_cast<std::size_t>(row * tile_size + column);
-                tile.volume[cell] += weight;
-                tile.momentum[cell] += weight * whole_speed;
+        const auto whole_speed = std::llround((speed < fastest ? speed : fastest) * speed_units);
+        // The particle's cells that lie in this tile.
+        const int column = cell.column - 1 - tile.column, row = cell.row - 1 - tile.row;
+        const int first_column = std::max(0, -column), last_column = std::min(3, tile_size - column);
+        const int first_row = std::max(0, -row), last_row = std::min(3, tile_size - row);
+        for (int r = first_row; r < last_row; ++r) {
+            for (int c = first_column; c < last_column; ++c) {
+                const std::int64_t weight = static_cast<std::int64_t>(weight_x[static_cast<std::size_t>(c)]) *
+                                            weight_y[static_cast<std::size_t>(r)];
+                const int cell_in_tile = (row + r) * tile_size + column + c;
+                const auto at = static_cast<std::size_t>(cell_in_tile);
+                tile.volume[at] += weight;
+                tile.momentum[at] += weight * whole_speed;
             }
         }
     }
@@ -182,14 +205,14 @@ void MapAccumulator::add(const State& state) {
 }
 
 double MapAccumulator::speed_at(const LocalPoint& p) const {
-    const Share share = share_of(p);
-    const int column = share.column + 1, row = share.row + 1;
+    const auto [column, row] = cell_of(p);
     const std::int32_t index =
         tile_at_[static_cast<std::size_t>(row / tile_size) * static_cast<std::size_t>(tile_columns_) +
                  static_cast<std::size_t>(column / tile_size)];
     if (index < 0) return 0;
     const Tile& tile = *tiles_[static_cast<std::size_t>(index)];
-    const auto cell = static_cast<std::size_t>(row % tile_size * tile_size + column % tile_size);
+    const int cell_in_tile = row % tile_size * tile_size + column % tile_size;
+    const auto cell = static_cast<std::size_t>(cell_in_tile);
     if (depth(tile.volume[cell]) < thinnest_depth_) return 0;
     return static_cast<double>(tile.momentum[cell]) / static_cast<double>(tile.volume[cell]) / speed_units;
 }

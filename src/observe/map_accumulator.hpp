@@ -47,24 +47,24 @@ class MapAccumulator {
     static constexpr std::size_t tile_cells = static_cast<std::size_t>(tile_size) * tile_size;
 
     struct Tile {
-        int column, row;                                  // of its first cell
+        int column = 0, row = 0;                          // of its first cell
         std::array<std::int64_t, tile_cells> volume{};    // 2^-24 of a particle, as of the last add
         std::array<std::int64_t, tile_cells> momentum{};  // the same times 2^-10 m/s
         std::array<float, tile_cells> peak_depth{};       // 0: not reached
         std::array<float, tile_cells> peak_speed{};       // depth-averaged
         std::array<float, tile_cells> arrival_time{};     // NaN: never
     };
-    /// Where a particle's 3 x 3 cells begin, and its whole-number weights along each axis.
-    struct Share {
+    /// The cell that a particle is in; column -1: it does not count.
+    struct Cell {
         int column, row;
-        std::array<int, 3> weight_x, weight_y;
     };
 
-    [[nodiscard]] bool counts(const State& state, std::size_t i) const;
-    [[nodiscard]] Share share_of(const LocalPoint& p) const;
-    /// Calls f(tile position) for the one, two or four tiles that a particle touches.
+    [[nodiscard]] Cell cell_of(const LocalPoint& p) const;
+    void locate_particles(const State& state);
+    /// Calls f(tile position, particles, how many) for particles [first, last): each comes once per tile that its cells
+    /// lie in, neighbours in the order of the state together.
     template <class F>
-    void for_each_tile(const LocalPoint& p, const F& f) const;
+    void for_each_run(std::size_t first, std::size_t last, const F& f) const;
     void sort_into_tiles(const State& state);
     void sum_up(Tile& tile, const State& state, std::size_t first, std::size_t last) const;
     void update_peaks(Tile& tile, double time) const;
@@ -82,6 +82,7 @@ class MapAccumulator {
     std::vector<std::unique_ptr<Tile>> tiles_;
     std::vector<std::uint32_t> active_;  // tile positions touched in this step, the first active_count_
     std::uint32_t active_count_ = 0;
+    std::vector<Cell> cell_;                  // by particle
     std::vector<std::uint32_t> entry_start_;  // by place in active_
     std::vector<std::uint32_t> entries_;      // particles by tile
     PlanPoint first_particle_;                // world, for the frame of an empty map

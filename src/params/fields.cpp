@@ -132,7 +132,8 @@ class Declaration {
 
     /// One of several texts, in the order of the enumeration.
     template <class Enum>
-    Parameter& choice(std::string name, Enum Struct::*member, std::vector<std::string> choices, std::string help) {
+    Parameter& choice(std::string name, Enum Struct::*member, const std::vector<std::string>& choices,
+                      std::string help) {
         Parameter& p = add(std::move(name), "", ParameterKind::choice, {}, std::move(help));
         p.choices = choices;
         p.get = [part = part_, member, choices](const SceneSpec& spec, std::size_t index) -> ParameterValue {
@@ -183,7 +184,7 @@ Section declare_terrain() {
                                &SceneSpec::terrain);
     s.path("file", &TerrainSpec::file, "", "Any raster that GDAL reads; its reference system is that of the whole run.")
         .required = true;
-    s.key("band", "", &TerrainSpec::band, at_least(1), "The raster's band that holds elevations.");
+    s.key("band", "", &TerrainSpec::band, between(1, 65535), "The raster's band that holds elevations.");
     s.optional_key("extent_m", "m", &TerrainSpec::extent, anything(), "the whole raster",
                    "The part of the terrain to use, in its own coordinates.");
     s.text("obtain", &TerrainSpec::obtain, "nothing is said", "Where the file is to be had, told to whoever lacks it.");

@@ -94,11 +94,10 @@ Json inputs(const Scene& scene) {
 
 Json results(const RunResult& result) {
     const Observation& o = result.observation;
-    Json peaks = Json::object();
+    Json greatest_values = Json::object();
     for (const HazardMap& map : hazard_maps()) {
-        std::string suffix = map.unit;
-        suffix = suffix == "m/s" ? "mps" : suffix;
-        peaks[std::string("greatest_") + map.file + "_" + suffix] = greatest(o.maps.*map.grid) * map.factor;
+        const std::string suffix = std::string(map.unit) == "m/s" ? "mps" : map.unit;
+        greatest_values[std::string(map.file) + "_" + suffix] = greatest(o.maps.*map.grid) * map.factor;
     }
     Json volumes = {{"released_m3", o.volume_released}};
     if (!o.timeseries.empty()) {
@@ -114,7 +113,7 @@ Json results(const RunResult& result) {
             {"drop_m", o.run_out.drop},
             {"runout_angle_deg", o.run_out.runout_angle * degrees},
             {"travel_angle_deg", o.run_out.travel_angle * degrees},
-            {"peaks", peaks},
+            {"greatest", greatest_values},
             {"volumes", volumes},
             {"buildings", o.buildings.size()},
             {"buildings_hit", hit},

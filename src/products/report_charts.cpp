@@ -108,7 +108,7 @@ void draw_profile(Plot& plot, const Scene& scene, const RunResult& result, const
     }
     for (const Bend& bend : bends(scene.flow_path, end)) {
         plot.vertical(bend.chainage, "bend-line");
-        plot.label(bend.chainage, profile.range.low, 5, -8, "start", "note",
+        plot.label(bend.chainage, profile.range.low, 5, -8, "start", "ground-note",
                    fmt::format("bend {}° {}", fixed(std::abs(bend.turn), 0), bend.turn > 0 ? "left" : "right"));
     }
     // The steepest ten metres: a waterfall shows in a profile of true proportions only when it is pointed at.
@@ -121,7 +121,7 @@ void draw_profile(Plot& plot, const Scene& scene, const RunResult& result, const
         }
     }
     if (steepest > 5) {
-        plot.label(place + 5, (profile.at(place) + profile.at(place + 10)) / 2, -9, 16, "end", "note",
+        plot.label(place + 5, (profile.at(place) + profile.at(place + 10)) / 2, -9, 16, "end", "ground-note",
                    fmt::format("steepest 10 m: falls {} m", fixed(steepest, 1)));
     }
 }
@@ -151,21 +151,25 @@ std::string front_figure(const Scene& scene, const RunResult& result) {
     velocity.axes("", "front velocity, m/s");
     velocity.line(front.chainage, front.speed, "series orange");
     velocity.line(front.chainage, front.velocity, "series blue");
-    double previous = -1e9;
-    int row = 0;
+    std::vector<double> row_ends;  // SVG x up to which each row of labels is taken
     for (const ObservationSpec& o : scene.spec.observations) {
         velocity.vertical(o.chainage, "observation-line");
         velocity.mark(o.chainage, o.front_velocity, "observation");
-        // Labels stand above the curves; one that would run into its neighbour's goes below it.
-        row = std::abs(o.chainage - previous) < 0.26 * end ? (row + 1) % 2 : 0;
-        previous = o.chainage;
-        const bool near_end = o.chainage > 0.7 * end;
-        const double dx = near_end ? -7 : 7, dy = 16 + 48 * row;
-        const char* anchor = near_end ? "end" : "start";
-        velocity.label(o.chainage, speeds.high, dx, dy, anchor, "note-strong",
-                       fmt::format("observed {} m/s at {} m", plain(o.front_velocity), plain(o.chainage)));
-        velocity.label(o.chainage, speeds.high, dx, dy + 15, anchor, "note", shortened(o.name, 44));
-        velocity.label(o.chainage, speeds.high, dx, dy + 29, anchor, "note", shortened(o.source, 44));
+        // Labels stand above the curves; one that would run into its neighbour's goes a row down.
+        const std::string value = fmt::format("observed {} m/s at {} m", plain(o.front_velocity), plain(o.chainage));
+        const std::string name = shortened(o.name, 40), source = shortened(o.source, 40);
+        const double length = 7.3 * static_cast<double>(std::max({value.size(), name.size(), source.size()}));
+        const bool leftward = velocity.px(o.chainage) + length > left + width;
+        const double start = velocity.px(o.chainage) - (leftward ? length : 0);
+        std::size_t row = 0;
+        while (row < row_ends.size() && row_ends[row] > start) ++row;
+        if (row == row_ends.size()) row_ends.push_back(0);
+        row_ends[row] = start + length + 20;
+        const double dx = leftward ? -7 : 7, dy = 16 + 48 * static_cast<double>(row);
+        const char* anchor = leftward ? "end" : "start";
+        velocity.label(o.chainage, speeds.high, dx, dy, anchor, "note-strong", value);
+        velocity.label(o.chainage, speeds.high, dx, dy + 15, anchor, "note", name);
+        velocity.label(o.chainage, speeds.high, dx, dy + 29, anchor, "note", source);
     }
     velocity.keys(
         {{"series blue", "front velocity d(chainage)/dt"}, {"series orange", "mean particle speed at the front"}});

@@ -1,6 +1,7 @@
 #include "products/report_map.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <vector>
@@ -8,6 +9,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "products/hazard_map.hpp"
 #include "products/report_colour.hpp"
 #include "products/report_image.hpp"
 #include "products/report_relief.hpp"
@@ -16,69 +18,22 @@
 namespace talus::report {
 namespace {
 
-/// A map of the report. Breaks are in the unit shown; empty: even classes.
-struct Layer {
-    const char* id;
-    const char* name;
+/// What the report says of a map beside its name, unit and colours.
+struct Words {
+    const char* tab;
     const char* caption;
-    const char* unit;
-    double factor;  ///< from SI to the unit shown
-    Grid<float> HazardMaps::*map;
-    std::vector<double> breaks;
-    Ramp ramp;
-    int digits;  ///< of the read-out
+    int digits;  ///< of values
 };
 
-const std::vector<Layer>& layers() {
-    static const std::vector<Layer> all = {
-        {"peak-depth",
-         "Peak depth",
-         "Greatest vertical flow depth at each place during the run.",
-         "m",
-         1,
-         &HazardMaps::peak_depth,
-         {0, 0.1, 0.25, 0.5, 1, 2, 3, 5, 10, 20},
-         {205, 0.05, 268, 0.15, 0.90, 0.28},
-         2},
-        {"peak-speed",
-         "Peak speed",
-         "Greatest depth-averaged speed at each place during the run.",
-         "m/s",
-         1,
-         &HazardMaps::peak_speed,
-         {0, 1, 2, 4, 6, 8, 10, 15, 20, 30},
-         {104, 0.11, 8, 0.13, 0.93, 0.28},
-         1},
-        {"peak-pressure",
-         "Peak pressure",
-         "Greatest impact pressure of the free flow at each place, density times the square of the speed.",
-         "kPa",
-         1e-3,
-         &HazardMaps::peak_pressure,
-         {0, 5, 15, 30, 50, 100, 200, 400, 800},
-         {88, 0.08, -48, 0.14, 0.93, 0.26},
-         0},
-        {"arrival",
-         "Arrival time",
-         "Time from the start of the run until debris first stands at each place.",
-         "s",
-         1,
-         &HazardMaps::arrival_time,
-         {},
-         {215, 0.06, 118, 0.10, 0.30, 0.92},
-         1},
-        {"deposit",
-         "Deposit",
-         "Vertical depth of debris at the end of the run. Below 0.05 m nothing is drawn.",
-         "m",
-         1,
-         &HazardMaps::deposit_depth,
-         {0.05, 0.1, 0.25, 0.5, 1, 2, 3, 5, 10, 20},
-         {92, 0.07, 42, 0.09, 0.92, 0.28},
-         2},
-    };
-    return all;
-}
+/// In the order of hazard_maps().
+constexpr std::array<Words, 5> words = {{
+    {"Peak depth", "Greatest vertical flow depth at each place during the run.", 2},
+    {"Peak speed", "Greatest depth-averaged speed at each place during the run.", 1},
+    {"Peak pressure", "Greatest impact pressure of the free flow at each place: density times the square of the speed.",
+     0},
+    {"Arrival time", "Time from the start of the run until debris first stands at each place.", 1},
+    {"Deposit", "Vertical depth of debris at the end of the run. Below 0.05 m nothing is drawn.", 2},
+}};
 
 double largest(const Grid<float>& grid) {
     double most = std::numeric_limits<double>::quiet_NaN();
@@ -132,7 +87,7 @@ Extent well_proportioned(Extent area, const Extent& terrain) {
 }
 
 /// Classes of a layer over its part inside the frame, finer than its cells: values are interpolated between them.
-ClassImage paint(const Layer& layer, const Grid<float>& map, const Classes& classes) {
+ClassImage paint(const HazardMap& layer, const Grid<float>& map, const Classes& classes) {
     const GridGeometry& g = map.geometry;
     const int longest = std::max(g.columns, g.rows);
     const int finer = std::clamp(1200 / std::max(1, longest), 1, 8);
@@ -196,12 +151,13 @@ std::string limit(double value) {
     return coordinate(value);
 }
 
-std::string draw_classes(const Layer& layer, const Classes& classes, double most, const MapFrame& frame) {
+std::string draw_classes(const HazardMap& layer, const Words& named, const Classes& classes, double most,
+                         const MapFrame& frame) {
     const double x = frame.right() + 20;
     std::string svg = fmt::format(
         R"(<text class="legend-title" x="{0}" y="{1}">{2}</text><text class="legend-unit" x="{0}" y="{3}">{4}</text>)",
-        coordinate(x), coordinate(frame.top + 13), layer.name, coordinate(frame.top + 31),
-        std::isfinite(most) ? fmt::format("{}, at most {} {}", layer.unit, fixed(most, layer.digits), layer.unit)
+        coordinate(x), coordinate(frame.top + 13), named.tab, coordinate(frame.top + 31),
+        std::isfinite(most) ? fmt::format("{}, at most {} {}", layer.unit, fixed(most, named.digits), layer.unit)
                             : std::string(layer.unit));
     const std::size_t n = classes.breaks.size();
     for (std::size_t k = n; k-- > 0;) {
@@ -220,7 +176,7 @@ std::string draw_classes(const Layer& layer, const Classes& classes, double most
     return svg;
 }
 
-Classes classes_of(const Layer& layer, double most) {
+Classes classes_of(const HazardMap& layer, double most) {
     if (layer.breaks.empty()) return even_classes(most, layer.ramp);
     return fixed_classes(layer.breaks, std::isnan(most) ? 0 : most, layer.ramp);
 }
@@ -277,8 +233,8 @@ Result<MapFigures> render_maps(const Scene& scene, const RunResult& result) {
     const std::string contour_lines = draw_contours(scene, frame, contour_interval);
     const double width = frame.right() + 20 + MapFrame::key_width;
     std::size_t most_classes = 0;
-    for (const Layer& layer : layers()) {
-        const double most = largest(result.observation.maps.*layer.map) * layer.factor;
+    for (const HazardMap& layer : hazard_maps()) {
+        const double most = largest(result.observation.maps.*layer.grid) * layer.factor;
         most_classes = std::max(most_classes, classes_of(layer, most).breaks.size());
     }
     const double key_top = frame.top + 44 + 18.0 * static_cast<double>(most_classes) + 14;
@@ -308,8 +264,10 @@ Result<MapFigures> render_maps(const Scene& scene, const RunResult& result) {
                            {"ground", placed(coarse_ground, ground_values, *ground_uri)},
                            {"layers", nlohmann::json::array()}};
 
-    for (const Layer& layer : layers()) {
-        const Grid<float>& map = result.observation.maps.*layer.map;
+    for (std::size_t k = 0; k < hazard_maps().size(); ++k) {
+        const HazardMap& layer = hazard_maps()[k];
+        const Words& text = words.at(k);
+        const Grid<float>& map = result.observation.maps.*layer.grid;
         const double most = largest(map) * layer.factor;
         const Classes classes = classes_of(layer, most);
         std::string picture;
@@ -327,10 +285,10 @@ Result<MapFigures> render_maps(const Scene& scene, const RunResult& result) {
             auto values_uri = png_uri(values.image);
             if (!values_uri) return values_uri.error();
             nlohmann::json entry = placed(coarse, values, *values_uri);
-            entry["id"] = layer.id;
-            entry["name"] = layer.name;
+            entry["id"] = layer.file;
+            entry["name"] = text.tab;
             entry["unit"] = layer.unit;
-            entry["digits"] = layer.digits;
+            entry["digits"] = text.digits;
             page["layers"].push_back(std::move(entry));
         }
         ++out.count;
@@ -338,8 +296,8 @@ Result<MapFigures> render_maps(const Scene& scene, const RunResult& result) {
         out.figures += fmt::format(
             R"(<figure class="map" data-layer="{0}" data-name="{1}"><svg class="figure" viewBox="0 0 {2} {3}" style="max-width:{10}px" role="img" aria-label="Map: {1}"><use href="#map-base"/>{4}<use href="#map-over"/>{5}<use href="#map-key"/></svg><figcaption>{6}<b>Figure {7}. {1}.</b> {8} Cells of {9} m, interpolated for display.</figcaption></figure>
 )",
-            layer.id, layer.name, coordinate(width), coordinate(height), picture,
-            draw_classes(layer, classes, most, frame), flag, out.count, layer.caption,
+            layer.file, text.tab, coordinate(width), coordinate(height), picture,
+            draw_classes(layer, text, classes, most, frame), flag, out.count, text.caption,
             plain(result.map_cell > 0 ? result.map_cell : map.geometry.cell), coordinate(1.04 * width));
     }
     out.read_out = page.dump();

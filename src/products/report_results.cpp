@@ -138,13 +138,16 @@ std::string key_results(const Scene& scene, const RunResult& result) {
     const MassBalance mass = mass_balance(o);
     std::string html = card("Released volume", fixed(o.volume_released, o.volume_released < 100 ? 1 : 0), "m³",
                             plural(scene.releases.size(), "release"));
-    html += card("Run-out distance", fixed(o.run_out.horizontal_distance, 0), "m",
-                 std::isfinite(o.run_out.front_chainage)
-                     ? fmt::format("front to chainage {} m, drop {} m", fixed(o.run_out.front_chainage, 0),
-                                   fixed(o.run_out.drop, 1))
-                     : fmt::format("drop {} m", fixed(o.run_out.drop, 1)));
-    html += card("Runout angle", fixed(degrees(o.run_out.runout_angle), 1), "°",
-                 fmt::format("travel angle of the centre of mass {}°", fixed(degrees(o.run_out.travel_angle), 1)));
+    const bool ran = std::isfinite(o.run_out.horizontal_distance);
+    const std::string drop = fmt::format("drop {} m", fixed(o.run_out.drop, 1));
+    html += card("Run-out distance", fixed(o.run_out.horizontal_distance, 0), ran ? "m" : "",
+                 !ran ? "no debris ran out"
+                 : std::isfinite(o.run_out.front_chainage)
+                     ? fmt::format("front to chainage {} m, {}", fixed(o.run_out.front_chainage, 0), drop)
+                     : drop);
+    html += card(
+        "Runout angle", fixed(degrees(o.run_out.runout_angle), 1), ran ? "°" : "",
+        ran ? fmt::format("travel angle of the centre of mass {}°", fixed(degrees(o.run_out.travel_angle), 1)) : "");
     html += card("Buildings hit", fmt::format("{}", hit), fmt::format("of {}", o.buildings.size()),
                  hit > 0 ? fmt::format("highest pressure {} kPa, {}", significant(worst->peak_pressure / 1e3, 3),
                                        worst->name.empty() ? "unnamed" : escape(worst->name))
@@ -153,11 +156,11 @@ std::string key_results(const Scene& scene, const RunResult& result) {
     html += card("Peak flow depth", fixed(depth.value, 1), "m", place(scene, depth));
     html += card("Peak speed", fixed(speed.value, 1), "m/s", place(scene, speed));
     html += card("Peak impact pressure", significant(pressure.value / 1e3, 3), "kPa", place(scene, pressure) + ", ρv²");
-    html +=
-        card("Mass balance", mass.closes ? "closed" : fixed(mass.residual, 3), mass.closes ? "" : "m³ missing",
-             fmt::format("deposited {} · moving {} · left {} m³{}", fixed(mass.deposited, 1), fixed(mass.moving, 1),
-                         fixed(mass.left, 1), mass.held > 0 ? fmt::format(" · held {} m³", fixed(mass.held, 1)) : ""),
-             mass.closes ? "" : "alert");
+    html += card("Mass balance", mass.closes ? "closed" : fixed(mass.residual, 3), mass.closes ? "" : "m³ missing",
+                 fmt::format("deposited&nbsp;{} · moving&nbsp;{} · left&nbsp;{}&nbsp;m³{}", fixed(mass.deposited, 1),
+                             fixed(mass.moving, 1), fixed(mass.left, 1),
+                             mass.held > 0 ? fmt::format(" · held&nbsp;{}&nbsp;m³", fixed(mass.held, 1)) : ""),
+                 mass.closes ? "" : "alert");
     return html;
 }
 

@@ -1,12 +1,11 @@
 #include <cmath>
-#include <fstream>
 #include <string>
-#include <thread>
 
 #include <fmt/format.h>
 
 #include "geo/versions.hpp"
 #include "params/fields.hpp"
+#include "products/hardware.hpp"
 #include "products/report_sections.hpp"
 #include "products/report_text.hpp"
 #include "report_files.hpp"
@@ -24,18 +23,6 @@ std::string items(const std::vector<std::string>& texts, std::string_view none) 
     std::string html = "<ul>";
     for (const std::string& text : texts) html += "<li>" + escape(text) + "</li>\n";
     return html + "</ul>";
-}
-
-/// As the system names it; empty where it does not.
-std::string processor_name() {
-    std::ifstream file("/proc/cpuinfo");
-    for (std::string line; std::getline(file, line);) {
-        if (line.starts_with("model name")) {
-            const std::size_t colon = line.find(": ");
-            if (colon != std::string::npos) return line.substr(colon + 2);
-        }
-    }
-    return "";
 }
 
 std::string_view kernel_name(KernelChoice kernel) {
@@ -155,19 +142,16 @@ std::string computation_table(const Scene& scene, const RunResult& result) {
         "Result hash",
         fmt::format("<code>{:016x}</code> <small>of time, positions and velocities at the end</small>", result.hash));
     html += row("Program", fmt::format("talus {}, GDAL {}, PROJ {}, compiled with {}", TALUS_VERSION, gdal_version(),
-                                       proj_version(),
-#if defined(__clang__)
-                                       "clang " __clang_version__
-#elif defined(__GNUC__)
-                                       "GCC " __VERSION__
-#else
-                                       "another compiler"
-#endif
-                                       ));
-    const std::string processor = processor_name();
-    html += row("Hardware", fmt::format("{}, {} of {} threads, 32-bit arithmetic on a 64-bit origin",
-                                        processor.empty() ? "processor not named by the system" : escape(processor),
-                                        result.thread_count, std::thread::hardware_concurrency()));
+                                       proj_version(), compiler_version()));
+    const Hardware machine = this_machine();
+    html +=
+        row("Hardware",
+            fmt::format("{}, {} of {} logical cores used{}{}{}",
+                        machine.cpu.empty() ? "processor not named by the system" : escape(machine.cpu),
+                        result.thread_count, machine.logical_cores,
+                        machine.memory_GiB > 0 ? fmt::format(", {} GiB of memory", fixed(machine.memory_GiB, 1)) : "",
+                        machine.system.empty() ? "" : ", ", escape(machine.system)));
+    html += row("Arithmetic", "32-bit floating point around a 64-bit origin");
     html += row("Reference system", escape(scene.crs.label()));
     html += row("Terrain", fmt::format("{} × {} cells of {} m, {} % without data, elevations in {}",
                                        scene.terrain.elevation().geometry.columns,

@@ -11,6 +11,37 @@
 namespace talus {
 namespace {
 
+void note_observations(Scene& scene) {
+    for (std::size_t i = 0; i < scene.spec.observations.size(); ++i) {
+        const ObservationSpec& observation = scene.spec.observations[i];
+        if (scene.flow_path.empty() || observation.chainage <= scene.flow_path.length()) continue;
+        scene.notes.push_back(
+            fmt::format("observation[{}]: chainage {:.6g} m lies beyond the flow path's end at {:.1f} m", i,
+                        observation.chainage, scene.flow_path.length()));
+    }
+}
+
+/// "scene.toml" in the folder "valley" is called valley, "valley.toml" too.
+std::string title_from(const std::filesystem::path& file) {
+    std::string stem = file.stem().string();
+    if (stem != "scene") return stem;
+    const std::string folder = std::filesystem::absolute(file).lexically_normal().parent_path().filename().string();
+    return folder.empty() ? stem : folder;
+}
+
+void hash_file(InputFile& input) {
+    std::ifstream in(input.path, std::ios::binary);
+    std::vector<char> block(1 << 20);
+    StateHash hash;
+    while (in.read(block.data(), static_cast<std::streamsize>(block.size())), in.gcount() > 0) {
+        hash.add(block.data(), static_cast<std::size_t>(in.gcount()));
+        input.bytes += static_cast<std::uint64_t>(in.gcount());
+    }
+    input.hash = to_hex(hash.value());
+}
+
+}  // namespace
+
 Status load_terrain(const ParsedScene& parsed, Scene& scene) {
     const TerrainSpec& spec = parsed.spec.terrain;
     Result<Raster> raster = read_terrain_raster(spec.file, spec.band, spec.extent);
@@ -38,37 +69,6 @@ Status load_terrain(const ParsedScene& parsed, Scene& scene) {
     return {};
 }
 
-void note_observations(Scene& scene) {
-    for (std::size_t i = 0; i < scene.spec.observations.size(); ++i) {
-        const ObservationSpec& observation = scene.spec.observations[i];
-        if (scene.flow_path.empty() || observation.chainage <= scene.flow_path.length()) continue;
-        scene.notes.push_back(
-            fmt::format("observation[{}]: chainage {:.6g} m lies beyond the flow path's end at {:.1f} m", i,
-                        observation.chainage, scene.flow_path.length()));
-    }
-}
-
-/// "scene.toml" in the folder "valley" is called valley, "valley.toml" too.
-std::string title_from(const std::filesystem::path& file) {
-    const std::string stem = file.stem().string();
-    if (stem != "scene") return stem;
-    const std::string folder = std::filesystem::absolute(file).lexically_normal().parent_path().filename().string();
-    return folder.empty() ? stem : folder;
-}
-
-void hash_file(InputFile& input) {
-    std::ifstream in(input.path, std::ios::binary);
-    std::vector<char> block(1 << 20);
-    StateHash hash;
-    while (in.read(block.data(), static_cast<std::streamsize>(block.size())), in.gcount() > 0) {
-        hash.add(block.data(), static_cast<std::size_t>(in.gcount()));
-        input.bytes += static_cast<std::uint64_t>(in.gcount());
-    }
-    input.hash = to_hex(hash.value());
-}
-
-}  // namespace
-
 void record_input(const std::string& role, const std::string& path, Scene& scene) {
     std::error_code code;
     if (!std::filesystem::is_regular_file(path, code)) return;  // a GDAL name such as /vsizip/...: nothing to hash
@@ -94,7 +94,7 @@ Extent covered_extent(const Terrain& terrain) {
     return terrain.elevation().geometry.extent().grown(-terrain.cell() / 2);
 }
 
-Result<Scene> assemble_scene(ParsedScene parsed) {
+Result<Scene> assemble_scene(const ParsedScene& parsed) {
     Scene scene;
     scene.file = parsed.file;
     scene.spec = parsed.spec;
@@ -111,7 +111,7 @@ Result<Scene> assemble_scene(ParsedScene parsed) {
 Result<Scene> load_scene(const std::filesystem::path& file, const std::vector<std::string>& overrides) {
     Result<ParsedScene> parsed = parse_scene_with_places(file, overrides);
     if (!parsed) return parsed.error();
-    return assemble_scene(std::move(*parsed));
+    return assemble_scene(*parsed);
 }
 
 }  // namespace talus

@@ -10,7 +10,10 @@
 namespace talus {
 
 /// Everything that the parsed scene names, loaded and checked.
-[[nodiscard]] Result<Scene> assemble_scene(ParsedScene parsed);
+[[nodiscard]] Result<Scene> assemble_scene(const ParsedScene& parsed);
+
+/// Fills scene.terrain and what its file says of it.
+[[nodiscard]] Status load_terrain(const ParsedScene& parsed, Scene& scene);
 
 /// Fills scene.releases. The terrain is loaded.
 [[nodiscard]] Status load_releases(const ParsedScene& parsed, Scene& scene);

@@ -2,7 +2,6 @@
 
 #include <cerrno>
 #include <cmath>
-#include <cstdlib>
 #include <fstream>
 #include <optional>
 #include <sstream>
@@ -17,21 +16,6 @@ namespace talus {
 namespace {
 
 constexpr std::uintmax_t largest_scene_file = 16 << 20;  // bytes; a scene is a page of text
-
-std::string one_line(std::string_view text, std::size_t longest = 400) {
-    std::string out;
-    for (const char c : text) {
-        const bool space = c == '\n' || c == '\r' || c == '\t';
-        if (space && (out.empty() || out.back() == ' ')) continue;
-        out += space ? ' ' : c;
-    }
-    if (out.size() > longest) {
-        std::size_t end = longest;
-        while (end > 0 && (static_cast<unsigned char>(out[end]) & 0xC0) == 0x80) --end;  // not inside a UTF-8 character
-        out = out.substr(0, end) + "...";
-    }
-    return out;
-}
 
 /// Line of the first byte that is not UTF-8, 0 if there is none.
 std::size_t line_of_invalid_utf8(std::string_view text) {
@@ -129,27 +113,31 @@ std::optional<ParameterValue> to_value(const toml::node& node, ParameterKind kin
     return std::nullopt;
 }
 
-/// "unknown key ...; nearest known key: ...", over the section first and then over all.
+std::string header_of(const Section& section) {
+    return section.repeats ? "[[" + section.name + "]]" : "[" + section.name + "]";
+}
+
+/// Where the key belongs, or the nearest one of the section.
 std::string unknown_key(const Section& section, std::string_view key) {
+    const std::string start = fmt::format("unknown key \"{}\" in {}; ", one_line(key, 80), header_of(section));
     std::vector<std::string> keys;
     for (const Parameter& parameter : section.parameters) keys.push_back(parameter.key);
     for (const Section& other : scene_sections()) {
-        if (other.find(key)) {
-            return fmt::format("unknown key \"{}\" in [{}]; it belongs in {}", key, section.name,
-                               other.repeats ? "[[" + other.name + "]]" : "[" + other.name + "]");
-        }
+        if (other.find(key)) return start + "it belongs in " + header_of(other);
     }
-    return fmt::format("unknown key \"{}\" in [{}]; nearest known key: {}", key, section.name, nearest_word(key, keys));
+    return start + "nearest known key: " + nearest_word(key, keys);
 }
 
 std::string unknown_section(std::string_view name) {
     std::vector<std::string> names;
     for (const Section& section : scene_sections()) {
         names.push_back(section.name);
-        if (section.find(name))
-            return fmt::format("key \"{}\" stands outside a section; it belongs in [{}]", name, section.name);
+        if (section.find(name)) {
+            return fmt::format("key \"{}\" stands outside a section; it belongs in {}", name, header_of(section));
+        }
     }
-    return fmt::format("unknown section \"{}\"; nearest known section: {}", name, nearest_word(name, names));
+    return fmt::format("unknown section \"{}\"; nearest known section: {}", one_line(name, 80),
+                       nearest_word(name, names));
 }
 
 class SceneReader {
@@ -315,100 +303,25 @@ class SceneReader {
     std::map<std::string, std::string> section_places_;  // "release[0]" -> "scene.toml:8"
 };
 
-/// Replaces every `${NAME}`; the error is the end of a message about the key.
-Result<std::string> expand_environment(const std::string& text) {
-    std::string out;
-    std::size_t begin = 0;
-    while (true) {
-        const std::size_t dollar = text.find("${", begin);
-        out += text.substr(begin, dollar - begin);
-        if (dollar == std::string::npos) return out;
-        const std::size_t close = text.find('}', dollar);
-        if (close == std::string::npos) return Error{"has a \"${\" without \"}\""};
-        const std::string name = text.substr(dollar + 2, close - dollar - 2);
-        const char* value = name.empty() ? nullptr : std::getenv(name.c_str());
-        if (!value || !*value) return Error{fmt::format("needs the environment variable {}, which is not set", name)};
-        out += value;
-        begin = close + 1;
-    }
-}
-
-/// GDAL also opens names that are no path, such as NETCDF:"file.nc":band.
-bool is_driver_name(const std::string& text) {
-    const std::size_t colon = text.find(':');
-    return colon != std::string::npos && colon >= 2 &&
-           text.find_first_not_of("ABCDEFGHIJKLMNOPQRSTUVWXYZ_0123456789") == colon;
-}
-
-Status resolve_paths(ParsedScene& scene) {
-    for (const Section& section : scene_sections()) {
-        for (std::size_t index = 0; index < section.count(scene.spec); ++index) {
-            for (const Parameter& parameter : section.parameters) {
-                const ParameterValue value = parameter.get(scene.spec, index);
-                const auto* text = std::get_if<std::string>(&value);
-                if (parameter.kind != ParameterKind::path || !text) continue;
-                const Result<std::string> expanded = expand_environment(*text);
-                if (!expanded) {
-                    const std::string& obtain = scene.spec.terrain.obtain;
-                    const bool tell = section.name == "terrain" && !obtain.empty();
-                    return Error{fmt::format("{} = {} {}{}", scene.at(key_path(section, index, parameter)),
-                                             toml_text(value), expanded.error().message,
-                                             tell ? "; to obtain the file: " + one_line(obtain) : "")};
-                }
-                const std::filesystem::path path = scene.file.parent_path() / *expanded;
-                parameter.set(scene.spec, index,
-                              is_driver_name(*expanded) ? *expanded : path.lexically_normal().string());
-            }
-        }
-    }
-    return {};
-}
-
-Status check_release(const ParsedScene& scene, std::size_t index) {
-    const ReleaseSpec& release = scene.spec.releases[index];
-    const std::string path = fmt::format("release[{}]", index);
-    std::vector<std::string> given;
-    if (release.thickness) given.emplace_back("thickness_m");
-    if (!release.thickness_attribute.empty()) given.emplace_back("thickness_attribute");
-    if (!release.thickness_raster.empty()) given.emplace_back("thickness_raster");
-    if (release.volume) given.emplace_back("volume_m3");
-    if (given.size() != 1) {
-        std::string list;
-        for (const std::string& key : given) list += (list.empty() ? "" : ", ") + key;
-        return Error{
-            fmt::format("{}: exactly one of thickness_m, thickness_attribute, thickness_raster, volume_m3 must "
-                        "be given; {}",
-                        scene.at(given.empty() ? path + ".file" : path + "." + given.back()),
-                        given.empty() ? "there is none" : "given are " + list)};
-    }
-    if (release.start_time >= scene.spec.solver.end_time) {
-        return Error{fmt::format("{} = {} is refused; it must be below solver.end_time_s = {}",
-                                 scene.at(path + ".start_time_s"), release.start_time, scene.spec.solver.end_time)};
-    }
-    return {};
-}
-
 }  // namespace
+
+std::string one_line(std::string_view text, std::size_t longest) {
+    std::string out;
+    for (const char c : text) {
+        const bool space = static_cast<unsigned char>(c) <= ' ' || c == '\x7f';
+        if (!space || (!out.empty() && out.back() != ' ')) out += space ? ' ' : c;
+    }
+    if (out.size() > longest) {
+        std::size_t end = longest;
+        while (end > 0 && (static_cast<unsigned char>(out[end]) & 0xC0) == 0x80) --end;  // not inside a UTF-8 character
+        out = out.substr(0, end) + "...";
+    }
+    return out;
+}
 
 std::string ParsedScene::at(const std::string& key_path) const {
     const auto found = places.find(key_path);
     return (found == places.end() ? file.string() : found->second) + ": " + key_path;
-}
-
-Status finish_scene(ParsedScene& scene) {
-    for (std::size_t i = 0; i < scene.spec.releases.size(); ++i) {
-        if (Status s = check_release(scene, i); !s) return s.error();
-    }
-    const SolverSpec& solver = scene.spec.solver;
-    if (solver.smallest_time_step > solver.largest_time_step) {
-        const bool small_given = scene.places.count("solver.smallest_time_step_s") > 0;
-        return Error{
-            fmt::format("{} = {} is refused; smallest_time_step_s = {} must not be above largest_time_step_s = {}",
-                        scene.at(small_given ? "solver.smallest_time_step_s" : "solver.largest_time_step_s"),
-                        small_given ? solver.smallest_time_step : solver.largest_time_step, solver.smallest_time_step,
-                        solver.largest_time_step)};
-    }
-    return resolve_paths(scene);
 }
 
 Result<ParsedScene> parse_scene_with_places(const std::filesystem::path& file,

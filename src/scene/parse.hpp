@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <map>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "core/result.hpp"
@@ -26,5 +27,8 @@ struct ParsedScene {
 
 /// Checks that concern several keys at once, makes paths absolute and expands `${NAME}` in them.
 [[nodiscard]] Status finish_scene(ParsedScene& scene);
+
+/// Without line breaks and control characters, which would garble a terminal, and cut after `longest` bytes.
+[[nodiscard]] std::string one_line(std::string_view text, std::size_t longest = 400);
 
 }  // namespace talus

@@ -9,19 +9,20 @@ namespace talus {
 namespace {
 
 struct Projection {
-    double share;     ///< of the segment, 0 to 1
-    double distance;  ///< m
+    double share;             ///< of the segment, 0 to 1
+    double distance_squared;  ///< m2
 };
 
 Projection project(const PlanPoint& a, const PlanPoint& b, const PlanPoint& p) {
     const double dx = b.x - a.x, dy = b.y - a.y;
     const double share = std::clamp(((p.x - a.x) * dx + (p.y - a.y) * dy) / (dx * dx + dy * dy), 0.0, 1.0);
-    return {share, std::hypot(a.x + share * dx - p.x, a.y + share * dy - p.y)};
+    const double x = a.x + share * dx - p.x, y = a.y + share * dy - p.y;
+    return {share, x * x + y * y};
 }
 
 }  // namespace
 
-FlowPath::FlowPath(std::vector<PlanPoint> points, double corridor_width) : corridor_width_(corridor_width) {
+FlowPath::FlowPath(const std::vector<PlanPoint>& points, double corridor_width) : corridor_width_(corridor_width) {
     for (const PlanPoint& p : points) {
         if (points_.empty()) {
             chainage_.push_back(0);
@@ -40,51 +41,85 @@ FlowPath::FlowPath(std::vector<PlanPoint> points, double corridor_width) : corri
     extent = extent.grown(half_width);
     // An eighth of the half width, but not more than some four million cells.
     const double cell = std::max(half_width / 8, std::sqrt(extent.width() * extent.height() / 4e6));
-    const GridGeometry g{extent.x_min, extent.y_min, cell, static_cast<int>(extent.width() / cell) + 1,
-                         static_cast<int>(extent.height() / cell) + 1};
-    nearest_segment_ = Grid<std::int32_t>(g, -1);
-    std::vector<float> distance(g.size(), std::numeric_limits<float>::infinity());
-    const double reach = half_width + cell;  // so that no cell that the corridor touches is left out
+    table_ = {extent.x_min, extent.y_min, cell, static_cast<int>(extent.width() / cell) + 1,
+              static_cast<int>(extent.height() / cell) + 1};
+    fill_nearest_segment();
+    fill_chainage_bound();
+}
+
+void FlowPath::fill_nearest_segment() {
+    nearest_segment_.assign(table_.size(), -1);
+    const double reach = corridor_width_ / 2 + table_.cell;  // so that no cell that the corridor touches is left out
+    std::vector<double> nearest(table_.size(), reach * reach);
     for (std::size_t i = 0; i + 1 < points_.size(); ++i) {
         const PlanPoint &a = points_[i], &b = points_[i + 1];
         const auto column = [&](double x) {
-            return std::clamp(static_cast<int>((x - g.x_min) / cell), 0, g.columns - 1);
+            return std::clamp(static_cast<int>((x - table_.x_min) / table_.cell), 0, table_.columns - 1);
         };
-        const auto row = [&](double y) { return std::clamp(static_cast<int>((y - g.y_min) / cell), 0, g.rows - 1); };
+        const auto row = [&](double y) {
+            return std::clamp(static_cast<int>((y - table_.y_min) / table_.cell), 0, table_.rows - 1);
+        };
         const int last_column = column(std::max(a.x, b.x) + reach), last_row = row(std::max(a.y, b.y) + reach);
         for (int r = row(std::min(a.y, b.y) - reach); r <= last_row; ++r) {
             for (int c = column(std::min(a.x, b.x) - reach); c <= last_column; ++c) {
-                const auto d = static_cast<float>(project(a, b, g.centre(c, r)).distance);
-                const std::size_t k = g.index(c, r);
-                if (d > reach || d >= distance[k]) continue;
-                distance[k] = d;
-                nearest_segment_.values[k] = static_cast<std::int32_t>(i);
+                const double d = project(a, b, table_.centre(c, r)).distance_squared;
+                const std::size_t k = table_.index(c, r);
+                if (d >= nearest[k]) continue;
+                nearest[k] = d;
+                nearest_segment_[k] = static_cast<std::int32_t>(i);
             }
         }
     }
 }
 
+void FlowPath::fill_chainage_bound() {
+    chainage_bound_.assign(table_.size(), -1.0F);
+    for (int r = 0; r < table_.rows; ++r) {
+        for (int c = 0; c < table_.columns; ++c) {
+            const std::size_t k = table_.index(c, r);
+            if (nearest_segment_[k] < 0) continue;
+            const auto [first, last] = segments_around(nearest_segment_[k]);
+            const PlanPoint centre = table_.centre(c, r);
+            double bound = 0;
+            for (std::size_t i = first; i < last; ++i) {
+                // The chainage of the projection on a segment is greatest in one of the cell's corners.
+                for (const double x : {-0.5, 0.5}) {
+                    for (const double y : {-0.5, 0.5}) {
+                        const PlanPoint corner{centre.x + x * table_.cell, centre.y + y * table_.cell};
+                        const double share = project(points_[i], points_[i + 1], corner).share;
+                        bound = std::max(bound, chainage_[i] + share * (chainage_[i + 1] - chainage_[i]));
+                    }
+                }
+            }
+            chainage_bound_[k] = static_cast<float>(bound + 1e-3);  // for the rounding to float
+        }
+    }
+}
+
+std::pair<std::size_t, std::size_t> FlowPath::segments_around(std::int32_t middle) const {
+    auto first = static_cast<std::size_t>(middle), last = first + 1;
+    const double begin = chainage_[first] - 2 * table_.cell, end = chainage_[last] + 2 * table_.cell;
+    while (first > 0 && chainage_[first] >= begin) --first;
+    while (last + 1 < points_.size() && chainage_[last] <= end) ++last;
+    return {first, last};
+}
+
 std::optional<PathPosition> FlowPath::locate(const PlanPoint& p) const {
-    if (empty()) return std::nullopt;
-    const GridGeometry& g = nearest_segment_.geometry;
-    const double column = std::floor((p.x - g.x_min) / g.cell), row = std::floor((p.y - g.y_min) / g.cell);
-    if (!(column >= 0 && row >= 0 && column < g.columns && row < g.rows)) return std::nullopt;
-    const std::int32_t centre = nearest_segment_.at(static_cast<int>(column), static_cast<int>(row));
-    if (centre < 0) return std::nullopt;
+    const std::size_t cell = cell_of(p);
+    if (cell >= nearest_segment_.size() || nearest_segment_[cell] < 0) return std::nullopt;
 
     // The cell's segment is nearest to its centre; nearest to this point may be one a little up or down the path.
-    PathPosition best{0, std::numeric_limits<double>::infinity()};
-    const auto consider = [&](std::size_t i) {
+    const auto [first, last] = segments_around(nearest_segment_[cell]);
+    double nearest = std::numeric_limits<double>::infinity(), chainage = 0;
+    for (std::size_t i = first; i < last; ++i) {
         const Projection q = project(points_[i], points_[i + 1], p);
-        if (q.distance < best.offset) best = {chainage_[i] + q.share * (chainage_[i + 1] - chainage_[i]), q.distance};
-    };
-    const auto middle = static_cast<std::size_t>(centre);
-    const double first = chainage_[middle] - 2 * g.cell, last = chainage_[middle + 1] + 2 * g.cell;
-    consider(middle);
-    for (std::size_t i = middle; i > 0 && chainage_[i] >= first; --i) consider(i - 1);
-    for (std::size_t i = middle + 1; i + 1 < points_.size() && chainage_[i] <= last; ++i) consider(i);
-    if (best.offset > corridor_width_ / 2) return std::nullopt;
-    return best;
+        if (q.distance_squared >= nearest) continue;
+        nearest = q.distance_squared;
+        chainage = chainage_[i] + q.share * (chainage_[i + 1] - chainage_[i]);
+    }
+    const double offset = std::sqrt(nearest);
+    if (offset > corridor_width_ / 2) return std::nullopt;
+    return PathPosition{chainage, offset};
 }
 
 PlanPoint FlowPath::point_at(double chainage) const {

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "core/geometry.hpp"
@@ -21,7 +22,7 @@ class FlowPath {
   public:
     FlowPath() = default;
     /// `points`: world, from the crown downstream, at least two. `corridor_width` in m.
-    FlowPath(std::vector<PlanPoint> points, double corridor_width);
+    FlowPath(const std::vector<PlanPoint>& points, double corridor_width);
 
     [[nodiscard]] bool empty() const { return points_.empty(); }
     [[nodiscard]] const std::vector<PlanPoint>& points() const { return points_; }
@@ -32,14 +33,34 @@ class FlowPath {
     /// the few segments near it.
     [[nodiscard]] std::optional<PathPosition> locate(const PlanPoint& p) const;
 
+    /// At least the chainage that `locate` finds, less than 0 where it finds nothing: one table look-up, to leave out
+    /// positions far behind a front.
+    [[nodiscard]] float chainage_bound(const PlanPoint& p) const {
+        const std::size_t cell = cell_of(p);
+        return cell < chainage_bound_.size() ? chainage_bound_[cell] : -1.0F;
+    }
+
     /// World plan position at a chainage, clamped to the path's ends.
     [[nodiscard]] PlanPoint point_at(double chainage) const;
 
   private:
+    /// Index into the tables; their size outside their extent.
+    [[nodiscard]] std::size_t cell_of(const PlanPoint& p) const {
+        const double u = (p.x - table_.x_min) / table_.cell, v = (p.y - table_.y_min) / table_.cell;
+        if (!(u >= 0 && v >= 0 && u < table_.columns && v < table_.rows)) return nearest_segment_.size();  // NaN, too
+        return table_.index(static_cast<int>(u), static_cast<int>(v));
+    }
+    void fill_nearest_segment();
+    void fill_chainage_bound();
+    /// The segments [first, last) that may be nearest to a position in a cell whose centre is nearest to `middle`.
+    [[nodiscard]] std::pair<std::size_t, std::size_t> segments_around(std::int32_t middle) const;
+
     std::vector<PlanPoint> points_;
     std::vector<double> chainage_;
     double corridor_width_ = 0;
-    Grid<std::int32_t> nearest_segment_;  // to the cell's centre; -1: no part of the cell is in the corridor
+    GridGeometry table_{0, 0, 1, 0, 0};
+    std::vector<std::int32_t> nearest_segment_;  // to the cell's centre; -1: no part of the cell is in the corridor
+    std::vector<float> chainage_bound_;
 };
 
 /// Steepest descent (D8) from `start` over a sink-filled copy of the elevations, to the edge of the data, to where

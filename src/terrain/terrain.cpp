@@ -5,6 +5,17 @@
 #include <limits>
 
 namespace talus {
+namespace {
+
+/// Slope between the neighbours of a node, or on one side where the other has no data; 0 where neither has.
+float difference(float before, float here, float after, float inverse_cell) {
+    if (!std::isnan(before) && !std::isnan(after)) return (after - before) * 0.5F * inverse_cell;
+    if (!std::isnan(after)) return (after - here) * inverse_cell;
+    if (!std::isnan(before)) return (here - before) * inverse_cell;
+    return 0;
+}
+
+}  // namespace
 
 Terrain::Terrain(Grid<float> elevation) : elevation_(std::move(elevation)) {
     const GridGeometry& g = elevation_.geometry;
@@ -28,6 +39,21 @@ Terrain::Terrain(Grid<float> elevation) : elevation_(std::move(elevation)) {
     x_first_ = static_cast<float>(-0.5 * last_column_ * g.cell);
     y_first_ = static_cast<float>(-0.5 * last_row_ * g.cell);
     inverse_cell_ = static_cast<float>(1 / g.cell);
+
+    slope_x_.resize(height_.size());
+    slope_y_.resize(height_.size());
+    constexpr float none = std::numeric_limits<float>::quiet_NaN();
+    for (int row = 0; row < g.rows; ++row) {
+        for (int column = 0; column < g.columns; ++column) {
+            const std::size_t i = g.index(column, row);
+            const float west = column > 0 ? height_[i - 1] : none;
+            const float east = column < last_column_ ? height_[i + 1] : none;
+            const float south = row > 0 ? height_[i - stride_] : none;
+            const float north = row < last_row_ ? height_[i + stride_] : none;
+            slope_x_[i] = difference(west, height_[i], east, inverse_cell_);
+            slope_y_[i] = difference(south, height_[i], north, inverse_cell_);
+        }
+    }
 }
 
 double Terrain::elevation_at(const PlanPoint& p) const {

@@ -15,7 +15,9 @@ struct GroundSample {
     Vec3<Real> normal{};  ///< unit, upward
 };
 
-/// A height field of square cells, bilinear between cell centres, in a local float frame.
+/// A height field of square cells, bilinear between cell centres, in a local float frame. Normals are those of central
+/// differences, interpolated likewise: they turn gradually, where the facets' own normals jump from cell to cell, and
+/// with them a particle's distance to the ground, which the solver would answer with a kick.
 ///
 /// Debris can be on it where `covers` holds: inside the hull of the cell centres and away from nodata.
 /// A height's cell index and fraction come from the same floor(): taken from two roundings, a particle exactly on
@@ -44,14 +46,9 @@ class Terrain {
     template <class Real>
     [[nodiscard]] GroundSample<Real> sample(Real x, Real y) const {
         const Cell<Real> c = locate(x, y);
-        const std::size_t i = c.index;
-        const Real h00 = height_[i], h10 = height_[i + 1];
-        const Real h01 = height_[i + stride_], h11 = height_[i + stride_ + 1];
-        const Real south = h00 + (h10 - h00) * c.fx, north = h01 + (h11 - h01) * c.fx;
-        const Real slope_x = ((h10 - h00) + ((h11 - h01) - (h10 - h00)) * c.fy) * Real(inverse_cell_);
-        const Real slope_y = (north - south) * Real(inverse_cell_);
+        const Real slope_x = interpolate(slope_x_, c), slope_y = interpolate(slope_y_, c);
         const Real inverse_length = Real(1) / std::sqrt(Real(1) + slope_x * slope_x + slope_y * slope_y);
-        return {south + (north - south) * c.fy, {-slope_x * inverse_length, -slope_y * inverse_length, inverse_length}};
+        return {interpolate(height_, c), {-slope_x * inverse_length, -slope_y * inverse_length, inverse_length}};
     }
 
     /// World elevation at a world plan position; NaN where not covered.
@@ -78,13 +75,22 @@ class Terrain {
         return {static_cast<std::size_t>(cv) * stride_ + static_cast<std::size_t>(cu), u - cu, v - cv, inside};
     }
 
+    template <class Real>
+    Real interpolate(const std::vector<float>& nodes, const Cell<Real>& c) const {
+        const Real v00 = nodes[c.index], v10 = nodes[c.index + 1];
+        const Real v01 = nodes[c.index + stride_], v11 = nodes[c.index + stride_ + 1];
+        const Real south = v00 + (v10 - v00) * c.fx, north = v01 + (v11 - v01) * c.fx;
+        return south + (north - south) * c.fy;
+    }
+
     float corner_sum(std::size_t i) const {
         return height_[i] + height_[i + 1] + height_[i + stride_] + height_[i + stride_ + 1];
     }
 
     Grid<float> elevation_;
     LocalFrame frame_;
-    std::vector<float> height_;  // local z per cell centre, NaN: no data
+    std::vector<float> height_;             // local z per cell centre, NaN: no data
+    std::vector<float> slope_x_, slope_y_;  // central differences per cell centre
     std::size_t stride_ = 0;
     int last_column_ = 0, last_row_ = 0;
     float x_first_ = 0, y_first_ = 0;  // local position of the south-west cell's centre

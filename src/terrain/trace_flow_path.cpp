@@ -1,7 +1,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdint>
 #include <limits>
 #include <queue>
 #include <string>
@@ -31,7 +30,7 @@ struct FilledSurface {
     Grid<float> elevation;
     /// The neighbour over which the flood came (index into `neighbours`), -1 at an edge of the data. Following it never
     /// climbs and, because the flood reached that neighbour earlier, never returns.
-    std::vector<std::int8_t> outlet;
+    std::vector<int> outlet;
 };
 
 bool inside(const GridGeometry& g, int column, int row) {
@@ -48,7 +47,7 @@ bool at_edge_of_data(const Grid<float>& elevation, int column, int row) {
 /// Priority flood with a plain queue for cells below the water (Barnes, Lehman, Mulla 2014, algorithm 2).
 FilledSurface fill_sinks(const Grid<float>& elevation) {
     const GridGeometry& g = elevation.geometry;
-    FilledSurface filled{elevation, std::vector<std::int8_t>(g.size(), -1)};
+    FilledSurface filled{elevation, std::vector<int>(g.size(), -1)};
     std::vector<bool> reached(g.size(), false);
     // Ties in elevation go to the cell of lower index: the same path on every machine.
     using Entry = std::pair<float, std::size_t>;
@@ -81,7 +80,7 @@ FilledSurface fill_sinks(const Grid<float>& elevation) {
             if (reached[next] || std::isnan(level)) continue;
             reached[next] = true;
             // The way back to this cell: neighbours n and its opposite lie two apart within their group of four.
-            filled.outlet[next] = static_cast<std::int8_t>(n < 4 ? (n + 2) % 4 : 4 + (n - 4 + 2) % 4);
+            filled.outlet[next] = static_cast<int>(n < 4 ? (n + 2) % 4 : 4 + (n + 2) % 4);
             if (level <= filled.elevation.values[k]) {
                 level = filled.elevation.values[k];
                 pit.push(next);
@@ -226,6 +225,7 @@ Result<std::vector<PlanPoint>> trace_flow_path(const Grid<float>& elevation, con
 
     const std::vector<CellPosition> cells_passed = descend(window, {column - first_column, row - first_row}, longest);
     std::vector<PlanPoint> points;
+    points.reserve(cells_passed.size() + 1);
     for (const CellPosition& c : cells_passed) points.push_back(part.centre(c.column, c.row));
     points.front() = start;
     if (points.size() == 1) {  // the start is the lowest point there is: any direction is as good

@@ -143,7 +143,7 @@ const std::vector<BadInput> bad_inputs = {
          write_raster(s.input("terrain.tif"), SmallScene::terrain(),
                       [](int column, int) { return column > 39 && column < 45 ? nothing : 100 + 2.5 * column; });
      },
-     {"scar", "no data"}},
+     {"scar", "nodata"}},
     {"SelfIntersectingRelease",
      [](const SmallScene& s) {
          release_polygon(s, "POLYGON ((824200 825090, 824220 825110, 824220 825090, 824200 825110, 824200 825090))");

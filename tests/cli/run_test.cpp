@@ -34,12 +34,12 @@ TEST(Run, WritesEveryProductAndSaysWhereTheReportIs) {
         EXPECT_TRUE(fs::exists(scene.folder() / "talus_out/slope" / name)) << name;
     }
     EXPECT_THAT(outcome.out, HasSubstr("talus_out/slope/report.html"));
-    EXPECT_THAT(outcome.out, HasSubstr("at 5 m"));
+    EXPECT_THAT(outcome.out, HasSubstr("at 5 m: "));
     EXPECT_THAT(outcome.out, HasSubstr("observed 3 m/s"));
     EXPECT_THAT(outcome.out, HasSubstr("runout angle"));
     EXPECT_THAT(outcome.out, HasSubstr("x real time"));
     EXPECT_THAT(outcome.out, Not(HasSubstr("PARTIAL")));
-    EXPECT_THAT(outcome.error, HasSubstr("t "));
+    EXPECT_THAT(lines_of(outcome.error), testing::Contains("writing maps, tables and report"));
     EXPECT_THAT(outcome.error, Not(HasSubstr("\r"))) << "no bar where stderr is no terminal";
 }
 
@@ -146,14 +146,14 @@ TEST(Run, DataIsWhatTheSceneCallsTalusData) {
 
 TEST(Run, AFaultWritesWhatThereIsAndSaysWhy) {
     const SmallScene scene;
-    const auto outcome =
-        run_program({"run", "slope.toml", "-o", "result", "--json", "--set", "solver.compression_limit=1e-9"},
-                    {.folder = scene.folder()});
+    const auto outcome = run_program({"run", "slope.toml", "-o", "result", "--json", "--set",
+                                      "solver.largest_time_step_s=0.25", "--set", "solver.smallest_time_step_s=0.25"},
+                                     {.folder = scene.folder()});
     EXPECT_EQ(outcome.exit_code, 3);
     const auto lines = lines_of(outcome.error);
     ASSERT_EQ(lines.size(), 1u) << outcome.error;
     EXPECT_THAT(lines[0], testing::StartsWith("talus: error: "));
-    EXPECT_THAT(lines[0], HasSubstr("compression_limit"));
+    EXPECT_THAT(lines[0], HasSubstr("solver.smallest_time_step_s"));
     EXPECT_THAT(lines[0], HasSubstr("partial"));
     EXPECT_EQ(result_of(outcome).at("status"), "fault");
     EXPECT_THAT(read_text(scene.input("result/manifest.json")), HasSubstr("partial"));
@@ -178,6 +178,18 @@ TEST_F(Interrupted, ByCtrlCWritesWhatThereIsMarkedPartial) {
     EXPECT_EQ(result_of(outcome).at("status"), "interrupted");
     EXPECT_THAT(read_text(scene_.input("result/manifest.json")), HasSubstr("partial"));
     EXPECT_TRUE(fs::exists(scene_.input("result/report.html")));
+}
+
+TEST_F(Interrupted, AfterPlainLinesOfProgressSaysSo) {
+    const auto outcome = run_program(
+        {"run", "slope.toml", "-o", "result"},
+        {.folder = scene_.folder(), .while_running = [](int process) { kill(process, SIGINT); }, .wait_for = "left\n"});
+    EXPECT_EQ(outcome.exit_code, 130);
+    EXPECT_THAT(
+        lines_of(outcome.error),
+        testing::ElementsAre(testing::ContainsRegex("^t [0-9.]+ s of at most 1000 s, [0-9.]+ x real time, front"),
+                             "interrupted: writing what there is"));
+    EXPECT_THAT(outcome.out, HasSubstr("PARTIAL RESULT"));
 }
 
 TEST_F(Interrupted, ByTerminationToo) {

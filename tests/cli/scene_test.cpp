@@ -48,8 +48,7 @@ TEST(SceneCheck, SaysWhatASceneMeans) {
     const auto outcome = run_program({"scene", "check", "slope.toml"}, {.folder = scene.folder()});
     EXPECT_EQ(outcome.exit_code, 0) << outcome.error;
     EXPECT_EQ(outcome.error, "");
-    for (const char* part : {"EPSG:2326", "scar", "terrain.tif", "buildings"})
-        EXPECT_THAT(outcome.out, HasSubstr(part));
+    for (const char* part : {"EPSG:2326", "scar", "particles", "buildings"}) EXPECT_THAT(outcome.out, HasSubstr(part));
 }
 
 TEST(SceneCheck, RefusesWhatARunWouldRefuse) {

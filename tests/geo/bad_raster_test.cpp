@@ -156,6 +156,10 @@ TEST_F(BadRaster, HeightsInFeet) {
     }
 }
 
+TEST_F(BadRaster, CommandForFeetCountsScaleAndOffset) {
+    EXPECT_THAT(refusal(write({.scale = 0.1, .offset = -10, .unit = "ft"})), HasSubstr("--calc='A*0.03048-3.048'"));
+}
+
 TEST_F(BadRaster, HeightsInFeetByTheVerticalCrs) {
     // UTM 10N with NAVD88 height in US survey feet.
     OGRSpatialReference both;

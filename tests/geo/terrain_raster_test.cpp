@@ -134,6 +134,35 @@ TEST(TerrainRaster, ExtentBeyondTheRasterIsClippedAndOneOutsideRefused) {
     EXPECT_THAT(outside.error().message, HasSubstr("the raster lies at 824000 to 824100 east"));
 }
 
+TEST(TerrainRaster, OfALargeRasterOnlyTheExtentIsRead) {
+    // 10^10 cells, of which a block is there: reading all of it would need 40 GB.
+    const TemporaryFolder folder;
+    const std::string file = folder.file("country.tif");
+    GDALAllRegister();
+    char** options = CSLAddString(CSLAddString(nullptr, "SPARSE_OK=TRUE"), "TILED=YES");
+    {
+        const GDALDatasetUniquePtr data(GetGDALDriverManager()->GetDriverByName("GTiff")->Create(
+            file.c_str(), 100000, 100000, 1, GDT_Float32, options));
+        double transform[6] = {800000, 1, 0, 900000, 0, -1};
+        data->SetGeoTransform(transform);
+        const OGRSpatialReference reference = test::spatial_reference(2326);
+        data->SetSpatialRef(&reference);
+        GDALRasterBand* band = data->GetRasterBand(1);
+        band->SetNoDataValue(-9999);
+        std::vector<float> block(256 * 256, 70);
+        ASSERT_EQ(band->RasterIO(GF_Write, 51200, 51200, 256, 256, block.data(), 256, 256, GDT_Float32, 0, 0, nullptr),
+                  CE_None);
+    }
+    CSLDestroy(options);
+    const auto part = read_terrain_raster(file, 1, Extent{851200, 848600, 851700, 848800});
+    ASSERT_TRUE(part.ok()) << part.error().message;
+    EXPECT_EQ(part->grid.geometry, (GridGeometry{851200, 848600, 1, 500, 200}));
+    EXPECT_EQ(part->grid.at(0, 199), 70);
+    const auto all = read_terrain_raster(file, 1, std::nullopt);
+    ASSERT_FALSE(all.ok());
+    EXPECT_THAT(all.error().message, HasSubstr("100000 x 100000 cells are to be read, at most 200 million can be"));
+}
+
 TEST(TerrainRaster, StatesTheVerticalUnitOfTheBandOrOfTheCrs) {
     const TemporaryFolder folder;
     const auto stated =

@@ -102,6 +102,10 @@ TEST(FrontTracker, the_farthest_chainage_stays_when_the_front_draws_back_or_leav
         front.after_step(model, state);
     }
     EXPECT_NEAR(front.farthest(), 19.8, 1e-3);
+    for (float& x : state.position.x) x -= 8;
+    front.after_step(model, state);
+    EXPECT_NEAR(front.current(), 11.8, 1e-3);
+    EXPECT_NEAR(front.farthest(), 19.8, 1e-3);
     for (float& y : state.position.y) y += 60;
     advance(state, 0.02);
     front.after_step(model, state);

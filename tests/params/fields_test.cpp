@@ -128,7 +128,7 @@ TEST(FieldTable, ValuesOutOfRangeNameTheRange) {
     EXPECT_EQ(problem_with(viscosity, 0.0), "");
     EXPECT_EQ(problem_with(viscosity, 1.0), "a number from 0 to below 1");
     const Parameter& band = parameter("terrain", "band");
-    EXPECT_EQ(problem_with(band, std::int64_t{0}), "a whole number at least 1");
+    EXPECT_EQ(problem_with(band, std::int64_t{0}), "a whole number from 1 to 65535");
     EXPECT_EQ(problem_with(parameter("solver", "kernel"), std::string("gauss")),
               R"(one of "wendland_c2", "cubic_spline", "spiky", "poly6_spiky")");
 }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <string>
 #include <vector>
@@ -27,7 +28,7 @@ struct SampleValley {
                                    {185.0, 62.0},
                                    {222.0, 50.0},
                                    {262.0, 34.0},
-                                   {292.0, 22.0}}) {
+                                   {299.0, 19.0}}) {
             points.push_back({east + x, north + y});
         }
         return points;
@@ -262,7 +263,8 @@ inline RunResult sample_result(const Scene& scene) {
     o.worst_mean_compression = 0.0066;
     o.worst_max_compression = 0.0249;
 
-    result.stage_times.seconds = {0.3, 5.1, 14.2, 4.4, 0.9, 0.4, 3.1, 0.1, 2.2};
+    for (std::size_t k = 0; k < result.stage_times.seconds.size(); ++k)
+        result.stage_times.seconds[k] = 0.4 + 1.7 * static_cast<double>(k * k % 7);
     result.hash = 0x8c1f00d2a4b39e57ULL;
     result.particles = 8099;
     result.steps = 6120;

@@ -1,4 +1,6 @@
+#include <algorithm>
 #include <cstdlib>
+#include <sstream>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -10,9 +12,9 @@
 namespace talus {
 namespace {
 
+using testing::AnyOf;
 using testing::EndsWith;
 using testing::HasSubstr;
-using testing::Not;
 using testing::StartsWith;
 
 class ParseScene : public SceneFolder {
@@ -74,6 +76,15 @@ TEST_F(ParseScene, UnknownKeysNameTheNearestOne) {
     EXPECT_THAT(error_after("[solver]\n\nparticle_spacing = 0.1\n"), EndsWith("nearest known key: particle_spacing_m"));
     EXPECT_EQ(error_after("[outputs]\nviscosity = 0.1\n"),
               line(7) + "unknown key \"viscosity\" in [outputs]; it belongs in [material]");
+}
+
+TEST_F(ParseScene, ControlCharactersDoNotReachTheTerminal) {
+    for (const std::string text : {"[solver]\n\"\\u001b[31m\\n\" = 1\n", "[solver]\nkernel = \"\\u001b[31m\\n\"\n",
+                                   "[\"\\u001b[31m\"]\n", "[buildings]\nfile = \"a\\u0000b\"\n"}) {
+        const std::string message = error_after(text);
+        EXPECT_THAT(message, AnyOf(StartsWith(line(6)), StartsWith(line(7))));
+        EXPECT_TRUE(std::none_of(message.begin(), message.end(), [](char c) { return c >= 0 && c < ' '; })) << message;
+    }
 }
 
 TEST_F(ParseScene, UnknownSectionsNameTheNearestOne) {

@@ -52,6 +52,9 @@ TEST(FlowPath, nothing_outside_the_corridor) {
     EXPECT_TRUE(path.locate({-19, 0}));
     EXPECT_FALSE(path.locate({1e9, -1e9}));
     EXPECT_FALSE(path.locate({std::nan(""), 0}));
+    EXPECT_LT(path.chainage_bound({50, 30}), 0);
+    EXPECT_FALSE(FlowPath{}.locate({0, 0}));
+    EXPECT_LT(FlowPath{}.chainage_bound({0, 0}), 0);
 }
 
 TEST(FlowPath, point_at_is_the_inverse_of_locate_and_clamps) {
@@ -85,6 +88,8 @@ TEST(FlowPath, random_positions_agree_with_brute_force_on_a_winding_path) {
         const auto position = path.locate(p);
         EXPECT_EQ(position.has_value(), nearest <= 12);
         if (position) {
+            EXPECT_GE(path.chainage_bound(p), position->chainage);
+            EXPECT_LE(path.chainage_bound(p), position->chainage + 20);
             ++located;
             EXPECT_NEAR(position->offset, nearest, 1e-9);
         }

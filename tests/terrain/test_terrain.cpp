@@ -79,23 +79,51 @@ TEST(Terrain, cell_centres_carry_their_own_elevation) {
     }
 }
 
-TEST(Terrain, normal_is_the_gradient_of_the_height) {
+TEST(Terrain, normal_is_that_of_the_smooth_ground_below) {
     const Terrain terrain(
         make({0, 0, 1, 50, 50}, [](double x, double y) { return 0.02 * x * y + 3 * std::sin(x / 7); }));
     std::mt19937 random(4);
-    std::uniform_real_distribution<double> at(-24, 24), fraction(0.1, 0.9);
-    for (int i = 0; i < 200; ++i) {
-        // Well within a cell: across an edge the slope jumps.
-        const double x = std::floor(at(random)) - 0.5 + fraction(random);
-        const double y = std::floor(at(random)) - 0.5 + fraction(random);
-        const double h = 1e-3;
-        const double slope_x = (terrain.sample(x + h, y).height - terrain.sample(x - h, y).height) / (2 * h);
-        const double slope_y = (terrain.sample(x, y + h).height - terrain.sample(x, y - h).height) / (2 * h);
+    std::uniform_real_distribution<double> at(-22, 22);
+    for (int i = 0; i < 500; ++i) {
+        const double x = at(random), y = at(random);
         const auto n = terrain.sample(x, y).normal;
-        EXPECT_NEAR(-n.x / n.z, slope_x, 1e-6);
-        EXPECT_NEAR(-n.y / n.z, slope_y, 1e-6);
+        // Central differences and interpolation are wrong by the third derivative, 3 / 7^3, times 1/6 + 1/8 at most.
+        EXPECT_NEAR(-n.x / n.z, 0.02 * (y + 25) + 3.0 / 7 * std::cos((x + 25) / 7), 3e-3);
+        EXPECT_NEAR(-n.y / n.z, 0.02 * (x + 25), 1e-4);
         EXPECT_NEAR(length(n), 1, 1e-12);
     }
+}
+
+TEST(Terrain, normals_turn_gradually_from_cell_to_cell) {
+    std::mt19937 random(9);
+    std::uniform_real_distribution<float> any(0, 20);
+    Grid<float> grid(GridGeometry{0, 0, 5, 20, 20});
+    for (float& z : grid.values) z = any(random);
+    const Terrain terrain(grid);
+    for (int c = 1; c < 18; ++c) {
+        const float x = -47.5F + 5 * static_cast<float>(c);
+        for (float y = -40; y < 40; y += 1.3F) {
+            const auto west = terrain.sample(x - 1e-3F, y).normal, east = terrain.sample(x + 1e-3F, y).normal;
+            EXPECT_NEAR(length(east - west), 0, 5e-3);
+        }
+    }
+}
+
+TEST(Terrain, normals_beside_nodata_and_at_the_rim_are_taken_from_the_side_that_is_known) {
+    Grid<float> grid = make({0, 0, 1, 12, 12}, [](double x, double y) { return 0.5 * x - 0.25 * y; });
+    grid.at(5, 5) = nodata;
+    const Terrain terrain(grid);
+    int covered = 0;
+    for (float x = -5.5F; x <= 5.5F; x += 0.25F) {
+        for (float y = -5.5F; y <= 5.5F; y += 0.25F) {
+            if (!terrain.covers(x, y)) continue;
+            ++covered;
+            const auto n = terrain.sample(x, y).normal;
+            EXPECT_NEAR(-n.x / n.z, 0.5, 1e-5);
+            EXPECT_NEAR(-n.y / n.z, -0.25, 1e-5);
+        }
+    }
+    EXPECT_GT(covered, 1800);
 }
 
 TEST(Terrain, covers_the_hull_of_cell_centres_and_nothing_else) {

@@ -95,11 +95,13 @@ void Backend::reorder(State& state, std::span<const std::uint32_t> order) {
     gather(state.held, byte_scratch_);
 }
 
-/// Compression that a step begins with may be undone only slowly, since a correction turns into velocity: what the
-/// density constraint tolerates in this step.
-void Backend::measure_start_compression(const Model& model, const State& state) {
+/// Reads off the positions that the step starts from: the pair gradients along which what persists acts, and the
+/// compression that is already there. That may be undone only slowly, since a correction turns into velocity: the
+/// density constraint tolerates the rest.
+void Backend::measure_start(const Model& model, const State& state) {
     const float r = static_cast<float>(model.support_radius), inverse_r = 1 / r;
     const float value_scale = static_cast<float>(model.kernel.particle_volume) / (r * r * r);
+    const float gradient_scale = value_scale / (r * r);
     const auto undone = static_cast<float>(model.solver.depenetration_speed * state.time_step / model.particle_spacing);
     const float *x = state.position.x.data(), *y = state.position.y.data(), *z = state.position.z.data();
     with_kernel(model.kernel.choice, [&](auto kernel) {
@@ -107,12 +109,17 @@ void Backend::measure_start_compression(const Model& model, const State& state) 
             for (std::size_t i = first; i < last; ++i) {
                 const Vec3<float> p = state.position.at(i);
                 float density = kernel.value(0.0f);
+                Vec3<float>* pair_gradient = neighbours_.pair_vectors_of(i);
                 for (const std::uint32_t j : neighbours_.of(i)) {
-                    const float dx = p.x - x[j], dy = p.y - y[j], dz = p.z - z[j];
-                    density += kernel.value(std::min(1.0f, std::sqrt(dx * dx + dy * dy + dz * dz) * inverse_r));
+                    const Vec3<float> separation{p.x - x[j], p.y - y[j], p.z - z[j]};
+                    const float q = std::min(1.0f, std::sqrt(dot(separation, separation)) * inverse_r);
+                    density += kernel.value(q);
+                    *pair_gradient++ = separation * (-gradient_scale * kernel.slope_over_q(q));
                 }
-                const float share = boundary_density(model, sample_boundary(model, p)).density;
-                tolerated_compression_[i] = std::max(0.0f, density * value_scale + share - 1 - undone);
+                const auto boundary = boundary_density(model, sample_boundary(model, p));
+                ground_gradient_.set(i, boundary.ground_gradient);
+                building_gradient_.set(i, boundary.building_gradient);
+                tolerated_compression_[i] = std::max(0.0f, density * value_scale + boundary.density - 1 - undone);
             }
         });
     });
@@ -124,7 +131,7 @@ void Backend::warm_start(const Model& model, State& state) {
     const double ratio = state.previous_time_step > 0 ? state.time_step / state.previous_time_step : 0;
     const auto scale = static_cast<float>(keeps_stress ? ratio * ratio : 0);
     state.previous_time_step = state.time_step;
-    measure_start_compression(model, state);
+    measure_start(model, state);
     parallel_ranges(state.count, particle_grain, [&](std::size_t first, std::size_t last) {
         for (std::size_t i = first; i < last; ++i) {
             // Debris that is held keeps what it carries, ready for its start, and presses on nothing.
@@ -136,14 +143,10 @@ void Backend::warm_start(const Model& model, State& state) {
             stress_start_.set(i, stress);
             stress_change_.set(i, state.held[i] ? Deviator<float>{} : stress);
             multiplier_change_[i] = state.held[i] ? 0.0f : state.multiplier[i];
-            if (!keeps_stress) continue;
-            const auto boundary = boundary_density(model, sample_boundary(model, predicted_.at(i)));
-            ground_gradient_.set(i, boundary.ground_gradient);
-            building_gradient_.set(i, boundary.building_gradient);
         }
     });
     if (!keeps_stress) return;
-    correct_displacements<InternalFriction::stress>(model, state);
+    apply_stress_changes(state);
     std::swap(displacement_, displacement_next_);
     parallel_ranges(state.count, particle_grain, [&](std::size_t first, std::size_t last) {
         for (std::size_t i = first; i < last; ++i) {
@@ -155,10 +158,10 @@ void Backend::warm_start(const Model& model, State& state) {
 void Backend::solve_density(const Model& model, State& state) {
     if (model.solver.internal_friction == InternalFriction::stress) {
         update_multipliers<InternalFriction::stress>(model, state);
-        correct_displacements<InternalFriction::stress>(model, state);
+        apply_stress_changes(state);
     } else {
         update_multipliers<InternalFriction::pair>(model, state);
-        correct_displacements<InternalFriction::pair>(model, state);
+        apply_pair_corrections(model, state);
     }
     measure_compression(state);
 }
@@ -191,6 +194,7 @@ void Backend::update_multipliers(const Model& model, State& state) {
                 float density = kernel.value(0.0f), pair_square = softness;
                 Vec3<float> gradient{};
                 DisplacementGradient<float> deformation;
+                [[maybe_unused]] Vec3<float>* stored = neighbours_.pair_vectors_of(i);
                 for (const std::uint32_t j : neighbours_.of(i)) {
                     const Vec3<float> separation{p.x - x[j], p.y - y[j], p.z - z[j]};
                     const float square = dot(separation, separation);
@@ -201,6 +205,7 @@ void Backend::update_multipliers(const Model& model, State& state) {
                     gradient += pair_gradient;
                     pair_square += slope * slope * square;
                     if constexpr (keeps_stress) {
+                        *stored++ = pair_gradient;
                         deformation.add({ux[j] - moved.x, uy[j] - moved.y, uz[j] - moved.z}, pair_gradient);
                     }
                 }
@@ -257,10 +262,32 @@ void Backend::measure_compression(State& state) {
     state.max_compression = compression.greatest;
 }
 
-/// Eq. (3) and the particle-particle part of friction. All are equal and opposite for the two particles of a pair.
-template <InternalFriction friction>
-void Backend::correct_displacements(const Model& model, const State& state) {
-    constexpr bool keeps_stress = friction == InternalFriction::stress;
+/// Eq. (3) with the full stress: x_i += sum_j [(d lambda_i + d lambda_j) I + ds_i + ds_j] V grad W, equal and opposite
+/// for the two particles of a pair.
+void Backend::apply_stress_changes(const State& state) {
+    parallel_ranges(state.count, particle_grain, [&](std::size_t first, std::size_t last) {
+        for (std::size_t i = first; i < last; ++i) {
+            const Vec3<float> moved = displacement_.at(i);
+            if (state.held[i]) {
+                displacement_next_.set(i, moved);
+                continue;
+            }
+            const float own_change = multiplier_change_[i];
+            const Deviator<float> own_stress = stress_change_.at(i);
+            const Vec3<float>* pair_gradient = neighbours_.pair_vectors_of(i);
+            Vec3<float> correction = (ground_gradient_.at(i) + building_gradient_.at(i)) * own_change;
+            for (const std::uint32_t j : neighbours_.of(i)) {
+                const Vec3<float> gradient = *pair_gradient++;
+                correction +=
+                    gradient * (own_change + multiplier_change_[j]) + (own_stress + stress_change_.at(j)) * gradient;
+            }
+            displacement_next_.set(i, moved + correction);
+        }
+    });
+}
+
+/// Eqs. (3) and (4) as published: pairs pressed together rub against each other. Equal and opposite as well.
+void Backend::apply_pair_corrections(const Model& model, const State& state) {
     const float r = static_cast<float>(model.support_radius), inverse_r = 1 / r;
     const float value_scale = static_cast<float>(model.kernel.particle_volume) / (r * r * r);
     const float gradient_scale = value_scale / (r * r);
@@ -278,27 +305,21 @@ void Backend::correct_displacements(const Model& model, const State& state) {
                 }
                 const Vec3<float> p = predicted_.at(i);
                 const float own_change = multiplier_change_[i];
-                [[maybe_unused]] const Deviator<float> own_stress = stress_change_.at(i);
                 Vec3<float> correction = (ground_gradient_.at(i) + building_gradient_.at(i)) * own_change;
                 for (const std::uint32_t j : neighbours_.of(i)) {
                     const float change = own_change + multiplier_change_[j];
-                    if (!keeps_stress && change == 0) continue;
+                    if (change == 0) continue;
                     const Vec3<float> separation{p.x - x[j], p.y - y[j], p.z - z[j]};
                     const float square = dot(separation, separation);
                     const float distance = std::sqrt(square);
                     const float q = std::min(1.0f, distance * inverse_r);
                     const float slope = gradient_scale * kernel.slope_over_q(q);
-                    if constexpr (keeps_stress) {
-                        const Vec3<float> pair_gradient = separation * -slope;
-                        correction += pair_gradient * change + (own_stress + stress_change_.at(j)) * pair_gradient;
-                    } else {
-                        correction -= separation * (change * slope);
-                        const float normal = -change * slope * distance;  // > 0: pressing together
-                        if (normal > 0 && cap > 0) {
-                            const Vec3<float> relative{moved.x - ux[j], moved.y - uy[j], moved.z - uz[j]};
-                            correction += pair_friction(separation, square, relative, cap * normal,
-                                                        value_scale * kernel.value(q));
-                        }
+                    correction -= separation * (change * slope);
+                    const float normal = -change * slope * distance;  // > 0: pressing together
+                    if (normal > 0 && cap > 0) {
+                        const Vec3<float> relative{moved.x - ux[j], moved.y - uy[j], moved.z - uz[j]};
+                        correction +=
+                            pair_friction(separation, square, relative, cap * normal, value_scale * kernel.value(q));
                     }
                 }
                 displacement_next_.set(i, moved + correction);
@@ -339,7 +360,11 @@ void Backend::enforce_boundaries(const Model& model, State& state) {
             const Vec3<float> wanted = start + displacement;
             const Vec3<float> end = free_end(model, start, displacement);
             predicted_.set(i, end);
-            if (end.x != wanted.x || end.y != wanted.y || end.z != wanted.z) displacement_.set(i, end - start);
+            if (end.x == wanted.x && end.y == wanted.y && end.z == wanted.z) continue;
+            // What puts a particle back above ground must not speed it up.
+            const Vec3<float> moved = end - start;
+            const float before = dot(displacement, displacement), after = dot(moved, moved);
+            displacement_.set(i, after > before ? moved * std::sqrt(before / after) : moved);
         }
     });
 }

@@ -35,10 +35,10 @@ class Backend {
   private:
     template <InternalFriction friction>
     void update_multipliers(const Model& model, State& state);
-    template <InternalFriction friction>
-    void correct_displacements(const Model& model, const State& state);
+    void apply_stress_changes(const State& state);
+    void apply_pair_corrections(const Model& model, const State& state);
     void measure_compression(State& state);
-    void measure_start_compression(const Model& model, const State& state);
+    void measure_start(const Model& model, const State& state);
     void reorder(State& state, std::span<const std::uint32_t> order);
 
     CellSort cell_sort_;

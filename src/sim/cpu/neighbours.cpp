@@ -48,12 +48,13 @@ class RowSweep {
 }  // namespace
 
 NeighbourLists::NeighbourLists(std::size_t capacity)
-    : start_(capacity), count_(capacity), neighbours_(capacity * 64 + 1024) {}
+    : start_(capacity), count_(capacity), neighbours_(capacity * 64 + 1024), pair_vectors_(neighbours_.size()) {}
 
 void NeighbourLists::build(const VectorArray& points, const CellGrid& grid, float radius) {
     while (!try_build(points, grid, radius)) {
         // Rare: debris denser than ever before. Room to spare, so that it stays rare.
         neighbours_.resize(used_.load() + used_.load() / 2);
+        pair_vectors_.resize(neighbours_.size());
     }
 }
 

@@ -54,12 +54,4 @@ BoundaryDensity<Real> boundary_density(const Model& model, const BoundarySample<
     return result;
 }
 
-/// How far out a contact may push in this step: to the touching distance, but an overlap that the step *started* with
-/// is resolved at the depenetration speed only, since a correction turns into velocity.
-template <class Real>
-Real contact_target(Real touching_distance, Real start_distance, Real depenetration) {
-    const Real slow = start_distance + depenetration;
-    return slow < touching_distance ? slow : touching_distance;
-}
-
 }  // namespace talus

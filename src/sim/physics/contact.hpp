@@ -15,15 +15,18 @@ struct ContactMemory {
 
 /// Hard contact and Coulomb friction with one face.
 ///
-/// Normal: the accumulated correction that keeps the particle at its touching distance, taken back when the particle
-/// would hover. Friction: limited by the whole normal correction of the step, hard contact and `density_push` (what the
-/// face's share of the density constraint has pushed) together.
+/// Normal: the accumulated correction that brings the particle to its touching distance, taken back when it would
+/// hover. It may stop the motion into the face and add `depenetration` at most: an overlap that the step started with,
+/// or that a bend in the ground brought about, must not turn into velocity. Friction: limited by the whole normal
+/// correction of the step, hard contact and `density_push` (what the face's share of the density constraint has
+/// pushed) together.
 /// Returns the change of displacement; updates `memory`.
 template <class Real>
-Vec3<Real> resolve_contact(Real distance, Real target, const Vec3<Real>& normal, const Vec3<Real>& displacement,
+Vec3<Real> resolve_contact(Real overlap, const Vec3<Real>& normal, const Vec3<Real>& displacement, Real depenetration,
                            Real density_push, Real friction_coefficient, ContactMemory<Real>& memory) {
-    const Real wanted = memory.normal + (target - distance);
-    const Real accumulated = wanted > 0 ? wanted : Real(0);
+    const Real most = depenetration - dot(displacement, normal);
+    const Real push = overlap < most ? overlap : (most > 0 ? most : Real(0));
+    const Real accumulated = memory.normal + push > 0 ? memory.normal + push : Real(0);
     Vec3<Real> change = normal * (accumulated - memory.normal);
     memory.normal = accumulated;
     const Vec3<Real> moved = displacement + change;
@@ -33,7 +36,8 @@ Vec3<Real> resolve_contact(Real distance, Real target, const Vec3<Real>& normal,
 }
 
 /// Resolves the contact with the ground and the nearest building of a particle that started the step at `start` and is
-/// now displaced by `displacement`. Pushes are `-lambda |gradient|` of the face's share in the density constraint.
+/// now displaced by `displacement`. `depenetration` in m per step; pushes are `-lambda |gradient|` of the face's share
+/// in the density constraint. Returns the new displacement.
 template <class Real>
 Vec3<Real> resolve_contacts(const Model& model, const Vec3<Real>& start, Vec3<Real> displacement, Real depenetration,
                             Real ground_push, Real building_push, ContactMemory<Real>& ground,
@@ -41,25 +45,15 @@ Vec3<Real> resolve_contacts(const Model& model, const Vec3<Real>& start, Vec3<Re
     const Real touching = Real(model.contact_distance());
     const Real friction = Real(model.friction_coefficient);
     const BoundarySample<Real> now = sample_boundary(model, start + displacement);
-    const bool near_ground = now.ground_distance < touching || ground.normal > 0 || ground_push > 0;
-    const bool near_wall =
-        now.building >= 0 && (now.building_distance < touching || wall.normal > 0 || building_push > 0);
-    if (!near_ground && !near_wall) return displacement;
-
-    const BoundarySample<Real> before = sample_boundary(model, start);
-    if (near_ground) {
-        // Ground without data has a NaN distance: the particle is about to leave.
-        if (!(now.ground_distance == now.ground_distance)) return displacement;
-        const Real target = contact_target(touching, before.ground_distance, depenetration);
-        displacement += resolve_contact(now.ground_distance, target, now.ground_normal, displacement, ground_push,
-                                        friction, ground);
+    // Ground without data has a NaN distance, which is near nothing: the particle is about to leave.
+    const bool known = now.ground_distance == now.ground_distance;
+    if (known && (now.ground_distance < touching || ground.normal > 0 || ground_push > 0)) {
+        displacement += resolve_contact(touching - now.ground_distance, now.ground_normal, displacement, depenetration,
+                                        ground_push, friction, ground);
     }
-    if (near_wall) {
-        const Real target = before.building == now.building
-                                ? contact_target(touching, before.building_distance, depenetration)
-                                : touching;
-        displacement += resolve_contact(now.building_distance, target, now.building_normal, displacement, building_push,
-                                        friction, wall);
+    if (now.building >= 0 && (now.building_distance < touching || wall.normal > 0 || building_push > 0)) {
+        displacement += resolve_contact(touching - now.building_distance, now.building_normal, displacement,
+                                        depenetration, building_push, friction, wall);
         building_touched = now.building;
     }
     return displacement;

@@ -1,0 +1,89 @@
+#include "scene/check.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include <fmt/format.h>
+
+#include "observe/observer.hpp"
+#include "sim/seed.hpp"
+
+namespace talus {
+namespace {
+
+std::string terrain_line(const Scene& scene) {
+    const Grid<float>& elevation = scene.terrain.elevation();
+    float lowest = std::numeric_limits<float>::infinity(), highest = -lowest;
+    for (const float z : elevation.values) {
+        lowest = std::min(lowest, std::isnan(z) ? lowest : z);
+        highest = std::max(highest, std::isnan(z) ? highest : z);
+    }
+    const GridGeometry& g = elevation.geometry;
+    return fmt::format(
+        "terrain     {} x {} cells of {:.6g} m, {}, {:.1f} to {:.1f} m (vertical unit: {}), nodata {:.2g} %{}\n",
+        g.columns, g.rows, g.cell, scene.crs.label(), lowest, highest, scene.vertical_unit, 100 * scene.nodata_share,
+        scene.spec.terrain.extent ? ", cropped" : "");
+}
+
+std::string release_line(const Scene& scene, const Release& release) {
+    Release unit = release;  // 1 m thick everywhere: its volume is the area on the slope
+    unit.thickness_raster.reset();
+    double plan = 0;
+    for (ReleasePatch& patch : unit.patches) {
+        patch.thickness = 1;
+        plan += plan_area(patch.polygon);
+    }
+    const double slope_area = release_volume(scene.terrain, unit);
+    return fmt::format(
+        "release     \"{}\": {:.6g} m3, {:.6g} m2 in plan, mean thickness {:.3g} m, starts at {:.4g} s\n", release.name,
+        release.volume, plan, slope_area > 0 ? release.volume / slope_area : 0, release.start_time);
+}
+
+std::string particle_line(const Scene& scene, double volume, double spacing) {
+    const double count = std::round(volume / (spacing * spacing * spacing));
+    const auto limit = static_cast<double>(scene.spec.solver.particle_limit);
+    std::string line = fmt::format(
+        "particles   about {:.0f} with a spacing of {:.4g} m ({})\n", count, spacing,
+        scene.spec.solver.particle_spacing ? "solver.particle_spacing_m" : "from solver.target_particle_count");
+    if (count > limit) {
+        // Rounded up, so that the spacing that is named fits.
+        const double fits = std::ceil(1000 * std::cbrt(volume / limit)) / 1000;
+        line += fmt::format("            more than solver.particle_limit = {:.0f}: a spacing of {:.4g} m would fit\n",
+                            limit, fits);
+    }
+    return line;
+}
+
+std::string buildings_line(const Scene& scene) {
+    if (scene.buildings.empty()) return "buildings   none\n";
+    const auto assumed = std::count_if(scene.buildings.begin(), scene.buildings.end(),
+                                       [](const Building& building) { return building.height_assumed; });
+    return fmt::format("buildings   {}, {} with an assumed height\n", scene.buildings.size(), assumed);
+}
+
+}  // namespace
+
+std::string describe_scene(const Scene& scene) {
+    std::string out = "scene       " + scene.spec.scene.title +
+                      (scene.spec.scene.reconstruction ? " (reconstruction)\n" : "\n") + terrain_line(scene);
+    double volume = 0;
+    for (const Release& release : scene.releases) {
+        out += release_line(scene, release);
+        volume += release.volume;
+    }
+    const double spacing = choose_particle_spacing(scene.spec.solver, volume);
+    out += particle_line(scene, volume, spacing);
+    out += fmt::format("map cell    {:.4g} m\n",
+                       scene.spec.outputs.map_cell.value_or(default_map_cell(scene.terrain.cell(), spacing)));
+    out += buildings_line(scene);
+    out += scene.flow_path.empty()
+               ? "flow path   none\n"
+               : fmt::format("flow path   {:.0f} m, {}\n", scene.flow_path.length(),
+                             scene.flow_path_traced ? "traced downhill from the release" : "from its file");
+    if (!scene.notes.empty()) out += "notes\n";
+    for (const std::string& note : scene.notes) out += "  - " + note + "\n";
+    return out;
+}
+
+}  // namespace talus

@@ -1,0 +1,180 @@
+#include "scene/new_scene.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <numbers>
+#include <system_error>
+
+#include <fmt/format.h>
+
+#include "geo/vector.hpp"
+#include "params/scene_text.hpp"
+#include "scene/load.hpp"
+#include "scene/reach.hpp"
+
+namespace talus {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Lower than the travel angles of observed hillslope and channelised debris flows: what stays outside is not reached.
+constexpr double travel_angle_deg = 11;
+constexpr double assumed_thickness = 2;  // m
+
+std::string absolute_name(const fs::path& file) {
+    if (file.empty() || file.string().rfind("/vsi", 0) == 0) return file.string();
+    return fs::absolute(file).lexically_normal().string();
+}
+
+/// How a scene in `folder` names the file. Symbolic links are followed, or ".." would lead elsewhere.
+std::string name_from(const fs::path& folder, const std::string& file) {
+    if (file.empty() || file.rfind("/vsi", 0) == 0) return file;
+    std::error_code code;
+    const fs::path from = fs::weakly_canonical(fs::absolute(folder), code), to = fs::weakly_canonical(file, code);
+    const fs::path relative = code ? fs::path() : to.lexically_relative(from);
+    return relative.empty() ? file : relative.string();
+}
+
+/// The first of the names that all features have, with a value in at least one of them.
+std::string find_attribute(const PolygonLayer& layer, const std::vector<std::string>& names) {
+    for (const std::string& name : names) {
+        for (const PolygonFeature& feature : layer.features) {
+            const auto found = feature.attributes.find(name);
+            if (found != feature.attributes.end() && !std::holds_alternative<std::monostate>(found->second))
+                return name;
+        }
+    }
+    return "";
+}
+
+Status check_number(const std::string& section, const std::string& key, const std::string& option,
+                    const ParameterValue& value) {
+    const std::string problem = problem_with(*find_section(section)->find(key), value);
+    if (problem.empty()) return {};
+    return Error{fmt::format("{} {} is refused; it must be {}", option, plain_text(value), problem)};
+}
+
+Status check_options(const NewSceneOptions& options) {
+    std::error_code code;
+    if (options.folder.empty()) return Error{"the folder for the new scene has no name"};
+    if (fs::exists(fs::symlink_status(options.folder, code))) {
+        return Error{options.folder.string() + ": is already there; name a folder that is not"};
+    }
+    if (options.thickness && options.volume) {
+        return Error{fmt::format("thickness {:.6g} m and volume {:.6g} m3 are both given; give one of them",
+                                 *options.thickness, *options.volume)};
+    }
+    if (options.thickness) {
+        if (Status s = check_number("release", "thickness_m", "thickness", *options.thickness); !s) return s;
+    }
+    if (options.volume) {
+        if (Status s = check_number("release", "volume_m3", "volume", *options.volume); !s) return s;
+    }
+    if (options.target_particle_count) {
+        const std::int64_t count = *options.target_particle_count;
+        if (Status s = check_number("solver", "target_particle_count", "target particle count", count); !s) return s;
+    }
+    return {};
+}
+
+/// The scene with absolute paths; thickness is settled once the release layer is known.
+ParsedScene scene_from(const NewSceneOptions& options) {
+    ParsedScene parsed;
+    parsed.file = options.folder / "scene.toml";
+    parsed.spec.terrain.file = absolute_name(options.dem);
+    parsed.spec.buildings.file = absolute_name(options.buildings);
+    ReleaseSpec& release = parsed.spec.releases.emplace_back();
+    release.file = absolute_name(options.release);
+    release.name = options.release.stem().string();
+    release.thickness = options.thickness;
+    release.volume = options.volume;
+    if (options.target_particle_count) parsed.spec.solver.target_particle_count = *options.target_particle_count;
+    parsed.places = {{"terrain.file", "new scene"}, {"release[0].file", "new scene"}, {"buildings.file", "new scene"}};
+    return parsed;
+}
+
+Status choose_thickness(ParsedScene& parsed, const PolygonLayer& layer) {
+    ReleaseSpec& release = parsed.spec.releases.front();
+    if (release.thickness || release.volume) return {};
+    release.thickness_attribute = find_attribute(layer, {"thickness_m", "thickness"});
+    if (!release.thickness_attribute.empty()) return {};
+    release.thickness = assumed_thickness;
+    parsed.spec.scene.assumptions.push_back(fmt::format(
+        "The release is {:.6g} m thick, measured normal to the slope: no thickness and no volume was given.",
+        assumed_thickness));
+    return {};
+}
+
+/// The reachable ground and a margin, in whole cells of the terrain.
+Extent choose_extent(const Scene& scene) {
+    const GridGeometry& g = scene.terrain.elevation().geometry;
+    const double margin = std::max(50.0, 10 * g.cell);
+    const Extent reach =
+        reachable_extent(scene.terrain, scene.releases, travel_angle_deg * std::numbers::pi / 180).grown(margin);
+    const Extent all = g.extent();
+    const auto down = [&](double value, double edge) { return edge + g.cell * std::floor((value - edge) / g.cell); };
+    const auto up = [&](double value, double edge) { return edge + g.cell * std::ceil((value - edge) / g.cell); };
+    return {std::max(all.x_min, down(reach.x_min, g.x_min)), std::max(all.y_min, down(reach.y_min, g.y_min)),
+            std::min(all.x_max, up(reach.x_max, g.x_min)), std::min(all.y_max, up(reach.y_max, g.y_min))};
+}
+
+Status write_file(const fs::path& folder, const fs::path& file, const std::string& text) {
+    std::error_code code;
+    fs::create_directories(folder, code);
+    if (code) return Error{fmt::format("{}: cannot be made: {}", folder.string(), code.message())};
+    std::ofstream out(file, std::ios::binary);
+    out << text;
+    out.close();
+    if (out) return {};
+    fs::remove(file, code);
+    fs::remove(folder, code);
+    return Error{fmt::format("{}: cannot be written; is the disk full?", file.string())};
+}
+
+}  // namespace
+
+Result<NewScene> write_new_scene(const NewSceneOptions& options) {
+    if (Status s = check_options(options); !s) return s.error();
+    ParsedScene parsed = scene_from(options);
+
+    Scene whole;
+    whole.spec = parsed.spec;
+    if (Status s = load_terrain(parsed, whole); !s) return s.error();
+    const Result<PolygonLayer> layer = read_polygons(parsed.spec.releases[0].file, "", whole.crs);
+    if (!layer) return Error{"new scene: release[0].file: " + layer.error().message};
+    if (Status s = choose_thickness(parsed, *layer); !s) return s.error();
+    whole.spec.releases = parsed.spec.releases;
+    if (Status s = load_releases(parsed, whole); !s) return s.error();
+    parsed.spec.terrain.extent = choose_extent(whole);
+    if (!options.buildings.empty()) {
+        const Result<PolygonLayer> buildings = read_polygons(parsed.spec.buildings.file, "", whole.crs);
+        if (!buildings) return Error{"new scene: buildings.file: " + buildings.error().message};
+        parsed.spec.buildings.height_attribute = find_attribute(*buildings, {"height_m", "height"});
+        parsed.spec.buildings.name_attribute = find_attribute(*buildings, {"name"});
+    }
+    whole = {};
+    Result<Scene> scene = assemble_scene(parsed);  // as a run would load it: everything is checked before writing
+    if (!scene) return scene.error();
+
+    SceneSpec spec = parsed.spec;
+    spec.scene.title = scene->spec.scene.title;
+    spec.terrain.file = name_from(options.folder, spec.terrain.file);
+    spec.buildings.file = name_from(options.folder, spec.buildings.file);
+    spec.releases[0].file = name_from(options.folder, spec.releases[0].file);
+    const std::string extent_note = fmt::format(
+        "terrain: the extent holds all ground below an energy line of {:.0f} degrees from the release, and a margin",
+        travel_angle_deg);
+    const std::string header =
+        "A scene for talus. Lines that begin with # are explanations and default values: remove the # from a value to "
+        "change it. Paths are relative to this file.\n\nterrain.extent_m holds all ground that lies below an energy "
+        "line of " +
+        fmt::format("{:.0f}", travel_angle_deg) + " degrees from the release, and a margin.";
+    NewScene made{options.folder / "scene.toml", std::move(scene->notes)};
+    made.notes.insert(made.notes.begin(), extent_note);
+    for (const std::string& assumption : spec.scene.assumptions) made.notes.push_back("assumed: " + assumption);
+    if (Status s = write_file(options.folder, made.file, write_scene(spec, header)); !s) return s.error();
+    return made;
+}
+
+}  // namespace talus

@@ -1,0 +1,61 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "core/geometry.hpp"
+#include "sim/model.hpp"
+#include "sim/physics/contact.hpp"
+#include "sim/physics/stress.hpp"
+#include "sim/state.hpp"
+
+namespace talus::reference {
+
+using Vector = Vec3<double>;
+
+/// A particle with all that a step needs to know of it.
+struct Particle {
+    Vector position, velocity, displacement;
+    double multiplier = 0, pressure = 0, multiplier_change = 0, tolerated_compression = 0;
+    Deviator<double> stress, stress_start, stress_change;
+    BoundaryDensity<double> boundary;
+    ContactMemory<double> ground, wall;
+    int building = -1;
+    bool held = false;
+
+    [[nodiscard]] Vector predicted() const { return position + displacement; }
+};
+
+/// The particles in the order of their ids.
+struct State {
+    double time = 0, time_step = 0, previous_time_step = 0;
+    std::uint64_t step = 0;
+    std::vector<Particle> particles;
+
+    State() = default;
+    explicit State(const talus::State& state);
+};
+
+/// The density constraint G of a particle (eq. 1), every other particle looked at.
+[[nodiscard]] double constraint(const Model& model, const std::vector<Vector>& points, std::size_t i);
+
+/// Its gradient with respect to the position of particle k.
+[[nodiscard]] Vector constraint_gradient(const Model& model, const std::vector<Vector>& points, std::size_t i,
+                                         std::size_t k);
+
+/// The stages of a step in double precision and in O(N^2), as plainly as the laws allow: what the fast backends are
+/// tested against. Nobody's run uses it.
+class Backend {
+  public:
+    void predict_positions(const Model& model, State& state);
+    void find_neighbours(const Model&, State&) {}
+    void warm_start(const Model& model, State& state);
+    void solve_density(const Model& model, State& state);
+    void solve_contacts(const Model& model, State& state);
+    void enforce_boundaries(const Model& model, State& state);
+    void update_velocities(const Model& model, State& state);
+    void apply_viscosity(const Model& model, State& state);
+    void remove_left(const Model&, State&) {}
+};
+
+}  // namespace talus::reference

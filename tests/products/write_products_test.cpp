@@ -1,0 +1,387 @@
+#include <cmath>
+#include <csignal>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cpl_minixml.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "geo/raster.hpp"
+#include "geo/vector.hpp"
+#include "params/fields.hpp"
+#include "products/hazard_map.hpp"
+#include "products/products.hpp"
+#include "products/writers.hpp"
+#include "report_fixture.hpp"
+#include "support/fixtures.hpp"
+
+namespace talus {
+namespace {
+
+using nlohmann::json;
+using test::TemporaryFolder;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::Not;
+using testing::StartsWith;
+
+/// Rows of a CSV without quoted fields; the first is the header.
+std::vector<std::vector<std::string>> rows_of(const std::string& text) {
+    std::vector<std::vector<std::string>> rows;
+    std::istringstream in(text);
+    for (std::string line; std::getline(in, line);) {
+        std::vector<std::string> row(1);
+        for (const char c : line) {
+            if (c == ',') {
+                row.emplace_back();
+            } else {
+                row.back() += c;
+            }
+        }
+        rows.push_back(row);
+    }
+    return rows;
+}
+
+/// All products of the sample valley, written once.
+class Products : public testing::Test {
+  protected:
+    static void SetUpTestSuite() {
+        scene_ = new Scene(test::sample_scene());
+        result_ = new RunResult(test::sample_result(*scene_));
+        result_->simulated_time = 41.2;
+        result_->wall_time = 1;  // beside the stages
+        for (std::size_t i = 0; i < stage_names.size(); ++i) {
+            result_->stage_times.seconds[i] = 0.5 * static_cast<double>(i + 1);
+            result_->wall_time += result_->stage_times.seconds[i];
+        }
+        folder_ = new TemporaryFolder;
+        const Status status = write_products(*scene_, *result_, folder_->path());
+        ASSERT_TRUE(status.ok()) << status.error().message;
+    }
+    static void TearDownTestSuite() {
+        delete folder_;
+        delete result_;
+        delete scene_;
+    }
+    static json manifest() { return json::parse(test::read_text(folder_->path() / "manifest.json")); }
+
+    static inline Scene* scene_ = nullptr;
+    static inline RunResult* result_ = nullptr;
+    static inline TemporaryFolder* folder_ = nullptr;
+};
+
+TEST_F(Products, FolderHoldsWhatItShouldAndNothingElse) {
+    std::vector<std::string> names;
+    for (const auto& entry : std::filesystem::directory_iterator(folder_->path())) {
+        names.push_back(entry.path().filename());
+    }
+    EXPECT_THAT(names, testing::UnorderedElementsAre(
+                           "arrival_time.qml", "arrival_time.tif", "buildings.csv", "deposit_depth.qml",
+                           "deposit_depth.tif", "front.csv", "manifest.json", "peak_depth.qml", "peak_depth.tif",
+                           "peak_pressure.qml", "peak_pressure.tif", "peak_speed.qml", "peak_speed.tif", "report.html",
+                           "results.gpkg", "run_out.csv", "timeseries.csv"));
+}
+
+TEST_F(Products, MapsReadBackInTheirUnits) {
+    const HazardMaps& maps = result_->observation.maps;
+    const std::tuple<const char*, const Grid<float>*, const char*, double> expected[] = {
+        {"peak_depth", &maps.peak_depth, "m", 1},
+        {"peak_speed", &maps.peak_speed, "m/s", 1},
+        {"peak_pressure", &maps.peak_pressure, "kPa", 1e-3},
+        {"arrival_time", &maps.arrival_time, "s", 1},
+        {"deposit_depth", &maps.deposit_depth, "m", 1}};
+    for (const auto& [name, grid, unit, factor] : expected) {
+        const GDALDatasetUniquePtr data(GDALDataset::Open(folder_->file(std::string(name) + ".tif").c_str()));
+        ASSERT_TRUE(data) << name;
+        EXPECT_STREQ(data->GetMetadataItem("LAYOUT", "IMAGE_STRUCTURE"), "COG") << name;
+        GDALRasterBand* band = data->GetRasterBand(1);
+        EXPECT_STREQ(band->GetUnitType(), unit) << name;
+        EXPECT_EQ(band->GetNoDataValue(), -9999) << name;
+        EXPECT_EQ(band->GetRasterDataType(), GDT_Float32) << name;
+        EXPECT_THAT(band->GetDescription(), HasSubstr("(reconstruction)")) << name;
+        EXPECT_STREQ(data->GetSpatialRef()->GetAuthorityCode(nullptr), "2326") << name;
+        const GridGeometry& g = grid->geometry;
+        std::vector<float> cells(g.size());
+        ASSERT_EQ(band->RasterIO(GF_Read, 0, 0, g.columns, g.rows, cells.data(), g.columns, g.rows, GDT_Float32, 0, 0,
+                                 nullptr),
+                  CE_None);
+        for (int row = 0; row < g.rows; ++row) {
+            for (int column = 0; column < g.columns; ++column) {
+                const float written = cells[static_cast<std::size_t>(g.rows - 1 - row) * g.columns + column];
+                const float value = grid->at(column, row);
+                const auto wanted = static_cast<float>(value * factor);
+                ASSERT_EQ(written, std::isnan(value) ? -9999.0F : wanted) << name << " " << column << " " << row;
+            }
+        }
+    }
+}
+
+TEST_F(Products, EveryMapHasAStyleThatParsesWithAscendingLimitsAndUnits) {
+    for (const HazardMap& map : hazard_maps()) {
+        const std::string text = test::read_text(folder_->path() / (std::string(map.file) + ".qml"));
+        CPLXMLNode* tree = CPLParseXMLString(text.c_str());
+        ASSERT_NE(tree, nullptr) << map.file;
+        CPLXMLNode* renderer = CPLGetXMLNode(tree, "=qgis.pipe.rasterrenderer");
+        ASSERT_NE(renderer, nullptr);
+        EXPECT_STREQ(CPLGetXMLValue(renderer, "type", ""), "singlebandpseudocolor");
+        CPLXMLNode* shader = CPLGetXMLNode(renderer, "rastershader.colorrampshader");
+        ASSERT_NE(shader, nullptr);
+        double previous = -1;
+        int shown = 0;
+        std::string last;
+        for (CPLXMLNode* item = shader->psChild; item != nullptr; item = item->psNext) {
+            if (std::string(item->pszValue) != "item") continue;
+            last = CPLGetXMLValue(item, "value", "");
+            const double limit = std::stod(last);
+            EXPECT_GT(limit, previous) << map.file;
+            previous = limit;
+            if (std::string(CPLGetXMLValue(item, "alpha", "")) == "0") continue;
+            ++shown;
+            EXPECT_THAT(CPLGetXMLValue(item, "label", ""), testing::EndsWith(map.unit)) << map.file;
+            EXPECT_THAT(CPLGetXMLValue(item, "color", ""), testing::MatchesRegex("#[0-9a-f]{6}"));
+        }
+        EXPECT_EQ(last, "inf") << "no value may go uncoloured";
+        EXPECT_GE(shown, 3) << map.file;
+        CPLDestroyXMLNode(tree);
+    }
+}
+
+TEST_F(Products, StylesOrderClassesByLightness) {
+    for (const HazardMap& map : hazard_maps()) {
+        const auto classes =
+            map.breaks.empty() ? report::even_classes(40, map.ramp) : report::fixed_classes(map.breaks, 1e6, map.ramp);
+        const bool darkens = map.ramp.high_lightness < map.ramp.low_lightness;
+        for (std::size_t k = 1; k < classes.colours.size(); ++k) {
+            const double step = report::lightness(classes.colours[k]) - report::lightness(classes.colours[k - 1]);
+            EXPECT_GT(darkens ? -step : step, 0.02) << map.file << " class " << k;
+        }
+    }
+}
+
+TEST_F(Products, StyleLeavesZeroDepthAndThinDepositsTransparent) {
+    EXPECT_THAT(test::read_text(folder_->path() / "peak_depth.qml"), HasSubstr("<item value=\"0\""));
+    EXPECT_THAT(test::read_text(folder_->path() / "deposit_depth.qml"), HasSubstr("label=\"up to 0.05 m\""));
+    EXPECT_THAT(test::read_text(folder_->path() / "arrival_time.qml"), Not(HasSubstr("alpha=\"0\"")));
+}
+
+TEST_F(Products, FrontTableLeavesUnknownVelocitiesEmpty) {
+    const auto rows = rows_of(test::read_text(folder_->path() / "front.csv"));
+    const auto& front = result_->observation.front;
+    ASSERT_EQ(rows.size(), front.size() + 1);
+    EXPECT_THAT(rows[0],
+                ElementsAre("chainage_m", "first_arrival_time_s", "front_velocity_mps", "front_particle_speed_mps"));
+    EXPECT_EQ(rows[1][2], "") << "no window there yet";
+    const FrontSample& sample = front[50];
+    EXPECT_DOUBLE_EQ(std::stod(rows[51][0]), sample.chainage);
+    EXPECT_NEAR(std::stod(rows[51][1]), sample.arrival_time, 1e-6);
+    EXPECT_NEAR(std::stod(rows[51][2]), sample.front_velocity, 1e-6);
+    EXPECT_NEAR(std::stod(rows[51][3]), sample.particle_speed, 1e-6);
+}
+
+TEST_F(Products, RunOutTableGivesAnglesInDegrees) {
+    const auto rows = rows_of(test::read_text(folder_->path() / "run_out.csv"));
+    ASSERT_EQ(rows.size(), 2U);
+    EXPECT_EQ(rows[0][3], "runout_angle_deg");
+    EXPECT_NEAR(std::tan(std::stod(rows[1][3]) * M_PI / 180), std::stod(rows[1][2]) / std::stod(rows[1][1]), 1e-6);
+}
+
+TEST_F(Products, BuildingTableUsesKilonewtonAndKilopascal) {
+    const auto rows = rows_of(test::read_text(folder_->path() / "buildings.csv"));
+    ASSERT_EQ(rows.size(), 6U);
+    EXPECT_THAT(rows[0], ElementsAre("name", "hit", "first_hit_time_s", "peak_force_kN", "peak_pressure_kPa",
+                                     "peak_dynamic_pressure_kPa", "peak_depth_m", "filter_window_s", "height_m",
+                                     "height_assumed"));
+    EXPECT_EQ(rows[1][0], "House 38");
+    EXPECT_EQ(rows[1][1], "yes");
+    EXPECT_EQ(rows[1][3], "412");
+    EXPECT_EQ(rows[1][4], "38.4");
+    EXPECT_EQ(rows[1][5], "61");
+    EXPECT_EQ(rows[1][7], "0.2");
+    EXPECT_EQ(rows[2][9], "yes");
+    EXPECT_EQ(rows[5][1], "no");
+    EXPECT_EQ(rows[5][2], "") << "never hit: no time";
+}
+
+TEST_F(Products, NamesWithCommasAndQuotesAreQuoted) {
+    const TemporaryFolder folder;
+    RunResult result = *result_;
+    result.observation.buildings[0].name = "Block \"A\", 沙田";
+    ASSERT_TRUE(write_tables(*scene_, result, folder.path()).ok());
+    EXPECT_THAT(test::read_text(folder.path() / "buildings.csv"), HasSubstr("\n\"Block \"\"A\"\", 沙田\",yes,"));
+}
+
+TEST_F(Products, TimeSeriesBalancesItsVolumes) {
+    const auto rows = rows_of(test::read_text(folder_->path() / "timeseries.csv"));
+    ASSERT_EQ(rows.size(), result_->observation.timeseries.size() + 1);
+    ASSERT_EQ(rows[0][6], "volume_balance_m3");
+    for (std::size_t i = 1; i < rows.size(); ++i) {
+        ASSERT_EQ(rows[i].size(), rows[0].size());
+        EXPECT_NEAR(std::stod(rows[i][6]), 0, 1e-9);
+    }
+    EXPECT_THAT(rows[0], testing::IsSupersetOf({"time_s", "front_chainage_m", "volume_moving_m3", "kinetic_energy_J",
+                                                "steps_per_second"}));
+}
+
+TEST_F(Products, GeoPackageHoldsBuildingsReleasesPathAndMarks) {
+    const std::string file = folder_->file("results.gpkg");
+    const auto buildings = read_polygons(file, "buildings", scene_->crs);
+    ASSERT_TRUE(buildings.ok()) << buildings.error().message;
+    ASSERT_EQ(buildings->features.size(), 5U);
+    EXPECT_EQ(buildings->features[0].attributes.at("peak_force_kN"), Attribute(412.0));
+    EXPECT_EQ(buildings->features[0].attributes.at("name"), Attribute("House 38"));
+    EXPECT_EQ(buildings->features[4].attributes.at("first_hit_time_s"), Attribute());
+    EXPECT_NEAR(plan_area(buildings->features[0].parts[0]), 12 * 9, 1e-6);
+
+    const auto releases = read_polygons(file, "release", scene_->crs);
+    ASSERT_TRUE(releases.ok()) << releases.error().message;
+    EXPECT_EQ(releases->features[0].attributes.at("thickness_m"), Attribute(1.4));
+
+    const auto path = read_line(file, "flow_path", scene_->crs);
+    ASSERT_TRUE(path.ok()) << path.error().message;
+    EXPECT_EQ(path->points.size(), scene_->flow_path.points().size());
+
+    const GDALDatasetUniquePtr data(GDALDataset::Open(file.c_str(), GDAL_OF_VECTOR));
+    OGRLayer* marks = data->GetLayerByName("chainage");
+    ASSERT_NE(marks, nullptr);
+    EXPECT_EQ(marks->GetFeatureCount(), static_cast<GIntBig>(scene_->flow_path.length() / 10) + 1);
+    marks->SetAttributeFilter("chainage_m = 100");
+    const OGRFeatureUniquePtr mark(marks->GetNextFeature());
+    ASSERT_TRUE(mark);
+    EXPECT_NEAR(mark->GetFieldAsDouble("front_velocity_mps"), test::SampleValley::velocity_at(100), 1e-9);
+}
+
+TEST_F(Products, ManifestHoldsEveryParameterOfTheFieldTable) {
+    const json parameters = manifest()["parameters"];
+    int count = 0;
+    for_each_value(scene_->spec, [&](const Section& section, std::size_t index, const Parameter& parameter,
+                                     const ParameterValue& value) {
+        const json& table = section.repeats ? parameters[section.name][index] : parameters[section.name];
+        ASSERT_TRUE(table.contains(parameter.key)) << key_path(section, index, parameter);
+        EXPECT_EQ(table[parameter.key].is_null(), std::holds_alternative<std::monostate>(value))
+            << key_path(section, index, parameter);
+        ++count;
+    });
+    EXPECT_GT(count, 40);
+    EXPECT_EQ(parameters["material"]["rest_density_kgpm3"], 2000);
+    EXPECT_EQ(parameters["release"][0]["volume_m3"], 600);
+    EXPECT_EQ(parameters["observation"].size(), 2U);
+}
+
+TEST_F(Products, ManifestSaysWhatRanWhereAndHowFast) {
+    const json m = manifest();
+    EXPECT_EQ(m["program"], "talus");
+    EXPECT_EQ(m["status"], "complete");
+    EXPECT_EQ(m["partial"], false);
+    EXPECT_EQ(m["reconstruction"], true);
+    EXPECT_EQ(m["result_hash"], "8c1f00d2a4b39e57");
+    EXPECT_EQ(m["inputs"][0]["fnv1a_64"], "9f1c22ab74d10e55");
+    EXPECT_EQ(m["inputs"][0]["bytes"], 61234);
+    EXPECT_THAT(m["versions"]["gdal"].get<std::string>(), StartsWith("3."));
+    for (const char* key : {"talus", "proj", "tbb", "compiler"}) {
+        EXPECT_THAT(m["versions"][key].get<std::string>(), Not(IsEmpty())) << key;
+    }
+    EXPECT_GT(m["hardware"]["logical_cores"], 0);
+    EXPECT_GT(m["hardware"]["memory_GiB"], 0);
+    EXPECT_NEAR(m["performance"]["real_time_factor"], 41.2 / result_->wall_time, 1e-9);
+    double share = 0, step = 0;
+    for (const json& stage : m["performance"]["stages"]) {
+        share += stage["share"].get<double>();
+        step += stage["per_step_ms"].get<double>();
+    }
+    EXPECT_NEAR(share, 1, 1e-9) << "with what is not in a stage";
+    EXPECT_NEAR(step, m["performance"]["step_ms"], 1e-9);
+    EXPECT_EQ(m["performance"]["stages"][2]["stage"], stage_names[2]);
+    EXPECT_NEAR(m["performance"]["stages"][2]["total_s"], 1.5, 1e-9);
+    EXPECT_NEAR(m["performance"]["stages"][2]["share"], 1.5 / result_->wall_time, 1e-9);
+    EXPECT_EQ(m["resolved"]["particle_spacing_m"], 0.42);
+    EXPECT_EQ(m["results"]["buildings_hit"], 3);
+    EXPECT_NEAR(m["results"]["greatest"]["peak_pressure_kPa"],
+                2 * std::pow(m["results"]["greatest"]["peak_speed_mps"].get<double>(), 2), 0.01);
+    EXPECT_EQ(m["results"]["volumes"]["released_m3"], 600);
+    EXPECT_EQ(m["assumptions"].size(), 3U);
+    EXPECT_THAT(m["files"].get<std::vector<std::string>>(), testing::Contains("report.html"));
+}
+
+TEST_F(Products, ManifestWritesNullForWhatDoesNotExist) {
+    const TemporaryFolder folder;
+    RunResult result = *result_;
+    result.observation.run_out = {};
+    ASSERT_TRUE(write_manifest(*scene_, result, folder.path()).ok());
+    const json m = json::parse(test::read_text(folder.path() / "manifest.json"));
+    EXPECT_TRUE(m["results"]["runout_angle_deg"].is_null());
+}
+
+TEST_F(Products, ManifestSurvivesNamesThatAreNotUtf8) {
+    const TemporaryFolder folder;
+    Scene scene = *scene_;
+    scene.releases[0].name = "Gr\xfcn";
+    ASSERT_TRUE(write_manifest(scene, *result_, folder.path()).ok());
+    EXPECT_TRUE(json::accept(test::read_text(folder.path() / "manifest.json")));
+}
+
+TEST_F(Products, PartialResultSaysSoEverywhere) {
+    const TemporaryFolder folder;
+    RunResult result = *result_;
+    result.status = RunStatus::fault;
+    result.stop_reason = "at 12.5 s the mean compression is 0.61, above compression_limit 0.5";
+    ASSERT_TRUE(write_products(*scene_, result, folder.path()).ok());
+    EXPECT_THAT(test::read_text(folder.path() / "PARTIAL.txt"), HasSubstr(result.stop_reason));
+    const json m = json::parse(test::read_text(folder.path() / "manifest.json"));
+    EXPECT_EQ(m["partial"], true);
+    EXPECT_EQ(m["status"], "fault");
+    EXPECT_EQ(m["stop_reason"], result.stop_reason);
+    const GDALDatasetUniquePtr data(GDALDataset::Open(folder.file("peak_depth.tif").c_str()));
+    EXPECT_THAT(data->GetRasterBand(1)->GetDescription(), HasSubstr("partial result: fault"));
+}
+
+TEST_F(Products, RunWithoutDebrisPathOrBuildingsIsWrittenToo) {
+    const TemporaryFolder folder;
+    Scene scene = *scene_;
+    scene.buildings.clear();
+    scene.flow_path = FlowPath();
+    RunResult result = *result_;
+    result.status = RunStatus::interrupted;
+    const Grid<float> blank(GridGeometry{824100, 825500, 1, 4, 3}, std::nanf(""));
+    result.observation = {};
+    result.observation.maps = {blank, blank, blank, blank, blank};
+    result.steps = 0;
+    result.wall_time = 0;
+    const Status status = write_products(scene, result, folder.path());
+    ASSERT_TRUE(status.ok()) << status.error().message;
+    EXPECT_TRUE(json::accept(test::read_text(folder.path() / "manifest.json")));
+}
+
+TEST_F(Products, FullDiskIsAnErrorThatNamesTheFile) {
+    // In a child, since the limit on file sizes holds for the whole process.
+    const TemporaryFolder folder;
+    for (const rlim_t limit : {500, 2000, 20000}) {
+        int ends[2];
+        ASSERT_EQ(pipe(ends), 0);
+        const pid_t child = fork();
+        if (child == 0) {
+            std::signal(SIGXFSZ, SIG_IGN);
+            const rlimit size{limit, limit};
+            setrlimit(RLIMIT_FSIZE, &size);
+            const Status status = write_products(*scene_, *result_, folder.path());
+            const std::string message = status.ok() ? "written" : status.error().message;
+            _exit(write(ends[1], message.data(), message.size()) < 0 ? 1 : 0);
+        }
+        close(ends[1]);
+        char buffer[4096];
+        const ssize_t count = read(ends[0], buffer, sizeof buffer);
+        close(ends[0]);
+        waitpid(child, nullptr, 0);
+        const std::string message(buffer, count > 0 ? static_cast<std::size_t>(count) : 0);
+        EXPECT_THAT(message, StartsWith(folder.path().string() + "/")) << limit;
+        EXPECT_THAT(message, HasSubstr("cannot be written")) << limit;
+        EXPECT_FALSE(std::filesystem::exists(folder.path() / "manifest.json")) << limit;
+    }
+}
+
+}  // namespace
+}  // namespace talus

@@ -1,0 +1,122 @@
+#include <numeric>
+
+#include <gtest/gtest.h>
+
+#include "sim/cpu/backend.hpp"
+#include "sim/reference/reference.hpp"
+#include "sim/step.hpp"
+#include "sim_fixtures.hpp"
+
+namespace talus {
+namespace {
+
+using reference::Vector;
+using testing::random_points;
+using testing::state_of;
+
+Model free_space(KernelChoice kernel = KernelChoice::wendland_c2,
+                 InternalFriction friction = InternalFriction::stress) {
+    SolverSpec solver;
+    solver.kernel = kernel;
+    solver.internal_friction = friction;
+    Model model = make_model({}, solver, testing::terrain_of(40, 40, 1, [](double, double) { return 0; }), {}, 0.4);
+    model.gravity = 0;
+    return model;
+}
+
+TEST(DensityConstraint, gradient_agrees_with_finite_differences) {
+    for (const KernelChoice kernel : {KernelChoice::wendland_c2, KernelChoice::cubic_spline, KernelChoice::spiky}) {
+        const Model model = free_space(kernel);
+        std::vector<Vector> points;
+        // Close to the ground, so that its share of the gradient is tested as well.
+        for (const LocalPoint& p : random_points(40, {-0.6F, -0.6F, 0.1F}, {0.6F, 0.6F, 1.0F}, 5)) {
+            points.push_back({p.x, p.y, p.z});
+        }
+        for (std::size_t k = 0; k < points.size(); ++k) {
+            const Vector gradient = reference::constraint_gradient(model, points, 3, k);
+            const double components[] = {gradient.x, gradient.y, gradient.z};
+            for (int axis = 0; axis < 3; ++axis) {
+                constexpr double h = 1e-5;
+                const auto shifted = [&](double by) {
+                    auto moved = points;
+                    (axis == 0 ? moved[k].x : axis == 1 ? moved[k].y : moved[k].z) += by;
+                    return reference::constraint(model, moved, 3);
+                };
+                EXPECT_NEAR(components[axis], (shifted(h) - shifted(-h)) / (2 * h), 2e-3)
+                    << "particle " << k << " axis " << axis;
+            }
+        }
+    }
+}
+
+/// Momentum of compressed, shearing debris in free space before and after some steps, per particle.
+void expect_momentum_kept(InternalFriction friction) {
+    Model model = free_space(KernelChoice::wendland_c2, friction);
+    const auto points = random_points(800, {-1.4F, -1.4F, 8}, {1.4F, 1.4F, 10.8F}, 6);
+    const auto velocities = random_points(800, {-1, -1, -1}, {3, 1, 1}, 7);
+    State state = state_of(points, velocities);
+    cpu::Backend backend(state.count);
+    StageTimes times;
+    state.time_step = 1.0 / 120;
+    const auto momentum = [&] {
+        Vec3<double> sum{};
+        for (std::uint32_t i = 0; i < state.count; ++i) {
+            sum += Vec3<double>{state.velocity.x[i], state.velocity.y[i], state.velocity.z[i]};
+        }
+        return sum;
+    };
+    const Vec3<double> before = momentum();
+    for (int i = 0; i < 10; ++i) step(backend, model, state, times);
+    const Vec3<double> change = momentum() - before;
+    EXPECT_LT(length(change) / state.count, 1e-5) << "m/s per particle";
+    EXPECT_GT(state.mean_compression, 0.01) << "nothing pressed: the test would show nothing";
+}
+
+TEST(ParticleCorrections, conserve_momentum_with_stresses) {
+    expect_momentum_kept(InternalFriction::stress);
+}
+
+TEST(ParticleCorrections, conserve_momentum_with_pair_friction) {
+    expect_momentum_kept(InternalFriction::pair);
+}
+
+/// Runs the fast backend and the reference side by side over debris that falls onto a slope beside a building.
+void expect_agreement(InternalFriction friction, KernelChoice kernel, double tolerance) {
+    SolverSpec solver;
+    solver.internal_friction = friction;
+    solver.kernel = kernel;
+    Building house;
+    house.footprint = {testing::rectangle(21, 18, 24, 22)};
+    house.height = 3;
+    const Terrain terrain = testing::inclined_plane(25, 40, 40);
+    Simulation simulation = testing::simulate(
+        {}, solver, terrain, {testing::block(terrain, testing::rectangle(17.5, 18.5, 20.5, 21.5), 1.2)}, 0.4, {house});
+    reference::State exact(simulation.state());
+    reference::Backend backend;
+    StageTimes times;
+    for (int i = 0; i < 12; ++i) {
+        simulation.advance();
+        exact.time_step = simulation.state().time_step;
+        step(backend, simulation.model(), exact, times);
+    }
+    const State& state = simulation.state();
+    double worst = 0;
+    for (std::uint32_t i = 0; i < state.count; ++i) {
+        const auto& p = exact.particles[state.id[i]].position;
+        const LocalPoint q = state.position.at(i);
+        worst = std::max(worst, length(Vector{q.x - p.x, q.y - p.y, q.z - p.z}));
+    }
+    EXPECT_LT(worst, tolerance) << "m, after 12 steps";
+    EXPECT_FALSE(state.building_contacts.empty()) << "the building was never touched";
+}
+
+TEST(CpuBackend, agrees_with_the_double_precision_reference) {
+    expect_agreement(InternalFriction::stress, KernelChoice::wendland_c2, 2e-4);
+}
+
+TEST(CpuBackend, agrees_with_the_reference_for_the_published_model) {
+    expect_agreement(InternalFriction::pair, KernelChoice::poly6_spiky, 2e-4);
+}
+
+}  // namespace
+}  // namespace talus

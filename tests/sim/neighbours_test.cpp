@@ -1,0 +1,70 @@
+#include "sim/cpu/neighbours.hpp"
+
+#include <algorithm>
+#include <set>
+
+#include <gtest/gtest.h>
+
+#include "sim/cpu/cell_sort.hpp"
+#include "sim_fixtures.hpp"
+
+namespace talus {
+namespace {
+
+/// Sorts points by cell and checks every neighbour list against all pairs.
+void expect_all_pairs_found(const std::vector<LocalPoint>& points, float radius) {
+    const State state = testing::state_of(points);
+    cpu::CellSort sort(points.size());
+    cpu::CellGrid grid;
+    const auto order = sort.sort(state.position, points.size(), radius, grid);
+    VectorArray sorted;
+    sorted.resize(points.size());
+    for (std::size_t i = 0; i < points.size(); ++i) sorted.set(i, points[order[i]]);
+    ASSERT_EQ(std::set<std::uint32_t>(order.begin(), order.end()).size(), points.size()) << "not a permutation";
+
+    cpu::NeighbourLists lists(points.size());
+    lists.build(sorted, grid, radius);
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        std::vector<std::uint32_t> expected;
+        for (std::uint32_t j = 0; j < points.size(); ++j) {
+            const LocalPoint d = sorted.at(j) - sorted.at(i);
+            if (j != i && d.x * d.x + d.y * d.y + d.z * d.z < radius * radius) expected.push_back(j);
+        }
+        const auto list = lists.of(i);
+        std::vector<std::uint32_t> found(list.begin(), list.end());
+        std::sort(found.begin(), found.end());
+        ASSERT_EQ(found, expected) << "particle " << i;
+    }
+}
+
+TEST(NeighbourLists, agree_with_all_pairs_in_a_cloud) {
+    expect_all_pairs_found(testing::random_points(1500, {-3, -2, 0}, {3, 2, 2}, 1), 0.5F);
+}
+
+TEST(NeighbourLists, agree_with_all_pairs_in_scattered_debris) {
+    auto points = testing::random_points(600, {-400, -300, 0}, {400, 300, 120}, 2);
+    const auto clump = testing::random_points(400, {100, 50, 60}, {102, 52, 61}, 3);
+    points.insert(points.end(), clump.begin(), clump.end());
+    expect_all_pairs_found(points, 0.7F);
+}
+
+TEST(NeighbourLists, agree_with_all_pairs_on_cell_edges) {
+    std::vector<LocalPoint> points;
+    for (int x = 0; x < 8; ++x) {
+        for (int y = 0; y < 8; ++y) {
+            for (int z = 0; z < 4; ++z) points.push_back({0.5F * x, 0.5F * y, 0.5F * z});
+        }
+    }
+    expect_all_pairs_found(points, 0.5F + 1e-4F);
+}
+
+TEST(NeighbourLists, grow_when_debris_is_denser_than_the_buffer_expects) {
+    expect_all_pairs_found(testing::random_points(400, {0, 0, 0}, {0.3F, 0.3F, 0.3F}, 4), 0.5F);
+}
+
+TEST(NeighbourLists, of_one_particle_are_empty) {
+    expect_all_pairs_found({{1, 2, 3}}, 0.5F);
+}
+
+}  // namespace
+}  // namespace talus

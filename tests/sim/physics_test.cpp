@@ -1,0 +1,202 @@
+#include <gtest/gtest.h>
+#include <tbb/global_control.h>
+#include <tbb/task_arena.h>
+
+#include "sim/fault.hpp"
+#include "sim/physics/contact.hpp"
+#include "sim_fixtures.hpp"
+
+namespace talus {
+namespace {
+
+using testing::block;
+using testing::inclined_plane;
+using testing::rectangle;
+using testing::simulate;
+
+/// Acceleration down the slope of the middle of a wide slab, m/s2, from 0.2 to 0.8 s. Its rim spreads, its middle is
+/// what the law of the sliding slab speaks of.
+double slab_acceleration(double degrees, double friction, double time_step) {
+    const Terrain terrain = inclined_plane(degrees, 60, 40);
+    MaterialSpec material;
+    material.friction_coefficient = friction;
+    material.internal_friction_coefficient = 1;  // a slab, not a flow
+    material.viscosity = 0;
+    SolverSpec solver;
+    solver.time_step = time_step;
+    const Polygon outline = rectangle(8, 8, 32, 32);
+    Simulation simulation = simulate(material, solver, terrain, {block(terrain, outline, 0.9)}, 0.3);
+    const LocalFrame& frame = simulation.model().terrain.frame();
+    std::vector<bool> middle(simulation.state().seeded);
+    for (std::uint32_t i = 0; i < simulation.state().count; ++i) {
+        const WorldPoint p = frame.to_world(simulation.state().position.at(i));
+        middle[simulation.state().id[i]] = std::abs(p.x - 20) < 3 && std::abs(p.y - 20) < 3;
+    }
+    const auto speed = [&] {
+        double sum = 0;
+        int count = 0;
+        for (std::uint32_t i = 0; i < simulation.state().count; ++i) {
+            if (!middle[simulation.state().id[i]]) continue;
+            const LocalPoint v = simulation.state().velocity.at(i);
+            const double angle = degrees * M_PI / 180;
+            sum += v.x * std::cos(angle) - v.z * std::sin(angle);
+            ++count;
+        }
+        return sum / count;
+    };
+    const auto run_until = [&](double time) {
+        while (simulation.state().time < time - 1e-9) simulation.advance();
+        return simulation.state().time;
+    };
+    const double t0 = run_until(0.2), v0 = speed();
+    const double t1 = run_until(0.8), v1 = speed();
+    return (v1 - v0) / (t1 - t0);
+}
+
+TEST(SlidingSlab, accelerates_as_coulomb_friction_says) {
+    for (const auto& [degrees, friction] : {std::pair{30.0, 0.4}, std::pair{25.0, 0.2}, std::pair{40.0, 0.6}}) {
+        const double angle = degrees * M_PI / 180;
+        const double expected = 9.80665 * (std::sin(angle) - friction * std::cos(angle));
+        EXPECT_NEAR(slab_acceleration(degrees, friction, 1.0 / 60), expected, 0.01 * 9.80665 * std::sin(angle))
+            << degrees << " degrees, friction " << friction;
+    }
+}
+
+TEST(MechanicalEnergy, never_grows_on_rough_ground) {
+    const Terrain terrain = testing::terrain_of(80, 40, 1, [](double x, double y) {
+        return 60 - 0.6 * x + 0.5 * std::sin(0.9 * x) * std::cos(0.7 * y) + 0.02 * (y - 20) * (y - 20);
+    });
+    Building house;
+    house.footprint = {rectangle(40, 17, 46, 23)};
+    house.height = 4;
+    Simulation simulation = simulate({}, {}, terrain, {block(terrain, rectangle(6, 14, 16, 26), 1.2)}, 0.5, {house});
+    const auto energy = [&] {
+        return kinetic_energy(simulation.model(), simulation.state()) +
+               potential_energy(simulation.model(), simulation.state());
+    };
+    const double drop = energy();  // above the lowest ground: what there is to lose
+    double previous = drop, least = drop;
+    while (simulation.state().time < 6 && simulation.state().left == 0) {
+        ASSERT_FALSE(simulation.advance());
+        const double now = energy();
+        EXPECT_LT(now - previous, 2e-5 * drop) << "in one step, at t = " << simulation.state().time;
+        EXPECT_LT(now - least, 2e-4 * drop) << "since the least so far, at t = " << simulation.state().time;
+        previous = now;
+        least = std::min(least, now);
+    }
+    EXPECT_LT(previous, 0.9 * drop) << "nothing moved: the test would show nothing";
+}
+
+TEST(Boundaries, particles_thrown_at_100_mps_never_get_through) {
+    const Terrain terrain = testing::terrain_of(60, 60, 2, [](double x, double y) {
+        return 20 + 12 * std::sin(0.15 * x) * std::sin(0.13 * y) + (x > 70 && x < 74 ? 15 : 0);
+    });
+    Building wall, house;
+    wall.footprint = {rectangle(50, 30, 50.4, 90)};
+    wall.height = 40;
+    house.footprint = {rectangle(80, 50, 90, 60)};
+    house.height = 12;
+    std::vector<Building> buildings{wall, house};
+    place_buildings(terrain, buildings);
+    for (const double time_step : {1.0 / 20, 1.0 / 60, 1.0 / 240}) {
+        SolverSpec solver;
+        solver.time_step = time_step;
+        Model model = make_model({}, solver, terrain, buildings, 0.5);
+        auto points = testing::random_points(3000, {-50, -50, 0}, {50, 50, 45}, 11);
+        std::erase_if(points, [&](const LocalPoint& p) { return !is_free(model, p); });
+        auto velocities = testing::random_points(points.size(), {-1, -1, -1}, {1, 1, 1}, 12);
+        for (LocalPoint& v : velocities) v = v * (100 / (length(v) + 1e-6F));
+        Simulation simulation(model, testing::state_of(points, velocities));
+        for (int i = 0; i < 40; ++i) {
+            simulation.advance();
+            const State& state = simulation.state();
+            for (std::uint32_t k = 0; k < state.count; ++k) {
+                ASSERT_TRUE(is_free(model, state.position.at(k)))
+                    << "particle " << state.id[k] << " in step " << i << " of " << time_step << " s";
+            }
+        }
+        EXPECT_EQ(simulation.state().count + simulation.state().left, simulation.state().seeded);
+    }
+}
+
+TEST(Boundaries, a_thin_wall_holds_what_is_thrown_at_it) {
+    const Terrain terrain = testing::terrain_of(40, 40, 1, [](double, double) { return 0; });
+    Building wall;
+    wall.footprint = {rectangle(20, 0, 20.2, 40)};
+    wall.height = 30;
+    std::vector<Building> buildings{wall};
+    place_buildings(terrain, buildings);
+    SolverSpec solver;
+    solver.time_step = 1.0 / 30;
+    Model model = make_model({}, solver, terrain, buildings, 0.4);
+    const auto points = testing::random_points(200, {-10, -10, 1}, {-5, 10, 10}, 13);
+    Simulation simulation(model, testing::state_of(points, std::vector<LocalPoint>(points.size(), {100, 3, 0})));
+    for (int i = 0; i < 30; ++i) {
+        simulation.advance();
+        for (std::uint32_t k = 0; k < simulation.state().count; ++k) {
+            ASSERT_LT(simulation.state().position.x[k], 0.01) << "behind the wall";
+        }
+    }
+    EXPECT_FALSE(simulation.state().building_contacts.empty());
+}
+
+TEST(MassBalance, counts_what_leaves_the_terrain) {
+    const Terrain terrain = inclined_plane(40, 24, 24);
+    MaterialSpec material;
+    material.friction_coefficient = 0.1;
+    Simulation simulation = simulate(material, {}, terrain, {block(terrain, rectangle(12, 9, 18, 15), 1)}, 0.5);
+    const std::uint32_t seeded = simulation.state().seeded;
+    while (simulation.state().count > 0 && simulation.state().time < 10) {
+        ASSERT_FALSE(simulation.advance());
+        ASSERT_EQ(simulation.state().count + simulation.state().left, seeded);
+    }
+    EXPECT_EQ(simulation.state().left, seeded);
+}
+
+std::uint64_t hash_on_threads(int threads) {
+    const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads));
+    tbb::task_arena arena(threads);
+    return arena.execute([] {
+        const Terrain terrain = testing::terrain_of(
+            60, 40, 1, [](double x, double y) { return 40 - 0.5 * x + 0.01 * (y - 20) * (y - 20); });
+        Simulation simulation = simulate({}, {}, terrain, {block(terrain, rectangle(6, 12, 20, 28), 1.2)}, 0.45);
+        for (int i = 0; i < 60; ++i) simulation.advance();
+        return hash_state(simulation.state());
+    });
+}
+
+TEST(Determinism, the_result_hash_is_the_same_on_1_2_and_4_threads) {
+    const std::uint64_t one = hash_on_threads(1);
+    EXPECT_EQ(hash_on_threads(2), one);
+    EXPECT_EQ(hash_on_threads(4), one);
+}
+
+TEST(TimeStep, keeps_a_particle_from_moving_more_than_half_a_spacing) {
+    const Terrain terrain = inclined_plane(45, 80, 40);
+    MaterialSpec material;
+    material.friction_coefficient = 0.05;
+    Simulation simulation = simulate(material, {}, terrain, {block(terrain, rectangle(5, 15, 11, 21), 0.8)}, 0.4);
+    while (simulation.state().time < 2.5) {
+        ASSERT_FALSE(simulation.advance());
+        EXPECT_LE(simulation.state().largest_speed * simulation.state().time_step, 0.5 * 0.4 * 1.1);
+    }
+    EXPECT_LT(simulation.state().time_step, 1.0 / 60) << "never fast enough to matter";
+}
+
+TEST(Fault, names_the_time_and_the_parameter_to_change) {
+    Model model = make_model({}, {}, inclined_plane(10, 20, 20), {}, 0.5);
+    State state = testing::state_of({{0, 0, 5}});
+    state.time = 3.25;
+    EXPECT_FALSE(find_fault(model, state, 6));
+    state.largest_speed = std::nan("");
+    EXPECT_NE(find_fault(model, state, 6)->find("t = 3.25 s"), std::string::npos);
+    state.largest_speed = 0;
+    state.mean_compression = 0.9;
+    EXPECT_NE(find_fault(model, state, 6)->find("solver.iteration_count"), std::string::npos);
+    state.mean_compression = 0;
+    state.largest_speed = 60;
+    EXPECT_NE(find_fault(model, state, 6)->find("more than its fall can explain"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace talus

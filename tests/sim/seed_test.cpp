@@ -1,0 +1,89 @@
+#include "sim/seed.hpp"
+
+#include <gtest/gtest.h>
+
+#include "sim_fixtures.hpp"
+
+namespace talus {
+namespace {
+
+using testing::block;
+using testing::inclined_plane;
+using testing::rectangle;
+
+TEST(Seeding, matches_the_requested_volume_within_one_per_cent) {
+    for (const double degrees : {0.0, 20.0, 40.0}) {
+        const Terrain terrain = inclined_plane(degrees, 40, 30);
+        const Release release = block(terrain, rectangle(5.3, 5.1, 12.9, 11.7), 1.1);
+        Model model = make_model({}, {}, terrain, {}, 0.33);
+        const Result<State> state = seed_releases(model, {release});
+        ASSERT_TRUE(state.ok());
+        EXPECT_NEAR(state->count * model.particle_volume() / release.volume, 1, 0.01);
+    }
+}
+
+TEST(Seeding, starts_at_rest_without_jumping_apart) {
+    const Terrain terrain = inclined_plane(0, 30, 30);
+    SolverSpec solver;
+    Simulation simulation =
+        testing::simulate({}, solver, terrain, {block(terrain, rectangle(10, 10, 18, 18), 1.2)}, 0.4);
+    const double before = potential_energy(simulation.model(), simulation.state());
+    double highest = before, fastest = 0;
+    for (int i = 0; i < 20; ++i) {
+        ASSERT_FALSE(simulation.advance());
+        highest = std::max(highest, potential_energy(simulation.model(), simulation.state()));
+        fastest = std::max(fastest, simulation.state().largest_speed);
+    }
+    EXPECT_LT(highest, before * 1.001);
+    EXPECT_LT(fastest, 1.5) << "m/s: the rim may crumble, nothing may fly";
+}
+
+TEST(Seeding, spacing_follows_the_target_particle_count) {
+    SolverSpec solver;
+    solver.target_particle_count = 8000;
+    EXPECT_NEAR(choose_particle_spacing(solver, 1000), 0.5, 1e-12);
+    solver.particle_spacing = 0.7;
+    EXPECT_EQ(choose_particle_spacing(solver, 1000), 0.7);
+}
+
+TEST(Seeding, too_many_particles_say_how_many_and_which_spacing_fits) {
+    const Terrain terrain = inclined_plane(0, 30, 30);
+    SolverSpec solver;
+    solver.particle_limit = 1000;
+    Model model = make_model({}, solver, terrain, {}, 0.1);
+    const Result<State> state = seed_releases(model, {block(terrain, rectangle(5, 5, 15, 15), 1)});
+    ASSERT_FALSE(state.ok());
+    EXPECT_NE(state.error().message.find("100000 particles"), std::string::npos) << state.error().message;
+    EXPECT_NE(state.error().message.find("0.465"), std::string::npos) << state.error().message;
+}
+
+TEST(Seeding, a_release_smaller_than_a_particle_is_an_error) {
+    const Terrain terrain = inclined_plane(0, 30, 30);
+    Model model = make_model({}, {}, terrain, {}, 5);
+    EXPECT_FALSE(seed_releases(model, {block(terrain, rectangle(5, 5, 6, 6), 1)}).ok());
+}
+
+TEST(Seeding, a_release_waits_for_its_start_time) {
+    const Terrain terrain = inclined_plane(35, 60, 30);
+    const Release first = block(terrain, rectangle(5, 5, 9, 9), 0.8);
+    const Release second = block(terrain, rectangle(5, 18, 9, 22), 0.8, 0.5);
+    Simulation simulation = testing::simulate({}, {}, terrain, {first, second}, 0.4);
+    const std::uint32_t first_of_second = simulation.model().releases[1].first_particle;
+    const auto fastest_of_second = [&] {
+        float fastest = 0;
+        for (std::uint32_t i = 0; i < simulation.state().count; ++i) {
+            if (simulation.state().id[i] >= first_of_second) {
+                fastest = std::max(fastest, length(simulation.state().velocity.at(i)));
+            }
+        }
+        return fastest;
+    };
+    while (simulation.state().time < 0.48) ASSERT_FALSE(simulation.advance());
+    EXPECT_EQ(fastest_of_second(), 0);
+    EXPECT_GT(simulation.state().largest_speed, 0.5);
+    while (simulation.state().time < 1.0) ASSERT_FALSE(simulation.advance());
+    EXPECT_GT(fastest_of_second(), 0.5);
+}
+
+}  // namespace
+}  // namespace talus
