@@ -1,10 +1,9 @@
 #!/usr/bin/env bash
 # Installs what is missing, builds everything and passes all tests:
 #   asan     memory errors and undefined behaviour, over the fast tests
-#   tsan     data races, over the tests that run on several threads
-#   release  the tests of the program that users run
-#   dev      all tests, warnings are errors, and the checks of style and layering
-# A preset's name as argument tests that one alone: scripts/test.sh dev
+#   release  the behaviour of the program that users run
+#   dev      everything: warnings are errors, checks of style and layering, the report in a browser
+# Presets' names as arguments test those alone: scripts/test.sh dev
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
@@ -38,7 +37,6 @@ if (($# > 0)); then
     exit
 fi
 test_preset asan
-test_preset tsan
-test_preset release --label-regex 'slow|program'
+test_preset release --label-exclude 'style|browser'
 test_preset dev
 step "done"

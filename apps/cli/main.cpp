@@ -63,7 +63,6 @@ std::string deepest_command(const CLI::App& app) {
 int talus_main(int argc, char** argv) {
     CLI::App app("talus simulates landslides and debris flows on a terrain model, and writes hazard maps and a report.",
                  "talus");
-    app.footer(program_help);
     app.set_version_flag("--version", "talus " TALUS_VERSION);
     app.require_subcommand(0, 1);
 
@@ -114,6 +113,8 @@ int talus_main(int argc, char** argv) {
         scene_app->add_subcommand("reference", "every key of a scene file with unit, default and range");
     bool markdown = false;
     reference_app->add_flag("--markdown", markdown, "as a Markdown document");
+
+    app.footer(program_help);  // last: commands made after it would inherit it
 
     try {
         app.parse(argc, argv);

@@ -54,28 +54,27 @@ APRON_PROFILE = [(310, 14.3), (335, 11.0), (365, 8.0)]
 WATERFALL_LIP = (168.0, 84.4)
 WATERFALL_FOOT_CHAINAGE = 170.0
 
-# Cross-section by chainage: half width of the flat bed, gradient of the banks, and how far the bed lies below the
+# Cross-section by chainage: half width of the rounded bed, gradient of the banks, and how far the bed lies below the
 # smooth hillside.
 SECTIONS = [  # chainage, half width m, bank gradient, incision m
-    (0, 7.0, 0.50, 2.0), (30, 7.0, 0.50, 2.0), (70, 5.0, 0.60, 2.5), (88, 4.0, 0.75, 4.0), (105, 3.0, 0.95, 6.5),
-    (130, 2.5, 0.90, 7.0), (166, 2.5, 0.95, 6.0), (172, 3.0, 1.05, 10.0), (195, 2.5, 0.90, 7.5),
-    (225, 2.5, 0.80, 5.5), (245, 3.0, 0.65, 3.8), (260, 4.5, 0.45, 2.0), (285, 8.0, 0.25, 0.6), (365, 15.0, 0.10, -0.5)]
-BED_CROSSFALL = 0.04  # towards the middle of the bed
+    (0, 5.0, 0.55, 2.5), (30, 5.0, 0.50, 2.0), (70, 4.0, 0.50, 2.5), (88, 3.0, 0.65, 4.0), (105, 2.2, 0.85, 6.5),
+    (130, 2.0, 0.85, 7.0), (166, 2.0, 0.90, 6.0), (172, 2.5, 1.00, 10.0), (195, 2.2, 0.85, 7.5),
+    (225, 2.2, 0.75, 5.5), (245, 2.5, 0.60, 3.8), (260, 4.0, 0.40, 2.0), (285, 7.0, 0.25, 0.6), (365, 15.0, 0.10, -0.5)]
 
 # The gully above the bend and four shallow hollows beside it: corners of the line, and how far it is cut into the
 # hillside at its top, middle and foot. The gully joins half a metre above the trail's bed, as side channels do.
 SIDE_CHANNELS = [
     # corners, incision m, half width m, bank gradient
     ([(824203.0, 825918.0), (824212.0, 825893.0), (824206.0, 825868.0), (824221.0, 825849.0), (824226.0, 825833.0),
-      (824243.0, 825821.0), (824259.0, 825803.5)], (-0.5, 3.0, 4.6), 0.7, 0.75),
+      (824243.0, 825821.0), (824259.0, 825803.5)], (-0.5, 3.0, 4.6), 1.5, 0.75),
     ([(824147.0, 825868.0), (824154.0, 825830.0), (824141.0, 825795.0), (824144.0, 825752.0), (824127.0, 825705.0),
-      (824130.0, 825662.0), (824118.0, 825622.0)], (-0.5, 1.8, -0.3), 1.0, 0.6),
+      (824130.0, 825662.0), (824118.0, 825622.0)], (-0.5, 1.8, -0.3), 2.0, 0.6),
     ([(824398.0, 825846.0), (824390.0, 825806.0), (824396.0, 825772.0), (824377.0, 825733.0), (824374.0, 825692.0),
-      (824357.0, 825655.0), (824358.0, 825612.0)], (-0.5, 2.0, -0.3), 1.0, 0.6),
+      (824357.0, 825655.0), (824358.0, 825612.0)], (-0.5, 2.0, -0.3), 2.0, 0.6),
     ([(824328.0, 825762.0), (824314.0, 825728.0), (824306.0, 825698.0), (824296.0, 825668.0), (824291.0, 825626.0)],
-     (-1.0, 1.0, -0.5), 1.0, 0.5),
+     (-1.0, 1.0, -0.5), 2.5, 0.5),
     ([(824283.0, 825905.0), (824293.0, 825880.0), (824289.0, 825858.0), (824295.0, 825838.0), (824290.0, 825822.0)],
-     (-0.8, 0.8, 0.5), 1.0, 0.5),
+     (-0.8, 0.8, 0.5), 2.5, 0.5),
 ]
 
 # The smooth hillside away from the trail (E, N, elevation), chosen by us: interfluves some 30 m beside the trail that
@@ -112,8 +111,8 @@ HILLSIDE = [
 ROUGHNESS = [(47.0, 1.6), (23.0, 0.8), (11.0, 0.35), (5.0, 0.14)]  # wavelength m, amplitude m, on the hillside
 CHANNEL_ROUGHNESS = 0.2  # share of it on the bed
 
-# The scar: from where the published profile passes 150 mPD, along the trail.
-SCAR = {"start": 9.0, "end": 36.0, "width": 18.0}
+# The scar, by chainage: its upper edge lies where the published profile passes 149 mPD.
+SCAR = {"start": 14.0, "end": 41.0, "width": 18.0}
 
 # Village houses: name, height m, centre E and N, bearing of the long side in degrees north of east, length and width m.
 HOUSES = [
@@ -248,10 +247,9 @@ def bed_without_fall(chainage):
 
 
 def bank_rise(distance, half_width, gradient):
-    """A nearly flat bed, rounded into banks that tend to a gradient and steepen further out."""
-    up_bank = np.maximum(distance - half_width, 0)
-    return (BED_CROSSFALL * np.minimum(distance, half_width) + gradient * (np.sqrt(up_bank ** 2 + 1.0) - 1.0)
-            + 0.025 * np.maximum(up_bank - 6, 0) ** 2)
+    """A rounded bed about two half widths wide between banks that tend to a gradient and steepen away from the bed."""
+    hyperbola = gradient * (np.sqrt(distance ** 2 + half_width ** 2) - half_width)
+    return hyperbola + 0.025 * np.maximum(distance - half_width - 5, 0) ** 2
 
 
 def section(column, chainage):
@@ -293,11 +291,10 @@ def make_ground(trail, easting, northing):
     # The fall is a wall across the bed and dies out in the banks.
     beside = np.clip((distance - 4) / 8, 0, 1)
     bed = (1 - beside) * bed_elevation(chainage) + beside * bed_without_fall(chainage)
-    half_width = section(1, chainage)
-    bank = bank_rise(distance, half_width, section(2, chainage))
+    bank = bank_rise(distance, section(1, chainage), section(2, chainage))
     # The bed itself is left as published; its banks are a little uneven.
     uneven = 0.15 * noise(easting, northing, 7.0, 11) + 0.08 * noise(easting, northing, 3.5, 12)
-    return smooth_minimum(ground, bed + bank + uneven * np.clip((distance - half_width + 1) / 3, 0, 1),
+    return smooth_minimum(ground, bed + bank + uneven * np.clip(distance / 4, 0, 1),
                           1.2 + 0.15 * np.clip(distance, 0, 20))
 
 

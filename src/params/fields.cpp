@@ -164,8 +164,6 @@ class Declaration {
     std::function<Struct&(SceneSpec&, std::size_t)> part_;
 };
 
-// clang-format off: one declaration per key, help on its own line, reads as a table.
-
 Section declare_scene() {
     Declaration<SceneInfo> s("scene", "What the run is about; all of it is printed in the report.", &SceneSpec::scene);
     s.text("title", &SceneInfo::title, "the scene file's name", "Title of the report.");
@@ -268,6 +266,10 @@ Section declare_solver() {
     s.key("iteration_count", "", &SolverSpec::iteration_count, between(1, 1000), "Solver iterations per time step.");
     s.choice("kernel", &SolverSpec::kernel, {"wendland_c2", "cubic_spline", "spiky", "poly6_spiky"},
              "Smoothing kernel; poly6_spiky is the published pair of density kernel and gradient kernel.");
+    s.choice(
+        "internal_friction", &SolverSpec::internal_friction, {"stress", "pair"},
+        "How debris rubs on debris: stress keeps a shear stress per particle between steps, so that a deposit stands; "
+        "pair is the published correction per pair of particles, which creeps.");
     s.key("support_ratio", "", &SolverSpec::support_ratio, between(1.5, 4),
           "Support radius of the kernel over the particle spacing.");
     s.key("under_relaxation", "", &SolverSpec::under_relaxation, above_to(0, 1),
@@ -322,8 +324,6 @@ Section declare_observation() {
     s.text("source", &ObservationSpec::source, "none", "Who measured it and how.");
     return s.take();
 }
-
-// clang-format on
 
 }  // namespace
 

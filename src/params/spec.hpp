@@ -88,7 +88,7 @@ struct SolverSpec {
     InternalFriction internal_friction = InternalFriction::stress;
     double support_ratio = 2.2;            ///< support radius / particle spacing
     double under_relaxation = 0.4;         ///< factor on every multiplier update of the Jacobi iteration
-    double constraint_relaxation = 0.1;      ///< XPBD-like term in the denominator of lambda, relative to its rest value
+    double constraint_relaxation = 0.1;    ///< XPBD-like term in the denominator of lambda, relative to its rest value
     double depenetration_speed = 0.5;      ///< m/s, the fastest that an overlap present at step start is pushed out
     double end_time = 120;                 ///< s
     double stop_momentum_fraction = 0.02;  ///< ends the run when momentum stays below this share of its peak; 0: never

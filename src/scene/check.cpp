@@ -65,8 +65,9 @@ std::string buildings_line(const Scene& scene) {
 }  // namespace
 
 std::string describe_scene(const Scene& scene) {
-    std::string out = "scene       " + scene.spec.scene.title +
-                      (scene.spec.scene.reconstruction ? " (reconstruction)\n" : "\n") + terrain_line(scene);
+    std::string out = "scene       " + scene.spec.scene.title + "\n";
+    if (scene.spec.scene.reconstruction) out += "            its inputs are reconstructed, not surveyed\n";
+    out += terrain_line(scene);
     double volume = 0;
     for (const Release& release : scene.releases) {
         out += release_line(scene, release);

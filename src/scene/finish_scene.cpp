@@ -45,7 +45,7 @@ Status resolve_paths(ParsedScene& scene) {
                     const bool tell = section.name == "terrain" && !obtain.empty();
                     return Error{fmt::format("{} = {} {}{}", scene.at(key_path(section, index, parameter)),
                                              toml_text(value), expanded.error().message,
-                                             tell ? "; to obtain the file: " + one_line(obtain) : "")};
+                                             tell ? "; to obtain the file: " + one_line(obtain, 4000) : "")};
                 }
                 const std::filesystem::path path = scene.file.parent_path() / *expanded;
                 parameter.set(scene.spec, index,

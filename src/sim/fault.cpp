@@ -6,8 +6,8 @@
 
 namespace talus {
 
-double speed_bound(const Model& model, double highest_energy_head, double lowest_particle) {
-    const double fall = std::max(0.0, highest_energy_head - lowest_particle) + model.particle_spacing;
+double speed_bound(const Model& model, double highest_energy_head) {
+    const double fall = std::max(0.0, highest_energy_head) + model.particle_spacing;
     return 1.5 * std::sqrt(2 * model.gravity * fall) + 1;
 }
 
@@ -38,9 +38,7 @@ std::optional<std::string> find_fault(const Model& model, const State& state, do
                 state.largest_speed, smallest);
         }
     }
-    double lowest = highest_energy_head;
-    for (std::uint32_t i = 0; i < state.count; ++i) lowest = std::min<double>(lowest, state.position.z[i]);
-    const double bound = speed_bound(model, highest_energy_head, lowest);
+    const double bound = speed_bound(model, highest_energy_head);
     if (state.largest_speed > bound) {
         return fault(
             "at t = %.4g s a particle moves at %.4g m/s, more than its fall can explain (%.4g m/s): lower "

@@ -8,9 +8,10 @@
 
 namespace talus {
 
-/// The speed, m/s, above which a particle has more energy than the fall from the highest debris explains. Pressure can
+/// The speed, m/s, above which a particle has more energy than a fall from the highest debris to the lowest ground
+/// (local z = 0) explains. Pressure can
 /// hand energy from the tail to the front, hence the margin of half as much again.
-[[nodiscard]] double speed_bound(const Model& model, double highest_energy_head, double lowest_particle);
+[[nodiscard]] double speed_bound(const Model& model, double highest_energy_head);
 
 /// Why the last step cannot be trusted, with the time and the parameter to change; nothing if it can.
 /// `highest_energy_head`: greatest z + v^2 / 2g of any particle when it was released, local m.

@@ -29,6 +29,47 @@ TEST(FieldTable, EveryKeyHasHelpAndAUniqueName) {
     }
 }
 
+/// A member added to the specification does not bind here any more: declare it in the table, then count it.
+TEST(FieldTable, EveryMemberIsDeclared) {
+    const auto declared = [](const std::string& section) { return find_section(section)->parameters.size(); };
+    {
+        [[maybe_unused]] const auto [a, b, c, d, e] = SceneInfo{};
+        EXPECT_EQ(declared("scene"), 5U);
+    }
+    {
+        [[maybe_unused]] const auto [a, b, c, d] = TerrainSpec{};
+        EXPECT_EQ(declared("terrain"), 4U);
+    }
+    {
+        [[maybe_unused]] const auto [a, b, c, d, e, f, g, h] = ReleaseSpec{};
+        EXPECT_EQ(declared("release"), 8U);
+    }
+    {
+        [[maybe_unused]] const auto [a, b, c, d, e] = BuildingsSpec{};
+        EXPECT_EQ(declared("buildings"), 5U);
+    }
+    {
+        [[maybe_unused]] const auto [a, b, c] = FlowPathSpec{};
+        EXPECT_EQ(declared("flow_path"), 3U);
+    }
+    {
+        [[maybe_unused]] const auto [a, b, c, d] = MaterialSpec{};
+        EXPECT_EQ(declared("material"), 4U);
+    }
+    {
+        [[maybe_unused]] const auto [a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, q, r] = SolverSpec{};
+        EXPECT_EQ(declared("solver"), 18U);
+    }
+    {
+        [[maybe_unused]] const auto [a, b, c, d, e, f, g, h] = OutputSpec{};
+        EXPECT_EQ(declared("outputs"), 8U);
+    }
+    {
+        [[maybe_unused]] const auto [a, b, c, d] = ObservationSpec{};
+        EXPECT_EQ(declared("observation"), 4U);
+    }
+}
+
 TEST(FieldTable, KeysOfMeasuresEndInTheirUnit) {
     const std::vector<std::pair<std::string, std::string>> suffixes = {
         {"m", "_m"}, {"s", "_s"}, {"m/s", "_mps"}, {"kg/m3", "_kgpm3"}, {"m3", "_m3"}};

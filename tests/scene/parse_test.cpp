@@ -214,6 +214,9 @@ TEST_F(ParseScene, PathsAreTakenFromTheScenesFolderAndTheEnvironment) {
               line(2) +
                   "terrain.file = \"${TALUS_TEST_ABSENT}/dem.tif\" needs the environment variable "
                   "TALUS_TEST_ABSENT, which is not set; to obtain the file: ask the survey");
+    const std::string long_text(1000, 'o');
+    EXPECT_THAT(error_of("[terrain]\nfile = \"${TALUS_TEST_ABSENT}\"\nobtain = \"" + long_text + "\"\n" + rest),
+                EndsWith(long_text));
     EXPECT_THAT(error_of("[terrain]\nfile = \"${TALUS\"\n" + rest), HasSubstr("\"${\" without \"}\""));
     EXPECT_EQ(parsed("[terrain]\nfile = 'NETCDF:\"a.nc\":z'\n" + rest).terrain.file, "NETCDF:\"a.nc\":z");
 }

@@ -52,7 +52,7 @@ TEST(DensityConstraint, gradient_agrees_with_finite_differences) {
 /// Momentum of compressed, shearing debris in free space before and after some steps, per particle.
 void expect_momentum_kept(InternalFriction friction) {
     Model model = free_space(KernelChoice::wendland_c2, friction);
-    const auto points = random_points(800, {-1.4F, -1.4F, 8}, {1.4F, 1.4F, 10.8F}, 6);
+    const auto points = random_points(800, {-1.7F, -1.7F, 8}, {1.7F, 1.7F, 11.4F}, 6);
     const auto velocities = random_points(800, {-1, -1, -1}, {3, 1, 1}, 7);
     State state = state_of(points, velocities);
     cpu::Backend backend(state.count);
@@ -68,6 +68,7 @@ void expect_momentum_kept(InternalFriction friction) {
     const Vec3<double> before = momentum();
     for (int i = 0; i < 10; ++i) step(backend, model, state, times);
     const Vec3<double> change = momentum() - before;
+    EXPECT_EQ(state.count, 800u);
     EXPECT_LT(length(change) / state.count, 1e-5) << "m/s per particle";
     EXPECT_GT(state.mean_compression, 0.01) << "nothing pressed: the test would show nothing";
 }
@@ -81,12 +82,12 @@ TEST(ParticleCorrections, conserve_momentum_with_pair_friction) {
 }
 
 /// Runs the fast backend and the reference side by side over debris that falls onto a slope beside a building.
-void expect_agreement(InternalFriction friction, KernelChoice kernel, double tolerance) {
+void expect_agreement(InternalFriction friction, KernelChoice kernel, int steps, double tolerance) {
     SolverSpec solver;
     solver.internal_friction = friction;
     solver.kernel = kernel;
     Building house;
-    house.footprint = {testing::rectangle(21, 18, 24, 22)};
+    house.footprint = {testing::rectangle(20.6, 18, 24, 22)};
     house.height = 3;
     const Terrain terrain = testing::inclined_plane(25, 40, 40);
     Simulation simulation = testing::simulate(
@@ -94,7 +95,7 @@ void expect_agreement(InternalFriction friction, KernelChoice kernel, double tol
     reference::State exact(simulation.state());
     reference::Backend backend;
     StageTimes times;
-    for (int i = 0; i < 12; ++i) {
+    for (int i = 0; i < steps; ++i) {
         simulation.advance();
         exact.time_step = simulation.state().time_step;
         step(backend, simulation.model(), exact, times);
@@ -106,16 +107,16 @@ void expect_agreement(InternalFriction friction, KernelChoice kernel, double tol
         const LocalPoint q = state.position.at(i);
         worst = std::max(worst, length(Vector{q.x - p.x, q.y - p.y, q.z - p.z}));
     }
-    EXPECT_LT(worst, tolerance) << "m, after 12 steps";
+    EXPECT_LT(worst, tolerance) << "m";
     EXPECT_FALSE(state.building_contacts.empty()) << "the building was never touched";
 }
 
 TEST(CpuBackend, agrees_with_the_double_precision_reference) {
-    expect_agreement(InternalFriction::stress, KernelChoice::wendland_c2, 2e-4);
+    expect_agreement(InternalFriction::stress, KernelChoice::wendland_c2, 12, 2e-4);
 }
 
 TEST(CpuBackend, agrees_with_the_reference_for_the_published_model) {
-    expect_agreement(InternalFriction::pair, KernelChoice::poly6_spiky, 2e-4);
+    expect_agreement(InternalFriction::pair, KernelChoice::poly6_spiky, 4, 2e-4);
 }
 
 }  // namespace

@@ -53,12 +53,14 @@ std::span<const std::uint32_t> CellSort::sort(const VectorArray& points, std::si
                                               CellGrid& grid) {
     const Bounds box = bounds_of(points, count);
     grid.inverse_cell = 1 / cell;
-    // One empty cell of padding on each side: the key of a neighbour cell is then a plain sum that never wraps.
-    grid.x_min = box.x_min - cell;
-    grid.y_min = box.y_min - cell;
-    grid.z_min = box.z_min - cell;
+    // One empty cell of padding on each side: the key of a neighbour cell is then a plain sum that never wraps. The
+    // quarter more keeps rounding from putting the outermost particle into the padding.
+    constexpr double padding = 1.25;
+    grid.x_min = box.x_min - padding * cell;
+    grid.y_min = box.y_min - padding * cell;
+    grid.z_min = box.z_min - padding * cell;
     const auto cells_along = [&](float low, float high) {
-        return static_cast<std::uint64_t>((double(high) - low) * grid.inverse_cell) + 3;
+        return static_cast<std::uint64_t>((double(high) - low) * grid.inverse_cell + padding) + 2;
     };
     grid.columns = cells_along(box.x_min, box.x_max);
     grid.rows = cells_along(box.y_min, box.y_max);
