@@ -44,8 +44,9 @@ HOUSE_21A = (824262.0, 825554.0)
 
 WEST, SOUTH, EAST, NORTH, CELL = 824090.0, 825520.0, 824440.0, 825920.0, 1.0
 
-# Corners of the trail; each is then rounded. Slightly bent so that the chainages of PROFILE meet TRAIL_POINTS.
-TRAIL_CORNERS = [CROWN, (824318.0, 825822.0), (824283.0, 825813.5), (824249.0, 825803.5), (824255.0, 825779.0),
+# Corners of the trail, within 3 m of the published places; each is then rounded. From BEND to the first of TRAIL_POINTS
+# it is 26 m in plan but 32 m by the chainages of PROFILE, which the bed follows.
+TRAIL_CORNERS = [CROWN, (824318.0, 825822.0), (824283.0, 825813.5), (824252.5, 825804.0), (824253.5, 825779.0),
                  (824240.0, 825750.0), (824230.0, 825720.0), (824220.0, 825690.0), (824205.0, 825660.0),
                  (824195.0, 825630.0), (824180.0, 825600.0), (824166.0, 825570.0)]
 # Below the published profile: the apron on which the village stands.

@@ -79,7 +79,7 @@ std::vector<Column> fill_columns(const Terrain& terrain, const Release& release,
 /// Runs rounds of a step without inertia until `done` says so: velocities are forgotten after each.
 template <class Done>
 void creep(const Model& model, State& state, int most_rounds, const Done& done) {
-    cpu::Backend backend(state.count);
+    cpu::Backend backend(model, state.count);
     StageTimes times;
     for (int round = 0; round < most_rounds; ++round) {
         step(backend, model, state, times);

@@ -64,7 +64,9 @@ TEST_F(Reconstruction, GullyPassesThePublishedPlanPositions) {
         const auto position = path.locate(place.point);
         ASSERT_TRUE(position);
         EXPECT_LT(position->offset, 3) << "at elevation " << place.elevation;
-        EXPECT_NEAR(terrain.elevation_at(place.point), place.elevation, 2);
+        // From the bend to the first place it is 26 m in plan but 32 m by the listed chainages; the profile follows
+        // these.
+        EXPECT_NEAR(terrain.elevation_at(place.point), place.elevation, 3);
     }
     const auto bend = path.locate({824262, 825805});
     ASSERT_TRUE(bend);

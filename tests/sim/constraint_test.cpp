@@ -55,7 +55,7 @@ void expect_momentum_kept(InternalFriction friction) {
     const auto points = random_points(800, {-1.7F, -1.7F, 8}, {1.7F, 1.7F, 11.4F}, 6);
     const auto velocities = random_points(800, {-1, -1, -1}, {3, 1, 1}, 7);
     State state = state_of(points, velocities);
-    cpu::Backend backend(state.count);
+    cpu::Backend backend(model, state.count);
     StageTimes times;
     state.time_step = 1.0 / 120;
     const auto momentum = [&] {

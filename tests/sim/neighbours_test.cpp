@@ -23,7 +23,7 @@ void expect_all_pairs_found(const std::vector<LocalPoint>& points, float radius)
     for (std::size_t i = 0; i < points.size(); ++i) sorted.set(i, points[order[i]]);
     ASSERT_EQ(std::set<std::uint32_t>(order.begin(), order.end()).size(), points.size()) << "not a permutation";
 
-    cpu::NeighbourLists lists(points.size());
+    cpu::NeighbourLists lists(points.size(), cpu::pair_sums_for(KernelChoice::wendland_c2));
     lists.build(sorted, grid, radius);
     for (std::size_t i = 0; i < points.size(); ++i) {
         std::vector<std::uint32_t> expected;

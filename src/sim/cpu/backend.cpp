@@ -12,6 +12,10 @@ namespace {
 
 constexpr std::size_t particle_grain = 256;
 
+Coordinates coordinates_of(const VectorArray& array) {
+    return {array.x.data(), array.y.data(), array.z.data()};
+}
+
 /// Start time of the release that a particle belongs to.
 double start_time_of(const Model& model, std::uint32_t id) {
     for (const ReleaseGroup& release : model.releases) {
@@ -22,9 +26,11 @@ double start_time_of(const Model& model, std::uint32_t id) {
 
 }  // namespace
 
-Backend::Backend(std::size_t capacity)
-    : cell_sort_(capacity),
-      neighbours_(capacity),
+Backend::Backend(const Model& model, std::size_t capacity)
+    : sums_(pair_sums_for(model.kernel.choice)),
+      scale_(model.kernel),
+      cell_sort_(capacity),
+      neighbours_(capacity, sums_),
       multiplier_change_(capacity),
       compression_(capacity),
       tolerated_compression_(capacity),
@@ -99,29 +105,16 @@ void Backend::reorder(State& state, std::span<const std::uint32_t> order) {
 /// compression that is already there. That may be undone only slowly, since a correction turns into velocity: the
 /// density constraint tolerates the rest.
 void Backend::measure_start(const Model& model, const State& state) {
-    const float r = static_cast<float>(model.support_radius), inverse_r = 1 / r;
-    const float value_scale = static_cast<float>(model.kernel.particle_volume) / (r * r * r);
-    const float gradient_scale = value_scale / (r * r);
     const auto undone = static_cast<float>(model.solver.depenetration_speed * state.time_step / model.particle_spacing);
-    const float *x = state.position.x.data(), *y = state.position.y.data(), *z = state.position.z.data();
-    with_kernel(model.kernel.choice, [&](auto kernel) {
-        parallel_ranges(state.count, particle_grain, [&](std::size_t first, std::size_t last) {
-            for (std::size_t i = first; i < last; ++i) {
-                const Vec3<float> p = state.position.at(i);
-                float density = kernel.value(0.0f);
-                Vec3<float>* pair_gradient = neighbours_.pair_vectors_of(i);
-                for (const std::uint32_t j : neighbours_.of(i)) {
-                    const Vec3<float> separation{p.x - x[j], p.y - y[j], p.z - z[j]};
-                    const float q = std::min(1.0f, std::sqrt(dot(separation, separation)) * inverse_r);
-                    density += kernel.value(q);
-                    *pair_gradient++ = separation * (-gradient_scale * kernel.slope_over_q(q));
-                }
-                const auto boundary = boundary_density(model, sample_boundary(model, p));
-                ground_gradient_.set(i, boundary.ground_gradient);
-                building_gradient_.set(i, boundary.building_gradient);
-                tolerated_compression_[i] = std::max(0.0f, density * value_scale + boundary.density - 1 - undone);
-            }
-        });
+    const Coordinates points = coordinates_of(state.position);
+    parallel_ranges(state.count, particle_grain, [&](std::size_t first, std::size_t last) {
+        for (std::size_t i = first; i < last; ++i) {
+            const float density = sums_.density(scale_, neighbours_.pairs_of(i), points, i).density;
+            const auto boundary = boundary_density(model, sample_boundary(model, points.at(i)));
+            ground_gradient_.set(i, boundary.ground_gradient);
+            building_gradient_.set(i, boundary.building_gradient);
+            tolerated_compression_[i] = std::max(0.0f, density + boundary.density - 1 - undone);
+        }
     });
 }
 
@@ -172,72 +165,49 @@ void Backend::solve_density(const Model& model, State& state) {
 template <InternalFriction friction>
 void Backend::update_multipliers(const Model& model, State& state) {
     constexpr bool keeps_stress = friction == InternalFriction::stress;
-    const float r = static_cast<float>(model.support_radius), inverse_r = 1 / r;
-    const float value_scale = static_cast<float>(model.kernel.particle_volume) / (r * r * r);
-    const float gradient_scale = value_scale / (r * r);
     const float softness = static_cast<float>(model.solver.constraint_relaxation * model.kernel.rest_gradient_sum);
     const auto under_relaxation = static_cast<float>(model.solver.under_relaxation);
     const auto internal_friction = static_cast<float>(model.internal_friction_coefficient);
-    const float *x = predicted_.x.data(), *y = predicted_.y.data(), *z = predicted_.z.data();
-    const float *ux = displacement_.x.data(), *uy = displacement_.y.data(), *uz = displacement_.z.data();
+    const Coordinates points = coordinates_of(predicted_), displacements = coordinates_of(displacement_);
 
-    with_kernel(model.kernel.choice, [&](auto kernel) {
-        parallel_ranges(state.count, particle_grain, [&](std::size_t first, std::size_t last) {
-            for (std::size_t i = first; i < last; ++i) {
-                if (state.held[i]) {
-                    multiplier_change_[i] = 0;
-                    stress_change_.set(i, {});
-                    compression_[i] = 0;
-                    continue;
-                }
-                const Vec3<float> p = predicted_.at(i), moved = displacement_.at(i);
-                float density = kernel.value(0.0f), pair_square = softness;
-                Vec3<float> gradient{};
-                DisplacementGradient<float> deformation;
-                [[maybe_unused]] Vec3<float>* stored = neighbours_.pair_vectors_of(i);
-                for (const std::uint32_t j : neighbours_.of(i)) {
-                    const Vec3<float> separation{p.x - x[j], p.y - y[j], p.z - z[j]};
-                    const float square = dot(separation, separation);
-                    const float q = std::min(1.0f, std::sqrt(square) * inverse_r);
-                    density += kernel.value(q);
-                    const float slope = gradient_scale * kernel.slope_over_q(q);
-                    const Vec3<float> pair_gradient = separation * -slope;
-                    gradient += pair_gradient;
-                    pair_square += slope * slope * square;
-                    if constexpr (keeps_stress) {
-                        *stored++ = pair_gradient;
-                        deformation.add({ux[j] - moved.x, uy[j] - moved.y, uz[j] - moved.z}, pair_gradient);
-                    }
-                }
-                const auto boundary = boundary_density(model, sample_boundary(model, p));
-                ground_gradient_.set(i, boundary.ground_gradient);
-                building_gradient_.set(i, boundary.building_gradient);
-                gradient += boundary.ground_gradient + boundary.building_gradient;
-
-                const float constraint = density * value_scale + boundary.density - 1;
-                const float gradient_square = pair_square + dot(gradient, gradient);
-                const float before = state.multiplier[i];
-                const float after =
-                    gradient_square > 0
-                        ? std::min(0.0f, before - under_relaxation * (constraint - tolerated_compression_[i]) /
-                                                      gradient_square)
-                        : before;
-                state.multiplier[i] = after;
-                multiplier_change_[i] = after - before;
-                compression_[i] = std::max(0.0f, constraint);
-
-                if constexpr (keeps_stress) {
-                    Deviator<float> stress = stress_start_.at(i);
-                    if (pair_square > 0) {
-                        const float stiffness = static_cast<float>(StressConstants::stiffness) / pair_square;
-                        stress = stress + deformation.shear() * stiffness;
-                    }
-                    stress = limit_to_friction(stress, internal_friction, state.pressure[i]);
-                    stress_change_.set(i, stress - state.stress.at(i));
-                    state.stress.set(i, stress);
-                }
+    parallel_ranges(state.count, particle_grain, [&](std::size_t first, std::size_t last) {
+        for (std::size_t i = first; i < last; ++i) {
+            if (state.held[i]) {
+                multiplier_change_[i] = 0;
+                stress_change_.set(i, {});
+                compression_[i] = 0;
+                continue;
             }
-        });
+            const DensitySums sums =
+                sums_.density_and_deformation(scale_, neighbours_.pairs_of(i), points, displacements, i);
+            const auto boundary = boundary_density(model, sample_boundary(model, points.at(i)));
+            ground_gradient_.set(i, boundary.ground_gradient);
+            building_gradient_.set(i, boundary.building_gradient);
+            const Vec3<float> gradient = sums.gradient + boundary.ground_gradient + boundary.building_gradient;
+            const float pair_square = sums.square + softness;
+            const float constraint = sums.density + boundary.density - 1;
+            const float gradient_square = pair_square + dot(gradient, gradient);
+            const float before = state.multiplier[i];
+            const float after =
+                gradient_square > 0
+                    ? std::min(0.0f,
+                               before - under_relaxation * (constraint - tolerated_compression_[i]) / gradient_square)
+                    : before;
+            state.multiplier[i] = after;
+            multiplier_change_[i] = after - before;
+            compression_[i] = std::max(0.0f, constraint);
+
+            if constexpr (keeps_stress) {
+                Deviator<float> stress = stress_start_.at(i);
+                if (pair_square > 0) {
+                    const float stiffness = static_cast<float>(StressConstants::stiffness) / pair_square;
+                    stress = stress + sums.deformation.shear() * stiffness;
+                }
+                stress = limit_to_friction(stress, internal_friction, state.pressure[i]);
+                stress_change_.set(i, stress - state.stress.at(i));
+                state.stress.set(i, stress);
+            }
+        }
     });
 }
 
@@ -265,66 +235,35 @@ void Backend::measure_compression(State& state) {
 /// Eq. (3) with the full stress: x_i += sum_j [(d lambda_i + d lambda_j) I + ds_i + ds_j] V grad W, equal and opposite
 /// for the two particles of a pair.
 void Backend::apply_stress_changes(const State& state) {
+    const DeviatorArray& changes = stress_change_;
+    const Deviators stress{changes.xx.data(), changes.yy.data(), changes.xy.data(), changes.xz.data(),
+                           changes.yz.data()};
     parallel_ranges(state.count, particle_grain, [&](std::size_t first, std::size_t last) {
         for (std::size_t i = first; i < last; ++i) {
-            const Vec3<float> moved = displacement_.at(i);
-            if (state.held[i]) {
-                displacement_next_.set(i, moved);
-                continue;
+            Vec3<float> moved = displacement_.at(i);
+            if (!state.held[i]) {
+                moved += (ground_gradient_.at(i) + building_gradient_.at(i)) * multiplier_change_[i] +
+                         sums_.stress_correction(neighbours_.pairs_of(i), multiplier_change_.data(), stress, i);
             }
-            const float own_change = multiplier_change_[i];
-            const Deviator<float> own_stress = stress_change_.at(i);
-            const Vec3<float>* pair_gradient = neighbours_.pair_vectors_of(i);
-            Vec3<float> correction = (ground_gradient_.at(i) + building_gradient_.at(i)) * own_change;
-            for (const std::uint32_t j : neighbours_.of(i)) {
-                const Vec3<float> gradient = *pair_gradient++;
-                correction +=
-                    gradient * (own_change + multiplier_change_[j]) + (own_stress + stress_change_.at(j)) * gradient;
-            }
-            displacement_next_.set(i, moved + correction);
+            displacement_next_.set(i, moved);
         }
     });
 }
 
 /// Eqs. (3) and (4) as published: pairs pressed together rub against each other. Equal and opposite as well.
 void Backend::apply_pair_corrections(const Model& model, const State& state) {
-    const float r = static_cast<float>(model.support_radius), inverse_r = 1 / r;
-    const float value_scale = static_cast<float>(model.kernel.particle_volume) / (r * r * r);
-    const float gradient_scale = value_scale / (r * r);
     const auto cap = static_cast<float>(pair_friction_cap(model.internal_friction_coefficient));
-    const float *x = predicted_.x.data(), *y = predicted_.y.data(), *z = predicted_.z.data();
-    const float *ux = displacement_.x.data(), *uy = displacement_.y.data(), *uz = displacement_.z.data();
-
-    with_kernel(model.kernel.choice, [&](auto kernel) {
-        parallel_ranges(state.count, particle_grain, [&](std::size_t first, std::size_t last) {
-            for (std::size_t i = first; i < last; ++i) {
-                const Vec3<float> moved = displacement_.at(i);
-                if (state.held[i]) {
-                    displacement_next_.set(i, moved);
-                    continue;
-                }
-                const Vec3<float> p = predicted_.at(i);
-                const float own_change = multiplier_change_[i];
-                Vec3<float> correction = (ground_gradient_.at(i) + building_gradient_.at(i)) * own_change;
-                for (const std::uint32_t j : neighbours_.of(i)) {
-                    const float change = own_change + multiplier_change_[j];
-                    if (change == 0) continue;
-                    const Vec3<float> separation{p.x - x[j], p.y - y[j], p.z - z[j]};
-                    const float square = dot(separation, separation);
-                    const float distance = std::sqrt(square);
-                    const float q = std::min(1.0f, distance * inverse_r);
-                    const float slope = gradient_scale * kernel.slope_over_q(q);
-                    correction -= separation * (change * slope);
-                    const float normal = -change * slope * distance;  // > 0: pressing together
-                    if (normal > 0 && cap > 0) {
-                        const Vec3<float> relative{moved.x - ux[j], moved.y - uy[j], moved.z - uz[j]};
-                        correction +=
-                            pair_friction(separation, square, relative, cap * normal, value_scale * kernel.value(q));
-                    }
-                }
-                displacement_next_.set(i, moved + correction);
+    const Coordinates points = coordinates_of(predicted_), displacements = coordinates_of(displacement_);
+    parallel_ranges(state.count, particle_grain, [&](std::size_t first, std::size_t last) {
+        for (std::size_t i = first; i < last; ++i) {
+            Vec3<float> moved = displacement_.at(i);
+            if (!state.held[i]) {
+                moved += (ground_gradient_.at(i) + building_gradient_.at(i)) * multiplier_change_[i] +
+                         sums_.pair_correction(scale_, neighbours_.pairs_of(i), points, displacements,
+                                               multiplier_change_.data(), cap, i);
             }
-        });
+            displacement_next_.set(i, moved);
+        }
     });
 }
 
@@ -403,27 +342,17 @@ void Backend::update_velocities(const Model& model, State& state) {
 /// Eq. (5) as XSPH smoothing; the sum weighs both particles of a pair alike, so momentum is conserved.
 void Backend::apply_viscosity(const Model& model, State& state) {
     if (model.viscosity <= 0) return;
-    const float r = static_cast<float>(model.support_radius), inverse_r = 1 / r;
-    const auto scale = static_cast<float>(step_smoothing(model.viscosity, state.time_step) *
-                                          model.kernel.particle_volume / (double(r) * r * r));
-    const float *x = state.position.x.data(), *y = state.position.y.data(), *z = state.position.z.data();
-    const float *vx = state.velocity.x.data(), *vy = state.velocity.y.data(), *vz = state.velocity.z.data();
-    with_kernel(model.kernel.choice, [&](auto kernel) {
-        parallel_ranges(state.count, particle_grain, [&](std::size_t first, std::size_t last) {
-            for (std::size_t i = first; i < last; ++i) {
-                const Vec3<float> p = state.position.at(i), velocity = state.velocity.at(i);
-                Vec3<float> change{};
-                if (!state.held[i]) {
-                    for (const std::uint32_t j : neighbours_.of(i)) {
-                        const float dx = p.x - x[j], dy = p.y - y[j], dz = p.z - z[j];
-                        const float q = std::min(1.0f, std::sqrt(dx * dx + dy * dy + dz * dz) * inverse_r);
-                        const float weight = scale * kernel.value(q);
-                        change += Vec3<float>{vx[j] - velocity.x, vy[j] - velocity.y, vz[j] - velocity.z} * weight;
-                    }
-                }
-                vector_scratch_.set(i, velocity + change);
+    const auto smoothing = static_cast<float>(step_smoothing(model.viscosity, state.time_step));
+    const Coordinates points = coordinates_of(state.position), velocities = coordinates_of(state.velocity);
+    parallel_ranges(state.count, particle_grain, [&](std::size_t first, std::size_t last) {
+        for (std::size_t i = first; i < last; ++i) {
+            Vec3<float> velocity = velocities.at(i);
+            if (!state.held[i]) {
+                velocity +=
+                    sums_.velocity_difference(scale_, neighbours_.pairs_of(i), points, velocities, i) * smoothing;
             }
-        });
+            vector_scratch_.set(i, velocity);
+        }
     });
     std::swap(state.velocity, vector_scratch_);
 }

@@ -5,6 +5,7 @@
 
 #include "sim/cpu/cell_sort.hpp"
 #include "sim/cpu/neighbours.hpp"
+#include "sim/cpu/pair_sums.hpp"
 #include "sim/model.hpp"
 #include "sim/state.hpp"
 
@@ -17,7 +18,7 @@ namespace talus::cpu {
 /// number divided by dt, and not the difference of two large ones.
 class Backend {
   public:
-    explicit Backend(std::size_t capacity);
+    Backend(const Model& model, std::size_t capacity);
 
     void predict_positions(const Model& model, State& state);
     void find_neighbours(const Model& model, State& state);
@@ -31,6 +32,8 @@ class Backend {
 
     /// The lists of the last step, by the order it left the particles in (before any left the terrain).
     [[nodiscard]] const NeighbourLists& neighbours() const { return neighbours_; }
+    /// The instruction set that the sums over neighbours run on.
+    [[nodiscard]] std::string_view instruction_set() const { return sums_.instruction_set; }
 
   private:
     template <InternalFriction friction>
@@ -41,6 +44,8 @@ class Backend {
     void measure_start(const Model& model, const State& state);
     void reorder(State& state, std::span<const std::uint32_t> order);
 
+    PairSums sums_;
+    PairScale scale_;
     CellSort cell_sort_;
     CellGrid grid_;
     NeighbourLists neighbours_;

@@ -9,7 +9,8 @@ namespace talus::cpu {
 namespace {
 
 constexpr std::size_t cells_per_task = 64;
-constexpr int row_count = 9;  // a cell's 27 neighbours are 9 rows of 3 cells with consecutive keys
+constexpr std::size_t longest_vector = 64;  // lanes that a selection may write beyond what it found
+constexpr int row_count = 9;                // a cell's 27 neighbours are 9 rows of 3 cells with consecutive keys
 
 /// Walks the 9 neighbour rows of ascending cells. As keys ascend, every row's position only moves forward, so that a
 /// sweep needs no hash table and touches the occupied cells alone.
@@ -47,14 +48,16 @@ class RowSweep {
 
 }  // namespace
 
-NeighbourLists::NeighbourLists(std::size_t capacity)
-    : start_(capacity), count_(capacity), neighbours_(capacity * 64 + 1024), pair_vectors_(neighbours_.size()) {}
+NeighbourLists::NeighbourLists(std::size_t capacity, const PairSums& sums)
+    : start_(capacity), count_(capacity), neighbours_(capacity * 64 + 1024), select_near_(sums.select_near) {
+    gradient_.resize(neighbours_.size());
+}
 
 void NeighbourLists::build(const VectorArray& points, const CellGrid& grid, float radius) {
     while (!try_build(points, grid, radius)) {
         // Rare: debris denser than ever before. Room to spare, so that it stays rare.
         neighbours_.resize(used_.load() + used_.load() / 2);
-        pair_vectors_.resize(neighbours_.size());
+        gradient_.resize(neighbours_.size());
     }
 }
 
@@ -62,35 +65,40 @@ bool NeighbourLists::try_build(const VectorArray& points, const CellGrid& grid, 
     used_.store(0);
     const float square_radius = radius * radius;
     const std::size_t tasks = (grid.cell_count() + cells_per_task - 1) / cells_per_task;
-    const float *x = points.x.data(), *y = points.y.data(), *z = points.z.data();
+    const Coordinates coordinates{points.x.data(), points.y.data(), points.z.data()};
     parallel_ranges(tasks, 1, [&](std::size_t first_task, std::size_t last_task) {
         std::vector<std::uint32_t>& found = local_.local();
         for (std::size_t task = first_task; task < last_task; ++task) {
             const std::size_t first_cell = task * cells_per_task;
             const std::size_t last_cell = std::min(grid.cell_count(), first_cell + cells_per_task);
             const std::uint32_t first_particle = grid.start[first_cell];
-            found.clear();
+            std::size_t size = 0;
             RowSweep sweep(grid, first_cell);
             for (std::size_t cell = first_cell; cell < last_cell; ++cell) {
                 std::array<std::pair<std::uint32_t, std::uint32_t>, row_count> rows;
                 for (int row = 0; row < row_count; ++row)
                     rows[static_cast<std::size_t>(row)] = sweep.particles(row, cell);
+                std::size_t candidates = 0;
+                for (const auto& [first, last] : rows) candidates += last - first;
                 for (std::uint32_t i = grid.start[cell]; i < grid.start[cell + 1]; ++i) {
-                    const std::size_t before = found.size();
+                    if (found.size() < size + candidates + longest_vector) found.resize(2 * (size + candidates) + 1024);
+                    const std::size_t before = size;
                     for (const auto& [first, last] : rows) {
-                        for (std::uint32_t j = first; j < last; ++j) {
-                            const float dx = x[j] - x[i], dy = y[j] - y[i], dz = z[j] - z[i];
-                            if (dx * dx + dy * dy + dz * dz < square_radius && j != i) found.push_back(j);
-                        }
+                        // The particle itself is left out by looking on either side of it.
+                        const bool own = first <= i && i < last;
+                        size += select_near_(coordinates, first, own ? i : last, points.at(i), square_radius,
+                                             found.data() + size);
+                        if (!own) continue;
+                        size +=
+                            select_near_(coordinates, i + 1, last, points.at(i), square_radius, found.data() + size);
                     }
                     start_[i] = static_cast<std::uint32_t>(before);
-                    count_[i] = static_cast<std::uint32_t>(found.size() - before);
+                    count_[i] = static_cast<std::uint32_t>(size - before);
                 }
             }
-            const auto size = static_cast<std::uint32_t>(found.size());
-            const std::uint32_t base = used_.fetch_add(size);
-            if (base + std::size_t{size} > neighbours_.size()) continue;  // grown and built again
-            std::copy(found.begin(), found.end(), neighbours_.begin() + base);
+            const std::uint32_t base = used_.fetch_add(static_cast<std::uint32_t>(size));
+            if (base + size > neighbours_.size()) continue;  // grown and built again
+            std::copy_n(found.begin(), size, neighbours_.begin() + base);
             for (std::uint32_t i = first_particle; i < grid.start[last_cell]; ++i) start_[i] += base;
         }
     });

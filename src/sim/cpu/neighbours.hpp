@@ -8,6 +8,7 @@
 #include <tbb/enumerable_thread_specific.h>
 
 #include "sim/cpu/cell_sort.hpp"
+#include "sim/cpu/pair_sums.hpp"
 #include "sim/state.hpp"
 
 namespace talus::cpu {
@@ -16,7 +17,7 @@ namespace talus::cpu {
 /// Where in the buffer a list lies depends on the threads; what it holds, and in which order, does not.
 class NeighbourLists {
   public:
-    explicit NeighbourLists(std::size_t capacity);
+    NeighbourLists(std::size_t capacity, const PairSums& sums);
 
     /// `points` sorted by `grid`, whose cells are at least `radius` wide.
     void build(const VectorArray& points, const CellGrid& grid, float radius);
@@ -24,15 +25,20 @@ class NeighbourLists {
     [[nodiscard]] std::span<const std::uint32_t> of(std::size_t i) const {
         return {neighbours_.data() + start_[i], count_[i]};
     }
-    /// Room for a vector per neighbour of a particle, in the order of `of`: what a pass over pairs keeps for the next.
-    [[nodiscard]] Vec3<float>* pair_vectors_of(std::size_t i) { return pair_vectors_.data() + start_[i]; }
+    /// The same list, with room for a pair gradient per neighbour.
+    [[nodiscard]] PairList pairs_of(std::size_t i) {
+        const std::size_t at = start_[i];
+        return {neighbours_.data() + at, count_[i], gradient_.x.data() + at, gradient_.y.data() + at,
+                gradient_.z.data() + at};
+    }
     [[nodiscard]] std::size_t total() const { return used_.load(std::memory_order_relaxed); }
 
   private:
     bool try_build(const VectorArray& points, const CellGrid& grid, float radius);
 
     std::vector<std::uint32_t> start_, count_, neighbours_;
-    std::vector<Vec3<float>> pair_vectors_;
+    VectorArray gradient_;  // V grad W per entry of neighbours_
+    decltype(PairSums::select_near) select_near_;
     std::atomic<std::uint32_t> used_{0};
     tbb::enumerable_thread_specific<std::vector<std::uint32_t>> local_;
 };

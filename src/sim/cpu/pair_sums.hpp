@@ -1,0 +1,83 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string_view>
+
+#include "core/geometry.hpp"
+#include "sim/physics/kernel.hpp"
+#include "sim/physics/stress.hpp"
+
+namespace talus::cpu {
+
+/// A kernel's constants as every pair needs them: V W = value_scale * W r^3, V grad W = -gradient_scale * slope_over_q
+/// x.
+struct PairScale {
+    float inverse_radius, value_scale, gradient_scale;
+
+    explicit PairScale(const Kernel& kernel) {
+        const double r = kernel.support_radius;
+        inverse_radius = static_cast<float>(1 / r);
+        value_scale = static_cast<float>(kernel.particle_volume / (r * r * r));
+        gradient_scale = static_cast<float>(kernel.particle_volume / (r * r * r * r * r));
+    }
+};
+
+/// Three coordinate arrays to read from.
+struct Coordinates {
+    const float *x, *y, *z;
+
+    [[nodiscard]] Vec3<float> at(std::size_t i) const { return {x[i], y[i], z[i]}; }
+};
+
+/// The traceless stresses of all particles to read from.
+struct Deviators {
+    const float *xx, *yy, *xy, *xz, *yz;
+};
+
+/// One particle's neighbours, and where V grad W of each pair is kept from one sum to the next.
+struct PairList {
+    const std::uint32_t* neighbour;
+    std::size_t count;
+    float *gradient_x, *gradient_y, *gradient_z;
+};
+
+struct DensitySums {
+    float density = 0;                        ///< sum of V W, the particle itself included
+    float square = 0;                         ///< sum of |V grad W|^2
+    Vec3<float> gradient;                     ///< sum of V grad W
+    DisplacementGradient<float> deformation;  ///< sum of (u_j - u_i) (x) V grad W
+};
+
+/// The sums over one particle's neighbours, which are where nearly all the time goes: one source for all instruction
+/// sets (pair_sums.cpp), chosen once. Lanes are added up in an order that the instruction set decides: results are
+/// the same on any number of threads, and differ by rounding between instruction sets.
+struct PairSums {
+    /// Density and pair gradients at given points; no deformation.
+    DensitySums (*density)(const PairScale&, const PairList&, const Coordinates& points, std::size_t i);
+    /// The same, with the deformation of given displacements.
+    DensitySums (*density_and_deformation)(const PairScale&, const PairList&, const Coordinates& points,
+                                           const Coordinates& displacements, std::size_t i);
+    /// Sum of [(d lambda_i + d lambda_j) I + ds_i + ds_j] V grad W along the kept pair gradients.
+    Vec3<float> (*stress_correction)(const PairList&, const float* multiplier_change, const Deviators& stress_change,
+                                     std::size_t i);
+    /// The published correction: sum of (d lambda_i + d lambda_j) V grad W and of pair friction. `cap` as
+    /// pair_friction_cap.
+    Vec3<float> (*pair_correction)(const PairScale&, const PairList&, const Coordinates& points,
+                                   const Coordinates& displacements, const float* multiplier_change, float cap,
+                                   std::size_t i);
+    /// Sum of V W (v_j - v_i).
+    Vec3<float> (*velocity_difference)(const PairScale&, const PairList&, const Coordinates& points,
+                                       const Coordinates& velocities, std::size_t i);
+    /// Appends to `found` the indices in [first, last) nearer to `p` than the root of `square_radius`, in order, and
+    /// returns how many. `found` must have room for last - first and one vector more.
+    std::size_t (*select_near)(const Coordinates& points, std::uint32_t first, std::uint32_t last, const Vec3<float>& p,
+                               float square_radius, std::uint32_t* found);
+    std::string_view instruction_set;  ///< "AVX3", "AVX2", "SSE4", ...
+};
+
+/// The sums for a kernel on the best instruction set of this processor, or on that which the environment variable
+/// TALUS_SIMD names (an unknown or unavailable name is ignored).
+[[nodiscard]] PairSums pair_sums_for(KernelChoice kernel);
+
+}  // namespace talus::cpu
