@@ -4,7 +4,7 @@
 #   scripts/install_packages.sh test    and what the tests need
 set -euo pipefail
 
-packages=(g++ cmake ninja-build pkg-config git libgdal-dev gdal-bin libtbb-dev libtomlplusplus-dev libcli11-dev
+packages=(g++ cmake ninja-build pkg-config git libgdal-dev gdal-bin libtbb-dev libhwy-dev libpng-dev libtomlplusplus-dev libcli11-dev
           nlohmann-json3-dev libfmt-dev libgtest-dev libgmock-dev)
 if [[ ${1:-build} == test ]]; then
     packages+=(clang-format clang-tidy python3 python3-gdal python3-numpy poppler-utils)

@@ -117,16 +117,26 @@ SCAR = {"start": 14.0, "end": 41.0, "width": 18.0}
 
 # Village houses: name, height m, centre E and N, bearing of the long side in degrees north of east, length and width m.
 HOUSES = [
-    ("House 38", 6.5, 824205.2, 825652.2, -18, 10.0, 8.0), ("House 38, kitchen", 3.0, 824205.5, 825657.9, -18, 4.5, 3.0),
+    ("House 38", 6.5, 824205.2, 825652.2, -18, 10.0, 8.0),
+    ("House 38, kitchen", 3.0, 824205.5, 825657.9, -18, 4.5, 3.0),
     ("House 21A", 6.5, HOUSE_21A[0], HOUSE_21A[1], -12, 9.0, 8.0),
-    ("village house 1", 6.5, 824184.0, 825641.0, -24, 9.0, 7.5), ("village house 2", 6.5, 824221.0, 825640.0, -10, 9.0, 8.0),
-    ("village house 3", 6.5, 824210.0, 825627.0, -15, 10.0, 7.5), ("village house 4", 4.0, 824176.0, 825622.0, -28, 8.0, 6.5),
-    ("village house 5", 8.5, 824230.0, 825618.0, -8, 9.0, 8.0), ("village house 6", 6.5, 824200.0, 825608.0, -22, 9.5, 7.5),
-    ("village house 7", 6.5, 824166.0, 825604.0, -30, 9.0, 7.0), ("village house 8", 8.5, 824218.0, 825600.0, -14, 9.0, 8.0),
-    ("village house 9", 6.5, 824189.0, 825587.0, -20, 9.0, 7.5), ("village house 10", 4.0, 824153.0, 825588.0, -32, 8.0, 6.0),
-    ("village house 11", 6.5, 824208.0, 825579.0, -12, 9.0, 8.0), ("village house 12", 6.5, 824236.0, 825592.0, -6, 9.5, 7.5),
-    ("village house 13", 8.5, 824148.0, 825565.0, -25, 9.0, 8.0), ("village house 14", 6.5, 824186.0, 825562.0, -18, 9.0, 8.0),
-    ("village house 15", 6.5, 824240.0, 825569.0, -8, 9.0, 7.5), ("village house 16", 6.5, 824214.0, 825555.0, -14, 9.0, 8.0)]
+    ("village house 1", 6.5, 824184.0, 825641.0, -24, 9.0, 7.5),
+    ("village house 2", 6.5, 824221.0, 825640.0, -10, 9.0, 8.0),
+    ("village house 3", 6.5, 824210.0, 825627.0, -15, 10.0, 7.5),
+    ("village house 4", 4.0, 824176.0, 825622.0, -28, 8.0, 6.5),
+    ("village house 5", 8.5, 824230.0, 825618.0, -8, 9.0, 8.0),
+    ("village house 6", 6.5, 824200.0, 825608.0, -22, 9.5, 7.5),
+    ("village house 7", 6.5, 824166.0, 825604.0, -30, 9.0, 7.0),
+    ("village house 8", 8.5, 824218.0, 825600.0, -14, 9.0, 8.0),
+    ("village house 9", 6.5, 824189.0, 825587.0, -20, 9.0, 7.5),
+    ("village house 10", 4.0, 824153.0, 825588.0, -32, 8.0, 6.0),
+    ("village house 11", 6.5, 824208.0, 825579.0, -12, 9.0, 8.0),
+    ("village house 12", 6.5, 824236.0, 825592.0, -6, 9.5, 7.5),
+    ("village house 13", 8.5, 824148.0, 825565.0, -25, 9.0, 8.0),
+    ("village house 14", 6.5, 824186.0, 825562.0, -18, 9.0, 8.0),
+    ("village house 15", 6.5, 824240.0, 825569.0, -8, 9.0, 7.5),
+    ("village house 16", 6.5, 824214.0, 825555.0, -14, 9.0, 8.0),
+]
 
 
 # ------------------------------------------------------------------------------------------------------------ geometry
@@ -284,7 +294,8 @@ def make_ground(trail, easting, northing):
                        for seed, (wavelength, amplitude) in enumerate(ROUGHNESS, 1))
     # Streams wander: the side channels are drawn on slightly displaced coordinates.
     wander = np.clip((distance - 10) / 30, 0, 1)
-    shifted = [axis + wander * (7.0 * noise(easting, northing, 38.0, seed) + 2.0 * noise(easting, northing, 9.0, seed + 1))
+    shifted = [axis + wander * (7.0 * noise(easting, northing, 38.0, seed)
+                                + 2.0 * noise(easting, northing, 9.0, seed + 1))
                for axis, seed in ((easting, 21), (northing, 31))]
     for channel in SIDE_CHANNELS:
         ground = smooth_minimum(ground, side_channel(*channel, smooth_hillside, *shifted), 3.0)
@@ -332,7 +343,7 @@ def write_terrain(path, elevation):
     crs.ImportFromEPSG(2326)
     data.SetProjection(crs.ExportToWkt())
     data.SetGeoTransform((WEST, CELL, 0, NORTH, 0, -CELL))
-    data.SetMetadata({"TIFFTAG_IMAGEDESCRIPTION": "Reconstruction for the Sham Tseng San Tsuen 1999 scene: not surveyed"})
+    data.SetMetadata({"TIFFTAG_IMAGEDESCRIPTION": "Reconstruction for the scene Sham Tseng San Tsuen 1999: no survey"})
     band = data.GetRasterBand(1)
     band.SetNoDataValue(-9999)
     band.SetUnitType("m")

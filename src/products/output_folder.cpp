@@ -49,7 +49,7 @@ fs::path resolved(const fs::path& path) {
     if (!result.has_filename()) result = result.parent_path();
     std::error_code failed;
     if (fs::is_symlink(result, failed)) {
-        const fs::path target = fs::weakly_canonical(result, failed);
+        fs::path target = fs::weakly_canonical(result, failed);
         if (!failed) return target;
     }
     return result;

@@ -18,7 +18,7 @@ struct Colour {
 /// same to colour-blind eyes and in grey print. Hue in degrees and chroma of the ends in OKLCh (Ottosson 2020, "A
 /// perceptual color space for image processing").
 struct Ramp {
-    double low_hue, low_chroma, high_hue, high_chroma;
+    double low_hue = 0, low_chroma = 0, high_hue = 0, high_chroma = 0;
     double low_lightness = 0.93, high_lightness = 0.30;
 
     /// `share`: 0 (low end) to 1. Chroma is reduced where sRGB cannot show it; lightness is kept.

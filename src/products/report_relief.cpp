@@ -224,6 +224,7 @@ std::vector<Contour> contours(const Grid<float>& elevation, double interval) {
         };
         // In order of place, not of the hash table, so that the same terrain gives the same page.
         std::vector<std::size_t> edges;
+        edges.reserve(crossings.size());
         for (const auto& [edge, links] : crossings) edges.push_back(edge);
         std::sort(edges.begin(), edges.end());
         for (const std::size_t e : edges) {  // open lines from their ends first

@@ -38,10 +38,12 @@ std::vector<Column> fill_columns(const Terrain& terrain, const Release& release,
             const PlanPoint centre{extent.x_min + (column + 0.5) * spacing, extent.y_min + (row + 0.5) * spacing};
             constexpr int parts = 3;  // sub-samples per side, so that columns on the outline get their share
             double depth = 0;
-            for (int part = 0; part < parts * parts; ++part) {
-                const double dx = ((part % parts + 0.5) / parts - 0.5) * spacing;
-                const double dy = ((part / parts + 0.5) / parts - 0.5) * spacing;
-                depth += vertical_depth(terrain, release, {centre.x + dx, centre.y + dy}) / (parts * parts);
+            for (int east = 0; east < parts; ++east) {
+                for (int north = 0; north < parts; ++north) {
+                    const PlanPoint sample{centre.x + ((east + 0.5) / parts - 0.5) * spacing,
+                                           centre.y + ((north + 0.5) / parts - 0.5) * spacing};
+                    depth += vertical_depth(terrain, release, sample) / (parts * parts);
+                }
             }
             if (depth <= 0) continue;
             // Rounding by an additive low-discrepancy sequence (Roberts 2018) spreads the odd particles evenly.
