@@ -7,8 +7,9 @@ writes terrain.tif, release.geojson, buildings.geojson and flow_path.geojson int
 script). Needs numpy and GDAL's Python bindings. The same input gives the same values on every machine: the roughness
 comes from an integer hash, not from a random generator.
 
-This is a reconstruction. PUBLISHED below holds what sources say about the landslide of 23 August 1999 at Sham Tseng San
-Tsuen; everything under ASSUMED was chosen by us so that the ground agrees with it. No elevation model is read.
+This is a reconstruction. KNOWN below holds what sources say about the landslide of 23 August 1999 at Sham Tseng San
+Tsuen, and its trail as read at single points; everything under ASSUMED was chosen by us so that the ground agrees with
+it. No elevation model is read.
 Coordinates are metres in the Hong Kong 1980 Grid (EPSG:2326), elevations metres above the Principal Datum (mPD).
 docs/scenes.md explains both.
 """
@@ -20,12 +21,11 @@ import sys
 import numpy as np
 from osgeo import gdal, osr
 
-# ---------------------------------------------------------------------------------------------------------- PUBLISHED
+# -------------------------------------------------------------------------------------------------------------- KNOWN
 
 # Plan of the trail (+-30 m) with the elevation of the bed: the crown, the bend of the gully, and down the gully.
 CROWN = (824355.0, 825830.0)
-BEND = (824262.0, 825805.0)
-TRAIL_POINTS = [
+TRAIL_POINTS = [  # after the bend near (824262, 825805)
     (824255.0, 825780.0, 102.0),
     (824240.0, 825750.0, 88.0),
     (824230.0, 825720.0, 62.0),
@@ -44,11 +44,11 @@ HOUSE_21A = (824262.0, 825554.0)
 
 WEST, SOUTH, EAST, NORTH, CELL = 824090.0, 825520.0, 824440.0, 825920.0, 1.0
 
-# Corners of the trail, within 3 m of the published places; each is then rounded. From BEND to the first of TRAIL_POINTS
+# Corners of the trail, within 3 m of the known places; each is then rounded. From the bend to the first of TRAIL_POINTS
 # it is 26 m in plan but 32 m by the chainages of PROFILE, which the bed follows.
 TRAIL_CORNERS = [CROWN, (824318.0, 825822.0), (824283.0, 825813.5), (824252.5, 825804.0), (824253.5, 825779.0),
-                 (824240.0, 825750.0), (824230.0, 825720.0), (824220.0, 825690.0), (824205.0, 825660.0),
-                 (824195.0, 825630.0), (824180.0, 825600.0), (824166.0, 825570.0)]
+                 *[(easting, northing) for easting, northing, _ in TRAIL_POINTS[1:]],
+                 (824180.0, 825600.0), (824166.0, 825570.0)]
 # Below the published profile: the apron on which the village stands.
 APRON_PROFILE = [(310, 14.3), (335, 11.0), (365, 8.0)]
 # The 10 m fall as a step 2 m long, where the published profile is steepest. Approach and foot at channel gradient.

@@ -12,10 +12,6 @@ namespace {
 
 constexpr std::size_t particle_grain = 256;
 
-Coordinates coordinates_of(const VectorArray& array) {
-    return {array.x.data(), array.y.data(), array.z.data()};
-}
-
 /// Start time of the release that a particle belongs to.
 double start_time_of(const Model& model, std::uint32_t id) {
     for (const ReleaseGroup& release : model.releases) {
@@ -44,6 +40,8 @@ Backend::Backend(const Model& model, std::size_t capacity)
                                &ground_friction_, &building_friction_, &vector_scratch_}) {
         array->resize(capacity);
     }
+    packed_points_.resize(capacity);
+    packed_vectors_.resize(capacity);
     stress_start_.resize(capacity);
     stress_change_.resize(capacity);
     grid_.key.reserve(capacity);
@@ -101,16 +99,22 @@ void Backend::reorder(State& state, std::span<const std::uint32_t> order) {
     gather(state.held, byte_scratch_);
 }
 
+void Backend::pack(const VectorArray& from, std::size_t count, Packed& to) const {
+    parallel_ranges(count, 4096, [&](std::size_t first, std::size_t last) {
+        for (std::size_t i = first; i < last; ++i) to[i] = {from.x[i], from.y[i], from.z[i], multiplier_change_[i]};
+    });
+}
+
 /// Reads off the positions that the step starts from: the pair gradients along which what persists acts, and the
 /// compression that is already there. That may be undone only slowly, since a correction turns into velocity: the
 /// density constraint tolerates the rest.
 void Backend::measure_start(const Model& model, const State& state) {
     const auto undone = static_cast<float>(model.solver.depenetration_speed * state.time_step / model.particle_spacing);
-    const Coordinates points = coordinates_of(state.position);
+    pack(state.position, state.count, packed_points_);
     parallel_ranges(state.count, particle_grain, [&](std::size_t first, std::size_t last) {
         for (std::size_t i = first; i < last; ++i) {
-            const float density = sums_.density(scale_, neighbours_.pairs_of(i), points, i).density;
-            const auto boundary = boundary_density(model, sample_boundary(model, points.at(i)));
+            const float density = sums_.density(scale_, neighbours_.pairs_of(i), packed_points_, i).density;
+            const auto boundary = boundary_density(model, sample_boundary(model, state.position.at(i)));
             ground_gradient_.set(i, boundary.ground_gradient);
             building_gradient_.set(i, boundary.building_gradient);
             tolerated_compression_[i] = std::max(0.0f, density + boundary.density - 1 - undone);
@@ -168,7 +172,8 @@ void Backend::update_multipliers(const Model& model, State& state) {
     const float softness = static_cast<float>(model.solver.constraint_relaxation * model.kernel.rest_gradient_sum);
     const auto under_relaxation = static_cast<float>(model.solver.under_relaxation);
     const auto internal_friction = static_cast<float>(model.internal_friction_coefficient);
-    const Coordinates points = coordinates_of(predicted_), displacements = coordinates_of(displacement_);
+    pack(predicted_, state.count, packed_points_);
+    pack(displacement_, state.count, packed_vectors_);
 
     parallel_ranges(state.count, particle_grain, [&](std::size_t first, std::size_t last) {
         for (std::size_t i = first; i < last; ++i) {
@@ -179,8 +184,8 @@ void Backend::update_multipliers(const Model& model, State& state) {
                 continue;
             }
             const DensitySums sums =
-                sums_.density_and_deformation(scale_, neighbours_.pairs_of(i), points, displacements, i);
-            const auto boundary = boundary_density(model, sample_boundary(model, points.at(i)));
+                sums_.density_and_deformation(scale_, neighbours_.pairs_of(i), packed_points_, packed_vectors_, i);
+            const auto boundary = boundary_density(model, sample_boundary(model, predicted_.at(i)));
             ground_gradient_.set(i, boundary.ground_gradient);
             building_gradient_.set(i, boundary.building_gradient);
             const Vec3<float> gradient = sums.gradient + boundary.ground_gradient + boundary.building_gradient;
@@ -235,15 +240,20 @@ void Backend::measure_compression(State& state) {
 /// Eq. (3) with the full stress: x_i += sum_j [(d lambda_i + d lambda_j) I + ds_i + ds_j] V grad W, equal and opposite
 /// for the two particles of a pair.
 void Backend::apply_stress_changes(const State& state) {
-    const DeviatorArray& changes = stress_change_;
-    const Deviators stress{changes.xx.data(), changes.yy.data(), changes.xy.data(), changes.xz.data(),
-                           changes.yz.data()};
+    parallel_ranges(state.count, 4096, [&](std::size_t first, std::size_t last) {
+        for (std::size_t i = first; i < last; ++i) {
+            const float pressure = multiplier_change_[i];
+            const Deviator<float> s = stress_change_.at(i);
+            packed_points_[i] = {pressure + s.xx, s.xy, s.xz, pressure + s.yy};
+            packed_vectors_[i] = {s.yz, pressure - s.xx - s.yy, 0, 0};
+        }
+    });
     parallel_ranges(state.count, particle_grain, [&](std::size_t first, std::size_t last) {
         for (std::size_t i = first; i < last; ++i) {
             Vec3<float> moved = displacement_.at(i);
             if (!state.held[i]) {
                 moved += (ground_gradient_.at(i) + building_gradient_.at(i)) * multiplier_change_[i] +
-                         sums_.stress_correction(neighbours_.pairs_of(i), multiplier_change_.data(), stress, i);
+                         sums_.stress_correction(neighbours_.pairs_of(i), packed_points_, packed_vectors_, i);
             }
             displacement_next_.set(i, moved);
         }
@@ -253,14 +263,14 @@ void Backend::apply_stress_changes(const State& state) {
 /// Eqs. (3) and (4) as published: pairs pressed together rub against each other. Equal and opposite as well.
 void Backend::apply_pair_corrections(const Model& model, const State& state) {
     const auto cap = static_cast<float>(pair_friction_cap(model.internal_friction_coefficient));
-    const Coordinates points = coordinates_of(predicted_), displacements = coordinates_of(displacement_);
+    pack(predicted_, state.count, packed_points_);  // again: multipliers have changed
     parallel_ranges(state.count, particle_grain, [&](std::size_t first, std::size_t last) {
         for (std::size_t i = first; i < last; ++i) {
             Vec3<float> moved = displacement_.at(i);
             if (!state.held[i]) {
-                moved += (ground_gradient_.at(i) + building_gradient_.at(i)) * multiplier_change_[i] +
-                         sums_.pair_correction(scale_, neighbours_.pairs_of(i), points, displacements,
-                                               multiplier_change_.data(), cap, i);
+                moved +=
+                    (ground_gradient_.at(i) + building_gradient_.at(i)) * multiplier_change_[i] +
+                    sums_.pair_correction(scale_, neighbours_.pairs_of(i), packed_points_, packed_vectors_, cap, i);
             }
             displacement_next_.set(i, moved);
         }
@@ -343,13 +353,15 @@ void Backend::update_velocities(const Model& model, State& state) {
 void Backend::apply_viscosity(const Model& model, State& state) {
     if (model.viscosity <= 0) return;
     const auto smoothing = static_cast<float>(step_smoothing(model.viscosity, state.time_step));
-    const Coordinates points = coordinates_of(state.position), velocities = coordinates_of(state.velocity);
+    pack(state.position, state.count, packed_points_);
+    pack(state.velocity, state.count, packed_vectors_);
     parallel_ranges(state.count, particle_grain, [&](std::size_t first, std::size_t last) {
         for (std::size_t i = first; i < last; ++i) {
-            Vec3<float> velocity = velocities.at(i);
+            Vec3<float> velocity = state.velocity.at(i);
             if (!state.held[i]) {
                 velocity +=
-                    sums_.velocity_difference(scale_, neighbours_.pairs_of(i), points, velocities, i) * smoothing;
+                    sums_.velocity_difference(scale_, neighbours_.pairs_of(i), packed_points_, packed_vectors_, i) *
+                    smoothing;
             }
             vector_scratch_.set(i, velocity);
         }

@@ -38,6 +38,7 @@ class Backend {
   private:
     template <InternalFriction friction>
     void update_multipliers(const Model& model, State& state);
+    void pack(const VectorArray& from, std::size_t count, Packed& to) const;
     void apply_stress_changes(const State& state);
     void apply_pair_corrections(const Model& model, const State& state);
     void measure_compression(State& state);
@@ -53,6 +54,7 @@ class Backend {
     VectorArray displacement_, displacement_next_;  // x* - x
     VectorArray predicted_;                         // x*
     std::vector<float> multiplier_change_;          // of lambda in this iteration
+    Packed packed_points_, packed_vectors_;         // what the sums of a pass read of neighbours
     DeviatorArray stress_start_, stress_change_;    // at the step's start; in this iteration
     std::vector<float> compression_;                // max(0, G)
     std::vector<float> tolerated_compression_;      // of what the step started with

@@ -3,6 +3,8 @@
 #define HWY_TARGET_INCLUDE "sim/cpu/pair_sums.cpp"
 #include <hwy/foreach_target.h>
 // (must come after foreach_target)
+#include <algorithm>
+#include <array>
 #include <cstring>
 #include <hwy/highway.h>
 
@@ -15,24 +17,70 @@ namespace talus::cpu::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 using D = hn::ScalableTag<float>;
 using V = hn::Vec<D>;
-using Indices = hn::Vec<hn::RebindToSigned<D>>;
 constexpr D d;
-constexpr hn::RebindToSigned<D> di;
 
 float sum(V v) {
     return hn::GetLane(hn::SumOfLanes(d, v));
 }
 
+/// Four vectors: the packed numbers of as many neighbours as there are lanes.
+struct V4 {
+    V x, y, z, w;
+};
+
+#if HWY_TARGET == HWY_AVX2 || HWY_TARGET <= HWY_AVX3
+/// Transposes 4 x 4 numbers within every block of 128 bits.
+V4 transposed(V r0, V r1, V r2, V r3) {
+    const V xy01 = hn::InterleaveLower(d, r0, r1), zw01 = hn::InterleaveUpper(d, r0, r1);
+    const V xy23 = hn::InterleaveLower(d, r2, r3), zw23 = hn::InterleaveUpper(d, r2, r3);
+    const hn::Repartition<double, D> pairs;
+    const auto low = [&](V a, V b) {
+        return hn::BitCast(d, hn::InterleaveLower(pairs, hn::BitCast(pairs, a), hn::BitCast(pairs, b)));
+    };
+    const auto high = [&](V a, V b) {
+        return hn::BitCast(d, hn::InterleaveUpper(pairs, hn::BitCast(pairs, a), hn::BitCast(pairs, b)));
+    };
+    return {low(xy01, xy23), high(xy01, xy23), low(zw01, zw23), high(zw01, zw23)};
+}
+
+/// A load of 16 bytes per neighbour and a transposition: a gather instruction per number costs several times as much
+/// (measured on Zen 4: 2.6 times over the whole step).
+V4 gather(const Packed& from, const std::uint32_t* j) {
+    const auto row = [&](std::size_t lane) { return _mm_loadu_ps(from[j[lane]].data()); };
+    const auto rows = [&](std::size_t first) {
+#if HWY_TARGET == HWY_AVX2
+        return V{_mm256_insertf128_ps(_mm256_castps128_ps256(row(first)), row(first + 4), 1)};
+#else
+        __m512 four = _mm512_castps128_ps512(row(first));
+        four = _mm512_insertf32x4(four, row(first + 4), 1);
+        four = _mm512_insertf32x4(four, row(first + 8), 2);
+        return V{_mm512_insertf32x4(four, row(first + 12), 3)};
+#endif
+    };
+    return transposed(rows(0), rows(1), rows(2), rows(3));
+}
+#else
+V4 gather(const Packed& from, const std::uint32_t* j) {
+    HWY_ALIGN float x[hn::MaxLanes(d)], y[hn::MaxLanes(d)], z[hn::MaxLanes(d)], w[hn::MaxLanes(d)];
+    for (std::size_t lane = 0; lane < hn::Lanes(d); ++lane) {
+        const std::array<float, 4>& row = from[j[lane]];
+        x[lane] = row[0];
+        y[lane] = row[1];
+        z[lane] = row[2];
+        w[lane] = row[3];
+    }
+    return {hn::Load(d, x), hn::Load(d, y), hn::Load(d, z), hn::Load(d, w)};
+}
+#endif
+
 /// Three vectors: a coordinate each.
 struct V3 {
     V x, y, z;
 
-    explicit V3(const Vec3<float>& p) : x(hn::Set(d, p.x)), y(hn::Set(d, p.y)), z(hn::Set(d, p.z)) {}
+    explicit V3(const std::array<float, 4>& p) : x(hn::Set(d, p[0])), y(hn::Set(d, p[1])), z(hn::Set(d, p[2])) {}
+    explicit V3(const V4& v) : x(v.x), y(v.y), z(v.z) {}
     V3(V x_, V y_, V z_) : x(x_), y(y_), z(z_) {}
     static V3 zero() { return V3(hn::Zero(d), hn::Zero(d), hn::Zero(d)); }
-    static V3 gather(const Coordinates& from, Indices j) {
-        return V3(hn::GatherIndex(d, from.x, j), hn::GatherIndex(d, from.y, j), hn::GatherIndex(d, from.z, j));
-    }
     V3 minus(const V3& o) const { return V3(hn::Sub(x, o.x), hn::Sub(y, o.y), hn::Sub(z, o.z)); }
     V3 times(V s) const { return V3(hn::Mul(x, s), hn::Mul(y, s), hn::Mul(z, s)); }
     V dot(const V3& o) const { return hn::MulAdd(z, o.z, hn::MulAdd(y, o.y, hn::Mul(x, o.x))); }
@@ -62,7 +110,7 @@ void store_part(V v, float* to, std::size_t count) {
 /// index 0.
 struct FullVector {
     std::size_t at;
-    Indices j;
+    const std::uint32_t* j;
 
     V keep(V v) const { return v; }
     V load(const float* from) const { return hn::LoadU(d, from + at); }
@@ -71,7 +119,7 @@ struct FullVector {
 
 struct PartVector {
     std::size_t at, count;
-    Indices j;
+    const std::uint32_t* j;
 
     /// v in the lanes that stand for a neighbour, 0 in the others.
     V keep(V v) const { return hn::IfThenElseZero(hn::FirstN(d, count), v); }
@@ -83,13 +131,12 @@ struct PartVector {
 template <class F>
 void for_each_vector(const PairList& pairs, const F& f) {
     const std::size_t lanes = hn::Lanes(d);
-    const auto* index = reinterpret_cast<const std::int32_t*>(pairs.neighbour);
     std::size_t k = 0;
-    for (; k + lanes <= pairs.count; k += lanes) f(FullVector{k, hn::LoadU(di, index + k)});
+    for (; k + lanes <= pairs.count; k += lanes) f(FullVector{k, pairs.neighbour + k});
     if (k == pairs.count) return;
-    HWY_ALIGN std::int32_t part[hn::MaxLanes(d)] = {};
-    std::memcpy(part, index + k, (pairs.count - k) * sizeof(std::int32_t));
-    f(PartVector{k, pairs.count - k, hn::Load(di, part)});
+    std::array<std::uint32_t, hn::MaxLanes(d)> rest{};
+    std::copy_n(pairs.neighbour + k, pairs.count - k, rest.begin());
+    f(PartVector{k, pairs.count - k, rest.data()});
 }
 
 V quotient(const PairScale& scale, V square) {
@@ -97,14 +144,13 @@ V quotient(const PairScale& scale, V square) {
 }
 
 template <class Kernel, bool deforms>
-DensitySums density_sums(const PairScale& scale, const PairList& pairs, const Coordinates& points,
-                         const Coordinates* displacements, std::size_t i) {
-    const V3 p(points.at(i));
-    const V3 moved(deforms ? displacements->at(i) : Vec3<float>{});
+DensitySums density_sums(const PairScale& scale, const PairList& pairs, const Packed& points,
+                         const Packed* displacements, std::size_t i) {
+    const V3 p(points[i]), moved(deforms ? (*displacements)[i] : points[i]);
     V density = hn::Zero(d), squares = hn::Zero(d);
     V3 gradient = V3::zero(), deformation_x = V3::zero(), deformation_y = V3::zero(), deformation_z = V3::zero();
     for_each_vector(pairs, [&](const auto& part) {
-        const V3 separation = p.minus(V3::gather(points, part.j));
+        const V3 separation = p.minus(V3(gather(points, part.j)));
         const V square = separation.dot(separation);
         const V q = quotient(scale, square);
         density = hn::Add(density, part.keep(Kernel::value(d, q)));
@@ -116,7 +162,7 @@ DensitySums density_sums(const PairScale& scale, const PairList& pairs, const Co
         if constexpr (deforms) {
             squares = hn::MulAdd(hn::Mul(slope, slope), square, squares);
             gradient.add(hn::Set(d, 1.0f), pair_gradient);
-            const V3 difference = V3::gather(*displacements, part.j).minus(moved);
+            const V3 difference = V3(gather(*displacements, part.j)).minus(moved);
             deformation_x.add(difference.x, pair_gradient);
             deformation_y.add(difference.y, pair_gradient);
             deformation_z.add(difference.z, pair_gradient);
@@ -133,50 +179,44 @@ DensitySums density_sums(const PairScale& scale, const PairList& pairs, const Co
 }
 
 template <class Kernel>
-DensitySums density(const PairScale& scale, const PairList& pairs, const Coordinates& points, std::size_t i) {
+DensitySums density(const PairScale& scale, const PairList& pairs, const Packed& points, std::size_t i) {
     return density_sums<Kernel, false>(scale, pairs, points, nullptr, i);
 }
 
 template <class Kernel>
-DensitySums density_and_deformation(const PairScale& scale, const PairList& pairs, const Coordinates& points,
-                                    const Coordinates& displacements, std::size_t i) {
+DensitySums density_and_deformation(const PairScale& scale, const PairList& pairs, const Packed& points,
+                                    const Packed& displacements, std::size_t i) {
     return density_sums<Kernel, true>(scale, pairs, points, &displacements, i);
 }
 
-Vec3<float> stress_correction(const PairList& pairs, const float* multiplier_change, const Deviators& stress_change,
+Vec3<float> stress_correction(const PairList& pairs, const Packed& stress_rows, const Packed& stress_rest,
                               std::size_t i) {
-    const Deviators& s = stress_change;
-    const V own = hn::Set(d, multiplier_change[i]);
-    const V own_xx = hn::Set(d, s.xx[i]), own_yy = hn::Set(d, s.yy[i]);
-    const V own_xy = hn::Set(d, s.xy[i]), own_xz = hn::Set(d, s.xz[i]), own_yz = hn::Set(d, s.yz[i]);
+    const auto& own = stress_rows[i];
+    const auto& own_rest = stress_rest[i];
+    const V own_xx = hn::Set(d, own[0]), own_xy = hn::Set(d, own[1]), own_xz = hn::Set(d, own[2]);
+    const V own_yy = hn::Set(d, own[3]), own_yz = hn::Set(d, own_rest[0]), own_zz = hn::Set(d, own_rest[1]);
     V3 correction = V3::zero();
     for_each_vector(pairs, [&](const auto& part) {
-        const Indices j = part.j;
         const V gx = part.load(pairs.gradient_x), gy = part.load(pairs.gradient_y), gz = part.load(pairs.gradient_z);
-        const V pressure = hn::Add(own, hn::GatherIndex(d, multiplier_change, j));
-        const V xx = hn::Add(own_xx, hn::GatherIndex(d, s.xx, j));
-        const V yy = hn::Add(own_yy, hn::GatherIndex(d, s.yy, j));
-        const V xy = hn::Add(own_xy, hn::GatherIndex(d, s.xy, j));
-        const V xz = hn::Add(own_xz, hn::GatherIndex(d, s.xz, j));
-        const V yz = hn::Add(own_yz, hn::GatherIndex(d, s.yz, j));
-        const V zz = hn::Sub(pressure, hn::Add(xx, yy));
-        correction.add(gx, V3(hn::Add(pressure, xx), xy, xz));
-        correction.add(gy, V3(xy, hn::Add(pressure, yy), yz));
-        correction.add(gz, V3(xz, yz, zz));
+        const V4 rows = gather(stress_rows, part.j), rest = gather(stress_rest, part.j);
+        const V xy = hn::Add(own_xy, rows.y), xz = hn::Add(own_xz, rows.z), yz = hn::Add(own_yz, rest.x);
+        correction.add(gx, V3(hn::Add(own_xx, rows.x), xy, xz));
+        correction.add(gy, V3(xy, hn::Add(own_yy, rows.w), yz));
+        correction.add(gz, V3(xz, yz, hn::Add(own_zz, rest.y)));
     });
     return correction.total();
 }
 
 template <class Kernel>
-Vec3<float> pair_correction(const PairScale& scale, const PairList& pairs, const Coordinates& points,
-                            const Coordinates& displacements, const float* multiplier_change, float cap,
-                            std::size_t i) {
-    const V3 p(points.at(i)), moved(displacements.at(i));
-    const V own = hn::Set(d, multiplier_change[i]), zero = hn::Zero(d);
+Vec3<float> pair_correction(const PairScale& scale, const PairList& pairs, const Packed& points,
+                            const Packed& displacements, float cap, std::size_t i) {
+    const V3 p(points[i]), moved(displacements[i]);
+    const V own = hn::Set(d, points[i][3]), zero = hn::Zero(d);
     V3 correction = V3::zero();
     for_each_vector(pairs, [&](const auto& part) {
-        const V change = part.keep(hn::Add(own, hn::GatherIndex(d, multiplier_change, part.j)));
-        const V3 separation = p.minus(V3::gather(points, part.j));
+        const V4 other = gather(points, part.j);
+        const V change = part.keep(hn::Add(own, other.w));
+        const V3 separation = p.minus(V3(other));
         const V square = separation.dot(separation);
         const V distance = hn::Sqrt(square);
         const V q = hn::Min(hn::Set(d, 1.0f), hn::Mul(distance, hn::Set(d, scale.inverse_radius)));
@@ -185,7 +225,7 @@ Vec3<float> pair_correction(const PairScale& scale, const PairList& pairs, const
 
         // Friction as in pair_friction(): against the tangential displacement, at most half of it by weight, at most
         // the cap times the normal correction, and none between particles that part.
-        const V3 relative = moved.minus(V3::gather(displacements, part.j));
+        const V3 relative = moved.minus(V3(gather(displacements, part.j)));
         const V along = hn::Div(relative.dot(separation), hn::Add(square, hn::Set(d, 1e-12f)));
         V3 tangential = relative;
         tangential.add(hn::Neg(along), separation);
@@ -199,15 +239,15 @@ Vec3<float> pair_correction(const PairScale& scale, const PairList& pairs, const
 }
 
 template <class Kernel>
-Vec3<float> velocity_difference(const PairScale& scale, const PairList& pairs, const Coordinates& points,
-                                const Coordinates& velocities, std::size_t i) {
-    const V3 p(points.at(i)), own(velocities.at(i));
+Vec3<float> velocity_difference(const PairScale& scale, const PairList& pairs, const Packed& points,
+                                const Packed& velocities, std::size_t i) {
+    const V3 p(points[i]), own(velocities[i]);
     V3 difference = V3::zero();
     for_each_vector(pairs, [&](const auto& part) {
-        const V3 separation = p.minus(V3::gather(points, part.j));
+        const V3 separation = p.minus(V3(gather(points, part.j)));
         const V q = quotient(scale, separation.dot(separation));
         const V weight = part.keep(hn::Mul(Kernel::value(d, q), hn::Set(d, scale.value_scale)));
-        difference.add(weight, V3::gather(velocities, part.j).minus(own));
+        difference.add(weight, V3(gather(velocities, part.j)).minus(own));
     });
     return difference.total();
 }
@@ -223,7 +263,10 @@ std::size_t select_near(const Coordinates& points, std::uint32_t first, std::uin
         const V dx = hn::Sub(x, px), dy = hn::Sub(y, py), dz = hn::Sub(z, pz);
         const V square = hn::MulAdd(dz, dz, hn::MulAdd(dy, dy, hn::Mul(dx, dx)));
         const auto near = near_of(hn::Lt(square, limit));
-        count += hn::CompressStore(hn::Iota(du, j), hn::RebindMask(du, near), du, found + count);
+        // In a register and then stored whole: the instruction that compresses into memory is slow on AMD.
+        const auto selected = hn::RebindMask(du, near);
+        hn::StoreU(hn::Compress(hn::Iota(du, j), selected), du, found + count);
+        count += hn::CountTrue(du, selected);
     };
     std::uint32_t j = first;
     for (; j + lanes <= last; j += static_cast<std::uint32_t>(lanes)) {

@@ -1,8 +1,10 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <string_view>
+#include <vector>
 
 #include "core/geometry.hpp"
 #include "sim/physics/kernel.hpp"
@@ -23,16 +25,13 @@ struct PairScale {
     }
 };
 
+/// Numbers of all particles packed by fours, 16 bytes a particle: a neighbour's four lie in one cache line and are
+/// loaded at once, which is several times faster than a gather from each of four arrays.
+using Packed = std::vector<std::array<float, 4>>;
+
 /// Three coordinate arrays to read from.
 struct Coordinates {
     const float *x, *y, *z;
-
-    [[nodiscard]] Vec3<float> at(std::size_t i) const { return {x[i], y[i], z[i]}; }
-};
-
-/// The traceless stresses of all particles to read from.
-struct Deviators {
-    const float *xx, *yy, *xy, *xz, *yz;
 };
 
 /// One particle's neighbours, and where V grad W of each pair is kept from one sum to the next.
@@ -54,21 +53,21 @@ struct DensitySums {
 /// the same on any number of threads, and differ by rounding between instruction sets.
 struct PairSums {
     /// Density and pair gradients at given points; no deformation.
-    DensitySums (*density)(const PairScale&, const PairList&, const Coordinates& points, std::size_t i);
+    DensitySums (*density)(const PairScale&, const PairList&, const Packed& points, std::size_t i);
     /// The same, with the deformation of given displacements.
-    DensitySums (*density_and_deformation)(const PairScale&, const PairList&, const Coordinates& points,
-                                           const Coordinates& displacements, std::size_t i);
-    /// Sum of [(d lambda_i + d lambda_j) I + ds_i + ds_j] V grad W along the kept pair gradients.
-    Vec3<float> (*stress_correction)(const PairList&, const float* multiplier_change, const Deviators& stress_change,
+    DensitySums (*density_and_deformation)(const PairScale&, const PairList&, const Packed& points,
+                                           const Packed& displacements, std::size_t i);
+    /// Sum of (T_i + T_j) V grad W along the kept pair gradients, T = d lambda I + ds. `stress_rows`: xx, xy, xz, yy;
+    /// `stress_rest`: yz, zz.
+    Vec3<float> (*stress_correction)(const PairList&, const Packed& stress_rows, const Packed& stress_rest,
                                      std::size_t i);
-    /// The published correction: sum of (d lambda_i + d lambda_j) V grad W and of pair friction. `cap` as
-    /// pair_friction_cap.
-    Vec3<float> (*pair_correction)(const PairScale&, const PairList&, const Coordinates& points,
-                                   const Coordinates& displacements, const float* multiplier_change, float cap,
-                                   std::size_t i);
+    /// The published correction: sum of (d lambda_i + d lambda_j) V grad W and of pair friction. The fourth number of a
+    /// point is its d lambda; `cap` as pair_friction_cap.
+    Vec3<float> (*pair_correction)(const PairScale&, const PairList&, const Packed& points, const Packed& displacements,
+                                   float cap, std::size_t i);
     /// Sum of V W (v_j - v_i).
-    Vec3<float> (*velocity_difference)(const PairScale&, const PairList&, const Coordinates& points,
-                                       const Coordinates& velocities, std::size_t i);
+    Vec3<float> (*velocity_difference)(const PairScale&, const PairList&, const Packed& points,
+                                       const Packed& velocities, std::size_t i);
     /// Appends to `found` the indices in [first, last) nearer to `p` than the root of `square_radius`, in order, and
     /// returns how many. `found` must have room for last - first and one vector more.
     std::size_t (*select_near)(const Coordinates& points, std::uint32_t first, std::uint32_t last, const Vec3<float>& p,
