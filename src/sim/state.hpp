@@ -8,14 +8,15 @@
 
 namespace talus {
 
-/// Three arrays of one coordinate each.
+/// Three arrays of one coordinate each. They are longer than asked for: a vector load may begin at the last particle.
 struct VectorArray {
+    static constexpr std::size_t padding = 16;  ///< floats, the widest vector
     std::vector<float> x, y, z;
 
     void resize(std::size_t n) {
-        x.resize(n);
-        y.resize(n);
-        z.resize(n);
+        x.resize(n + padding);
+        y.resize(n + padding);
+        z.resize(n + padding);
     }
     [[nodiscard]] LocalPoint at(std::size_t i) const { return {x[i], y[i], z[i]}; }
     void set(std::size_t i, const LocalPoint& p) {

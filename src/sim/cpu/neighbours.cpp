@@ -9,8 +9,8 @@ namespace talus::cpu {
 namespace {
 
 constexpr std::size_t cells_per_task = 64;
-constexpr std::size_t longest_vector = 64;  // lanes that a selection may write beyond what it found
-constexpr int row_count = 9;                // a cell's 27 neighbours are 9 rows of 3 cells with consecutive keys
+constexpr std::size_t longest_vector = 2 * PairList::padding;  // what may be written beyond what was found
+constexpr int row_count = 9;  // a cell's 27 neighbours are 9 rows of 3 cells with consecutive keys
 
 /// Walks the 9 neighbour rows of ascending cells. As keys ascend, every row's position only moves forward, so that a
 /// sweep needs no hash table and touches the occupied cells alone.
@@ -49,7 +49,7 @@ class RowSweep {
 }  // namespace
 
 NeighbourLists::NeighbourLists(std::size_t capacity, const PairSums& sums)
-    : start_(capacity), count_(capacity), neighbours_(capacity * 64 + 1024), select_near_(sums.select_near) {
+    : start_(capacity), count_(capacity), neighbours_(capacity * 72 + 1024), select_near_(sums.select_near) {
     gradient_.resize(neighbours_.size());
 }
 
@@ -94,6 +94,7 @@ bool NeighbourLists::try_build(const VectorArray& points, const CellGrid& grid, 
                     }
                     start_[i] = static_cast<std::uint32_t>(before);
                     count_[i] = static_cast<std::uint32_t>(size - before);
+                    while (size % PairList::padding != 0) found[size++] = i;
                 }
             }
             const std::uint32_t base = used_.fetch_add(static_cast<std::uint32_t>(size));

@@ -3,9 +3,7 @@
 #define HWY_TARGET_INCLUDE "sim/cpu/pair_sums.cpp"
 #include <hwy/foreach_target.h>
 // (must come after foreach_target)
-#include <algorithm>
 #include <array>
-#include <cstring>
 #include <hwy/highway.h>
 
 #include "sim/cpu/pair_kernels-inl.hpp"
@@ -19,7 +17,7 @@ using D = hn::ScalableTag<float>;
 using V = hn::Vec<D>;
 constexpr D d;
 
-float sum(V v) {
+HWY_INLINE float sum(V v) {
     return hn::GetLane(hn::SumOfLanes(d, v));
 }
 
@@ -30,7 +28,7 @@ struct V4 {
 
 #if HWY_TARGET == HWY_AVX2 || HWY_TARGET <= HWY_AVX3
 /// Transposes 4 x 4 numbers within every block of 128 bits.
-V4 transposed(V r0, V r1, V r2, V r3) {
+HWY_INLINE V4 transposed(V r0, V r1, V r2, V r3) {
     const V xy01 = hn::InterleaveLower(d, r0, r1), zw01 = hn::InterleaveUpper(d, r0, r1);
     const V xy23 = hn::InterleaveLower(d, r2, r3), zw23 = hn::InterleaveUpper(d, r2, r3);
     const hn::Repartition<double, D> pairs;
@@ -45,7 +43,7 @@ V4 transposed(V r0, V r1, V r2, V r3) {
 
 /// A load of 16 bytes per neighbour and a transposition: a gather instruction per number costs several times as much
 /// (measured on Zen 4: 2.6 times over the whole step).
-V4 gather(const Packed& from, const std::uint32_t* j) {
+HWY_INLINE V4 gather(const Packed& from, const std::uint32_t* j) {
     const auto row = [&](std::size_t lane) { return _mm_loadu_ps(from[j[lane]].data()); };
     const auto rows = [&](std::size_t first) {
 #if HWY_TARGET == HWY_AVX2
@@ -60,7 +58,7 @@ V4 gather(const Packed& from, const std::uint32_t* j) {
     return transposed(rows(0), rows(1), rows(2), rows(3));
 }
 #else
-V4 gather(const Packed& from, const std::uint32_t* j) {
+HWY_INLINE V4 gather(const Packed& from, const std::uint32_t* j) {
     HWY_ALIGN float x[hn::MaxLanes(d)], y[hn::MaxLanes(d)], z[hn::MaxLanes(d)], w[hn::MaxLanes(d)];
     for (std::size_t lane = 0; lane < hn::Lanes(d); ++lane) {
         const std::array<float, 4>& row = from[j[lane]];
@@ -93,53 +91,13 @@ struct V3 {
     Vec3<float> total() const { return {sum(x), sum(y), sum(z)}; }
 };
 
-// Masked loads and stores touch memory beyond the mask on some instruction sets; part of a vector goes through a copy.
-V load_part(const float* from, std::size_t count) {
-    HWY_ALIGN float part[hn::MaxLanes(d)] = {};
-    std::memcpy(part, from, count * sizeof(float));
-    return hn::Load(d, part);
-}
-
-void store_part(V v, float* to, std::size_t count) {
-    HWY_ALIGN float part[hn::MaxLanes(d)];
-    hn::Store(v, d, part);
-    std::memcpy(to, part, count * sizeof(float));
-}
-
-/// A vector of a particle's neighbours: all lanes, or the first `count` of the list's last vector. The other lanes have
-/// index 0.
-struct FullVector {
-    std::size_t at;
-    const std::uint32_t* j;
-
-    V keep(V v) const { return v; }
-    V load(const float* from) const { return hn::LoadU(d, from + at); }
-    void store(V v, float* to) const { hn::StoreU(v, d, to + at); }
-};
-
-struct PartVector {
-    std::size_t at, count;
-    const std::uint32_t* j;
-
-    /// v in the lanes that stand for a neighbour, 0 in the others.
-    V keep(V v) const { return hn::IfThenElseZero(hn::FirstN(d, count), v); }
-    V load(const float* from) const { return load_part(from + at, count); }
-    void store(V v, float* to) const { store_part(v, to + at, count); }
-};
-
-/// Calls f with every vector of neighbours.
+/// Calls f(k) for every vector of a padded list of neighbours.
 template <class F>
-void for_each_vector(const PairList& pairs, const F& f) {
-    const std::size_t lanes = hn::Lanes(d);
-    std::size_t k = 0;
-    for (; k + lanes <= pairs.count; k += lanes) f(FullVector{k, pairs.neighbour + k});
-    if (k == pairs.count) return;
-    std::array<std::uint32_t, hn::MaxLanes(d)> rest{};
-    std::copy_n(pairs.neighbour + k, pairs.count - k, rest.begin());
-    f(PartVector{k, pairs.count - k, rest.data()});
+HWY_INLINE void for_each_vector(const PairList& pairs, const F& f) {
+    for (std::size_t k = 0; k < pairs.count; k += hn::Lanes(d)) f(k);
 }
 
-V quotient(const PairScale& scale, V square) {
+HWY_INLINE V quotient(const PairScale& scale, V square) {
     return hn::Min(hn::Set(d, 1.0f), hn::Mul(hn::Sqrt(square), hn::Set(d, scale.inverse_radius)));
 }
 
@@ -149,20 +107,20 @@ DensitySums density_sums(const PairScale& scale, const PairList& pairs, const Pa
     const V3 p(points[i]), moved(deforms ? (*displacements)[i] : points[i]);
     V density = hn::Zero(d), squares = hn::Zero(d);
     V3 gradient = V3::zero(), deformation_x = V3::zero(), deformation_y = V3::zero(), deformation_z = V3::zero();
-    for_each_vector(pairs, [&](const auto& part) {
-        const V3 separation = p.minus(V3(gather(points, part.j)));
+    for_each_vector(pairs, [&](std::size_t k) {
+        const V3 separation = p.minus(V3(gather(points, pairs.neighbour + k)));
         const V square = separation.dot(separation);
         const V q = quotient(scale, square);
-        density = hn::Add(density, part.keep(Kernel::value(d, q)));
-        const V slope = part.keep(hn::Mul(Kernel::slope_over_q(d, q), hn::Set(d, -scale.gradient_scale)));
+        density = hn::Add(density, hn::IfThenElseZero(hn::FirstN(d, pairs.count - k), Kernel::value(d, q)));
+        const V slope = hn::Mul(Kernel::slope_over_q(d, q), hn::Set(d, -scale.gradient_scale));
         const V3 pair_gradient = separation.times(slope);
-        part.store(pair_gradient.x, pairs.gradient_x);
-        part.store(pair_gradient.y, pairs.gradient_y);
-        part.store(pair_gradient.z, pairs.gradient_z);
+        hn::StoreU(pair_gradient.x, d, pairs.gradient_x + k);
+        hn::StoreU(pair_gradient.y, d, pairs.gradient_y + k);
+        hn::StoreU(pair_gradient.z, d, pairs.gradient_z + k);
         if constexpr (deforms) {
             squares = hn::MulAdd(hn::Mul(slope, slope), square, squares);
             gradient.add(hn::Set(d, 1.0f), pair_gradient);
-            const V3 difference = V3(gather(*displacements, part.j)).minus(moved);
+            const V3 difference = V3(gather(*displacements, pairs.neighbour + k)).minus(moved);
             deformation_x.add(difference.x, pair_gradient);
             deformation_y.add(difference.y, pair_gradient);
             deformation_z.add(difference.z, pair_gradient);
@@ -196,9 +154,10 @@ Vec3<float> stress_correction(const PairList& pairs, const Packed& stress_rows, 
     const V own_xx = hn::Set(d, own[0]), own_xy = hn::Set(d, own[1]), own_xz = hn::Set(d, own[2]);
     const V own_yy = hn::Set(d, own[3]), own_yz = hn::Set(d, own_rest[0]), own_zz = hn::Set(d, own_rest[1]);
     V3 correction = V3::zero();
-    for_each_vector(pairs, [&](const auto& part) {
-        const V gx = part.load(pairs.gradient_x), gy = part.load(pairs.gradient_y), gz = part.load(pairs.gradient_z);
-        const V4 rows = gather(stress_rows, part.j), rest = gather(stress_rest, part.j);
+    for_each_vector(pairs, [&](std::size_t k) {
+        const V gx = hn::LoadU(d, pairs.gradient_x + k), gy = hn::LoadU(d, pairs.gradient_y + k),
+                gz = hn::LoadU(d, pairs.gradient_z + k);
+        const V4 rows = gather(stress_rows, pairs.neighbour + k), rest = gather(stress_rest, pairs.neighbour + k);
         const V xy = hn::Add(own_xy, rows.y), xz = hn::Add(own_xz, rows.z), yz = hn::Add(own_yz, rest.x);
         correction.add(gx, V3(hn::Add(own_xx, rows.x), xy, xz));
         correction.add(gy, V3(xy, hn::Add(own_yy, rows.w), yz));
@@ -213,9 +172,9 @@ Vec3<float> pair_correction(const PairScale& scale, const PairList& pairs, const
     const V3 p(points[i]), moved(displacements[i]);
     const V own = hn::Set(d, points[i][3]), zero = hn::Zero(d);
     V3 correction = V3::zero();
-    for_each_vector(pairs, [&](const auto& part) {
-        const V4 other = gather(points, part.j);
-        const V change = part.keep(hn::Add(own, other.w));
+    for_each_vector(pairs, [&](std::size_t k) {
+        const V4 other = gather(points, pairs.neighbour + k);
+        const V change = hn::Add(own, other.w);
         const V3 separation = p.minus(V3(other));
         const V square = separation.dot(separation);
         const V distance = hn::Sqrt(square);
@@ -225,7 +184,7 @@ Vec3<float> pair_correction(const PairScale& scale, const PairList& pairs, const
 
         // Friction as in pair_friction(): against the tangential displacement, at most half of it by weight, at most
         // the cap times the normal correction, and none between particles that part.
-        const V3 relative = moved.minus(V3(gather(displacements, part.j)));
+        const V3 relative = moved.minus(V3(gather(displacements, pairs.neighbour + k)));
         const V along = hn::Div(relative.dot(separation), hn::Add(square, hn::Set(d, 1e-12f)));
         V3 tangential = relative;
         tangential.add(hn::Neg(along), separation);
@@ -233,7 +192,7 @@ Vec3<float> pair_correction(const PairScale& scale, const PairList& pairs, const
         const V limit = hn::Mul(hn::Max(zero, hn::Mul(push, distance)), hn::Set(d, cap));
         const V weight = hn::Mul(Kernel::value(d, q), hn::Set(d, 0.5f * scale.value_scale));
         const V share = hn::Min(weight, hn::Div(limit, hn::Max(size, hn::Set(d, 1e-30f))));
-        correction.add(hn::Neg(part.keep(share)), tangential);
+        correction.add(hn::Neg(share), tangential);
     });
     return correction.total();
 }
@@ -243,11 +202,11 @@ Vec3<float> velocity_difference(const PairScale& scale, const PairList& pairs, c
                                 const Packed& velocities, std::size_t i) {
     const V3 p(points[i]), own(velocities[i]);
     V3 difference = V3::zero();
-    for_each_vector(pairs, [&](const auto& part) {
-        const V3 separation = p.minus(V3(gather(points, part.j)));
+    for_each_vector(pairs, [&](std::size_t k) {
+        const V3 separation = p.minus(V3(gather(points, pairs.neighbour + k)));
         const V q = quotient(scale, separation.dot(separation));
-        const V weight = part.keep(hn::Mul(Kernel::value(d, q), hn::Set(d, scale.value_scale)));
-        difference.add(weight, V3(gather(velocities, part.j)).minus(own));
+        const V weight = hn::Mul(Kernel::value(d, q), hn::Set(d, scale.value_scale));
+        difference.add(weight, V3(gather(velocities, pairs.neighbour + k)).minus(own));
     });
     return difference.total();
 }
@@ -259,24 +218,15 @@ std::size_t select_near(const Coordinates& points, std::uint32_t first, std::uin
     const V px = hn::Set(d, p.x), py = hn::Set(d, p.y), pz = hn::Set(d, p.z);
     const V limit = hn::Set(d, square_radius);
     std::size_t count = 0;
-    const auto select = [&](std::uint32_t j, V x, V y, V z, auto near_of) {
-        const V dx = hn::Sub(x, px), dy = hn::Sub(y, py), dz = hn::Sub(z, pz);
+    for (std::uint32_t j = first; j < last; j += static_cast<std::uint32_t>(lanes)) {
+        const V dx = hn::Sub(hn::LoadU(d, points.x + j), px), dy = hn::Sub(hn::LoadU(d, points.y + j), py);
+        const V dz = hn::Sub(hn::LoadU(d, points.z + j), pz);
         const V square = hn::MulAdd(dz, dz, hn::MulAdd(dy, dy, hn::Mul(dx, dx)));
-        const auto near = near_of(hn::Lt(square, limit));
+        const auto near = hn::And(hn::Lt(square, limit), hn::FirstN(d, last - j));
         // In a register and then stored whole: the instruction that compresses into memory is slow on AMD.
         const auto selected = hn::RebindMask(du, near);
         hn::StoreU(hn::Compress(hn::Iota(du, j), selected), du, found + count);
         count += hn::CountTrue(du, selected);
-    };
-    std::uint32_t j = first;
-    for (; j + lanes <= last; j += static_cast<std::uint32_t>(lanes)) {
-        select(j, hn::LoadU(d, points.x + j), hn::LoadU(d, points.y + j), hn::LoadU(d, points.z + j),
-               [](auto mask) { return mask; });
-    }
-    if (j < last) {
-        const std::size_t rest = last - j;
-        select(j, load_part(points.x + j, rest), load_part(points.y + j, rest), load_part(points.z + j, rest),
-               [&](auto mask) { return hn::And(mask, hn::FirstN(d, rest)); });
     }
     return count;
 }

@@ -9,6 +9,7 @@
 #include "core/geometry.hpp"
 #include "sim/physics/kernel.hpp"
 #include "sim/physics/stress.hpp"
+#include "sim/state.hpp"
 
 namespace talus::cpu {
 
@@ -34,8 +35,11 @@ struct Coordinates {
     const float *x, *y, *z;
 };
 
-/// One particle's neighbours, and where V grad W of each pair is kept from one sum to the next.
+/// One particle's neighbours, and where V grad W of each pair is kept from one sum to the next. The arrays go on to the
+/// next multiple of `padding` with the particle itself, which is at distance zero and so adds nothing but density.
 struct PairList {
+    static constexpr std::size_t padding = VectorArray::padding;
+
     const std::uint32_t* neighbour;
     std::size_t count;
     float *gradient_x, *gradient_y, *gradient_z;
@@ -68,8 +72,8 @@ struct PairSums {
     /// Sum of V W (v_j - v_i).
     Vec3<float> (*velocity_difference)(const PairScale&, const PairList&, const Packed& points,
                                        const Packed& velocities, std::size_t i);
-    /// Appends to `found` the indices in [first, last) nearer to `p` than the root of `square_radius`, in order, and
-    /// returns how many. `found` must have room for last - first and one vector more.
+    /// Writes to `found` the indices in [first, last) nearer to `p` than the root of `square_radius`, in order, and
+    /// returns how many. `found` must have room for last - first and one vector more, points for one more to read.
     std::size_t (*select_near)(const Coordinates& points, std::uint32_t first, std::uint32_t last, const Vec3<float>& p,
                                float square_radius, std::uint32_t* found);
     std::string_view instruction_set;  ///< "AVX3", "AVX2", "SSE4", ...
