@@ -1,9 +1,10 @@
 #!/usr/bin/env bash
 # Installs what is missing, builds everything and passes all tests:
-#   asan     memory errors and undefined behaviour, over the fast tests
-#   release  the behaviour of the program that users run
-#   dev      everything: warnings are errors, checks of style and layering, the report in a browser
-# Presets' names as arguments test those alone: scripts/test.sh dev
+#   release  the program that users run
+#   asan     everything once more under the address and undefined-behaviour sanitizers, warnings being errors, and the
+#            checks of style and layering
+# Presets' names as arguments test those alone: scripts/test.sh dev (as asan, without sanitizers), scripts/test.sh tsan
+# (what runs in parallel, under the thread sanitizer).
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
@@ -36,7 +37,6 @@ if (($# > 0)); then
     for preset in "$@"; do test_preset "$preset"; done
     exit
 fi
+test_preset release --label-exclude style
 test_preset asan
-test_preset release --label-exclude 'style|browser'
-test_preset dev
 step "done"

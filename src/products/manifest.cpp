@@ -62,6 +62,7 @@ Json resolved(const Scene& scene, const RunResult& result) {
             {"smallest_time_step_s", result.smallest_time_step},
             {"largest_time_step_s", result.largest_time_step},
             {"thread_count", result.thread_count},
+            {"instruction_set", result.instruction_set},
             {"flow_path", scene.flow_path.empty()  ? "none"
                           : scene.flow_path_traced ? "traced"
                                                    : "given"},

@@ -187,6 +187,7 @@ Result<RunResult> run_in_arena(const Scene& scene, const RunOptions& options, in
     run.step_until_done(simulation, observer);
     result.observation = observer.finish(simulation.model(), simulation.state());
     result.stage_times = simulation.stage_times();
+    result.instruction_set = simulation.backend().instruction_set();
     result.hash = hash_state(simulation.state());
     result.steps = simulation.state().step;
     result.simulated_time = simulation.state().time;

@@ -28,6 +28,7 @@ struct RunResult {
     double smallest_time_step = 0, largest_time_step = 0;
     double particle_spacing = 0, support_radius = 0, map_cell = 0, kinematic_viscosity = 0;
     int thread_count = 0;
+    std::string instruction_set;  ///< that the sums over neighbours ran on
 
     [[nodiscard]] double real_time_factor() const { return wall_time > 0 ? simulated_time / wall_time : 0; }
 };

@@ -1,4 +1,6 @@
+#include <cstdlib>
 #include <numeric>
+#include <string>
 
 #include <gtest/gtest.h>
 
@@ -111,13 +113,28 @@ void expect_agreement(InternalFriction friction, KernelChoice kernel, int steps,
     EXPECT_FALSE(state.building_contacts.empty()) << "the building was never touched";
 }
 
-TEST(CpuBackend, agrees_with_the_double_precision_reference) {
+/// One that the processor lacks falls back to its best.
+class InstructionSet : public ::testing::TestWithParam<const char*> {
+  protected:
+    void SetUp() override { setenv("TALUS_SIMD", GetParam(), 1); }
+    void TearDown() override { unsetenv("TALUS_SIMD"); }
+};
+
+TEST_P(InstructionSet, agrees_with_the_double_precision_reference) {
     expect_agreement(InternalFriction::stress, KernelChoice::wendland_c2, 12, 2e-4);
 }
 
-TEST(CpuBackend, agrees_with_the_reference_for_the_published_model) {
+TEST_P(InstructionSet, agrees_with_the_reference_for_the_published_model) {
     expect_agreement(InternalFriction::pair, KernelChoice::poly6_spiky, 4, 2e-4);
 }
+
+TEST_P(InstructionSet, agrees_with_the_reference_for_the_other_kernels) {
+    expect_agreement(InternalFriction::stress, KernelChoice::cubic_spline, 4, 2e-4);
+    expect_agreement(InternalFriction::stress, KernelChoice::spiky, 4, 2e-4);
+}
+
+INSTANTIATE_TEST_SUITE_P(CpuBackend, InstructionSet, ::testing::Values("SSE2", "SSE4", "AVX2", "AVX3"),
+                         [](const auto& set) { return std::string(set.param); });
 
 }  // namespace
 }  // namespace talus
