@@ -6,9 +6,9 @@
 #include <tbb/global_control.h>
 
 #include "core/hash.hpp"
-#include "observe/allocations.hpp"
 #include "observe/observer.hpp"
 #include "observe/particles.hpp"
+#include "support/allocations.hpp"
 
 namespace talus {
 namespace {

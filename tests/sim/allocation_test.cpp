@@ -1,30 +1,7 @@
-#include <atomic>
-#include <cstdlib>
-#include <new>
-
 #include <gtest/gtest.h>
 
 #include "sim_fixtures.hpp"
-
-namespace {
-std::atomic<bool> counting{false};
-std::atomic<long> allocations{0};
-}  // namespace
-
-// g++ pairs the inlined free() below with its own operator new and takes them for a mismatch.
-#pragma GCC diagnostic ignored "-Wmismatched-new-delete"
-
-void* operator new(std::size_t size) {
-    if (counting.load(std::memory_order_relaxed)) ++allocations;
-    if (void* memory = std::malloc(size)) return memory;
-    throw std::bad_alloc();
-}
-void operator delete(void* memory) noexcept {
-    std::free(memory);
-}
-void operator delete(void* memory, std::size_t) noexcept {
-    std::free(memory);
-}
+#include "support/allocations.hpp"
 
 namespace talus {
 namespace {
@@ -38,11 +15,9 @@ TEST(Step, allocates_nothing_once_it_runs) {
     const Terrain terrain = inclined_plane(30, 60, 40);
     Simulation simulation = simulate({}, {}, terrain, {block(terrain, rectangle(6, 12, 16, 24), 1)}, 0.4);
     for (int i = 0; i < 30; ++i) simulation.advance();
-    allocations = 0;
-    counting = true;
+    const long before = test::allocation_count();
     for (int i = 0; i < 10; ++i) simulation.advance();
-    counting = false;
-    EXPECT_EQ(allocations.load(), 0);
+    EXPECT_EQ(test::allocation_count(), before);
 }
 
 }  // namespace

@@ -34,6 +34,7 @@ Backend::Backend(const Model& model, std::size_t capacity)
       building_contact_(capacity),
       building_(capacity),
       gone_(capacity),
+      float_scratch_(capacity),
       id_scratch_(capacity),
       byte_scratch_(capacity) {
     for (VectorArray* array : {&displacement_, &displacement_next_, &predicted_, &ground_gradient_, &building_gradient_,
@@ -90,10 +91,10 @@ void Backend::reorder(State& state, std::span<const std::uint32_t> order) {
     gather_vectors(state.velocity);
     gather_vectors(displacement_);
     gather_vectors(predicted_);
-    gather(state.multiplier, vector_scratch_.x);
-    gather(state.pressure, vector_scratch_.x);
+    gather(state.multiplier, float_scratch_);
+    gather(state.pressure, float_scratch_);
     for (auto* component : {&state.stress.xx, &state.stress.yy, &state.stress.xy, &state.stress.xz, &state.stress.yz}) {
-        gather(*component, vector_scratch_.x);
+        gather(*component, float_scratch_);
     }
     gather(state.id, id_scratch_);
     gather(state.held, byte_scratch_);

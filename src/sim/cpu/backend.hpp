@@ -64,6 +64,7 @@ class Backend {
     std::vector<std::int32_t> building_;                    // touched in this step, or -1
     std::vector<std::uint8_t> gone_;
     VectorArray vector_scratch_;
+    std::vector<float> float_scratch_;
     std::vector<std::uint32_t> id_scratch_;
     std::vector<std::uint8_t> byte_scratch_;
 };
