@@ -3,12 +3,15 @@
 #include <algorithm>
 #include <array>
 
+#include <tbb/task_arena.h>
+
 #include "sim/cpu/parallel.hpp"
 
 namespace talus::cpu {
 namespace {
 
 constexpr std::size_t cells_per_task = 64;
+constexpr std::size_t usual_task_size = 65536;  // entries of lists; debris at rest density needs about half
 constexpr std::size_t longest_vector = 2 * PairList::padding;  // what may be written beyond what was found
 constexpr int row_count = 9;  // a cell's 27 neighbours are 9 rows of 3 cells with consecutive keys
 
@@ -54,6 +57,9 @@ NeighbourLists::NeighbourLists(std::size_t capacity, const PairSums& sums)
 }
 
 void NeighbourLists::build(const VectorArray& points, const CellGrid& grid, float radius) {
+    // For every thread that may come, before it comes: a thread's first task must not have to allocate.
+    const auto threads = static_cast<std::size_t>(tbb::this_task_arena::max_concurrency());
+    if (found_.size() < threads) found_.resize(threads, std::vector<std::uint32_t>(usual_task_size));
     while (!try_build(points, grid, radius)) {
         // Rare: debris denser than ever before. Room to spare, so that it stays rare.
         neighbours_.resize(used_.load() + used_.load() / 2);
@@ -67,7 +73,8 @@ bool NeighbourLists::try_build(const VectorArray& points, const CellGrid& grid, 
     const std::size_t tasks = (grid.cell_count() + cells_per_task - 1) / cells_per_task;
     const Coordinates coordinates{points.x.data(), points.y.data(), points.z.data()};
     parallel_ranges(tasks, 1, [&](std::size_t first_task, std::size_t last_task) {
-        std::vector<std::uint32_t>& found = local_.local();
+        std::vector<std::uint32_t>& found =
+            found_[static_cast<std::size_t>(tbb::this_task_arena::current_thread_index())];
         for (std::size_t task = first_task; task < last_task; ++task) {
             const std::size_t first_cell = task * cells_per_task;
             const std::size_t last_cell = std::min(grid.cell_count(), first_cell + cells_per_task);

@@ -5,8 +5,6 @@
 #include <span>
 #include <vector>
 
-#include <tbb/enumerable_thread_specific.h>
-
 #include "sim/cpu/cell_sort.hpp"
 #include "sim/cpu/pair_sums.hpp"
 #include "sim/state.hpp"
@@ -40,7 +38,7 @@ class NeighbourLists {
     VectorArray gradient_;  // V grad W per entry of neighbours_
     decltype(PairSums::select_near) select_near_;
     std::atomic<std::uint32_t> used_{0};
-    tbb::enumerable_thread_specific<std::vector<std::uint32_t>> local_;
+    std::vector<std::vector<std::uint32_t>> found_;  // of a task, one per thread of the arena
 };
 
 }  // namespace talus::cpu
