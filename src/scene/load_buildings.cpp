@@ -56,22 +56,32 @@ std::string name_of(const PolygonFeature& feature, const std::string& attribute,
     return fmt::format("building {}", number);
 }
 
-void note_overlaps_with_releases(Scene& scene) {
-    for (const Release& release : scene.releases) {
-        for (const Building& building : scene.buildings) {
-            double area = 0;
-            for (const ReleasePatch& patch : release.patches) {
-                for (const Polygon& part : building.footprint) {
-                    const Overlap overlap = overlap_of(patch.polygon, part);
-                    if (is_true_overlap(overlap, patch.polygon, part)) area += overlap.area;
-                }
-            }
-            if (area > 0) {
-                scene.notes.push_back(fmt::format("release \"{}\" overlaps building \"{}\" by {:.3g} m2: check both",
-                                                  release.name, building.name, area));
-            }
+/// Plan area of a building on a release, m2; touching outlines count nothing.
+double shared_area(const Release& release, const Building& building) {
+    double area = 0;
+    for (const ReleasePatch& patch : release.patches) {
+        for (const Polygon& part : building.footprint) {
+            const Overlap overlap = overlap_of(patch.polygon, part);
+            if (is_true_overlap(overlap, patch.polygon, part)) area += overlap.area;
         }
     }
+    return area;
+}
+
+/// A building whose ground fails is no obstacle to the debris: it goes with it.
+void leave_out_buildings_on_releases(Scene& scene) {
+    std::erase_if(scene.buildings, [&](const Building& building) {
+        for (const Release& release : scene.releases) {
+            const double area = shared_area(release, building);
+            if (area <= 0) continue;
+            scene.notes.push_back(
+                fmt::format("building \"{}\" stands on release \"{}\" with {:.3g} m2 and was left out: "
+                            "the ground under it fails",
+                            building.name, release.name, area));
+            return true;
+        }
+        return false;
+    });
 }
 
 }  // namespace
@@ -125,7 +135,7 @@ Status load_buildings(const ParsedScene& parsed, Scene& scene) {
                                           scene.buildings.size(), spec.default_height));
     }
     place_buildings(scene.terrain, scene.buildings);
-    note_overlaps_with_releases(scene);
+    leave_out_buildings_on_releases(scene);
     return {};
 }
 

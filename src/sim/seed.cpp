@@ -78,6 +78,23 @@ std::vector<Column> fill_columns(const Terrain& terrain, const Release& release,
     return columns;
 }
 
+/// A column's particles lie in its middle, which can be behind a wall that cuts its edge.
+void put_out_of_buildings(const Model& model, State& state) {
+    if (model.solids.empty()) return;
+    const auto touching = static_cast<float>(model.contact_distance());
+    for (std::uint32_t i = 0; i < state.count; ++i) {
+        LocalPoint p = state.position.at(i);
+        // Once per wall at most in a corner; buildings that touch act as one solid.
+        for (int wall = 0; wall < 4 && model.solids.inside(p); ++wall) {
+            const SolidSample<float> nearest = model.solids.nearest(p);
+            p += nearest.normal * (touching - nearest.distance);
+        }
+        const float ground = model.terrain.sample(p.x, p.y).height;
+        p.z = std::max(p.z, ground);
+        state.position.set(i, p);
+    }
+}
+
 /// Runs rounds of a step without inertia until `done` says so: velocities are forgotten after each.
 template <class Done>
 void creep(const Model& model, State& state, int most_rounds, const Done& done) {
@@ -194,6 +211,7 @@ Result<State> seed_releases(Model& model, const std::vector<Release>& releases) 
         model.releases.push_back({releases[r].name, releases[r].start_time, first, next});
     }
     state.seeded = state.count = next;
+    put_out_of_buildings(model, state);
     relax(model, state);
     for (std::uint32_t i = 0; i < state.count; ++i) {
         for (const ReleaseGroup& release : model.releases) {

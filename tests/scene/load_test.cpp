@@ -202,10 +202,13 @@ TEST_F(LoadScene, BuildingsThatCannotBeUsedAreRefused) {
                 AllOf(StartsWith("--set buildings.height_attribute=h: "), EndsWith("its attributes: height")));
 }
 
-TEST_F(LoadScene, AReleaseOverABuildingIsNoted) {
+TESTF(LoadScene, ABuildingOnAReleaseIsLeftOutAndNoted) {
     write_valley("[buildings]\nfile = \"houses.geojson\"\n");
-    write_features("houses.geojson", {rectangle(35, 90, 45, 100)});
-    EXPECT_THAT(loaded().notes, Contains(HasSubstr("release \"scarp\" overlaps building \"building 1\" by 50 m2")));
+    write_features("houses.geojson", {rectangle(35, 90, 45, 100), rectangle(200, 90, 210, 100)});
+    const Scene scene = loaded();
+    ASSERT_EQ(scene.buildings.size(), 1U);
+    EXPECT_EQ(scene.buildings[0].name, "building 2");
+    EXPECT_THAT(scene.notes, Contains(HasSubstr("\"building 1\" stands on release \"scarp\" with 50 m2")));
 }
 
 TEST_F(LoadScene, AFlowPathFromAFileIsTurnedDownstream) {

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "sim/physics/contact.hpp"
 #include "sim_fixtures.hpp"
 
 namespace talus {
@@ -36,6 +37,21 @@ TEST(Seeding, starts_at_rest_without_jumping_apart) {
     }
     EXPECT_LT(highest, before * 1.001);
     EXPECT_LT(fastest, 9.81 * simulation.state().time) << "m/s: the rim may crumble, nothing may fly";
+}
+
+TEST(Seeding, puts_no_particle_into_a_building_at_the_rim) {
+    const Terrain terrain = inclined_plane(20, 30, 30);
+    Building house;
+    house.footprint = {rectangle(11.9, 6, 15, 12)};  // reaches into the lattice's last column
+    house.height = 8;
+    Simulation simulation =
+        testing::simulate({}, {}, terrain, {block(terrain, rectangle(6, 6, 12, 12), 1)}, 0.5, {house});
+    for (int i = 0; i < 10; ++i) {
+        for (std::uint32_t k = 0; k < simulation.state().count; ++k) {
+            ASSERT_TRUE(is_free(simulation.model(), simulation.state().position.at(k))) << "before step " << i;
+        }
+        ASSERT_FALSE(simulation.advance());
+    }
 }
 
 TEST(Seeding, spacing_follows_the_target_particle_count) {
