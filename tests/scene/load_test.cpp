@@ -202,7 +202,7 @@ TEST_F(LoadScene, BuildingsThatCannotBeUsedAreRefused) {
                 AllOf(StartsWith("--set buildings.height_attribute=h: "), EndsWith("its attributes: height")));
 }
 
-TESTF(LoadScene, ABuildingOnAReleaseIsLeftOutAndNoted) {
+TEST_F(LoadScene, ABuildingOnAReleaseIsLeftOutAndNoted) {
     write_valley("[buildings]\nfile = \"houses.geojson\"\n");
     write_features("houses.geojson", {rectangle(35, 90, 45, 100), rectangle(200, 90, 210, 100)});
     const Scene scene = loaded();

@@ -42,7 +42,7 @@ TEST(Seeding, starts_at_rest_without_jumping_apart) {
 TEST(Seeding, puts_no_particle_into_a_building_at_the_rim) {
     const Terrain terrain = inclined_plane(20, 30, 30);
     Building house;
-    house.footprint = {rectangle(11.9, 6, 15, 12)};  // reaches into the lattice's last column
+    house.footprint = {rectangle(11.6, 6, 15, 12)};  // over the middles of the last column
     house.height = 8;
     Simulation simulation =
         testing::simulate({}, {}, terrain, {block(terrain, rectangle(6, 6, 12, 12), 1)}, 0.5, {house});
