@@ -53,14 +53,18 @@ double slab_acceleration(double degrees, double friction, double time_step) {
     return (v1 - v0) / (t1 - t0);
 }
 
-TEST(SlidingSlab, accelerates_as_coulomb_friction_says) {
-    for (const auto& [degrees, friction] : {std::pair{30.0, 0.4}, std::pair{25.0, 0.2}, std::pair{40.0, 0.6}}) {
-        const double angle = degrees * M_PI / 180;
-        const double expected = 9.80665 * (std::sin(angle) - friction * std::cos(angle));
-        EXPECT_NEAR(slab_acceleration(degrees, friction, 1.0 / 60) / expected, 1, 0.01)
-            << degrees << " degrees, friction " << friction;
-    }
+/// Slope in degrees and friction coefficient.
+class SlidingSlab : public ::testing::TestWithParam<std::pair<double, double>> {};
+
+TEST_P(SlidingSlab, accelerates_as_coulomb_friction_says) {
+    const auto [degrees, friction] = GetParam();
+    const double angle = degrees * M_PI / 180;
+    const double expected = 9.80665 * (std::sin(angle) - friction * std::cos(angle));
+    EXPECT_NEAR(slab_acceleration(degrees, friction, 1.0 / 60) / expected, 1, 0.01);
 }
+
+INSTANTIATE_TEST_SUITE_P(Slopes, SlidingSlab,
+                         ::testing::Values(std::pair{30.0, 0.4}, std::pair{25.0, 0.2}, std::pair{40.0, 0.6}));
 
 TEST(MechanicalEnergy, never_grows_on_rough_ground) {
     const Terrain terrain = testing::terrain_of(80, 40, 1, [](double x, double y) {
