@@ -11,7 +11,8 @@
 
 namespace talus::cpu {
 
-/// For every particle the particles nearer than the support radius, itself left out, in one flat buffer.
+/// For every particle the particles nearer than the support radius, itself left out, in one flat buffer; lists are padded
+/// to whole vectors as PairList says.
 /// Where in the buffer a list lies depends on the threads; what it holds, and in which order, does not.
 class NeighbourLists {
   public:
@@ -29,7 +30,6 @@ class NeighbourLists {
         return {neighbours_.data() + at, count_[i], gradient_.x.data() + at, gradient_.y.data() + at,
                 gradient_.z.data() + at};
     }
-    [[nodiscard]] std::size_t total() const { return used_.load(std::memory_order_relaxed); }
 
   private:
     bool try_build(const VectorArray& points, const CellGrid& grid, float radius);

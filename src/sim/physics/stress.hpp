@@ -64,7 +64,7 @@ Deviator<Real> limit_to_friction(const Deviator<Real>& trial, Real internal_fric
     return square > limit_square ? trial * std::sqrt(limit_square / square) : trial;
 }
 
-/// Constants of the stress iteration, from the measurements in docs/equations.
+/// Constants of the stress iteration; docs/equations.md says what each does.
 struct StressConstants {
     static constexpr double warm_start = 0.5;           ///< share of the last step's pressure multiplier to begin with
     static constexpr double stiffness = 0.2;            ///< k = stiffness / sum |V grad W|^2
