@@ -11,9 +11,9 @@
 
 namespace talus::cpu {
 
-/// For every particle the particles nearer than the support radius, itself left out, in one flat buffer; lists are padded
-/// to whole vectors as PairList says.
-/// Where in the buffer a list lies depends on the threads; what it holds, and in which order, does not.
+/// For every particle the particles nearer than the support radius, itself left out, in one flat buffer; lists are
+/// padded to whole vectors as PairList says. Where in the buffer a list lies depends on the threads; what it holds, and
+/// in which order, does not.
 class NeighbourLists {
   public:
     NeighbourLists(std::size_t capacity, const PairSums& sums);
