@@ -1,9 +1,9 @@
 # Files inside the program, so that nothing has to be found at run time.
 #
-# embed_files(TARGET NAMESPACE FILES...): adds to TARGET a source that holds the bytes of FILES (relative to the current
+# embed_files(TARGET NAMESPACE [BASE FOLDER] FILES...): adds to TARGET a source that holds the bytes of FILES (relative to the current
 # folder) and a header <NAMESPACE>.hpp that declares, in talus::NAMESPACE,
 #   - a std::string_view per file, named as the file with every other character than letters and digits as "_",
-#   - `files`: all of them with their names, in the order given.
+#   - `files`: all of them with their names, in the order given. With BASE, names are paths relative to that folder.
 # The source is made again when a file changes.
 
 if(CMAKE_SCRIPT_MODE_FILE)
@@ -13,7 +13,11 @@ if(CMAKE_SCRIPT_MODE_FILE)
   set(views "")
   set(rows "")
   foreach(path IN LISTS FILES)
-    get_filename_component(file_name "${path}" NAME)
+    if(BASE)
+      file(RELATIVE_PATH file_name "${BASE}" "${path}")
+    else()
+      get_filename_component(file_name "${path}" NAME)
+    endif()
     string(REGEX REPLACE "[^A-Za-z0-9]" "_" symbol "${file_name}")
     file(READ "${path}" bytes HEX)
     string(LENGTH "${bytes}" digits)
@@ -32,12 +36,17 @@ endif()
 set(talus_embed_script ${CMAKE_CURRENT_LIST_FILE})
 
 function(embed_files target space)
+  cmake_parse_arguments(PARSE_ARGV 2 embed "" "BASE" "")
   set(folder ${CMAKE_CURRENT_BINARY_DIR}/embedded)
   set(paths "")
   set(declarations "")
-  foreach(file IN LISTS ARGN)
+  foreach(file IN LISTS embed_UNPARSED_ARGUMENTS)
     get_filename_component(path "${file}" ABSOLUTE)
-    get_filename_component(file_name "${path}" NAME)
+    if(embed_BASE)
+      file(RELATIVE_PATH file_name "${embed_BASE}" "${path}")
+    else()
+      get_filename_component(file_name "${path}" NAME)
+    endif()
     string(REGEX REPLACE "[^A-Za-z0-9]" "_" symbol "${file_name}")
     list(APPEND paths "${path}")
     string(APPEND declarations "extern const std::string_view ${symbol};\n")
@@ -61,7 +70,7 @@ extern const std::array<File, file_count> files;
   list(JOIN paths "|" joined)
   add_custom_command(
     OUTPUT ${folder}/${space}.cpp
-    COMMAND ${CMAKE_COMMAND} -DSPACE=${space} -DOUTPUT=${folder}/${space}.cpp "-DFILES=${joined}"
+    COMMAND ${CMAKE_COMMAND} -DSPACE=${space} -DOUTPUT=${folder}/${space}.cpp -DBASE=${embed_BASE} "-DFILES=${joined}"
             -P ${talus_embed_script}
     DEPENDS ${paths} ${talus_embed_script}
     COMMENT "Embedding ${space}" VERBATIM)

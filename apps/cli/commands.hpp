@@ -17,6 +17,8 @@ struct RunArguments {
     std::vector<std::string> overrides;  ///< "section.key=value"
     std::string data;                    ///< value of TALUS_DATA; empty: as in the environment
     bool quiet = false, json = false;
+    bool convergence = false;             ///< run three refinements too and compare
+    std::vector<std::string> variations;  ///< "section.key=value,value": run with each value too and compare
 };
 int run_command(const RunArguments& arguments);
 
@@ -30,6 +32,16 @@ int check_command(const CheckArguments& arguments);
 int new_command(const NewSceneOptions& options);
 
 int export_builtin_command(const std::string& folder, bool force);
+
+struct ValidateArguments {
+    std::vector<std::string> cases;    ///< names or folders; empty: all cases of the program
+    bool quick = false, list = false;  ///< quick: only the cases that say so
+    bool known = false;                ///< failures that the case files announce are no reason to fail
+    std::string json, html, markdown;  ///< files to write; empty: none
+    std::optional<int> threads;
+    std::string data;  ///< value of TALUS_DATA; empty: as in the environment
+};
+int validate_command(const ValidateArguments& arguments);
 
 /// The reference of scene files on stdout: for the terminal, or as Markdown.
 int reference_command(bool markdown);

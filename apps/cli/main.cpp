@@ -22,21 +22,43 @@ Examples:
   talus run                                 the built-in scene, into talus_out/sham_tseng
   talus run my_scene.toml -o result         your scene, into the folder result
   talus run my_scene.toml --set material.friction_coefficient=0.3
+  talus run my_scene.toml --convergence     do results hold with finer numerics? four runs, about nine times as long
+  talus run my_scene.toml --vary material.friction_coefficient=0.3,0.5 --vary solver.target_particle_count=3000
+                                            how much results hang on an input: a run per value, one at a time
   talus scene new --dem dem.tif --release scar.geojson --thickness-m 1.5 -o my_scene
                                             a commented scene from your own terrain, ready to run
   talus scene check my_scene/scene.toml     what a scene reads and means, without running it
+  talus validate --quick                    computes cases whose results are known, and prints one table
 
 Exit codes:
     0  complete
     1  the machine failed: disk full, out of memory
     2  bad input: command line, scene or a file it names; nothing was written
     3  a step could not be trusted (fault); what was computed until then is written, marked partial
+    4  talus validate: a case failed
   130  interrupted by Ctrl-C; what was computed until then is written, marked partial.
-       A second Ctrl-C ends at once and leaves nothing.)";
+       A second Ctrl-C ends at once and leaves nothing. With --convergence or --vary: runs that are missing are named.)";
 
 constexpr const char* run_help = R"(
 Every value of the scene can be set with --set section.key=value. The result folder holds maps (GeoTIFF with QGIS
 styles), front.csv, timeseries.csv, buildings.csv, results.gpkg, manifest.json and report.html.
+
+--convergence and --vary compare front velocity at every observation, arrival (first building hit; where none is, the
+front at 90 % of its way) and run-out with the scene as given: on the terminal, in convergence.csv and variants.csv, in
+the report, the manifest and --json. --convergence passes where nothing changes by more than 5 %.
+)";
+
+constexpr const char* validate_help = R"(
+A case is a folder with a case.toml: what to compute, what to expect of it, and who says so. Without CASE all cases that
+travel inside the program are computed. The table shows every expectation; a failing one as FAIL, one that its case file
+announces as FAIL (known). Cases whose data are not here are listed as skipped.
+
+Exit codes:
+    0  every expectation holds (with --known: all but the announced ones)
+    1  the machine failed: disk full, out of memory
+    2  bad input: command line or a case file; nothing was computed
+    4  an expectation does not hold
+  130  interrupted by Ctrl-C; the table shows the cases that were complete
 )";
 
 void add_scene_inputs(CLI::App& command, std::string& data) {
@@ -74,6 +96,11 @@ int talus_main(int argc, char** argv) {
     run_app->add_option("--threads", run.threads, "number of threads; left out: all cores; the result is the same")
         ->type_name("N");
     add_overrides(*run_app, run.overrides);
+    run_app->add_flag("--convergence", run.convergence,
+                      "run again with half the time step, double the iterations, three times the particles; compare");
+    run_app->add_option("--vary", run.variations, "run again with each of the values; compare; may be given many times")
+        ->type_name("SECTION.KEY=VALUE,VALUE")
+        ->allow_extra_args(false);
     add_scene_inputs(*run_app, run.data);
     CLI::Option* quiet = run_app->add_flag("--quiet", run.quiet, "print nothing but errors");
     run_app->add_flag("--json", run.json, "progress and result as one JSON object per line on stdout")->excludes(quiet);
@@ -114,6 +141,26 @@ int talus_main(int argc, char** argv) {
     bool markdown = false;
     reference_app->add_flag("--markdown", markdown, "as a Markdown document");
 
+    ValidateArguments validate;
+    CLI::App* validate_app = app.add_subcommand("validate", "compute cases whose results are known, print one table");
+    validate_app->add_option("cases", validate.cases, "names or folders of cases; left out: all of the program's")
+        ->type_name("CASE");
+    validate_app->add_flag("--quick", validate.quick, "only the quick cases: under two minutes on two cores");
+    validate_app->add_flag("--list", validate.list, "list the cases instead of computing them");
+    validate_app->add_flag("--known", validate.known, "announced failures are no reason for exit code 4");
+    validate_app->add_option("--json", validate.json, "write the table as a list of objects")->type_name("FILE");
+    validate_app->add_option("--html", validate.html, "write a page with the table and a plot for each case")
+        ->type_name("FILE");
+    validate_app
+        ->add_option("--markdown", validate.markdown, "write the same as Markdown, its plots into a folder beside it")
+        ->type_name("FILE");
+    validate_app->add_option("--threads", validate.threads, "number of threads; left out: all cores")
+        ->type_name("N")
+        ->check(CLI::Range(1, 4096));
+    validate_app->add_option("--data", validate.data, "folder that TALUS_DATA names, for cases on real terrain")
+        ->type_name("DIR");
+    validate_app->footer(validate_help);
+
     app.footer(program_help);  // last: commands made after it would inherit it
 
     try {
@@ -128,6 +175,7 @@ int talus_main(int argc, char** argv) {
     if (*check_app) return check_command(check);
     if (*new_app) return new_command(create);
     if (*export_app) return export_builtin_command(builtin_folder, builtin_force);
+    if (*validate_app) return validate_command(validate);
     if (*reference_app) return reference_command(markdown);
     std::fputs(app.help().c_str(), stdout);
     return exit_code::success;

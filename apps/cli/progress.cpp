@@ -29,14 +29,27 @@ std::string front_text(const Progress& p) {
     return std::isnan(p.front_chainage) ? "front -" : fmt::format("front {:.0f} m", p.front_chainage);
 }
 
-std::string bar_text(const Progress& p) {
+std::string bar_text(const Progress& p, const std::optional<SeriesProgress>& series) {
     const int columns = terminal_columns();
-    const std::string facts = fmt::format(" {:3.0f} %  t {:.1f} s  {:.2f} x real time  {}  ETA {}", 100 * p.share_done,
-                                          p.time, p.real_time_factor, front_text(p), clock_text(p.wall_remaining));
+    const double share_done = series ? series->share_done : p.share_done;
+    std::string facts = fmt::format(" {:3.0f} %  ", 100 * share_done);
+    if (series) facts += fmt::format("run {} of {}: {}  ", series->run, series->count, series->name);
+    facts += fmt::format("t {:.1f} s  ", p.time);
+    if (!series) facts += fmt::format("{:.2f} x real time  ", p.real_time_factor);
+    facts += fmt::format("{}  ETA {}", front_text(p), clock_text(series ? series->wall_remaining : p.wall_remaining));
     const int width = std::min(40, columns - 3 - static_cast<int>(facts.size()));
     if (width < 5) return facts.substr(1, static_cast<std::size_t>(std::max(0, columns - 1)));
-    const int filled = static_cast<int>(std::lround(std::clamp(p.share_done, 0.0, 1.0) * width));
+    const int filled = static_cast<int>(std::lround(std::clamp(share_done, 0.0, 1.0) * width));
     return "[" + std::string(filled, '#') + std::string(width - filled, '.') + "]" + facts;
+}
+
+std::string line_text(const Progress& p, const std::optional<SeriesProgress>& series) {
+    std::string text;
+    if (series) text = fmt::format("run {} of {}, {}: ", series->run, series->count, series->name);
+    text +=
+        fmt::format("t {:.1f} s of at most {:.0f} s, {:.2f} x real time, {}, about {} left", p.time, p.end_time,
+                    p.real_time_factor, front_text(p), clock_text(series ? series->wall_remaining : p.wall_remaining));
+    return text + (series ? " of all runs\n" : "\n");
 }
 
 // Not fmt::print: it throws when the reader of a pipe has gone, and that must not end a run.
@@ -49,8 +62,8 @@ nlohmann::json number_or_null(double value) {
     return std::isfinite(value) ? nlohmann::json(value) : nlohmann::json();
 }
 
-std::string json_text(const Progress& p) {
-    const nlohmann::ordered_json event = {
+std::string json_text(const Progress& p, const std::optional<SeriesProgress>& series) {
+    nlohmann::ordered_json event = {
         {"event", "progress"},
         {"time_s", p.time},
         {"end_time_s", p.end_time},
@@ -61,6 +74,13 @@ std::string json_text(const Progress& p) {
         {"step", p.step},
         {"particles", p.particles},
     };
+    if (series) {
+        event["run"] = series->run;
+        event["runs"] = series->count;
+        event["variant"] = series->name;
+        event["share_done_of_all_runs"] = series->share_done;
+        event["wall_remaining_of_all_runs_s"] = number_or_null(series->wall_remaining);
+    }
     return event.dump();
 }
 
@@ -85,7 +105,7 @@ ProgressReporter::ProgressReporter(ProgressStyle style) : style_(style) {
     if (style == ProgressStyle::lines) next_ += 1s;  // a short run needs none, and the first estimates are poor
 }
 
-void ProgressReporter::report(const Progress& progress) {
+void ProgressReporter::report(const Progress& progress, const std::optional<SeriesProgress>& series) {
     if (style_ == ProgressStyle::none) return;
     const auto now = std::chrono::steady_clock::now();
     if (now < next_) return;
@@ -93,18 +113,16 @@ void ProgressReporter::report(const Progress& progress) {
         case ProgressStyle::none:
             break;
         case ProgressStyle::bar:
-            write(stderr, "\r" + bar_text(progress) + "\x1b[K");
+            write(stderr, "\r" + bar_text(progress, series) + "\x1b[K");
             drawn_ = true;
             next_ = now + bar_interval;
             break;
         case ProgressStyle::lines:
-            write(stderr, fmt::format("t {:.1f} s of at most {:.0f} s, {:.2f} x real time, {}, about {} left\n",
-                                      progress.time, progress.end_time, progress.real_time_factor, front_text(progress),
-                                      clock_text(progress.wall_remaining)));
+            write(stderr, line_text(progress, series));
             next_ = now + line_interval;
             break;
         case ProgressStyle::json:
-            write(stdout, json_text(progress) + "\n");
+            write(stdout, json_text(progress, series) + "\n");
             next_ = now + json_interval;
             break;
     }

@@ -1,9 +1,11 @@
 #pragma once
 
 #include <chrono>
+#include <optional>
 #include <string>
 
 #include "scene/run.hpp"
+#include "scene/variants.hpp"
 
 namespace talus {
 
@@ -21,8 +23,8 @@ enum class ProgressStyle {
 class ProgressReporter {
   public:
     explicit ProgressReporter(ProgressStyle style);
-    /// Call after every step; most calls return at once.
-    void report(const Progress& progress);
+    /// Call after every step; most calls return at once. `series`: where the run is one of several.
+    void report(const Progress& progress, const std::optional<SeriesProgress>& series = std::nullopt);
     /// Replaces the bar by what the program is doing now ("writing maps and report"); lines print it.
     void say(const std::string& what);
     /// Removes the bar from the terminal.

@@ -1,7 +1,7 @@
+#include <algorithm>
 #include <cstdio>
 #include <filesystem>
 #include <optional>
-#include <stdlib.h>
 #include <string>
 #include <system_error>
 #include <utility>
@@ -19,33 +19,13 @@
 #include "scene/run.hpp"
 #include "scene/scene.hpp"
 #include "summary.hpp"
+#include "temporary_folder.hpp"
+#include "variant_plan.hpp"
 
 namespace talus {
 namespace {
 
 namespace fs = std::filesystem;
-
-/// A folder of the system's temporary folder, gone with this object.
-class TemporaryFolder {
-  public:
-    TemporaryFolder() {
-        std::error_code error;
-        std::string name = (fs::temp_directory_path(error) / "talus-XXXXXX").string();
-        if (!error && mkdtemp(name.data()) != nullptr) path_ = name;
-    }
-    ~TemporaryFolder() {
-        std::error_code ignored;
-        if (!path_.empty()) fs::remove_all(path_, ignored);
-    }
-    TemporaryFolder(const TemporaryFolder&) = delete;
-    TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-
-    /// Empty: it could not be made.
-    [[nodiscard]] const fs::path& path() const { return path_; }
-
-  private:
-    fs::path path_;
-};
 
 /// talus_out in the current folder, made when needed and removed again if nothing came to lie in it.
 class DefaultParent {
@@ -98,8 +78,8 @@ void name_builtin_files(Scene& scene, const fs::path& unpacked) {
 }
 
 /// `shown`: the output folder as the user wrote it.
-int run_loaded(const RunArguments& arguments, const Scene& scene, OutputFolder& output, const fs::path& shown,
-               InterruptWatch& watch) {
+int run_loaded(const RunArguments& arguments, const Scene& scene, VariantPlan& plan, OutputFolder& output,
+               const fs::path& shown, InterruptWatch& watch) {
     ProgressReporter progress(progress_style(arguments.quiet, arguments.json));
     Status series_status;
     std::optional<ParticleSeries> series;
@@ -110,7 +90,7 @@ int run_loaded(const RunArguments& arguments, const Scene& scene, OutputFolder& 
         if (!std::exchange(notes_said, true)) {
             for (const std::string& note : scene.notes) print(fmt::format("note: {}\n", note));
         }
-        progress.report(now);
+        plan.report_base(progress, now);
     };
     options.stop_requested = &watch.stop_requested();
     if (scene.spec.outputs.particle_series_interval > 0) {
@@ -127,9 +107,12 @@ int run_loaded(const RunArguments& arguments, const Scene& scene, OutputFolder& 
     if (series && series_status) series_status = series->finish();
     if (!series_status) return fail(exit_code::failure, series_status.error().message);
 
-    progress.say(result->status == RunStatus::interrupted ? "interrupted: writing what there is"
-                                                          : "writing maps, tables and report");
-    Status written = write_products(scene, *result, output.path());
+    const auto comparisons = plan.run(scene, *result, progress, watch.stop_requested());
+    const bool interrupted = result->status == RunStatus::interrupted ||
+                             (watch.stop_requested() && !std::all_of(comparisons.begin(), comparisons.end(),
+                                                                     [](const Comparison& c) { return c.all_ran(); }));
+    progress.say(interrupted ? "interrupted: writing what there is" : "writing maps, tables and report");
+    Status written = write_products(scene, *result, output.path(), comparisons);
     if (written) {
         // Replacing an earlier result takes two renames; a second Ctrl-C must not fall between them.
         const auto lock = watch.hold();
@@ -139,18 +122,11 @@ int run_loaded(const RunArguments& arguments, const Scene& scene, OutputFolder& 
     if (!written) return fail(exit_code::failure, written.error().message);
 
     if (arguments.json) {
-        print(summary_json(scene, *result, output.final_path()) + "\n");
+        print(summary_json(scene, *result, comparisons, output.final_path()) + "\n");
     } else if (!arguments.quiet) {
-        print(summary_text(scene, *result, shown));
+        print(summary_text(scene, *result, comparisons, shown));
     }
-    switch (result->status) {
-        case RunStatus::complete:
-            return exit_code::success;
-        case RunStatus::interrupted:
-            return exit_code::interrupted;
-        case RunStatus::fault:
-            break;
-    }
+    if (result->status != RunStatus::fault) return interrupted ? exit_code::interrupted : exit_code::success;
     return fail(exit_code::fault, fmt::format("{}; what was computed until then is in {}, marked partial",
                                               result->stop_reason, shown.string()));
 }
@@ -180,8 +156,11 @@ int run_command(const RunArguments& arguments) {
 
     std::vector<std::string> overrides = arguments.overrides;
     if (arguments.threads) overrides.push_back(fmt::format("solver.thread_count={}", *arguments.threads));
-    auto scene = load_scene(file, overrides);
+    const SceneSource source{file, overrides};
+    auto scene = load_scene(source.file, source.overrides);
     if (!scene) return fail(exit_code::bad_input, scene.error().message);
+    auto plan = VariantPlan::make(arguments, source, *scene);
+    if (!plan) return fail(exit_code::bad_input, plan.error().message);
     if (unpacked) name_builtin_files(*scene, unpacked->path());
     if (watch.stop_requested()) return fail(exit_code::interrupted, "interrupted before the run began");
 
@@ -192,7 +171,7 @@ int run_command(const RunArguments& arguments) {
     if (!output) return fail(exit_code::bad_input, output.error().message);
     watch.remove_at_once(output->path());
 
-    return run_loaded(arguments, *scene, *output, folder, watch);
+    return run_loaded(arguments, *scene, *plan, *output, folder, watch);
 }
 
 }  // namespace talus

@@ -9,23 +9,13 @@
 #include <nlohmann/json.hpp>
 
 #include "core/hash.hpp"
+#include "products/results_json.hpp"
+#include "variant_plan.hpp"
 
 namespace talus {
 namespace {
 
 constexpr double degrees = 180 / std::numbers::pi;
-
-/// The front at a chainage, or nothing where it never came.
-const FrontSample* front_at(const Observation& observation, double chainage, double interval) {
-    const FrontSample* nearest = nullptr;
-    for (const FrontSample& sample : observation.front) {
-        const double distance = std::abs(sample.chainage - chainage);
-        if (distance <= interval && (nearest == nullptr || distance < std::abs(nearest->chainage - chainage))) {
-            nearest = &sample;
-        }
-    }
-    return nearest;
-}
 
 std::vector<const BuildingImpact*> buildings_hit(const Observation& observation) {
     std::vector<const BuildingImpact*> hit;
@@ -54,6 +44,23 @@ std::string speed_text(double speed) {
     return std::isfinite(speed) ? fmt::format("{:.1f} m/s", speed) : std::string("not known");
 }
 
+std::string compression_text(const Observation& seen) {
+    std::string text = fmt::format("mean {:.2f} % at worst (limit {:g} %), single particle {:.1f} % (limit {:g} %)",
+                                   100 * seen.worst_mean_compression, 100 * mean_compression_limit,
+                                   100 * seen.worst_max_compression, 100 * max_compression_limit);
+    if (within_compression_limits(seen)) return text;
+    return text + fmt::format(", at t = {:.1f} and {:.1f} s; above a limit {:.2g} % of the time", seen.worst_mean_time,
+                              seen.worst_max_time, 100 * seen.compressed_time_share);
+}
+
+/// What to change where compression is above its limits.
+std::string remedy(const SolverSpec& solver) {
+    return fmt::format("compression above its limit: raise solver.iteration_count (now {}) or {}",
+                       solver.iteration_count,
+                       solver.time_step ? "lower solver.time_step_s"
+                                        : "halve solver.largest_time_step_s and solver.displacement_limit");
+}
+
 std::string line(const char* label, const std::string& text) {
     return fmt::format("  {:<16} {}\n", label, text);
 }
@@ -76,7 +83,8 @@ std::string status_name(RunStatus status) {
     return "";
 }
 
-std::string summary_text(const Scene& scene, const RunResult& result, const std::filesystem::path& output) {
+std::string summary_text(const Scene& scene, const RunResult& result, const std::vector<Comparison>& comparisons,
+                         const std::filesystem::path& output) {
     const Observation& seen = result.observation;
     const TimeSample end = seen.timeseries.empty() ? TimeSample{} : seen.timeseries.back();
     std::string text = scene.spec.scene.title;
@@ -88,11 +96,11 @@ std::string summary_text(const Scene& scene, const RunResult& result, const std:
                                           result.simulated_time, result.wall_time, result.real_time_factor(),
                                           result.particles, result.particle_spacing));
     for (const ObservationSpec& observed : scene.spec.observations) {
-        const FrontSample* front = front_at(seen, observed.chainage, scene.spec.outputs.chainage_interval);
-        const std::string computed = front == nullptr
+        const FrontSample front = front_at(seen, observed.chainage);
+        const std::string computed = std::isnan(front.arrival_time)
                                          ? "not reached"
-                                         : fmt::format("{}, debris there {}", speed_text(front->front_velocity),
-                                                       speed_text(front->particle_speed));
+                                         : fmt::format("{}, debris there {}", speed_text(front.front_velocity),
+                                                       speed_text(front.particle_speed));
         text += line("front velocity", fmt::format("at {:g} m: {}; observed {:g} m/s", observed.chainage, computed,
                                                    observed.front_velocity));
     }
@@ -105,22 +113,26 @@ std::string summary_text(const Scene& scene, const RunResult& result, const std:
                                        seen.volume_released, end.volume_deposited, end.volume_moving + end.volume_held,
                                        end.volume_left));
     if (!seen.buildings.empty()) text += line("buildings hit", buildings_text(seen));
+    text += line("compression", compression_text(seen));
+    if (!within_compression_limits(seen)) text += line("NOT CONVERGED", remedy(scene.spec.solver));
+    for (const Comparison& comparison : comparisons) text += comparison_text(comparison, result);
     text += line("report", (output / "report.html").string());
     return text;
 }
 
-std::string summary_json(const Scene& scene, const RunResult& result, const std::filesystem::path& output) {
+std::string summary_json(const Scene& scene, const RunResult& result, const std::vector<Comparison>& comparisons,
+                         const std::filesystem::path& output) {
     const Observation& seen = result.observation;
     const TimeSample end = seen.timeseries.empty() ? TimeSample{} : seen.timeseries.back();
     auto observations = nlohmann::ordered_json::array();
     for (const ObservationSpec& observed : scene.spec.observations) {
-        const FrontSample* front = front_at(seen, observed.chainage, scene.spec.outputs.chainage_interval);
+        const FrontSample front = front_at(seen, observed.chainage);
         observations.push_back({{"name", observed.name},
                                 {"chainage_m", observed.chainage},
                                 {"observed_front_velocity_mps", observed.front_velocity},
-                                {"front_velocity_mps", finite(front == nullptr ? never : front->front_velocity)},
-                                {"particle_speed_mps", finite(front == nullptr ? never : front->particle_speed)},
-                                {"arrival_time_s", finite(front == nullptr ? never : front->arrival_time)}});
+                                {"front_velocity_mps", finite(front.front_velocity)},
+                                {"particle_speed_mps", finite(front.particle_speed)},
+                                {"arrival_time_s", finite(front.arrival_time)}});
     }
     auto buildings = nlohmann::ordered_json::array();
     for (const BuildingImpact* building : buildings_hit(seen)) {
@@ -129,7 +141,7 @@ std::string summary_json(const Scene& scene, const RunResult& result, const std:
                              {"peak_pressure_kPa", building->peak_pressure / 1000},
                              {"peak_depth_m", building->peak_depth}});
     }
-    const nlohmann::ordered_json event = {
+    nlohmann::ordered_json event = {
         {"event", "result"},
         {"status", status_name(result.status)},
         {"stop_reason", result.stop_reason},
@@ -155,7 +167,9 @@ std::string summary_json(const Scene& scene, const RunResult& result, const std:
         {"runout_angle_deg", finite(seen.run_out.runout_angle * degrees)},
         {"observations", observations},
         {"buildings_hit", buildings},
+        {"compression", compression_json(seen)},
     };
+    event.update(comparisons_json(comparisons));
     return event.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
 }
 

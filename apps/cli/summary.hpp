@@ -2,7 +2,9 @@
 
 #include <filesystem>
 #include <string>
+#include <vector>
 
+#include "scene/comparison.hpp"
 #include "scene/run.hpp"
 #include "scene/scene.hpp"
 
@@ -11,12 +13,12 @@ namespace talus {
 /// "complete", "interrupted" or "fault".
 [[nodiscard]] std::string status_name(RunStatus status);
 
-/// What a person wants to know first, in a dozen lines.
+/// What a person wants to know first, in a dozen lines, and a table per comparison.
 [[nodiscard]] std::string summary_text(const Scene& scene, const RunResult& result,
-                                       const std::filesystem::path& output);
+                                       const std::vector<Comparison>& comparisons, const std::filesystem::path& output);
 
 /// The same for programs: the last line of `talus run --json`.
 [[nodiscard]] std::string summary_json(const Scene& scene, const RunResult& result,
-                                       const std::filesystem::path& output);
+                                       const std::vector<Comparison>& comparisons, const std::filesystem::path& output);
 
 }  // namespace talus

@@ -3,8 +3,9 @@
 
     python3 scenes/sham_tseng/make_terrain.py [FOLDER]
 
-writes terrain.tif, release.geojson, buildings.geojson and flow_path.geojson into FOLDER (by default the folder of this
-script). Needs numpy and GDAL's Python bindings. The same input gives the same values on every machine: the roughness
+writes terrain.tif, release.geojson, release_lower, release_long and release_wide.geojson (other shapes of the scar, to
+compare), buildings.geojson and flow_path.geojson into FOLDER (by default the folder of this script). Needs numpy and
+GDAL's Python bindings. The same input gives the same values on every machine: the roughness
 comes from an integer hash, not from a random generator.
 
 This is a reconstruction. KNOWN below holds what sources say about the landslide of 23 August 1999 at Sham Tseng San
@@ -114,6 +115,8 @@ CHANNEL_ROUGHNESS = 0.2  # share of it on the bed
 
 # The scar, by chainage: its upper edge lies where the published profile passes 149 mPD.
 SCAR = {"start": 14.0, "end": 41.0, "width": 18.0}
+# Other shapes of the same plan area, to see how much hangs on the scar's: (metres farther down, times as long and narrow).
+OTHER_SCARS = {"lower": (10.0, 1.0), "long": (0.0, 1.5), "wide": (0.0, 1 / 1.5)}
 
 # Village houses: name, height m, centre E and N, bearing of the long side in degrees north of east, length and width m.
 HOUSES = [
@@ -370,11 +373,19 @@ def scar_outline(trail, start, end, width):
     return outline
 
 
+def other_scar(scar, shift, stretch):
+    start = scar["start"] + shift
+    return {"start": start, "end": start + stretch * (scar["end"] - scar["start"]), "width": scar["width"] / stretch}
+
+
 def write_vectors(folder, trail, scar, trail_name):
     write_geojson(os.path.join(folder, "flow_path.geojson"), "flow_path",
                   [feature("LineString", trail, {"name": trail_name})])
     write_geojson(os.path.join(folder, "release.geojson"), "release",
                   [feature("Polygon", scar_outline(trail, **scar), {"name": "main failure"})])
+    for name, change in OTHER_SCARS.items():
+        write_geojson(os.path.join(folder, f"release_{name}.geojson"), "release",
+                      [feature("Polygon", scar_outline(trail, **other_scar(scar, *change)), {"name": "main failure"})])
     write_geojson(os.path.join(folder, "buildings.geojson"), "buildings",
                   [feature("Polygon", rectangle(*shape), {"name": name, "height_m": height})
                    for name, height, *shape in HOUSES])

@@ -3,7 +3,8 @@
 
     python3 scenes/sham_tseng_real/make_inputs.py [FOLDER]
 
-writes release.geojson, buildings.geojson and flow_path.geojson into FOLDER (by default the folder of this script).
+writes release.geojson, three other shapes of the release to compare (release_lower, _long, _wide), buildings.geojson and
+flow_path.geojson into FOLDER (by default the folder of this script).
 The houses are those of the built-in scene, all of them assumed. The line and the scar were placed by us on the 5 m
 terrain model so that debris takes the recorded trail: see docs/scenes.md. EPSG:2326, metres.
 """

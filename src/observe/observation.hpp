@@ -69,8 +69,21 @@ struct Observation {
     RunOut run_out;
     std::vector<BuildingImpact> buildings;  ///< as in Model::buildings
     std::vector<TimeSample> timeseries;
-    double volume_released = 0;                                    ///< m3
-    double worst_mean_compression = 0, worst_max_compression = 0;  ///< over all steps
+    double volume_released = 0;  ///< m3
+    /// Compression, max(0, density / rest density - 1), as the last iteration of every step found it: the mean over all
+    /// particles in the worst step, and the worst particle of all steps.
+    double worst_mean_compression = 0, worst_max_compression = 0;
+    double worst_mean_time = never, worst_max_time = never;  ///< s, when that was
+    double compressed_time_share = 0;  ///< of the simulated time, in which either was above its limit
 };
+
+/// Above either of these a run counts as not converged.
+inline constexpr double mean_compression_limit = 0.01, max_compression_limit = 0.03;
+
+/// Whether the worst compression of the run stayed within both limits.
+[[nodiscard]] bool within_compression_limits(const Observation& observation);
+
+/// What the front did at a chainage, interpolated between samples; NaN where debris never came.
+[[nodiscard]] FrontSample front_at(const Observation& observation, double chainage);
 
 }  // namespace talus

@@ -74,6 +74,20 @@ struct Observer::Parts {
           impact(model, state, o.impact_filter_window),
           released(measure_release(model, state, flow_path)) {}
 
+    void watch_compression(const State& state) {
+        if (state.mean_compression > worst_mean_compression) {
+            worst_mean_compression = state.mean_compression;
+            worst_mean_time = state.time;
+        }
+        if (state.max_compression > worst_max_compression) {
+            worst_max_compression = state.max_compression;
+            worst_max_time = state.time;
+        }
+        if (state.mean_compression > mean_compression_limit || state.max_compression > max_compression_limit) {
+            compressed_time += state.time_step;
+        }
+    }
+
     void add_row(const Model& model, const State& state) {
         timeseries.push_back(make_sample(model, state, outputs.deposited_speed, front.current(), steps_per_second));
     }
@@ -87,6 +101,8 @@ struct Observer::Parts {
     std::uint64_t next_row = 1;  ///< due at next_row * sample_interval
     double steps_per_second = 0;
     double worst_mean_compression = 0, worst_max_compression = 0;
+    double worst_mean_time = never, worst_max_time = never;
+    double compressed_time = 0;  ///< s
 };
 
 Observer::Observer(const Model& model, const State& state, const FlowPath& flow_path, const OutputSpec& outputs,
@@ -103,8 +119,7 @@ void Observer::after_step(const Model& model, const State& state, double steps_p
     p.maps.add(state);
     p.front.after_step(model, state);
     p.impact.after_step(model, state, p.maps);
-    p.worst_mean_compression = std::max(p.worst_mean_compression, state.mean_compression);
-    p.worst_max_compression = std::max(p.worst_max_compression, state.max_compression);
+    p.watch_compression(state);
     p.steps_per_second = steps_per_second;
     // Rows at multiples of the interval, or right after where a step is longer; a millionth of it absorbs rounding.
     const double intervals = state.time / p.outputs.sample_interval + 1e-6;
@@ -134,6 +149,9 @@ Observation Observer::finish(const Model& model, const State& state) {
     observation.volume_released = state.seeded * model.particle_volume();
     observation.worst_mean_compression = p.worst_mean_compression;
     observation.worst_max_compression = p.worst_max_compression;
+    observation.worst_mean_time = p.worst_mean_time;
+    observation.worst_max_time = p.worst_max_time;
+    observation.compressed_time_share = state.time > 0 ? p.compressed_time / state.time : 0;
     return observation;
 }
 

@@ -240,11 +240,19 @@ Section declare_material() {
     s.key("rest_density_kgpm3", "kg/m3", &MaterialSpec::rest_density, above_to(0, 30000),
           "Bulk density of the debris.");
     s.key("friction_coefficient", "", &MaterialSpec::friction_coefficient, between(0, 10),
-          "Coulomb friction on ground and buildings (tangent of the friction angle), and inside unless set apart.");
+          "Coulomb friction on the ground (tangent of the friction angle), and on buildings and inside unless set "
+          "apart.");
+    s.optional_key("building_friction_coefficient", "", &MaterialSpec::building_friction_coefficient, between(0, 10),
+                   "equal to friction_coefficient", "Coulomb friction on the walls and roofs of buildings.");
     s.optional_key("internal_friction_coefficient", "", &MaterialSpec::internal_friction_coefficient, between(0, 10),
                    "equal to friction_coefficient", "Coulomb friction of debris on debris.");
-    s.key("viscosity", "", &MaterialSpec::viscosity, from_to_below(0, 1),
-          "Share of the velocity difference to its neighbours that debris loses per 1/60 s, whatever the time step.");
+    s.key(
+        "viscosity", "", &MaterialSpec::viscosity, from_to_below(0, 1),
+        "Share of the velocity difference to its neighbours that debris loses per 1/60 s, whatever the time step. The "
+        "same share is another material at another particle spacing; kinematic_viscosity_m2ps is not.");
+    s.optional_key("kinematic_viscosity_m2ps", "m2/s", &MaterialSpec::kinematic_viscosity, at_least(0),
+                   "what viscosity amounts to at this particle spacing",
+                   "Viscosity of the debris, in place of viscosity.");
     return s.take();
 }
 
@@ -258,7 +266,9 @@ Section declare_solver() {
     s.key("particle_limit", "", &SolverSpec::particle_limit, between(1, 1e9),
           "More particles than this are refused before the run.");
     s.optional_key("time_step_s", "s", &SolverSpec::time_step, above_to(0, 1),
-                   "adaptive: a particle moves at most half a spacing per step", "Fixed time step.");
+                   "adaptive: a particle moves at most displacement_limit of a spacing per step", "Fixed time step.");
+    s.key("displacement_limit", "", &SolverSpec::displacement_limit, above_to(0, 1),
+          "Share of a spacing that a particle moves at most in an adaptive time step.");
     s.key("largest_time_step_s", "s", &SolverSpec::largest_time_step, above_to(0, 1),
           "Upper bound of the adaptive time step.");
     s.key("smallest_time_step_s", "s", &SolverSpec::smallest_time_step, above_to(0, 1),
@@ -272,12 +282,13 @@ Section declare_solver() {
         "pair is the published correction per pair of particles, which creeps.");
     s.key("support_ratio", "", &SolverSpec::support_ratio, between(1.5, 4),
           "Support radius of the kernel over the particle spacing.");
-    s.key("under_relaxation", "", &SolverSpec::under_relaxation, above_to(0, 1),
-          "Factor on every multiplier update of the Jacobi iteration.");
+    s.key(
+        "under_relaxation", "", &SolverSpec::under_relaxation, above_to(0, 2),
+        "Factor on every correction of the Jacobi iteration, relative to its largest eigenvalue: above 2 it diverges.");
     s.key("constraint_relaxation", "", &SolverSpec::constraint_relaxation, at_least(0),
           "Softens the density constraint: term in the multiplier's denominator relative to its rest value.");
     s.key("depenetration_speed_mps", "m/s", &SolverSpec::depenetration_speed, above(0),
-          "The fastest that an overlap present at the start of a step is pushed out.");
+          "With internal_friction = \"pair\": the fastest that compression at the start of a step is undone.");
     s.key("end_time_s", "s", &SolverSpec::end_time, above(0), "Simulated time at which the run ends at the latest.");
     s.key("stop_momentum_fraction", "", &SolverSpec::stop_momentum_fraction, from_to_below(0, 1),
           "Ends the run when momentum stays below this share of its peak; 0 never does.");

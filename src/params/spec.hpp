@@ -58,9 +58,11 @@ struct FlowPathSpec {
 /// `[material]`
 struct MaterialSpec {
     double rest_density = 2000;                           ///< kg/m3
-    double friction_coefficient = 0.4;                    ///< on ground and buildings, and inside unless set apart
+    double friction_coefficient = 0.4;                    ///< on ground, and on buildings and inside unless set apart
+    std::optional<double> building_friction_coefficient;  ///< absent: equal to friction_coefficient
     std::optional<double> internal_friction_coefficient;  ///< absent: equal to friction_coefficient
     double viscosity = 0.1;                               ///< XSPH smoothing per 1/60 s, 0 to below 1
+    std::optional<double> kinematic_viscosity;            ///< m2/s, in place of `viscosity`
 };
 
 enum class KernelChoice {
@@ -80,16 +82,17 @@ struct SolverSpec {
     std::optional<double> particle_spacing;  ///< m; absent: from target_particle_count and the released volume
     int target_particle_count = 10000;
     int particle_limit = 2000000;
-    std::optional<double> time_step;         ///< s, fixed; absent: adaptive, a particle moves at most half a spacing
+    std::optional<double> time_step;         ///< s, fixed; absent: adaptive, see displacement_limit
+    double displacement_limit = 0.5;         ///< share of a spacing that a particle moves at most in an adaptive step
     double largest_time_step = 1.0 / 60;     ///< s, upper bound of the adaptive step
     double smallest_time_step = 1.0 / 3840;  ///< s, an adaptive step below it stops the run as a fault
     int iteration_count = 4;
     KernelChoice kernel = KernelChoice::wendland_c2;
     InternalFriction internal_friction = InternalFriction::stress;
     double support_ratio = 2.2;            ///< support radius / particle spacing
-    double under_relaxation = 0.4;         ///< factor on every multiplier update of the Jacobi iteration
+    double under_relaxation = 1.25;        ///< of the Jacobi iteration, relative to its largest eigenvalue
     double constraint_relaxation = 0.1;    ///< XPBD-like term in the denominator of lambda, relative to its rest value
-    double depenetration_speed = 0.5;      ///< m/s, the fastest that an overlap present at step start is pushed out
+    double depenetration_speed = 0.5;      ///< m/s, the fastest that pair friction undoes compression
     double end_time = 120;                 ///< s
     double stop_momentum_fraction = 0.02;  ///< ends the run when momentum stays below this share of its peak; 0: never
     double stop_duration = 3;              ///< s, for how long

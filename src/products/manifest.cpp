@@ -14,6 +14,7 @@
 #include "params/fields.hpp"
 #include "products/hardware.hpp"
 #include "products/hazard_map.hpp"
+#include "products/results_json.hpp"
 #include "products/text_file.hpp"
 #include "products/writers.hpp"
 
@@ -57,6 +58,7 @@ Json resolved(const Scene& scene, const RunResult& result) {
     return {{"particle_spacing_m", result.particle_spacing},
             {"support_radius_m", result.support_radius},
             {"particle_count", result.particles},
+            {"viscosity", result.viscosity},
             {"kinematic_viscosity_m2ps", result.kinematic_viscosity},
             {"map_cell_m", result.map_cell},
             {"smallest_time_step_s", result.smallest_time_step},
@@ -118,8 +120,7 @@ Json results(const RunResult& result) {
             {"volumes", volumes},
             {"buildings", o.buildings.size()},
             {"buildings_hit", hit},
-            {"worst_mean_compression", o.worst_mean_compression},
-            {"worst_max_compression", o.worst_max_compression}};
+            {"compression", compression_json(o)}};
 }
 
 Json performance(const RunResult& result) {
@@ -202,7 +203,8 @@ std::string caveat(const Scene& scene, const RunResult& result) {
     return text.empty() ? "" : " (" + text + ")";
 }
 
-Status write_manifest(const Scene& scene, const RunResult& result, const std::filesystem::path& folder) {
+Status write_manifest(const Scene& scene, const RunResult& result, const std::vector<Comparison>& comparisons,
+                      const std::filesystem::path& folder) {
     const SceneInfo& info = scene.spec.scene;
     const Json manifest = {
         {"program", "talus"},
@@ -214,6 +216,7 @@ Status write_manifest(const Scene& scene, const RunResult& result, const std::fi
         {"reconstruction", info.reconstruction},
         {"result_hash", to_hex(result.hash)},
         {"results", results(result)},
+        {"comparisons", comparisons_json(comparisons)},
         {"performance", performance(result)},
         {"hardware", hardware()},
         {"versions", versions()},

@@ -19,22 +19,25 @@ Status write_partial_note(const RunResult& result, const std::filesystem::path& 
     return write_text_file(folder / "PARTIAL.txt", text);
 }
 
-Status write_report(const Scene& scene, const RunResult& result, const std::filesystem::path& folder) {
-    const auto report = render_report(scene, result);
+Status write_report(const Scene& scene, const RunResult& result, const std::vector<Comparison>& comparisons,
+                    const std::filesystem::path& folder) {
+    const auto report = render_report(scene, result, comparisons);
     if (!report) return report.error();
     return write_text_file(folder / "report.html", *report);
 }
 
 }  // namespace
 
-Status write_products(const Scene& scene, const RunResult& result, const std::filesystem::path& folder) {
+Status write_products(const Scene& scene, const RunResult& result, const std::filesystem::path& folder,
+                      const std::vector<Comparison>& comparisons) {
     if (Status s = write_partial_note(result, folder); !s) return s;
     if (Status s = write_maps(scene, result, folder); !s) return s;
     if (Status s = write_tables(scene, result, folder); !s) return s;
     if (Status s = write_vectors(scene, result, folder); !s) return s;
-    if (Status s = write_report(scene, result, folder); !s) return s;
+    if (Status s = write_comparisons(comparisons, result, folder); !s) return s;
+    if (Status s = write_report(scene, result, comparisons, folder); !s) return s;
     // Last, as it lists the files; a folder that has one is complete.
-    return write_manifest(scene, result, folder);
+    return write_manifest(scene, result, comparisons, folder);
 }
 
 }  // namespace talus

@@ -14,7 +14,8 @@ namespace talus {
 
 using namespace report;
 
-Result<std::string> render_report(const Scene& scene, const RunResult& result) {
+Result<std::string> render_report(const Scene& scene, const RunResult& result,
+                                  const std::vector<Comparison>& comparisons) {
     auto maps = render_maps(scene, result);
     if (!maps) return maps.error();
     const SceneInfo& info = scene.spec.scene;
@@ -31,35 +32,37 @@ Result<std::string> render_report(const Scene& scene, const RunResult& result) {
     const std::string second_figure_after_maps = fmt::format("{}", maps->count + 2);
     const std::string description =
         info.description.empty() ? "" : "<p class=\"lead\">" + escape(info.description) + "</p>";
-    return fill(report_files::report_html, {{"title", title},
-                                            {"style", report_files::report_css},
-                                            {"script", report_files::report_js},
-                                            {"page_note", page_note},
-                                            {"date", date},
-                                            {"status", status},
-                                            {"status_class", partial ? "partial" : "complete"},
-                                            {"version", TALUS_VERSION},
-                                            {"description", description},
-                                            {"banners", banners(scene, result)},
-                                            {"key_results", key_results(scene, result)},
-                                            {"observation_table", observation_table(scene, result)},
-                                            {"run_quality", run_quality(scene, result)},
-                                            {"map_definitions", maps->definitions},
-                                            {"map_figures", maps->figures},
-                                            {"map_read_out", maps->read_out},
-                                            {"crs", escape(scene.crs.label())},
-                                            {"front_number", first_figure_after_maps},
-                                            {"front_figure", front_figure(scene, result)},
-                                            {"front_window", plain(scene.spec.outputs.front_velocity_window)},
-                                            {"time_number", second_figure_after_maps},
-                                            {"time_figure", time_figure(result)},
-                                            {"building_table", building_table(scene, result)},
-                                            {"chosen_values", chosen_values(scene, result)},
-                                            {"parameter_table", parameter_table(scene)},
-                                            {"method", method(scene)},
-                                            {"assumptions", assumptions(scene)},
-                                            {"input_table", input_table(scene)},
-                                            {"computation_table", computation_table(scene, result)}});
+    return fill(report_files::report_html,
+                {{"title", title},
+                 {"style", report_files::report_css},
+                 {"script", report_files::report_js},
+                 {"page_note", page_note},
+                 {"date", date},
+                 {"status", status},
+                 {"status_class", partial ? "partial" : "complete"},
+                 {"version", TALUS_VERSION},
+                 {"description", description},
+                 {"banners", banners(scene, result) + comparison_banners(comparisons)},
+                 {"key_results", key_results(scene, result)},
+                 {"observation_table", observation_table(scene, result)},
+                 {"run_quality", run_quality(scene, result)},
+                 {"map_definitions", maps->definitions},
+                 {"map_figures", maps->figures},
+                 {"map_read_out", maps->read_out},
+                 {"crs", escape(scene.crs.label())},
+                 {"front_number", first_figure_after_maps},
+                 {"front_figure", front_figure(scene, result)},
+                 {"front_window", plain(scene.spec.outputs.front_velocity_window)},
+                 {"time_number", second_figure_after_maps},
+                 {"time_figure", time_figure(result)},
+                 {"comparisons", comparison_sections(comparisons, scene, result, maps->count + 3)},
+                 {"building_table", building_table(scene, result)},
+                 {"chosen_values", chosen_values(scene, result)},
+                 {"parameter_table", parameter_table(scene)},
+                 {"method", method(scene)},
+                 {"assumptions", assumptions(scene)},
+                 {"input_table", input_table(scene)},
+                 {"computation_table", computation_table(scene, result)}});
 }
 
 }  // namespace talus

@@ -81,26 +81,6 @@ std::string plural(std::size_t n, std::string_view word) {
 
 }  // namespace
 
-bool converged(const Observation& observation) {
-    return observation.worst_mean_compression <= mean_compression_limit &&
-           observation.worst_max_compression <= max_compression_limit;
-}
-
-FrontSample front_at(const Observation& observation, double chainage) {
-    const auto& front = observation.front;
-    const FrontSample none{chainage, never, never, never};
-    const auto after = std::lower_bound(front.begin(), front.end(), chainage,
-                                        [](const FrontSample& s, double c) { return s.chainage < c; });
-    if (after == front.end()) return none;
-    if (after->chainage == chainage) return *after;
-    if (after == front.begin()) return none;
-    const FrontSample &a = *(after - 1), &b = *after;
-    const double share = (chainage - a.chainage) / (b.chainage - a.chainage);
-    const auto between = [&](double low, double high) { return low + share * (high - low); };
-    return {chainage, between(a.arrival_time, b.arrival_time), between(a.front_velocity, b.front_velocity),
-            between(a.particle_speed, b.particle_speed)};
-}
-
 std::string banners(const Scene& scene, const RunResult& result) {
     std::string html;
     if (result.status != RunStatus::complete) {
@@ -116,13 +96,18 @@ std::string banners(const Scene& scene, const RunResult& result) {
             R"(<div class="banner reconstruction"><b>Reconstruction.</b> The terrain and other inputs of this scene are reconstructed from published descriptions, not surveyed. What was assumed is listed under <a href="#assumptions">Assumptions</a>. The results illustrate the event; they are not a basis for design or zoning.</div>
 )";
     }
-    if (!converged(result.observation)) {
+    const Observation& o = result.observation;
+    if (!within_compression_limits(o)) {
         html += fmt::format(
-            R"(<div class="banner unconverged"><b>Not converged.</b> Debris was compressed by up to {} % on average and {} % at most (limits {} % and {} %). Use more iterations (<code>iteration_count</code>) or a smaller <code>largest_time_step_s</code>, and see whether results change.</div>
+            R"(<div class="banner unconverged"><b>Not converged.</b> Debris was compressed by up to {}&nbsp;% on average (at {} s; limit {}&nbsp;%) and {}&nbsp;% at a single particle (at {} s; limit {}&nbsp;%), above a limit during {}&nbsp;% of the simulated time. Raise <code>solver.iteration_count</code> (now {}) or {}; <code>talus run --convergence</code> shows whether results change.</div>
 )",
-            fixed(100 * result.observation.worst_mean_compression, 2),
-            fixed(100 * result.observation.worst_max_compression, 1), fixed(100 * mean_compression_limit, 0),
-            fixed(100 * max_compression_limit, 0));
+            fixed(100 * o.worst_mean_compression, 2), fixed(o.worst_mean_time, 1),
+            fixed(100 * mean_compression_limit, 0), fixed(100 * o.worst_max_compression, 1), fixed(o.worst_max_time, 1),
+            fixed(100 * max_compression_limit, 0), significant(100 * o.compressed_time_share, 2),
+            scene.spec.solver.iteration_count,
+            scene.spec.solver.time_step
+                ? "lower <code>solver.time_step_s</code>"
+                : "halve <code>solver.largest_time_step_s</code> and <code>solver.displacement_limit</code>");
     }
     return html;
 }
@@ -181,10 +166,15 @@ std::string run_quality(const Scene&, const RunResult& result) {
         row("Particles", fmt::format("{}, spacing {} m", fixed(result.particles, 0), plain(result.particle_spacing)));
     html +=
         row("Compression",
-            fmt::format("mean {} %, largest {} % (limits {} % and {} %): {}", fixed(100 * o.worst_mean_compression, 2),
-                        fixed(100 * o.worst_max_compression, 2), fixed(100 * mean_compression_limit, 0),
-                        fixed(100 * max_compression_limit, 0),
-                        converged(o) ? "<b class=\"good\">within limits</b>" : "<b class=\"bad\">not converged</b>"));
+            fmt::format(
+                "worst mean over the debris {} % (at {} s; limit {} %), worst particle {} % (at {} s; limit {} %): {}",
+                fixed(100 * o.worst_mean_compression, 2), fixed(o.worst_mean_time, 1),
+                fixed(100 * mean_compression_limit, 0), fixed(100 * o.worst_max_compression, 2),
+                fixed(o.worst_max_time, 1), fixed(100 * max_compression_limit, 0),
+                within_compression_limits(o)
+                    ? "<b class=\"good\">within limits</b>"
+                    : fmt::format("<b class=\"bad\">not converged</b> during {} % of the simulated time",
+                                  significant(100 * o.compressed_time_share, 2))));
     const MassBalance mass = mass_balance(o);
     html += row(
         "Mass balance",

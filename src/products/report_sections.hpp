@@ -1,21 +1,14 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
+#include "scene/comparison.hpp"
 #include "scene/run.hpp"
 #include "scene/scene.hpp"
 
 /// The parts of the report as HTML, each from the scene and the result alone. Names ending in _figure draw.
 namespace talus::report {
-
-/// Mean and greatest compression above which a run counts as not converged.
-inline constexpr double mean_compression_limit = 0.01, max_compression_limit = 0.03;
-
-/// Whether the worst compression of the run stayed within both limits.
-[[nodiscard]] bool converged(const Observation& observation);
-
-/// What the front did at a chainage, interpolated between samples; NaN where debris never came.
-[[nodiscard]] FrontSample front_at(const Observation& observation, double chainage);
 
 [[nodiscard]] std::string banners(const Scene& scene, const RunResult& result);
 [[nodiscard]] std::string key_results(const Scene& scene, const RunResult& result);
@@ -33,5 +26,11 @@ inline constexpr double mean_compression_limit = 0.01, max_compression_limit = 0
 [[nodiscard]] std::string front_figure(const Scene& scene, const RunResult& result);
 /// Energy, volumes, largest speed and compression over time.
 [[nodiscard]] std::string time_figure(const RunResult& result);
+
+/// What must not be overlooked of the comparisons: a scene that is not converged under refinement.
+[[nodiscard]] std::string comparison_banners(const std::vector<Comparison>& comparisons);
+/// A <section> per comparison: verdict, table, and the fronts of all runs over each other.
+[[nodiscard]] std::string comparison_sections(const std::vector<Comparison>& comparisons, const Scene& scene,
+                                              const RunResult& base, int first_figure);
 
 }  // namespace talus::report

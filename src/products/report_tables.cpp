@@ -52,17 +52,24 @@ std::string chosen_values(const Scene& scene, const RunResult& result) {
     std::string html = row("Particle spacing", fmt::format("{} m", plain(result.particle_spacing)));
     html += row("Support radius", fmt::format("{} m", plain(result.support_radius)));
     html += row("Kernel", std::string(kernel_name(solver.kernel)));
-    html +=
-        row("Time step", fmt::format("{} to {} ms, {}", fixed(1e3 * result.smallest_time_step, 3),
-                                     fixed(1e3 * result.largest_time_step, 3),
-                                     solver.time_step ? "fixed" : "adaptive: a particle moves at most half a spacing"));
+    html += row("Time step",
+                fmt::format("{} to {} ms, {}", fixed(1e3 * result.smallest_time_step, 3),
+                            fixed(1e3 * result.largest_time_step, 3),
+                            solver.time_step ? "fixed"
+                                             : fmt::format("adaptive: a particle moves at most {} of a spacing",
+                                                           plain(solver.displacement_limit))));
     html += row("Iterations per step", fmt::format("{}", solver.iteration_count));
     html += row("Rest density", fmt::format("{} kg/m³", fixed(material.rest_density, 0)));
     html += row("Friction on the ground", fmt::format("f = {}", plain(material.friction_coefficient)));
     html += row(
+        "Friction on buildings",
+        fmt::format("f = {}", plain(material.building_friction_coefficient.value_or(material.friction_coefficient))));
+    html += row(
         "Friction inside",
         fmt::format("f = {}", plain(material.internal_friction_coefficient.value_or(material.friction_coefficient))));
-    html += row("Viscosity, as smoothing", fmt::format("μ = {} per 1/60 s", plain(material.viscosity)));
+    const std::string smoothing =
+        material.kinematic_viscosity ? significant(result.viscosity, 3) : plain(material.viscosity);
+    html += row("Viscosity, as smoothing", fmt::format("μ = {} per 1/60 s", smoothing));
     html += row("Viscosity, kinematic",
                 fmt::format("{} m²/s at this support radius", significant(result.kinematic_viscosity, 3)));
     html += row("Cell of the maps", fmt::format("{} m", plain(result.map_cell)));
@@ -113,10 +120,8 @@ std::string method(const Scene& scene) {
                 "high viscosity at rest: a heap that should stand spreads on, ever more slowly, rather than stopping. "
                 "The "
                 "run-out of the slow tail is overestimated and the deposit too thin; the fast front is hardly affected."
-              : "<b>Deposits settle gradually.</b> The stress that persists holds a heap on a slope, but a slow creep "
-                "remains: deposits spread more slowly than they stop. The run ends when the momentum has died down, "
-                "and "
-                "the deposit is shown as it lies at that moment."}});
+              : "<b>Deposits stand.</b> The stress that persists holds a heap below its friction angle without creep; "
+                "the front of a deposit cannot be thinner than one particle and ends some particle spacings short."}});
 }
 
 std::string assumptions(const Scene& scene) {

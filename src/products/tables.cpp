@@ -1,56 +1,13 @@
-#include <cmath>
-#include <initializer_list>
 #include <numbers>
-#include <string_view>
+#include <string>
 
-#include <fmt/format.h>
-
+#include "products/csv.hpp"
 #include "products/text_file.hpp"
 #include "products/writers.hpp"
 
 namespace talus {
 
 namespace {
-
-/// A table as RFC 4180 has it: comma, point, quotes only where needed, UTF-8.
-class Csv {
-  public:
-    explicit Csv(std::string_view header) : text_(std::string(header) + "\n") {}
-
-    Csv& number(double value) {
-        separate();
-        if (std::isfinite(value)) text_ += fmt::format("{:.9g}", value);
-        return *this;
-    }
-    Csv& word(std::string_view value) {
-        separate();
-        if (value.find_first_of(",\"\r\n") == std::string_view::npos) {
-            text_ += value;
-            return *this;
-        }
-        text_ += '"';
-        for (const char c : value) text_ += c == '"' ? std::string("\"\"") : std::string(1, c);
-        text_ += '"';
-        return *this;
-    }
-    void end_row() {
-        text_ += '\n';
-        first_ = true;
-    }
-    void row(std::initializer_list<double> values) {
-        for (const double value : values) number(value);
-        end_row();
-    }
-    [[nodiscard]] const std::string& text() const { return text_; }
-
-  private:
-    void separate() {
-        if (!first_) text_ += ',';
-        first_ = false;
-    }
-    std::string text_;
-    bool first_ = true;
-};
 
 constexpr double degrees = 180 / std::numbers::pi;
 

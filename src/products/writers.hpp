@@ -2,8 +2,10 @@
 
 #include <filesystem>
 #include <string>
+#include <vector>
 
 #include "core/result.hpp"
+#include "scene/comparison.hpp"
 #include "scene/run.hpp"
 #include "scene/scene.hpp"
 
@@ -19,8 +21,13 @@ namespace talus {
 /// results.gpkg with the layers buildings, release, flow_path and chainage (a short line across the path per mark).
 [[nodiscard]] Status write_vectors(const Scene& scene, const RunResult& result, const std::filesystem::path& folder);
 
+/// convergence.csv, variants.csv: a row for the base and one per variant, with values, changes in percent and cost.
+[[nodiscard]] Status write_comparisons(const std::vector<Comparison>& comparisons, const RunResult& base,
+                                       const std::filesystem::path& folder);
+
 /// manifest.json: all that is needed to repeat the run and to judge it. A value that does not exist is null.
-[[nodiscard]] Status write_manifest(const Scene& scene, const RunResult& result, const std::filesystem::path& folder);
+[[nodiscard]] Status write_manifest(const Scene& scene, const RunResult& result,
+                                    const std::vector<Comparison>& comparisons, const std::filesystem::path& folder);
 
 /// "complete", "interrupted" or "fault".
 [[nodiscard]] const char* status_text(RunStatus status);

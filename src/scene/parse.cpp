@@ -1,117 +1,15 @@
 #include "scene/parse.hpp"
 
-#include <cerrno>
-#include <cmath>
-#include <fstream>
 #include <optional>
-#include <sstream>
-#include <system_error>
 
 #include <fmt/format.h>
 #include <toml++/toml.h>
 
 #include "scene/scene.hpp"
+#include "scene/toml_file.hpp"
 
 namespace talus {
 namespace {
-
-constexpr std::uintmax_t largest_scene_file = 16 << 20;  // bytes; a scene is a page of text
-
-/// Line of the first byte that is not UTF-8, 0 if there is none.
-std::size_t line_of_invalid_utf8(std::string_view text) {
-    std::size_t line = 1;
-    for (std::size_t i = 0; i < text.size(); ++i) {
-        const auto byte = static_cast<unsigned char>(text[i]);
-        if (byte == '\n') ++line;
-        if (byte < 0x80) continue;
-        const int more = byte >= 0xC2 && byte <= 0xDF   ? 1
-                         : (byte & 0xF0) == 0xE0        ? 2
-                         : byte >= 0xF0 && byte <= 0xF4 ? 3
-                                                        : 0;
-        if (more == 0 || i + more >= text.size()) return line;
-        for (int k = 1; k <= more; ++k) {
-            if ((static_cast<unsigned char>(text[i + k]) & 0xC0) != 0x80) return line;
-        }
-        i += more;
-    }
-    return 0;
-}
-
-Result<std::string> read_text(const std::filesystem::path& file) {
-    const std::string name = file.string();
-    std::error_code code;
-    const auto status = std::filesystem::status(file, code);
-    if (!std::filesystem::exists(status)) return Error{name + ": no such scene file"};
-    if (std::filesystem::is_directory(status)) {
-        return Error{name + ": is a folder, not a scene file; name the .toml file in it"};
-    }
-    std::ifstream in(file, std::ios::binary);
-    if (!in) return Error{name + ": cannot be opened: " + std::generic_category().message(errno)};
-    std::string text;
-    char block[65536];
-    while (in.read(block, sizeof block), in.gcount() > 0) {
-        text.append(block, static_cast<std::size_t>(in.gcount()));
-        if (text.size() > largest_scene_file) return Error{name + ": is larger than 16 MB, not a scene file"};
-    }
-    if (in.bad()) return Error{name + ": cannot be read to its end"};
-    if (const std::size_t line = line_of_invalid_utf8(text); line > 0) {
-        return Error{fmt::format("{}:{}: not UTF-8 text; save the scene file as UTF-8", name, line)};
-    }
-    return text;
-}
-
-std::string text_of(const toml::node& node) {
-    std::ostringstream out;
-    out << toml::toml_formatter{node};
-    return one_line(out.str(), 80);
-}
-
-/// The node as a value of the parameter's kind; nothing if it is of another kind.
-std::optional<ParameterValue> to_value(const toml::node& node, ParameterKind kind) {
-    switch (kind) {
-        case ParameterKind::boolean:
-            if (const auto value = node.value_exact<bool>()) return *value;
-            return std::nullopt;
-        case ParameterKind::integer: {
-            if (const auto value = node.value_exact<std::int64_t>()) return *value;
-            const auto number = node.value_exact<double>();  // 1e6 is a whole number to everybody but TOML
-            if (number && std::abs(*number) < 9e15 && *number == std::floor(*number)) {
-                return static_cast<std::int64_t>(*number);
-            }
-            return std::nullopt;
-        }
-        case ParameterKind::number:
-            if (node.is_number()) return node.value<double>();
-            return std::nullopt;
-        case ParameterKind::text:
-        case ParameterKind::path:
-        case ParameterKind::choice:
-            if (const auto value = node.value_exact<std::string>()) return *value;
-            return std::nullopt;
-        case ParameterKind::text_list: {
-            const toml::array* items = node.as_array();
-            if (!items) return std::nullopt;
-            std::vector<std::string> texts;
-            for (const toml::node& item : *items) {
-                const auto text = item.value_exact<std::string>();
-                if (!text) return std::nullopt;
-                texts.push_back(*text);
-            }
-            return texts;
-        }
-        case ParameterKind::extent: {
-            const toml::array* items = node.as_array();
-            if (!items || items->size() != 4) return std::nullopt;
-            double numbers[4];
-            for (std::size_t i = 0; i < 4; ++i) {
-                if (!items->get(i)->is_number()) return std::nullopt;
-                numbers[i] = *items->get(i)->value<double>();
-            }
-            return Extent{numbers[0], numbers[1], numbers[2], numbers[3]};
-        }
-    }
-    return std::nullopt;
-}
 
 std::string header_of(const Section& section) {
     return section.repeats ? "[[" + section.name + "]]" : "[" + section.name + "]";
@@ -243,9 +141,9 @@ class SceneReader {
                           const std::string& where) {
         const auto refused = [&](const std::string& allowed) {
             return Error{fmt::format("{}: {} = {} is refused; it must be {}", where,
-                                     key_path(section, index, parameter), text_of(node), allowed)};
+                                     key_path(section, index, parameter), toml_text_of(node), allowed)};
         };
-        const std::optional<ParameterValue> value = to_value(node, parameter.kind);
+        const std::optional<ParameterValue> value = to_parameter_value(node, parameter.kind);
         if (!value) return refused(allowed_text(parameter));
         if (const std::string problem = problem_with(parameter, *value); !problem.empty()) return refused(problem);
         if (parameter.required && toml_text(*value) == "\"\"") return refused(allowed_text(parameter) + ", not empty");
@@ -305,20 +203,6 @@ class SceneReader {
 
 }  // namespace
 
-std::string one_line(std::string_view text, std::size_t longest) {
-    std::string out;
-    for (const char c : text) {
-        const bool space = static_cast<unsigned char>(c) <= ' ' || c == '\x7f';
-        if (!space || (!out.empty() && out.back() != ' ')) out += space ? ' ' : c;
-    }
-    if (out.size() > longest) {
-        std::size_t end = longest;
-        while (end > 0 && (static_cast<unsigned char>(out[end]) & 0xC0) == 0x80) --end;  // not inside a UTF-8 character
-        out = out.substr(0, end) + "...";
-    }
-    return out;
-}
-
 std::string ParsedScene::at(const std::string& key_path) const {
     const auto found = places.find(key_path);
     return (found == places.end() ? file.string() : found->second) + ": " + key_path;
@@ -326,16 +210,10 @@ std::string ParsedScene::at(const std::string& key_path) const {
 
 Result<ParsedScene> parse_scene_with_places(const std::filesystem::path& file,
                                             const std::vector<std::string>& overrides) {
-    const Result<std::string> text = read_text(file);
-    if (!text) return text.error();
+    const Result<toml::table> root = read_toml_file(file, "scene");
+    if (!root) return root.error();
     SceneReader reader(file);
-    try {
-        const toml::table root = toml::parse(*text, file.string());
-        if (Status s = reader.read_file(root); !s) return s.error();
-    } catch (const toml::parse_error& error) {
-        return Error{fmt::format("{}:{}: not valid TOML: {}", file.string(), error.source().begin.line,
-                                 one_line(error.description()))};
-    }
+    if (Status s = reader.read_file(*root); !s) return s.error();
     for (const std::string& override_text : overrides) {
         if (Status s = reader.read_override(override_text); !s) return s.error();
     }

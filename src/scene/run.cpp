@@ -177,6 +177,7 @@ Result<RunResult> run_in_arena(const Scene& scene, const RunOptions& options, in
     RunResult& result = run.result;
     result.particle_spacing = spacing;
     result.support_radius = model.support_radius;
+    result.viscosity = model.viscosity;
     result.kinematic_viscosity = model.kinematic_viscosity;
     result.map_cell = spec.outputs.map_cell.value_or(default_map_cell(scene.terrain.cell(), spacing));
     result.thread_count = thread_count;

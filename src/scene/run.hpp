@@ -26,7 +26,8 @@ struct RunResult {
     std::uint64_t steps = 0;
     double simulated_time = 0, wall_time = 0;  ///< s; wall time of the stepping alone
     double smallest_time_step = 0, largest_time_step = 0;
-    double particle_spacing = 0, support_radius = 0, map_cell = 0, kinematic_viscosity = 0;
+    double particle_spacing = 0, support_radius = 0, map_cell = 0;
+    double viscosity = 0, kinematic_viscosity = 0;  ///< smoothing per 1/60 s; the same thing in m2/s
     int thread_count = 0;
     std::string instruction_set;  ///< that the sums over neighbours ran on
 

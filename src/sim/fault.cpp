@@ -31,11 +31,11 @@ std::optional<std::string> find_fault(const Model& model, const State& state, do
     if (!model.solver.time_step) {
         const double smallest = model.solver.smallest_time_step;
         const double moved = smallest * (state.largest_speed + model.gravity * smallest);
-        if (moved > model.particle_spacing / 2) {
+        if (moved > model.solver.displacement_limit * model.particle_spacing) {
             return fault(
-                "at t = %.4g s a particle at %.4g m/s moves more than half a spacing in the smallest step: lower "
-                "solver.smallest_time_step_s = %.3g or raise solver.particle_spacing_m",
-                state.largest_speed, smallest);
+                "at t = %.4g s a particle at %.4g m/s moves more than solver.displacement_limit = %.3g of a spacing in "
+                "the smallest step: lower solver.smallest_time_step_s = %.3g or raise solver.particle_spacing_m",
+                state.largest_speed, model.solver.displacement_limit, smallest);
         }
     }
     const double bound = speed_bound(model, highest_energy_head);

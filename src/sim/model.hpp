@@ -27,10 +27,11 @@ struct Model {
     BuildingSolids solids;
     std::vector<ReleaseGroup> releases;
 
-    double particle_spacing = 0;  ///< m
-    double support_radius = 0;    ///< m
-    double rest_density = 0;      ///< kg/m3
-    double friction_coefficient = 0;
+    double particle_spacing = 0;               ///< m
+    double support_radius = 0;                 ///< m
+    double rest_density = 0;                   ///< kg/m3
+    double friction_coefficient = 0;           ///< on the ground
+    double building_friction_coefficient = 0;  ///< on walls and roofs
     double internal_friction_coefficient = 0;
     double viscosity = 0;            ///< XSPH smoothing per 1/60 s
     double kinematic_viscosity = 0;  ///< m2/s, the same thing at this support radius

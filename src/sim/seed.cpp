@@ -110,28 +110,29 @@ void creep(const Model& model, State& state, int most_rounds, const Done& done) 
 }
 
 /// Brings the seeded lattice to rest: first pushed apart, without gravity, until it is nowhere denser than rest; then
-/// loaded by gravity on ground too rough to slide on, until it carries its own weight. Without the second part friction
-/// would find no pressure to work with in the first steps, and the mass would start with a jolt.
+/// loaded by gravity until it carries its own weight, in steps so short that a slope steeper than its friction angle
+/// hardly moves meanwhile. Without the second part friction would find no pressure to work with in the first steps, and
+/// the mass would start with a jolt.
 void relax(const Model& model, State& state) {
     constexpr double dense_enough = 0.005;
-    constexpr int most_rounds = 400, loading_rounds = 80;
+    constexpr int most_rounds = 400, loading_rounds = 200;
     Model still = model;
     still.viscosity = 0;
     for (ReleaseGroup& release : still.releases) release.start_time = 0;
 
     still.solver.depenetration_speed = 1e3;  // without inertia nothing can fly apart
     still.gravity = 0;
-    still.friction_coefficient = still.internal_friction_coefficient = 0;
+    still.friction_coefficient = still.building_friction_coefficient = still.internal_friction_coefficient = 0;
     still.solver.internal_friction = InternalFriction::pair;
     state.time_step = model.solver.largest_time_step;
     creep(still, state, most_rounds, [](const State& s) { return s.max_compression < dense_enough; });
 
-    constexpr double rough = 10;
     still.gravity = model.gravity;
     still.internal_friction_coefficient = model.internal_friction_coefficient;
     still.solver.internal_friction = model.solver.internal_friction;
-    still.friction_coefficient = rough;
-    state.time_step = model.solver.largest_time_step;
+    still.friction_coefficient = model.friction_coefficient;
+    still.building_friction_coefficient = model.building_friction_coefficient;
+    state.time_step = model.solver.largest_time_step / 4;
     creep(still, state, loading_rounds, [](const State&) { return false; });
     state.time = 0;
     state.step = 0;
@@ -151,13 +152,17 @@ Model make_model(const MaterialSpec& material, const SolverSpec& solver, Terrain
     model.support_radius = solver.support_ratio * particle_spacing;
     model.rest_density = material.rest_density;
     model.friction_coefficient = material.friction_coefficient;
+    model.building_friction_coefficient =
+        material.building_friction_coefficient.value_or(material.friction_coefficient);
     model.internal_friction_coefficient =
         material.internal_friction_coefficient.value_or(material.friction_coefficient);
     model.solver = solver;
     model.kernel = make_kernel(solver.kernel, particle_spacing, model.support_radius);
     model.boundary = BoundaryTable(model.kernel, particle_spacing);
-    model.viscosity = material.viscosity;
-    model.kinematic_viscosity = kinematic_viscosity(material.viscosity, model.kernel.second_moment);
+    model.viscosity = material.kinematic_viscosity
+                          ? smoothing_viscosity(*material.kinematic_viscosity, model.kernel.second_moment)
+                          : material.viscosity;
+    model.kinematic_viscosity = kinematic_viscosity(model.viscosity, model.kernel.second_moment);
     model.solids = BuildingSolids(terrain, buildings, model.support_radius);
     model.buildings = std::move(buildings);
     model.terrain = std::move(terrain);

@@ -13,15 +13,16 @@ enum class Stage {
     warm_start,
     solve_density,
     solve_contacts,
+    undo_overlaps,
     enforce_boundaries,
     update_velocities,
     apply_viscosity,
     remove_left,
     observe,
 };
-inline constexpr int stage_count = 10;
+inline constexpr int stage_count = 11;
 inline constexpr std::array<std::string_view, stage_count> stage_names = {
-    "predict_positions",  "find_neighbours",   "warm_start",      "solve_density", "solve_contacts",
+    "predict_positions",  "find_neighbours",   "warm_start",      "solve_density", "solve_contacts", "undo_overlaps",
     "enforce_boundaries", "update_velocities", "apply_viscosity", "remove_left",   "observe"};
 
 /// Wall seconds spent per stage since the start.

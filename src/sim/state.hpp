@@ -64,7 +64,6 @@ struct State {
     VectorArray position;           ///< local, m
     VectorArray velocity;           ///< m/s
     std::vector<float> multiplier;  ///< lambda of the density constraint in the last step, <= 0, m2 (scales with dt^2)
-    std::vector<float> pressure;    ///< -lambda smoothed over steps, m2
     DeviatorArray stress;           ///< deviatoric part, in the units of lambda
     std::vector<std::uint32_t> id;
     std::vector<std::uint8_t> held;  ///< 1: its release has not started
@@ -73,7 +72,6 @@ struct State {
         position.resize(n);
         velocity.resize(n);
         multiplier.resize(n);
-        pressure.resize(n);
         stress.resize(n);
         id.resize(n);
         held.resize(n);

@@ -16,10 +16,13 @@ void step(Backend& backend, const Model& model, State& state, StageTimes& times)
     timed(Stage::predict_positions, [&] { backend.predict_positions(model, state); });
     timed(Stage::find_neighbours, [&] { backend.find_neighbours(model, state); });
     timed(Stage::warm_start, [&] { backend.warm_start(model, state); });
+    // The shear of the first iteration must already know what the ground holds back.
+    timed(Stage::solve_contacts, [&] { backend.solve_contacts(model, state); });
     for (int iteration = 0; iteration < model.solver.iteration_count; ++iteration) {
         timed(Stage::solve_density, [&] { backend.solve_density(model, state); });    // density and internal friction
         timed(Stage::solve_contacts, [&] { backend.solve_contacts(model, state); });  // ground, buildings, friction
     }
+    timed(Stage::undo_overlaps, [&] { backend.undo_overlaps(model, state); });  // moves particles, adds no velocity
     timed(Stage::enforce_boundaries, [&] { backend.enforce_boundaries(model, state); });
     timed(Stage::update_velocities, [&] { backend.update_velocities(model, state); });  // v = (x* - x) / dt
     timed(Stage::apply_viscosity, [&] { backend.apply_viscosity(model, state); });

@@ -152,7 +152,9 @@ void BuildingSolids::split_walls() {
                 }
             }
             std::sort(cuts.begin(), cuts.end());
-            cuts.erase(std::unique(cuts.begin(), cuts.end()), cuts.end());
+            // Two solids that meet the wall at one place give two cuts that differ by rounding: no piece lies between.
+            const auto same = [&](double a, double b) { return (b - a) * length <= touching; };
+            cuts.erase(std::unique(cuts.begin(), cuts.end(), same), cuts.end());
             for (std::size_t c = 0; c + 1 < cuts.size(); ++c) {
                 Edge piece{edge.ax + cuts[c] * dx, edge.ay + cuts[c] * dy, edge.ax + cuts[c + 1] * dx,
                            edge.ay + cuts[c + 1] * dy, -infinity};

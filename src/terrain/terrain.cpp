@@ -7,12 +7,15 @@
 namespace talus {
 namespace {
 
-/// Slope between the neighbours of a node, or on one side where the other has no data; 0 where neither has.
-float difference(float before, float here, float after, float inverse_cell) {
-    if (!std::isnan(before) && !std::isnan(after)) return (after - before) * 0.5F * inverse_cell;
-    if (!std::isnan(after)) return (after - here) * inverse_cell;
-    if (!std::isnan(before)) return (here - before) * inverse_cell;
-    return 0;
+/// Rise over one cell at a node between its neighbours: central, but level at a summit or a bottom and at most twice
+/// that of either side. Where one side has no data the other's; 0 where neither has.
+float rise(float before, float here, float after) {
+    const float back = here - before, ahead = after - here;
+    if (std::isnan(back)) return std::isnan(ahead) ? 0 : ahead;
+    if (std::isnan(ahead)) return back;
+    if (back * ahead <= 0) return 0;
+    const float most = 2 * std::min(std::abs(back), std::abs(ahead));
+    return std::clamp((back + ahead) / 2, -most, most);
 }
 
 }  // namespace
@@ -29,9 +32,7 @@ Terrain::Terrain(Grid<float> elevation) : elevation_(std::move(elevation)) {
     frame_.origin = {(extent.x_min + extent.x_max) / 2, (extent.y_min + extent.y_max) / 2,
                      std::isfinite(lowest) ? lowest : 0.0};
 
-    height_.resize(elevation_.values.size());
-    std::transform(elevation_.values.begin(), elevation_.values.end(), height_.begin(),
-                   [&](float z) { return static_cast<float>(z - frame_.origin.z); });
+    const auto local = [&](std::size_t i) { return static_cast<float>(elevation_.values[i] - frame_.origin.z); };
     stride_ = static_cast<std::size_t>(g.columns);
     last_column_ = g.columns - 1;
     last_row_ = g.rows - 1;
@@ -40,18 +41,15 @@ Terrain::Terrain(Grid<float> elevation) : elevation_(std::move(elevation)) {
     y_first_ = static_cast<float>(-0.5 * last_row_ * g.cell);
     inverse_cell_ = static_cast<float>(1 / g.cell);
 
-    slope_x_.resize(height_.size());
-    slope_y_.resize(height_.size());
+    nodes_.resize(elevation_.values.size());
     constexpr float none = std::numeric_limits<float>::quiet_NaN();
     for (int row = 0; row < g.rows; ++row) {
         for (int column = 0; column < g.columns; ++column) {
             const std::size_t i = g.index(column, row);
-            const float west = column > 0 ? height_[i - 1] : none;
-            const float east = column < last_column_ ? height_[i + 1] : none;
-            const float south = row > 0 ? height_[i - stride_] : none;
-            const float north = row < last_row_ ? height_[i + stride_] : none;
-            slope_x_[i] = difference(west, height_[i], east, inverse_cell_);
-            slope_y_[i] = difference(south, height_[i], north, inverse_cell_);
+            const float west = column > 0 ? local(i - 1) : none, east = column < last_column_ ? local(i + 1) : none;
+            const float south = row > 0 ? local(i - stride_) : none,
+                        north = row < last_row_ ? local(i + stride_) : none;
+            nodes_[i] = {local(i), rise(west, local(i), east), rise(south, local(i), north)};
         }
     }
 }

@@ -159,6 +159,15 @@ await check("plots are drawn", async () => {
     assert.ok(found.different > 50, `${section}: only ${found.different} colours`);
   }
   assert.equal(await page.$$eval("#front svg path.observation", (e) => e.length), 2);
+  // Every run that ended is drawn twice, over chainage as velocity and as arrival, in a colour or dashing of its own.
+  for (const [section, runs] of [["#convergence", 3], ["#sensitivity", 11]]) {
+    const looks = await page.$$eval(`${section} svg.figure path.series`, (paths) => paths.map((path) => {
+      const style = getComputedStyle(path);
+      return `${style.stroke} ${style.strokeDasharray}`;
+    }));
+    assert.equal(looks.length, 2 * runs, section);
+    assert.equal(new Set(looks).size, runs, `${section}: runs that look alike`);
+  }
 });
 
 await check("text in pictures stays inside them", async () => {

@@ -11,7 +11,8 @@ int main(int argc, char** argv) {
         return 2;
     }
     const talus::Scene scene = talus::test::sample_scene();
-    const auto html = talus::render_report(scene, talus::test::sample_result(scene));
+    const talus::RunResult result = talus::test::sample_result(scene);
+    const auto html = talus::render_report(scene, result, talus::test::sample_comparisons(scene, result));
     if (!html) {
         std::fprintf(stderr, "%s\n", html.error().message.c_str());
         return 1;

@@ -150,16 +150,34 @@ TEST(Observer, volumes_and_energies_are_those_of_the_particles) {
     EXPECT_NEAR(row.kinetic_energy, 0.5 * mass * (25 + 0.0025), 1e-3);
     EXPECT_NEAR(row.potential_energy, mass * 9.80665 * 6, 1e-6);
     EXPECT_TRUE(std::isnan(row.front_chainage));
-    state.time = 1;
-    state.mean_compression = 0.02;
-    state.max_compression = 0.3;
-    observer.after_step(model, state, 0);
-    state.mean_compression = state.max_compression = 0;
-    observer.after_step(model, state, 0);
+    EXPECT_EQ(observer.finish(model, state).volume_released, 9 * volume);
+}
+
+TEST(Observer, says_how_far_debris_was_compressed_and_when) {
+    Model model = test::make_model(0.5);
+    State state;
+    test::add_particle(state, {0, 0, 3}, {3, 4, 0});
+    state.seeded = 1;
+    Observer observer(model, state, {}, OutputSpec{}, 1);
+    const auto step = [&](double time_step, double mean, double max) {
+        state.time += time_step;
+        state.time_step = time_step;
+        state.mean_compression = mean;
+        state.max_compression = max;
+        observer.after_step(model, state, 0);
+    };
+    step(0.25, 0.002, 0.02);
+    EXPECT_TRUE(within_compression_limits(observer.finish(model, state)));
+    step(0.5, 0.02, 0.025);
+    step(0.25, 0.005, 0.3);
+    step(1, 0, 0);
     const Observation o = observer.finish(model, state);
-    EXPECT_EQ(o.volume_released, 9 * volume);
     EXPECT_EQ(o.worst_mean_compression, 0.02);
+    EXPECT_EQ(o.worst_mean_time, 0.75);
     EXPECT_EQ(o.worst_max_compression, 0.3);
+    EXPECT_EQ(o.worst_max_time, 1);
+    EXPECT_DOUBLE_EQ(o.compressed_time_share, 0.75 / 2);
+    EXPECT_FALSE(within_compression_limits(o));
 }
 
 TEST(Observer, reports_the_front_as_it_goes) {

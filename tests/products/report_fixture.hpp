@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "scene/comparison.hpp"
 #include "scene/run.hpp"
 #include "scene/scene.hpp"
 
@@ -262,6 +263,8 @@ inline RunResult sample_result(const Scene& scene) {
     }
     o.worst_mean_compression = 0.0066;
     o.worst_max_compression = 0.0249;
+    o.worst_mean_time = 13;
+    o.worst_max_time = 14;
 
     for (std::size_t k = 0; k < result.stage_times.seconds.size(); ++k)
         result.stage_times.seconds[k] = 0.4 + 1.7 * static_cast<double>(k * k % 7);
@@ -278,6 +281,41 @@ inline RunResult sample_result(const Scene& scene) {
     result.kinematic_viscosity = 0.31;
     result.thread_count = 2;
     return result;
+}
+
+/// Made-up variants of the sample: `pace` times as fast as it everywhere.
+inline VariantRun sample_variant(const RunResult& base, const std::string& name, const std::string& override_text,
+                                 double pace) {
+    VariantRun run{{.name = name, .overrides = {override_text}}, base, ""};
+    Observation& o = run.result->observation;
+    o.maps = {};
+    o.timeseries = {};
+    for (FrontSample& f : o.front) {
+        f.front_velocity *= pace;
+        f.arrival_time /= pace;
+    }
+    for (BuildingImpact& b : o.buildings) b.first_hit_time /= pace;
+    run.result->wall_time *= 2;
+    return run;
+}
+
+/// Refinements of which one fails and one is missing, and a sensitivity to more inputs than there are colours.
+inline std::vector<Comparison> sample_comparisons(const Scene& scene, const RunResult& result) {
+    std::vector<VariantRun> refined = {
+        sample_variant(result, "half the time step", "solver.displacement_limit=0.25", 1.02),
+        sample_variant(result, "double the iterations", "solver.iteration_count=8", 0.93),
+        {{.name = "three times the particles", .overrides = {"solver.particle_spacing_m=0.29"}},
+         std::nullopt,
+         "interrupted at t = 12.3 s"}};
+    std::vector<VariantRun> varied;
+    for (int i = 0; i < 10; ++i) {
+        const double friction = 0.3 + 0.02 * i;
+        const std::string value = std::to_string(friction).substr(0, 4);
+        varied.push_back(sample_variant(result, "material.friction_coefficient = " + value,
+                                        "material.friction_coefficient=" + value, 1.8 - 2 * friction));
+    }
+    return {compare(ComparisonKind::convergence, scene, result, refined),
+            compare(ComparisonKind::sensitivity, scene, result, varied)};
 }
 
 }  // namespace talus::test

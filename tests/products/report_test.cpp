@@ -116,7 +116,17 @@ TEST(Report, WarnsOfCompressionAboveEitherLimit) {
     Sample s;
     EXPECT_FALSE(has(report::banners(s.scene, s.result), "banner unconverged"));
     s.result.observation.worst_max_compression = 0.031;
-    EXPECT_TRUE(has(report::banners(s.scene, s.result), "banner unconverged"));
+    s.result.observation.worst_max_time = 12.3;
+    s.result.observation.compressed_time_share = 0.25;
+    const std::string html = report::banners(s.scene, s.result);
+    EXPECT_TRUE(has(html, "banner unconverged"));
+    for (const char* part :
+         {"3.1&nbsp;% at a single particle (at 12.3 s; limit 3&nbsp;%)", "during 25&nbsp;% of the simulated time",
+          "<code>solver.iteration_count</code> (now 4)", "solver.displacement_limit"}) {
+        EXPECT_TRUE(has(html, part)) << part;
+    }
+    s.scene.spec.solver.time_step = 0.01;
+    EXPECT_TRUE(has(report::banners(s.scene, s.result), "lower <code>solver.time_step_s</code>"));
     s.result.observation.worst_max_compression = 0.02;
     s.result.observation.worst_mean_compression = 0.011;
     EXPECT_TRUE(has(report::banners(s.scene, s.result), "Not converged"));

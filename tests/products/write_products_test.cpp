@@ -311,7 +311,7 @@ TEST_F(Products, ManifestWritesNullForWhatDoesNotExist) {
     const TemporaryFolder folder;
     RunResult result = *result_;
     result.observation.run_out = {};
-    ASSERT_TRUE(write_manifest(*scene_, result, folder.path()).ok());
+    ASSERT_TRUE(write_manifest(*scene_, result, {}, folder.path()).ok());
     const json m = json::parse(test::read_text(folder.path() / "manifest.json"));
     EXPECT_TRUE(m["results"]["runout_angle_deg"].is_null());
 }
@@ -320,7 +320,7 @@ TEST_F(Products, ManifestSurvivesNamesThatAreNotUtf8) {
     const TemporaryFolder folder;
     Scene scene = *scene_;
     scene.releases[0].name = "Gr\xfcn";
-    ASSERT_TRUE(write_manifest(scene, *result_, folder.path()).ok());
+    ASSERT_TRUE(write_manifest(scene, *result_, {}, folder.path()).ok());
     EXPECT_TRUE(json::accept(test::read_text(folder.path() / "manifest.json")));
 }
 

@@ -109,7 +109,8 @@ TEST(SceneScripts, MakeExactlyTheCommittedFiles) {
         const std::string command =
             "/usr/bin/python3 '" + (scenes / scene / script).string() + "' '" + made.string() + "'";
         ASSERT_EQ(std::system(command.c_str()), 0) << command;
-        for (const char* file : {"release.geojson", "buildings.geojson", "flow_path.geojson"}) {
+        for (const char* file : {"release.geojson", "release_lower.geojson", "release_long.geojson",
+                                 "release_wide.geojson", "buildings.geojson", "flow_path.geojson"}) {
             EXPECT_EQ(test::read_text(made / file), test::read_text(scenes / scene / file)) << scene << "/" << file;
         }
         if (scene == "sham_tseng") {

@@ -68,11 +68,15 @@ void expect_momentum_kept(InternalFriction friction) {
         return sum;
     };
     const Vec3<double> before = momentum();
-    for (int i = 0; i < 10; ++i) step(backend, model, state, times);
+    double compression = 0;
+    for (int i = 0; i < 10; ++i) {
+        step(backend, model, state, times);
+        compression = std::max(compression, state.mean_compression);
+    }
     const Vec3<double> change = momentum() - before;
     EXPECT_EQ(state.count, 800u);
     EXPECT_LT(length(change) / state.count, 1e-5) << "m/s per particle";
-    EXPECT_GT(state.mean_compression, 0.01) << "nothing pressed: the test would show nothing";
+    EXPECT_GT(compression, 0.01) << "nothing pressed: the test would show nothing";
 }
 
 TEST(ParticleCorrections, conserve_momentum_with_stresses) {

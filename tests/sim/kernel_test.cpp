@@ -4,6 +4,7 @@
 
 #include "sim/physics/boundary_table.hpp"
 #include "sim/physics/viscosity.hpp"
+#include "sim/seed.hpp"
 
 namespace talus {
 namespace {
@@ -93,10 +94,20 @@ TEST(BoundaryTable, is_half_its_full_share_on_the_plane_and_nothing_beyond_the_s
     EXPECT_EQ(table.at(std::nan("")).density, 0) << "ground without data presses on nothing";
 }
 
-TEST(Viscosity, smoothing_compounds_to_the_same_over_any_step_length) {
-    const double whole = step_smoothing(0.1, 1.0 / 60), half = step_smoothing(0.1, 1.0 / 120);
-    EXPECT_NEAR(whole, 0.1, 1e-12);
-    EXPECT_NEAR((1 - half) * (1 - half), 1 - whole, 1e-12);
+TEST(Viscosity, smoothing_is_proportional_to_the_step_and_never_overshoots) {
+    EXPECT_NEAR(step_smoothing(0.1, 1.0 / 60), 0.1, 1e-12);
+    EXPECT_NEAR(step_smoothing(0.1, 1.0 / 240), 0.025, 1e-12);
+    EXPECT_EQ(step_smoothing(0.9, 1.0 / 20), 1);
+}
+
+TEST(Viscosity, may_be_given_as_kinematic_and_is_then_the_same_at_every_spacing) {
+    MaterialSpec material;
+    material.kinematic_viscosity = 0.05;
+    const Terrain flat(Grid<float>(GridGeometry{0, 0, 1, 4, 4}, 0.0F));
+    const Model coarse = make_model(material, {}, flat, {}, 0.4), fine = make_model(material, {}, flat, {}, 0.2);
+    EXPECT_NEAR(coarse.kinematic_viscosity, 0.05, 1e-12);
+    EXPECT_NEAR(fine.kinematic_viscosity, 0.05, 1e-12);
+    EXPECT_NEAR(fine.viscosity / coarse.viscosity, 4, 1e-9);
 }
 
 TEST(Viscosity, converts_to_a_kinematic_viscosity_and_back) {

@@ -14,58 +14,6 @@ using testing::inclined_plane;
 using testing::rectangle;
 using testing::simulate;
 
-/// Acceleration down the slope of the middle of a wide slab, m/s2, from 0.2 to 1 s. Its rim spreads, its middle is
-/// what the law of the sliding slab speaks of.
-double slab_acceleration(double degrees, double friction, double time_step) {
-    const Terrain terrain = inclined_plane(degrees, 60, 40);
-    MaterialSpec material;
-    material.friction_coefficient = friction;
-    material.internal_friction_coefficient = 1;  // a slab, not a flow
-    material.viscosity = 0;
-    SolverSpec solver;
-    solver.time_step = time_step;
-    const Polygon outline = rectangle(8, 8, 32, 32);
-    Simulation simulation = simulate(material, solver, terrain, {block(terrain, outline, 0.9)}, 0.3);
-    const LocalFrame& frame = simulation.model().terrain.frame();
-    std::vector<bool> middle(simulation.state().seeded);
-    for (std::uint32_t i = 0; i < simulation.state().count; ++i) {
-        const WorldPoint p = frame.to_world(simulation.state().position.at(i));
-        middle[simulation.state().id[i]] = std::abs(p.x - 20) < 3 && std::abs(p.y - 20) < 3;
-    }
-    const auto speed = [&] {
-        double sum = 0;
-        int count = 0;
-        for (std::uint32_t i = 0; i < simulation.state().count; ++i) {
-            if (!middle[simulation.state().id[i]]) continue;
-            const LocalPoint v = simulation.state().velocity.at(i);
-            const double angle = degrees * M_PI / 180;
-            sum += v.x * std::cos(angle) - v.z * std::sin(angle);
-            ++count;
-        }
-        return sum / count;
-    };
-    const auto run_until = [&](double time) {
-        while (simulation.state().time < time - 1e-9) simulation.advance();
-        return simulation.state().time;
-    };
-    const double t0 = run_until(0.2), v0 = speed();
-    const double t1 = run_until(1.0), v1 = speed();
-    return (v1 - v0) / (t1 - t0);
-}
-
-/// Slope in degrees and friction coefficient.
-class SlidingSlab : public ::testing::TestWithParam<std::pair<double, double>> {};
-
-TEST_P(SlidingSlab, accelerates_as_coulomb_friction_says) {
-    const auto [degrees, friction] = GetParam();
-    const double angle = degrees * M_PI / 180;
-    const double expected = 9.80665 * (std::sin(angle) - friction * std::cos(angle));
-    EXPECT_NEAR(slab_acceleration(degrees, friction, 1.0 / 60) / expected, 1, 0.01);
-}
-
-INSTANTIATE_TEST_SUITE_P(Slopes, SlidingSlab,
-                         ::testing::Values(std::pair{30.0, 0.4}, std::pair{25.0, 0.2}, std::pair{40.0, 0.6}));
-
 TEST(MechanicalEnergy, never_grows_on_rough_ground) {
     const Terrain terrain = testing::terrain_of(80, 40, 1, [](double x, double y) {
         return 60 - 0.6 * x + 0.5 * std::sin(0.9 * x) * std::cos(0.7 * y) + 0.02 * (y - 20) * (y - 20);
@@ -144,6 +92,32 @@ TEST(Boundaries, a_thin_wall_holds_what_is_thrown_at_it) {
     EXPECT_FALSE(simulation.state().building_contacts.empty());
 }
 
+TEST(Boundaries, walls_rub_with_their_own_friction_where_it_is_set_apart) {
+    const Terrain terrain = testing::terrain_of(20, 20, 1, [](double, double) { return 0; });
+    Building wall;
+    wall.footprint = {rectangle(12, 0, 14, 20)};  // its face at local x = 2
+    wall.height = 10;
+    std::vector<Building> buildings{wall};
+    place_buildings(terrain, buildings);
+    // A particle 0.01 m clear of touching the wall wants 0.03 m towards it and 0.05 m along it: a push of 0.02 m.
+    const auto moved_along = [&](std::optional<double> building_friction) {
+        MaterialSpec material;
+        material.friction_coefficient = 0.6;
+        material.building_friction_coefficient = building_friction;
+        const Model model = make_model(material, {}, terrain, buildings, 0.4);
+        ContactMemory<double> ground, contact;
+        int touched = -1;
+        const Vec3<double> end = resolve_contacts<double>(model, sample_boundary<double>(model, {1.79, 0, 5}), {},
+                                                          {0.03, 0.05, 0}, 0, 0, ground, contact, touched);
+        EXPECT_EQ(touched, 0);
+        EXPECT_NEAR(end.x, 0.01, 1e-6);
+        return end.y;
+    };
+    EXPECT_NEAR(moved_along(0), 0.05, 1e-6);
+    EXPECT_NEAR(moved_along(0.25), 0.05 - 0.25 * 0.02, 1e-6);
+    EXPECT_NEAR(moved_along(std::nullopt), 0.05 - 0.6 * 0.02, 1e-6) << "equal to the ground's unless set apart";
+}
+
 TEST(MassBalance, counts_what_leaves_the_terrain) {
     const Terrain terrain = inclined_plane(40, 24, 24);
     MaterialSpec material;
@@ -176,16 +150,21 @@ TEST(Determinism, the_result_hash_is_the_same_on_1_2_and_4_threads) {
     EXPECT_EQ(hash_on_threads(4), one);
 }
 
-TEST(TimeStep, keeps_a_particle_from_moving_more_than_half_a_spacing) {
+TEST(TimeStep, keeps_a_particle_from_moving_more_than_the_displacement_limit) {
     const Terrain terrain = inclined_plane(45, 80, 40);
     MaterialSpec material;
     material.friction_coefficient = 0.05;
-    Simulation simulation = simulate(material, {}, terrain, {block(terrain, rectangle(5, 15, 11, 21), 0.8)}, 0.4);
-    while (simulation.state().time < 2.5) {
-        ASSERT_FALSE(simulation.advance());
-        EXPECT_LE(simulation.state().largest_speed * simulation.state().time_step, 0.5 * 0.4 * 1.1);
+    SolverSpec solver;
+    for (const double limit : {0.5, 0.2}) {
+        solver.displacement_limit = limit;
+        Simulation simulation =
+            simulate(material, solver, terrain, {block(terrain, rectangle(5, 15, 11, 21), 0.8)}, 0.4);
+        while (simulation.state().time < 2.5) {
+            ASSERT_FALSE(simulation.advance());
+            EXPECT_LE(simulation.state().largest_speed * simulation.state().time_step, limit * 0.4 * 1.1);
+        }
+        EXPECT_LT(simulation.state().time_step, 1.0 / 60) << "never fast enough to matter";
     }
-    EXPECT_LT(simulation.state().time_step, 1.0 / 60) << "never fast enough to matter";
 }
 
 TEST(Fault, names_the_time_and_the_parameter_to_change) {

@@ -128,6 +128,22 @@ double box_distance(const Vec& p, const Vec& low, const Vec& high) {
     return length(outside);
 }
 
+TEST(BuildingSolids, walls_that_meet_others_at_their_corners_are_there_all_along) {
+    // The corners of a yard of four walls: every wall's end is met by two edges of another, at places that rounding
+    // sets a hair apart.
+    const double half = 6, half_width = 3 * 0.3, end = 8.4, side = 3.3;
+    const BuildingSolids solids(level_ground(),
+                                {building({{rectangle(-end, half_width, end, side), {}}}, 7),
+                                 building({{rectangle(-end, -side, end, -half_width), {}}}, 7),
+                                 building({{rectangle(-end, -side, -half, side), {}}}, 7),
+                                 building({{rectangle(half, -side, end, side), {}}}, 7)},
+                                0.66);
+    for (double x = -5.8; x < 5.85; x += 0.1) {
+        expect_sample(solids, {x, 0.752, 0.44}, 0, half_width - 0.752, {0, -1, 0});
+        expect_sample(solids, {x, -0.752, 0.44}, 1, half_width - 0.752, {0, 1, 0});
+    }
+}
+
 TEST(BuildingSolids, random_overlapping_boxes_agree_with_brute_force) {
     std::mt19937 random(5);
     std::uniform_real_distribution<double> at(-40, 40), size(2, 15), roof(2, 10), z(-1, 13);

@@ -10,8 +10,6 @@
 namespace talus::cpu {
 namespace {
 
-constexpr std::size_t particle_grain = 256;
-
 /// Start time of the release that a particle belongs to.
 double start_time_of(const Model& model, std::uint32_t id) {
     for (const ReleaseGroup& release : model.releases) {
@@ -27,7 +25,9 @@ Backend::Backend(const Model& model, std::size_t capacity)
       scale_(model.kernel),
       cell_sort_(capacity),
       neighbours_(capacity, sums_),
+      boundary_(capacity),
       multiplier_change_(capacity),
+      constraint_(capacity),
       compression_(capacity),
       tolerated_compression_(capacity),
       ground_contact_(capacity),
@@ -37,14 +37,14 @@ Backend::Backend(const Model& model, std::size_t capacity)
       float_scratch_(capacity),
       id_scratch_(capacity),
       byte_scratch_(capacity) {
-    for (VectorArray* array : {&displacement_, &displacement_next_, &predicted_, &ground_gradient_, &building_gradient_,
-                               &ground_friction_, &building_friction_, &vector_scratch_}) {
+    for (VectorArray* array : {&displacement_, &shift_, &predicted_, &sampled_at_, &ground_gradient_,
+                               &building_gradient_, &ground_friction_, &building_friction_, &vector_scratch_}) {
         array->resize(capacity);
     }
     packed_points_.resize(capacity);
     packed_vectors_.resize(capacity);
-    stress_start_.resize(capacity);
-    stress_change_.resize(capacity);
+    packed_rows_.resize(capacity);
+    packed_rest_.resize(capacity);
     grid_.key.reserve(capacity);
     grid_.start.reserve(capacity + 1);
 }
@@ -92,7 +92,6 @@ void Backend::reorder(State& state, std::span<const std::uint32_t> order) {
     gather_vectors(displacement_);
     gather_vectors(predicted_);
     gather(state.multiplier, float_scratch_);
-    gather(state.pressure, float_scratch_);
     for (auto* component : {&state.stress.xx, &state.stress.yy, &state.stress.xy, &state.stress.xz, &state.stress.yz}) {
         gather(*component, float_scratch_);
     }
@@ -106,115 +105,25 @@ void Backend::pack(const VectorArray& from, std::size_t count, Packed& to) const
     });
 }
 
-/// Reads off the positions that the step starts from: the pair gradients along which what persists acts, and the
-/// compression that is already there. That may be undone only slowly, since a correction turns into velocity: the
-/// density constraint tolerates the rest.
-void Backend::measure_start(const Model& model, const State& state) {
-    const auto undone = static_cast<float>(model.solver.depenetration_speed * state.time_step / model.particle_spacing);
-    pack(state.position, state.count, packed_points_);
-    parallel_ranges(state.count, particle_grain, [&](std::size_t first, std::size_t last) {
-        for (std::size_t i = first; i < last; ++i) {
-            const float density = sums_.density(scale_, neighbours_.pairs_of(i), packed_points_, i).density;
-            const auto boundary = boundary_density(model, sample_boundary(model, state.position.at(i)));
-            ground_gradient_.set(i, boundary.ground_gradient);
-            building_gradient_.set(i, boundary.building_gradient);
-            tolerated_compression_[i] = std::max(0.0f, density + boundary.density - 1 - undone);
-        }
-    });
+bool Backend::keeps_stress(const Model& model) {
+    return model.solver.internal_friction == InternalFriction::stress;
 }
 
-/// What persists is a starting guess. Multipliers and stresses are pressures times dt^2, so they scale with the step.
 void Backend::warm_start(const Model& model, State& state) {
-    const bool keeps_stress = model.solver.internal_friction == InternalFriction::stress;
-    const double ratio = state.previous_time_step > 0 ? state.time_step / state.previous_time_step : 0;
-    const auto scale = static_cast<float>(keeps_stress ? ratio * ratio : 0);
-    state.previous_time_step = state.time_step;
-    measure_start(model, state);
-    parallel_ranges(state.count, particle_grain, [&](std::size_t first, std::size_t last) {
-        for (std::size_t i = first; i < last; ++i) {
-            // Debris that is held keeps what it carries, ready for its start, and presses on nothing.
-            const float kept = state.held[i] ? 1.0f : static_cast<float>(StressConstants::warm_start);
-            state.multiplier[i] *= scale * kept;
-            state.pressure[i] *= scale;
-            const Deviator<float> stress = state.stress.at(i) * scale;
-            state.stress.set(i, stress);
-            stress_start_.set(i, stress);
-            stress_change_.set(i, state.held[i] ? Deviator<float>{} : stress);
-            multiplier_change_[i] = state.held[i] ? 0.0f : state.multiplier[i];
-        }
-    });
-    if (!keeps_stress) return;
-    apply_stress_changes(state);
-    std::swap(displacement_, displacement_next_);
-    parallel_ranges(state.count, particle_grain, [&](std::size_t first, std::size_t last) {
-        for (std::size_t i = first; i < last; ++i) {
-            predicted_.set(i, state.position.at(i) + displacement_.at(i));
-        }
-    });
+    if (keeps_stress(model)) {
+        warm_start_stress(model, state);
+    } else {
+        start_pairs(model, state);
+    }
 }
 
 void Backend::solve_density(const Model& model, State& state) {
-    if (model.solver.internal_friction == InternalFriction::stress) {
-        update_multipliers<InternalFriction::stress>(model, state);
-        apply_stress_changes(state);
+    if (keeps_stress(model)) {
+        solve_stress(model, state);
     } else {
-        update_multipliers<InternalFriction::pair>(model, state);
-        apply_pair_corrections(model, state);
+        solve_pairs(model, state);
     }
     measure_compression(state);
-}
-
-/// Eqs. (1) and (2): the density constraint G and its multiplier lambda, unilateral: debris resists compression only.
-/// With stresses also the shear of this step and the stress that answers it: elastic from the step's start, then
-/// limited by friction.
-template <InternalFriction friction>
-void Backend::update_multipliers(const Model& model, State& state) {
-    constexpr bool keeps_stress = friction == InternalFriction::stress;
-    const float softness = static_cast<float>(model.solver.constraint_relaxation * model.kernel.rest_gradient_sum);
-    const auto under_relaxation = static_cast<float>(model.solver.under_relaxation);
-    const auto internal_friction = static_cast<float>(model.internal_friction_coefficient);
-    pack(predicted_, state.count, packed_points_);
-    pack(displacement_, state.count, packed_vectors_);
-
-    parallel_ranges(state.count, particle_grain, [&](std::size_t first, std::size_t last) {
-        for (std::size_t i = first; i < last; ++i) {
-            if (state.held[i]) {
-                multiplier_change_[i] = 0;
-                stress_change_.set(i, {});
-                compression_[i] = 0;
-                continue;
-            }
-            const DensitySums sums =
-                sums_.density_and_deformation(scale_, neighbours_.pairs_of(i), packed_points_, packed_vectors_, i);
-            const auto boundary = boundary_density(model, sample_boundary(model, predicted_.at(i)));
-            ground_gradient_.set(i, boundary.ground_gradient);
-            building_gradient_.set(i, boundary.building_gradient);
-            const Vec3<float> gradient = sums.gradient + boundary.ground_gradient + boundary.building_gradient;
-            const float pair_square = sums.square + softness;
-            const float constraint = sums.density + boundary.density - 1;
-            const float gradient_square = pair_square + dot(gradient, gradient);
-            const float before = state.multiplier[i];
-            const float after =
-                gradient_square > 0
-                    ? std::min(0.0f,
-                               before - under_relaxation * (constraint - tolerated_compression_[i]) / gradient_square)
-                    : before;
-            state.multiplier[i] = after;
-            multiplier_change_[i] = after - before;
-            compression_[i] = std::max(0.0f, constraint);
-
-            if constexpr (keeps_stress) {
-                Deviator<float> stress = stress_start_.at(i);
-                if (pair_square > 0) {
-                    const float stiffness = static_cast<float>(StressConstants::stiffness) / pair_square;
-                    stress = stress + sums.deformation.shear() * stiffness;
-                }
-                stress = limit_to_friction(stress, internal_friction, state.pressure[i]);
-                stress_change_.set(i, stress - state.stress.at(i));
-                state.stress.set(i, stress);
-            }
-        }
-    });
 }
 
 void Backend::measure_compression(State& state) {
@@ -238,68 +147,43 @@ void Backend::measure_compression(State& state) {
     state.max_compression = compression.greatest;
 }
 
-/// Eq. (3) with the full stress: x_i += sum_j [(d lambda_i + d lambda_j) I + ds_i + ds_j] V grad W, equal and opposite
-/// for the two particles of a pair.
-void Backend::apply_stress_changes(const State& state) {
-    parallel_ranges(state.count, 4096, [&](std::size_t first, std::size_t last) {
-        for (std::size_t i = first; i < last; ++i) {
-            const float pressure = multiplier_change_[i];
-            const Deviator<float> s = stress_change_.at(i);
-            packed_points_[i] = {pressure + s.xx, s.xy, s.xz, pressure + s.yy};
-            packed_vectors_[i] = {s.yz, pressure - s.xx - s.yy, 0, 0};
-        }
-    });
-    parallel_ranges(state.count, particle_grain, [&](std::size_t first, std::size_t last) {
-        for (std::size_t i = first; i < last; ++i) {
-            Vec3<float> moved = displacement_.at(i);
-            if (!state.held[i]) {
-                moved += (ground_gradient_.at(i) + building_gradient_.at(i)) * multiplier_change_[i] +
-                         sums_.stress_correction(neighbours_.pairs_of(i), packed_points_, packed_vectors_, i);
-            }
-            displacement_next_.set(i, moved);
-        }
-    });
-}
-
-/// Eqs. (3) and (4) as published: pairs pressed together rub against each other. Equal and opposite as well.
-void Backend::apply_pair_corrections(const Model& model, const State& state) {
-    const auto cap = static_cast<float>(pair_friction_cap(model.internal_friction_coefficient));
-    pack(predicted_, state.count, packed_points_);  // again: multipliers have changed
-    parallel_ranges(state.count, particle_grain, [&](std::size_t first, std::size_t last) {
-        for (std::size_t i = first; i < last; ++i) {
-            Vec3<float> moved = displacement_.at(i);
-            if (!state.held[i]) {
-                moved +=
-                    (ground_gradient_.at(i) + building_gradient_.at(i)) * multiplier_change_[i] +
-                    sums_.pair_correction(scale_, neighbours_.pairs_of(i), packed_points_, packed_vectors_, cap, i);
-            }
-            displacement_next_.set(i, moved);
-        }
-    });
-}
-
 /// Contact with ground and buildings, and the basal part of eq. (4).
 void Backend::solve_contacts(const Model& model, State& state) {
-    const auto depenetration = static_cast<float>(model.solver.depenetration_speed * state.time_step);
     parallel_ranges(state.count, particle_grain, [&](std::size_t first, std::size_t last) {
         for (std::size_t i = first; i < last; ++i) {
             if (state.held[i]) continue;
             ContactMemory<float> ground{ground_contact_[i], ground_friction_.at(i)};
             ContactMemory<float> wall{building_contact_[i], building_friction_.at(i)};
-            const float ground_push = -state.multiplier[i] * length(ground_gradient_.at(i));
-            const float building_push = -state.multiplier[i] * length(building_gradient_.at(i));
+            const float ground_push = boundary_push(state.multiplier[i], ground_gradient_.at(i));
+            const float building_push = boundary_push(state.multiplier[i], building_gradient_.at(i));
             const Vec3<float> start = state.position.at(i);
-            const Vec3<float> displacement = resolve_contacts(model, start, displacement_next_.at(i), depenetration,
-                                                              ground_push, building_push, ground, wall, building_[i]);
+            const Vec3<float> displacement =
+                resolve_contacts(model, boundary_[i], sampled_at_.at(i), displacement_.at(i), ground_push,
+                                 building_push, ground, wall, building_[i]);
             ground_contact_[i] = ground.normal;
             ground_friction_.set(i, ground.friction);
             building_contact_[i] = wall.normal;
             building_friction_.set(i, wall.friction);
-            displacement_next_.set(i, displacement);
+            displacement_.set(i, displacement);
             predicted_.set(i, start + displacement);
         }
     });
-    std::swap(displacement_, displacement_next_);
+}
+
+/// What overlaps is moved apart, and its velocity left alone: debris that is too dense, debris that touches ground or
+/// walls too closely.
+void Backend::undo_overlaps(const Model& model, State& state) {
+    const bool spreads = keeps_stress(model);
+    if (spreads) spread(model, state);
+    const auto most = static_cast<float>(model.particle_spacing / 4);
+    parallel_ranges(state.count, particle_grain, [&](std::size_t first, std::size_t last) {
+        for (std::size_t i = first; i < last; ++i) {
+            Vec3<float> shift = spreads && !state.held[i] ? shift_.at(i) : Vec3<float>{};
+            if (!state.held[i]) shift += undo_overlap(model, predicted_.at(i), most);
+            const float size = length(shift);
+            shift_.set(i, size > most ? shift * (most / size) : shift);
+        }
+    });
 }
 
 void Backend::enforce_boundaries(const Model& model, State& state) {
@@ -309,7 +193,7 @@ void Backend::enforce_boundaries(const Model& model, State& state) {
             const Vec3<float> start = state.position.at(i), displacement = displacement_.at(i);
             const Vec3<float> wanted = start + displacement;
             const Vec3<float> end = free_end(model, start, displacement);
-            predicted_.set(i, end);
+            predicted_.set(i, free_end(model, end, shift_.at(i)));
             if (end.x == wanted.x && end.y == wanted.y && end.z == wanted.z) continue;
             // What puts a particle back above ground must not speed it up.
             const Vec3<float> moved = end - start;
@@ -321,7 +205,6 @@ void Backend::enforce_boundaries(const Model& model, State& state) {
 
 void Backend::update_velocities(const Model& model, State& state) {
     const auto inverse_dt = static_cast<float>(1 / state.time_step);
-    constexpr auto smoothing = static_cast<float>(StressConstants::pressure_smoothing);
     state.largest_speed = reduce_ranges(
         state.count, 4096, 0.0f,
         [&](std::size_t first, std::size_t last, float largest) {
@@ -330,7 +213,6 @@ void Backend::update_velocities(const Model& model, State& state) {
                 const Vec3<float> velocity = displacement_.at(i) * inverse_dt;
                 state.velocity.set(i, velocity);
                 state.position.set(i, predicted_.at(i));
-                state.pressure[i] += smoothing * (-state.multiplier[i] - state.pressure[i]);
                 const float speed = length(velocity);
                 // A NaN must win, or it would go unseen.
                 largest = std::isnan(largest) || speed <= largest ? largest : speed;
@@ -344,7 +226,7 @@ void Backend::update_velocities(const Model& model, State& state) {
     const double mass = model.particle_mass();
     for (std::uint32_t i = 0; i < state.count; ++i) {
         if (building_[i] < 0) continue;
-        const float normal = building_contact_[i] - state.multiplier[i] * length(building_gradient_.at(i));
+        const float normal = building_contact_[i] + boundary_push(state.multiplier[i], building_gradient_.at(i));
         if (normal <= 0) continue;
         state.building_contacts.push_back({i, building_[i], static_cast<float>(mass * normal / state.time_step)});
     }
@@ -390,7 +272,6 @@ void Backend::remove_left(const Model& model, State& state) {
         state.position.set(kept, state.position.at(i));
         state.velocity.set(kept, state.velocity.at(i));
         state.multiplier[kept] = state.multiplier[i];
-        state.pressure[kept] = state.pressure[i];
         state.stress.set(kept, state.stress.at(i));
         state.id[kept] = state.id[i];
         state.held[kept] = state.held[i];
@@ -404,7 +285,7 @@ void Backend::remove_left(const Model& model, State& state) {
 
 double choose_time_step(const Model& model, const State& state) {
     if (model.solver.time_step) return *model.solver.time_step;
-    const double reach = model.particle_spacing / 2;
+    const double reach = model.solver.displacement_limit * model.particle_spacing;
     double dt = model.solver.largest_time_step;
     while (dt > model.solver.smallest_time_step && dt * (state.largest_speed + model.gravity * dt) > reach) dt /= 2;
     return dt;

@@ -7,9 +7,13 @@
 #include "sim/cpu/neighbours.hpp"
 #include "sim/cpu/pair_sums.hpp"
 #include "sim/model.hpp"
+#include "sim/physics/density.hpp"
 #include "sim/state.hpp"
 
 namespace talus::cpu {
+
+/// How many particles a task takes at least.
+inline constexpr std::size_t particle_grain = 256;
 
 /// The stages of a step on all cores. Holds what lives within a step only; allocates nothing after construction, except
 /// when debris gets denser than ever before.
@@ -25,6 +29,7 @@ class Backend {
     void warm_start(const Model& model, State& state);
     void solve_density(const Model& model, State& state);
     void solve_contacts(const Model& model, State& state);
+    void undo_overlaps(const Model& model, State& state);
     void enforce_boundaries(const Model& model, State& state);
     void update_velocities(const Model& model, State& state);
     void apply_viscosity(const Model& model, State& state);
@@ -36,14 +41,24 @@ class Backend {
     [[nodiscard]] std::string_view instruction_set() const { return sums_.instruction_set; }
 
   private:
-    template <InternalFriction friction>
-    void update_multipliers(const Model& model, State& state);
+    static bool keeps_stress(const Model& model);
     void pack(const VectorArray& from, std::size_t count, Packed& to) const;
-    void apply_stress_changes(const State& state);
-    void apply_pair_corrections(const Model& model, const State& state);
     void measure_compression(State& state);
-    void measure_start(const Model& model, const State& state);
     void reorder(State& state, std::span<const std::uint32_t> order);
+
+    // A stress per particle that persists between steps (stress_method.cpp).
+    void warm_start_stress(const Model& model, State& state);
+    void solve_stress(const Model& model, State& state);
+    void pack_stress(std::size_t i, float pressure, const Deviator<float>& stress);
+    void apply_stress(const State& state);
+    void linearise(const Model& model, const State& state);
+    void spread(const Model& model, const State& state);
+
+    // Friction per pair, as published (pair_method.cpp).
+    void start_pairs(const Model& model, State& state);
+    void solve_pairs(const Model& model, State& state);
+    void update_pair_multipliers(const Model& model, State& state);
+    void apply_pairs(const Model& model, const State& state);
 
     PairSums sums_;
     PairScale scale_;
@@ -51,13 +66,16 @@ class Backend {
     CellGrid grid_;
     NeighbourLists neighbours_;
 
-    VectorArray displacement_, displacement_next_;  // x* - x
-    VectorArray predicted_;                         // x*
-    std::vector<float> multiplier_change_;          // of lambda in this iteration
-    Packed packed_points_, packed_vectors_;         // what the sums of a pass read of neighbours
-    DeviatorArray stress_start_, stress_change_;    // at the step's start; in this iteration
-    std::vector<float> compression_;                // max(0, G)
-    std::vector<float> tolerated_compression_;      // of what the step started with
+    VectorArray displacement_;                          // x* - x
+    VectorArray sampled_at_;                            // the displacement at which boundary_ was sampled
+    std::vector<BoundarySample<float>> boundary_;       // ground and walls, taken to be plane within the step
+    VectorArray shift_;                                 // undoes overlaps, becomes no velocity
+    VectorArray predicted_;                             // x*
+    std::vector<float> multiplier_change_;              // of lambda in this iteration
+    std::vector<DensityConstraint<float>> constraint_;  // linearised at the predicted positions
+    Packed packed_points_, packed_vectors_, packed_rows_, packed_rest_;  // what the sums of a pass read of neighbours
+    std::vector<float> compression_;                                     // max(0, G)
+    std::vector<float> tolerated_compression_;                           // of what the step started with
     VectorArray ground_gradient_, building_gradient_;
     std::vector<float> ground_contact_, building_contact_;  // accumulated normal corrections of hard contacts, m
     VectorArray ground_friction_, building_friction_;       // accumulated friction corrections, m

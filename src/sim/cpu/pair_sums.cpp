@@ -101,12 +101,12 @@ HWY_INLINE V quotient(const PairScale& scale, V square) {
     return hn::Min(hn::Set(d, 1.0f), hn::Mul(hn::Sqrt(square), hn::Set(d, scale.inverse_radius)));
 }
 
-template <class Kernel, bool deforms>
+template <class Kernel, bool all>
 DensitySums density_sums(const PairScale& scale, const PairList& pairs, const Packed& points,
                          const Packed* displacements, std::size_t i) {
-    const V3 p(points[i]), moved(deforms ? (*displacements)[i] : points[i]);
-    V density = hn::Zero(d), squares = hn::Zero(d);
-    V3 gradient = V3::zero(), deformation_x = V3::zero(), deformation_y = V3::zero(), deformation_z = V3::zero();
+    const V3 p(points[i]), moved(all ? (*displacements)[i] : points[i]);
+    V density = hn::Zero(d), squares = hn::Zero(d), divergence = hn::Zero(d);
+    V3 gradient = V3::zero();
     for_each_vector(pairs, [&](std::size_t k) {
         const V3 separation = p.minus(V3(gather(points, pairs.neighbour + k)));
         const V square = separation.dot(separation);
@@ -117,21 +117,19 @@ DensitySums density_sums(const PairScale& scale, const PairList& pairs, const Pa
         hn::StoreU(pair_gradient.x, d, pairs.gradient_x + k);
         hn::StoreU(pair_gradient.y, d, pairs.gradient_y + k);
         hn::StoreU(pair_gradient.z, d, pairs.gradient_z + k);
-        if constexpr (deforms) {
+        if constexpr (all) {
             squares = hn::MulAdd(hn::Mul(slope, slope), square, squares);
             gradient.add(hn::Set(d, 1.0f), pair_gradient);
             const V3 difference = V3(gather(*displacements, pairs.neighbour + k)).minus(moved);
-            deformation_x.add(difference.x, pair_gradient);
-            deformation_y.add(difference.y, pair_gradient);
-            deformation_z.add(difference.z, pair_gradient);
+            divergence = hn::Add(divergence, difference.dot(pair_gradient));
         }
     });
     DensitySums result;
     result.density = scale.value_scale * (sum(density) + Kernel::value_at_zero());
-    if constexpr (deforms) {
+    if constexpr (all) {
         result.square = sum(squares);
         result.gradient = gradient.total();
-        result.deformation = {deformation_x.total(), deformation_y.total(), deformation_z.total()};
+        result.divergence = sum(divergence);
     }
     return result;
 }
@@ -142,9 +140,28 @@ DensitySums density(const PairScale& scale, const PairList& pairs, const Packed&
 }
 
 template <class Kernel>
-DensitySums density_and_deformation(const PairScale& scale, const PairList& pairs, const Packed& points,
-                                    const Packed& displacements, std::size_t i) {
+DensitySums density_and_divergence(const PairScale& scale, const PairList& pairs, const Packed& points,
+                                   const Packed& displacements, std::size_t i) {
     return density_sums<Kernel, true>(scale, pairs, points, &displacements, i);
+}
+
+/// The pair gradients that density_sums() has left in a list.
+HWY_INLINE V3 kept_gradient(const PairList& pairs, std::size_t k) {
+    return V3(hn::LoadU(d, pairs.gradient_x + k), hn::LoadU(d, pairs.gradient_y + k),
+              hn::LoadU(d, pairs.gradient_z + k));
+}
+
+DisplacementGradient<float> deformation(const PairList& pairs, const Packed& displacements, std::size_t i) {
+    const V3 moved(displacements[i]);
+    V3 x = V3::zero(), y = V3::zero(), z = V3::zero();
+    for_each_vector(pairs, [&](std::size_t k) {
+        const V3 gradient = kept_gradient(pairs, k);
+        const V3 difference = V3(gather(displacements, pairs.neighbour + k)).minus(moved);
+        x.add(difference.x, gradient);
+        y.add(difference.y, gradient);
+        z.add(difference.z, gradient);
+    });
+    return {x.total(), y.total(), z.total()};
 }
 
 Vec3<float> stress_correction(const PairList& pairs, const Packed& stress_rows, const Packed& stress_rest,
@@ -155,13 +172,21 @@ Vec3<float> stress_correction(const PairList& pairs, const Packed& stress_rows, 
     const V own_yy = hn::Set(d, own[3]), own_yz = hn::Set(d, own_rest[0]), own_zz = hn::Set(d, own_rest[1]);
     V3 correction = V3::zero();
     for_each_vector(pairs, [&](std::size_t k) {
-        const V gx = hn::LoadU(d, pairs.gradient_x + k), gy = hn::LoadU(d, pairs.gradient_y + k),
-                gz = hn::LoadU(d, pairs.gradient_z + k);
+        const V3 gradient = kept_gradient(pairs, k);
         const V4 rows = gather(stress_rows, pairs.neighbour + k), rest = gather(stress_rest, pairs.neighbour + k);
         const V xy = hn::Add(own_xy, rows.y), xz = hn::Add(own_xz, rows.z), yz = hn::Add(own_yz, rest.x);
-        correction.add(gx, V3(hn::Add(own_xx, rows.x), xy, xz));
-        correction.add(gy, V3(xy, hn::Add(own_yy, rows.w), yz));
-        correction.add(gz, V3(xz, yz, hn::Add(own_zz, rest.y)));
+        correction.add(gradient.x, V3(hn::Add(own_xx, rows.x), xy, xz));
+        correction.add(gradient.y, V3(xy, hn::Add(own_yy, rows.w), yz));
+        correction.add(gradient.z, V3(xz, yz, hn::Add(own_zz, rest.y)));
+    });
+    return correction.total();
+}
+
+Vec3<float> scalar_correction(const PairList& pairs, const Packed& scalars, std::size_t i) {
+    const V own = hn::Set(d, scalars[i][3]);
+    V3 correction = V3::zero();
+    for_each_vector(pairs, [&](std::size_t k) {
+        correction.add(hn::Add(own, gather(scalars, pairs.neighbour + k).w), kept_gradient(pairs, k));
     });
     return correction.total();
 }
@@ -234,8 +259,10 @@ std::size_t select_near(const Coordinates& points, std::uint32_t first, std::uin
 template <class Kernel>
 PairSums table_of() {
     return {density<Kernel>,
-            density_and_deformation<Kernel>,
+            density_and_divergence<Kernel>,
+            deformation,
             stress_correction,
+            scalar_correction,
             pair_correction<Kernel>,
             velocity_difference<Kernel>,
             select_near,

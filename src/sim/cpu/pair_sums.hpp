@@ -46,25 +46,29 @@ struct PairList {
 };
 
 struct DensitySums {
-    float density = 0;                        ///< sum of V W, the particle itself included
-    float square = 0;                         ///< sum of |V grad W|^2
-    Vec3<float> gradient;                     ///< sum of V grad W
-    DisplacementGradient<float> deformation;  ///< sum of (u_j - u_i) (x) V grad W
+    float density = 0;     ///< sum of V W, the particle itself included
+    float square = 0;      ///< sum of |V grad W|^2
+    Vec3<float> gradient;  ///< sum of V grad W
+    float divergence = 0;  ///< sum of (u_j - u_i) . V grad W
 };
 
 /// The sums over one particle's neighbours, which are where nearly all the time goes: one source for all instruction
 /// sets (pair_sums.cpp), chosen once. Lanes are added up in an order that the instruction set decides: results are
 /// the same on any number of threads, and differ by rounding between instruction sets.
 struct PairSums {
-    /// Density and pair gradients at given points; no deformation.
+    /// Density and pair gradients at given points; the other sums are left out.
     DensitySums (*density)(const PairScale&, const PairList&, const Packed& points, std::size_t i);
-    /// The same, with the deformation of given displacements.
-    DensitySums (*density_and_deformation)(const PairScale&, const PairList&, const Packed& points,
-                                           const Packed& displacements, std::size_t i);
+    /// All sums at given points, for given displacements.
+    DensitySums (*density_and_divergence)(const PairScale&, const PairList&, const Packed& points,
+                                          const Packed& displacements, std::size_t i);
+    /// Sum of (u_j - u_i) (x) V grad W along the kept pair gradients.
+    DisplacementGradient<float> (*deformation)(const PairList&, const Packed& displacements, std::size_t i);
     /// Sum of (T_i + T_j) V grad W along the kept pair gradients, T = d lambda I + ds. `stress_rows`: xx, xy, xz, yy;
     /// `stress_rest`: yz, zz.
     Vec3<float> (*stress_correction)(const PairList&, const Packed& stress_rows, const Packed& stress_rest,
                                      std::size_t i);
+    /// Sum of (w_i + w_j) V grad W along the kept pair gradients, w being the fourth of the packed numbers.
+    Vec3<float> (*scalar_correction)(const PairList&, const Packed& scalars, std::size_t i);
     /// The published correction: sum of (d lambda_i + d lambda_j) V grad W and of pair friction. The fourth number of a
     /// point is its d lambda; `cap` as pair_friction_cap.
     Vec3<float> (*pair_correction)(const PairScale&, const PairList&, const Packed& points, const Packed& displacements,

@@ -30,12 +30,27 @@ BoundarySample<Real> sample_boundary(const Model& model, const Vec3<Real>& p) {
     return result;
 }
 
+/// How hard a boundary pushes back, relative to the particle's own multiplier: it mirrors the particle's pressure, as a
+/// neighbour of the same pressure would (Akinci et al. 2012).
+inline constexpr int boundary_pressure_share = 2;
+
 /// The boundary's share of density and its gradient, split by what exerts it.
 template <class Real>
 struct BoundaryDensity {
     Real density{};
     Vec3<Real> ground_gradient{}, building_gradient{};  ///< 1/m, into ground and walls
+
+    /// The correction that a multiplier brings about, m.
+    [[nodiscard]] Vec3<Real> correction(Real multiplier) const {
+        return (ground_gradient + building_gradient) * (Real(boundary_pressure_share) * multiplier);
+    }
 };
+
+/// The normal correction of a face, m, that `multiplier` (<= 0) stands for.
+template <class Real>
+Real boundary_push(Real multiplier, const Vec3<Real>& face_gradient) {
+    return -Real(boundary_pressure_share) * multiplier * length(face_gradient);
+}
 
 /// Ground and a wall at the same time overlap below the wall's foot. For a kernel close to a Gaussian and faces at
 /// right angles the shared part is the product of the shares.

@@ -69,6 +69,22 @@ BoundaryTable::BoundaryTable(const Kernel& kernel, double particle_spacing)
             node.slope *= scale;
         }
     });
+    tabulate_by_slope();
+}
+
+void BoundaryTable::tabulate_by_slope() {
+    const double steepest = -at(0.0).slope;
+    inverse_slope_step_ = (node_count - 1) / steepest;
+    for (int i = 0; i < node_count; ++i) {
+        const double slope = i / inverse_slope_step_;
+        double near = 0, far = support_radius_;  // the slope falls with the distance
+        for (int bisection = 0; bisection < 50; ++bisection) {
+            const double middle = (near + far) / 2;
+            (-at(middle).slope > slope ? near : far) = middle;
+        }
+        by_slope_.push_back(at(far).density);
+    }
+    by_slope_.push_back(by_slope_.back());
 }
 
 }  // namespace talus

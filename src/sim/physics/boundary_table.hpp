@@ -32,12 +32,28 @@ class BoundaryTable {
         return {Real(a.density) + t * Real(b.density - a.density), Real(a.slope) + t * Real(b.slope - a.slope)};
     }
 
+    /// The share of a half-space whose gradient has this size, 1/m: how much density a particle lacks whose neighbours
+    /// pull it this strongly to one side.
+    template <class Real>
+    [[nodiscard]] Real density_at_slope(Real slope) const {
+        const Real last = Real(by_slope_.size() - 2);
+        const Real u = slope * Real(inverse_slope_step_);
+        const Real bounded = u < last ? u : last;
+        const int i = static_cast<int>(bounded);
+        const Real low = Real(by_slope_[static_cast<std::size_t>(i)]);
+        return low + (bounded - Real(i)) * (Real(by_slope_[static_cast<std::size_t>(i) + 1]) - low);
+    }
+
   private:
+    void tabulate_by_slope();
+
     struct Node {
         double density, slope;
     };
     double support_radius_ = 0, inverse_step_ = 0;
     std::vector<Node> nodes_;
+    double inverse_slope_step_ = 0;
+    std::vector<double> by_slope_;  // density at evenly spaced slopes from 0 to that on the plane
 };
 
 }  // namespace talus

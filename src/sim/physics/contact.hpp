@@ -15,17 +15,16 @@ struct ContactMemory {
 
 /// Hard contact and Coulomb friction with one face.
 ///
-/// Normal: the accumulated correction that brings the particle to its touching distance, taken back when it would
-/// hover. It may stop the motion into the face and add `depenetration` at most: an overlap that the step started with,
-/// or that a bend in the ground brought about, must not turn into velocity. Friction: limited by the whole normal
-/// correction of the step, hard contact and `density_push` (what the face's share of the density constraint has
-/// pushed) together.
-/// Returns the change of displacement; updates `memory`.
+/// Normal: the accumulated correction that keeps the particle at its touching distance, taken back when it would hover
+/// or move away. It may stop the motion into the face and no more: an overlap that the step started with, or that a
+/// bend in the ground brought about, must not turn into velocity (undo_overlap() sees to it). Friction: limited by the
+/// whole normal correction of the step, hard contact and `density_push` (what the face's share of the density
+/// constraint has pushed) together. Returns the change of displacement; updates `memory`.
 template <class Real>
-Vec3<Real> resolve_contact(Real overlap, const Vec3<Real>& normal, const Vec3<Real>& displacement, Real depenetration,
-                           Real density_push, Real friction_coefficient, ContactMemory<Real>& memory) {
-    const Real most = depenetration - dot(displacement, normal);
-    const Real push = overlap < most ? overlap : (most > 0 ? most : Real(0));
+Vec3<Real> resolve_contact(Real overlap, const Vec3<Real>& normal, const Vec3<Real>& displacement, Real density_push,
+                           Real friction_coefficient, ContactMemory<Real>& memory) {
+    const Real approach = -dot(displacement, normal);
+    const Real push = overlap < approach ? overlap : approach;
     const Real accumulated = memory.normal + push > 0 ? memory.normal + push : Real(0);
     Vec3<Real> change = normal * (accumulated - memory.normal);
     memory.normal = accumulated;
@@ -35,28 +34,48 @@ Vec3<Real> resolve_contact(Real overlap, const Vec3<Real>& normal, const Vec3<Re
     return change;
 }
 
-/// Resolves the contact with the ground and the nearest building of a particle that started the step at `start` and is
-/// now displaced by `displacement`. `depenetration` in m per step; pushes are `-lambda |gradient|` of the face's share
-/// in the density constraint. Returns the new displacement.
+/// Resolves the contact with the ground and the nearest building of a particle displaced by `displacement`; `boundary`
+/// as sampled when it was displaced by `sampled_at`, and taken to be plane from there. Pushes are those of
+/// boundary_push(). Returns the new displacement.
 template <class Real>
-Vec3<Real> resolve_contacts(const Model& model, const Vec3<Real>& start, Vec3<Real> displacement, Real depenetration,
-                            Real ground_push, Real building_push, ContactMemory<Real>& ground,
+Vec3<Real> resolve_contacts(const Model& model, const BoundarySample<Real>& boundary, const Vec3<Real>& sampled_at,
+                            Vec3<Real> displacement, Real ground_push, Real building_push, ContactMemory<Real>& ground,
                             ContactMemory<Real>& wall, int& building_touched) {
     const Real touching = Real(model.contact_distance());
-    const Real friction = Real(model.friction_coefficient);
-    const BoundarySample<Real> now = sample_boundary(model, start + displacement);
+    const Real ground_friction = Real(model.friction_coefficient);
+    const Real building_friction = Real(model.building_friction_coefficient);
+    const auto distance_now = [&](Real sampled, const Vec3<Real>& normal) {
+        return sampled + dot(displacement - sampled_at, normal);
+    };
     // Ground without data has a NaN distance, which is near nothing: the particle is about to leave.
-    const bool known = now.ground_distance == now.ground_distance;
-    if (known && (now.ground_distance < touching || ground.normal > 0 || ground_push > 0)) {
-        displacement += resolve_contact(touching - now.ground_distance, now.ground_normal, displacement, depenetration,
-                                        ground_push, friction, ground);
+    const Real ground_distance = distance_now(boundary.ground_distance, boundary.ground_normal);
+    const bool known = ground_distance == ground_distance;
+    if (known && (ground_distance < touching || ground.normal > 0 || ground_push > 0)) {
+        displacement += resolve_contact(touching - ground_distance, boundary.ground_normal, displacement, ground_push,
+                                        ground_friction, ground);
     }
-    if (now.building >= 0 && (now.building_distance < touching || wall.normal > 0 || building_push > 0)) {
-        displacement += resolve_contact(touching - now.building_distance, now.building_normal, displacement,
-                                        depenetration, building_push, friction, wall);
-        building_touched = now.building;
+    if (boundary.building < 0) return displacement;
+    const Real building_distance = distance_now(boundary.building_distance, boundary.building_normal);
+    if (building_distance < touching || wall.normal > 0 || building_push > 0) {
+        displacement += resolve_contact(touching - building_distance, boundary.building_normal, displacement,
+                                        building_push, building_friction, wall);
+        building_touched = boundary.building;
     }
     return displacement;
+}
+
+/// What brings a particle that overlaps ground or a wall back to touching it, at most `most` metres of it.
+template <class Real>
+Vec3<Real> undo_overlap(const Model& model, const Vec3<Real>& p, Real most) {
+    const Real touching = Real(model.contact_distance());
+    const BoundarySample<Real> now = sample_boundary(model, p);
+    const auto back = [&](Real distance) {
+        const Real overlap = touching - distance;
+        return overlap > 0 ? (overlap < most ? overlap : most) : Real(0);  // 0 for the NaN of unknown ground
+    };
+    Vec3<Real> shift = now.ground_normal * back(now.ground_distance);
+    if (now.building >= 0) shift += now.building_normal * back(now.building_distance);
+    return shift;
 }
 
 /// Whether a position is free: not below ground that is known, not inside a building.

@@ -1,21 +1,54 @@
 #include "sim/physics/kernel.hpp"
 
+#include <algorithm>
+#include <vector>
+
 namespace talus {
+namespace {
+
+/// A multiplier that varies as cos(k x) over the lattice moves particles by the lattice sum of 2 grad W sin(k x), and
+/// that changes the constraints in the same pattern: the eigenvalue of a wave is the square of the sum, relative to the
+/// diagonal. The largest over all waves of the lattice.
+double largest_lattice_eigenvalue(const std::vector<Vec3<double>>& offsets, const std::vector<Vec3<double>>& gradients,
+                                  double gradient_square) {
+    constexpr int waves = 24;  // per axis, from 0 to pi
+    double largest = 0;
+    for (int a = 0; a <= waves; ++a) {
+        for (int b = 0; b <= a; ++b) {
+            for (int c = 0; c <= b; ++c) {
+                const Vec3<double> wave = Vec3<double>{double(a), double(b), double(c)} * (std::numbers::pi / waves);
+                Vec3<double> sum{};
+                for (std::size_t i = 0; i < offsets.size(); ++i) {
+                    sum += gradients[i] * std::sin(dot(wave, offsets[i]));
+                }
+                largest = std::max(largest, dot(sum, sum) / gradient_square);
+            }
+        }
+    }
+    return largest;
+}
+
+}  // namespace
 
 Kernel make_kernel(KernelChoice choice, double particle_spacing, double support_radius) {
     return with_kernel(choice, [&](auto kernel) {
         const double r = support_radius, r3 = r * r * r, r5 = r3 * r * r;
         const int reach = static_cast<int>(std::ceil(r / particle_spacing));
-        double sum = 0, gradient_square = 0;
+        double sum = 0, gradient_square = 0, moment = 0;
+        std::vector<Vec3<double>> offsets, gradients;  // offsets in spacings
         for (int i = -reach; i <= reach; ++i) {
             for (int j = -reach; j <= reach; ++j) {
                 for (int k = -reach; k <= reach; ++k) {
                     const double distance = particle_spacing * std::sqrt(double(i * i + j * j + k * k));
                     if (distance >= r) continue;
-                    sum += kernel.value(distance / r) / r3;
+                    const double value = kernel.value(distance / r) / r3, x = i * particle_spacing;
+                    sum += value;
+                    moment += x * x * value;
                     if (i == 0 && j == 0 && k == 0) continue;
                     const double gradient = kernel.slope_over_q(distance / r) * distance / r5;
                     gradient_square += gradient * gradient;
+                    offsets.push_back({double(i), double(j), double(k)});
+                    gradients.push_back(offsets.back() * (gradient * particle_spacing / distance));
                 }
             }
         }
@@ -24,14 +57,8 @@ Kernel make_kernel(KernelChoice choice, double particle_spacing, double support_
         result.support_radius = r;
         result.particle_volume = 1 / sum;
         result.rest_gradient_sum = gradient_square * result.particle_volume * result.particle_volume;
-        // Integral of x^2 W dV = 4 pi / 3 * integral of R^4 W dR, by the midpoint rule.
-        const int steps = 2000;
-        double moment = 0;
-        for (int i = 0; i < steps; ++i) {
-            const double q = (i + 0.5) / steps;
-            moment += q * q * q * q * kernel.value(q) / steps;
-        }
-        result.second_moment = 4 * std::numbers::pi / 3 * moment * r * r;
+        result.largest_eigenvalue = largest_lattice_eigenvalue(offsets, gradients, gradient_square);
+        result.second_moment = moment * result.particle_volume;
         return result;
     });
 }

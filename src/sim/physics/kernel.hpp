@@ -3,6 +3,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/geometry.hpp"
 #include "params/spec.hpp"
 
 namespace talus {
@@ -104,7 +105,10 @@ struct Kernel {
     double support_radius = 0;     ///< m
     double particle_volume = 0;    ///< m3, V with sum over the lattice of V W = 1
     double rest_gradient_sum = 0;  ///< sum |V grad W|^2 of a particle in the rest lattice, 1/m2
-    double second_moment = 0;      ///< integral of x^2 W dV, m2: links XSPH smoothing to a kinematic viscosity
+    /// Largest eigenvalue of the density constraints' Jacobi iteration in the rest lattice: by how much neighbours that
+    /// all correct at once overshoot.
+    double largest_eigenvalue = 1;
+    double second_moment = 0;  ///< sum of x^2 V W over the lattice, m2: links XSPH smoothing to a kinematic viscosity
 };
 
 /// Calibrates on the cubic lattice of the spacing.

@@ -41,18 +41,11 @@ struct DisplacementGradient {
         y += weight_gradient * difference.y;
         z += weight_gradient * difference.z;
     }
+    [[nodiscard]] Real divergence() const { return x.x + y.y + z.z; }
     /// Symmetric part without trace: the strain that changes shape.
     [[nodiscard]] Deviator<Real> shear() const {
-        const Real third = (x.x + y.y + z.z) / 3;
+        const Real third = divergence() / 3;
         return {x.x - third, y.y - third, (x.y + y.x) / 2, (x.z + z.x) / 2, (y.z + z.y) / 2};
-    }
-    /// Change of a stress that turns with the material (Jaumann): w s - s w with w the antisymmetric part.
-    [[nodiscard]] Deviator<Real> rotation_of(const Deviator<Real>& s) const {
-        const Real wxy = (x.y - y.x) / 2, wxz = (x.z - z.x) / 2, wyz = (y.z - z.y) / 2;
-        const Real zz = -(s.xx + s.yy);
-        return {2 * (wxy * s.xy + wxz * s.xz), 2 * (wyz * s.yz - wxy * s.xy),
-                wxy * (s.yy - s.xx) + wxz * s.yz + wyz * s.xz, wxz * (zz - s.xx) + wxy * s.yz - wyz * s.xy,
-                wyz * (zz - s.yy) - wxy * s.xz - wxz * s.xy};
     }
 };
 
@@ -64,11 +57,15 @@ Deviator<Real> limit_to_friction(const Deviator<Real>& trial, Real internal_fric
     return square > limit_square ? trial * std::sqrt(limit_square / square) : trial;
 }
 
-/// Constants of the stress iteration; docs/equations.md says what each does.
-struct StressConstants {
-    static constexpr double warm_start = 0.5;           ///< share of the last step's pressure multiplier to begin with
-    static constexpr double stiffness = 0.2;            ///< k = stiffness / sum |V grad W|^2
-    static constexpr double pressure_smoothing = 0.05;  ///< weight of the newest step in the pressure that limits shear
-};
+/// The stress that resists the shear of a step, in the units of lambda: every iteration adds to it until debris no
+/// longer shears, or friction yields. `gain` relative to the density constraint's factor.
+template <class Real>
+Deviator<Real> next_stress(const Deviator<Real>& before, const DisplacementGradient<Real>& deformation,
+                           Real internal_friction_coefficient, Real multiplier, Real pair_square, Real jacobi_factor) {
+    constexpr Real gain = Real(0.5);  // shear has two components where compression has one
+    Deviator<Real> trial = before;
+    if (pair_square > 0) trial = trial + deformation.shear() * (gain * jacobi_factor / pair_square);
+    return limit_to_friction(trial, internal_friction_coefficient, -multiplier);
+}
 
 }  // namespace talus

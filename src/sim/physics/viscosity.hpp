@@ -1,6 +1,6 @@
 #pragma once
 
-#include <cmath>
+#include <algorithm>
 
 namespace talus {
 
@@ -11,20 +11,21 @@ namespace talus {
 /// smoothing per reference step of 1/60 s.
 inline constexpr double viscosity_reference_step = 1.0 / 60;
 
-/// The smoothing to apply in a step of `time_step` seconds: what is left of a difference, (1 - mu), compounds.
+/// The smoothing to apply in a step of `time_step` seconds. Proportional to it: what varies slowly over a support
+/// radius loses a small part per step, which adds up to the same in any number of steps.
 inline double step_smoothing(double viscosity, double time_step) {
-    return 1 - std::pow(1 - viscosity, time_step / viscosity_reference_step);
+    return std::min(1.0, viscosity * time_step / viscosity_reference_step);
 }
 
 /// The kinematic viscosity, m2/s, that the smoothing amounts to for shear that varies slowly over a support radius:
-/// a mode of wave number k decays at the rate (a / dt) k^2 / 2 * integral of x^2 W dV.
+/// a mode of wave number k decays at the rate (a / dt) k^2 / 2 * sum of x^2 V W.
 inline double kinematic_viscosity(double viscosity, double kernel_second_moment) {
-    return -std::log1p(-viscosity) / viscosity_reference_step * kernel_second_moment / 2;
+    return viscosity / viscosity_reference_step * kernel_second_moment / 2;
 }
 
 /// The inverse of `kinematic_viscosity`.
 inline double smoothing_viscosity(double kinematic, double kernel_second_moment) {
-    return -std::expm1(-2 * kinematic * viscosity_reference_step / kernel_second_moment);
+    return 2 * kinematic * viscosity_reference_step / kernel_second_moment;
 }
 
 }  // namespace talus

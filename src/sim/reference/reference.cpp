@@ -48,7 +48,6 @@ State::State(const talus::State& state)
         p.position = wide(state.position.at(i));
         p.velocity = wide(state.velocity.at(i));
         p.multiplier = state.multiplier[i];
-        p.pressure = state.pressure[i];
         p.stress = {s.xx, s.yy, s.xy, s.xz, s.yz};
         p.held = state.held[i] != 0;
     }
@@ -91,14 +90,39 @@ void Backend::predict_positions(const Model& model, State& state) {
 
 namespace {
 
-/// x_i += sum_j [(d lambda_i + d lambda_j) I + ds_i + ds_j] V grad W at the given positions.
+/// The pair sums of a particle at `point(k)`, for the displacements so far.
+struct Sums {
+    double density = 0, square = 0, divergence = 0;
+    Vector gradient;
+    DisplacementGradient<double> deformation;
+};
+
 template <class Points>
-void apply_stress_changes(const Model& model, State& state, const Points& point) {
+Sums sums_at(const Model& model, const State& state, const Points& point, std::size_t i) {
+    Sums sums;
+    sums.density = own_value(model);
+    for_each_neighbour(model, state.particles.size(), i, point, [&](std::size_t j, const Pair& pair) {
+        sums.density += pair.value;
+        sums.square += dot(pair.gradient, pair.gradient);
+        sums.gradient += pair.gradient;
+        sums.deformation.add(state.particles[j].displacement - state.particles[i].displacement, pair.gradient);
+    });
+    sums.divergence = sums.deformation.divergence();
+    return sums;
+}
+
+bool keeps_stress(const Model& model) {
+    return model.solver.internal_friction == InternalFriction::stress;
+}
+
+/// u_i += sum_j [(d lambda_i + d lambda_j) I + ds_i + ds_j] V grad W at the linearised positions.
+void apply_stress_changes(const Model& model, State& state) {
+    const auto point = [&](std::size_t k) { return state.particles[k].linearised_at; };
     std::vector<Vector> corrections(state.particles.size());
     for (std::size_t i = 0; i < state.particles.size(); ++i) {
         const Particle& p = state.particles[i];
         if (p.held) continue;
-        corrections[i] = (p.boundary.ground_gradient + p.boundary.building_gradient) * p.multiplier_change;
+        corrections[i] = p.boundary.correction(p.multiplier_change);
         for_each_neighbour(model, state.particles.size(), i, point, [&](std::size_t j, const Pair& pair) {
             const Particle& other = state.particles[j];
             corrections[i] += pair.gradient * (p.multiplier_change + other.multiplier_change) +
@@ -115,7 +139,7 @@ void apply_pair_corrections(const Model& model, State& state) {
     for (std::size_t i = 0; i < state.particles.size(); ++i) {
         const Particle& p = state.particles[i];
         if (p.held) continue;
-        corrections[i] = (p.boundary.ground_gradient + p.boundary.building_gradient) * p.multiplier_change;
+        corrections[i] = p.boundary.correction(p.multiplier_change);
         for_each_neighbour(model, state.particles.size(), i, point, [&](std::size_t j, const Pair& pair) {
             const Particle& other = state.particles[j];
             const double change = p.multiplier_change + other.multiplier_change;
@@ -131,84 +155,135 @@ void apply_pair_corrections(const Model& model, State& state) {
     for (std::size_t i = 0; i < corrections.size(); ++i) state.particles[i].displacement += corrections[i];
 }
 
+void solve_stress(const Model& model, State& state) {
+    const double factor = jacobi_factor(model.solver.under_relaxation, model.kernel);
+    const auto point = [&](std::size_t k) { return state.particles[k].linearised_at; };
+    for (std::size_t i = 0; i < state.particles.size(); ++i) {
+        Particle& p = state.particles[i];
+        p.multiplier_change = p.compression = 0;
+        p.stress_change = {};
+        if (p.held) continue;
+        const Sums sums = sums_at(model, state, point, i);
+        const Vector boundary_gradient = p.boundary.ground_gradient + p.boundary.building_gradient;
+        const double density = p.constraint.start - sums.divergence + dot(boundary_gradient, p.displacement);
+        const double multiplier = next_multiplier(p.multiplier, density - std::max(0.0, p.constraint.start),
+                                                  p.constraint.gradient_square, factor);
+        const Deviator<double> stress = next_stress(p.stress, sums.deformation, model.internal_friction_coefficient,
+                                                    multiplier, p.constraint.pair_square, factor);
+        p.multiplier_change = multiplier - p.multiplier;
+        p.stress_change = stress - p.stress;
+        p.multiplier = multiplier;
+        p.stress = stress;
+        p.compression = std::max(0.0, density - p.constraint.surface_share);
+    }
+    apply_stress_changes(model, state);
+}
+
+void solve_pairs(const Model& model, State& state) {
+    const double factor = jacobi_factor(model.solver.under_relaxation, model.kernel);
+    const double softness = model.solver.constraint_relaxation * model.kernel.rest_gradient_sum;
+    const auto point = [&](std::size_t k) { return state.particles[k].predicted(); };
+    for (std::size_t i = 0; i < state.particles.size(); ++i) {
+        Particle& p = state.particles[i];
+        p.multiplier_change = 0;
+        if (p.held) continue;
+        p.boundary = boundary_density(model, sample_boundary(model, p.predicted()));
+        const Sums sums = sums_at(model, state, point, i);
+        const auto constraint = linearise_density(model, sums, p.boundary, p.displacement, softness);
+        const double violation = sums.density + p.boundary.density - 1 - p.tolerated_compression;
+        const double before = p.multiplier;
+        p.multiplier = next_multiplier(before, violation, constraint.gradient_square, factor);
+        p.multiplier_change = p.multiplier - before;
+    }
+    apply_pair_corrections(model, state);
+}
+
 }  // namespace
 
 void Backend::warm_start(const Model& model, State& state) {
-    const bool keeps_stress = model.solver.internal_friction == InternalFriction::stress;
     const double ratio = state.previous_time_step > 0 ? state.time_step / state.previous_time_step : 0;
-    const double scale = keeps_stress ? ratio * ratio : 0;
+    const double scale = ratio * ratio;
     state.previous_time_step = state.time_step;
+    for (Particle& p : state.particles) {
+        p.sample = sample_boundary(model, p.predicted());
+        p.sampled_at = p.displacement;
+    }
+    if (keeps_stress(model)) {
+        const double softness = model.solver.constraint_relaxation * model.kernel.rest_gradient_sum;
+        for (Particle& p : state.particles) p.linearised_at = p.predicted();
+        const auto point = [&](std::size_t k) { return state.particles[k].linearised_at; };
+        for (std::size_t i = 0; i < state.particles.size(); ++i) {
+            Particle& p = state.particles[i];
+            p.boundary = boundary_density(model, p.sample);
+            p.constraint =
+                linearise_density(model, sums_at(model, state, point, i), p.boundary, p.displacement, softness);
+            p.multiplier *= scale;
+            p.stress = p.stress * scale;
+            p.stress_change = p.held ? Deviator<double>{} : p.stress;
+            p.multiplier_change = p.held ? 0 : p.multiplier;
+        }
+        apply_stress_changes(model, state);
+        return;
+    }
+    const double undone = model.solver.depenetration_speed * state.time_step / model.particle_spacing;
     std::vector<Vector> points;
     for (const Particle& p : state.particles) points.push_back(p.position);
-    const double undone = model.solver.depenetration_speed * state.time_step / model.particle_spacing;
     for (std::size_t i = 0; i < points.size(); ++i) {
         Particle& p = state.particles[i];
-        p.boundary = boundary_density(model, sample_boundary(model, points[i]));
+        p.boundary = {};
+        p.multiplier = 0;
         p.tolerated_compression = std::max(0.0, constraint(model, points, i) - undone);
-        p.multiplier *= scale * (p.held ? 1 : StressConstants::warm_start);
-        p.pressure *= scale;
-        p.stress = p.stress_start = p.stress * scale;
-        p.stress_change = p.held ? Deviator<double>{} : p.stress;
-        p.multiplier_change = p.held ? 0 : p.multiplier;
     }
-    if (keeps_stress) apply_stress_changes(model, state, [&](std::size_t k) { return points[k]; });
 }
 
 void Backend::solve_density(const Model& model, State& state) {
-    const bool keeps_stress = model.solver.internal_friction == InternalFriction::stress;
-    const double softness = model.solver.constraint_relaxation * model.kernel.rest_gradient_sum;
-    std::vector<Vector> points;
-    for (const Particle& p : state.particles) points.push_back(p.predicted());
-    for (std::size_t i = 0; i < points.size(); ++i) {
-        Particle& p = state.particles[i];
-        p.multiplier_change = 0;
-        p.stress_change = {};
-        if (p.held) continue;
-        p.boundary = boundary_density(model, sample_boundary(model, points[i]));
-        double pair_square = softness;
-        DisplacementGradient<double> deformation;
-        for_each_neighbour(
-            model, points.size(), i, [&](std::size_t k) { return points[k]; },
-            [&](std::size_t j, const Pair& pair) {
-                pair_square += dot(pair.gradient, pair.gradient);
-                deformation.add(state.particles[j].displacement - p.displacement, pair.gradient);
-            });
-        const Vector own_gradient = constraint_gradient(model, points, i, i);
-        const double gradient_square = pair_square + dot(own_gradient, own_gradient);
-        const double violation = constraint(model, points, i) - p.tolerated_compression;
-        const double before = p.multiplier;
-        if (gradient_square > 0) {
-            p.multiplier = std::min(0.0, before - model.solver.under_relaxation * violation / gradient_square);
-        }
-        p.multiplier_change = p.multiplier - before;
-        if (!keeps_stress) continue;
-        Deviator<double> stress = p.stress_start;
-        if (pair_square > 0) stress = stress + deformation.shear() * (StressConstants::stiffness / pair_square);
-        stress = limit_to_friction(stress, model.internal_friction_coefficient, p.pressure);
-        p.stress_change = stress - p.stress;
-        p.stress = stress;
-    }
-    if (keeps_stress) {
-        apply_stress_changes(model, state, [&](std::size_t k) { return points[k]; });
+    if (keeps_stress(model)) {
+        solve_stress(model, state);
     } else {
-        apply_pair_corrections(model, state);
+        solve_pairs(model, state);
     }
 }
 
 void Backend::solve_contacts(const Model& model, State& state) {
-    const double depenetration = model.solver.depenetration_speed * state.time_step;
     for (Particle& p : state.particles) {
         if (p.held) continue;
-        const double ground_push = -p.multiplier * length(p.boundary.ground_gradient);
-        const double building_push = -p.multiplier * length(p.boundary.building_gradient);
-        p.displacement = resolve_contacts(model, p.position, p.displacement, depenetration, ground_push, building_push,
+        const double ground_push = boundary_push(p.multiplier, p.boundary.ground_gradient);
+        const double building_push = boundary_push(p.multiplier, p.boundary.building_gradient);
+        p.displacement = resolve_contacts(model, p.sample, p.sampled_at, p.displacement, ground_push, building_push,
                                           p.ground, p.wall, p.building);
+    }
+}
+
+void Backend::undo_overlaps(const Model& model, State& state) {
+    const double factor = jacobi_factor(model.solver.under_relaxation, model.kernel);
+    const double share = spreading_share(state.time_step), most = model.particle_spacing / 4;
+    const auto point = [&](std::size_t k) { return state.particles[k].linearised_at; };
+    std::vector<double> spread(state.particles.size());
+    for (std::size_t i = 0; i < spread.size(); ++i) {
+        const Particle& p = state.particles[i];
+        spread[i] = next_multiplier(0.0, spread_in_step(p.compression, share), p.constraint.gradient_square, factor);
+    }
+    for (std::size_t i = 0; i < spread.size(); ++i) {
+        Particle& p = state.particles[i];
+        p.shift = {};
+        if (p.held) continue;
+        if (keeps_stress(model)) {
+            p.shift = p.boundary.correction(spread[i]);
+            for_each_neighbour(model, spread.size(), i, point, [&](std::size_t j, const Pair& pair) {
+                p.shift += pair.gradient * (spread[i] + spread[j]);
+            });
+        }
+        p.shift += undo_overlap(model, p.predicted(), most);
+        const double size = length(p.shift);
+        if (size > most) p.shift = p.shift * (most / size);
     }
 }
 
 void Backend::enforce_boundaries(const Model& model, State& state) {
     for (Particle& p : state.particles) {
-        if (!p.held) p.displacement = free_end(model, p.position, p.displacement) - p.position;
+        if (p.held) continue;
+        p.displacement = free_end(model, p.position, p.displacement) - p.position;
+        p.shift = free_end(model, p.predicted(), p.shift) - p.predicted();
     }
 }
 
@@ -216,8 +291,7 @@ void Backend::update_velocities(const Model&, State& state) {
     for (Particle& p : state.particles) {
         if (p.held) continue;
         p.velocity = p.displacement * (1 / state.time_step);
-        p.position = p.predicted();
-        p.pressure += StressConstants::pressure_smoothing * (-p.multiplier - p.pressure);
+        p.position = p.predicted() + p.shift;
     }
 }
 

@@ -6,6 +6,7 @@
 #include "core/geometry.hpp"
 #include "sim/model.hpp"
 #include "sim/physics/contact.hpp"
+#include "sim/physics/density.hpp"
 #include "sim/physics/stress.hpp"
 #include "sim/state.hpp"
 
@@ -16,8 +17,11 @@ using Vector = Vec3<double>;
 /// A particle with all that a step needs to know of it.
 struct Particle {
     Vector position, velocity, displacement;
-    double multiplier = 0, pressure = 0, multiplier_change = 0, tolerated_compression = 0;
-    Deviator<double> stress, stress_start, stress_change;
+    double multiplier = 0, multiplier_change = 0, tolerated_compression = 0, compression = 0;
+    Deviator<double> stress, stress_change;
+    DensityConstraint<double> constraint;
+    Vector linearised_at, sampled_at, shift;
+    BoundarySample<double> sample;
     BoundaryDensity<double> boundary;
     ContactMemory<double> ground, wall;
     int building = -1;
@@ -52,6 +56,7 @@ class Backend {
     void warm_start(const Model& model, State& state);
     void solve_density(const Model& model, State& state);
     void solve_contacts(const Model& model, State& state);
+    void undo_overlaps(const Model& model, State& state);
     void enforce_boundaries(const Model& model, State& state);
     void update_velocities(const Model& model, State& state);
     void apply_viscosity(const Model& model, State& state);

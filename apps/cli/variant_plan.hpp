@@ -1,0 +1,43 @@
+#pragma once
+
+#include <atomic>
+#include <string>
+#include <vector>
+
+#include "commands.hpp"
+#include "progress.hpp"
+#include "scene/comparison.hpp"
+#include "scene/variants.hpp"
+
+namespace talus {
+
+/// The runs that the command line asks for beside the scene as given.
+class VariantPlan {
+  public:
+    /// Errors: what a variant cannot be run for, before anything ran.
+    [[nodiscard]] static Result<VariantPlan> make(const RunArguments& arguments, const SceneSource& source,
+                                                  const Scene& scene);
+
+    [[nodiscard]] bool empty() const { return variants_.empty(); }
+
+    /// Tells the reporter of the base's run; with variants, how far all runs together are.
+    void report_base(ProgressReporter& reporter, const Progress& now) const;
+
+    /// Runs the variants one after the other and compares them with the base. After a stop request or a fault of the
+    /// base the rest are listed as missing.
+    [[nodiscard]] std::vector<Comparison> run(const Scene& scene, const RunResult& base, ProgressReporter& reporter,
+                                              const std::atomic<bool>& stop_requested);
+
+  private:
+    VariantPlan(SceneSource source, std::vector<Variant> variants, std::size_t refinement_count);
+
+    SceneSource source_;
+    std::vector<Variant> variants_;  // refinements, then variations
+    std::size_t refinement_count_;
+    SeriesClock clock_;
+};
+
+/// Tables for a terminal: values and changes of every variant.
+[[nodiscard]] std::string comparison_text(const Comparison& comparison, const RunResult& base);
+
+}  // namespace talus

@@ -1,0 +1,63 @@
+#include <string>
+
+#include "products/csv.hpp"
+#include "products/text_file.hpp"
+#include "products/writers.hpp"
+
+namespace talus {
+
+namespace {
+
+std::string header(const Comparison& comparison) {
+    std::string text = "variant,overrides,outcome";
+    for (const Quantity& quantity : comparison.quantities) {
+        text += "," + quantity.key + "_" + quantity.suffix + "," + quantity.key + "_change_percent";
+    }
+    return text +
+           ",particles,particle_spacing_m,steps,simulated_time_s,wall_time_s,worst_mean_compression,"
+           "worst_max_compression";
+}
+
+void add_cost(Csv& csv, const RunResult& result) {
+    csv.row({static_cast<double>(result.particles), result.particle_spacing, static_cast<double>(result.steps),
+             result.simulated_time, result.wall_time, result.observation.worst_mean_compression,
+             result.observation.worst_max_compression});
+}
+
+std::string outcome(const Comparison& comparison, const Comparison::Row& row) {
+    if (!row.run.result) return "missing: " + row.run.missing;
+    if (comparison.kind == ComparisonKind::sensitivity) return "complete";
+    return verdict_name(row.verdict());
+}
+
+std::string comparison_table(const Comparison& comparison, const RunResult& base) {
+    Csv csv(header(comparison));
+    csv.word("as given").word("").word("base");
+    for (const Quantity& quantity : comparison.quantities) csv.number(quantity.base).number(never);
+    add_cost(csv, base);
+    for (const Comparison::Row& row : comparison.rows) {
+        std::string overrides;
+        for (const std::string& text : row.run.variant.overrides) overrides += (overrides.empty() ? "" : " ") + text;
+        csv.word(row.run.variant.name).word(overrides).word(outcome(comparison, row));
+        for (const Change& change : row.changes) csv.number(change.value).number(change.percent);
+        if (row.run.result) {
+            add_cost(csv, *row.run.result);
+        } else {
+            csv.row({never, never, never, never, never, never, never});
+        }
+    }
+    return csv.text();
+}
+
+}  // namespace
+
+Status write_comparisons(const std::vector<Comparison>& comparisons, const RunResult& base,
+                         const std::filesystem::path& folder) {
+    for (const Comparison& comparison : comparisons) {
+        const char* name = comparison.kind == ComparisonKind::convergence ? "convergence.csv" : "variants.csv";
+        if (Status s = write_text_file(folder / name, comparison_table(comparison, base)); !s) return s;
+    }
+    return {};
+}
+
+}  // namespace talus

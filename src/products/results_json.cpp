@@ -1,0 +1,83 @@
+#include "products/results_json.hpp"
+
+#include "core/hash.hpp"
+
+namespace talus {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json answer_json(Answer answer) {
+    return answer == Answer::unknown ? Json() : Json(answer == Answer::yes);
+}
+
+Json variant_json(const Comparison& comparison, const Comparison::Row& row) {
+    Json variant = {{"name", row.run.variant.name}, {"overrides", row.run.variant.overrides}};
+    if (!row.run.result) {
+        variant["missing"] = row.run.missing;
+        return variant;
+    }
+    const bool judged = comparison.kind == ComparisonKind::convergence;
+    if (judged) variant["verdict"] = verdict_name(row.verdict());
+    Json values = Json::object();
+    for (std::size_t i = 0; i < comparison.quantities.size(); ++i) {
+        const Quantity& quantity = comparison.quantities[i];
+        const Change& change = row.changes[i];
+        Json& value = values[quantity.key];
+        value = {{"value_" + quantity.suffix, change.value}, {"change_percent", change.percent}};
+        if (judged) value["verdict"] = verdict_name(change.verdict);
+    }
+    const RunResult& result = *row.run.result;
+    variant["values"] = values;
+    variant["compression"] = compression_json(result.observation);
+    variant["particles"] = result.particles;
+    variant["particle_spacing_m"] = result.particle_spacing;
+    variant["steps"] = result.steps;
+    variant["simulated_time_s"] = result.simulated_time;
+    variant["wall_time_s"] = result.wall_time;
+    variant["result_hash"] = to_hex(result.hash);
+    return variant;
+}
+
+Json comparison_json(const Comparison& comparison) {
+    Json json = Json::object();
+    if (comparison.kind == ComparisonKind::convergence) {
+        json["converged"] = answer_json(comparison.converged());
+        json["limit_percent"] = refinement_limit_percent;
+    }
+    json["verdict"] = comparison.verdict_text();
+    json["quantities"] = Json::array();
+    for (const Quantity& quantity : comparison.quantities) {
+        Json entry = {{"key", quantity.key}, {"name", quantity.name}, {"base_" + quantity.suffix, quantity.base}};
+        if (!quantity.not_measured.empty()) entry["not_measured"] = quantity.not_measured;
+        json["quantities"].push_back(entry);
+    }
+    json["variants"] = Json::array();
+    for (const Comparison::Row& row : comparison.rows) json["variants"].push_back(variant_json(comparison, row));
+    return json;
+}
+
+}  // namespace
+
+Json compression_json(const Observation& observation) {
+    return {{"within_limits", within_compression_limits(observation)},
+            {"worst_mean", observation.worst_mean_compression},
+            {"worst_mean_time_s", observation.worst_mean_time},
+            {"mean_limit", mean_compression_limit},
+            {"worst_max", observation.worst_max_compression},
+            {"worst_max_time_s", observation.worst_max_time},
+            {"max_limit", max_compression_limit},
+            {"time_share_above_a_limit", observation.compressed_time_share}};
+}
+
+Json comparisons_json(const std::vector<Comparison>& comparisons) {
+    Json json = Json::object();
+    for (const Comparison& comparison : comparisons) {
+        json[comparison.kind == ComparisonKind::convergence ? "convergence" : "sensitivity"] =
+            comparison_json(comparison);
+    }
+    return json;
+}
+
+}  // namespace talus

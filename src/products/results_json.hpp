@@ -1,0 +1,17 @@
+#pragma once
+
+#include <nlohmann/json.hpp>
+
+#include "scene/comparison.hpp"
+
+/// Parts of a result as the manifest and `talus run --json` both give them. A value that does not exist is null.
+namespace talus {
+
+/// Worst compression, when it was, its limits, and whether the run stayed within them.
+[[nodiscard]] nlohmann::ordered_json compression_json(const Observation& observation);
+
+/// An object with the keys "convergence" and "sensitivity", those that there are: verdict, quantities, and every
+/// variant with its values, changes and cost.
+[[nodiscard]] nlohmann::ordered_json comparisons_json(const std::vector<Comparison>& comparisons);
+
+}  // namespace talus

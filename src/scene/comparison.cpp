@@ -1,0 +1,191 @@
+#include "scene/comparison.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <utility>
+
+#include <fmt/format.h>
+
+namespace talus {
+namespace {
+
+struct Measure {
+    Quantity quantity;
+    std::function<double(const Observation&)> value;
+};
+
+double first_building_hit(const Observation& observation) {
+    double first = never;
+    for (const BuildingImpact& building : observation.buildings) {
+        if (building.hit) first = std::fmin(first, building.first_hit_time);  // fmin passes over NaN
+    }
+    return first;
+}
+
+Measure front_velocity(const Scene& scene, double chainage) {
+    Measure m;
+    m.quantity = {
+        .key = fmt::format("front_velocity_at_{:g}_m", chainage),
+        .suffix = "mps",
+        .name = fmt::format("front velocity at {:g} m", chainage),
+        .unit = "m/s",
+        .not_measured = scene.flow_path.empty() ? "the scene has no flow path" : "the front did not get there"};
+    m.value = [chainage](const Observation& o) { return front_at(o, chainage).front_velocity; };
+    return m;
+}
+
+/// A whole interval of front.csv at 90 % of the way that the front came in the base.
+double late_chainage(const Scene& scene, const Observation& base) {
+    const double interval = scene.spec.outputs.chainage_interval;
+    return interval * std::floor(0.9 * base.run_out.front_chainage / interval);
+}
+
+Measure arrival(const Scene& scene, const Observation& base) {
+    Measure m;
+    m.quantity.suffix = m.quantity.unit = "s";
+    const bool hit = std::isfinite(first_building_hit(base));
+    const double chainage = late_chainage(scene, base);
+    if (hit || !std::isfinite(chainage)) {
+        m.quantity.key = "first_building_hit";
+        m.quantity.name = "first building hit";
+        m.quantity.not_measured = "no building was hit and no front was seen along a flow path";
+        m.value = first_building_hit;
+    } else {
+        m.quantity.key = fmt::format("front_arrival_at_{:g}_m", chainage);
+        m.quantity.name = fmt::format("front arrival at {:g} m", chainage);
+        m.quantity.not_measured = "the front started beyond";
+        m.value = [chainage](const Observation& o) { return front_at(o, chainage).arrival_time; };
+    }
+    return m;
+}
+
+Measure run_out() {
+    Measure m;
+    m.quantity = {.key = "run_out",
+                  .suffix = "m",
+                  .name = "run-out",
+                  .unit = "m",
+                  .not_measured = "no debris is left to measure"};
+    m.value = [](const Observation& o) { return o.run_out.horizontal_distance; };
+    return m;
+}
+
+std::vector<Measure> measures(const Scene& scene, const Observation& base) {
+    std::vector<Measure> all;
+    for (const ObservationSpec& observed : scene.spec.observations) {
+        Measure m = front_velocity(scene, observed.chainage);
+        const bool twice =
+            std::any_of(all.begin(), all.end(), [&](const Measure& a) { return a.quantity.key == m.quantity.key; });
+        if (!twice) all.push_back(std::move(m));
+    }
+    all.push_back(arrival(scene, base));
+    all.push_back(run_out());
+    for (Measure& m : all) {
+        m.quantity.base = m.value(base);
+        if (std::isfinite(m.quantity.base)) m.quantity.not_measured.clear();
+    }
+    return all;
+}
+
+Change change_from(double base, double value) {
+    Change change{value, never, Verdict::fail};
+    if (!std::isfinite(base) && !std::isfinite(value)) {
+        change.verdict = Verdict::not_measured;
+    } else if (base == value) {
+        change.percent = 0;
+        change.verdict = Verdict::pass;
+    } else if (std::isfinite(base) && std::isfinite(value) && base != 0) {
+        change.percent = 100 * (value - base) / std::abs(base);
+        if (std::abs(change.percent) <= refinement_limit_percent) change.verdict = Verdict::pass;
+    }
+    return change;
+}
+
+struct Counts {
+    std::size_t pass = 0, fail = 0, missing_runs = 0;
+};
+
+Counts count(const Comparison& comparison) {
+    Counts counts;
+    for (const Comparison::Row& row : comparison.rows) {
+        counts.missing_runs += row.run.result ? 0 : 1;
+        for (const Change& change : row.changes) {
+            counts.pass += change.verdict == Verdict::pass ? 1 : 0;
+            counts.fail += change.verdict == Verdict::fail ? 1 : 0;
+        }
+    }
+    return counts;
+}
+
+}  // namespace
+
+const char* verdict_name(Verdict verdict) {
+    switch (verdict) {
+        case Verdict::pass:
+            return "pass";
+        case Verdict::fail:
+            return "fail";
+        case Verdict::not_measured:
+            return "not measured";
+        case Verdict::missing:
+            break;
+    }
+    return "missing";
+}
+
+Verdict Comparison::Row::verdict() const {
+    if (!run.result) return Verdict::missing;
+    const auto any = [&](Verdict wanted) {
+        return std::any_of(changes.begin(), changes.end(), [&](const Change& c) { return c.verdict == wanted; });
+    };
+    return any(Verdict::fail) ? Verdict::fail : any(Verdict::pass) ? Verdict::pass : Verdict::not_measured;
+}
+
+bool Comparison::all_ran() const {
+    return std::all_of(rows.begin(), rows.end(), [](const Row& row) { return row.run.result.has_value(); });
+}
+
+Answer Comparison::converged() const {
+    const Counts counts = count(*this);
+    if (counts.fail > 0) return Answer::no;
+    return counts.missing_runs > 0 || counts.pass == 0 ? Answer::unknown : Answer::yes;
+}
+
+std::string Comparison::verdict_text() const {
+    const Counts counts = count(*this);
+    const std::string missing =
+        counts.missing_runs > 0 ? fmt::format("{} of {} runs missing", counts.missing_runs, rows.size()) : "";
+    if (kind == ComparisonKind::sensitivity) {
+        return missing.empty() ? fmt::format("{} variants, one value changed in each", rows.size()) : missing;
+    }
+    const std::size_t all = counts.pass + counts.fail;
+    switch (converged()) {
+        case Answer::yes:
+            return fmt::format("converged: no change above {:g} %", refinement_limit_percent);
+        case Answer::no:
+            return fmt::format("not converged: {} of {} changes above {:g} %{}", counts.fail, all,
+                               refinement_limit_percent, missing.empty() ? "" : ", " + missing);
+        case Answer::unknown:
+            break;
+    }
+    return "convergence not known: " + (missing.empty() ? "nothing could be measured" : missing);
+}
+
+Comparison compare(ComparisonKind kind, const Scene& scene, const RunResult& base, std::vector<VariantRun> runs) {
+    const std::vector<Measure> all = measures(scene, base.observation);
+    Comparison comparison;
+    comparison.kind = kind;
+    for (const Measure& m : all) comparison.quantities.push_back(m.quantity);
+    for (VariantRun& run : runs) {
+        Comparison::Row row{std::move(run), {}};
+        for (const Measure& m : all) {
+            row.changes.push_back(row.run.result ? change_from(m.quantity.base, m.value(row.run.result->observation))
+                                                 : Change{});
+        }
+        comparison.rows.push_back(std::move(row));
+    }
+    return comparison;
+}
+
+}  // namespace talus

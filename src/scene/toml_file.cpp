@@ -1,0 +1,141 @@
+#include "scene/toml_file.hpp"
+
+#include <cerrno>
+#include <cmath>
+#include <fstream>
+#include <sstream>
+#include <system_error>
+
+#include <fmt/format.h>
+
+#include "scene/parse.hpp"
+
+namespace talus {
+namespace {
+
+constexpr std::uintmax_t largest_file = 16 << 20;  // bytes; such a file is a page of text
+
+/// Line of the first byte that is not UTF-8, 0 if there is none.
+std::size_t line_of_invalid_utf8(std::string_view text) {
+    std::size_t line = 1;
+    for (std::size_t i = 0; i < text.size(); ++i) {
+        const auto byte = static_cast<unsigned char>(text[i]);
+        if (byte == '\n') ++line;
+        if (byte < 0x80) continue;
+        const int more = byte >= 0xC2 && byte <= 0xDF   ? 1
+                         : (byte & 0xF0) == 0xE0        ? 2
+                         : byte >= 0xF0 && byte <= 0xF4 ? 3
+                                                        : 0;
+        if (more == 0 || i + more >= text.size()) return line;
+        for (int k = 1; k <= more; ++k) {
+            if ((static_cast<unsigned char>(text[i + k]) & 0xC0) != 0x80) return line;
+        }
+        i += more;
+    }
+    return 0;
+}
+
+Result<std::string> read_text(const std::filesystem::path& file, const std::string& what) {
+    const std::string name = file.string();
+    std::error_code code;
+    const auto status = std::filesystem::status(file, code);
+    if (!std::filesystem::exists(status)) return Error{name + ": no such " + what + " file"};
+    if (std::filesystem::is_directory(status)) {
+        return Error{name + ": is a folder, not a " + what + " file; name the .toml file in it"};
+    }
+    std::ifstream in(file, std::ios::binary);
+    if (!in) return Error{name + ": cannot be opened: " + std::generic_category().message(errno)};
+    std::string text;
+    char block[65536];
+    while (in.read(block, sizeof block), in.gcount() > 0) {
+        text.append(block, static_cast<std::size_t>(in.gcount()));
+        if (text.size() > largest_file)
+            return Error{fmt::format("{}: is larger than 16 MB, not a {} file", name, what)};
+    }
+    if (in.bad()) return Error{name + ": cannot be read to its end"};
+    if (const std::size_t line = line_of_invalid_utf8(text); line > 0) {
+        return Error{fmt::format("{}:{}: not UTF-8 text; save the {} file as UTF-8", name, line, what)};
+    }
+    return text;
+}
+
+}  // namespace
+
+Result<toml::table> read_toml_file(const std::filesystem::path& file, const std::string& what) {
+    const Result<std::string> text = read_text(file, what);
+    if (!text) return text.error();
+    try {
+        return toml::parse(*text, file.string());
+    } catch (const toml::parse_error& error) {
+        return Error{fmt::format("{}:{}: not valid TOML: {}", file.string(), error.source().begin.line,
+                                 one_line(error.description()))};
+    }
+}
+
+std::string toml_text_of(const toml::node& node) {
+    std::ostringstream out;
+    out << toml::toml_formatter{node};
+    return one_line(out.str(), 80);
+}
+
+std::optional<ParameterValue> to_parameter_value(const toml::node& node, ParameterKind kind) {
+    switch (kind) {
+        case ParameterKind::boolean:
+            if (const auto value = node.value_exact<bool>()) return *value;
+            return std::nullopt;
+        case ParameterKind::integer: {
+            if (const auto value = node.value_exact<std::int64_t>()) return *value;
+            const auto number = node.value_exact<double>();  // 1e6 is a whole number to everybody but TOML
+            if (number && std::abs(*number) < 9e15 && *number == std::floor(*number)) {
+                return static_cast<std::int64_t>(*number);
+            }
+            return std::nullopt;
+        }
+        case ParameterKind::number:
+            if (node.is_number()) return node.value<double>();
+            return std::nullopt;
+        case ParameterKind::text:
+        case ParameterKind::path:
+        case ParameterKind::choice:
+            if (const auto value = node.value_exact<std::string>()) return *value;
+            return std::nullopt;
+        case ParameterKind::text_list: {
+            const toml::array* items = node.as_array();
+            if (!items) return std::nullopt;
+            std::vector<std::string> texts;
+            for (const toml::node& item : *items) {
+                const auto text = item.value_exact<std::string>();
+                if (!text) return std::nullopt;
+                texts.push_back(*text);
+            }
+            return texts;
+        }
+        case ParameterKind::extent: {
+            const toml::array* items = node.as_array();
+            if (!items || items->size() != 4) return std::nullopt;
+            double numbers[4];
+            for (std::size_t i = 0; i < 4; ++i) {
+                if (!items->get(i)->is_number()) return std::nullopt;
+                numbers[i] = *items->get(i)->value<double>();
+            }
+            return Extent{numbers[0], numbers[1], numbers[2], numbers[3]};
+        }
+    }
+    return std::nullopt;
+}
+
+std::string one_line(std::string_view text, std::size_t longest) {
+    std::string out;
+    for (const char c : text) {
+        const bool space = static_cast<unsigned char>(c) <= ' ' || c == '\x7f';
+        if (!space || (!out.empty() && out.back() != ' ')) out += space ? ' ' : c;
+    }
+    if (out.size() > longest) {
+        std::size_t end = longest;
+        while (end > 0 && (static_cast<unsigned char>(out[end]) & 0xC0) == 0x80) --end;  // not inside a UTF-8 character
+        out = out.substr(0, end) + "...";
+    }
+    return out;
+}
+
+}  // namespace talus

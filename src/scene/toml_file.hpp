@@ -1,0 +1,25 @@
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+
+#include <toml++/toml.h>
+
+#include "core/result.hpp"
+#include "params/fields.hpp"
+
+/// What every reader of a TOML file of the project needs.
+namespace talus {
+
+/// Reads a whole file; `what` it is goes into the messages ("scene"). Errors: not there, a folder, too large, not
+/// UTF-8, not TOML (with the line).
+[[nodiscard]] Result<toml::table> read_toml_file(const std::filesystem::path& file, const std::string& what);
+
+/// The node as written, in one line, cut where it is long.
+[[nodiscard]] std::string toml_text_of(const toml::node& node);
+
+/// The node as a value of the parameter's kind; nothing if it is of another kind.
+[[nodiscard]] std::optional<ParameterValue> to_parameter_value(const toml::node& node, ParameterKind kind);
+
+}  // namespace talus

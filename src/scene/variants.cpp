@@ -1,0 +1,196 @@
+#include "scene/variants.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "sim/physics/viscosity.hpp"
+#include "sim/seed.hpp"
+
+namespace talus {
+namespace {
+
+constexpr std::string_view base_name = "as given";
+
+double released_volume(const Scene& scene) {
+    double volume = 0;
+    for (const Release& release : scene.releases) volume += release.volume;
+    return volume;
+}
+
+double spacing_of(const Scene& scene) {
+    return choose_particle_spacing(scene.spec.solver, released_volume(scene));
+}
+
+double particles_of(const Scene& scene) {
+    return released_volume(scene) / std::pow(spacing_of(scene), 3);
+}
+
+/// What a run costs, in arbitrary units: particles times iterations, over the time step at a speed that debris has.
+double effort_of(const Scene& scene) {
+    constexpr double usual_speed = 10;         // m/s
+    constexpr double beside_iterations = 2.2;  // neighbours, contacts and observing cost as much as so many iterations
+    const SolverSpec& solver = scene.spec.solver;
+    const double adaptive =
+        std::min(solver.largest_time_step, solver.displacement_limit * spacing_of(scene) / usual_speed);
+    return particles_of(scene) * (solver.iteration_count + beside_iterations) / solver.time_step.value_or(adaptive);
+}
+
+/// "a,[b,c],\"d,e\"" -> "a", "[b,c]", "\"d,e\"".
+std::vector<std::string> split_values(std::string_view text) {
+    std::vector<std::string> values(1);
+    int depth = 0;
+    char quote = 0;
+    for (const char c : text) {
+        if (quote != 0) {
+            quote = c == quote ? 0 : quote;
+        } else if (c == '"' || c == '\'') {
+            quote = c;
+        } else if (c == '[' || c == ']') {
+            depth += c == '[' ? 1 : -1;
+        } else if (c == ',' && depth == 0) {
+            values.emplace_back();
+            continue;
+        }
+        values.back() += c;
+    }
+    return values;
+}
+
+/// The message of an override names the option that users give them with; a variant's were not given so.
+std::string of_variant(const Variant& variant, std::string_view message) {
+    constexpr std::string_view option = "--set ";
+    if (message.starts_with(option)) return fmt::format("variant {}", message.substr(option.size()));
+    return fmt::format("variant {}: {}", variant.name, message);
+}
+
+Result<Scene> load_variant(const SceneSource& source, const Variant& variant) {
+    std::vector<std::string> overrides = source.overrides;
+    overrides.insert(overrides.end(), variant.overrides.begin(), variant.overrides.end());
+    Result<Scene> scene = load_scene(source.file, overrides);
+    if (!scene) return Error{of_variant(variant, scene.error().message)};
+    return scene;
+}
+
+double kinematic_viscosity_of(const Scene& scene) {
+    const MaterialSpec& material = scene.spec.material;
+    if (material.kinematic_viscosity) return *material.kinematic_viscosity;
+    const double spacing = spacing_of(scene), radius = scene.spec.solver.support_ratio * spacing;
+    return kinematic_viscosity(material.viscosity,
+                               make_kernel(scene.spec.solver.kernel, spacing, radius).second_moment);
+}
+
+}  // namespace
+
+std::vector<Variant> refinements(const Scene& base) {
+    const SolverSpec& solver = base.spec.solver;
+    Variant step{.name = "half the time step", .overrides = {}};
+    if (solver.time_step) {
+        step.overrides = {fmt::format("solver.time_step_s={}", *solver.time_step / 2)};
+    } else {
+        step.overrides = {fmt::format("solver.largest_time_step_s={}", solver.largest_time_step / 2),
+                          fmt::format("solver.smallest_time_step_s={}", solver.smallest_time_step / 2),
+                          fmt::format("solver.displacement_limit={}", solver.displacement_limit / 2)};
+    }
+    Variant iterations{.name = "double the iterations",
+                       .overrides = {fmt::format("solver.iteration_count={}", 2 * solver.iteration_count)}};
+    Variant particles{.name = "three times the particles",
+                      .overrides = {fmt::format("solver.particle_spacing_m={}", spacing_of(base) / std::cbrt(3.0)),
+                                    // The same smoothing would be another material at another spacing.
+                                    fmt::format("material.kinematic_viscosity_m2ps={}", kinematic_viscosity_of(base))}};
+    return {step, iterations, particles};
+}
+
+Result<std::vector<Variant>> variations(std::string_view text) {
+    const std::size_t equals = text.find('=');
+    const std::string_view key = text.substr(0, equals);
+    const auto problem = [&](std::string_view what) {
+        return Error{fmt::format("variation \"{}\": {}; write section.key=value,value", text, what)};
+    };
+    if (equals == std::string_view::npos || key.empty()) return problem("there is no key with values");
+    std::vector<Variant> variants;
+    for (const std::string& value : split_values(text.substr(equals + 1))) {
+        if (value.empty()) return problem("a value is empty");
+        variants.push_back(
+            {.name = fmt::format("{} = {}", key, value), .overrides = {fmt::format("{}={}", key, value)}});
+    }
+    return variants;
+}
+
+Result<std::vector<Variant>> prepare_variants(const SceneSource& source, const Scene& base,
+                                              std::vector<Variant> variants) {
+    for (Variant& variant : variants) {
+        const Result<Scene> scene = load_variant(source, variant);
+        if (!scene) return scene.error();
+        const auto limit = static_cast<double>(scene->spec.solver.particle_limit);
+        if (particles_of(*scene) > limit) {
+            return Error{fmt::format("variant {}: about {:.0f} particles, more than solver.particle_limit = {:.0f}",
+                                     variant.name, particles_of(*scene), limit)};
+        }
+        variant.effort = effort_of(*scene) / effort_of(base);
+    }
+    return variants;
+}
+
+VariantRun run_variant(const SceneSource& source, const Variant& variant, const RunOptions& options) {
+    VariantRun run{variant, std::nullopt, ""};
+    if (options.stop_requested && options.stop_requested->load()) {
+        run.missing = "interrupted before it began";
+        return run;
+    }
+    const Result<Scene> scene = load_variant(source, variant);
+    if (!scene) {
+        run.missing = scene.error().message;
+        return run;
+    }
+    Result<RunResult> result = run_scene(*scene, options);
+    if (!result) {
+        run.missing = of_variant(variant, result.error().message);
+    } else if (result->status == RunStatus::interrupted) {
+        run.missing = fmt::format("interrupted at t = {:.4g} s", result->simulated_time);
+    } else if (result->status == RunStatus::fault) {
+        run.missing = "fault " + result->stop_reason;
+    } else {
+        result->observation.maps = {};
+        result->observation.timeseries = {};
+        run.result = *std::move(result);
+    }
+    return run;
+}
+
+double SeriesClock::effort_after() const {
+    double sum = 0;
+    for (std::size_t i = run_; i < variants_.size(); ++i) sum += variants_[i].effort;
+    return sum;
+}
+
+SeriesProgress SeriesClock::at(const Progress& now) const {
+    const double elapsed = now.real_time_factor > 0 ? now.time / now.real_time_factor : 0;
+    double remaining = now.wall_remaining, before = 0, unit = elapsed + remaining;
+    if (run_ > 0) {
+        // By now it is known when debris comes to rest.
+        const double end = std::max(base_end_time_, now.time);
+        remaining = now.real_time_factor > 0 ? (end - now.time) / now.real_time_factor : 0;
+        unit = base_wall_time_;
+        before = unit;
+        for (std::size_t i = 0; i + 1 < run_; ++i) before += unit * variants_[i].effort;
+    }
+    const double left = remaining + unit * effort_after();
+    const double all = before + elapsed + left;
+    return {run_ + 1, variants_.size() + 1, run_ == 0 ? base_name : variants_[run_ - 1].name,
+            all > 0 ? (before + elapsed) / all : 0, left};
+}
+
+void SeriesClock::base_ended(const RunResult& result) {
+    base_wall_time_ = result.wall_time;
+    base_end_time_ = result.simulated_time;
+    run_ = 1;
+}
+
+void SeriesClock::variant_ended() {
+    ++run_;
+}
+
+}  // namespace talus

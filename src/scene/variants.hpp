@@ -1,0 +1,77 @@
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/result.hpp"
+#include "scene/run.hpp"
+#include "scene/scene.hpp"
+
+/// Runs of a scene with some of its values set differently, beside its run as given (the base).
+namespace talus {
+
+struct Variant {
+    std::string name;                    ///< "half the time step", "material.friction_coefficient = 0.3"
+    std::vector<std::string> overrides;  ///< "section.key=value", applied after those of the base
+    double effort = 1;                   ///< wall time of its run over that of the base, an estimate
+};
+
+/// A variant's run, or why there is none.
+struct VariantRun {
+    Variant variant;
+    std::optional<RunResult> result;  ///< of a complete run, without maps and time series
+    std::string missing;              ///< "interrupted at t = 3.2 s", an error; empty where there is a result
+};
+
+/// Where the base comes from, to load it again with other values.
+struct SceneSource {
+    std::filesystem::path file;
+    std::vector<std::string> overrides;  ///< as for load_scene
+};
+
+/// Half the time step at every moment, double the iterations, three times the particles.
+[[nodiscard]] std::vector<Variant> refinements(const Scene& base);
+
+/// A variant per value of "section.key=value,value,...", or "section[index].key=..."; commas in brackets or quotes do
+/// not separate. Errors: no key, no value.
+[[nodiscard]] Result<std::vector<Variant>> variations(std::string_view text);
+
+/// Loads every variant once, so that what cannot run is refused before hours of the base's run, and fills in `effort`.
+/// Errors: as of load_scene, and more particles than the limit.
+[[nodiscard]] Result<std::vector<Variant>> prepare_variants(const SceneSource& source, const Scene& base,
+                                                            std::vector<Variant> variants);
+
+/// Loads and runs one. Nothing that goes wrong is an error: it is said in `missing`.
+[[nodiscard]] VariantRun run_variant(const SceneSource& source, const Variant& variant, const RunOptions& options);
+
+/// How far the base and its variants are together.
+struct SeriesProgress {
+    std::size_t run, count;  ///< which run goes on, from 1 (the base), and how many there are
+    std::string_view name;   ///< of the variant; "as given" for the base
+    double share_done;       ///< 0 to 1, of all runs
+    double wall_remaining;   ///< s, of all runs, an estimate
+};
+
+/// Estimates how long the base and its variants take together.
+class SeriesClock {
+  public:
+    explicit SeriesClock(std::vector<Variant> variants) : variants_(std::move(variants)) {}
+
+    /// `now`: of the run going on.
+    [[nodiscard]] SeriesProgress at(const Progress& now) const;
+    /// The run going on has ended: the next begins.
+    void base_ended(const RunResult& result);
+    void variant_ended();
+
+  private:
+    [[nodiscard]] double effort_after() const;
+
+    std::vector<Variant> variants_;
+    std::size_t run_ = 0;                            // 0: the base
+    double base_wall_time_ = 0, base_end_time_ = 0;  // s
+};
+
+}  // namespace talus

@@ -1,0 +1,76 @@
+#pragma once
+
+#include <cmath>
+
+#include "core/geometry.hpp"
+#include "sim/physics/boundary.hpp"
+#include "sim/physics/kernel.hpp"
+
+namespace talus {
+
+/// The density constraint G of a particle, eq. (1), linearised at the positions that the step predicts:
+/// G(u) = start - divergence(u) + boundary_gradient . u for displacements u since the step's start.
+///
+/// Solved at the level of velocities: debris that starts a step denser than at rest must not get denser in it, and what
+/// is too dense already is spread afterwards without becoming velocity (the split impulses of Catto 2005). Pushing it
+/// apart through the multiplier would feed energy into every slow wave of a multiplier that persists between steps.
+template <class Real>
+struct DensityConstraint {
+    Real start{};            ///< G at the step's start, with the surface's share
+    Real surface_share{};    ///< density that a particle at the free surface lacks
+    Real gradient_square{};  ///< -d G / d lambda, softened, 1/m2
+    Real pair_square{};      ///< sum |V grad W|^2, softened, 1/m2
+};
+
+/// `density`, `square`, `gradient` and `divergence` as the pair sums give them at the predicted positions; `softness`
+/// in 1/m2.
+///
+/// At a free surface a particle lacks neighbours on one side. Left alone, it would bear no pressure before the debris
+/// below had packed closer; so, as with the ghost air of Schechter & Bridson (2012), the lattice is taken to go on
+/// beyond the surface: as a half-space, at the distance that the gradient of the density tells.
+template <class Real, class Sums>
+DensityConstraint<Real> linearise_density(const Model& model, const Sums& sums, const BoundaryDensity<Real>& boundary,
+                                          const Vec3<Real>& displacement, Real softness) {
+    const Vec3<Real> boundary_gradient = boundary.ground_gradient + boundary.building_gradient;
+    const Vec3<Real> gradient = sums.gradient + boundary_gradient;
+    const Vec3<Real> pushed = sums.gradient + boundary_gradient * Real(boundary_pressure_share);
+    const Real own = dot(gradient, pushed);
+    DensityConstraint<Real> result;
+    result.surface_share = model.boundary.density_at_slope(length(gradient));
+    result.start = sums.density + boundary.density + result.surface_share - 1 + sums.divergence -
+                   dot(boundary_gradient, displacement);
+    result.pair_square = sums.square + softness;
+    result.gradient_square = result.pair_square + (own > 0 ? own : Real(0));
+    return result;
+}
+
+/// Eq. (2) for the linearised constraint, accumulated and unilateral: debris resists compression only. `violation` is
+/// the G to undo.
+template <class Real>
+Real next_multiplier(Real before, Real violation, Real gradient_square, Real under_relaxation) {
+    if (!(gradient_square > 0)) return before;
+    const Real after = before - under_relaxation * violation / gradient_square;
+    return after < 0 ? after : Real(0);
+}
+
+/// The share of slight compression that a step spreads: more would keep stirring debris at rest.
+inline double spreading_share(double time_step) {
+    constexpr double kept_per_second = 1.5e-6;  // 0.8 in 1/60 s
+    return 1 - std::pow(kept_per_second, time_step);
+}
+
+/// The part of a violation that a step spreads: the share of what is slight, and all that goes beyond.
+template <class Real>
+Real spread_in_step(Real compression, Real share) {
+    constexpr Real slight = Real(0.01);
+    const Real beyond = compression > slight ? compression - slight : Real(0);
+    return beyond + (compression - beyond) * share;
+}
+
+/// The factor on every correction of the Jacobi iteration: `relaxation` is relative to the eigenvalue at which
+/// neighbours that correct at once overshoot, so it is stable below 2 whatever the kernel.
+inline double jacobi_factor(double relaxation, const Kernel& kernel) {
+    return relaxation / kernel.largest_eigenvalue;
+}
+
+}  // namespace talus

@@ -1,0 +1,35 @@
+#pragma once
+
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "params/spec.hpp"
+#include "validate/case.hpp"
+#include "validate/parameters.hpp"
+
+namespace talus::validate {
+
+/// What a case file says of its computation, beside the parameters of its kind.
+struct Setting {
+    MaterialSpec material;
+    SolverSpec solver;
+    std::vector<std::string> overrides;  ///< what of both was given, as "section.key=value"
+    std::vector<Expectation> expectations;
+};
+
+/// A kind of case: a set-up, what is measured in it, and the law it is held against.
+struct Kind {
+    std::string_view name;
+    std::string_view summary;
+    std::span<const Quantity> quantities;
+    /// Reads the parameters (problems stay in them) and returns what computes the case.
+    Computation (*prepare)(Parameters& parameters, const Setting& setting);
+
+    [[nodiscard]] const Quantity* find(std::string_view quantity) const;
+};
+
+[[nodiscard]] std::span<const Kind> kinds();
+
+}  // namespace talus::validate

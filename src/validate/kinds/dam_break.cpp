@@ -1,0 +1,122 @@
+#include <cmath>
+#include <numbers>
+
+#include <fmt/format.h>
+
+#include "sim/seed.hpp"
+#include "validate/kinds/kinds.hpp"
+#include "validate/laws.hpp"
+#include "validate/measure.hpp"
+#include "validate/set_up.hpp"
+
+namespace talus::validate {
+namespace {
+
+constexpr double to_radians = std::numbers::pi / 180;
+
+constexpr Quantity quantities[] = {
+    {"depth_l2", "1", false, Quantity::Site::none, "relative L2 error of the thickness on cells along the slope"},
+    {"depth_max", "1", false, Quantity::Site::none, "largest error of the thickness over the dam's"},
+};
+
+struct DamSpec {
+    double slope = 0, friction_angle = 0;  // rad
+    double depth = 0, time = 0, cell = 0;  // m, s, m
+    std::vector<double> spacings;          // m
+    int width = 0;                         // spacings
+};
+
+struct Measured {
+    double l2 = not_computed, largest = not_computed;
+    std::string problem;
+    std::uint32_t particles = 0;
+    std::vector<double> place, thickness, exact;
+};
+
+Measured measure(const DamSpec& spec, double spacing, const Setting& setting, const Watch& watch) {
+    const DamBreak law(spec.slope, spec.friction_angle, spec.depth, Model{}.gravity);
+    // Long enough that nothing of its other end is felt where the thickness is compared.
+    const double margin = 3 * spec.depth;
+    const double reservoir = 2 * law.wave_speed() * spec.time + 2 * margin;
+    const double width = spec.width * spacing;
+    const Incline incline(spec.slope, 2 * (reservoir + law.front(spec.time)), width + 4);
+    MaterialSpec material = setting.material;
+    material.friction_coefficient = std::tan(spec.friction_angle);
+    material.building_friction_coefficient = 0;
+    Model model = make_model(material, setting.solver, incline.terrain(),
+                             make_slice(incline.terrain(), width, 3 * spec.depth), spacing);
+    const auto columns = static_cast<int>(std::lround(reservoir / spacing));
+    const auto points = fill_lattice(incline, spacing, -columns * spacing, columns, -width / 2, spec.width,
+                                     [&](double, double) { return spec.depth; });
+    Trial trial(std::move(model), state_at_rest(points), watch);
+    const State& state = trial.state();
+    Measured measured;
+    measured.particles = state.count;
+    if (!trial.advance_to(spec.time)) {
+        measured.problem = trial.problem();
+        return measured;
+    }
+    const double first = std::floor((law.back(state.time) - margin) / spec.cell) * spec.cell;
+    const int cells = static_cast<int>(std::ceil((law.front(state.time) + margin - first) / spec.cell));
+    measured.thickness = thickness_profile(trial.model(), state, first, spec.cell, cells, width,
+                                           [&](std::uint32_t i) { return incline.along(state.position.at(i)); });
+    for (int k = 0; k < cells; ++k) {
+        measured.place.push_back(first + (k + 0.5) * spec.cell);
+        measured.exact.push_back(law.thickness(measured.place.back(), state.time));
+    }
+    const ErrorNorms norms = error_norms(measured.thickness, measured.exact);
+    measured.l2 = norms.relative_l2;
+    measured.largest = norms.relative_max;
+    return measured;
+}
+
+Result<Outcome> compute(const DamSpec& spec, const Setting& setting, const Watch& watch) {
+    Outcome outcome;
+    Chart profile{"profile",
+                  fmt::format("Thickness of a broken dam after {:g} s", spec.time),
+                  "along the slope, m",
+                  "thickness, m",
+                  {}};
+    Chart trend{"trend",
+                "Error of the thickness, by spacing",
+                "particle spacing, m",
+                "relative L2 error",
+                {{"computed", Series::Style::marks, {}, {}}}};
+    for (const double spacing : spec.spacings) {
+        const std::string name = fmt::format("spacing {:g} m", spacing);
+        watch.say(name);
+        const Measured m = measure(spec, spacing, setting, watch);
+        if (!m.problem.empty()) outcome.notes.push_back(name + ": " + m.problem);
+        outcome.notes.push_back(fmt::format("{}: {} particles, cells of {:g} m", name, m.particles, spec.cell));
+        outcome.measurements.push_back({"depth_l2", name, m.l2, {}});
+        outcome.measurements.push_back({"depth_max", name, m.largest, {}});
+        if (profile.series.empty()) profile.series.push_back({"exact", Series::Style::dashed, m.place, m.exact});
+        profile.series.push_back({name, Series::Style::line, m.place, m.thickness});
+        trend.series[0].x.push_back(spacing);
+        trend.series[0].y.push_back(m.l2);
+    }
+    outcome.charts = {profile, trend};
+    return outcome;
+}
+
+Computation prepare(Parameters& parameters, const Setting& setting) {
+    constexpr Range angles{.low = 0, .high = 80};
+    constexpr Range positive{.low = 0, .low_included = false};
+    DamSpec spec;
+    spec.slope = parameters.number("slope_deg", angles, 0) * to_radians;
+    spec.friction_angle = parameters.number("friction_angle_deg", angles, 0) * to_radians;
+    spec.depth = parameters.number("depth_m", positive, 1);
+    spec.time = parameters.number("time_s", positive, 5);
+    spec.cell = parameters.number("cell_m", positive, 0.5);
+    spec.spacings = parameters.numbers("spacings_m", positive, {0.1});
+    spec.width = parameters.whole_number("width_spacings", {.low = 2, .high = 1000}, 5);
+    return [spec, setting](const Watch& watch) { return compute(spec, setting, watch); };
+}
+
+}  // namespace
+
+Kind dam_break_kind() {
+    return {"dam_break", "a dam that breaks on a slope with Coulomb friction, as a thin slice", quantities, prepare};
+}
+
+}  // namespace talus::validate

@@ -1,0 +1,199 @@
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include <fmt/format.h>
+
+#include "scene/scene.hpp"
+#include "sim/seed.hpp"
+#include "terrain/release.hpp"
+#include "validate/kinds/kinds.hpp"
+#include "validate/set_up.hpp"
+
+namespace talus::validate {
+namespace {
+
+constexpr double to_radians = std::numbers::pi / 180;
+
+constexpr Quantity quantities[] = {
+    {"energy_line", "1", false, Quantity::Site::none,
+     "largest change of z + u^2 / 2g + s f, averages over the mass, over the largest drop"},
+    {"energy_line_with_curvature", "1", false, Quantity::Site::none,
+     "the same with the share of friction that bent ground adds: f times the ground's whole normal force"},
+};
+
+enum class Ground { plane, bowl, scene };
+
+struct EnergySpec {
+    Ground ground = Ground::plane;
+    double slope = 0;                // rad, of the plane
+    double radius = 0, start = 0;    // m, of the bowl; rad from its bottom
+    double side = 0, thickness = 0;  // m, of the block that is released
+    double spacing = 0, time = 0;    // m, s
+    std::filesystem::path scene;
+};
+
+struct World {
+    Terrain terrain;
+    std::vector<Release> releases;
+};
+
+Release block_at(const Terrain& terrain, double x, double side, double thickness) {
+    Release release;
+    release.name = "block";
+    const double a = x - side / 2, b = x + side / 2, half = side / 2;
+    release.patches.push_back({{{{a, -half}, {b, -half}, {b, half}, {a, half}}, {}}, thickness});
+    release.volume = release_volume(terrain, release);
+    return release;
+}
+
+Result<World> make_world(const EnergySpec& spec) {
+    if (spec.ground == Ground::scene) {
+        Result<Scene> scene = load_scene(spec.scene);
+        if (!scene) return scene.error();
+        return World{scene->terrain, scene->releases};
+    }
+    World world;
+    if (spec.ground == Ground::plane) {
+        const double length = Model{}.gravity * std::sin(spec.slope) * spec.time * spec.time + 40;
+        world.terrain = make_ground(length, 60, 1, [&](double x, double) { return -std::tan(spec.slope) * x; });
+        world.releases.push_back(block_at(world.terrain, -length / 2 + 20, spec.side, spec.thickness));
+    } else {
+        const double across = 2 * spec.radius * std::sin(std::min(1.2 * spec.start, 1.4));
+        world.terrain = make_ground(across, across, 1, [&](double x, double y) {
+            return spec.radius - std::sqrt(std::max(0.0, spec.radius * spec.radius - x * x - y * y));
+        });
+        world.releases.push_back(
+            block_at(world.terrain, -spec.radius * std::sin(spec.start), spec.side, spec.thickness));
+    }
+    return world;
+}
+
+/// Sums over the way of every particle.
+class Ways {
+  public:
+    explicit Ways(const Trial& trial) : trial_(trial), ways_(trial.state().count) { look(nullptr); }
+
+    void after_step() {
+        const double time_step = trial_.state().time_step;
+        look(&time_step);
+    }
+
+    /// Averages over the mass, m: elevation, velocity head, horizontal way, way weighed with the normal force.
+    struct Means {
+        double elevation = 0, head = 0, way = 0, loaded_way = 0;
+    };
+    [[nodiscard]] Means means() const {
+        const State& state = trial_.state();
+        Means m;
+        for (std::uint32_t i = 0; i < state.count; ++i) {
+            const LocalPoint v = state.velocity.at(i);
+            m.elevation += double{state.position.z[i]} / state.count;
+            m.head += dot(v, v) / (2 * trial_.model().gravity) / state.count;
+            m.way += ways_[state.id[i]].way / state.count;
+            m.loaded_way += ways_[state.id[i]].loaded_way / state.count;
+        }
+        return m;
+    }
+
+  private:
+    struct Way {
+        LocalPoint position, normal;
+        double way = 0, loaded_way = 0;
+    };
+
+    void look(const double* time_step) {
+        const State& state = trial_.state();
+        const double gravity = trial_.model().gravity;
+        for (std::uint32_t i = 0; i < state.count; ++i) {
+            Way& way = ways_[state.id[i]];
+            const LocalPoint p = state.position.at(i), v = state.velocity.at(i);
+            const LocalPoint normal = trial_.model().terrain.sample(p.x, p.y).normal;
+            if (time_step != nullptr) {
+                const LocalPoint moved = p - way.position;
+                way.way += std::hypot(moved.x, moved.y);
+                // Normal force over weight: the slope's share, and what turning with the ground takes.
+                const double force = normal.z - dot(v, normal - way.normal) / (gravity * *time_step);
+                way.loaded_way += std::max(0.0, force) * length(moved);
+            }
+            way.position = p;
+            way.normal = normal;
+        }
+    }
+
+    const Trial& trial_;
+    std::vector<Way> ways_;
+};
+
+Result<Outcome> compute(const EnergySpec& spec, const Setting& setting, const Watch& watch) {
+    Result<World> world = make_world(spec);
+    if (!world) return world.error();
+    Model model = make_model(setting.material, setting.solver, world->terrain, {}, spec.spacing);
+    Result<State> seeded = seed_releases(model, world->releases);
+    if (!seeded) return seeded.error();
+    Trial trial(std::move(model), *std::move(seeded), watch);
+    const State& state = trial.state();
+    const double friction = setting.material.friction_coefficient;
+
+    Ways ways(trial);
+    const Ways::Means first = ways.means();
+    double drop = 0, worst = 0, worst_loaded = 0;
+    Series line{"z + u² / 2g + s f", Series::Style::line, {}, {}};
+    Series loaded{"with the curvature's share", Series::Style::line, {}, {}};
+    Series elevation{"z", Series::Style::line, {}, {}}, start{"at the start", Series::Style::dashed, {}, {}};
+    const double unit_time = spec.time / 200;
+    const auto look = [&] {
+        if (state.left > 0) return;  // averages of what is left would mean nothing
+        ways.after_step();
+        const Ways::Means now = ways.means();
+        const double plain = now.elevation + now.head + friction * now.way - first.elevation;
+        const double whole = now.elevation + now.head + friction * now.loaded_way - first.elevation;
+        drop = std::max(drop, first.elevation - now.elevation);
+        if (std::abs(plain) > std::abs(worst)) worst = plain;
+        if (std::abs(whole) > std::abs(worst_loaded)) worst_loaded = whole;
+        if (state.time < unit_time * static_cast<double>(line.x.size())) return;
+        for (Series* series : {&line, &loaded, &elevation, &start}) series->x.push_back(state.time);
+        line.y.push_back(plain);
+        loaded.y.push_back(whole);
+        elevation.y.push_back(now.elevation - first.elevation);
+        start.y.push_back(0);
+    };
+    const bool trusted = trial.advance_to(spec.time, look);
+    Outcome outcome;
+    outcome.notes.push_back(fmt::format("{} particles, largest drop {:.1f} m", state.seeded, drop));
+    if (!trusted) outcome.notes.push_back(trial.problem());
+    if (state.left > 0) outcome.notes.emplace_back("counted until the first particle left the terrain");
+    outcome.measurements = {{"energy_line", "", trusted ? worst / drop : not_computed, {}},
+                            {"energy_line_with_curvature", "", trusted ? worst_loaded / drop : not_computed, {}}};
+    outcome.charts.push_back(
+        {"energy", "Energy line of the mass, above its start", "time, s", "m", {start, line, loaded, elevation}});
+    return outcome;
+}
+
+Computation prepare(Parameters& parameters, const Setting& setting) {
+    constexpr Range positive{.low = 0, .low_included = false};
+    constexpr Range angles{.low = 1, .high = 70};
+    EnergySpec spec;
+    const std::string ground = parameters.choice("ground", {"plane", "bowl", "scene"}, "plane");
+    if (ground == "bowl") spec.ground = Ground::bowl;
+    if (ground == "scene") {
+        spec.ground = Ground::scene;
+        spec.scene = parameters.path("scene");
+    }
+    spec.slope = parameters.number("slope_deg", angles, 30) * to_radians;
+    spec.radius = parameters.number("bowl_radius_m", positive, 150);
+    spec.start = parameters.number("bowl_start_deg", angles, 35) * to_radians;
+    spec.side = parameters.number("block_side_m", positive, 6);
+    spec.thickness = parameters.number("block_thickness_m", positive, 0.9);
+    spec.spacing = parameters.number("particle_spacing_m", positive, 0.3);
+    spec.time = parameters.number("time_s", positive, 8);
+    return [spec, setting](const Watch& watch) { return compute(spec, setting, watch); };
+}
+
+}  // namespace
+
+Kind energy_line_kind() {
+    return {"energy_line", "energy of a mass that only Coulomb friction slows down", quantities, prepare};
+}
+
+}  // namespace talus::validate

@@ -1,0 +1,201 @@
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "sim/seed.hpp"
+#include "validate/kinds/kinds.hpp"
+#include "validate/laws.hpp"
+#include "validate/measure.hpp"
+#include "validate/set_up.hpp"
+
+namespace talus::validate {
+namespace {
+
+constexpr double front_percentile = 0.985;
+
+constexpr Quantity quantities[] = {
+    {"run_out", "1", true, Quantity::Site::none,
+     "(final - initial extent) / initial extent; the front is the 98.5th percentile of the particles' distances"},
+    {"height", "1", true, Quantity::Site::none, "final height / initial extent, from the five highest particles"},
+    {"residual_speed", "1", false, Quantity::Site::none, "mean speed at the end over sqrt(g initial height)"},
+};
+
+struct ColumnSpec {
+    bool planar = false;
+    std::vector<double> aspects, resolutions;  // height / extent; spacings per extent
+    double extent = 0;                         // m, radius or half-width
+    int width = 0;                             // spacings, of a planar column's slice
+    double duration = 0;                       // sqrt(initial height / g)
+    std::vector<NumberPair> reference;         // aspect, run-out of somebody else's
+};
+
+struct Measured {
+    double run_out = not_computed, height = not_computed, residual_speed = not_computed;
+    std::string problem;
+    std::vector<double> distance, thickness;  // final profile, over the initial extent
+    std::vector<double> time, front;          // over sqrt(H / g) and the initial extent
+};
+
+double run_out_law(const ColumnSpec& spec, double aspect) {
+    return spec.planar ? column_run_out_planar(aspect) : column_run_out_axisymmetric(aspect);
+}
+
+double height_law(const ColumnSpec& spec, double aspect) {
+    return spec.planar ? column_height_planar(aspect) : column_height_axisymmetric(aspect);
+}
+
+Measured measure(const ColumnSpec& spec, double aspect, double resolution, const Setting& setting, const Watch& watch) {
+    const double spacing = spec.extent / resolution;
+    const double height = aspect * spec.extent;
+    const double reach = spec.extent * (1 + 2 * run_out_law(spec, aspect)) + 2 * spacing;
+    const double width = spec.planar ? spec.width * spacing : 2 * reach;
+    const Incline flat(0, 2 * reach, width + 4);
+
+    // A planar column is one half of a slice, behind a frictionless wall in its plane of symmetry.
+    MaterialSpec material = setting.material;
+    std::vector<Building> walls;
+    if (spec.planar) {
+        material.building_friction_coefficient = 0;
+        walls = make_slice(flat.terrain(), width, 2 * height);
+        const Extent extent = flat.terrain().elevation().geometry.extent();
+        walls.push_back(make_wall(flat.terrain(), extent.x_min, extent.y_min, 0, extent.y_max, 2 * height));
+    }
+    Model model = make_model(material, setting.solver, flat.terrain(), walls, spacing);
+    const auto half = static_cast<int>(std::ceil(resolution));
+    const auto points =
+        spec.planar
+            ? fill_lattice(flat, spacing, 0, half, -width / 2, spec.width, [&](double, double) { return height; })
+            : fill_lattice(flat, spacing, -half * spacing, 2 * half, -half * spacing, 2 * half,
+                           [&](double x, double y) { return std::hypot(x, y) < spec.extent ? height : 0; });
+    Trial trial(std::move(model), state_at_rest(points), watch);
+
+    const State& state = trial.state();
+    const auto distance = [&](std::uint32_t i) {
+        return spec.planar ? double{state.position.x[i]} : std::hypot(state.position.x[i], state.position.y[i]);
+    };
+    const auto front = [&] {
+        std::vector<double> distances(state.count);
+        for (std::uint32_t i = 0; i < state.count; ++i) distances[i] = distance(i);
+        return percentile(std::move(distances), front_percentile);
+    };
+    Measured measured;
+    const double unit_time = std::sqrt(height / trial.model().gravity);
+    constexpr int samples = 60;
+    for (int k = 0; k <= samples; ++k) {
+        if (!trial.advance_to(spec.duration * unit_time * k / samples)) {
+            measured.problem = trial.problem();
+            return measured;
+        }
+        measured.time.push_back(state.time / unit_time);
+        measured.front.push_back(front() / spec.extent);
+    }
+    measured.run_out = front() / spec.extent - 1;
+    measured.height = top_of(trial.model(), state) / spec.extent;
+    double speeds = 0;
+    for (std::uint32_t i = 0; i < state.count; ++i) speeds += length(state.velocity.at(i));
+    measured.residual_speed = speeds / state.count / std::sqrt(trial.model().gravity * height);
+
+    const double cell = 2 * spacing;
+    const int cells = static_cast<int>(reach / cell);
+    std::vector<double> profile =
+        thickness_profile(trial.model(), state, 0, cell, cells, spec.planar ? width : 1, distance);
+    for (int k = 0; k < cells; ++k) {
+        const double middle = (k + 0.5) * cell;
+        const double circumference = spec.planar ? 1 : 2 * std::numbers::pi * middle;
+        measured.distance.push_back(middle / spec.extent);
+        measured.thickness.push_back(profile[static_cast<std::size_t>(k)] / circumference / spec.extent);
+    }
+    return measured;
+}
+
+Series law_curve(const ColumnSpec& spec, double (*law)(const ColumnSpec&, double)) {
+    Series curve{"law", Series::Style::dashed, {}, {}};
+    const double last = *std::max_element(spec.aspects.begin(), spec.aspects.end()) * 1.1;
+    for (int k = 0; k <= 200; ++k) {
+        curve.x.push_back(last * k / 200);
+        curve.y.push_back(law(spec, curve.x.back()));
+    }
+    return curve;
+}
+
+Result<Outcome> compute(const ColumnSpec& spec, const Setting& setting, const Watch& watch) {
+    Outcome outcome;
+    Chart run_outs{"run_out",
+                   "Run-out against aspect ratio",
+                   "initial height / extent",
+                   "run-out / extent",
+                   {law_curve(spec, run_out_law)}};
+    Chart heights{"height",
+                  "Final height against aspect ratio",
+                  "initial height / extent",
+                  "final height / extent",
+                  {law_curve(spec, height_law)}};
+    Chart trend{
+        "trend", "Computed over expected run-out, by resolution", "spacings per extent", "computed / expected", {}};
+    Chart profiles{"profile", "Final profile at the finest resolution", "distance / extent", "thickness / extent", {}};
+    Chart fronts{"front", "The front over time at the finest resolution", "time / sqrt(H / g)", "front / extent", {}};
+    if (!spec.reference.empty()) {
+        Series others{"other simulation", Series::Style::marks, {}, {}};
+        for (const NumberPair& p : spec.reference) {
+            others.x.push_back(p[0]);
+            others.y.push_back(p[1]);
+        }
+        run_outs.series.push_back(others);
+    }
+    const double finest = *std::max_element(spec.resolutions.begin(), spec.resolutions.end());
+    std::vector<Series> trends(spec.aspects.size());
+    for (const double resolution : spec.resolutions) {
+        const std::string by_resolution = fmt::format("{:g} spacings", resolution);
+        Series run_out{by_resolution, Series::Style::marks, {}, {}}, height = run_out;
+        for (std::size_t k = 0; k < spec.aspects.size(); ++k) {
+            const double aspect = spec.aspects[k];
+            const std::string aspect_name = fmt::format("a = {:g}", aspect);
+            const std::string name = fmt::format("{}, {}", aspect_name, by_resolution);
+            watch.say(name);
+            const Measured m = measure(spec, aspect, resolution, setting, watch);
+            if (!m.problem.empty()) outcome.notes.push_back(name + ": " + m.problem);
+            outcome.measurements.push_back({"run_out", name, m.run_out, run_out_law(spec, aspect)});
+            outcome.measurements.push_back({"height", name, m.height, height_law(spec, aspect)});
+            outcome.measurements.push_back({"residual_speed", name, m.residual_speed, {}});
+            run_out.x.push_back(aspect);
+            run_out.y.push_back(m.run_out);
+            height.x.push_back(aspect);
+            height.y.push_back(m.height);
+            trends[k].name = aspect_name;
+            trends[k].x.push_back(resolution);
+            trends[k].y.push_back(m.run_out / run_out_law(spec, aspect));
+            if (resolution != finest) continue;
+            profiles.series.push_back({aspect_name, Series::Style::line, m.distance, m.thickness});
+            fronts.series.push_back({aspect_name, Series::Style::line, m.time, m.front});
+        }
+        run_outs.series.push_back(run_out);
+        heights.series.push_back(height);
+    }
+    trend.series = trends;
+    outcome.charts = {run_outs, heights, trend, profiles, fronts};
+    return outcome;
+}
+
+Computation prepare(Parameters& parameters, const Setting& setting) {
+    constexpr Range positive{.low = 0, .low_included = false};
+    ColumnSpec spec;
+    spec.planar = parameters.choice("geometry", {"axisymmetric", "planar"}, "axisymmetric") == "planar";
+    spec.aspects = parameters.numbers("aspect_ratios", positive, {1});
+    spec.resolutions = parameters.numbers("spacings_per_extent", {.low = 2, .high = 1000}, {12});
+    spec.extent = parameters.number("extent_m", positive, 5);
+    spec.width = parameters.whole_number("width_spacings", {.low = 2, .high = 1000}, 6);
+    spec.duration = parameters.number("duration", positive, 12);
+    spec.reference = parameters.pairs("reference_run_outs", {.low = 0}, false);
+    return [spec, setting](const Watch& watch) { return compute(spec, setting, watch); };
+}
+
+}  // namespace
+
+Kind granular_column_kind() {
+    return {"granular_column", "a column of granular material that collapses on a rough bed", quantities, prepare};
+}
+
+}  // namespace talus::validate

@@ -1,0 +1,21 @@
+#pragma once
+
+#include "validate/kind.hpp"
+
+/// All kinds of cases, one per file of this folder.
+namespace talus::validate {
+
+[[nodiscard]] Kind sliding_slab_kind();
+[[nodiscard]] Kind granular_column_kind();
+[[nodiscard]] Kind standing_heap_kind();
+[[nodiscard]] Kind dam_break_kind();
+[[nodiscard]] Kind spreading_cap_kind();
+[[nodiscard]] Kind water_column_kind();
+[[nodiscard]] Kind lake_at_rest_kind();
+[[nodiscard]] Kind free_fall_kind();
+[[nodiscard]] Kind run_up_kind();
+[[nodiscard]] Kind shear_decay_kind();
+[[nodiscard]] Kind energy_line_kind();
+[[nodiscard]] Kind scene_kind();
+
+}  // namespace talus::validate

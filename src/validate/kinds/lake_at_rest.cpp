@@ -1,0 +1,160 @@
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <functional>
+#include <numbers>
+#include <numeric>
+
+#include <fmt/format.h>
+
+#include "sim/seed.hpp"
+#include "validate/kinds/kinds.hpp"
+#include "validate/set_up.hpp"
+
+namespace talus::validate {
+namespace {
+
+constexpr Quantity quantities[] = {
+    {"depth", "m", true, Quantity::Site::none, "mean depth of the lake; its volume over its area"},
+    {"unevenness", "1", false, Quantity::Site::none,
+     "largest distance of a part of the surface from its mean level, in particle spacings"},
+    {"residual_speed", "m/s", false, Quantity::Site::none, "mean speed at the end"},
+};
+
+struct LakeSpec {
+    double length = 0, depth = 0, relief = 0;  // m; relief: how far the ground rises at most
+    double spacing = 0, time = 0;              // m, s
+    int width = 0, cell = 0;                   // spacings
+};
+
+/// A shape of the ground: its height over x in [-1, 1], from 0 to 1.
+struct Ground {
+    const char* name;
+    double (*height)(double x, double riser);  ///< riser: length of a step's face over half the lake's length
+};
+
+constexpr std::array grounds = {
+    Ground{"flat", [](double, double) { return 0.0; }},
+    Ground{"stepped at 30 degrees",
+           [](double x, double riser) {  // two equal steps
+               return 0.5 * std::clamp((x + 1.0 / 3) / riser, 0.0, 1.0) +
+                      0.5 * std::clamp((x - 1.0 / 3) / riser, 0.0, 1.0);
+           }},
+    Ground{"curved", [](double x, double) { return x * x; }},
+};
+
+struct Measured {
+    double depth = not_computed, expected_depth = not_computed, unevenness = not_computed, speed = not_computed;
+    std::string problem;
+    std::vector<double> place, level, bed;
+};
+
+Measured measure(const LakeSpec& spec, const Ground& ground, const Setting& setting, const Watch& watch) {
+    const double half = spec.length / 2, width = spec.width * spec.spacing;
+    const double riser = spec.relief / 2 / std::tan(std::numbers::pi / 6) / half;
+    const auto bed = [&](double x) { return spec.relief * ground.height(x / half, riser); };
+    const Terrain terrain =
+        make_ground(spec.length + 4, width + 4, spec.spacing, [&](double x, double) { return bed(x); });
+    std::vector<Building> walls = make_slice(terrain, width, 2 * spec.depth);
+    const Extent e = terrain.elevation().geometry.extent();
+    walls.push_back(make_wall(terrain, e.x_min, e.y_min, -half, e.y_max, 2 * spec.depth));
+    walls.push_back(make_wall(terrain, half, e.y_min, e.x_max, e.y_max, 2 * spec.depth));
+    Model model = make_model(setting.material, setting.solver, terrain, walls, spec.spacing);
+
+    const auto columns = static_cast<int>(std::lround(spec.length / spec.spacing));
+    std::vector<LocalPoint> points;
+    for (int j = 0; j < spec.width; ++j) {
+        for (int i = 0; i < columns; ++i) {
+            const auto x = static_cast<float>(-half + (i + 0.5) * spec.spacing);
+            const auto y = static_cast<float>(-width / 2 + (j + 0.5) * spec.spacing);
+            const GroundSample<float> below = model.terrain.sample(x, y);
+            const double bottom = below.height + spec.spacing / 2 / below.normal.z;
+            for (double z = bottom; z + spec.spacing / 2 < spec.depth + 1e-6; z += spec.spacing) {
+                points.push_back({x, y, static_cast<float>(z)});
+            }
+        }
+    }
+    Trial trial(std::move(model), state_at_rest(points), watch);
+    const State& state = trial.state();
+    Measured measured;
+    if (!trial.advance_to(spec.time)) {
+        measured.problem = trial.problem();
+        return measured;
+    }
+    double mean_bed = 0;
+    constexpr int parts = 1000;
+    for (int k = 0; k < parts; ++k) mean_bed += bed(-half + (k + 0.5) / parts * spec.length) / parts;
+    measured.expected_depth = state.count * trial.model().particle_volume() / (spec.length * width);
+
+    // The surface of a part: the mean of its highest particles, half as many as a layer has, plus half a spacing.
+    const double cell = spec.cell * spec.spacing;
+    const int cells = static_cast<int>(spec.length / cell + 1e-6);
+    std::vector<std::vector<double>> elevations(static_cast<std::size_t>(cells));
+    double speeds = 0;
+    for (std::uint32_t i = 0; i < state.count; ++i) {
+        const double at = (state.position.x[i] + half) / cell;
+        if (at >= 0 && at < cells) elevations[static_cast<std::size_t>(at)].push_back(state.position.z[i]);
+        speeds += length(state.velocity.at(i));
+    }
+    measured.speed = speeds / state.count;
+    double mean_level = 0;
+    for (int k = 0; k < cells; ++k) {
+        std::vector<double>& z = elevations[static_cast<std::size_t>(k)];
+        std::sort(z.begin(), z.end(), std::greater<>());
+        const auto n = std::min(z.size(), static_cast<std::size_t>(spec.cell * spec.width / 2));
+        const double level =
+            std::accumulate(z.begin(), z.begin() + static_cast<std::ptrdiff_t>(n), 0.0) / static_cast<double>(n) +
+            spec.spacing / 2;
+        measured.place.push_back(-half + (k + 0.5) * cell);
+        measured.level.push_back(level);
+        measured.bed.push_back(bed(measured.place.back()));
+        mean_level += level / cells;
+    }
+    measured.depth = mean_level - mean_bed;
+    measured.unevenness = 0;
+    for (const double level : measured.level) {
+        measured.unevenness = std::max(measured.unevenness, std::abs(level - mean_level) / spec.spacing);
+    }
+    return measured;
+}
+
+Result<Outcome> compute(const LakeSpec& spec, const Setting& setting, const Watch& watch) {
+    Outcome outcome;
+    for (const Ground& ground : grounds) {
+        watch.say(ground.name);
+        const Measured m = measure(spec, ground, setting, watch);
+        if (!m.problem.empty()) outcome.notes.push_back(std::string(ground.name) + ": " + m.problem);
+        outcome.measurements.push_back({"depth", ground.name, m.depth, m.expected_depth});
+        outcome.measurements.push_back({"unevenness", ground.name, m.unevenness, {}});
+        outcome.measurements.push_back({"residual_speed", ground.name, m.speed, {}});
+        outcome.charts.push_back(
+            {ground.name,
+             fmt::format("Surface of a lake at rest, ground {}", ground.name),
+             "place, m",
+             "elevation, m",
+             {{"surface", Series::Style::line, m.place, m.level}, {"ground", Series::Style::dashed, m.place, m.bed}}});
+    }
+    outcome.charts[1].name = "stepped";
+    return outcome;
+}
+
+Computation prepare(Parameters& parameters, const Setting& setting) {
+    constexpr Range positive{.low = 0, .low_included = false};
+    LakeSpec spec;
+    spec.length = parameters.number("length_m", positive, 12);
+    spec.depth = parameters.number("depth_m", positive, 3.6);
+    spec.relief = parameters.number("relief_m", positive, 1.8);
+    spec.spacing = parameters.number("particle_spacing_m", positive, 0.3);
+    spec.time = parameters.number("time_s", positive, 10);
+    spec.width = parameters.whole_number("width_spacings", {.low = 2, .high = 1000}, 8);
+    spec.cell = parameters.whole_number("cell_spacings", {.low = 1, .high = 1000}, 4);
+    return [spec, setting](const Watch& watch) { return compute(spec, setting, watch); };
+}
+
+}  // namespace
+
+Kind lake_at_rest_kind() {
+    return {"lake_at_rest", "a lake between walls on flat, stepped and curved ground", quantities, prepare};
+}
+
+}  // namespace talus::validate

@@ -1,0 +1,136 @@
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include <fmt/format.h>
+
+#include "products/report_sections.hpp"
+#include "scene/run.hpp"
+#include "scene/scene.hpp"
+#include "validate/kinds/kinds.hpp"
+#include "validate/suite.hpp"
+
+namespace talus::validate {
+namespace {
+
+constexpr double to_degrees = 180 / std::numbers::pi;
+
+constexpr Quantity quantities[] = {
+    {"front_velocity", "m/s", false, Quantity::Site::chainage, "slope of chainage against the front's arrival time"},
+    {"particle_speed", "m/s", false, Quantity::Site::chainage, "mean speed of the debris at the front on arrival"},
+    {"arrival_time", "s", false, Quantity::Site::chainage, "when the front came"},
+    {"run_out", "m", false, Quantity::Site::none, "along the flow path from crown to toe"},
+    {"front_chainage", "m", false, Quantity::Site::none, "farthest chainage that the front reached"},
+    {"runout_angle", "deg", false, Quantity::Site::none, "from crown to toe"},
+    {"travel_angle", "deg", false, Quantity::Site::none, "between the centres of mass of release and deposit"},
+    {"building_hit", "1", false, Quantity::Site::building, "1 if debris struck the building, else 0"},
+    {"first_hit_time", "s", false, Quantity::Site::building, "when debris first struck the building"},
+    {"peak_impact_pressure", "kPa", false, Quantity::Site::building, "filtered force over the wall area in contact"},
+    {"peak_depth", "m", false, Quantity::Site::place, "greatest flow depth near a place"},
+    {"height_reached", "m", false, Quantity::Site::place,
+     "highest ground that debris reached near a place, above the lowest that it reached there"},
+    {"mean_compression", "1", false, Quantity::Site::none, "worst mean compression of the run"},
+    {"max_compression", "1", false, Quantity::Site::none, "worst compression of any particle"},
+};
+
+/// What debris did on the map's cells within the radius of a place.
+struct Surroundings {
+    double peak_depth = 0, lowest = std::numeric_limits<double>::infinity(),
+           highest = -std::numeric_limits<double>::infinity();
+};
+
+Surroundings look_around(const Expectation& e, const Scene& scene, const Observation& observation) {
+    Surroundings found;
+    const Grid<float>& depth = observation.maps.peak_depth;
+    for (int row = 0; row < depth.geometry.rows; ++row) {
+        for (int column = 0; column < depth.geometry.columns; ++column) {
+            const PlanPoint p = depth.geometry.centre(column, row);
+            const double here = depth.at(column, row);
+            if (std::hypot(p.x - *e.x, p.y - *e.y) > *e.radius || !(here > scene.spec.outputs.arrival_depth)) continue;
+            const double ground = scene.terrain.elevation_at(p);
+            found.peak_depth = std::max(found.peak_depth, here);
+            found.lowest = std::min(found.lowest, ground);
+            found.highest = std::max(found.highest, ground);
+        }
+    }
+    return found;
+}
+
+double measure_building(const Expectation& e, const Observation& observation) {
+    for (const BuildingImpact& building : observation.buildings) {
+        if (building.name != e.building) continue;
+        if (e.quantity == "building_hit") return building.hit ? 1 : 0;
+        if (e.quantity == "first_hit_time") return building.first_hit_time;
+        return building.peak_pressure / 1000;
+    }
+    return not_computed;
+}
+
+double measure(const Expectation& e, const Scene& scene, const Observation& observation) {
+    if (e.chainage) {
+        const FrontSample front = front_at(observation, *e.chainage);
+        return e.quantity == "front_velocity"   ? front.front_velocity
+               : e.quantity == "particle_speed" ? front.particle_speed
+                                                : front.arrival_time;
+    }
+    if (!e.building.empty()) return measure_building(e, observation);
+    if (e.x) {
+        const Surroundings found = look_around(e, scene, observation);
+        if (e.quantity == "peak_depth") return found.peak_depth;
+        return found.highest >= found.lowest ? found.highest - found.lowest : 0;
+    }
+    if (e.quantity == "run_out") return observation.run_out.horizontal_distance;
+    if (e.quantity == "front_chainage") return observation.run_out.front_chainage;
+    if (e.quantity == "runout_angle") return observation.run_out.runout_angle * to_degrees;
+    if (e.quantity == "travel_angle") return observation.run_out.travel_angle * to_degrees;
+    return e.quantity == "mean_compression" ? observation.worst_mean_compression : observation.worst_max_compression;
+}
+
+Result<Outcome> compute(const std::filesystem::path& file, const Setting& setting, const Watch& watch) {
+    std::vector<std::string> overrides = setting.overrides;
+    if (watch.thread_count > 0) overrides.push_back(fmt::format("solver.thread_count={}", watch.thread_count));
+    const Result<Scene> scene = load_scene(file, overrides);
+    if (!scene) return scene.error();
+    RunOptions options;
+    options.stop_requested = watch.stop_requested;
+    options.on_progress = [&](const Progress& progress) {
+        if (progress.step % 50 == 0) watch.say(fmt::format("t {:.1f} s", progress.time));
+    };
+    const Result<RunResult> run = run_scene(*scene, options);
+    if (!run) return run.error();
+    const Observation& observation = run->observation;
+
+    Outcome outcome;
+    outcome.notes.push_back(fmt::format("{} particles of {:.3g} m, {:.1f} s: {}", run->particles, run->particle_spacing,
+                                        run->simulated_time, run->stop_reason));
+    Series front{"computed", Series::Style::line, {}, {}}, observed{"observed", Series::Style::marks, {}, {}};
+    for (const FrontSample& sample : observation.front) {
+        front.x.push_back(sample.chainage);
+        front.y.push_back(sample.front_velocity);
+    }
+    const bool trusted = run->status != RunStatus::fault;
+    for (const Expectation& e : setting.expectations) {
+        outcome.measurements.push_back(
+            {e.quantity, place_text(e), trusted ? measure(e, *scene, observation) : not_computed, {}});
+        if (e.quantity != "front_velocity") continue;
+        observed.x.push_back(*e.chainage);
+        observed.y.push_back(*e.expected);
+    }
+    outcome.charts.push_back(
+        {"front", "Front velocity along the flow path", "chainage, m", "front velocity, m/s", {front, observed}});
+    return outcome;
+}
+
+Computation prepare(Parameters& parameters, const Setting& setting) {
+    const std::filesystem::path file = parameters.path("scene");
+    return [file, setting](const Watch& watch) { return compute(file, setting, watch); };
+}
+
+}  // namespace
+
+Kind scene_kind() {
+    return {"scene", "a scene file is run, and quantities of the run are compared", quantities, prepare};
+}
+
+}  // namespace talus::validate

@@ -1,0 +1,151 @@
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include <fmt/format.h>
+
+#include "sim/seed.hpp"
+#include "validate/kinds/kinds.hpp"
+#include "validate/laws.hpp"
+#include "validate/measure.hpp"
+#include "validate/set_up.hpp"
+
+namespace talus::validate {
+namespace {
+
+constexpr double to_radians = std::numbers::pi / 180;
+
+constexpr Quantity quantities[] = {
+    {"depth_l2", "1", false, Quantity::Site::none, "relative L2 error of the thickness on square cells of the slope"},
+    {"depth_max", "1", false, Quantity::Site::none, "largest error of the thickness over the largest thickness"},
+};
+
+struct CapSpec {
+    double slope = 0, friction_angle = 0;               // rad
+    double length = 0, height = 0, time = 0, cell = 0;  // m, m, s, m
+    std::vector<double> spacings;                       // m
+};
+
+struct Measured {
+    double l2 = not_computed, largest = not_computed;
+    std::string problem;
+    std::uint32_t particles = 0;
+    std::vector<double> along, along_exact, along_place;     // through the centre, down the slope
+    std::vector<double> across, across_exact, across_place;  // through the centre, across it
+};
+
+/// Thickness on square cells along and across the slope, computed and exact.
+void compare(const CapSpec& spec, const SpreadingCap& law, const Incline& incline, const Trial& trial,
+             Measured& measured) {
+    const State& state = trial.state();
+    const double margin = 4 * spec.cell;
+    const double half_length = law.half_length(state.time) + margin, half_width = law.half_width(state.time) + margin;
+    const double first = law.travelled(state.time) - half_length;
+    const int columns = static_cast<int>(std::ceil(2 * half_length / spec.cell));
+    const int rows = static_cast<int>(std::ceil(2 * half_width / spec.cell));
+    const auto size = static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows);
+    std::vector<double> thickness(size, 0.0), exact(size, 0.0);
+    const double share = trial.model().particle_volume() / (spec.cell * spec.cell);
+    for (std::uint32_t i = 0; i < state.count; ++i) {
+        const LocalPoint p = state.position.at(i);
+        const double u = (incline.along(p) - first) / spec.cell, v = (p.y + half_width) / spec.cell;
+        if (!(u >= 0 && u < columns && v >= 0 && v < rows)) continue;
+        thickness[static_cast<std::size_t>(v) * static_cast<std::size_t>(columns) + static_cast<std::size_t>(u)] +=
+            share;
+    }
+    for (int row = 0; row < rows; ++row) {
+        for (int column = 0; column < columns; ++column) {
+            const double s = first + (column + 0.5) * spec.cell, y = (row + 0.5) * spec.cell - half_width;
+            const auto k =
+                static_cast<std::size_t>(row) * static_cast<std::size_t>(columns) + static_cast<std::size_t>(column);
+            exact[k] = law.thickness(s, y, state.time);
+            if (row == rows / 2) {
+                measured.along_place.push_back(s);
+                measured.along.push_back(thickness[k]);
+                measured.along_exact.push_back(exact[k]);
+            }
+            if (column == columns / 2) {
+                measured.across_place.push_back(y);
+                measured.across.push_back(thickness[k]);
+                measured.across_exact.push_back(exact[k]);
+            }
+        }
+    }
+    const ErrorNorms norms = error_norms(thickness, exact);
+    measured.l2 = norms.relative_l2;
+    measured.largest = norms.relative_max;
+}
+
+Measured measure(const CapSpec& spec, double spacing, const Setting& setting, const Watch& watch) {
+    const SpreadingCap law(spec.slope, spec.friction_angle, spec.length, spec.height, Model{}.gravity, spec.time + 1);
+    const double furthest = law.travelled(spec.time) + law.half_length(spec.time);
+    const Incline incline(spec.slope, 2.2 * furthest, 2.4 * law.half_width(spec.time));
+    MaterialSpec material = setting.material;
+    material.friction_coefficient = std::tan(spec.friction_angle);
+    Model model = make_model(material, setting.solver, incline.terrain(), {}, spacing);
+    const auto half = static_cast<int>(std::ceil(spec.length / spacing));
+    const auto points = fill_lattice(incline, spacing, -half * spacing, 2 * half, -half * spacing, 2 * half,
+                                     [&](double s, double y) { return law.thickness(s, y, 0); });
+    Trial trial(std::move(model), state_at_rest(points), watch);
+    Measured measured;
+    measured.particles = trial.state().count;
+    if (trial.advance_to(spec.time)) {
+        compare(spec, law, incline, trial, measured);
+    } else {
+        measured.problem = trial.problem();
+    }
+    return measured;
+}
+
+Result<Outcome> compute(const CapSpec& spec, const Setting& setting, const Watch& watch) {
+    Outcome outcome;
+    Chart along{"along",
+                fmt::format("Thickness of the cap after {:g} s, down the slope", spec.time),
+                "along the slope, m",
+                "thickness, m",
+                {}};
+    Chart across{"across",
+                 fmt::format("Thickness of the cap after {:g} s, across the slope", spec.time),
+                 "across the slope, m",
+                 "thickness, m",
+                 {}};
+    for (const double spacing : spec.spacings) {
+        const std::string name = fmt::format("spacing {:g} m", spacing);
+        watch.say(name);
+        const Measured m = measure(spec, spacing, setting, watch);
+        if (!m.problem.empty()) outcome.notes.push_back(name + ": " + m.problem);
+        outcome.notes.push_back(fmt::format("{}: {} particles, cells of {:g} m", name, m.particles, spec.cell));
+        outcome.measurements.push_back({"depth_l2", name, m.l2, {}});
+        outcome.measurements.push_back({"depth_max", name, m.largest, {}});
+        if (along.series.empty()) {
+            along.series.push_back({"exact", Series::Style::dashed, m.along_place, m.along_exact});
+            across.series.push_back({"exact", Series::Style::dashed, m.across_place, m.across_exact});
+        }
+        along.series.push_back({name, Series::Style::line, m.along_place, m.along});
+        across.series.push_back({name, Series::Style::line, m.across_place, m.across});
+    }
+    outcome.charts = {along, across};
+    return outcome;
+}
+
+Computation prepare(Parameters& parameters, const Setting& setting) {
+    constexpr Range angles{.low = 0, .high = 80};
+    constexpr Range positive{.low = 0, .low_included = false};
+    CapSpec spec;
+    spec.slope = parameters.number("slope_deg", angles, 35) * to_radians;
+    spec.friction_angle = parameters.number("friction_angle_deg", angles, 25) * to_radians;
+    spec.length = parameters.number("length_m", positive, 80);
+    spec.height = parameters.number("height_m", positive, 4);
+    spec.time = parameters.number("time_s", positive, 5);
+    spec.cell = parameters.number("cell_m", positive, 5);
+    spec.spacings = parameters.numbers("spacings_m", positive, {1});
+    return [spec, setting](const Watch& watch) { return compute(spec, setting, watch); };
+}
+
+}  // namespace
+
+Kind spreading_cap_kind() {
+    return {"spreading_cap", "a parabolic cap that slides and spreads on a plane", quantities, prepare};
+}
+
+}  // namespace talus::validate

@@ -1,0 +1,39 @@
+#pragma once
+
+#include <vector>
+
+#include "sim/model.hpp"
+#include "sim/state.hpp"
+
+/// What is read off the particles of a small world.
+namespace talus::validate {
+
+/// The value that `share` (0 to 1) of the values do not exceed, interpolated between the nearest; NaN of none.
+[[nodiscard]] double percentile(std::vector<double> values, double share);
+
+/// Elevation of the top of the debris, local m: the mean of its five highest particles, plus half a spacing. One
+/// particle alone can lie on top of a heap.
+[[nodiscard]] double top_of(const Model& model, const State& state);
+
+/// Thickness, m, in `cells` cells of size `cell` from `first` on: volume over area. `place(i)` is where particle i lies
+/// along the row of cells, `width` m wide; what lies outside counts nothing.
+template <class Place>
+[[nodiscard]] std::vector<double> thickness_profile(const Model& model, const State& state, double first, double cell,
+                                                    int cells, double width, const Place& place) {
+    std::vector<double> thickness(static_cast<std::size_t>(cells), 0.0);
+    const double share = model.particle_volume() / (cell * width);
+    for (std::uint32_t i = 0; i < state.count; ++i) {
+        const double at = (place(i) - first) / cell;
+        if (at >= 0 && at < cells) thickness[static_cast<std::size_t>(at)] += share;
+    }
+    return thickness;
+}
+
+/// How far a profile is from the exact one on cells of equal size.
+struct ErrorNorms {
+    double relative_l2 = 0;   ///< sqrt(sum of squared differences) / sqrt(sum of squared exact values)
+    double relative_max = 0;  ///< largest difference over the largest exact value
+};
+[[nodiscard]] ErrorNorms error_norms(const std::vector<double>& computed, const std::vector<double>& exact);
+
+}  // namespace talus::validate

@@ -1,0 +1,23 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "core/result.hpp"
+#include "validate/suite.hpp"
+
+/// The validation table with the plots of every case, for people.
+namespace talus::validate {
+
+/// A chart as SVG. `self_contained`: with its own style and a white ground, to stand in any page.
+[[nodiscard]] std::string chart_svg(const Chart& chart, bool self_contained);
+
+/// A page that holds all it shows.
+[[nodiscard]] std::string page_html(const std::vector<CaseResult>& results);
+
+/// Writes `file` as Markdown and the plots as SVG files into a folder of the same name beside it, without its ending.
+/// Errors: a file or the folder cannot be written.
+[[nodiscard]] Status write_markdown(const std::vector<CaseResult>& results, const std::filesystem::path& file);
+
+}  // namespace talus::validate

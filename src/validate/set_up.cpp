@@ -1,0 +1,109 @@
+#include "validate/set_up.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace talus::validate {
+
+Terrain make_ground(double length, double width, double cell, const std::function<double(double, double)>& elevation) {
+    // One cell more on each side than asked for: ground is known between cell centres only.
+    const int columns = static_cast<int>(std::ceil(length / cell)) + 2;
+    const int rows = static_cast<int>(std::ceil(width / cell)) + 2;
+    Grid<float> grid(GridGeometry{-columns * cell / 2, -rows * cell / 2, cell, columns, rows});
+    for (int row = 0; row < rows; ++row) {
+        for (int column = 0; column < columns; ++column) {
+            const PlanPoint p = grid.geometry.centre(column, row);
+            grid.at(column, row) = static_cast<float>(elevation(p.x, p.y));
+        }
+    }
+    return Terrain(std::move(grid));
+}
+
+Incline::Incline(double slope, double length, double width)
+    : terrain_(make_ground(length, width, 1, [&](double x, double) { return -std::tan(slope) * x; })),
+      sine_(std::sin(slope)),
+      cosine_(std::cos(slope)),
+      origin_{0, 0, terrain_.sample(0.0F, 0.0F).height} {}
+
+LocalPoint Incline::point(double along, double across, double normal) const {
+    return origin_ + LocalPoint{static_cast<float>(along * cosine_ + normal * sine_), static_cast<float>(across),
+                                static_cast<float>(-along * sine_ + normal * cosine_)};
+}
+
+LocalPoint Incline::down(double speed) const {
+    return {static_cast<float>(speed * cosine_), 0, static_cast<float>(-speed * sine_)};
+}
+
+double Incline::along(const LocalPoint& p) const {
+    return p.x * cosine_ - (p.z - origin_.z) * sine_;
+}
+
+double Incline::normal(const LocalPoint& p) const {
+    return p.x * sine_ + (p.z - origin_.z) * cosine_;
+}
+
+Building make_wall(const Terrain& terrain, double x_min, double y_min, double x_max, double y_max, double height) {
+    Building wall;
+    wall.footprint = {{{{x_min, y_min}, {x_max, y_min}, {x_max, y_max}, {x_min, y_max}}, {}}};
+    const auto& elevations = terrain.elevation().values;
+    wall.roof_elevation = *std::max_element(elevations.begin(), elevations.end()) + height;
+    return wall;
+}
+
+std::vector<Building> make_slice(const Terrain& terrain, double width, double height) {
+    const Extent extent = terrain.elevation().geometry.extent();
+    return {make_wall(terrain, extent.x_min, width / 2, extent.x_max, extent.y_max, height),
+            make_wall(terrain, extent.x_min, extent.y_min, extent.x_max, -width / 2, height)};
+}
+
+std::vector<LocalPoint> fill_lattice(const Incline& incline, double spacing, double along, int columns_along,
+                                     double across, int columns_across,
+                                     const std::function<double(double, double)>& thickness) {
+    std::vector<LocalPoint> points;
+    for (int j = 0; j < columns_across; ++j) {
+        for (int i = 0; i < columns_along; ++i) {
+            const double s = along + (i + 0.5) * spacing, y = across + (j + 0.5) * spacing;
+            // Rounding by an additive low-discrepancy sequence (Roberts 2018) spreads the odd particles evenly.
+            double whole = 0;
+            const double threshold = std::modf(i * 0.7548776662466927 + j * 0.5698402909980532, &whole);
+            const double share = std::max(0.0, thickness(s, y)) / spacing;
+            const double layers = std::floor(share + 1e-6);
+            const int count = static_cast<int>(layers) + (share - layers > threshold + 1e-6 ? 1 : 0);
+            for (int k = 0; k < count; ++k) points.push_back(incline.point(s, y, (k + 0.5) * spacing));
+        }
+    }
+    return points;
+}
+
+State state_at_rest(const std::vector<LocalPoint>& points) {
+    State state;
+    state.resize(points.size());
+    state.count = state.seeded = static_cast<std::uint32_t>(points.size());
+    for (std::uint32_t i = 0; i < state.count; ++i) {
+        state.position.set(i, points[i]);
+        state.id[i] = i;
+    }
+    return state;
+}
+
+Trial::Trial(Model model, State state, const Watch& watch, OnFault on_fault)
+    : simulation_(std::move(model), std::move(state)), watch_(watch), on_fault_(on_fault) {}
+
+bool Trial::advance_to(double time, const std::function<void()>& after_step) {
+    while (!stopped_ && state().time < time - 1e-9) {
+        if (watch_.stopped()) {
+            problem_ = "stopped by the user";
+            stopped_ = true;
+            break;
+        }
+        if (const auto fault = simulation_.advance()) {
+            if (problem_.empty()) problem_ = *fault;
+            stopped_ = on_fault_ == OnFault::stop || !std::isfinite(state().largest_speed);
+        }
+        if (!stopped_ && after_step) after_step();
+    }
+    return !stopped_;
+}
+
+}  // namespace talus::validate

@@ -1,0 +1,86 @@
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "core/geometry.hpp"
+#include "sim/model.hpp"
+#include "sim/simulation.hpp"
+#include "sim/state.hpp"
+#include "terrain/buildings.hpp"
+#include "terrain/terrain.hpp"
+#include "validate/case.hpp"
+
+/// Small worlds: ground, walls and debris made from numbers.
+namespace talus::validate {
+
+/// Ground over a rectangle around the world's origin, `length` along x and `width` along y, with elevations in m from a
+/// function of world x and y.
+[[nodiscard]] Terrain make_ground(double length, double width, double cell,
+                                  const std::function<double(double x, double y)>& elevation);
+
+/// A plane that falls towards +x, and coordinates along it, across it and normal to it, m. Their origin is the ground
+/// in the middle.
+class Incline {
+  public:
+    /// `slope` in radians; `length` and `width` of the plane in plan.
+    Incline(double slope, double length, double width);
+
+    [[nodiscard]] const Terrain& terrain() const { return terrain_; }
+    [[nodiscard]] LocalPoint point(double along, double across, double normal) const;
+    /// A vector down the slope.
+    [[nodiscard]] LocalPoint down(double speed) const;
+    [[nodiscard]] double along(const LocalPoint& p) const;
+    [[nodiscard]] double normal(const LocalPoint& p) const;
+
+  private:
+    Terrain terrain_;
+    double sine_, cosine_;
+    LocalPoint origin_;
+};
+
+/// A wall over a rectangle of world coordinates whose top is at least `height` above the highest ground beside it.
+[[nodiscard]] Building make_wall(const Terrain& terrain, double x_min, double y_min, double x_max, double y_max,
+                                 double height);
+
+/// Two walls along x over the whole ground, `width` apart: what lies between is a slice.
+[[nodiscard]] std::vector<Building> make_slice(const Terrain& terrain, double width, double height);
+
+/// Particles on the lattice of an incline, its first layer half a spacing above the ground: in every column of
+/// [0, n) spacings along and across from (`along`, `across`) as many as the thickness there makes. What is left over
+/// goes to columns evenly, so that the volume is right.
+[[nodiscard]] std::vector<LocalPoint> fill_lattice(const Incline& incline, double spacing, double along,
+                                                   int columns_along, double across, int columns_across,
+                                                   const std::function<double(double, double)>& thickness);
+
+/// A state at rest of particles at these places, without any release.
+[[nodiscard]] State state_at_rest(const std::vector<LocalPoint>& points);
+
+enum class OnFault {
+    stop,
+    note,  ///< go on: for what is only shown, where a fault is a part of the answer
+};
+
+/// A simulation under test that stops at the first step that cannot be trusted.
+class Trial {
+  public:
+    Trial(Model model, State state, const Watch& watch, OnFault on_fault = OnFault::stop);
+
+    /// Steps until `time`, calling `after_step` after each. False when it stopped before: `problem` says why.
+    bool advance_to(double time, const std::function<void()>& after_step = {});
+
+    [[nodiscard]] const Model& model() const { return simulation_.model(); }
+    [[nodiscard]] const State& state() const { return simulation_.state(); }
+    /// The first fault, or that the user wants to stop; empty: none.
+    [[nodiscard]] const std::string& problem() const { return problem_; }
+
+  private:
+    Simulation simulation_;
+    const Watch& watch_;
+    OnFault on_fault_;
+    bool stopped_ = false;
+    std::string problem_;
+};
+
+}  // namespace talus::validate

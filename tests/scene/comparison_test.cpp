@@ -1,0 +1,143 @@
+#include "scene/comparison.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace talus {
+namespace {
+
+using testing::HasSubstr;
+
+/// A base that passes 100 m at 10 m/s, hits a house at 12 s and runs out 200 m, and variants of it.
+class Compare : public testing::Test {
+  protected:
+    Compare() {
+        scene.spec.observations = {{"bend", 100, 9, ""}};
+        scene.flow_path = FlowPath({{0, 0}, {300, 0}}, 40);
+        base.observation = observed(10, 12, 200);
+    }
+
+    static Observation observed(double velocity, double hit, double run_out) {
+        Observation o;
+        o.front = {{99, 8, velocity, velocity}, {101, 8.2, velocity, velocity}, {190, 20, 3, 3}};
+        o.run_out.front_chainage = 210;
+        o.run_out.horizontal_distance = run_out;
+        o.buildings.resize(2);
+        o.buildings[1].hit = std::isfinite(hit);
+        o.buildings[1].first_hit_time = hit;
+        return o;
+    }
+    void add(const std::string& name, const Observation& o) {
+        VariantRun run{{.name = name, .overrides = {}}, RunResult{}, ""};
+        run.result->observation = o;
+        runs.push_back(run);
+    }
+    void add_missing() { runs.push_back({{.name = "gone", .overrides = {}}, std::nullopt, "interrupted"}); }
+    Comparison compared(ComparisonKind kind = ComparisonKind::convergence) { return compare(kind, scene, base, runs); }
+
+    Scene scene;
+    RunResult base;
+    std::vector<VariantRun> runs;
+};
+
+TEST_F(Compare, ChangesArePercentOfTheBase) {
+    add("finer", observed(10.4, 11.7, 209));
+    const Comparison c = compared();
+    ASSERT_EQ(c.quantities.size(), 3U);
+    EXPECT_EQ(c.quantities[0].name, "front velocity at 100 m");
+    EXPECT_EQ(c.quantities[1].name, "first building hit");
+    EXPECT_EQ(c.quantities[2].name, "run-out");
+    const auto& changes = c.rows.at(0).changes;
+    EXPECT_NEAR(changes[0].percent, 4, 1e-9);
+    EXPECT_NEAR(changes[1].percent, -2.5, 1e-9);
+    EXPECT_NEAR(changes[2].percent, 4.5, 1e-9);
+    EXPECT_EQ(c.converged(), Answer::yes);
+    EXPECT_EQ(c.rows[0].verdict(), Verdict::pass);
+}
+
+TEST_F(Compare, AChangeAboveTheLimitEitherWayFails) {
+    add("faster", observed(10.51, 12, 200));
+    add("slower", observed(9.49, 12, 200));
+    add("same", observed(10, 12, 200));
+    const Comparison c = compared();
+    EXPECT_EQ(c.rows[0].verdict(), Verdict::fail);
+    EXPECT_EQ(c.rows[1].verdict(), Verdict::fail);
+    EXPECT_EQ(c.rows[2].verdict(), Verdict::pass);
+    EXPECT_EQ(c.converged(), Answer::no);
+    EXPECT_EQ(c.verdict_text(), "not converged: 2 of 9 changes above 5 %");
+}
+
+TEST_F(Compare, WhatOnlyOneOfTheTwoReachesFails) {
+    Observation stopped = observed(10, never, 200);
+    stopped.front.clear();
+    add("stops before", stopped);
+    const Comparison c = compared();
+    const auto& changes = c.rows.at(0).changes;
+    EXPECT_EQ(changes[0].verdict, Verdict::fail);
+    EXPECT_EQ(changes[1].verdict, Verdict::fail);
+    EXPECT_EQ(changes[2].verdict, Verdict::pass);
+
+    base.observation = stopped;
+    runs.clear();
+    add("gets there", observed(10, 12, 200));
+    EXPECT_EQ(compared().rows.at(0).changes[0].verdict, Verdict::fail);
+}
+
+TEST_F(Compare, WhatNeitherReachesIsNotJudged) {
+    scene.spec.observations[0].chainage = 280;
+    add("finer", observed(10, 12, 200));
+    const Comparison c = compared();
+    EXPECT_EQ(c.rows[0].changes[0].verdict, Verdict::not_measured);
+    EXPECT_EQ(c.quantities[0].not_measured, "the front did not get there");
+    EXPECT_EQ(c.converged(), Answer::yes);
+}
+
+TEST_F(Compare, WithoutABuildingHitTheFrontsArrivalLateOnItsWayCounts) {
+    base.observation = observed(10, never, 200);
+    Observation late = observed(10, never, 200);
+    late.front.back().arrival_time = 22;
+    add("late", late);
+    const Comparison c = compared();
+    EXPECT_EQ(c.quantities[1].name, "front arrival at 189 m") << "90 % of 210 m";
+    EXPECT_GT(c.rows[0].changes[1].percent, 5);
+}
+
+TEST_F(Compare, WithoutFlowPathObservationAndHitOnlyRunOutIsMeasured) {
+    scene.flow_path = {};
+    scene.spec.observations.clear();
+    Observation bare = observed(10, never, 200);
+    bare.front.clear();
+    bare.run_out.front_chainage = never;
+    base.observation = bare;
+    add("finer", bare);
+    const Comparison c = compared();
+    ASSERT_EQ(c.quantities.size(), 2U);
+    EXPECT_THAT(c.quantities[0].not_measured, HasSubstr("no building was hit"));
+    EXPECT_EQ(c.converged(), Answer::yes);
+    base.observation.run_out.horizontal_distance = never;
+    runs.clear();
+    bare.run_out.horizontal_distance = never;
+    add("finer", bare);
+    EXPECT_EQ(compared().converged(), Answer::unknown);
+    EXPECT_THAT(compared().verdict_text(), HasSubstr("nothing could be measured"));
+}
+
+TEST_F(Compare, AMissingRunLeavesConvergenceOpenUnlessAChangeIsTooLarge) {
+    add("finer", observed(10, 12, 200));
+    add_missing();
+    EXPECT_EQ(compared().converged(), Answer::unknown);
+    EXPECT_FALSE(compared().all_ran());
+    EXPECT_EQ(compared().verdict_text(), "convergence not known: 1 of 2 runs missing");
+    add("far off", observed(20, 12, 200));
+    EXPECT_EQ(compared().converged(), Answer::no);
+    EXPECT_EQ(compared().verdict_text(), "not converged: 1 of 6 changes above 5 %, 1 of 3 runs missing");
+}
+
+TEST_F(Compare, TwoObservationsAtOnePlaceAreOneQuantity) {
+    scene.spec.observations.push_back({"again", 100, 8, ""});
+    add("finer", observed(10, 12, 200));
+    EXPECT_EQ(compared().quantities.size(), 3U);
+}
+
+}  // namespace
+}  // namespace talus

@@ -1,0 +1,103 @@
+#include "validate/laws.hpp"
+
+#include <cmath>
+#include <numbers>
+
+#include <gtest/gtest.h>
+
+namespace talus::validate {
+namespace {
+
+constexpr double degrees = std::numbers::pi / 180;
+constexpr double gravity = 9.80665;
+
+TEST(ColumnLaws, HaveTheValuesOfTheirPapers) {
+    EXPECT_NEAR(column_run_out_axisymmetric(1), 1.24, 1e-12);
+    EXPECT_NEAR(column_run_out_axisymmetric(4), 3.2, 1e-12);
+    EXPECT_NEAR(column_run_out_planar(1), 1.2, 1e-12);
+    EXPECT_NEAR(column_run_out_planar(8), 7.6, 1e-12);
+    EXPECT_NEAR(column_run_out_planar(4), 4.79, 0.005);
+    EXPECT_NEAR(column_height_axisymmetric(0.5), 0.5, 1e-12);
+    EXPECT_NEAR(column_height_axisymmetric(1), 0.74, 1e-12);
+    EXPECT_NEAR(column_height_axisymmetric(64), 1.76, 1e-12);
+    EXPECT_NEAR(column_height_planar(1), 1, 1e-12);
+    EXPECT_NEAR(column_height_planar(2), 1.3195, 1e-4);
+    EXPECT_NEAR(column_height_planar(0.5), 0.5, 1e-12);
+}
+
+TEST(DamBreak, IsRittersWithoutSlopeAndFriction) {
+    const DamBreak dam(0, 0, 2, gravity);
+    const double c = std::sqrt(gravity * 2);
+    EXPECT_NEAR(dam.wave_speed(), c, 1e-12);
+    EXPECT_NEAR(dam.back(3), -3 * c, 1e-12);
+    EXPECT_NEAR(dam.front(3), 6 * c, 1e-12);
+    // At the dam's place depth and velocity never change.
+    for (const double t : {0.5, 1.0, 7.0}) {
+        EXPECT_NEAR(dam.thickness(0, t), 2 * 4.0 / 9, 1e-12);
+        EXPECT_NEAR(dam.velocity(0, t), 2.0 / 3 * c, 1e-12);
+    }
+    EXPECT_EQ(dam.thickness(-3 * c - 1, 3), 2);
+    EXPECT_EQ(dam.thickness(6 * c + 1, 3), 0);
+}
+
+TEST(DamBreak, OnASlopeIsRittersSeenFromAFrameThatAccelerates) {
+    const DamBreak slope(22 * degrees, 21 * degrees, 1, gravity);
+    const double normal = gravity * std::cos(22 * degrees);
+    const double acceleration = normal * (std::tan(22 * degrees) - std::tan(21 * degrees));
+    EXPECT_NEAR(acceleration, 0.1834, 1e-4);
+    EXPECT_NEAR(slope.wave_speed(), 3.0154, 1e-4);
+    EXPECT_NEAR(slope.front(5), acceleration * 12.5 + 10 * slope.wave_speed(), 1e-9);
+    EXPECT_NEAR(slope.thickness(acceleration * 12.5, 5), 4.0 / 9, 1e-12);
+    EXPECT_NEAR(slope.velocity(slope.back(5), 5), acceleration * 5, 1e-9);
+}
+
+TEST(DamBreak, ConservesVolume) {
+    const DamBreak dam(22 * degrees, 21 * degrees, 1, gravity);
+    const double time = 5, moved = dam.back(time) + dam.wave_speed() * time;  // of what is not disturbed
+    double volume = 0;
+    const double step = 1e-3;
+    for (double x = dam.back(time) + step / 2; x < dam.front(time); x += step) volume += dam.thickness(x, time) * step;
+    EXPECT_NEAR(volume, moved - dam.back(time), 1e-3);
+}
+
+TEST(SpreadingCap, StartsAsItWasAndConservesVolume) {
+    const SpreadingCap cap(35 * degrees, 25 * degrees, 80, 4, gravity, 6);
+    EXPECT_NEAR(cap.thickness(0, 0, 0), 4, 1e-9);
+    EXPECT_NEAR(cap.thickness(40, 0, 0), 3, 1e-9);
+    EXPECT_EQ(cap.thickness(81, 0, 0), 0);
+    EXPECT_EQ(cap.travelled(0), 0);
+    const double start = std::numbers::pi / 2 * 80 * 80 * 4;
+    for (const double time : {1.0, 5.0}) {
+        const double top = cap.thickness(cap.travelled(time), 0, time);
+        EXPECT_NEAR(std::numbers::pi / 2 * cap.half_length(time) * cap.half_width(time) * top, start, 1e-6 * start);
+    }
+}
+
+TEST(SpreadingCap, SlidesByTheLawOfCoulombAndSpreadsMoreAlongThanAcross) {
+    const SpreadingCap cap(35 * degrees, 25 * degrees, 80, 4, gravity, 6);
+    const double acceleration = gravity * (std::sin(35 * degrees) - std::cos(35 * degrees) * std::tan(25 * degrees));
+    EXPECT_NEAR(cap.travelled(5), acceleration * 12.5, 1e-9);
+    EXPECT_GT(cap.half_length(5), cap.half_width(5));
+    EXPECT_GT(cap.half_width(5), 80);
+    // To second order in time each side moves by B g t^2 / L and, sideways, by the share E of it.
+    const double grown = 0.05 * std::cos(35 * degrees) * gravity / 80;  // B g / L
+    EXPECT_NEAR(cap.half_length(0.2) / 80 - 1, grown * 0.04, 1e-4 * grown);
+}
+
+TEST(SpreadingCap, WithoutFrictionSpreadsAlikeInAllDirections) {
+    const SpreadingCap cap(35 * degrees, 0, 80, 4, gravity, 6);
+    EXPECT_NEAR(cap.half_length(5), cap.half_width(5), 1e-6);
+}
+
+TEST(MomentumJump, SolvesItsEquation) {
+    EXPECT_NEAR(momentum_jump(0), 1, 1e-6);
+    EXPECT_NEAR(momentum_jump(1), 2.170, 1e-3);
+    for (const double froude : {0.5, 2.0, 6.0}) {
+        const double x = momentum_jump(froude);
+        EXPECT_NEAR((x - 1) * (x * x - 1), 2 * froude * froude * x, 1e-9 * x * x * x);
+        EXPECT_GT(x, 1);
+    }
+}
+
+}  // namespace
+}  // namespace talus::validate

@@ -1,0 +1,81 @@
+#include "validate/measure.hpp"
+
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "sim/seed.hpp"
+#include "validate/set_up.hpp"
+
+namespace talus::validate {
+namespace {
+
+TEST(ErrorNorms, AreThoseComputedByHand) {
+    const ErrorNorms norms = error_norms({3, 1, 0}, {4, 3, 0});
+    EXPECT_NEAR(norms.relative_l2, std::sqrt(1 + 4) / 5, 1e-12);
+    EXPECT_NEAR(norms.relative_max, 0.5, 1e-12);
+    EXPECT_EQ(error_norms({4, 3, 0}, {4, 3, 0}).relative_l2, 0);
+    EXPECT_EQ(error_norms({0, 0}, {1, 2}).relative_l2, 1) << "nothing there at all is an error of one";
+}
+
+TEST(Percentile, InterpolatesBetweenValues) {
+    EXPECT_EQ(percentile({5, 1, 3}, 0), 1);
+    EXPECT_EQ(percentile({5, 1, 3}, 0.5), 3);
+    EXPECT_EQ(percentile({5, 1, 3}, 0.75), 4);
+    EXPECT_EQ(percentile({5, 1, 3}, 1), 5);
+    EXPECT_TRUE(std::isnan(percentile({}, 0.5)));
+}
+
+/// A box of particles on an incline: what is put in must be read off again.
+class Box : public testing::Test {
+  protected:
+    Incline incline_{0.4, 40, 10};
+    std::vector<LocalPoint> points_ = fill_lattice(incline_, 0.5, -3, 12, -1, 4, [](double, double) { return 2.0; });
+    Model model_ = make_model({}, {}, incline_.terrain(), {}, 0.5);
+    State state_ = state_at_rest(points_);
+};
+
+TEST_F(Box, HasTheVolumeThatWasAskedFor) {
+    EXPECT_EQ(points_.size(), 12U * 4 * 4);
+    for (const LocalPoint& p : points_) {
+        const GroundSample<float> ground = model_.terrain.sample(p.x, p.y);
+        EXPECT_NEAR(incline_.normal(p), (p.z - ground.height) * ground.normal.z, 1e-4);
+        EXPECT_GT(incline_.normal(p), 0.249);
+        EXPECT_LT(incline_.normal(p), 1.751);
+        EXPECT_LT(std::abs(incline_.along(p)), 2.751);
+    }
+}
+
+TEST_F(Box, HasItsThicknessInEveryCell) {
+    const auto thickness =
+        thickness_profile(model_, state_, -4, 1, 8, 2, [&](std::uint32_t i) { return incline_.along(points_[i]); });
+    const std::vector<double> expected = {0, 2, 2, 2, 2, 2, 2, 0};
+    ASSERT_EQ(thickness.size(), expected.size());
+    for (std::size_t k = 0; k < expected.size(); ++k) EXPECT_NEAR(thickness[k], expected[k], 1e-9) << k;
+}
+
+TEST(FillLattice, RoundsSoThatTheVolumeIsRight) {
+    const Incline flat(0, 60, 60);
+    const auto points = fill_lattice(flat, 0.5, -20, 80, -20, 80, [](double, double) { return 0.8; });
+    EXPECT_NEAR(static_cast<double>(points.size()) * 0.125, 0.8 * 40 * 40, 0.01 * 0.8 * 40 * 40);
+}
+
+TEST(TopOf, DoesNotFollowOneParticleThatLiesOnTop) {
+    const Incline flat(0, 20, 20);
+    const Model model = make_model({}, {}, flat.terrain(), {}, 0.5);
+    std::vector<LocalPoint> points = fill_lattice(flat, 0.5, -2, 8, -2, 8, [](double, double) { return 2.0; });
+    EXPECT_NEAR(top_of(model, state_at_rest(points)), 2, 1e-6);
+    points.push_back(flat.point(0, 0, 2.25));
+    EXPECT_NEAR(top_of(model, state_at_rest(points)), 2.1, 1e-6);
+}
+
+TEST(Slice, IsOpenBetweenItsWallsOnly) {
+    const Incline incline(0.3, 20, 6);
+    const Model model = make_model({}, {}, incline.terrain(), make_slice(incline.terrain(), 2, 1), 0.5);
+    EXPECT_FALSE(model.solids.inside(incline.point(-8, 0.9, 0.5)));
+    EXPECT_TRUE(model.solids.inside(incline.point(-8, 1.1, 0.5)));
+    EXPECT_TRUE(model.solids.inside(incline.point(8, -1.1, 0.5)));
+}
+
+}  // namespace
+}  // namespace talus::validate
