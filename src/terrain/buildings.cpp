@@ -272,6 +272,44 @@ SolidSample<Real> BuildingSolids::nearest(const Vec3<Real>& p) const {
 }
 
 template <class Real>
+SolidSample<Real> BuildingSolids::second_nearest(const Vec3<Real>& p, const SolidSample<Real>& nearest) const {
+    if (nearest.building < 0 || nearest.distance < 0) return {};
+    constexpr double same_direction = 0.5;  // cosine
+    const double x = p.x, y = p.y, z = p.z;
+    const auto turned_away = [&](double nx, double ny, double nz) {
+        return nx * nearest.normal.x + ny * nearest.normal.y + nz * nearest.normal.z < same_direction;
+    };
+    SolidSample<Real> second;
+    double best = range_;
+    const auto take = [&](int building, double distance, double nx, double ny, double nz) {
+        best = distance;
+        second = {
+            building, static_cast<Real>(distance), {static_cast<Real>(nx), static_cast<Real>(ny), static_cast<Real>(nz)}};
+    };
+    const auto [first, last] = candidates(x, y);
+    for (std::uint32_t k = first; k < last; ++k) {
+        const Solid& solid = solids_[bin_solids_[k]];
+        if (z >= solid.roof) {
+            if (z - solid.roof < best && turned_away(0, 0, 1) && in_plan(solid, x, y)) {
+                take(solid.building, z - solid.roof, 0, 0, 1);
+            }
+            continue;
+        }
+        for (std::uint32_t i = solid.first_edge; i < solid.last_edge; ++i) {
+            const Edge& e = edges_[i];
+            const double dx = e.bx - e.ax, dy = e.by - e.ay, length_squared = dx * dx + dy * dy;
+            const double t = ((x - e.ax) * dx + (y - e.ay) * dy) / length_squared;
+            if (t < 0 || t > 1 || z < e.hidden_below) continue;
+            const double length = std::sqrt(length_squared), nx = dy / length, ny = -dx / length;
+            const double distance = (x - e.ax) * nx + (y - e.ay) * ny;
+            if (distance < 0 || distance >= best || !turned_away(nx, ny, 0)) continue;
+            take(solid.building, distance, nx, ny, 0);
+        }
+    }
+    return second;
+}
+
+template <class Real>
 bool BuildingSolids::inside(const Vec3<Real>& p) const {
     const SolidSample<Real> sample = nearest(p);
     return sample.building >= 0 && sample.distance < 0;
@@ -279,6 +317,8 @@ bool BuildingSolids::inside(const Vec3<Real>& p) const {
 
 template SolidSample<float> BuildingSolids::nearest(const Vec3<float>&) const;
 template SolidSample<double> BuildingSolids::nearest(const Vec3<double>&) const;
+template SolidSample<float> BuildingSolids::second_nearest(const Vec3<float>&, const SolidSample<float>&) const;
+template SolidSample<double> BuildingSolids::second_nearest(const Vec3<double>&, const SolidSample<double>&) const;
 template bool BuildingSolids::inside(const Vec3<float>&) const;
 template bool BuildingSolids::inside(const Vec3<double>&) const;
 

@@ -45,6 +45,11 @@ class BuildingSolids {
     template <class Real>
     [[nodiscard]] SolidSample<Real> nearest(const Vec3<Real>& p) const;
 
+    /// From outside, the nearest wall or roof that the local position faces squarely, within range, and that is turned
+    /// away from `first`, the sample of nearest(), by 60 degrees or more: the other wall of a corner or an alley.
+    template <class Real>
+    [[nodiscard]] SolidSample<Real> second_nearest(const Vec3<Real>& p, const SolidSample<Real>& first) const;
+
     /// Whether the local position lies strictly inside any building.
     template <class Real>
     [[nodiscard]] bool inside(const Vec3<Real>& p) const;

@@ -30,15 +30,12 @@ Backend::Backend(const Model& model, std::size_t capacity)
       constraint_(capacity),
       compression_(capacity),
       tolerated_compression_(capacity),
-      ground_contact_(capacity),
-      building_contact_(capacity),
-      building_(capacity),
+      contacts_(capacity),
       gone_(capacity),
       float_scratch_(capacity),
       id_scratch_(capacity),
       byte_scratch_(capacity) {
-    for (VectorArray* array : {&displacement_, &shift_, &predicted_, &sampled_at_, &ground_gradient_,
-                               &building_gradient_, &ground_friction_, &building_friction_, &vector_scratch_}) {
+    for (VectorArray* array : {&displacement_, &shift_, &predicted_, &sampled_at_, &vector_scratch_}) {
         array->resize(capacity);
     }
     packed_points_.resize(capacity);
@@ -52,6 +49,7 @@ Backend::Backend(const Model& model, std::size_t capacity)
 void Backend::predict_positions(const Model& model, State& state) {
     const auto dt = static_cast<float>(state.time_step);
     const auto fall = static_cast<float>(model.gravity * state.time_step);
+    const float share = keeps_stress(model) ? linearised_share<float> : 1;
     parallel_ranges(state.count, particle_grain, [&](std::size_t first, std::size_t last) {
         for (std::size_t i = first; i < last; ++i) {
             if (state.held[i] && state.time >= start_time_of(model, state.id[i])) state.held[i] = 0;
@@ -61,11 +59,9 @@ void Backend::predict_positions(const Model& model, State& state) {
                 displacement = state.velocity.at(i) * dt;
             }
             displacement_.set(i, displacement);
-            predicted_.set(i, state.position.at(i) + displacement);
-            ground_contact_[i] = building_contact_[i] = 0;
-            ground_friction_.set(i, {});
-            building_friction_.set(i, {});
-            building_[i] = -1;
+            sampled_at_.set(i, displacement * share);
+            predicted_.set(i, state.position.at(i) + displacement * share);
+            contacts_[i] = {};
         }
     });
 }
@@ -90,6 +86,7 @@ void Backend::reorder(State& state, std::span<const std::uint32_t> order) {
     gather_vectors(state.position);
     gather_vectors(state.velocity);
     gather_vectors(displacement_);
+    gather_vectors(sampled_at_);
     gather_vectors(predicted_);
     gather(state.multiplier, float_scratch_);
     for (auto* component : {&state.stress.xx, &state.stress.yy, &state.stress.xy, &state.stress.xz, &state.stress.yz}) {
@@ -152,20 +149,10 @@ void Backend::solve_contacts(const Model& model, State& state) {
     parallel_ranges(state.count, particle_grain, [&](std::size_t first, std::size_t last) {
         for (std::size_t i = first; i < last; ++i) {
             if (state.held[i]) continue;
-            ContactMemory<float> ground{ground_contact_[i], ground_friction_.at(i)};
-            ContactMemory<float> wall{building_contact_[i], building_friction_.at(i)};
-            const float ground_push = boundary_push(state.multiplier[i], ground_gradient_.at(i));
-            const float building_push = boundary_push(state.multiplier[i], building_gradient_.at(i));
-            const Vec3<float> start = state.position.at(i);
-            const Vec3<float> displacement =
-                resolve_contacts(model, boundary_[i], sampled_at_.at(i), displacement_.at(i), ground_push,
-                                 building_push, ground, wall, building_[i]);
-            ground_contact_[i] = ground.normal;
-            ground_friction_.set(i, ground.friction);
-            building_contact_[i] = wall.normal;
-            building_friction_.set(i, wall.friction);
+            const Vec3<float> displacement = resolve_contacts(model, boundary_[i], sampled_at_.at(i),
+                                                              displacement_.at(i), state.multiplier[i], contacts_[i]);
             displacement_.set(i, displacement);
-            predicted_.set(i, start + displacement);
+            predicted_.set(i, state.position.at(i) + displacement);
         }
     });
 }
@@ -225,10 +212,14 @@ void Backend::update_velocities(const Model& model, State& state) {
     if (model.solids.empty()) return;
     const double mass = model.particle_mass();
     for (std::uint32_t i = 0; i < state.count; ++i) {
-        if (building_[i] < 0) continue;
-        const float normal = building_contact_[i] + boundary_push(state.multiplier[i], building_gradient_.at(i));
-        if (normal <= 0) continue;
-        state.building_contacts.push_back({i, building_[i], static_cast<float>(mass * normal / state.time_step)});
+        for (std::size_t f = 1; f < face_count; ++f) {
+            const BoundaryFace<float>& wall = boundary_[i].faces[f];
+            if (wall.building < 0) break;
+            const float normal = contacts_[i][f].normal + boundary_push(wall, state.multiplier[i]);
+            if (normal <= 0) continue;
+            state.building_contacts.push_back(
+                {i, wall.building, static_cast<float>(mass * normal / state.time_step)});
+        }
     }
 }
 

@@ -7,6 +7,7 @@
 #include "sim/cpu/neighbours.hpp"
 #include "sim/cpu/pair_sums.hpp"
 #include "sim/model.hpp"
+#include "sim/physics/contact.hpp"
 #include "sim/physics/density.hpp"
 #include "sim/state.hpp"
 
@@ -68,7 +69,7 @@ class Backend {
 
     VectorArray displacement_;                          // x* - x
     VectorArray sampled_at_;                            // the displacement at which boundary_ was sampled
-    std::vector<BoundarySample<float>> boundary_;       // ground and walls, taken to be plane within the step
+    std::vector<Boundary<float>> boundary_;             // ground and walls, taken to be plane within the step
     VectorArray shift_;                                 // undoes overlaps, becomes no velocity
     VectorArray predicted_;                             // x*
     std::vector<float> multiplier_change_;              // of lambda in this iteration
@@ -76,10 +77,7 @@ class Backend {
     Packed packed_points_, packed_vectors_, packed_rows_, packed_rest_;  // what the sums of a pass read of neighbours
     std::vector<float> compression_;                                     // max(0, G)
     std::vector<float> tolerated_compression_;                           // of what the step started with
-    VectorArray ground_gradient_, building_gradient_;
-    std::vector<float> ground_contact_, building_contact_;  // accumulated normal corrections of hard contacts, m
-    VectorArray ground_friction_, building_friction_;       // accumulated friction corrections, m
-    std::vector<std::int32_t> building_;                    // touched in this step, or -1
+    std::vector<ContactMemories<float>> contacts_;                       // of this step
     std::vector<std::uint8_t> gone_;
     VectorArray vector_scratch_;
     std::vector<float> float_scratch_;

@@ -16,13 +16,11 @@ void Backend::start_pairs(const Model& model, State& state) {
     parallel_ranges(state.count, particle_grain, [&](std::size_t first, std::size_t last) {
         for (std::size_t i = first; i < last; ++i) {
             const float density = sums_.density(scale_, neighbours_.pairs_of(i), packed_points_, i).density;
-            const auto boundary = boundary_density(model, sample_boundary(model, state.position.at(i)));
+            const auto boundary = sample_boundary(model, state.position.at(i));
             boundary_[i] = sample_boundary(model, predicted_.at(i));
             sampled_at_.set(i, displacement_.at(i));
             tolerated_compression_[i] = std::max(0.0f, density + boundary.density - 1 - undone);
             state.multiplier[i] = 0;
-            ground_gradient_.set(i, {});
-            building_gradient_.set(i, {});
         }
     });
 }
@@ -44,9 +42,8 @@ void Backend::update_pair_multipliers(const Model& model, State& state) {
             if (state.held[i]) continue;
             const DensitySums sums =
                 sums_.density_and_divergence(scale_, neighbours_.pairs_of(i), packed_points_, packed_vectors_, i);
-            const auto boundary = boundary_density(model, sample_boundary(model, predicted_.at(i)));
-            ground_gradient_.set(i, boundary.ground_gradient);
-            building_gradient_.set(i, boundary.building_gradient);
+            const Boundary<float>& boundary = boundary_[i] = sample_boundary(model, predicted_.at(i));
+            sampled_at_.set(i, displacement_.at(i));
             const auto constraint = linearise_density(model, sums, boundary, displacement_.at(i), softness);
             const float compression = sums.density + boundary.density - 1;
             const float before = state.multiplier[i];
@@ -65,9 +62,8 @@ void Backend::apply_pairs(const Model& model, const State& state) {
     parallel_ranges(state.count, particle_grain, [&](std::size_t first, std::size_t last) {
         for (std::size_t i = first; i < last; ++i) {
             if (state.held[i]) continue;
-            const BoundaryDensity<float> boundary{0, ground_gradient_.at(i), building_gradient_.at(i)};
             displacement_.set(
-                i, displacement_.at(i) + boundary.correction(multiplier_change_[i]) +
+                i, displacement_.at(i) + boundary_correction(boundary_[i].gradient, multiplier_change_[i]) +
                        sums_.pair_correction(scale_, neighbours_.pairs_of(i), packed_points_, packed_vectors_, cap, i));
         }
     });

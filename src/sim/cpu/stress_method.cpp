@@ -30,17 +30,13 @@ void Backend::warm_start_stress(const Model& model, State& state) {
 void Backend::linearise(const Model& model, const State& state) {
     const auto softness = static_cast<float>(model.solver.constraint_relaxation * model.kernel.rest_gradient_sum);
     pack(predicted_, state.count, packed_points_);
-    pack(displacement_, state.count, packed_vectors_);
+    pack(sampled_at_, state.count, packed_vectors_);
     parallel_ranges(state.count, particle_grain, [&](std::size_t first, std::size_t last) {
         for (std::size_t i = first; i < last; ++i) {
             const DensitySums sums =
                 sums_.density_and_divergence(scale_, neighbours_.pairs_of(i), packed_points_, packed_vectors_, i);
             boundary_[i] = sample_boundary(model, predicted_.at(i));
-            sampled_at_.set(i, displacement_.at(i));
-            const auto boundary = boundary_density(model, boundary_[i]);
-            ground_gradient_.set(i, boundary.ground_gradient);
-            building_gradient_.set(i, boundary.building_gradient);
-            constraint_[i] = linearise_density(model, sums, boundary, displacement_.at(i), softness);
+            constraint_[i] = linearise_density(model, sums, boundary_[i], sampled_at_.at(i), softness);
         }
     });
 }
@@ -60,9 +56,8 @@ void Backend::solve_stress(const Model& model, State& state) {
             const DisplacementGradient<float> deformation =
                 sums_.deformation(neighbours_.pairs_of(i), packed_vectors_, i);
             const DensityConstraint<float>& constraint = constraint_[i];
-            const Vec3<float> boundary_gradient = ground_gradient_.at(i) + building_gradient_.at(i);
             const float density =
-                constraint.start - deformation.divergence() + dot(boundary_gradient, displacement_.at(i));
+                constraint.start - deformation.divergence() + dot(boundary_[i].gradient, displacement_.at(i));
             const float before = state.multiplier[i];
             const float after =
                 next_multiplier(before, density - std::max(0.0f, constraint.start), constraint.gradient_square, factor);
@@ -90,8 +85,7 @@ void Backend::apply_stress(const State& state) {
     parallel_ranges(state.count, particle_grain, [&](std::size_t first, std::size_t last) {
         for (std::size_t i = first; i < last; ++i) {
             if (state.held[i]) continue;
-            const BoundaryDensity<float> boundary{0, ground_gradient_.at(i), building_gradient_.at(i)};
-            displacement_.set(i, displacement_.at(i) + boundary.correction(packed_rest_[i][3]) +
+            displacement_.set(i, displacement_.at(i) + boundary_correction(boundary_[i].gradient, packed_rest_[i][3]) +
                                      sums_.stress_correction(neighbours_.pairs_of(i), packed_rows_, packed_rest_, i));
         }
     });
@@ -109,8 +103,7 @@ void Backend::spread(const Model& model, const State& state) {
     });
     parallel_ranges(state.count, particle_grain, [&](std::size_t first, std::size_t last) {
         for (std::size_t i = first; i < last; ++i) {
-            const BoundaryDensity<float> boundary{0, ground_gradient_.at(i), building_gradient_.at(i)};
-            shift_.set(i, boundary.correction(packed_points_[i][3]) +
+            shift_.set(i, boundary_correction(boundary_[i].gradient, packed_points_[i][3]) +
                               sums_.scalar_correction(neighbours_.pairs_of(i), packed_points_, i));
         }
     });

@@ -1,32 +1,57 @@
 #pragma once
 
+#include <array>
+
 #include "core/geometry.hpp"
 #include "sim/model.hpp"
 
 namespace talus {
 
-/// Ground and walls as a particle sees them: distances, normals, and their share of its density.
+/// A face of the boundary as a particle sees it: a plane.
 template <class Real>
-struct BoundarySample {
-    Real ground_distance{};  ///< m along the normal; NaN where the ground is unknown
-    Vec3<Real> ground_normal{};
-    int building = -1;
-    Real building_distance{};
-    Vec3<Real> building_normal{};
+struct BoundaryFace {
+    Real distance{};      ///< m along the normal; NaN where the ground is unknown
+    Vec3<Real> normal{};  ///< unit, out of the ground or the solid
+    Real slope{};         ///< d density / d distance, 1/m, <= 0
+    int building = -1;    ///< whose wall or roof it is; -1: of none
 };
 
+inline constexpr std::size_t face_count = 3;  ///< the ground, and the two nearest walls: debris gathers in corners
+
+/// Ground and walls around a particle: their share of its density, and how it changes with the particle's place.
 template <class Real>
-BoundarySample<Real> sample_boundary(const Model& model, const Vec3<Real>& p) {
-    const GroundSample<Real> ground = model.terrain.sample(p.x, p.y);
-    BoundarySample<Real> result;
-    result.ground_distance = (p.z - ground.height) * ground.normal.z;  // exact for a plane
-    result.ground_normal = ground.normal;
-    if (!model.solids.empty()) {
-        const SolidSample<Real> solid = model.solids.nearest(p);
-        result.building = solid.building;
-        result.building_distance = solid.distance;
-        result.building_normal = solid.normal;
-    }
+struct Boundary {
+    std::array<BoundaryFace<Real>, face_count> faces;  ///< the ground first; a wall that is absent has no building
+    Real density{};
+    Vec3<Real> gradient{};  ///< of the density, 1/m, into ground and walls
+};
+
+/// Where faces meet, their shares overlap. For a kernel close to a Gaussian and faces at right angles the shared part is
+/// the product of the shares.
+template <class Real>
+Boundary<Real> sample_boundary(const Model& model, const Vec3<Real>& p) {
+    Boundary<Real> result;
+    auto& [ground, wall, second_wall] = result.faces;
+    const GroundSample<Real> below = model.terrain.sample(p.x, p.y);
+    ground.distance = (p.z - below.height) * below.normal.z;  // exact for a plane
+    ground.normal = below.normal;
+    const auto ground_share = model.boundary.at(ground.distance);
+    ground.slope = ground_share.slope;
+    result.density = ground_share.density;
+    result.gradient = ground.normal * ground.slope;
+    if (model.solids.empty()) return result;
+    const SolidSample<Real> nearest = model.solids.nearest(p);
+    if (nearest.building < 0) return result;
+    const SolidSample<Real> second = model.solids.second_nearest(p, nearest);
+    const auto share = model.boundary.at(nearest.distance);
+    const auto second_share = second.building < 0 ? decltype(share){} : model.boundary.at(second.distance);
+    const Real free = 1 - ground_share.density, wall_free = 1 - share.density, second_free = 1 - second_share.density;
+    wall = {nearest.distance, nearest.normal, share.slope * free * second_free, nearest.building};
+    second_wall = {second.distance, second.normal, second_share.slope * free * wall_free, second.building};
+    ground.slope *= wall_free * second_free;
+    result.density = 1 - free * wall_free * second_free;
+    result.gradient =
+        ground.normal * ground.slope + wall.normal * wall.slope + second_wall.normal * second_wall.slope;
     return result;
 }
 
@@ -34,39 +59,16 @@ BoundarySample<Real> sample_boundary(const Model& model, const Vec3<Real>& p) {
 /// neighbour of the same pressure would (Akinci et al. 2012).
 inline constexpr int boundary_pressure_share = 2;
 
-/// The boundary's share of density and its gradient, split by what exerts it.
+/// The correction, m, that a multiplier brings about at a boundary whose density has this gradient.
 template <class Real>
-struct BoundaryDensity {
-    Real density{};
-    Vec3<Real> ground_gradient{}, building_gradient{};  ///< 1/m, into ground and walls
-
-    /// The correction that a multiplier brings about, m.
-    [[nodiscard]] Vec3<Real> correction(Real multiplier) const {
-        return (ground_gradient + building_gradient) * (Real(boundary_pressure_share) * multiplier);
-    }
-};
+Vec3<Real> boundary_correction(const Vec3<Real>& gradient, Real multiplier) {
+    return gradient * (Real(boundary_pressure_share) * multiplier);
+}
 
 /// The normal correction of a face, m, that `multiplier` (<= 0) stands for.
 template <class Real>
-Real boundary_push(Real multiplier, const Vec3<Real>& face_gradient) {
-    return -Real(boundary_pressure_share) * multiplier * length(face_gradient);
-}
-
-/// Ground and a wall at the same time overlap below the wall's foot. For a kernel close to a Gaussian and faces at
-/// right angles the shared part is the product of the shares.
-template <class Real>
-BoundaryDensity<Real> boundary_density(const Model& model, const BoundarySample<Real>& boundary) {
-    const auto ground = model.boundary.at(boundary.ground_distance);
-    BoundaryDensity<Real> result;
-    result.density = ground.density;
-    result.ground_gradient = boundary.ground_normal * ground.slope;
-    if (boundary.building >= 0) {
-        const auto wall = model.boundary.at(boundary.building_distance);
-        result.density = 1 - (1 - ground.density) * (1 - wall.density);
-        result.ground_gradient = result.ground_gradient * (1 - wall.density);
-        result.building_gradient = boundary.building_normal * (wall.slope * (1 - ground.density));
-    }
-    return result;
+Real boundary_push(const BoundaryFace<Real>& face, Real multiplier) {
+    return Real(boundary_pressure_share) * multiplier * face.slope;
 }
 
 }  // namespace talus

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <array>
+
 #include "core/geometry.hpp"
 #include "sim/physics/boundary.hpp"
 #include "sim/physics/friction.hpp"
@@ -34,32 +36,27 @@ Vec3<Real> resolve_contact(Real overlap, const Vec3<Real>& normal, const Vec3<Re
     return change;
 }
 
-/// Resolves the contact with the ground and the nearest building of a particle displaced by `displacement`; `boundary`
-/// as sampled when it was displaced by `sampled_at`, and taken to be plane from there. Pushes are those of
-/// boundary_push(). Returns the new displacement.
+/// Contacts of a particle with the faces around it.
 template <class Real>
-Vec3<Real> resolve_contacts(const Model& model, const BoundarySample<Real>& boundary, const Vec3<Real>& sampled_at,
-                            Vec3<Real> displacement, Real ground_push, Real building_push, ContactMemory<Real>& ground,
-                            ContactMemory<Real>& wall, int& building_touched) {
+using ContactMemories = std::array<ContactMemory<Real>, face_count>;
+
+/// Resolves the contacts with ground and walls of a particle displaced by `displacement`; `boundary` as sampled when it
+/// was displaced by `sampled_at`, and taken to be plane from there. `multiplier` is that of its density constraint.
+/// Returns the new displacement.
+template <class Real>
+Vec3<Real> resolve_contacts(const Model& model, const Boundary<Real>& boundary, const Vec3<Real>& sampled_at,
+                            Vec3<Real> displacement, Real multiplier, ContactMemories<Real>& memories) {
     const Real touching = Real(model.contact_distance());
-    const Real ground_friction = Real(model.friction_coefficient);
-    const Real building_friction = Real(model.building_friction_coefficient);
-    const auto distance_now = [&](Real sampled, const Vec3<Real>& normal) {
-        return sampled + dot(displacement - sampled_at, normal);
-    };
-    // Ground without data has a NaN distance, which is near nothing: the particle is about to leave.
-    const Real ground_distance = distance_now(boundary.ground_distance, boundary.ground_normal);
-    const bool known = ground_distance == ground_distance;
-    if (known && (ground_distance < touching || ground.normal > 0 || ground_push > 0)) {
-        displacement += resolve_contact(touching - ground_distance, boundary.ground_normal, displacement, ground_push,
-                                        ground_friction, ground);
-    }
-    if (boundary.building < 0) return displacement;
-    const Real building_distance = distance_now(boundary.building_distance, boundary.building_normal);
-    if (building_distance < touching || wall.normal > 0 || building_push > 0) {
-        displacement += resolve_contact(touching - building_distance, boundary.building_normal, displacement,
-                                        building_push, building_friction, wall);
-        building_touched = boundary.building;
+    for (std::size_t f = 0; f < face_count; ++f) {
+        const BoundaryFace<Real>& face = boundary.faces[f];
+        if (f > 0 && face.building < 0) break;
+        const Real distance = face.distance + dot(displacement - sampled_at, face.normal);
+        const Real push = boundary_push(face, multiplier);
+        // Ground without data has a NaN distance, which is near nothing: the particle is about to leave.
+        if (distance != distance || (distance >= touching && memories[f].normal <= 0 && push <= 0)) continue;
+        const double friction = f > 0 ? model.building_friction_coefficient : model.friction_coefficient;
+        displacement +=
+            resolve_contact(touching - distance, face.normal, displacement, push, Real(friction), memories[f]);
     }
     return displacement;
 }
@@ -68,13 +65,14 @@ Vec3<Real> resolve_contacts(const Model& model, const BoundarySample<Real>& boun
 template <class Real>
 Vec3<Real> undo_overlap(const Model& model, const Vec3<Real>& p, Real most) {
     const Real touching = Real(model.contact_distance());
-    const BoundarySample<Real> now = sample_boundary(model, p);
-    const auto back = [&](Real distance) {
-        const Real overlap = touching - distance;
-        return overlap > 0 ? (overlap < most ? overlap : most) : Real(0);  // 0 for the NaN of unknown ground
-    };
-    Vec3<Real> shift = now.ground_normal * back(now.ground_distance);
-    if (now.building >= 0) shift += now.building_normal * back(now.building_distance);
+    const Boundary<Real> now = sample_boundary(model, p);
+    Vec3<Real> shift{};
+    for (std::size_t f = 0; f < face_count; ++f) {
+        const BoundaryFace<Real>& face = now.faces[f];
+        const Real overlap = touching - face.distance;
+        if ((f > 0 && face.building < 0) || !(overlap > 0)) continue;  // so is the NaN of unknown ground
+        shift += face.normal * (overlap < most ? overlap : most);
+    }
     return shift;
 }
 

@@ -58,13 +58,12 @@ double constraint(const Model& model, const std::vector<Vector>& points, std::si
     for_each_neighbour(
         model, points.size(), i, [&](std::size_t k) { return points[k]; },
         [&](std::size_t, const Pair& pair) { density += pair.value; });
-    return density + boundary_density(model, sample_boundary(model, points[i])).density - 1;
+    return density + sample_boundary(model, points[i]).density - 1;
 }
 
 Vector constraint_gradient(const Model& model, const std::vector<Vector>& points, std::size_t i, std::size_t k) {
     if (k != i) return pair_of(model, points[i] - points[k]).gradient * -1.0;
-    const auto boundary = boundary_density(model, sample_boundary(model, points[i]));
-    Vector gradient = boundary.ground_gradient + boundary.building_gradient;
+    Vector gradient = sample_boundary(model, points[i]).gradient;
     for_each_neighbour(
         model, points.size(), i, [&](std::size_t j) { return points[j]; },
         [&](std::size_t, const Pair& pair) { gradient += pair.gradient; });
@@ -83,14 +82,13 @@ void Backend::predict_positions(const Model& model, State& state) {
             p.velocity.z -= model.gravity * state.time_step;
             p.displacement = p.velocity * state.time_step;
         }
-        p.ground = p.wall = {};
-        p.building = -1;
+        p.contacts = {};
     }
 }
 
 namespace {
 
-/// The pair sums of a particle at `point(k)`, for the displacements so far.
+/// The pair sums of a particle at `point(k)`, for a displacement of every particle.
 struct Sums {
     double density = 0, square = 0, divergence = 0;
     Vector gradient;
@@ -98,14 +96,15 @@ struct Sums {
 };
 
 template <class Points>
-Sums sums_at(const Model& model, const State& state, const Points& point, std::size_t i) {
+Sums sums_at(const Model& model, const State& state, const Points& point, std::size_t i,
+             Vector Particle::*displacement = &Particle::displacement) {
     Sums sums;
     sums.density = own_value(model);
     for_each_neighbour(model, state.particles.size(), i, point, [&](std::size_t j, const Pair& pair) {
         sums.density += pair.value;
         sums.square += dot(pair.gradient, pair.gradient);
         sums.gradient += pair.gradient;
-        sums.deformation.add(state.particles[j].displacement - state.particles[i].displacement, pair.gradient);
+        sums.deformation.add(state.particles[j].*displacement - state.particles[i].*displacement, pair.gradient);
     });
     sums.divergence = sums.deformation.divergence();
     return sums;
@@ -122,7 +121,7 @@ void apply_stress_changes(const Model& model, State& state) {
     for (std::size_t i = 0; i < state.particles.size(); ++i) {
         const Particle& p = state.particles[i];
         if (p.held) continue;
-        corrections[i] = p.boundary.correction(p.multiplier_change);
+        corrections[i] = boundary_correction(p.boundary.gradient, p.multiplier_change);
         for_each_neighbour(model, state.particles.size(), i, point, [&](std::size_t j, const Pair& pair) {
             const Particle& other = state.particles[j];
             corrections[i] += pair.gradient * (p.multiplier_change + other.multiplier_change) +
@@ -139,7 +138,7 @@ void apply_pair_corrections(const Model& model, State& state) {
     for (std::size_t i = 0; i < state.particles.size(); ++i) {
         const Particle& p = state.particles[i];
         if (p.held) continue;
-        corrections[i] = p.boundary.correction(p.multiplier_change);
+        corrections[i] = boundary_correction(p.boundary.gradient, p.multiplier_change);
         for_each_neighbour(model, state.particles.size(), i, point, [&](std::size_t j, const Pair& pair) {
             const Particle& other = state.particles[j];
             const double change = p.multiplier_change + other.multiplier_change;
@@ -164,8 +163,7 @@ void solve_stress(const Model& model, State& state) {
         p.stress_change = {};
         if (p.held) continue;
         const Sums sums = sums_at(model, state, point, i);
-        const Vector boundary_gradient = p.boundary.ground_gradient + p.boundary.building_gradient;
-        const double density = p.constraint.start - sums.divergence + dot(boundary_gradient, p.displacement);
+        const double density = p.constraint.start - sums.divergence + dot(p.boundary.gradient, p.displacement);
         const double multiplier = next_multiplier(p.multiplier, density - std::max(0.0, p.constraint.start),
                                                   p.constraint.gradient_square, factor);
         const Deviator<double> stress = next_stress(p.stress, sums.deformation, model.internal_friction_coefficient,
@@ -187,7 +185,8 @@ void solve_pairs(const Model& model, State& state) {
         Particle& p = state.particles[i];
         p.multiplier_change = 0;
         if (p.held) continue;
-        p.boundary = boundary_density(model, sample_boundary(model, p.predicted()));
+        p.boundary = sample_boundary(model, p.predicted());
+        p.sampled_at = p.displacement;
         const Sums sums = sums_at(model, state, point, i);
         const auto constraint = linearise_density(model, sums, p.boundary, p.displacement, softness);
         const double violation = sums.density + p.boundary.density - 1 - p.tolerated_compression;
@@ -204,19 +203,19 @@ void Backend::warm_start(const Model& model, State& state) {
     const double ratio = state.previous_time_step > 0 ? state.time_step / state.previous_time_step : 0;
     const double scale = ratio * ratio;
     state.previous_time_step = state.time_step;
+    const double share = keeps_stress(model) ? linearised_share<double> : 1;
     for (Particle& p : state.particles) {
-        p.sample = sample_boundary(model, p.predicted());
-        p.sampled_at = p.displacement;
+        p.sampled_at = p.displacement * share;
+        p.linearised_at = p.position + p.sampled_at;
+        p.boundary = sample_boundary(model, p.linearised_at);
     }
     if (keeps_stress(model)) {
         const double softness = model.solver.constraint_relaxation * model.kernel.rest_gradient_sum;
-        for (Particle& p : state.particles) p.linearised_at = p.predicted();
         const auto point = [&](std::size_t k) { return state.particles[k].linearised_at; };
         for (std::size_t i = 0; i < state.particles.size(); ++i) {
             Particle& p = state.particles[i];
-            p.boundary = boundary_density(model, p.sample);
             p.constraint =
-                linearise_density(model, sums_at(model, state, point, i), p.boundary, p.displacement, softness);
+                linearise_density(model, sums_at(model, state, point, i, &Particle::sampled_at), p.boundary, p.sampled_at, softness);
             p.multiplier *= scale;
             p.stress = p.stress * scale;
             p.stress_change = p.held ? Deviator<double>{} : p.stress;
@@ -230,7 +229,6 @@ void Backend::warm_start(const Model& model, State& state) {
     for (const Particle& p : state.particles) points.push_back(p.position);
     for (std::size_t i = 0; i < points.size(); ++i) {
         Particle& p = state.particles[i];
-        p.boundary = {};
         p.multiplier = 0;
         p.tolerated_compression = std::max(0.0, constraint(model, points, i) - undone);
     }
@@ -247,10 +245,7 @@ void Backend::solve_density(const Model& model, State& state) {
 void Backend::solve_contacts(const Model& model, State& state) {
     for (Particle& p : state.particles) {
         if (p.held) continue;
-        const double ground_push = boundary_push(p.multiplier, p.boundary.ground_gradient);
-        const double building_push = boundary_push(p.multiplier, p.boundary.building_gradient);
-        p.displacement = resolve_contacts(model, p.sample, p.sampled_at, p.displacement, ground_push, building_push,
-                                          p.ground, p.wall, p.building);
+        p.displacement = resolve_contacts(model, p.boundary, p.sampled_at, p.displacement, p.multiplier, p.contacts);
     }
 }
 
@@ -268,7 +263,7 @@ void Backend::undo_overlaps(const Model& model, State& state) {
         p.shift = {};
         if (p.held) continue;
         if (keeps_stress(model)) {
-            p.shift = p.boundary.correction(spread[i]);
+            p.shift = boundary_correction(p.boundary.gradient, spread[i]);
             for_each_neighbour(model, spread.size(), i, point, [&](std::size_t j, const Pair& pair) {
                 p.shift += pair.gradient * (spread[i] + spread[j]);
             });

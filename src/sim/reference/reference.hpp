@@ -21,10 +21,8 @@ struct Particle {
     Deviator<double> stress, stress_change;
     DensityConstraint<double> constraint;
     Vector linearised_at, sampled_at, shift;
-    BoundarySample<double> sample;
-    BoundaryDensity<double> boundary;
-    ContactMemory<double> ground, wall;
-    int building = -1;
+    Boundary<double> boundary;
+    ContactMemories<double> contacts;
     bool held = false;
 
     [[nodiscard]] Vector predicted() const { return position + displacement; }
