@@ -1,5 +1,6 @@
 #include "scene/load.hpp"
 
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <system_error>
@@ -7,6 +8,9 @@
 #include <fmt/format.h>
 
 #include "core/hash.hpp"
+#include "sim/physics/kernel.hpp"
+#include "sim/physics/viscosity.hpp"
+#include "sim/seed.hpp"
 
 namespace talus {
 namespace {
@@ -19,6 +23,29 @@ void note_observations(Scene& scene) {
             fmt::format("observation[{}]: chainage {:.6g} m lies beyond the flow path's end at {:.1f} m", i,
                         observation.chainage, scene.flow_path.length()));
     }
+}
+
+/// What a step smooths beyond the whole difference between neighbours would drive them apart.
+Status check_viscosity(const ParsedScene& parsed, const Scene& scene) {
+    const SolverSpec& solver = scene.spec.solver;
+    const MaterialSpec& material = scene.spec.material;
+    double volume = 0;
+    for (const Release& release : scene.releases) volume += release.volume;
+    const double spacing = choose_particle_spacing(solver, volume);
+    const double longest_step = solver.time_step.value_or(solver.largest_time_step);
+    double given = material.viscosity, most = viscosity_reference_step / longest_step;
+    std::string key = "material.viscosity";
+    if (material.kinematic_viscosity) {
+        const Kernel kernel = make_kernel(solver.kernel, spacing, solver.support_ratio * spacing);
+        given = *material.kinematic_viscosity;
+        most = kinematic_viscosity(most, kernel.second_moment);
+        key = "material.kinematic_viscosity_m2ps";
+    }
+    if (given <= most) return {};
+    return Error{
+        fmt::format("{} = {:.4g} is refused; with particles of {:.3g} m and steps of up to {:.3g} s it must be at "
+                    "most {:.4g}; larger particles or shorter steps allow more",
+                    parsed.at(key), given, spacing, longest_step, std::floor(1e4 * most) / 1e4)};
 }
 
 /// "scene.toml" in the folder "valley" is called valley, "valley.toml" too.
@@ -102,6 +129,7 @@ Result<Scene> assemble_scene(const ParsedScene& parsed) {
     record_input("scene", parsed.file.string(), scene);
     if (Status s = load_terrain(parsed, scene); !s) return s.error();
     if (Status s = load_releases(parsed, scene); !s) return s.error();
+    if (Status s = check_viscosity(parsed, scene); !s) return s.error();
     if (Status s = load_buildings(parsed, scene); !s) return s.error();
     if (Status s = load_flow_path(parsed, scene); !s) return s.error();
     note_observations(scene);

@@ -283,8 +283,9 @@ SolidSample<Real> BuildingSolids::second_nearest(const Vec3<Real>& p, const Soli
     double best = range_;
     const auto take = [&](int building, double distance, double nx, double ny, double nz) {
         best = distance;
-        second = {
-            building, static_cast<Real>(distance), {static_cast<Real>(nx), static_cast<Real>(ny), static_cast<Real>(nz)}};
+        second = {building,
+                  static_cast<Real>(distance),
+                  {static_cast<Real>(nx), static_cast<Real>(ny), static_cast<Real>(nz)}};
     };
     const auto [first, last] = candidates(x, y);
     for (std::uint32_t k = first; k < last; ++k) {

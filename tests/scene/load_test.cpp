@@ -91,6 +91,16 @@ TEST_F(LoadScene, ATargetVolumeIsMetByAUniformThickness) {
     EXPECT_THAT(load_error(), AllOf(StartsWith(line(6) + "release[0].volume_m3: "), HasSubstr("m thick")));
 }
 
+TEST_F(LoadScene, AViscosityThatNoStepCanApplyNamesTheMost) {
+    write_valley("[material]\nkinematic_viscosity_m2ps = 1e3\n[solver]\nparticle_spacing_m = 1");
+    EXPECT_THAT(load_error(), AllOf(StartsWith(line(8) + "material.kinematic_viscosity_m2ps = 1000 is refused"),
+                                    HasSubstr("particles of 1 m"), HasSubstr("at most 9.")));
+    write_valley("[material]\nviscosity = 0.9\n[solver]\ntime_step_s = 0.02");
+    EXPECT_THAT(load_error(), AllOf(StartsWith(line(8) + "material.viscosity = 0.9"), HasSubstr("at most 0.8333")));
+    write_valley("[material]\nviscosity = 0.8\n[solver]\ntime_step_s = 0.02");
+    EXPECT_EQ(load_error(), "(it loaded)");
+}
+
 TEST_F(LoadScene, ThicknessComesFromTheAttributeOfEachPolygon) {
     write_valley("", "thickness_attribute = \"d\"");
     write_features("release.geojson",

@@ -99,6 +99,28 @@ TEST(BuildingSolids, a_courtyard_is_outside_and_its_walls_face_it) {
     EXPECT_NEAR(solids.nearest(Vec{10, 10, 9}).distance, std::sqrt(26.0), 1e-12);
 }
 
+TEST(BuildingSolids, a_second_wall_is_seen_in_corners_and_alleys_only) {
+    // An L of two buildings: walls at x = 0 for y > 0, and at y = 0 for x > 0; a third one across an alley.
+    const BuildingSolids solids(
+        level_ground(),
+        {building({{rectangle(-8, 0, 0, 20), {}}}, 9), building({{rectangle(-8, -6, 20, 0), {}}}, 5),
+         building({{rectangle(3, 10, 9, 20), {}}}, 9)},
+        4);
+    const auto expect_second = [&](const Vec& p, int index, double distance, const Vec& normal) {
+        const SolidSample<double> s = solids.second_nearest(p, solids.nearest(p));
+        EXPECT_EQ(s.building, index) << p.x << " " << p.y << " " << p.z;
+        if (index < 0) return;
+        EXPECT_NEAR(s.distance, distance, 1e-12);
+        EXPECT_NEAR(dot(s.normal, normal), 1, 1e-12);
+    };
+    expect_second({1, 2, 1}, 1, 2, {0, 1, 0});  // corner: the wall farther off
+    expect_second({2, 1, 1}, 0, 2, {1, 0, 0});
+    expect_second({1, 15, 1}, 2, 2, {-1, 0, 0});   // alley
+    expect_second({1, 4.5, 1}, -1, 0, {});         // beyond the range
+    expect_second({-1, -2, 6}, 0, 2, {0, -1, 0});  // a roof, and the higher wall beside it
+    expect_second({1, -2, 6}, -1, 0, {});
+}
+
 TEST(BuildingSolids, parts_of_a_footprint_belong_to_one_building) {
     const BuildingSolids solids(
         level_ground(), {building({}, 5), building({{rectangle(0, 0, 4, 4), {}}, {rectangle(20, 0, 24, 4), {}}}, 5)},

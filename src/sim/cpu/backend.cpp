@@ -49,7 +49,6 @@ Backend::Backend(const Model& model, std::size_t capacity)
 void Backend::predict_positions(const Model& model, State& state) {
     const auto dt = static_cast<float>(state.time_step);
     const auto fall = static_cast<float>(model.gravity * state.time_step);
-    const float share = keeps_stress(model) ? linearised_share<float> : 1;
     parallel_ranges(state.count, particle_grain, [&](std::size_t first, std::size_t last) {
         for (std::size_t i = first; i < last; ++i) {
             if (state.held[i] && state.time >= start_time_of(model, state.id[i])) state.held[i] = 0;
@@ -59,8 +58,7 @@ void Backend::predict_positions(const Model& model, State& state) {
                 displacement = state.velocity.at(i) * dt;
             }
             displacement_.set(i, displacement);
-            sampled_at_.set(i, displacement * share);
-            predicted_.set(i, state.position.at(i) + displacement * share);
+            predicted_.set(i, state.position.at(i) + displacement);
             contacts_[i] = {};
         }
     });
@@ -86,7 +84,6 @@ void Backend::reorder(State& state, std::span<const std::uint32_t> order) {
     gather_vectors(state.position);
     gather_vectors(state.velocity);
     gather_vectors(displacement_);
-    gather_vectors(sampled_at_);
     gather_vectors(predicted_);
     gather(state.multiplier, float_scratch_);
     for (auto* component : {&state.stress.xx, &state.stress.yy, &state.stress.xy, &state.stress.xz, &state.stress.yz}) {
@@ -217,8 +214,7 @@ void Backend::update_velocities(const Model& model, State& state) {
             if (wall.building < 0) break;
             const float normal = contacts_[i][f].normal + boundary_push(wall, state.multiplier[i]);
             if (normal <= 0) continue;
-            state.building_contacts.push_back(
-                {i, wall.building, static_cast<float>(mass * normal / state.time_step)});
+            state.building_contacts.push_back({i, wall.building, static_cast<float>(mass * normal / state.time_step)});
         }
     }
 }

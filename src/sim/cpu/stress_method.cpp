@@ -30,13 +30,14 @@ void Backend::warm_start_stress(const Model& model, State& state) {
 void Backend::linearise(const Model& model, const State& state) {
     const auto softness = static_cast<float>(model.solver.constraint_relaxation * model.kernel.rest_gradient_sum);
     pack(predicted_, state.count, packed_points_);
-    pack(sampled_at_, state.count, packed_vectors_);
+    pack(displacement_, state.count, packed_vectors_);
     parallel_ranges(state.count, particle_grain, [&](std::size_t first, std::size_t last) {
         for (std::size_t i = first; i < last; ++i) {
             const DensitySums sums =
                 sums_.density_and_divergence(scale_, neighbours_.pairs_of(i), packed_points_, packed_vectors_, i);
             boundary_[i] = sample_boundary(model, predicted_.at(i));
-            constraint_[i] = linearise_density(model, sums, boundary_[i], sampled_at_.at(i), softness);
+            sampled_at_.set(i, displacement_.at(i));
+            constraint_[i] = linearise_density(model, sums, boundary_[i], displacement_.at(i), softness);
         }
     });
 }
@@ -56,8 +57,8 @@ void Backend::solve_stress(const Model& model, State& state) {
             const DisplacementGradient<float> deformation =
                 sums_.deformation(neighbours_.pairs_of(i), packed_vectors_, i);
             const DensityConstraint<float>& constraint = constraint_[i];
-            const float density =
-                constraint.start - deformation.divergence() + dot(boundary_[i].gradient, displacement_.at(i));
+            const float density = constraint.start - deformation.divergence() +
+                                  boundary_change(boundary_[i].gradient, displacement_.at(i));
             const float before = state.multiplier[i];
             const float after =
                 next_multiplier(before, density - std::max(0.0f, constraint.start), constraint.gradient_square, factor);

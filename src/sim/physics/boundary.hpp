@@ -26,8 +26,8 @@ struct Boundary {
     Vec3<Real> gradient{};  ///< of the density, 1/m, into ground and walls
 };
 
-/// Where faces meet, their shares overlap. For a kernel close to a Gaussian and faces at right angles the shared part is
-/// the product of the shares.
+/// Where faces meet, their shares overlap. For a kernel close to a Gaussian and faces at right angles the shared part
+/// is the product of the shares.
 template <class Real>
 Boundary<Real> sample_boundary(const Model& model, const Vec3<Real>& p) {
     Boundary<Real> result;
@@ -50,25 +50,33 @@ Boundary<Real> sample_boundary(const Model& model, const Vec3<Real>& p) {
     second_wall = {second.distance, second.normal, second_share.slope * free * wall_free, second.building};
     ground.slope *= wall_free * second_free;
     result.density = 1 - free * wall_free * second_free;
-    result.gradient =
-        ground.normal * ground.slope + wall.normal * wall.slope + second_wall.normal * second_wall.slope;
+    result.gradient = ground.normal * ground.slope + wall.normal * wall.slope + second_wall.normal * second_wall.slope;
     return result;
 }
 
-/// How hard a boundary pushes back, relative to the particle's own multiplier: it mirrors the particle's pressure, as a
-/// neighbour of the same pressure would (Akinci et al. 2012).
-inline constexpr int boundary_pressure_share = 2;
+/// How much a boundary answers to a particle, relative to ground that only stands there: 2 would be a mirror image,
+/// which presses as the particle does (Akinci et al. 2012) and comes as near as it does. With 1, hard contact has to
+/// carry most of the weight, and creeps; 2 shakes what lies beside a wall; with 1.5 neither is seen
+/// (docs/equations.md).
+inline constexpr double boundary_mirror_share = 1.5;
+
+/// How a displacement changes the density that the constraint sees at a boundary of this gradient. The same share in
+/// the constraint and in the correction: or the boundary would do work of its own.
+template <class Real>
+Real boundary_change(const Vec3<Real>& gradient, const Vec3<Real>& displacement) {
+    return Real(boundary_mirror_share) * dot(gradient, displacement);
+}
 
 /// The correction, m, that a multiplier brings about at a boundary whose density has this gradient.
 template <class Real>
 Vec3<Real> boundary_correction(const Vec3<Real>& gradient, Real multiplier) {
-    return gradient * (Real(boundary_pressure_share) * multiplier);
+    return gradient * (Real(boundary_mirror_share) * multiplier);
 }
 
 /// The normal correction of a face, m, that `multiplier` (<= 0) stands for.
 template <class Real>
 Real boundary_push(const BoundaryFace<Real>& face, Real multiplier) {
-    return Real(boundary_pressure_share) * multiplier * face.slope;
+    return Real(boundary_mirror_share) * multiplier * face.slope;
 }
 
 }  // namespace talus

@@ -9,16 +9,11 @@
 namespace talus {
 
 /// The density constraint G of a particle, eq. (1), linearised at the positions that the step predicts:
-/// G(u) = start - divergence(u) + boundary_gradient . u for displacements u since the step's start.
+/// G(u) = start - divergence(u) + boundary_change(u) for displacements u since the step's start.
 ///
 /// Solved at the level of velocities: debris that starts a step denser than at rest must not get denser in it, and what
 /// is too dense already is spread afterwards without becoming velocity (the split impulses of Catto 2005). Pushing it
 /// apart through the multiplier would feed energy into every slow wave of a multiplier that persists between steps.
-/// The share of the predicted displacement at which a step is linearised: in the middle, where a linear function of u is
-/// exact to the second order.
-template <class Real>
-inline constexpr Real linearised_share = Real(0.5);
-
 template <class Real>
 struct DensityConstraint {
     Real start{};            ///< G at the step's start, with the surface's share
@@ -36,15 +31,13 @@ struct DensityConstraint {
 template <class Real, class Sums>
 DensityConstraint<Real> linearise_density(const Model& model, const Sums& sums, const Boundary<Real>& boundary,
                                           const Vec3<Real>& displacement, Real softness) {
-    const Vec3<Real> gradient = sums.gradient + boundary.gradient;
-    const Vec3<Real> pushed = sums.gradient + boundary.gradient * Real(boundary_pressure_share);
-    const Real own = dot(gradient, pushed);
+    const Vec3<Real> pushed = sums.gradient + boundary.gradient * Real(boundary_mirror_share);
     DensityConstraint<Real> result;
-    result.surface_share = model.boundary.density_at_slope(length(gradient));
+    result.surface_share = model.boundary.density_at_slope(length(sums.gradient + boundary.gradient));
     result.start = sums.density + boundary.density + result.surface_share - 1 + sums.divergence -
                    dot(boundary.gradient, displacement);
     result.pair_square = sums.square + softness;
-    result.gradient_square = result.pair_square + (own > 0 ? own : Real(0));
+    result.gradient_square = result.pair_square + dot(pushed, pushed);
     return result;
 }
 

@@ -88,7 +88,7 @@ void Backend::predict_positions(const Model& model, State& state) {
 
 namespace {
 
-/// The pair sums of a particle at `point(k)`, for a displacement of every particle.
+/// The pair sums of a particle at `point(k)`, for the displacements so far.
 struct Sums {
     double density = 0, square = 0, divergence = 0;
     Vector gradient;
@@ -96,15 +96,14 @@ struct Sums {
 };
 
 template <class Points>
-Sums sums_at(const Model& model, const State& state, const Points& point, std::size_t i,
-             Vector Particle::*displacement = &Particle::displacement) {
+Sums sums_at(const Model& model, const State& state, const Points& point, std::size_t i) {
     Sums sums;
     sums.density = own_value(model);
     for_each_neighbour(model, state.particles.size(), i, point, [&](std::size_t j, const Pair& pair) {
         sums.density += pair.value;
         sums.square += dot(pair.gradient, pair.gradient);
         sums.gradient += pair.gradient;
-        sums.deformation.add(state.particles[j].*displacement - state.particles[i].*displacement, pair.gradient);
+        sums.deformation.add(state.particles[j].displacement - state.particles[i].displacement, pair.gradient);
     });
     sums.divergence = sums.deformation.divergence();
     return sums;
@@ -163,7 +162,8 @@ void solve_stress(const Model& model, State& state) {
         p.stress_change = {};
         if (p.held) continue;
         const Sums sums = sums_at(model, state, point, i);
-        const double density = p.constraint.start - sums.divergence + dot(p.boundary.gradient, p.displacement);
+        const double density =
+            p.constraint.start - sums.divergence + boundary_change(p.boundary.gradient, p.displacement);
         const double multiplier = next_multiplier(p.multiplier, density - std::max(0.0, p.constraint.start),
                                                   p.constraint.gradient_square, factor);
         const Deviator<double> stress = next_stress(p.stress, sums.deformation, model.internal_friction_coefficient,
@@ -203,10 +203,9 @@ void Backend::warm_start(const Model& model, State& state) {
     const double ratio = state.previous_time_step > 0 ? state.time_step / state.previous_time_step : 0;
     const double scale = ratio * ratio;
     state.previous_time_step = state.time_step;
-    const double share = keeps_stress(model) ? linearised_share<double> : 1;
     for (Particle& p : state.particles) {
-        p.sampled_at = p.displacement * share;
-        p.linearised_at = p.position + p.sampled_at;
+        p.sampled_at = p.displacement;
+        p.linearised_at = p.predicted();
         p.boundary = sample_boundary(model, p.linearised_at);
     }
     if (keeps_stress(model)) {
@@ -215,7 +214,7 @@ void Backend::warm_start(const Model& model, State& state) {
         for (std::size_t i = 0; i < state.particles.size(); ++i) {
             Particle& p = state.particles[i];
             p.constraint =
-                linearise_density(model, sums_at(model, state, point, i, &Particle::sampled_at), p.boundary, p.sampled_at, softness);
+                linearise_density(model, sums_at(model, state, point, i), p.boundary, p.displacement, softness);
             p.multiplier *= scale;
             p.stress = p.stress * scale;
             p.stress_change = p.held ? Deviator<double>{} : p.stress;
