@@ -140,6 +140,23 @@ void relax(const Model& model, State& state) {
 
 }  // namespace
 
+void find_pressures(const Model& model, State& state) {
+    constexpr int rounds = 100;
+    const State start = state;
+    cpu::Backend backend(model, state.count);
+    StageTimes times;
+    state.time_step = model.solver.largest_time_step / 4;
+    for (int round = 0; round < rounds; ++round) {
+        step(backend, model, state, times);
+        for (std::uint32_t i = 0; i < state.count; ++i) {
+            state.position.set(i, start.position.at(state.id[i]));
+            state.velocity.set(i, start.velocity.at(state.id[i]));
+        }
+    }
+    state.time = start.time;
+    state.step = start.step;
+}
+
 double choose_particle_spacing(const SolverSpec& solver, double released_volume) {
     if (solver.particle_spacing) return *solver.particle_spacing;
     return std::cbrt(released_volume / solver.target_particle_count);

@@ -26,4 +26,8 @@ namespace talus {
 /// smaller than one particle.
 [[nodiscard]] Result<State> seed_releases(Model& model, const std::vector<Release>& releases);
 
+/// The multipliers and stresses with which a state, in the order of its ids, would begin to move; it does not move.
+/// Those it comes with are where the search begins.
+void find_pressures(const Model& model, State& state);
+
 }  // namespace talus

@@ -44,6 +44,7 @@ struct Measurement {
     std::string where;          ///< the variant: "slope 30 degrees, f = 0.4"; empty where there is only one
     double computed = 0;        ///< not_computed: the run did not get there
     std::optional<double> law;  ///< what the kind's law says
+    bool coarse = false;        ///< of a coarser resolution than the finest: shows the trend, is not judged
 };
 
 /// A curve of a chart.

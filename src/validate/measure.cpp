@@ -30,6 +30,15 @@ double top_of(const Model& model, const State& state) {
            model.particle_spacing / 2;
 }
 
+double edge_of(const std::vector<double>& profile, double cell, double least) {
+    for (std::size_t k = profile.size(); k-- > 1;) {
+        const double inner = profile[k - 1], outer = profile[k];
+        if (inner < least || outer >= least) continue;
+        return (static_cast<double>(k) - 0.5 + (inner - least) / (inner - outer)) * cell;
+    }
+    return 0;
+}
+
 ErrorNorms error_norms(const std::vector<double>& computed, const std::vector<double>& exact) {
     assert(computed.size() == exact.size());
     double squares = 0, exact_squares = 0, largest = 0, exact_largest = 0;

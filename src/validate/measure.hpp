@@ -29,6 +29,12 @@ template <class Place>
     return thickness;
 }
 
+/// Where a deposit ends: the last place, m, at which its profile in cells of size `cell` from 0 on falls below
+/// `least`, interpolated between the middles of cells; 0 when it never does.
+///
+/// A percentile of the particles' distances lies further inside: the 99th of a perfect cone at 94 % of its radius.
+[[nodiscard]] double edge_of(const std::vector<double>& profile, double cell, double least);
+
 /// How far a profile is from the exact one on cells of equal size.
 struct ErrorNorms {
     double relative_l2 = 0;   ///< sqrt(sum of squared differences) / sqrt(sum of squared exact values)

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <utility>
 
+#include "sim/seed.hpp"
+
 namespace talus::validate {
 
 Terrain make_ground(double length, double width, double cell, const std::function<double(double, double)>& elevation) {
@@ -84,6 +86,20 @@ State state_at_rest(const std::vector<LocalPoint>& points) {
         state.position.set(i, points[i]);
         state.id[i] = i;
     }
+    return state;
+}
+
+State state_under_weight(const Model& model, const std::vector<LocalPoint>& points, const Incline& incline,
+                         const std::function<double(double, double)>& thickness) {
+    State state = state_at_rest(points);
+    const double gravity = model.gravity * incline.cosine();
+    state.previous_time_step = 1;  // s: multipliers are pressure over density, times its square
+    for (std::uint32_t i = 0; i < state.count; ++i) {
+        const double above = thickness(incline.along(points[i]), points[i].y) - incline.normal(points[i]);
+        state.multiplier[i] = static_cast<float>(-gravity * std::max(0.0, above));
+    }
+    // What stands free at its sides has less pressure there.
+    find_pressures(model, state);
     return state;
 }
 

@@ -33,6 +33,7 @@ class Incline {
     [[nodiscard]] LocalPoint down(double speed) const;
     [[nodiscard]] double along(const LocalPoint& p) const;
     [[nodiscard]] double normal(const LocalPoint& p) const;
+    [[nodiscard]] double cosine() const { return cosine_; }
 
   private:
     Terrain terrain_;
@@ -54,8 +55,13 @@ class Incline {
                                                    int columns_along, double across, int columns_across,
                                                    const std::function<double(double, double)>& thickness);
 
-/// A state at rest of particles at these places, without any release.
+/// A state at rest of particles at these places, without any release, that presses on nothing yet.
 [[nodiscard]] State state_at_rest(const std::vector<LocalPoint>& points);
+
+/// The same under the weight of what lies above, as debris is that has long stood behind a gate: `thickness` as in
+/// fill_lattice. Without it a tall column falls into itself before its pressure has built up.
+[[nodiscard]] State state_under_weight(const Model& model, const std::vector<LocalPoint>& points,
+                                       const Incline& incline, const std::function<double(double, double)>& thickness);
 
 enum class OnFault {
     stop,

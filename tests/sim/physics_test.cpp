@@ -153,6 +153,27 @@ TEST(Boundaries, walls_rub_with_their_own_friction_where_it_is_set_apart) {
     EXPECT_NEAR(moved_along(std::nullopt), 0.05 - 0.6 * 0.02, 1e-6) << "equal to the ground's unless set apart";
 }
 
+TEST(Step, is_shortened_while_debris_is_deeper_than_pressure_can_follow) {
+    // 60 layers that begin without any pressure: with one length of step they fall into themselves, particle on
+    // particle.
+    const Terrain terrain = testing::terrain_of(60, 60, 2, [](double, double) { return 0; });
+    std::vector<LocalPoint> points;
+    for (int i = 0; i < 12; ++i) {
+        for (int j = 0; j < 12; ++j) {
+            for (int k = 0; k < 60; ++k) points.push_back({(i - 5.5F) / 5, (j - 5.5F) / 5, (k + 0.5F) / 5});
+        }
+    }
+    Simulation simulation(make_model({}, {}, terrain, {}, 0.2), testing::state_of(points));
+    double shortest = 1, worst = 0;
+    while (simulation.state().time < 2) {
+        ASSERT_FALSE(simulation.advance());
+        shortest = std::min(shortest, simulation.state().time_step);
+        worst = std::max(worst, simulation.state().mean_compression);
+    }
+    EXPECT_LT(shortest, 1.0 / 200);
+    EXPECT_LT(worst, 0.03);
+}
+
 TEST(MassBalance, counts_what_leaves_the_terrain) {
     const Terrain terrain = inclined_plane(40, 24, 24);
     MaterialSpec material;

@@ -26,6 +26,13 @@ TEST(Percentile, InterpolatesBetweenValues) {
     EXPECT_TRUE(std::isnan(percentile({}, 0.5)));
 }
 
+TEST(EdgeOf, IsWhereTheProfileFallsBelowForGood) {
+    EXPECT_DOUBLE_EQ(edge_of({4, 3, 2, 1, 0, 0}, 2, 0.5), 2 * 4.0);        // halfway between two middles
+    EXPECT_DOUBLE_EQ(edge_of({4, 0, 0, 1, 0.2, 0.1}, 1, 0.6), 3.5 + 0.5);  // a gap behind the edge is no edge
+    EXPECT_EQ(edge_of({0, 0}, 1, 0.5), 0);
+    EXPECT_EQ(edge_of({1, 1}, 1, 0.5), 0) << "the profile ends before the deposit";
+}
+
 /// A box of particles on an incline: what is put in must be read off again.
 class Box : public testing::Test {
   protected:
@@ -52,6 +59,28 @@ TEST_F(Box, HasItsThicknessInEveryCell) {
     const std::vector<double> expected = {0, 2, 2, 2, 2, 2, 2, 0};
     ASSERT_EQ(thickness.size(), expected.size());
     for (std::size_t k = 0; k < expected.size(); ++k) EXPECT_NEAR(thickness[k], expected[k], 1e-9) << k;
+}
+
+TEST_F(Box, UnderItsWeightPressesAsDeepAsItLies) {
+    MaterialSpec smooth;
+    smooth.building_friction_coefficient = 0;
+    const auto walls = make_slice(incline_.terrain(), 2, 3);
+    const Model slice = make_model(smooth, {}, incline_.terrain(), walls, 0.5);
+    const State loaded = state_under_weight(slice, points_, incline_, [](double, double) { return 2.0; });
+    ASSERT_EQ(loaded.count, state_.count);
+    std::vector<double> by_layer(4, 0.0);
+    for (std::uint32_t i = 0; i < loaded.count; ++i) {
+        const LocalPoint p = points_[loaded.id[i]];
+        EXPECT_EQ(length(loaded.position.at(i) - p), 0) << "it must not have moved";
+        EXPECT_EQ(length(loaded.velocity.at(i)), 0);
+        if (std::abs(incline_.along(p)) > 1) continue;  // the ends stand free
+        const double steps = loaded.previous_time_step * loaded.previous_time_step;
+        by_layer[static_cast<std::size_t>(incline_.normal(p) / 0.5)] -= loaded.multiplier[i] / steps / 16;
+    }
+    for (std::size_t k = 0; k < 3; ++k) EXPECT_GT(by_layer[k], by_layer[k + 1]) << k;
+    const double weight = slice.gravity * std::cos(0.4) * 1.75;  // above the middle of the lowest layer
+    EXPECT_NEAR(by_layer[0], weight, 0.2 * weight);
+    EXPECT_EQ(loaded.time, 0);
 }
 
 TEST(FillLattice, RoundsSoThatTheVolumeIsRight) {

@@ -102,6 +102,18 @@ TEST(Judge, WhatIsOnlyShownNeverFails) {
     EXPECT_EQ(judged(e, not_computed).verdict, Verdict::shown);
 }
 
+TEST(Judge, CoarserResolutionsOnlyShowTheTrendUnlessNamed) {
+    const std::vector<Measurement> measured = {{"drift", "coarse", 7, {}, true}, {"drift", "fine", 7, {}, false}};
+    auto rows = judge(case_with({expect("drift", 1, 0.1)}), measured);
+    ASSERT_EQ(rows.size(), 2U);
+    EXPECT_EQ(rows[0].verdict, Verdict::shown);
+    EXPECT_EQ(rows[1].verdict, Verdict::fail);
+    Expectation named = expect("drift", 1, 0.1);
+    named.where = "coarse";
+    rows = judge(case_with({named}), measured);
+    EXPECT_EQ(rows.at(0).verdict, Verdict::fail);
+}
+
 TEST(Judge, AnEntryForAVariantGoesBeforeTheOneForAll) {
     Expectation all = expect("drift", 0, 1), one = expect("drift", 0, 1);
     one.where = "steep";

@@ -274,6 +274,13 @@ double choose_time_step(const Model& model, const State& state) {
     if (model.solver.time_step) return *model.solver.time_step;
     const double reach = model.solver.displacement_limit * model.particle_spacing;
     double dt = model.solver.largest_time_step;
+    // Pressure spreads by some layers per step. Debris that packs closer is deeper than it can keep up with; left
+    // alone, particles end up on top of each other, where no gradient parts them.
+    constexpr double too_compressed = 0.01, recovered = 0.005;
+    if (state.time_step > 0 && state.mean_compression > recovered) {
+        const double eased = state.mean_compression > too_compressed ? state.time_step / 2 : state.time_step;
+        dt = std::clamp(eased, dt / 8, dt);
+    }
     while (dt > model.solver.smallest_time_step && dt * (state.largest_speed + model.gravity * dt) > reach) dt /= 2;
     return dt;
 }

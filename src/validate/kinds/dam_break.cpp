@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -46,9 +47,10 @@ Measured measure(const DamSpec& spec, double spacing, const Setting& setting, co
     Model model = make_model(material, setting.solver, incline.terrain(),
                              make_slice(incline.terrain(), width, 3 * spec.depth), spacing);
     const auto columns = static_cast<int>(std::lround(reservoir / spacing));
-    const auto points = fill_lattice(incline, spacing, -columns * spacing, columns, -width / 2, spec.width,
-                                     [&](double, double) { return spec.depth; });
-    Trial trial(std::move(model), state_at_rest(points), watch);
+    const auto thickness = [&](double, double) { return spec.depth; };
+    const auto points = fill_lattice(incline, spacing, -columns * spacing, columns, -width / 2, spec.width, thickness);
+    State start = state_under_weight(model, points, incline, thickness);
+    Trial trial(std::move(model), std::move(start), watch);
     const State& state = trial.state();
     Measured measured;
     measured.particles = state.count;
@@ -82,14 +84,16 @@ Result<Outcome> compute(const DamSpec& spec, const Setting& setting, const Watch
                 "particle spacing, m",
                 "relative L2 error",
                 {{"computed", Series::Style::marks, {}, {}}}};
+    const double finest = *std::min_element(spec.spacings.begin(), spec.spacings.end());
     for (const double spacing : spec.spacings) {
         const std::string name = fmt::format("spacing {:g} m", spacing);
         watch.say(name);
         const Measured m = measure(spec, spacing, setting, watch);
         if (!m.problem.empty()) outcome.notes.push_back(name + ": " + m.problem);
         outcome.notes.push_back(fmt::format("{}: {} particles, cells of {:g} m", name, m.particles, spec.cell));
-        outcome.measurements.push_back({"depth_l2", name, m.l2, {}});
-        outcome.measurements.push_back({"depth_max", name, m.largest, {}});
+        const bool coarse = spacing > finest;
+        outcome.measurements.push_back({"depth_l2", name, m.l2, {}, coarse});
+        outcome.measurements.push_back({"depth_max", name, m.largest, {}, coarse});
         if (profile.series.empty()) profile.series.push_back({"exact", Series::Style::dashed, m.place, m.exact});
         profile.series.push_back({name, Series::Style::line, m.place, m.thickness});
         trend.series[0].x.push_back(spacing);

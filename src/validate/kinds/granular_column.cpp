@@ -14,11 +14,14 @@
 namespace talus::validate {
 namespace {
 
-constexpr double front_percentile = 0.985;
+constexpr double front_percentile = 0.99;
+constexpr double covered = 0.5;  // layers of particles that still cover the ground
 
 constexpr Quantity quantities[] = {
     {"run_out", "1", true, Quantity::Site::none,
-     "(final - initial extent) / initial extent; the front is the 98.5th percentile of the particles' distances"},
+     "(final - initial extent) / initial extent; the front is the 99th percentile of the particles' distances"},
+    {"run_out_edge", "1", true, Quantity::Site::none,
+     "the same up to where the deposit is half a layer of particles thick"},
     {"height", "1", true, Quantity::Site::none, "final height / initial extent, from the five highest particles"},
     {"residual_speed", "1", false, Quantity::Site::none, "mean speed at the end over sqrt(g initial height)"},
 };
@@ -33,7 +36,7 @@ struct ColumnSpec {
 };
 
 struct Measured {
-    double run_out = not_computed, height = not_computed, residual_speed = not_computed;
+    double run_out = not_computed, run_out_edge = not_computed, height = not_computed, residual_speed = not_computed;
     std::string problem;
     std::vector<double> distance, thickness;  // final profile, over the initial extent
     std::vector<double> time, front;          // over sqrt(H / g) and the initial extent
@@ -65,12 +68,14 @@ Measured measure(const ColumnSpec& spec, double aspect, double resolution, const
     }
     Model model = make_model(material, setting.solver, flat.terrain(), walls, spacing);
     const auto half = static_cast<int>(std::ceil(resolution));
+    const auto thickness = [&](double x, double y) {
+        return spec.planar || std::hypot(x, y) < spec.extent ? height : 0;
+    };
     const auto points =
-        spec.planar
-            ? fill_lattice(flat, spacing, 0, half, -width / 2, spec.width, [&](double, double) { return height; })
-            : fill_lattice(flat, spacing, -half * spacing, 2 * half, -half * spacing, 2 * half,
-                           [&](double x, double y) { return std::hypot(x, y) < spec.extent ? height : 0; });
-    Trial trial(std::move(model), state_at_rest(points), watch);
+        spec.planar ? fill_lattice(flat, spacing, 0, half, -width / 2, spec.width, thickness)
+                    : fill_lattice(flat, spacing, -half * spacing, 2 * half, -half * spacing, 2 * half, thickness);
+    State start = state_under_weight(model, points, flat, thickness);
+    Trial trial(std::move(model), std::move(start), watch);
 
     const State& state = trial.state();
     const auto distance = [&](std::uint32_t i) {
@@ -98,7 +103,7 @@ Measured measure(const ColumnSpec& spec, double aspect, double resolution, const
     for (std::uint32_t i = 0; i < state.count; ++i) speeds += length(state.velocity.at(i));
     measured.residual_speed = speeds / state.count / std::sqrt(trial.model().gravity * height);
 
-    const double cell = 2 * spacing;
+    const double cell = spacing;
     const int cells = static_cast<int>(reach / cell);
     std::vector<double> profile =
         thickness_profile(trial.model(), state, 0, cell, cells, spec.planar ? width : 1, distance);
@@ -108,6 +113,7 @@ Measured measure(const ColumnSpec& spec, double aspect, double resolution, const
         measured.distance.push_back(middle / spec.extent);
         measured.thickness.push_back(profile[static_cast<std::size_t>(k)] / circumference / spec.extent);
     }
+    measured.run_out_edge = edge_of(measured.thickness, cell, covered * spacing / spec.extent) / spec.extent - 1;
     return measured;
 }
 
@@ -157,9 +163,12 @@ Result<Outcome> compute(const ColumnSpec& spec, const Setting& setting, const Wa
             watch.say(name);
             const Measured m = measure(spec, aspect, resolution, setting, watch);
             if (!m.problem.empty()) outcome.notes.push_back(name + ": " + m.problem);
-            outcome.measurements.push_back({"run_out", name, m.run_out, run_out_law(spec, aspect)});
-            outcome.measurements.push_back({"height", name, m.height, height_law(spec, aspect)});
-            outcome.measurements.push_back({"residual_speed", name, m.residual_speed, {}});
+            const bool coarse = resolution < finest;
+            const double law = run_out_law(spec, aspect);
+            outcome.measurements.push_back({"run_out", name, m.run_out, law, coarse});
+            outcome.measurements.push_back({"run_out_edge", name, m.run_out_edge, law, coarse});
+            outcome.measurements.push_back({"height", name, m.height, height_law(spec, aspect), coarse});
+            outcome.measurements.push_back({"residual_speed", name, m.residual_speed, {}, coarse});
             run_out.x.push_back(aspect);
             run_out.y.push_back(m.run_out);
             height.x.push_back(aspect);

@@ -74,7 +74,10 @@ Measured measure(const LakeSpec& spec, const Ground& ground, const Setting& sett
             }
         }
     }
-    Trial trial(std::move(model), state_at_rest(points), watch);
+    const Incline flat(0, spec.length, width);
+    const auto surface = [&](double, double) { return spec.depth; };
+    State start = state_under_weight(model, points, flat, surface);
+    Trial trial(std::move(model), std::move(start), watch);
     const State& state = trial.state();
     Measured measured;
     if (!trial.advance_to(spec.time)) {

@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numbers>
 
 #include <fmt/format.h>
@@ -29,15 +28,14 @@ constexpr Quantity quantities[] = {
     {"peak_impact_pressure", "kPa", false, Quantity::Site::building, "filtered force over the wall area in contact"},
     {"peak_depth", "m", false, Quantity::Site::place, "greatest flow depth near a place"},
     {"height_reached", "m", false, Quantity::Site::place,
-     "highest ground that debris reached near a place, above the lowest that it reached there"},
+     "highest ground that debris reached near a place, above the flow path beside it: the height of marks on a bank"},
     {"mean_compression", "1", false, Quantity::Site::none, "worst mean compression of the run"},
     {"max_compression", "1", false, Quantity::Site::none, "worst compression of any particle"},
 };
 
 /// What debris did on the map's cells within the radius of a place.
 struct Surroundings {
-    double peak_depth = 0, lowest = std::numeric_limits<double>::infinity(),
-           highest = -std::numeric_limits<double>::infinity();
+    double peak_depth = 0, height_reached = 0;  // m
 };
 
 Surroundings look_around(const Expectation& e, const Scene& scene, const Observation& observation) {
@@ -48,10 +46,11 @@ Surroundings look_around(const Expectation& e, const Scene& scene, const Observa
             const PlanPoint p = depth.geometry.centre(column, row);
             const double here = depth.at(column, row);
             if (std::hypot(p.x - *e.x, p.y - *e.y) > *e.radius || !(here > scene.spec.outputs.arrival_depth)) continue;
-            const double ground = scene.terrain.elevation_at(p);
             found.peak_depth = std::max(found.peak_depth, here);
-            found.lowest = std::min(found.lowest, ground);
-            found.highest = std::max(found.highest, ground);
+            const auto beside = scene.flow_path.locate(p);
+            if (!beside) continue;
+            const double bed = scene.terrain.elevation_at(scene.flow_path.point_at(beside->chainage));
+            found.height_reached = std::max(found.height_reached, scene.terrain.elevation_at(p) - bed);
         }
     }
     return found;
@@ -77,8 +76,7 @@ double measure(const Expectation& e, const Scene& scene, const Observation& obse
     if (!e.building.empty()) return measure_building(e, observation);
     if (e.x) {
         const Surroundings found = look_around(e, scene, observation);
-        if (e.quantity == "peak_depth") return found.peak_depth;
-        return found.highest >= found.lowest ? found.highest - found.lowest : 0;
+        return e.quantity == "peak_depth" ? found.peak_depth : found.height_reached;
     }
     if (e.quantity == "run_out") return observation.run_out.horizontal_distance;
     if (e.quantity == "front_chainage") return observation.run_out.front_chainage;

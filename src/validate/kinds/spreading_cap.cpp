@@ -84,9 +84,10 @@ Measured measure(const CapSpec& spec, double spacing, const Setting& setting, co
     material.friction_coefficient = std::tan(spec.friction_angle);
     Model model = make_model(material, setting.solver, incline.terrain(), {}, spacing);
     const auto half = static_cast<int>(std::ceil(spec.length / spacing));
-    const auto points = fill_lattice(incline, spacing, -half * spacing, 2 * half, -half * spacing, 2 * half,
-                                     [&](double s, double y) { return law.thickness(s, y, 0); });
-    Trial trial(std::move(model), state_at_rest(points), watch);
+    const auto thickness = [&](double s, double y) { return law.thickness(s, y, 0); };
+    const auto points = fill_lattice(incline, spacing, -half * spacing, 2 * half, -half * spacing, 2 * half, thickness);
+    State start = state_under_weight(model, points, incline, thickness);
+    Trial trial(std::move(model), std::move(start), watch);
     Measured measured;
     measured.particles = trial.state().count;
     if (trial.advance_to(spec.time)) {
@@ -109,14 +110,16 @@ Result<Outcome> compute(const CapSpec& spec, const Setting& setting, const Watch
                  "across the slope, m",
                  "thickness, m",
                  {}};
+    const double finest = *std::min_element(spec.spacings.begin(), spec.spacings.end());
     for (const double spacing : spec.spacings) {
         const std::string name = fmt::format("spacing {:g} m", spacing);
         watch.say(name);
         const Measured m = measure(spec, spacing, setting, watch);
         if (!m.problem.empty()) outcome.notes.push_back(name + ": " + m.problem);
         outcome.notes.push_back(fmt::format("{}: {} particles, cells of {:g} m", name, m.particles, spec.cell));
-        outcome.measurements.push_back({"depth_l2", name, m.l2, {}});
-        outcome.measurements.push_back({"depth_max", name, m.largest, {}});
+        const bool coarse = spacing > finest;
+        outcome.measurements.push_back({"depth_l2", name, m.l2, {}, coarse});
+        outcome.measurements.push_back({"depth_max", name, m.largest, {}, coarse});
         if (along.series.empty()) {
             along.series.push_back({"exact", Series::Style::dashed, m.along_place, m.along_exact});
             across.series.push_back({"exact", Series::Style::dashed, m.across_place, m.across_exact});

@@ -1,12 +1,12 @@
 #include <algorithm>
 #include <cmath>
-#include <functional>
-#include <numeric>
+#include <utility>
 
 #include <fmt/format.h>
 
 #include "sim/seed.hpp"
 #include "validate/kinds/kinds.hpp"
+#include "validate/measure.hpp"
 #include "validate/set_up.hpp"
 
 namespace talus::validate {
@@ -14,7 +14,9 @@ namespace {
 
 constexpr Quantity quantities[] = {
     {"front", "1", true, Quantity::Site::none,
-     "distance of the front from the column's back over its base; measured values of the case file"},
+     "distance of the front, where half a layer of particles still covers the bed, from the column's back over its "
+     "base; "
+     "measured values of the case file"},
 };
 
 struct ColumnSpec {
@@ -36,6 +38,7 @@ Result<Outcome> compute(const ColumnSpec& spec, const Setting& setting, const Wa
         fronts.series[0].y.push_back(p[1]);
     }
     const double furthest = spec.measured.back()[1] * spec.base * 1.6;
+    const double finest = *std::max_element(spec.resolutions.begin(), spec.resolutions.end());
     for (const double resolution : spec.resolutions) {
         const double spacing = spec.base / resolution, width = spec.width * spacing,
                      height = spec.height_ratio * spec.base;
@@ -46,17 +49,18 @@ Result<Outcome> compute(const ColumnSpec& spec, const Setting& setting, const Wa
         const Extent extent = flat.terrain().elevation().geometry.extent();
         walls.push_back(make_wall(flat.terrain(), extent.x_min, extent.y_min, 0, extent.y_max, 2 * height));
         Model model = make_model(setting.material, setting.solver, flat.terrain(), walls, spacing);
-        const auto points = fill_lattice(flat, spacing, 0, static_cast<int>(std::lround(resolution)), -width / 2,
-                                         spec.width, [&](double, double) { return height; });
-        Trial trial(std::move(model), state_at_rest(points), watch);
+        const auto depth = [&](double, double) { return height; };
+        const auto points =
+            fill_lattice(flat, spacing, 0, static_cast<int>(std::lround(resolution)), -width / 2, spec.width, depth);
+        State start = state_under_weight(model, points, flat, depth);
+        Trial trial(std::move(model), std::move(start), watch);
         const State& state = trial.state();
-        // The mean of as many particles as make a row across the slice; drops ahead of it are not the front.
+        // Where the water still covers the bed; drops ahead of it are not the front.
         const auto front = [&] {
-            std::vector<float> x(state.position.x.begin(), state.position.x.begin() + state.count);
-            const std::ptrdiff_t row = spec.width;
-            std::partial_sort(x.begin(), x.begin() + row, x.end(), std::greater<>());
-            return (std::accumulate(x.begin(), x.begin() + row, 0.0) / static_cast<double>(row) + spacing / 2) /
-                   spec.base;
+            const int cells = static_cast<int>(2 * furthest / spacing);
+            const auto profile = thickness_profile(trial.model(), state, 0, spacing, cells, width,
+                                                   [&](std::uint32_t i) { return double{state.position.x[i]}; });
+            return edge_of(profile, spacing, spacing / 2) / spec.base;
         };
         const double unit_time = std::sqrt(spec.base / (2 * trial.model().gravity));
         Series computed{by_resolution, Series::Style::line, {0}, {front()}};
@@ -73,8 +77,8 @@ Result<Outcome> compute(const ColumnSpec& spec, const Setting& setting, const Wa
             const double after_time = state.time / unit_time, after = front();
             const double share = after_time > before_time ? (p[0] - before_time) / (after_time - before_time) : 1;
             const double value = trial.problem().empty() ? before + share * (after - before) : not_computed;
-            outcome.measurements.push_back(
-                {"front", fmt::format("t sqrt(2 g / a) = {:g}, {}", p[0], by_resolution), value, p[1]});
+            outcome.measurements.push_back({"front", fmt::format("t sqrt(2 g / a) = {:g}, {}", p[0], by_resolution),
+                                            value, p[1], resolution < finest});
         }
         if (!trial.problem().empty()) outcome.notes.push_back(by_resolution + ": " + trial.problem());
         fronts.series.push_back(computed);
