@@ -13,8 +13,9 @@ double column_run_out_planar(double aspect) {
     return aspect < 2.3 ? 1.2 * aspect : 1.9 * std::cbrt(aspect * aspect);
 }
 
-double column_height_axisymmetric(double aspect) {
-    return aspect < 1.7 ? std::min(aspect, 0.74) : 0.88 * std::pow(aspect, 1.0 / 6);
+ColumnHeights column_heights_axisymmetric(double aspect) {
+    const double lajeunesse = std::min(aspect, 0.74);
+    return {lajeunesse, aspect < 1.7 ? lajeunesse : 0.88 * std::pow(aspect, 1.0 / 6)};
 }
 
 double column_height_planar(double aspect) {

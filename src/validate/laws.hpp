@@ -13,9 +13,12 @@ namespace talus::validate {
 /// between 1.8 and 2.8 one turns into the other.
 [[nodiscard]] double column_run_out_planar(double aspect);
 
-/// Final height of such a column over its initial extent.
-/// Axisymmetric: min(a, 0.74) up to 1.7 (Lajeunesse, Mangeney-Castelnau, Vilotte 2004), 0.88 a^(1/6) above (Lube 2004).
-[[nodiscard]] double column_height_axisymmetric(double aspect);
+/// Final height of such a column over its initial extent, as two laboratories found it; equal up to 1.7.
+struct ColumnHeights {
+    double lajeunesse;  ///< min(a, 0.74) (Lajeunesse, Mangeney-Castelnau, Vilotte 2004)
+    double lube;        ///< 0.88 a^(1/6) above 1.7 (Lube 2004)
+};
+[[nodiscard]] ColumnHeights column_heights_axisymmetric(double aspect);
 /// Planar: min(a, a^0.4) (Lube 2005: a^0.4 above 1.15, unchanged below).
 [[nodiscard]] double column_height_planar(double aspect);
 

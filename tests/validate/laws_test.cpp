@@ -17,9 +17,10 @@ TEST(ColumnLaws, HaveTheValuesOfTheirPapers) {
     EXPECT_NEAR(column_run_out_planar(1), 1.2, 1e-12);
     EXPECT_NEAR(column_run_out_planar(8), 7.6, 1e-12);
     EXPECT_NEAR(column_run_out_planar(4), 4.79, 0.005);
-    EXPECT_NEAR(column_height_axisymmetric(0.5), 0.5, 1e-12);
-    EXPECT_NEAR(column_height_axisymmetric(1), 0.74, 1e-12);
-    EXPECT_NEAR(column_height_axisymmetric(64), 1.76, 1e-12);
+    EXPECT_NEAR(column_heights_axisymmetric(0.5).lube, 0.5, 1e-12);
+    EXPECT_NEAR(column_heights_axisymmetric(1).lube, 0.74, 1e-12);
+    EXPECT_NEAR(column_heights_axisymmetric(64).lube, 1.76, 1e-12);
+    EXPECT_NEAR(column_heights_axisymmetric(64).lajeunesse, 0.74, 1e-12);
     EXPECT_NEAR(column_height_planar(1), 1, 1e-12);
     EXPECT_NEAR(column_height_planar(2), 1.3195, 1e-4);
     EXPECT_NEAR(column_height_planar(0.5), 0.5, 1e-12);
