@@ -43,10 +43,22 @@ std::string row_html(const Row& row) {
         return fmt::format("<td{}>{}</td>", attributes, escape(text));
     };
     constexpr const char* number = " class=\"n\"";
-    return "<tr>" + cell(row.case_name, "") + cell(row.quantity, "") + cell(expected_text(row), number) +
-           cell(computed_text(row), number) + cell(deviation_text(row), number) + cell(tolerance_text(row), number) +
+    return "<tr>" + cell(row.quantity, "") + cell(expected_text(row), number) + cell(computed_text(row), number) +
+           cell(deviation_text(row), number) + cell(tolerance_text(row), number) +
            cell(row.source, " class=\"source\"") +
            fmt::format("<td><span class=\"verdict {}\">{}</span></td></tr>\n", css, verdict_text(row.verdict));
+}
+
+std::string overview_html(const CaseResult& result) {
+    const Case& c = result.validation_case;
+    const Tally tally = count({result});
+    const int failed = tally.failed + tally.known_failures;
+    return fmt::format(
+        "<tr><td><a href=\"#case-{}\">{}</a></td><td>{}</td><td class=\"n\">{}</td>"
+        "<td class=\"n\">{}</td><td class=\"n\">{}</td><td class=\"n\">{:.0f} s</td></tr>\n",
+        escape(c.name), escape(c.title), result.skipped.empty() ? "" : "skipped", tally.passed,
+        failed > 0 ? fmt::format("<span class=\"verdict fail\">{}</span>", failed) : "0", tally.shown,
+        result.wall_time);
 }
 
 /// What is said of a case beside its numbers: why it fails, why it was not run, what to know.
@@ -70,6 +82,12 @@ std::string case_html(const CaseResult& result) {
     std::string list;
     for (const std::string& remark : remarks(result)) list += "<li>" + escape(remark) + "</li>\n";
     if (!list.empty()) html += "<ul>\n" + list + "</ul>\n";
+    html +=
+        "<div class=\"scroll\"><table class=\"data\"><thead><tr><th>Quantity</th><th class=\"n\">Expected</th>"
+        "<th class=\"n\">Computed</th><th class=\"n\">Deviation</th><th class=\"n\">Tolerance</th><th>Source</th>"
+        "<th>Result</th></tr></thead><tbody>\n";
+    for (const Row& row : result.rows) html += row_html(row);
+    html += "</tbody></table></div>\n";
     std::string figures;
     for (const Chart& chart : result.charts) {
         figures += fmt::format("<figure>{}\n<figcaption>{}.</figcaption></figure>\n", chart_svg(chart, false),
@@ -100,9 +118,9 @@ std::string row_markdown(const Row& row) {
 }  // namespace
 
 std::string page_html(const std::vector<CaseResult>& results) {
-    std::string rows, cases;
+    std::string overview, cases;
     for (const CaseResult& result : results) {
-        for (const Row& row : result.rows) rows += row_html(row);
+        overview += overview_html(result);
         cases += case_html(result);
     }
     const std::string style = fmt::format("{}\n{}\n{}", validation_page_files::report_css,
@@ -111,7 +129,7 @@ std::string page_html(const std::vector<CaseResult>& results) {
                                                            {"style", style},
                                                            {"date", now_text()},
                                                            {"summary", escape(summary_text(results))},
-                                                           {"rows", rows},
+                                                           {"overview", overview},
                                                            {"legend", escape(legend)},
                                                            {"cases", cases}});
 }
