@@ -135,8 +135,9 @@ TEST_F(Variants, AnInterruptedOneHasNoResult) {
 }
 
 TEST_F(Variants, AFaultIsNoResultEither) {
-    const Variant variant{.name = "coarse",
-                          .overrides = {"solver.largest_time_step_s=0.5", "solver.smallest_time_step_s=0.5"}};
+    const Variant variant{
+        .name = "coarse",
+        .overrides = {"solver.largest_time_step_s=0.5", "solver.smallest_time_step_s=0.5", "material.viscosity=0"}};
     const auto run = run_variant(source, variant, {});
     EXPECT_FALSE(run.result);
     EXPECT_THAT(run.missing, HasSubstr("solver.smallest_time_step_s"));
