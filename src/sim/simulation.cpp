@@ -20,7 +20,7 @@ Simulation::Simulation(Model model, State state)
         highest_energy_head_ = std::max(highest_energy_head_, state_.position.z[i] + dot(v, v) / (2 * model_.gravity));
         state_.largest_speed = std::max<double>(state_.largest_speed, length(v));
     }
-    state_.building_contacts.reserve(state_.count);
+    state_.building_contacts.reserve((face_count - 1) * state_.count);
 }
 
 std::optional<std::string> Simulation::advance() {

@@ -43,7 +43,7 @@ struct DeviatorArray {
     }
 };
 
-/// What the buildings took from a particle in the last step.
+/// What a wall or roof took from a particle in the last step; a particle in a corner has two.
 struct BuildingContact {
     std::uint32_t particle;  ///< sorted index
     std::int32_t building;

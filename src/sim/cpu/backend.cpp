@@ -279,7 +279,7 @@ double choose_time_step(const Model& model, const State& state) {
     constexpr double too_compressed = 0.01, recovered = 0.005;
     if (state.time_step > 0 && state.mean_compression > recovered) {
         const double eased = state.mean_compression > too_compressed ? state.time_step / 2 : state.time_step;
-        dt = std::clamp(eased, dt / 8, dt);
+        dt = std::clamp(eased, std::max(dt / 8, std::min(dt, model.solver.smallest_time_step)), dt);
     }
     while (dt > model.solver.smallest_time_step && dt * (state.largest_speed + model.gravity * dt) > reach) dt /= 2;
     return dt;

@@ -86,7 +86,7 @@ class Backend {
 };
 
 /// The step to take next: `time_step` of the scene, or the largest dt_max / 2^k in which the fastest particle, falling
-/// freely, moves at most half a spacing.
+/// freely, moves at most `displacement_limit` of a spacing; shorter while the debris is compressed, down to an eighth.
 [[nodiscard]] double choose_time_step(const Model& model, const State& state);
 
 }  // namespace talus::cpu

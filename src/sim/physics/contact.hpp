@@ -70,7 +70,8 @@ Vec3<Real> undo_overlap(const Model& model, const Vec3<Real>& p, Real most) {
     for (std::size_t f = 0; f < face_count; ++f) {
         const BoundaryFace<Real>& face = now.faces[f];
         const Real overlap = touching - face.distance;
-        if ((f > 0 && face.building < 0) || !(overlap > 0)) continue;  // so is the NaN of unknown ground
+        // Negated, so that the NaN of unknown ground counts as no overlap.
+        if ((f > 0 && face.building < 0) || !(overlap > 0)) continue;
         shift += face.normal * (overlap < most ? overlap : most);
     }
     return shift;
