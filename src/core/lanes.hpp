@@ -137,7 +137,11 @@ struct Lanes {
     }
     template <class Number>
         requires std::is_arithmetic_v<Number>
-    TALUS_INLINE Lanes(Number number) : v(static_cast<float>(number) - Floats{}) {}
+    TALUS_INLINE Lanes(Number number) {
+        // By fours, which every baseline has: GCC takes a wider list of equal numbers apart, one by one.
+        const FourFloats four = static_cast<float>(number) - FourFloats{};
+        v = LaneTypes<count>::joined([&](int) __attribute__((always_inline)) { return four; });
+    }
 
     TALUS_INLINE static Lanes load(const float* from) {
         Lanes result;

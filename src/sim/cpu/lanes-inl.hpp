@@ -86,8 +86,17 @@ struct LaneLists {
         gradient_y = lists.gradient.y.data() + at;
         gradient_z = lists.gradient.z.data() + at;
     }
-    /// A list that is shorter than its bundle's longest goes on with the particle itself.
-    HWY_INLINE Mask is_neighbour(std::uint32_t k) const { return L(static_cast<float>(k)) < count; }
+    /// Calls f(k, left) for every entry; `left` is 0 or less where a list is over that is shorter than its bundle's
+    /// longest, and goes on with the particle itself.
+    template <class F>
+    HWY_INLINE void for_each(const F& f) const {
+        L left = count;
+        const L one(1);
+        for (std::uint32_t k = 0; k < length; ++k) {
+            f(k, left);
+            left = left - one;
+        }
+    }
     HWY_INLINE V3 gradient(std::uint32_t k) const {
         const std::size_t at = k * bundle_size;
         return {L::load(gradient_x + at), L::load(gradient_y + at), L::load(gradient_z + at)};

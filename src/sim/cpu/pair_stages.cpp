@@ -32,10 +32,10 @@ TALUS_STAGE void find_tolerated(const StageData& data, std::size_t first, std::s
         const LaneLists lists(neighbours, i);
         const V3 p = vector_of(load(work.velocities, i));
         L density;
-        for (std::uint32_t k = 0; k < lists.length; ++k) {
+        lists.for_each([&](std::uint32_t k, const L& left) {
             const L q = scale.quotient(length(p - vector_of(lists.gather(work.velocities, k))));
-            density += select(lists.is_neighbour(k), Kernel::value(q), L(0));
-        }
+            density += select(left > L(0), Kernel::value(q), L(0));
+        });
         density = L(scale.value_scale) * (density + Kernel::value(L(0)));
         const L start = density + sample_boundary_at(model, work, i, p, V3{}).density - L(1);
         store(larger(L(0), start - undone), work.tolerated_compression, i);
@@ -61,15 +61,15 @@ TALUS_STAGE void update_multipliers(const StageData& data, std::size_t first, st
         const LaneLists lists(neighbours, i);
         const V3 p = vector_of(load(work.points, i));
         PairSums sums;
-        for (std::uint32_t k = 0; k < lists.length; ++k) {
+        lists.for_each([&](std::uint32_t k, const L& left) {
             const V3 separation = p - vector_of(lists.gather(work.points, k));
             const L square = dot(separation, separation);
             const L q = scale.quotient(sqrt(square));
             const L slope = Kernel::slope_over_q(q) * L(-scale.gradient_scale);
-            sums.density += select(lists.is_neighbour(k), Kernel::value(q), L(0));
+            sums.density += select(left > L(0), Kernel::value(q), L(0));
             sums.square += slope * slope * square;
             sums.gradient += separation * slope;
-        }
+        });
         sums.density = L(scale.value_scale) * (sums.density + Kernel::value(L(0)));
 
         Quads<L> moved = load(work.displacement, i);

@@ -31,18 +31,18 @@ template <class Kernel>
 HWY_INLINE PairSums sum_pairs(const PairScale& scale, const LaneLists& lists, const Work& work, const V3& p,
                               const V3& moved) {
     PairSums sums;
-    for (std::uint32_t k = 0; k < lists.length; ++k) {
+    lists.for_each([&](std::uint32_t k, const L& left) {
         const V3 separation = p - vector_of(lists.gather(work.points, k));
         const L square = dot(separation, separation);
         const L q = scale.quotient(sqrt(square));
         const L slope = Kernel::slope_over_q(q) * L(-scale.gradient_scale);
         const V3 gradient = separation * slope;
         lists.keep(k, gradient);
-        sums.density += select(lists.is_neighbour(k), Kernel::value(q), L(0));
+        sums.density += select(left > L(0), Kernel::value(q), L(0));
         sums.square += slope * slope * square;
         sums.gradient += gradient;
         sums.divergence += dot(vector_of(lists.gather(work.displacement, k)) - moved, gradient);
-    }
+    });
     sums.density = L(scale.value_scale) * (sums.density + Kernel::value(L(0)));
     return sums;
 }
