@@ -96,6 +96,7 @@ struct SolverSpec {
     double end_time = 120;                 ///< s
     double stop_momentum_fraction = 0.02;  ///< ends the run when momentum stays below this share of its peak; 0: never
     double stop_duration = 3;              ///< s, for how long
+    double rest_duration = 0.5;            ///< s, debris that has hardly moved for so long waits to be woken; 0: never
     double compression_limit = 0.5;        ///< mean of max(0, density/rest density - 1) above which the run is a fault
     int thread_count = 0;                  ///< 0: all cores
 };

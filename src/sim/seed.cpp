@@ -118,6 +118,7 @@ void relax(const Model& model, State& state) {
     constexpr int most_rounds = 400, loading_rounds = 200;
     Model still = model;
     still.viscosity = 0;
+    still.solver.rest_duration = 0;
     for (ReleaseGroup& release : still.releases) release.start_time = 0;
 
     still.solver.depenetration_speed = 1e3;  // without inertia nothing can fly apart
@@ -143,11 +144,13 @@ void relax(const Model& model, State& state) {
 void find_pressures(const Model& model, State& state) {
     constexpr int rounds = 100;
     const State start = state;
-    cpu::Backend backend(model, state.count);
+    Model awake = model;
+    awake.solver.rest_duration = 0;
+    cpu::Backend backend(awake, state.count);
     StageTimes times;
     state.time_step = model.solver.largest_time_step / 4;
     for (int round = 0; round < rounds; ++round) {
-        step(backend, model, state, times);
+        step(backend, awake, state, times);
         for (std::uint32_t i = 0; i < state.count; ++i) {
             state.position.set(i, start.position.at(state.id[i]));
             state.velocity.set(i, start.velocity.at(state.id[i]));

@@ -62,6 +62,7 @@ struct State {
     std::uint64_t step = 0;
 
     std::uint32_t count = 0;        ///< particles present, including those of releases that have not started
+    std::uint32_t awake = 0;        ///< the first of them, which a step works on; the others are at rest
     std::uint32_t seeded = 0;       ///< particles at the start
     std::uint32_t left = 0;         ///< particles that left the terrain; seeded = count + left, always
     VectorArray position;           ///< local, m
@@ -69,7 +70,9 @@ struct State {
     std::vector<float> multiplier;  ///< lambda of the density constraint in the last step, <= 0, m2 (scales with dt^2)
     DeviatorArray stress;           ///< deviatoric part, in the units of lambda
     std::vector<std::uint32_t> id;
-    std::vector<std::uint8_t> held;  ///< 1: its release has not started
+    std::vector<std::uint8_t> held;     ///< 1: its release has not started
+    std::vector<float> calm_time;       ///< s, for how long the particle has hardly moved
+    std::vector<std::uint8_t> resting;  ///< 1: it stays where it is until something moves beside it
 
     void resize(std::size_t n) {
         position.resize(n);
@@ -78,6 +81,8 @@ struct State {
         multiplier.resize(n + array_padding);
         id.resize(n + array_padding);
         held.resize(n + array_padding);
+        calm_time.resize(n + array_padding);
+        resting.resize(n + array_padding);
     }
 
     // Measured by the last step.

@@ -19,7 +19,7 @@ void expect_all_pairs_found(const std::vector<LocalPoint>& points, float radius)
     const double cell = double(radius) * (1 + 1e-7);
     const auto by_cell = sort.sort(state.position, points.size(), cell, grid);
     cpu::NeighbourSearch search(points.size());
-    const auto order = search.find(state.position, by_cell, grid, radius);
+    const auto order = search.find(state.position, by_cell, state.resting, grid, radius).order;
     ASSERT_EQ(std::set<std::uint32_t>(order.begin(), order.end()).size(), points.size()) << "not a permutation";
     cpu::NeighbourLists lists(points.size());
     search.write(lists);
@@ -90,7 +90,7 @@ TEST(NeighbourLists, of_a_bundle_are_about_equally_long) {
     cpu::CellGrid grid;
     const auto by_cell = sort.sort(state.position, points.size(), 1.1, grid);
     cpu::NeighbourSearch search(points.size());
-    search.find(state.position, by_cell, grid, 1.1F);
+    search.find(state.position, by_cell, state.resting, grid, 1.1F);
     cpu::NeighbourLists lists(points.size());
     search.write(lists);
     double neighbours = 0, entries = 0;

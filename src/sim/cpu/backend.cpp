@@ -22,8 +22,19 @@ float greater_or_unknown(float a, float b) {
     return std::isnan(a) || b <= a ? a : b;
 }
 
-std::size_t bundle_count(const State& state) {
-    return (state.count + bundle_size - 1) / bundle_size;
+std::size_t bundles_of(std::size_t particles) {
+    return (particles + bundle_size - 1) / bundle_size;
+}
+
+Bundles everything(const State& state) {
+    return {0, bundles_of(state.count)};
+}
+/// The last bundle may begin with debris at rest: no stage moves it.
+Bundles awake(const State& state) {
+    return {0, bundles_of(state.awake)};
+}
+Bundles at_rest(const State& state) {
+    return {bundles_of(state.awake), bundles_of(state.count)};
 }
 
 /// Calls f(array of a, the same of b) for everything that a state holds per particle.
@@ -40,6 +51,8 @@ void for_each_array(State& a, State& b, const F& f) {
     f(a.multiplier, b.multiplier);
     f(a.id, b.id);
     f(a.held, b.held);
+    f(a.calm_time, b.calm_time);
+    f(a.resting, b.resting);
 }
 
 }  // namespace
@@ -59,15 +72,20 @@ Backend::Backend(const Model& model, std::size_t capacity)
     grid_.start.reserve(capacity + 1);
 }
 
-void Backend::run(StageFunction stage, const Model& model, State& state) {
+void Backend::run(StageFunction stage, const Model& model, State& state, Bundles bundles) {
     const StageData data{model, state, work_, neighbours_};
-    parallel_ranges(bundle_count(state), bundle_grain,
-                    [&](std::size_t first, std::size_t last) { stage(data, first, last); });
+    parallel_ranges(bundles.last - bundles.first, bundle_grain, [&](std::size_t first, std::size_t last) {
+        stage(data, bundles.first + first, bundles.first + last);
+    });
+}
+
+void Backend::run(StageFunction stage, const Model& model, State& state) {
+    run(stage, model, state, awake(state));
 }
 
 void Backend::predict_positions(const Model& model, State& state) {
     release_held(model, state);
-    run(particle_stages_.predict, model, state);
+    run(particle_stages_.predict, model, state, everything(state));
 }
 
 void Backend::release_held(const Model& model, State& state) {
@@ -80,9 +98,12 @@ void Backend::release_held(const Model& model, State& state) {
 
 void Backend::find_neighbours(const Model& model, State& state) {
     const auto by_cell = cell_sort_.sort(work_.predicted, state.count, model.support_radius, grid_);
-    reorder(state, search_.find(work_.predicted, by_cell, grid_, static_cast<float>(model.support_radius)));
+    const auto found =
+        search_.find(work_.predicted, by_cell, state.resting, grid_, static_cast<float>(model.support_radius));
+    reorder(state, found.order);
+    state.awake = found.awake;
     search_.write(neighbours_);
-    run(particle_stages_.begin, model, state);
+    run(particle_stages_.begin, model, state, everything(state));
 }
 
 void Backend::reorder(State& state, std::span<const std::uint32_t> order) {
@@ -102,10 +123,13 @@ bool Backend::keeps_stress(const Model& model) {
 void Backend::warm_start(const Model& model, State& state) {
     if (keeps_stress(model)) {
         run(stress_stages_.linearise, model, state);
+        run(stress_stages_.press, model, state, at_rest(state));
         run(stress_stages_.apply, model, state);
+        run(stress_stages_.hush, model, state, at_rest(state));
     } else {
-        run(pair_stages_.pack_start, model, state);
+        run(pair_stages_.pack_start, model, state, everything(state));
         run(pair_stages_.find_tolerated, model, state);
+        run(pair_stages_.hush, model, state, at_rest(state));
     }
     state.previous_time_step = state.time_step;
 }
@@ -144,7 +168,7 @@ void Backend::measure_compression(State& state) const {
         float greatest = 0;
     };
     const Sum compression = reduce_ranges(
-        state.count, 4096, Sum{},
+        state.awake, 4096, Sum{},
         [&](std::size_t first, std::size_t last, Sum s) {
             for (std::size_t i = first; i < last; ++i) {
                 s.sum += work_.compression[i];
@@ -162,7 +186,7 @@ void Backend::measure_compression(State& state) const {
 void Backend::update_velocities(const Model& model, State& state) {
     const StageData data{model, state, work_, neighbours_};
     state.largest_speed = reduce_ranges(
-        bundle_count(state), bundle_grain, 0.0f,
+        awake(state).last, bundle_grain, 0.0f,
         [&](std::size_t first, std::size_t last, float largest) {
             return greater_or_unknown(largest, particle_stages_.update_velocities(data, first, last));
         },
@@ -174,7 +198,7 @@ void Backend::find_building_contacts(const Model& model, State& state) const {
     state.building_contacts.clear();
     if (model.solids.empty()) return;
     const double mass = model.particle_mass();
-    for (std::uint32_t i = 0; i < state.count; ++i) {
+    for (std::uint32_t i = 0; i < state.awake; ++i) {
         if (!work_.has_walls[i]) continue;
         const Work::Walls& walls = work_.walls[i];
         for (std::size_t f = 0; f < walls.faces.size(); ++f) {
@@ -189,6 +213,7 @@ void Backend::find_building_contacts(const Model& model, State& state) const {
 
 void Backend::apply_viscosity(const Model& model, State& state) {
     if (model.viscosity > 0) run(particle_stages_.apply_viscosity, model, state);
+    if (model.solver.rest_duration > 0) run(particle_stages_.settle, model, state);
 }
 
 void Backend::remove_left(const Model& model, State& state) {
@@ -208,12 +233,7 @@ void Backend::remove_left(const Model& model, State& state) {
     for (std::uint32_t i = 0; i < state.count; ++i) {
         moved_to[i] = kept;
         if (gone_[i]) continue;
-        state.position.set(kept, state.position.at(i));
-        state.velocity.set(kept, state.velocity.at(i));
-        state.multiplier[kept] = state.multiplier[i];
-        state.stress.set(kept, state.stress.at(i));
-        state.id[kept] = state.id[i];
-        state.held[kept] = state.held[i];
+        for_each_array(state, state, [&](auto& array, auto&) { array[kept] = array[i]; });
         ++kept;
     }
     std::erase_if(state.building_contacts, [&](const BuildingContact& c) { return gone_[c.particle] != 0; });
@@ -233,7 +253,11 @@ double choose_time_step(const Model& model, const State& state) {
         const double eased = state.mean_compression > too_compressed ? state.time_step / 2 : state.time_step;
         dt = std::clamp(eased, std::max(dt / 8, std::min(dt, model.solver.smallest_time_step)), dt);
     }
-    while (dt > model.solver.smallest_time_step && dt * (state.largest_speed + model.gravity * dt) > reach) dt /= 2;
+    // In steps of an eighth of an octave: with longer ones debris that is just too fast for a step would take one of half
+    // the length, with shorter ones the step would change, and multipliers with it, whenever the speed does.
+    const double shorter = std::exp2(-0.125);
+    const auto too_long = [&] { return dt * (state.largest_speed + model.gravity * dt) > reach; };
+    while (dt > model.solver.smallest_time_step && too_long()) dt = std::max(shorter * dt, model.solver.smallest_time_step);
     return dt;
 }
 

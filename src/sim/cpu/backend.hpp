@@ -17,6 +17,11 @@ namespace talus::cpu {
 /// How many particles a task takes at least.
 inline constexpr std::size_t particle_grain = 256, bundle_grain = particle_grain / bundle_size;
 
+/// Bundles [first, last).
+struct Bundles {
+    std::size_t first, last;
+};
+
 /// The stages of a step on all cores. Holds what lives within a step only; allocates nothing after construction, except
 /// when debris gets denser than ever before. Every stage works on bundles of particles; those with formulas in them are
 /// compiled per instruction set (stages.hpp).
@@ -45,7 +50,8 @@ class Backend {
 
   private:
     static bool keeps_stress(const Model& model);
-    void run(StageFunction stage, const Model& model, State& state);
+    void run(StageFunction stage, const Model& model, State& state, Bundles bundles);
+    void run(StageFunction stage, const Model& model, State& state);  ///< on all that is not at rest
     void release_held(const Model& model, State& state);
     void reorder(State& state, std::span<const std::uint32_t> order);
     void measure_compression(State& state) const;
@@ -64,7 +70,7 @@ class Backend {
     std::vector<std::uint32_t> new_index_;  // of the particles that stay
 };
 
-/// The step to take next: `time_step` of the scene, or the largest dt_max / 2^k in which the fastest particle, falling
+/// The step to take next: `time_step` of the scene, or the largest dt_max / 2^(k/8) in which the fastest particle, falling
 /// freely, moves at most `displacement_limit` of a spacing; shorter while the debris is compressed, down to an eighth.
 [[nodiscard]] double choose_time_step(const Model& model, const State& state);
 

@@ -90,8 +90,8 @@ std::size_t collect_candidates(const VectorArray& sorted, RowSweep& sweep, std::
     return count;
 }
 
-void find_in_cells(const VectorArray& sorted, const CellGrid& grid, std::size_t first, std::size_t last,
-                   float square_radius, SearchScratch& scratch, std::uint32_t* count) {
+void find_in_cells(const VectorArray& sorted, const std::uint8_t* resting, const CellGrid& grid, std::size_t first,
+                   std::size_t last, float square_radius, SearchScratch& scratch, std::uint32_t* count) {
     constexpr D d;
     constexpr DU du;
     const std::size_t lanes = hn::Lanes(d);
@@ -99,11 +99,15 @@ void find_in_cells(const VectorArray& sorted, const CellGrid& grid, std::size_t 
     RowSweep sweep(grid, first);
     std::size_t size = 0;
     for (std::size_t cell = first; cell < last; ++cell) {
+        const std::uint32_t begin = grid.start[cell], end = grid.start[cell + 1];
+        std::fill(count + begin, count + end, 0);
+        if (std::all_of(resting + begin, resting + end, [](std::uint8_t rests) { return rests != 0; })) continue;
         const std::size_t candidates = collect_candidates(sorted, sweep, cell, scratch);
-        const std::uint32_t particles = grid.start[cell + 1] - grid.start[cell];
+        const std::uint32_t particles = end - begin;
         const std::size_t room = size + particles * candidates + lanes;
         if (scratch.found.size() < room) scratch.found.resize(2 * room);
-        for (std::uint32_t i = grid.start[cell]; i < grid.start[cell + 1]; ++i) {
+        for (std::uint32_t i = begin; i < end; ++i) {
+            if (resting[i]) continue;
             const auto px = hn::Set(d, sorted.x[i]), py = hn::Set(d, sorted.y[i]), pz = hn::Set(d, sorted.z[i]);
             const auto own = hn::Set(du, i);
             const std::size_t before = size;

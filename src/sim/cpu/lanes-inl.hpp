@@ -61,6 +61,14 @@ HWY_INLINE void store(const Stress& s, DeviatorArray& to, std::size_t i) {
     store(s.xz, to.xz, i);
     store(s.yz, to.yz, i);
 }
+/// `set` or `clear`, as the flags of the particles say.
+HWY_INLINE L flags(const std::vector<std::uint8_t>& from, std::size_t i, float set, float clear) {
+    L result(clear);
+    for (int lane = 0; lane < lane_count; ++lane) {
+        if (from[i + static_cast<std::size_t>(lane)]) result.set(lane, set);
+    }
+    return result;
+}
 HWY_INLINE Quads<L> load(const std::vector<Quad>& from, std::size_t i) {
     return load_quads<lane_count>(from.data() + i);
 }
@@ -96,6 +104,12 @@ struct LaneLists {
             f(k, left);
             left = left - one;
         }
+    }
+    /// Whose entry is `first` or a particle behind it.
+    HWY_INLINE Mask from_on(std::uint32_t k, std::uint32_t first) const {
+        Mask::Ints entry;
+        __builtin_memcpy(&entry, neighbour + k * bundle_size, sizeof entry);
+        return Mask(Mask::Ints(entry >= static_cast<std::int32_t>(first)));
     }
     HWY_INLINE V3 gradient(std::uint32_t k) const {
         const std::size_t at = k * bundle_size;

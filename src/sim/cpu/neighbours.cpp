@@ -37,15 +37,21 @@ NeighbourSearch::NeighbourSearch(std::size_t capacity)
       found_(capacity * usual_neighbours + 1024),
       place_(capacity),
       source_(capacity),
+      window_(capacity),
       order_(capacity) {
+    resting_.resize(capacity);
     sorted_.resize(capacity);
 }
 
-std::span<const std::uint32_t> NeighbourSearch::find(const VectorArray& points, std::span<const std::uint32_t> by_cell,
-                                                     const CellGrid& grid, float radius) {
+NeighbourSearch::Found NeighbourSearch::find(const VectorArray& points, std::span<const std::uint32_t> by_cell,
+                                             const std::vector<std::uint8_t>& resting, const CellGrid& grid,
+                                             float radius) {
     particles_ = by_cell.size();
     parallel_ranges(particles_, 4096, [&](std::size_t first, std::size_t last) {
-        for (std::size_t i = first; i < last; ++i) sorted_.set(i, points.at(by_cell[i]));
+        for (std::size_t i = first; i < last; ++i) {
+            sorted_.set(i, points.at(by_cell[i]));
+            resting_[i] = resting[by_cell[i]];
+        }
     });
     // For every thread that may come, before it comes: a thread's first task must not have to allocate.
     const auto threads = static_cast<std::size_t>(tbb::this_task_arena::max_concurrency());
@@ -57,11 +63,26 @@ std::span<const std::uint32_t> NeighbourSearch::find(const VectorArray& points, 
     }
     // Growing is rare: debris denser than ever before. Room to spare, so that it stays rare.
     while (!try_find(grid, radius)) found_.resize(used_.load() + used_.load() / 2);
+    part_from_resting();
     balance();
     parallel_ranges(particles_, 4096, [&](std::size_t first, std::size_t last) {
         for (std::size_t i = first; i < last; ++i) order_[i] = by_cell[source_[i]];
     });
-    return {order_.data(), particles_};
+    return {{order_.data(), particles_}, static_cast<std::uint32_t>(awake_)};
+}
+
+/// Debris at rest goes to the end, so that what is awake is one range.
+void NeighbourSearch::part_from_resting() {
+    awake_ = 0;
+    for (std::uint32_t i = 0; i < particles_; ++i) {
+        if (!resting_[i]) window_[awake_++] = i;
+    }
+    std::size_t next = awake_;
+    for (std::uint32_t i = 0; next < particles_; ++i) {
+        if (!resting_[i]) continue;
+        source_[next] = i;
+        place_[i] = static_cast<std::uint32_t>(next++);
+    }
 }
 
 bool NeighbourSearch::try_find(const CellGrid& grid, float radius) {
@@ -72,7 +93,7 @@ bool NeighbourSearch::try_find(const CellGrid& grid, float radius) {
         for (std::size_t task = first_task; task < last_task; ++task) {
             const std::size_t first_cell = task * cells_per_task;
             const std::size_t last_cell = std::min(grid.cell_count(), first_cell + cells_per_task);
-            find_in_cells_(sorted_, grid, first_cell, last_cell, radius * radius, scratch, count_.data());
+            find_in_cells_(sorted_, resting_.data(), grid, first_cell, last_cell, radius * radius, scratch, count_.data());
             const auto size = static_cast<std::uint32_t>(scratch.found_count);
             std::uint32_t at = used_.fetch_add(size);
             if (at + size > found_.size()) continue;  // grown and found again
@@ -89,29 +110,30 @@ bool NeighbourSearch::try_find(const CellGrid& grid, float radius) {
 /// Puts the particles of a window in the order of how many neighbours they have: those of a bundle then go through
 /// lists of about one length. A stable counting sort, so that the result does not depend on threads.
 void NeighbourSearch::balance() {
-    const std::size_t windows = (particles_ + window - 1) / window;
+    const std::size_t windows = (awake_ + window - 1) / window;
     parallel_ranges(windows, 4, [&](std::size_t first_window, std::size_t last_window) {
         for (std::size_t w = first_window; w < last_window; ++w) {
-            const std::size_t first = w * window, last = std::min(particles_, first + window);
+            const std::size_t first = w * window, last = std::min(awake_, first + window);
             std::array<std::uint32_t, longest_told_apart + 1> next{};
             const auto key = [&](std::size_t i) { return longest_told_apart - std::min(count_[i], longest_told_apart); };
-            for (std::size_t i = first; i < last; ++i) ++next[key(i)];
+            for (std::size_t i = first; i < last; ++i) ++next[key(window_[i])];
             auto sum = static_cast<std::uint32_t>(first);
             for (std::uint32_t& n : next) sum += std::exchange(n, sum);
             for (std::size_t i = first; i < last; ++i) {
-                place_[i] = next[key(i)]++;
-                source_[place_[i]] = static_cast<std::uint32_t>(i);
+                const std::uint32_t by_cell = window_[i];
+                place_[by_cell] = next[key(by_cell)]++;
+                source_[place_[by_cell]] = by_cell;
             }
         }
     });
 }
 
 void NeighbourSearch::write(NeighbourLists& lists) {
-    const std::size_t bundles = bundles_of(particles_);
+    const std::size_t bundles = bundles_of(awake_);
     std::uint32_t size = 0;
     for (std::size_t b = 0; b < bundles; ++b) {
         std::uint32_t longest = 0;
-        for (std::size_t i = b * bundle_size; i < std::min(particles_, (b + 1) * bundle_size); ++i) {
+        for (std::size_t i = b * bundle_size; i < std::min(awake_, (b + 1) * bundle_size); ++i) {
             longest = std::max(longest, count_[source_[i]]);
         }
         lists.start[b] = size;
@@ -124,9 +146,9 @@ void NeighbourSearch::write(NeighbourLists& lists) {
     }
     parallel_ranges(bundles, 16, [&](std::size_t first, std::size_t last) {
         for (std::size_t i = first * bundle_size; i < last * bundle_size; ++i) {
-            const bool present = i < particles_;
-            const std::size_t from = present ? source_[i] : 0;
-            const std::uint32_t count = present ? count_[from] : 0, length = lists.length[i / bundle_size];
+            const bool listed = i < awake_;
+            const std::size_t from = listed ? source_[i] : 0;
+            const std::uint32_t count = listed ? count_[from] : 0, length = lists.length[i / bundle_size];
             const std::uint32_t* found = found_.data() + start_[from];
             std::uint32_t* to = lists.neighbour.data() + lists.start[i / bundle_size] + i % bundle_size;
             for (std::uint32_t k = 0; k < count; ++k) to[k * bundle_size] = place_[found[k]];

@@ -39,29 +39,41 @@ class NeighbourSearch {
   public:
     explicit NeighbourSearch(std::size_t capacity);
 
-    /// `points` in any order, `by_cell` what sorts them by `grid`, whose cells are at least `radius` wide. Returns the
-    /// order to bring the particles into: entry i is the present index of the particle to put at i.
-    std::span<const std::uint32_t> find(const VectorArray& points, std::span<const std::uint32_t> by_cell,
-                                        const CellGrid& grid, float radius);
+    /// The order to bring the particles into: entry i is the present index of the particle to put at i. First come
+    /// those that are awake.
+    struct Found {
+        std::span<const std::uint32_t> order;
+        std::uint32_t awake;
+    };
+
+    /// `points` in any order, `by_cell` what sorts them by `grid`, whose cells are at least `radius` wide. Those that
+    /// are `resting` (1 or 0, like `points`) are neighbours of others and have no lists themselves.
+    Found find(const VectorArray& points, std::span<const std::uint32_t> by_cell,
+               const std::vector<std::uint8_t>& resting, const CellGrid& grid, float radius);
     /// Writes what find() found, by the new order.
     void write(NeighbourLists& lists);
 
-    /// Finds the neighbours of the particles in cells [first, last): put into `scratch.found`, their numbers into
+    /// Finds the neighbours of the particles in cells [first, last) that are not resting: put into `scratch.found`, their numbers into
     /// `count`. Compiled per instruction set.
-    using FindInCells = void (*)(const VectorArray& sorted, const CellGrid& grid, std::size_t first, std::size_t last,
-                                 float square_radius, SearchScratch& scratch, std::uint32_t* count);
+    using FindInCells = void (*)(const VectorArray& sorted, const std::uint8_t* resting, const CellGrid& grid,
+                                 std::size_t first, std::size_t last, float square_radius, SearchScratch& scratch,
+                                 std::uint32_t* count);
 
   private:
     bool try_find(const CellGrid& grid, float radius);
+    void part_from_resting();
     void balance();
 
     FindInCells find_in_cells_;
     std::size_t particles_ = 0;
+    std::size_t awake_ = 0;
     VectorArray sorted_;                        // points by cell
+    std::vector<std::uint8_t> resting_;         // by cell
     std::vector<std::uint32_t> start_, count_;  // by cell
     std::vector<std::uint32_t> found_;          // indices by cell
     std::vector<std::uint32_t> place_;          // by cell: the new index
     std::vector<std::uint32_t> source_;         // by new index: the index by cell
+    std::vector<std::uint32_t> window_;         // by new index, before the order within windows: the index by cell
     std::vector<std::uint32_t> order_;
     std::atomic<std::uint32_t> used_{0};
     std::vector<SearchScratch> scratch_;  // one per thread of the arena

@@ -45,6 +45,11 @@ TALUS_STAGE void find_tolerated(const StageData& data, std::size_t first, std::s
     });
 }
 
+TALUS_STAGE void hush(const StageData& data, std::size_t first, std::size_t last) {
+    const auto& [model, state, work, neighbours] = data;
+    for_each_lanes(first, last, [&](std::size_t i) { store(Quads<L>{}, work.velocities, i); });
+}
+
 struct PairSums {
     L density, square;
     V3 gradient;
@@ -114,7 +119,7 @@ TALUS_STAGE void apply(const StageData& data, std::size_t first, std::size_t las
 PairStages make_stages(KernelChoice kernel) {
     return with_kernel(kernel, [&](auto k) {
         using Kernel = decltype(k);
-        return PairStages{pack_start, find_tolerated<Kernel>, update_multipliers<Kernel>, apply<Kernel>};
+        return PairStages{pack_start, find_tolerated<Kernel>, hush, update_multipliers<Kernel>, apply<Kernel>};
     });
 }
 

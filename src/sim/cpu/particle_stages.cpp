@@ -5,6 +5,8 @@
 #include <hwy/foreach_target.h>
 // (must come after foreach_target)
 #include <algorithm>
+#include <atomic>
+#include <cmath>
 #include <limits>
 
 #include "sim/cpu/lanes-inl.hpp"
@@ -15,13 +17,9 @@ HWY_BEFORE_NAMESPACE();
 namespace talus::cpu::HWY_NAMESPACE {
 namespace {
 
-/// 1 for particles that may move, 0 for those that are held.
+/// 1 for particles that may move, 0 for those that are held or at rest.
 HWY_INLINE L mobility(const State& state, std::size_t i) {
-    L mobile(1);
-    for (int lane = 0; lane < lane_count; ++lane) {
-        if (state.held[i + static_cast<std::size_t>(lane)]) mobile.set(lane, 0);
-    }
-    return mobile;
+    return flags(state.held, i, 0, 1) * flags(state.resting, i, 0, 1);
 }
 
 TALUS_STAGE void predict(const StageData& data, std::size_t first, std::size_t last) {
@@ -46,6 +44,7 @@ TALUS_STAGE void begin(const StageData& data, std::size_t first, std::size_t las
         store(mobile, work.mobile, i);
         store(Quads<L>{displacement.x, displacement.y, displacement.z, L(0)}, work.displacement, i);
         store(Quads<L>{predicted.x, predicted.y, predicted.z, L(0)}, work.points, i);
+        store(Quads<L>{}, work.velocities, i);
         store(L(0), work.contact_normal, i);
         store(V3{}, work.contact_friction, i);
         for (std::size_t lane = 0; lane < lane_count; ++lane) {
@@ -190,9 +189,50 @@ TALUS_STAGE void apply_viscosity(const StageData& data, std::size_t first, std::
     });
 }
 
+/// Debris that has hardly moved for the rest duration stays where it is, pressing as it does, until something moves
+/// beside it. Hardly: a hundredth of the speed of a fall through its own size; twice that wakes, so that nothing falls
+/// asleep and wakes in turns. Debris against walls stays awake: what presses on them is measured.
+TALUS_STAGE void settle(const StageData& data, std::size_t first, std::size_t last) {
+    const auto& [model, state, work, neighbours] = data;
+    const double calm_speed = 0.01 * std::sqrt(model.gravity * model.particle_spacing), waking_speed = 2 * calm_speed;
+    const L dt(state.time_step), rest_duration(model.solver.rest_duration);
+    for_each_lanes(first, last, [&](std::size_t i) {
+        const V3 velocity = load(state.velocity, i);
+        const L square = dot(velocity, velocity);
+        const Mask moves = load(work.mobile, i) > L(0);
+        const L calm = select(moves & (square < L(calm_speed * calm_speed)), load(state.calm_time, i) + dt, L(0));
+        store(select(moves, calm, load(state.calm_time, i)), state.calm_time, i);
+        const Mask rests = moves & (calm > rest_duration);
+        if (any(rests)) {
+            for (int l = 0; l < lane_count; ++l) {
+                const std::size_t particle = i + static_cast<std::size_t>(l);
+                if (!rests.at(l) || work.has_walls[particle]) continue;
+                state.resting[particle] = 1;
+                state.velocity.set(particle, {});
+            }
+        }
+        const Mask wakes = moves & (square > L(waking_speed * waking_speed));
+        if (state.awake == state.count || !any(wakes)) return;
+        const LaneLists lists(neighbours, i);
+        Mask finds;
+        for (std::uint32_t k = 0; k < lists.length; ++k) finds = finds | lists.from_on(k, state.awake);
+        if (!any(finds & wakes)) return;
+        for (int l = 0; l < lane_count; ++l) {
+            const std::size_t particle = i + static_cast<std::size_t>(l);
+            for (std::uint32_t k = 0; wakes.at(l) && k < neighbours.count_of(particle); ++k) {
+                const std::uint32_t j = neighbours.neighbour_of(particle, k);
+                if (j < state.awake) continue;
+                // Many may wake the same one at once, all in the same way.
+                std::atomic_ref(state.resting[j]).store(0, std::memory_order_relaxed);
+                std::atomic_ref(state.calm_time[j]).store(0, std::memory_order_relaxed);
+            }
+        }
+    });
+}
+
 ParticleStages make_stages(KernelChoice kernel) {
     ParticleStages stages{predict,           begin,   contacts, undo_overlaps, enforce_boundaries,
-                          update_velocities, nullptr, hwy::TargetName(HWY_TARGET)};
+                          update_velocities, nullptr, settle,   hwy::TargetName(HWY_TARGET)};
     with_kernel(kernel, [&](auto k) { stages.apply_viscosity = apply_viscosity<decltype(k)>; });
     return stages;
 }

@@ -13,11 +13,10 @@ HWY_BEFORE_NAMESPACE();
 namespace talus::cpu::HWY_NAMESPACE {
 namespace {
 
-/// Lays out what apply() reads of a particle. Debris that is held keeps what it carries, ready for its start, and
-/// presses on nothing.
-HWY_INLINE void pack_stress(Work& work, std::size_t i, const L& mobile, const L& pressure, const Stress& s) {
-    const L p = pressure * mobile;
-    const Stress t = s * mobile;
+/// Lays out what apply() reads of a particle, if it presses (1 or 0).
+HWY_INLINE void pack_stress(Work& work, std::size_t i, const L& presses, const L& pressure, const Stress& s) {
+    const L p = pressure * presses;
+    const Stress t = s * presses;
     store(Quads<L>{p + t.xx, t.xy, t.xz, p + t.yy}, work.stress_rows, i);
     store(Quads<L>{t.yz, p - t.xx - t.yy, L(0), p}, work.stress_rest, i);
 }
@@ -48,12 +47,39 @@ HWY_INLINE PairSums sum_pairs(const PairScale& scale, const LaneLists& lists, co
 }
 
 /// Multipliers and stresses of the last step are where this one begins: debris at rest needs the same ones again. They
-/// are pressures times dt^2, so they scale with the step.
+/// are pressures times dt^2, so they scale with the step. Debris that is held keeps what it carries, ready for its
+/// start, and presses on nothing.
+HWY_INLINE void warm_start(State& state, Work& work, std::size_t i, const L& scale) {
+    const L multiplier = load(state.multiplier, i) * scale;
+    const Stress stress = load(state.stress, i) * scale;
+    store(multiplier, state.multiplier, i);
+    store(stress, state.stress, i);
+    pack_stress(work, i, flags(state.held, i, 0, 1), multiplier, stress);
+}
+
+HWY_INLINE L warm_start_scale(const State& state) {
+    const double ratio = state.previous_time_step > 0 ? state.time_step / state.previous_time_step : 0;
+    return L(ratio * ratio);
+}
+
+TALUS_STAGE void press(const StageData& data, std::size_t first, std::size_t last) {
+    const auto& [model, state, work, neighbours] = data;
+    const L scale = warm_start_scale(state);
+    for_each_lanes(first, last, [&](std::size_t i) { warm_start(state, work, i, scale); });
+}
+
+TALUS_STAGE void hush(const StageData& data, std::size_t first, std::size_t last) {
+    const auto& [model, state, work, neighbours] = data;
+    for_each_lanes(first, last, [&](std::size_t i) {
+        store(Quads<L>{}, work.stress_rows, i);
+        store(Quads<L>{}, work.stress_rest, i);
+    });
+}
+
 template <class Kernel>
 TALUS_STAGE void linearise(const StageData& data, std::size_t first, std::size_t last) {
     const auto& [model, state, work, neighbours] = data;
-    const double ratio = state.previous_time_step > 0 ? state.time_step / state.previous_time_step : 0;
-    const L scale_of_multipliers(ratio * ratio);
+    const L scale_of_multipliers = warm_start_scale(state);
     const L softness(model.solver.constraint_relaxation * model.kernel.rest_gradient_sum);
     const PairScale scale(model.kernel);
     for_each_lanes(first, last, [&](std::size_t i) {
@@ -65,12 +91,7 @@ TALUS_STAGE void linearise(const StageData& data, std::size_t first, std::size_t
         store(constraint.surface_share, work.surface_share, i);
         store(constraint.gradient_square, work.gradient_square, i);
         store(constraint.pair_square, work.pair_square, i);
-
-        const L multiplier = load(state.multiplier, i) * scale_of_multipliers;
-        const Stress stress = load(state.stress, i) * scale_of_multipliers;
-        store(multiplier, state.multiplier, i);
-        store(stress, state.stress, i);
-        pack_stress(work, i, load(work.mobile, i), multiplier, stress);
+        warm_start(state, work, i, scale_of_multipliers);
     });
 }
 
@@ -153,7 +174,7 @@ TALUS_STAGE void spread(const StageData& data, std::size_t first, std::size_t la
 }
 
 StressStages make_stages(KernelChoice kernel) {
-    StressStages stages{nullptr, solve, apply, find_spread, spread};
+    StressStages stages{nullptr, press, hush, solve, apply, find_spread, spread};
     with_kernel(kernel, [&](auto k) { stages.linearise = linearise<decltype(k)>; });
     return stages;
 }
