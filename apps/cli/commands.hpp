@@ -48,7 +48,7 @@ struct BenchArguments {
     std::vector<std::string> scenes, methods;  ///< empty: all
     std::vector<int> particles, threads;       ///< empty: the usual ones; all cores
     bool full = false;                         ///< particles up to a million
-    int iterations = 4, repeats = 5;
+    int iterations = 4, repeats = 7;
     std::optional<int> steps, warm_up;  ///< left out: by the number of particles
     std::string json;                   ///< a file to write; empty: none
 };

@@ -80,7 +80,7 @@ A row of the table is the median of the repeats:
 
 Examples:
   talus bench --scene slab --particles 20000 --threads 1,2
-  talus bench --full --json bench.json      up to a million particles, some minutes and 4 GB of memory
+  talus bench --full --json bench.json      up to a million particles, some minutes and 2 GB of memory
 
 Exit codes:
     0  complete
@@ -215,10 +215,10 @@ int talus_main(int argc, char** argv) {
     bench_app->add_option("--backend", backend, "what computes the steps; left out: cpu")
         ->type_name("NAME")
         ->check(CLI::IsMember(std::vector<std::string>{"cpu"}));
-    bench_app->add_option("--repeats", bench.repeats, "repeats to take the median of; left out: 5")
+    bench_app->add_option("--repeats", bench.repeats, "repeats to take the median of; left out: 7")
         ->type_name("N")
         ->check(CLI::Range(1, 1000));
-    bench_app->add_option("--steps", bench.steps, "steps per repeat; left out: 20 to 2, by the number of particles")
+    bench_app->add_option("--steps", bench.steps, "steps per repeat; left out: 40 to 2, by the number of particles")
         ->type_name("N")
         ->check(CLI::Range(1, 100000));
     bench_app->add_option("--warm-up", bench.warm_up, "steps before the first repeat; left out: 30 to 3, likewise")

@@ -158,7 +158,7 @@ InternalFriction method_of(std::string_view name) {
 }
 
 int usual_steps(std::uint32_t particles) {
-    return std::clamp(static_cast<int>(200000 / std::max(1U, particles)), 2, 20);
+    return std::clamp(static_cast<int>(400000 / std::max(1U, particles)), 2, 40);
 }
 
 int usual_warm_up(std::uint32_t particles) {

@@ -17,7 +17,7 @@ namespace talus::bench {
 
 /// How long a measurement is: repeats of some steps each. What is absent follows from the number of particles.
 struct Length {
-    int repeats = 5;
+    int repeats = 7;
     std::optional<int> steps;    ///< per repeat
     std::optional<int> warm_up;  ///< steps before the first repeat
 };

@@ -70,8 +70,9 @@ World slab(int particles) {
     world.spacing = 0.2;
     world.speed = usual_speed;
     const double thickness = layers * world.spacing;  // normal to the slope
-    const double volume = particles * world.spacing * world.spacing * world.spacing;
-    const double width = std::sqrt(volume * std::cos(slope) / thickness / 2), length = 2 * width;
+    // Twice as long as wide, in whole columns of particles.
+    const double columns = particles * std::cos(slope) / layers, across = std::round(std::sqrt(columns / 2));
+    const double width = across * world.spacing, length = std::round(columns / across) * world.spacing;
     world.terrain = make_ground(-length - 10, 60, width / 2 + 15, slope);
     world.releases = {block(rectangle(-length, -width / 2, 0, width / 2), thickness)};
     for (const double middle : {-width / 4, width / 4}) {
@@ -85,8 +86,8 @@ World column(int particles) {
     constexpr double highest = 24;  // layers: a few iterations could not carry more
     World world;
     world.spacing = 0.1;
-    const double layers = std::min(std::cbrt(particles), highest);
-    const double height = layers * world.spacing, width = std::sqrt(particles / layers) * world.spacing;
+    const double across = std::round(std::sqrt(particles / std::min(std::cbrt(particles), highest)));
+    const double height = particles / (across * across) * world.spacing, width = across * world.spacing;
     const double reach = width / 2 + 5 * height + 5;
     world.terrain = make_ground(-reach, reach, reach, 0);
     world.releases = {block(rectangle(-width / 2, -width / 2, width / 2, width / 2), height)};
@@ -123,8 +124,9 @@ class Stack {
     void fill(std::uint32_t most) {
         const double spacing = model_.particle_spacing;
         const Extent extent = release_.extent();
-        const int columns = static_cast<int>(std::ceil(extent.width() / spacing));
-        const int rows = static_cast<int>(std::ceil(extent.height() / spacing));
+        // Rounding must not add a column beyond the outline.
+        const int columns = static_cast<int>(std::ceil(extent.width() / spacing - 1e-6));
+        const int rows = static_cast<int>(std::ceil(extent.height() / spacing - 1e-6));
         for (int row = 0; row < rows; ++row) {
             for (int column = 0; column < columns; ++column) {
                 // Rounding by an additive low-discrepancy sequence (Roberts 2018) spreads the odd particles evenly.
