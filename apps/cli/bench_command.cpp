@@ -88,7 +88,8 @@ int bench_command(const BenchArguments& arguments) {
     const TemporaryFolder unpacked;
     if (unpacked.path().empty()) return fail(exit_code::failure, "cannot make a temporary folder; set TMPDIR");
     watch.remove_at_once(unpacked.path());
-    const Result<fs::path> builtin_scene = unpack_builtin_scene(unpacked.path());
+    const bool reads_files = std::count(plan.scenes.begin(), plan.scenes.end(), builtin_scene_name) > 0;
+    const Result<fs::path> builtin_scene = reads_files ? unpack_builtin_scene(unpacked.path()) : fs::path();
     if (!builtin_scene) return fail(exit_code::failure, builtin_scene.error().message);
 
     ProgressReporter progress(progress_style(false, false));
