@@ -116,7 +116,7 @@ TEST_F(Bench, AnInterruptShowsWhatWasCompleteAndWritesNothing) {
     options.wait_for = "row 2 of";
     options.while_running = [](int process) { kill(process, SIGINT); };
     const ProgramOutcome outcome = run({"--scene", "slab", "--particles", "600,20000", "--method", "stress", "--steps",
-                                        "20", "--repeats", "1000", "--json", "b.json"},
+                                        "10", "--repeats", "50", "--json", "b.json"},
                                        options);
     EXPECT_EQ(outcome.exit_code, 130);
     EXPECT_THAT(outcome.out, HasSubstr("slab"));
