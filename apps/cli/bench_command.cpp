@@ -51,16 +51,23 @@ struct Plan {
     }
 };
 
-/// The rows that were measured until the end or until the user stopped it.
-Result<std::vector<bench::Row>> measure_all(const Plan& plan, const fs::path& builtin_scene,
-                                            const InterruptWatch& watch, ProgressReporter& progress) {
-    bench::Calibration calibration;
+/// The rows that were complete until the end, a problem, or the user's stop.
+struct Outcome {
     std::vector<bench::Row> rows;
+    int code = exit_code::success;
+    std::string problem;
+};
+
+Outcome measure_all(const Plan& plan, const fs::path& builtin_scene, const InterruptWatch& watch,
+                    ProgressReporter& progress) {
+    bench::Calibration calibration;
+    Outcome outcome;
+    std::vector<bench::Row>& rows = outcome.rows;
     for (const std::string& scene : plan.scenes) {
         for (const int particles : plan.particles) {
-            if (watch.stop_requested()) return rows;
+            if (watch.stop_requested()) return outcome;
             const Result<bench::Start> start = bench::make_start(scene, particles, builtin_scene);
-            if (!start) return start.error();
+            if (!start) return {rows, exit_code::failure, start.error().message};
             for (const std::string& method : plan.methods) {
                 for (const int threads : plan.threads) {
                     progress.say(fmt::format("row {} of {}: {} {} {}, {} thread{}", rows.size() + 1, plan.row_count(),
@@ -69,14 +76,14 @@ Result<std::vector<bench::Row>> measure_all(const Plan& plan, const fs::path& bu
                     task.method = bench::method_of(method);
                     task.threads = threads;
                     Result<bench::Row> row = bench::measure(*start, task, calibration, &watch.stop_requested());
-                    if (watch.stop_requested()) return rows;
-                    if (!row) return row.error();
+                    if (watch.stop_requested()) return outcome;
+                    if (!row) return {rows, exit_code::fault, row.error().message};
                     rows.push_back(*std::move(row));
                 }
             }
         }
     }
-    return rows;
+    return outcome;
 }
 
 }  // namespace
@@ -93,19 +100,18 @@ int bench_command(const BenchArguments& arguments) {
     if (!builtin_scene) return fail(exit_code::failure, builtin_scene.error().message);
 
     ProgressReporter progress(progress_style(false, false));
-    Result<std::vector<bench::Row>> rows = std::vector<bench::Row>{};
+    Outcome outcome;
     try {
-        rows = measure_all(plan, *builtin_scene, watch, progress);
+        outcome = measure_all(plan, *builtin_scene, watch, progress);
     } catch (const std::bad_alloc&) {
-        progress.clear();
-        return fail(exit_code::failure, "out of memory; ask for fewer --particles");
+        outcome = {{}, exit_code::failure, "out of memory; ask for fewer --particles"};
     }
     progress.clear();
-    if (!rows) return fail(exit_code::fault, rows.error().message);
-    (void)std::fputs(bench::table_text(*rows).c_str(), stdout);
+    if (outcome.code != exit_code::success) return fail(outcome.code, outcome.problem);
+    (void)std::fputs(bench::table_text(outcome.rows).c_str(), stdout);
     if (watch.stop_requested()) return exit_code::interrupted;
     if (arguments.json.empty()) return exit_code::success;
-    const Status written = write_text_file(arguments.json, bench::table_json(*rows));
+    const Status written = write_text_file(arguments.json, bench::table_json(outcome.rows));
     return written ? exit_code::success : fail(exit_code::failure, written.error().message);
 }
 

@@ -218,10 +218,10 @@ int talus_main(int argc, char** argv) {
     bench_app->add_option("--repeats", bench.repeats, "repeats to take the median of; left out: 7")
         ->type_name("N")
         ->check(CLI::Range(1, 1000));
-    bench_app->add_option("--steps", bench.steps, "steps per repeat; left out: 40 to 2, by the number of particles")
+    bench_app->add_option("--steps", bench.steps, "steps per repeat; left out: 10 to 2, by the number of particles")
         ->type_name("N")
         ->check(CLI::Range(1, 100000));
-    bench_app->add_option("--warm-up", bench.warm_up, "steps before the first repeat; left out: 30 to 3, likewise")
+    bench_app->add_option("--warm-up", bench.warm_up, "steps before the first repeat; left out: 10 to 3, likewise")
         ->type_name("N")
         ->check(CLI::Range(0, 100000));
     bench_app->add_option("--json", bench.json, "write the rows as a list of objects")->type_name("FILE");

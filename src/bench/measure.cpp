@@ -158,11 +158,11 @@ InternalFriction method_of(std::string_view name) {
 }
 
 int usual_steps(std::uint32_t particles) {
-    return std::clamp(static_cast<int>(400000 / std::max(1U, particles)), 2, 40);
+    return std::clamp(static_cast<int>(400000 / std::max(1U, particles)), 2, 10);
 }
 
 int usual_warm_up(std::uint32_t particles) {
-    return std::clamp(static_cast<int>(300000 / std::max(1U, particles)), 3, 30);
+    return std::clamp(static_cast<int>(300000 / std::max(1U, particles)), 3, 10);
 }
 
 Result<Row> measure(const Start& start, const Task& task, Calibration& calibration,
