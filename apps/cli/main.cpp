@@ -30,7 +30,12 @@ Examples:
   talus scene new --dem dem.tif --release scar.geojson --thickness-m 1.5 -o my_scene
                                             a commented scene from your own terrain, ready to run
   talus scene check my_scene/scene.toml     what a scene reads and means, without running it
-  talus validate --quick                    computes cases whose results are known, and XX    1  the machine failed: disk full, out of memory
+  talus validate --quick                    computes cases whose results are known, and prints one table
+  talus bench                               how fast talus is here: milliseconds per stage, particles per second
+
+Exit codes:
+    0  complete
+    1  the machine failed: disk full, out of memory
     2  bad input: command line, scene or a file it names; nothing was written
     3  a step could not be trusted (fault); what was computed until then is written, marked partial
     4  talus validate: a case failed

@@ -5,6 +5,7 @@
 #include <set>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
 namespace talus::bench {
@@ -77,7 +78,7 @@ std::string shares_text(const std::vector<Row>& rows) {
     return aligned(lines, 2);
 }
 
-/// "4 iterations", "2 and 4 iterations", "".
+/// The values that rows have, each once: "4", "AVX2, SSE4".
 template <class Get>
 std::string distinct(const std::vector<Row>& rows, const Get& get) {
     std::set<std::string> values;
