@@ -96,9 +96,9 @@ HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
 #include <chrono>
-#include <cstdlib>
 #include <numeric>
 
+#include "sim/cpu/dispatch.hpp"
 #include "sim/cpu/parallel.hpp"
 
 namespace talus::bench {
@@ -112,27 +112,11 @@ constexpr double duration = 0.015;                          // s
 
 HWY_EXPORT(make_kernel);
 
-namespace {
-
-/// As pair_sums_for() chooses.
-Calibration::Kernel choose_kernel() {
-    if (const char* wanted = std::getenv("TALUS_SIMD")) {
-        for (const std::int64_t target : hwy::SupportedAndGeneratedTargets()) {
-            if (std::string_view(wanted) == hwy::TargetName(target)) {
-                hwy::SetSupportedTargetsForTest(target);
-                const Calibration::Kernel kernel = HWY_DYNAMIC_DISPATCH(make_kernel)();
-                hwy::SetSupportedTargetsForTest(0);
-                return kernel;
-            }
-        }
-    }
-    return HWY_DYNAMIC_DISPATCH(make_kernel)();
-}
-
-}  // namespace
-
 Calibration::Calibration()
-    : kernel_(choose_kernel()), rows_(row_count), index_(unit_count * rows_per_unit), sums_(rounds * unit_count) {
+    : kernel_(cpu::with_wanted_instructions([] { return HWY_DYNAMIC_DISPATCH(make_kernel)(); })),
+      rows_(row_count),
+      index_(unit_count * rows_per_unit),
+      sums_(rounds * unit_count) {
     // The generator of Lehmer (1951): any fixed numbers would do.
     std::uint64_t random = 1;
     const auto next = [&random] { return random = random * 48271 % 2147483647; };

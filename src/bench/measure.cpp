@@ -36,10 +36,10 @@ double allocated_bytes() {
 }
 
 double mean_neighbours(const Simulation& simulation) {
+    const cpu::NeighbourLists& lists = simulation.backend().neighbours();
     const std::uint32_t count = simulation.state().count;
     double pairs = 0;
-    for (std::uint32_t i = 0; i < count; ++i)
-        pairs += static_cast<double>(simulation.backend().neighbours().of(i).size());
+    for (std::uint32_t i = 0; i < count; ++i) pairs += lists.count_of(i);
     return count > 0 ? pairs / count : 0;
 }
 

@@ -3,9 +3,11 @@
 #include <cmath>
 #include <vector>
 
+#include "core/lanes.hpp"
+
 namespace talus {
 
-/// Three numbers with the usual arithmetic; `Real` is float in the solver and double in the reference.
+/// Three numbers with the usual arithmetic; `Real` is float or Lanes in the solver and double in the reference.
 template <class Real>
 struct Vec3 {
     Real x{}, y{}, z{};
@@ -25,7 +27,12 @@ Real dot(const Vec3<Real>& a, const Vec3<Real>& b) {
 }
 template <class Real>
 Real length(const Vec3<Real>& a) {
-    return std::sqrt(dot(a, a));
+    using std::sqrt;
+    return sqrt(dot(a, a));
+}
+template <class Mask, class Real>
+Vec3<Real> select(const Mask& mask, const Vec3<Real>& yes, const Vec3<Real>& no) {
+    return {select(mask, yes.x, no.x), select(mask, yes.y, no.y), select(mask, yes.z, no.z)};
 }
 
 /// A position in the solver's frame: metres, float, relative to a LocalFrame.

@@ -216,7 +216,7 @@ Result<State> seed_releases(Model& model, const std::vector<Release>& releases) 
     State state;
     const auto count = static_cast<std::uint32_t>(particles);
     state.resize(count);
-    std::iota(state.id.begin(), state.id.end(), 0u);
+    std::iota(state.id.begin(), state.id.begin() + count, 0u);
     model.releases.clear();
     std::uint32_t next = 0;
     for (std::size_t r = 0; r < releases.size(); ++r) {

@@ -13,7 +13,7 @@
 namespace talus {
 
 Simulation::Simulation(Model model, State state)
-    : model_(std::move(model)), state_(std::move(state)), backend_(model_, state_.id.size()) {
+    : model_(std::move(model)), state_(std::move(state)), backend_(model_, state_.count) {
     highest_energy_head_ = std::numeric_limits<double>::lowest();
     for (std::uint32_t i = 0; i < state_.count; ++i) {
         const LocalPoint v = state_.velocity.at(i);

@@ -8,15 +8,18 @@
 
 namespace talus {
 
-/// Three arrays of one coordinate each. They are longer than asked for: a vector load may begin at the last particle.
+/// Particles that are worked on together, side by side in vector registers or one register after another.
+inline constexpr std::size_t bundle_size = 16;
+
+/// Arrays of particles are that much longer than asked for: the last bundle is read and written whole.
+inline constexpr std::size_t array_padding = bundle_size;
+
+/// Three arrays of one coordinate each.
 struct VectorArray {
-    static constexpr std::size_t padding = 16;  ///< floats, the widest vector
     std::vector<float> x, y, z;
 
     void resize(std::size_t n) {
-        x.resize(n + padding);
-        y.resize(n + padding);
-        z.resize(n + padding);
+        for (auto* component : {&x, &y, &z}) component->resize(n + array_padding);
     }
     [[nodiscard]] LocalPoint at(std::size_t i) const { return {x[i], y[i], z[i]}; }
     void set(std::size_t i, const LocalPoint& p) {
@@ -31,7 +34,7 @@ struct DeviatorArray {
     std::vector<float> xx, yy, xy, xz, yz;
 
     void resize(std::size_t n) {
-        for (auto* component : {&xx, &yy, &xy, &xz, &yz}) component->resize(n);
+        for (auto* component : {&xx, &yy, &xy, &xz, &yz}) component->resize(n + array_padding);
     }
     [[nodiscard]] Deviator<float> at(std::size_t i) const { return {xx[i], yy[i], xy[i], xz[i], yz[i]}; }
     void set(std::size_t i, const Deviator<float>& s) {
@@ -50,8 +53,8 @@ struct BuildingContact {
     float impulse;  ///< kg m/s, normal to the wall
 };
 
-/// Everything that changes during a run, as a structure of arrays sorted by cell. Index = SortedIndex, valid until the
-/// next step; `id` names a particle for good.
+/// Everything that changes during a run, as a structure of arrays in an order that every step finds anew: neighbours
+/// lie near each other. `id` names a particle for good.
 struct State {
     double time = 0;                ///< s
     double time_step = 0;           ///< s, of the last step
@@ -71,10 +74,10 @@ struct State {
     void resize(std::size_t n) {
         position.resize(n);
         velocity.resize(n);
-        multiplier.resize(n);
         stress.resize(n);
-        id.resize(n);
-        held.resize(n);
+        multiplier.resize(n + array_padding);
+        id.resize(n + array_padding);
+        held.resize(n + array_padding);
     }
 
     // Measured by the last step.

@@ -222,8 +222,7 @@ bool BuildingSolids::in_plan(const Solid& solid, double x, double y) const {
 std::pair<std::uint32_t, std::uint32_t> BuildingSolids::candidates(double x, double y) const {
     const double u = (x - bin_x_min_) / bin_size_, v = (y - bin_y_min_) / bin_size_;
     if (!(u >= 0 && v >= 0 && u < bin_columns_ && v < bin_rows_)) return {0, 0};  // NaN comes here too
-    const std::size_t bin =
-        static_cast<std::size_t>(v) * static_cast<std::size_t>(bin_columns_) + static_cast<std::size_t>(u);
+    const std::size_t bin = bin_at(u, v);
     return {bin_start_[bin], bin_start_[bin + 1]};
 }
 

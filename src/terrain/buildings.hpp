@@ -40,6 +40,14 @@ class BuildingSolids {
 
     [[nodiscard]] bool empty() const { return edges_.empty(); }
 
+    /// False where no solid can be within range of a local plan position: most of the ground.
+    [[nodiscard]] bool near(float x, float y) const {
+        const double u = (x - bin_x_min_) / bin_size_, v = (y - bin_y_min_) / bin_size_;
+        if (!(u >= 0 && v >= 0 && u < bin_columns_ && v < bin_rows_)) return false;  // NaN comes here too
+        const std::size_t bin = bin_at(u, v);
+        return bin_start_[bin] != bin_start_[bin + 1];
+    }
+
     /// The building whose surface is nearest to the local position, if within range or inside. On an edge of a solid
     /// the normal is that of one of the faces that meet there.
     template <class Real>
@@ -71,6 +79,9 @@ class BuildingSolids {
     void split_walls();
     void fill_bins();
     [[nodiscard]] bool in_plan(const Solid& solid, double x, double y) const;
+    [[nodiscard]] std::size_t bin_at(double u, double v) const {
+        return static_cast<std::size_t>(v) * static_cast<std::size_t>(bin_columns_) + static_cast<std::size_t>(u);
+    }
     /// Indices [first, last) into bin_solids_ of the solids near a local plan position.
     [[nodiscard]] std::pair<std::uint32_t, std::uint32_t> candidates(double x, double y) const;
 

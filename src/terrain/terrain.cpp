@@ -33,7 +33,7 @@ Terrain::Terrain(Grid<float> elevation) : elevation_(std::move(elevation)) {
                      std::isfinite(lowest) ? lowest : 0.0};
 
     const auto local = [&](std::size_t i) { return static_cast<float>(elevation_.values[i] - frame_.origin.z); };
-    stride_ = static_cast<std::size_t>(g.columns);
+    stride_ = g.columns;
     last_column_ = g.columns - 1;
     last_row_ = g.rows - 1;
     // From the cell counts and not from the world origin: exact in float for the usual cell sizes.
@@ -41,15 +41,16 @@ Terrain::Terrain(Grid<float> elevation) : elevation_(std::move(elevation)) {
     y_first_ = static_cast<float>(-0.5 * last_row_ * g.cell);
     inverse_cell_ = static_cast<float>(1 / g.cell);
 
+    const auto stride = static_cast<std::size_t>(stride_);
     nodes_.resize(elevation_.values.size());
     constexpr float none = std::numeric_limits<float>::quiet_NaN();
     for (int row = 0; row < g.rows; ++row) {
         for (int column = 0; column < g.columns; ++column) {
             const std::size_t i = g.index(column, row);
             const float west = column > 0 ? local(i - 1) : none, east = column < last_column_ ? local(i + 1) : none;
-            const float south = row > 0 ? local(i - stride_) : none,
-                        north = row < last_row_ ? local(i + stride_) : none;
-            nodes_[i] = {local(i), rise(west, local(i), east), rise(south, local(i), north)};
+            const float south = row > 0 ? local(i - stride) : none,
+                        north = row < last_row_ ? local(i + stride) : none;
+            nodes_[i] = {local(i), rise(west, local(i), east), rise(south, local(i), north), 0};
         }
     }
 }

@@ -1,10 +1,12 @@
 #pragma once
 
 #include <cmath>
+#include <type_traits>
 #include <vector>
 
 #include "core/geometry.hpp"
 #include "core/grid.hpp"
+#include "core/lanes.hpp"
 
 namespace talus {
 
@@ -39,32 +41,34 @@ class Terrain {
     /// Whether the ground is known at a local plan position.
     template <class Real>
     [[nodiscard]] bool covers(Real x, Real y) const {
-        const Cell<Real> c = locate(x, y);
-        return c.inside && !std::isnan(corner_sum(c.index));
+        const auto c = locate(x, y);
+        const bool inside = c.fx >= 0 && c.fy >= 0 && c.fx <= 1 && c.fy <= 1;
+        return inside && !std::isnan(corner_sum(c.index));
     }
 
     /// Ground height and normal at a local plan position. Outside the grid, the nearest edge cell's plane goes on.
     template <class Real>
     [[nodiscard]] GroundSample<Real> sample(Real x, Real y) const {
-        const Cell<Real> c = locate(x, y);
+        using std::sqrt;
+        const auto c = locate(x, y);
         const Basis<Real> along_x(c.fx), along_y(c.fy);
         Real height{}, rise_x{}, rise_y{};  // rises per cell
-        for (const int row : {0, 1}) {
-            for (const int column : {0, 1}) {
-                const Node& node =
-                    nodes_[c.index + static_cast<std::size_t>(row) * stride_ + static_cast<std::size_t>(column)];
-                const Real value_x = along_x.value[column], value_y = along_y.value[row];
-                const Real by_height = Real(node.height), by_x = Real(node.rise_x), by_y = Real(node.rise_y);
-                const Real in_x = by_height * value_x + by_x * along_x.slope[column];
-                height += in_x * value_y + by_y * value_x * along_y.slope[row];
-                rise_x += (by_height * along_x.value_rise[column] + by_x * along_x.slope_rise[column]) * value_y +
-                          by_y * along_x.value_rise[column] * along_y.slope[row];
-                rise_y += in_x * along_y.value_rise[row] + by_y * value_x * along_y.slope_rise[row];
-            }
-        }
+        const auto add_corner = [&](const End<Real>& in_x, const End<Real>& in_y, int offset) {
+            const auto node = quads_at(nodes_.data() + offset, c.index);
+            const Real by_height = Real(node.x), by_x = Real(node.y), by_y = Real(node.z);
+            const Real here = by_height * in_x.value + by_x * in_x.slope;
+            height += here * in_y.value + by_y * in_x.value * in_y.slope;
+            rise_x += (by_height * in_x.value_rise + by_x * in_x.slope_rise) * in_y.value +
+                      by_y * in_x.value_rise * in_y.slope;
+            rise_y += here * in_y.value_rise + by_y * in_x.value * in_y.slope_rise;
+        };
+        add_corner(along_x.first, along_y.first, 0);
+        add_corner(along_x.last, along_y.first, 1);
+        add_corner(along_x.first, along_y.last, stride_);
+        add_corner(along_x.last, along_y.last, stride_ + 1);
         height += rise_x * along_x.beyond + rise_y * along_y.beyond;
         const Real slope_x = rise_x * Real(inverse_cell_), slope_y = rise_y * Real(inverse_cell_);
-        const Real inverse_length = Real(1) / std::sqrt(Real(1) + slope_x * slope_x + slope_y * slope_y);
+        const Real inverse_length = Real(1) / sqrt(Real(1) + slope_x * slope_x + slope_y * slope_y);
         return {height, {-slope_x * inverse_length, -slope_y * inverse_length, inverse_length}};
     }
 
@@ -75,56 +79,52 @@ class Terrain {
     [[nodiscard]] double slope_cosine_at(const PlanPoint& p) const;
 
   private:
-    template <class Real>
+    template <class Index, class Real>
     struct Cell {
-        std::size_t index;
-        Real fx, fy;
-        bool inside;
+        Index index;
+        Real fx, fy;  ///< from 0 to 1 inside the cell
     };
 
     template <class Real>
-    Cell<Real> locate(Real x, Real y) const {
+    auto locate(Real x, Real y) const {
         const Real u = (x - Real(x_first_)) * Real(inverse_cell_), v = (y - Real(y_first_)) * Real(inverse_cell_);
-        const bool inside = u >= 0 && v >= 0 && u <= Real(last_column_) && v <= Real(last_row_);
-        // The comparison form also sends NaN to cell 0 instead of into an undefined conversion.
-        const Real cu = std::floor(u > 0 ? (u < Real(last_column_ - 1) ? u : Real(last_column_ - 1)) : Real(0));
-        const Real cv = std::floor(v > 0 ? (v < Real(last_row_ - 1) ? v : Real(last_row_ - 1)) : Real(0));
-        return {static_cast<std::size_t>(cv) * stride_ + static_cast<std::size_t>(cu), u - cu, v - cv, inside};
+        // This order of comparisons also sends NaN to some cell instead of into an undefined conversion.
+        const auto column = truncated(larger(Real(0), smaller(Real(last_column_ - 1), u)));
+        const auto row = truncated(larger(Real(0), smaller(Real(last_row_ - 1), v)));
+        using Index = std::remove_const_t<decltype(column)>;
+        return Cell<Index, Real>{Index(row * stride_ + column), u - from_index<Real>(column), v - from_index<Real>(row)};
     }
 
-    /// Cubic Hermite basis at a fraction of the cell: what the values and the rises of its two ends weigh, and the
-    /// derivatives of that. Beyond the cell the basis of its end goes on as a straight line.
+    /// What the value and the rise of one end of a cell weigh, and the derivatives of that.
+    template <class Real>
+    struct End {
+        Real value{}, slope{}, value_rise{}, slope_rise{};
+    };
+
+    /// Cubic Hermite basis at a fraction of the cell. Beyond the cell the basis of its end goes on as a straight line.
     template <class Real>
     struct Basis {
         explicit Basis(Real fraction) {
-            const Real t = fraction > 0 ? (fraction < 1 ? fraction : Real(1)) : Real(0), t2 = t * t, t3 = t2 * t;
+            const Real t = larger(Real(0), smaller(Real(1), fraction)), t2 = t * t, t3 = t2 * t;
             beyond = fraction - t;
-            value[1] = 3 * t2 - 2 * t3;
-            value[0] = 1 - value[1];
-            slope[0] = t - 2 * t2 + t3;
-            slope[1] = t3 - t2;
-            value_rise[1] = 6 * (t - t2);
-            value_rise[0] = -value_rise[1];
-            slope_rise[0] = 1 - 4 * t + 3 * t2;
-            slope_rise[1] = 3 * t2 - 2 * t;
+            const Real value = 3 * t2 - 2 * t3, rise = 6 * (t - t2);
+            first = {1 - value, t - 2 * t2 + t3, -rise, 1 - 4 * t + 3 * t2};
+            last = {value, t3 - t2, rise, 3 * t2 - 2 * t};
         }
-        Real value[2], slope[2], value_rise[2], slope_rise[2];
-        Real beyond;
-    };
-
-    /// A cell centre: local z (NaN: no data), and its rise over one cell eastwards and northwards, m.
-    struct Node {
-        float height, rise_x, rise_y;
+        End<Real> first, last;
+        Real beyond{};
     };
 
     float corner_sum(std::size_t i) const {
-        return nodes_[i].height + nodes_[i + 1].height + nodes_[i + stride_].height + nodes_[i + stride_ + 1].height;
+        return nodes_[i][0] + nodes_[i + 1][0] + nodes_[i + stride_][0] + nodes_[i + stride_ + 1][0];
     }
 
     Grid<float> elevation_;
     LocalFrame frame_;
-    std::vector<Node> nodes_;
-    std::size_t stride_ = 0;
+    /// A cell centre: local z (NaN: no data), and its rise over one cell eastwards and northwards, m. By fours, since
+    /// what lies together is loaded at once.
+    std::vector<Quad> nodes_;
+    int stride_ = 0;
     int last_column_ = 0, last_row_ = 0;
     float x_first_ = 0, y_first_ = 0;  // local position of the south-west cell's centre
     float inverse_cell_ = 0;

@@ -11,28 +11,34 @@
 namespace talus {
 namespace {
 
-/// Sorts points by cell and checks every neighbour list against all pairs.
+/// Finds the neighbours of every point and checks them against all pairs.
 void expect_all_pairs_found(const std::vector<LocalPoint>& points, float radius) {
     const State state = testing::state_of(points);
     cpu::CellSort sort(points.size());
     cpu::CellGrid grid;
     const double cell = double(radius) * (1 + 1e-7);
-    const auto order = sort.sort(state.position, points.size(), cell, grid);
-    VectorArray sorted;
-    sorted.resize(points.size());
-    for (std::size_t i = 0; i < points.size(); ++i) sorted.set(i, points[order[i]]);
+    const auto by_cell = sort.sort(state.position, points.size(), cell, grid);
+    cpu::NeighbourSearch search(points.size());
+    const auto order = search.find(state.position, by_cell, grid, radius);
     ASSERT_EQ(std::set<std::uint32_t>(order.begin(), order.end()).size(), points.size()) << "not a permutation";
+    cpu::NeighbourLists lists(points.size());
+    search.write(lists);
 
-    cpu::NeighbourLists lists(points.size(), cpu::pair_sums_for(KernelChoice::wendland_c2));
-    lists.build(sorted, grid, radius);
-    for (std::size_t i = 0; i < points.size(); ++i) {
-        std::vector<std::uint32_t> expected;
+    for (std::uint32_t i = 0; i < points.size(); ++i) {
+        std::vector<std::uint32_t> expected, found;
         for (std::uint32_t j = 0; j < points.size(); ++j) {
-            const LocalPoint d = sorted.at(j) - sorted.at(i);
+            const LocalPoint d = points[order[j]] - points[order[i]];
             if (j != i && d.x * d.x + d.y * d.y + d.z * d.z < radius * radius) expected.push_back(j);
         }
-        const auto list = lists.of(i);
-        std::vector<std::uint32_t> found(list.begin(), list.end());
+        const std::uint32_t length = lists.length[i / bundle_size];
+        ASSERT_LE(lists.count_of(i), length);
+        for (std::uint32_t k = 0; k < length; ++k) {
+            if (k < lists.count_of(i)) {
+                found.push_back(lists.neighbour_of(i, k));
+            } else {
+                ASSERT_EQ(lists.neighbour_of(i, k), i) << "a list ends with the particle itself";
+            }
+        }
         std::sort(found.begin(), found.end());
         ASSERT_EQ(found, expected) << "particle " << i;
     }
@@ -69,6 +75,28 @@ TEST(NeighbourLists, agree_with_all_pairs_on_cell_edges) {
 
 TEST(NeighbourLists, grow_when_debris_is_denser_than_the_buffer_expects) {
     expect_all_pairs_found(testing::random_points(400, {0, 0, 0}, {0.3F, 0.3F, 0.3F}, 4), 0.5F);
+}
+
+TEST(NeighbourLists, of_a_bundle_are_about_equally_long) {
+    // A block has as many particles on its faces, with short lists, as inside.
+    std::vector<LocalPoint> points;
+    for (int x = 0; x < 20; ++x) {
+        for (int y = 0; y < 20; ++y) {
+            for (int z = 0; z < 4; ++z) points.push_back({0.5F * x, 0.5F * y, 0.5F * z});
+        }
+    }
+    const State state = testing::state_of(points);
+    cpu::CellSort sort(points.size());
+    cpu::CellGrid grid;
+    const auto by_cell = sort.sort(state.position, points.size(), 1.1, grid);
+    cpu::NeighbourSearch search(points.size());
+    search.find(state.position, by_cell, grid, 1.1F);
+    cpu::NeighbourLists lists(points.size());
+    search.write(lists);
+    double neighbours = 0, entries = 0;
+    for (std::size_t i = 0; i < points.size(); ++i) neighbours += lists.count_of(i);
+    for (std::size_t b = 0; b < points.size() / bundle_size; ++b) entries += double(bundle_size) * lists.length[b];
+    EXPECT_LT(entries, 1.15 * neighbours);
 }
 
 TEST(NeighbourLists, of_one_particle_are_empty) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <utility>
 
 #include <tbb/task_arena.h>
 
@@ -11,106 +12,128 @@ namespace talus::cpu {
 namespace {
 
 constexpr std::size_t cells_per_task = 64;
-constexpr std::size_t usual_task_size = 65536;  // entries of lists; debris at rest density needs about half
-constexpr std::size_t longest_vector = 2 * PairList::padding;  // what may be written beyond what was found
-constexpr int row_count = 9;  // a cell's 27 neighbours are 9 rows of 3 cells with consecutive keys
+constexpr std::size_t usual_task_size = 65536;   // entries of lists; debris at rest density needs about half
+constexpr std::size_t usual_candidates = 4096;   // debris at rest density has some 290 around a cell
+constexpr std::size_t usual_neighbours = 48;     // per particle; debris at rest density has some 40
+constexpr std::size_t window = 16 * bundle_size;  // particles that change places with each other
+constexpr std::uint32_t longest_told_apart = 127;
 
-/// Walks the 9 neighbour rows of ascending cells. As keys ascend, every row's position only moves forward, so that a
-/// sweep needs no hash table and touches the occupied cells alone.
-class RowSweep {
-  public:
-    RowSweep(const CellGrid& grid, std::size_t first_cell) : grid_(grid) {
-        int row = 0;
-        for (int dz = -1; dz <= 1; ++dz) {
-            for (int dy = -1; dy <= 1; ++dy, ++row) {
-                // Unsigned wrap-around is intended: padding makes every sum below non-negative.
-                const std::uint64_t offset =
-                    (static_cast<std::uint64_t>(dz) * grid.rows + static_cast<std::uint64_t>(dy)) * grid.columns - 1;
-                offset_[row] = offset;
-                const auto from = std::lower_bound(grid.key.begin(), grid.key.end(), grid.key[first_cell] + offset);
-                cell_[row] = static_cast<std::size_t>(from - grid.key.begin());
-            }
-        }
-    }
-
-    /// The particles [first, last) of a row of three cells around `cell`; cells must be asked for in ascending order.
-    std::pair<std::uint32_t, std::uint32_t> particles(int row, std::size_t cell) {
-        const std::uint64_t low = grid_.key[cell] + offset_[row];
-        std::size_t& at = cell_[row];
-        while (at < grid_.key.size() && grid_.key[at] < low) ++at;
-        std::size_t end = at;
-        while (end < grid_.key.size() && grid_.key[end] <= low + 2) ++end;
-        return {grid_.start[at], grid_.start[end]};
-    }
-
-  private:
-    const CellGrid& grid_;
-    std::array<std::uint64_t, row_count> offset_{};
-    std::array<std::size_t, row_count> cell_{};
-};
+std::size_t bundles_of(std::size_t particles) {
+    return (particles + bundle_size - 1) / bundle_size;
+}
 
 }  // namespace
 
-NeighbourLists::NeighbourLists(std::size_t capacity, const PairSums& sums)
-    : start_(capacity), count_(capacity), neighbours_(capacity * 72 + 1024), select_near_(sums.select_near) {
-    gradient_.resize(neighbours_.size());
+NeighbourLists::NeighbourLists(std::size_t capacity)
+    : start(bundles_of(capacity)), length(bundles_of(capacity)), count(capacity + array_padding) {
+    neighbour.resize(capacity * usual_neighbours);
+    gradient.resize(neighbour.size());
 }
 
-void NeighbourLists::build(const VectorArray& points, const CellGrid& grid, float radius) {
+NeighbourSearch::NeighbourSearch(std::size_t capacity)
+    : find_in_cells_(find_in_cells_function()),
+      start_(capacity),
+      count_(capacity),
+      found_(capacity * usual_neighbours + 1024),
+      place_(capacity),
+      source_(capacity),
+      order_(capacity) {
+    sorted_.resize(capacity);
+}
+
+std::span<const std::uint32_t> NeighbourSearch::find(const VectorArray& points, std::span<const std::uint32_t> by_cell,
+                                                     const CellGrid& grid, float radius) {
+    particles_ = by_cell.size();
+    parallel_ranges(particles_, 4096, [&](std::size_t first, std::size_t last) {
+        for (std::size_t i = first; i < last; ++i) sorted_.set(i, points.at(by_cell[i]));
+    });
     // For every thread that may come, before it comes: a thread's first task must not have to allocate.
     const auto threads = static_cast<std::size_t>(tbb::this_task_arena::max_concurrency());
-    if (found_.size() < threads) found_.resize(threads, std::vector<std::uint32_t>(usual_task_size));
-    while (!try_build(points, grid, radius)) {
-        // Rare: debris denser than ever before. Room to spare, so that it stays rare.
-        neighbours_.resize(used_.load() + used_.load() / 2);
-        gradient_.resize(neighbours_.size());
+    while (scratch_.size() < threads) {
+        SearchScratch& scratch = scratch_.emplace_back();
+        for (auto* array : {&scratch.x, &scratch.y, &scratch.z}) array->resize(usual_candidates);
+        scratch.index.resize(usual_candidates);
+        scratch.found.resize(usual_task_size);
     }
+    // Growing is rare: debris denser than ever before. Room to spare, so that it stays rare.
+    while (!try_find(grid, radius)) found_.resize(used_.load() + used_.load() / 2);
+    balance();
+    parallel_ranges(particles_, 4096, [&](std::size_t first, std::size_t last) {
+        for (std::size_t i = first; i < last; ++i) order_[i] = by_cell[source_[i]];
+    });
+    return {order_.data(), particles_};
 }
 
-bool NeighbourLists::try_build(const VectorArray& points, const CellGrid& grid, float radius) {
+bool NeighbourSearch::try_find(const CellGrid& grid, float radius) {
     used_.store(0);
-    const float square_radius = radius * radius;
     const std::size_t tasks = (grid.cell_count() + cells_per_task - 1) / cells_per_task;
-    const Coordinates coordinates{points.x.data(), points.y.data(), points.z.data()};
     parallel_ranges(tasks, 1, [&](std::size_t first_task, std::size_t last_task) {
-        std::vector<std::uint32_t>& found =
-            found_[static_cast<std::size_t>(tbb::this_task_arena::current_thread_index())];
+        SearchScratch& scratch = scratch_[static_cast<std::size_t>(tbb::this_task_arena::current_thread_index())];
         for (std::size_t task = first_task; task < last_task; ++task) {
             const std::size_t first_cell = task * cells_per_task;
             const std::size_t last_cell = std::min(grid.cell_count(), first_cell + cells_per_task);
-            const std::uint32_t first_particle = grid.start[first_cell];
-            std::size_t size = 0;
-            RowSweep sweep(grid, first_cell);
-            for (std::size_t cell = first_cell; cell < last_cell; ++cell) {
-                std::array<std::pair<std::uint32_t, std::uint32_t>, row_count> rows;
-                for (int row = 0; row < row_count; ++row)
-                    rows[static_cast<std::size_t>(row)] = sweep.particles(row, cell);
-                std::size_t candidates = 0;
-                for (const auto& [first, last] : rows) candidates += last - first;
-                for (std::uint32_t i = grid.start[cell]; i < grid.start[cell + 1]; ++i) {
-                    if (found.size() < size + candidates + longest_vector) found.resize(2 * (size + candidates) + 1024);
-                    const std::size_t before = size;
-                    for (const auto& [first, last] : rows) {
-                        // The particle itself is left out by looking on either side of it.
-                        const bool own = first <= i && i < last;
-                        size += select_near_(coordinates, first, own ? i : last, points.at(i), square_radius,
-                                             found.data() + size);
-                        if (!own) continue;
-                        size +=
-                            select_near_(coordinates, i + 1, last, points.at(i), square_radius, found.data() + size);
-                    }
-                    start_[i] = static_cast<std::uint32_t>(before);
-                    count_[i] = static_cast<std::uint32_t>(size - before);
-                    while (size % PairList::padding != 0) found[size++] = i;
-                }
+            find_in_cells_(sorted_, grid, first_cell, last_cell, radius * radius, scratch, count_.data());
+            const auto size = static_cast<std::uint32_t>(scratch.found_count);
+            std::uint32_t at = used_.fetch_add(size);
+            if (at + size > found_.size()) continue;  // grown and found again
+            std::copy_n(scratch.found.begin(), size, found_.begin() + at);
+            for (std::uint32_t i = grid.start[first_cell]; i < grid.start[last_cell]; ++i) {
+                start_[i] = at;
+                at += count_[i];
             }
-            const std::uint32_t base = used_.fetch_add(static_cast<std::uint32_t>(size));
-            if (base + size > neighbours_.size()) continue;  // grown and built again
-            std::copy_n(found.begin(), size, neighbours_.begin() + base);
-            for (std::uint32_t i = first_particle; i < grid.start[last_cell]; ++i) start_[i] += base;
         }
     });
-    return used_.load() <= neighbours_.size();
+    return used_.load() <= found_.size();
+}
+
+/// Puts the particles of a window in the order of how many neighbours they have: those of a bundle then go through
+/// lists of about one length. A stable counting sort, so that the result does not depend on threads.
+void NeighbourSearch::balance() {
+    const std::size_t windows = (particles_ + window - 1) / window;
+    parallel_ranges(windows, 4, [&](std::size_t first_window, std::size_t last_window) {
+        for (std::size_t w = first_window; w < last_window; ++w) {
+            const std::size_t first = w * window, last = std::min(particles_, first + window);
+            std::array<std::uint32_t, longest_told_apart + 1> next{};
+            const auto key = [&](std::size_t i) { return longest_told_apart - std::min(count_[i], longest_told_apart); };
+            for (std::size_t i = first; i < last; ++i) ++next[key(i)];
+            auto sum = static_cast<std::uint32_t>(first);
+            for (std::uint32_t& n : next) sum += std::exchange(n, sum);
+            for (std::size_t i = first; i < last; ++i) {
+                place_[i] = next[key(i)]++;
+                source_[place_[i]] = static_cast<std::uint32_t>(i);
+            }
+        }
+    });
+}
+
+void NeighbourSearch::write(NeighbourLists& lists) {
+    const std::size_t bundles = bundles_of(particles_);
+    std::uint32_t size = 0;
+    for (std::size_t b = 0; b < bundles; ++b) {
+        std::uint32_t longest = 0;
+        for (std::size_t i = b * bundle_size; i < std::min(particles_, (b + 1) * bundle_size); ++i) {
+            longest = std::max(longest, count_[source_[i]]);
+        }
+        lists.start[b] = size;
+        lists.length[b] = longest;
+        size += longest * bundle_size;
+    }
+    if (lists.neighbour.size() < size) {
+        lists.neighbour.resize(size + size / 2);
+        lists.gradient.resize(lists.neighbour.size());
+    }
+    parallel_ranges(bundles, 16, [&](std::size_t first, std::size_t last) {
+        for (std::size_t i = first * bundle_size; i < last * bundle_size; ++i) {
+            const bool present = i < particles_;
+            const std::size_t from = present ? source_[i] : 0;
+            const std::uint32_t count = present ? count_[from] : 0, length = lists.length[i / bundle_size];
+            const std::uint32_t* found = found_.data() + start_[from];
+            std::uint32_t* to = lists.neighbour.data() + lists.start[i / bundle_size] + i % bundle_size;
+            for (std::uint32_t k = 0; k < count; ++k) to[k * bundle_size] = place_[found[k]];
+            for (std::uint32_t k = count; k < length; ++k) to[k * bundle_size] = static_cast<std::uint32_t>(i);
+            lists.count[i] = static_cast<float>(count);
+        }
+    });
 }
 
 }  // namespace talus::cpu

@@ -6,39 +6,68 @@
 #include <vector>
 
 #include "sim/cpu/cell_sort.hpp"
-#include "sim/cpu/pair_sums.hpp"
 #include "sim/state.hpp"
 
 namespace talus::cpu {
 
-/// For every particle the particles nearer than the support radius, itself left out, in one flat buffer; lists are
-/// padded to whole vectors as PairList says. Where in the buffer a list lies depends on the threads; what it holds, and
-/// in which order, does not.
-class NeighbourLists {
+/// For every particle the particles nearer than the support radius, itself left out. The lists of a bundle lie side by
+/// side, entry after entry, so that its particles go through theirs together; a list that is shorter than the bundle's
+/// longest goes on with the particle itself, which is at distance zero and so adds nothing but density.
+struct NeighbourLists {
+    explicit NeighbourLists(std::size_t capacity);
+
+    std::vector<std::uint32_t> start, length;  ///< per bundle: where its lists begin, how many entries its longest has
+    std::vector<float> count;                  ///< per particle: entries that are neighbours
+    std::vector<std::uint32_t> neighbour;      ///< of particle i, entry k: at start + k * bundle_size + i % bundle_size
+    VectorArray gradient;                      ///< V grad W per entry, kept from one sum over pairs to the next
+
+    [[nodiscard]] std::uint32_t count_of(std::size_t i) const { return static_cast<std::uint32_t>(count[i]); }
+    [[nodiscard]] std::uint32_t neighbour_of(std::size_t i, std::size_t k) const {
+        return neighbour[start[i / bundle_size] + k * bundle_size + i % bundle_size];
+    }
+};
+
+/// Room for the candidates around a cell and for what was found, of one thread.
+struct SearchScratch {
+    std::vector<float> x, y, z;
+    std::vector<std::uint32_t> index, found;
+    std::size_t found_count = 0;  ///< of `found`, which is longer
+};
+
+/// Finds the neighbours of particles sorted by cell, and an order in which the lists of a bundle are about equally long.
+class NeighbourSearch {
   public:
-    NeighbourLists(std::size_t capacity, const PairSums& sums);
+    explicit NeighbourSearch(std::size_t capacity);
 
-    /// `points` sorted by `grid`, whose cells are at least `radius` wide.
-    void build(const VectorArray& points, const CellGrid& grid, float radius);
+    /// `points` in any order, `by_cell` what sorts them by `grid`, whose cells are at least `radius` wide. Returns the
+    /// order to bring the particles into: entry i is the present index of the particle to put at i.
+    std::span<const std::uint32_t> find(const VectorArray& points, std::span<const std::uint32_t> by_cell,
+                                        const CellGrid& grid, float radius);
+    /// Writes what find() found, by the new order.
+    void write(NeighbourLists& lists);
 
-    [[nodiscard]] std::span<const std::uint32_t> of(std::size_t i) const {
-        return {neighbours_.data() + start_[i], count_[i]};
-    }
-    /// The same list, with room for a pair gradient per neighbour.
-    [[nodiscard]] PairList pairs_of(std::size_t i) {
-        const std::size_t at = start_[i];
-        return {neighbours_.data() + at, count_[i], gradient_.x.data() + at, gradient_.y.data() + at,
-                gradient_.z.data() + at};
-    }
+    /// Finds the neighbours of the particles in cells [first, last): put into `scratch.found`, their numbers into
+    /// `count`. Compiled per instruction set.
+    using FindInCells = void (*)(const VectorArray& sorted, const CellGrid& grid, std::size_t first, std::size_t last,
+                                 float square_radius, SearchScratch& scratch, std::uint32_t* count);
 
   private:
-    bool try_build(const VectorArray& points, const CellGrid& grid, float radius);
+    bool try_find(const CellGrid& grid, float radius);
+    void balance();
 
-    std::vector<std::uint32_t> start_, count_, neighbours_;
-    VectorArray gradient_;  // V grad W per entry of neighbours_
-    decltype(PairSums::select_near) select_near_;
+    FindInCells find_in_cells_;
+    std::size_t particles_ = 0;
+    VectorArray sorted_;                        // points by cell
+    std::vector<std::uint32_t> start_, count_;  // by cell
+    std::vector<std::uint32_t> found_;          // indices by cell
+    std::vector<std::uint32_t> place_;          // by cell: the new index
+    std::vector<std::uint32_t> source_;         // by new index: the index by cell
+    std::vector<std::uint32_t> order_;
     std::atomic<std::uint32_t> used_{0};
-    std::vector<std::vector<std::uint32_t>> found_;  // of a task, one per thread of the arena
+    std::vector<SearchScratch> scratch_;  // one per thread of the arena
 };
+
+/// The best of this processor, or that which TALUS_SIMD names.
+[[nodiscard]] NeighbourSearch::FindInCells find_in_cells_function();
 
 }  // namespace talus::cpu

@@ -26,17 +26,30 @@ struct Boundary {
     Vec3<Real> gradient{};  ///< of the density, 1/m, into ground and walls
 };
 
+/// The ground as a face.
+template <class Real>
+struct GroundFace {
+    Real distance{};  ///< as of a BoundaryFace
+    Vec3<Real> normal{};
+    Real density{}, slope{};  ///< what it adds to a particle's density, and how that changes with the distance
+};
+
+template <class Real>
+GroundFace<Real> sample_ground(const Model& model, const Vec3<Real>& p) {
+    const GroundSample<Real> below = model.terrain.sample(p.x, p.y);
+    const Real distance = (p.z - below.height) * below.normal.z;  // exact for a plane
+    const auto share = model.boundary.at(distance);
+    return {distance, below.normal, share.density, share.slope};
+}
+
 /// Where faces meet, their shares overlap. For a kernel close to a Gaussian and faces at right angles the shared part
 /// is the product of the shares.
 template <class Real>
 Boundary<Real> sample_boundary(const Model& model, const Vec3<Real>& p) {
     Boundary<Real> result;
     auto& [ground, wall, second_wall] = result.faces;
-    const GroundSample<Real> below = model.terrain.sample(p.x, p.y);
-    ground.distance = (p.z - below.height) * below.normal.z;  // exact for a plane
-    ground.normal = below.normal;
-    const auto ground_share = model.boundary.at(ground.distance);
-    ground.slope = ground_share.slope;
+    const GroundFace<Real> ground_share = sample_ground(model, p);
+    ground = {ground_share.distance, ground_share.normal, ground_share.slope, -1};
     result.density = ground_share.density;
     result.gradient = ground.normal * ground.slope;
     if (model.solids.empty()) return result;
@@ -73,10 +86,10 @@ Vec3<Real> boundary_correction(const Vec3<Real>& gradient, Real multiplier) {
     return gradient * (Real(boundary_mirror_share) * multiplier);
 }
 
-/// The normal correction of a face, m, that `multiplier` (<= 0) stands for.
+/// The normal correction, m, that `multiplier` (<= 0) stands for at a face whose density has this slope.
 template <class Real>
-Real boundary_push(const BoundaryFace<Real>& face, Real multiplier) {
-    return Real(boundary_mirror_share) * multiplier * face.slope;
+Real boundary_push(Real slope, Real multiplier) {
+    return Real(boundary_mirror_share) * multiplier * slope;
 }
 
 }  // namespace talus

@@ -1,5 +1,6 @@
 #include "sim/physics/boundary_table.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -24,8 +25,11 @@ double plane_integral(const F& value, double q) {
 
 BoundaryTable::BoundaryTable(const Kernel& kernel, double particle_spacing)
     : support_radius_(kernel.support_radius),
-      inverse_step_((node_count - 1) / (2 * kernel.support_radius)),
-      nodes_(node_count + 1) {
+      inverse_step_((node_count - 1) / (2 * kernel.support_radius)) {
+    struct Node {
+        double density, slope;
+    };
+    std::vector<Node> nodes(node_count);
     with_kernel(kernel.choice, [&](auto k) {
         const auto density_kernel = [&](double q) { return k.value(q); };
         // The published pair takes its gradient from another kernel than its density; the ground follows suit.
@@ -45,10 +49,20 @@ BoundaryTable::BoundaryTable(const Kernel& kernel, double particle_spacing)
                     share += plane_integral(density_kernel, middle) * step / parts;
                 }
             }
-            nodes_[static_cast<std::size_t>(i)] = {
+            nodes[static_cast<std::size_t>(i)] = {
                 share, -plane_integral(gradient_kernel, std::min(1.0, std::abs(q))) / kernel.support_radius};
         }
-        nodes_[node_count] = nodes_[node_count - 1];
+        // By fours, since what lies together is loaded at once; the last has nowhere to rise to.
+        const auto tabulate = [&](double scale) {
+            nodes_.clear();
+            for (int i = 0; i < node_count; ++i) {
+                const Node &a = nodes[static_cast<std::size_t>(i)],
+                           &b = nodes[static_cast<std::size_t>(std::min(i + 1, node_count - 1))];
+                nodes_.push_back({float(scale * a.density), float(scale * (b.density - a.density)),
+                                  float(scale * a.slope), float(scale * (b.slope - a.slope))});
+            }
+        };
+        tabulate(1);
 
         // The continuum's share differs by some per cent from that of the lattice layers it stands for. Scale it so
         // that a rest lattice whose first layer lies half a spacing above the ground has G = 0 in that layer.
@@ -63,11 +77,7 @@ BoundaryTable::BoundaryTable(const Kernel& kernel, double particle_spacing)
                 }
             }
         }
-        const double scale = layers / at(particle_spacing / 2).density;
-        for (Node& node : nodes_) {
-            node.density *= scale;
-            node.slope *= scale;
-        }
+        tabulate(layers / at(particle_spacing / 2).density);
     });
     tabulate_by_slope();
 }
@@ -75,6 +85,7 @@ BoundaryTable::BoundaryTable(const Kernel& kernel, double particle_spacing)
 void BoundaryTable::tabulate_by_slope() {
     const double steepest = -at(0.0).slope;
     inverse_slope_step_ = (node_count - 1) / steepest;
+    std::vector<double> density;
     for (int i = 0; i < node_count; ++i) {
         const double slope = i / inverse_slope_step_;
         double near = 0, far = support_radius_;  // the slope falls with the distance
@@ -82,9 +93,12 @@ void BoundaryTable::tabulate_by_slope() {
             const double middle = (near + far) / 2;
             (-at(middle).slope > slope ? near : far) = middle;
         }
-        by_slope_.push_back(at(far).density);
+        density.push_back(at(far).density);
     }
-    by_slope_.push_back(by_slope_.back());
+    for (std::size_t i = 0; i < density.size(); ++i) {
+        const double next = i + 1 < density.size() ? density[i + 1] : density[i];
+        by_slope_.push_back({float(density[i]), float(next - density[i]), 0, 0});
+    }
 }
 
 }  // namespace talus

@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "core/lanes.hpp"
 #include "sim/physics/kernel.hpp"
 
 namespace talus {
@@ -22,38 +23,33 @@ class BoundaryTable {
     template <class Real>
     [[nodiscard]] Share<Real> at(Real distance) const {
         const Real r = Real(support_radius_);
-        // The negated form also takes the NaN distance of ground without data as "far away".
-        if (!(distance < r)) return {Real(0), Real(0)};
-        const Real u = (distance > -r ? distance + r : Real(0)) * Real(inverse_step_);
-        const int i = static_cast<int>(u);
-        const Real t = u - Real(i);
-        const auto& a = nodes_[static_cast<std::size_t>(i)];
-        const auto& b = nodes_[static_cast<std::size_t>(i) + 1];
-        return {Real(a.density) + t * Real(b.density - a.density), Real(a.slope) + t * Real(b.slope - a.slope)};
+        const auto near = distance < r;  // not so for the NaN distance of ground without data
+        const Real u = select(near, larger(Real(0), distance + r), Real(0)) * Real(inverse_step_);
+        const auto i = truncated(u);
+        const Real t = u - from_index<Real>(i);
+        const auto node = quads_at(nodes_.data(), i);
+        return {select(near, Real(node.x) + t * Real(node.y), Real(0)),
+                select(near, Real(node.z) + t * Real(node.w), Real(0))};
     }
 
     /// The share of a half-space whose gradient has this size, 1/m: how much density a particle lacks whose neighbours
     /// pull it this strongly to one side.
     template <class Real>
     [[nodiscard]] Real density_at_slope(Real slope) const {
-        const Real last = Real(by_slope_.size() - 2);
-        const Real u = slope * Real(inverse_slope_step_);
-        const Real bounded = u < last ? u : last;
-        const int i = static_cast<int>(bounded);
-        const Real low = Real(by_slope_[static_cast<std::size_t>(i)]);
-        return low + (bounded - Real(i)) * (Real(by_slope_[static_cast<std::size_t>(i) + 1]) - low);
+        const Real last = Real(static_cast<int>(by_slope_.size()) - 1);
+        const Real u = larger(Real(0), smaller(last, slope * Real(inverse_slope_step_)));
+        const auto i = truncated(u);
+        const auto node = quads_at(by_slope_.data(), i);
+        return Real(node.x) + (u - from_index<Real>(i)) * Real(node.y);
     }
 
   private:
     void tabulate_by_slope();
 
-    struct Node {
-        double density, slope;
-    };
     double support_radius_ = 0, inverse_step_ = 0;
-    std::vector<Node> nodes_;
+    std::vector<Quad> nodes_;  // density, its rise to the next node, slope, its rise
     double inverse_slope_step_ = 0;
-    std::vector<double> by_slope_;  // density at evenly spaced slopes from 0 to that on the plane
+    std::vector<Quad> by_slope_;  // density at evenly spaced slopes from 0 to that on the plane; its rise
 };
 
 }  // namespace talus

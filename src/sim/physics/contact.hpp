@@ -25,9 +25,8 @@ struct ContactMemory {
 template <class Real>
 Vec3<Real> resolve_contact(Real overlap, const Vec3<Real>& normal, const Vec3<Real>& displacement, Real density_push,
                            Real friction_coefficient, ContactMemory<Real>& memory) {
-    const Real approach = -dot(displacement, normal);
-    const Real push = overlap < approach ? overlap : approach;
-    const Real accumulated = memory.normal + push > 0 ? memory.normal + push : Real(0);
+    const Real push = smaller(overlap, -dot(displacement, normal));
+    const Real accumulated = larger(Real(0), memory.normal + push);
     Vec3<Real> change = normal * (accumulated - memory.normal);
     memory.normal = accumulated;
     const Vec3<Real> moved = displacement + change;
@@ -40,23 +39,34 @@ Vec3<Real> resolve_contact(Real overlap, const Vec3<Real>& normal, const Vec3<Re
 template <class Real>
 using ContactMemories = std::array<ContactMemory<Real>, face_count>;
 
+/// Resolves the contact with a face, plane and at `distance` from the displaced particle. Returns the change of
+/// displacement; updates `memory`. Ground without data has a NaN distance and touches nothing: the particle is about
+/// to leave.
+template <class Real>
+Vec3<Real> resolve_face(const Model& model, Real distance, const Vec3<Real>& normal, const Vec3<Real>& displacement,
+                        Real density_push, double friction_coefficient, ContactMemory<Real>& memory) {
+    const ContactMemory<Real> before = memory;
+    const auto known = distance == distance;
+    const Vec3<Real> change = resolve_contact(Real(model.contact_distance()) - distance, normal, displacement,
+                                              density_push, Real(friction_coefficient), memory);
+    memory.normal = select(known, memory.normal, before.normal);
+    memory.friction = select(known, memory.friction, before.friction);
+    return select(known, change, Vec3<Real>{});
+}
+
 /// Resolves the contacts with ground and walls of a particle displaced by `displacement`; `boundary` as sampled when it
 /// was displaced by `sampled_at`, and taken to be plane from there. `multiplier` is that of its density constraint.
 /// Returns the new displacement.
 template <class Real>
 Vec3<Real> resolve_contacts(const Model& model, const Boundary<Real>& boundary, const Vec3<Real>& sampled_at,
                             Vec3<Real> displacement, Real multiplier, ContactMemories<Real>& memories) {
-    const Real touching = Real(model.contact_distance());
     for (std::size_t f = 0; f < face_count; ++f) {
         const BoundaryFace<Real>& face = boundary.faces[f];
         if (f > 0 && face.building < 0) break;
         const Real distance = face.distance + dot(displacement - sampled_at, face.normal);
-        const Real push = boundary_push(face, multiplier);
-        // Ground without data has a NaN distance, which is near nothing: the particle is about to leave.
-        if (distance != distance || (distance >= touching && memories[f].normal <= 0 && push <= 0)) continue;
         const double friction = f > 0 ? model.building_friction_coefficient : model.friction_coefficient;
-        displacement +=
-            resolve_contact(touching - distance, face.normal, displacement, push, Real(friction), memories[f]);
+        displacement += resolve_face(model, distance, face.normal, displacement, boundary_push(face.slope, multiplier),
+                                     friction, memories[f]);
     }
     return displacement;
 }

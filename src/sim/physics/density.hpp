@@ -18,26 +18,32 @@ template <class Real>
 struct DensityConstraint {
     Real start{};            ///< G at the step's start, with the surface's share
     Real surface_share{};    ///< density that a particle at the free surface lacks
-    Real gradient_square{};  ///< -d G / d lambda, softened, 1/m2
+    Real gradient_square{};  ///< see gradient_square()
     Real pair_square{};      ///< sum |V grad W|^2, softened, 1/m2
 };
 
-/// `density`, `square`, `gradient` and `divergence` as the pair sums give them at the predicted positions; `softness`
+/// How fast the multiplier changes the constraint: -d G / d lambda, softened, 1/m2.
+template <class Real, class Sums, class Share>
+Real gradient_square(const Sums& sums, const Share& boundary, Real softness) {
+    const Vec3<Real> pushed = sums.gradient + boundary.gradient * Real(boundary_mirror_share);
+    return sums.square + softness + dot(pushed, pushed);
+}
+
+/// `boundary` has the `density` and `gradient` of a Boundary; `density`, `square`, `gradient` and `divergence` as the pair sums give them at the predicted positions; `softness`
 /// in 1/m2.
 ///
 /// At a free surface a particle lacks neighbours on one side. Left alone, it would bear no pressure before the debris
 /// below had packed closer; so, as with the ghost air of Schechter & Bridson (2012), the lattice is taken to go on
 /// beyond the surface: as a half-space, at the distance that the gradient of the density tells.
-template <class Real, class Sums>
-DensityConstraint<Real> linearise_density(const Model& model, const Sums& sums, const Boundary<Real>& boundary,
+template <class Real, class Sums, class Share>
+DensityConstraint<Real> linearise_density(const Model& model, const Sums& sums, const Share& boundary,
                                           const Vec3<Real>& displacement, Real softness) {
-    const Vec3<Real> pushed = sums.gradient + boundary.gradient * Real(boundary_mirror_share);
     DensityConstraint<Real> result;
     result.surface_share = model.boundary.density_at_slope(length(sums.gradient + boundary.gradient));
     result.start = sums.density + boundary.density + result.surface_share - 1 + sums.divergence -
                    dot(boundary.gradient, displacement);
     result.pair_square = sums.square + softness;
-    result.gradient_square = result.pair_square + dot(pushed, pushed);
+    result.gradient_square = gradient_square(sums, boundary, softness);
     return result;
 }
 
@@ -45,9 +51,8 @@ DensityConstraint<Real> linearise_density(const Model& model, const Sums& sums, 
 /// the G to undo.
 template <class Real>
 Real next_multiplier(Real before, Real violation, Real gradient_square, Real under_relaxation) {
-    if (!(gradient_square > 0)) return before;
-    const Real after = before - under_relaxation * violation / gradient_square;
-    return after < 0 ? after : Real(0);
+    const Real after = smaller(Real(0), before - under_relaxation * violation / gradient_square);
+    return select(gradient_square > Real(0), after, before);
 }
 
 /// The share of slight compression that a step spreads: more would keep stirring debris at rest.
@@ -59,8 +64,8 @@ inline double spreading_share(double time_step) {
 /// The part of a violation that a step spreads: the share of what is slight, and all that goes beyond.
 template <class Real>
 Real spread_in_step(Real compression, Real share) {
-    constexpr Real slight = Real(0.01);
-    const Real beyond = compression > slight ? compression - slight : Real(0);
+    constexpr double slight = 0.01;
+    const Real beyond = larger(Real(0), compression - Real(slight));
     return beyond + (compression - beyond) * share;
 }
 

@@ -15,7 +15,7 @@ template <class Real>
 Vec3<Real> friction_change(const Vec3<Real>& tangential_displacement, Real limit, Vec3<Real>& accumulated) {
     Vec3<Real> wanted = accumulated - tangential_displacement;
     const Real size = length(wanted);
-    if (size > limit) wanted = wanted * (limit / size);
+    wanted = wanted * select(size > limit, limit / size, Real(1));
     const Vec3<Real> change = wanted - accumulated;
     accumulated = wanted;
     return change;
@@ -38,8 +38,7 @@ Vec3<Real> pair_friction(const Vec3<Real>& separation, Real square_distance, con
     const Vec3<Real> tangential = relative_displacement - separation * along;
     const Real size = length(tangential);
     const Real wanted = Real(0.5) * weight * size;
-    if (wanted <= limit || size == Real(0)) return tangential * (Real(-0.5) * weight);
-    return tangential * (-limit / size);
+    return tangential * select(wanted <= limit, Real(-0.5) * weight, -limit / size);
 }
 
 }  // namespace talus

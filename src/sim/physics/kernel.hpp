@@ -31,12 +31,12 @@ struct CubicSpline {
     template <class Real>
     static Real value(Real q) {
         const Real t = 1 - q, c = Real(8 / std::numbers::pi);
-        return q <= Real(0.5) ? c * (6 * q * q * (q - 1) + 1) : c * 2 * t * t * t;
+        return select(q <= Real(0.5), c * (6 * q * q * (q - 1) + 1), c * 2 * t * t * t);
     }
     template <class Real>
     static Real slope_over_q(Real q) {
         const Real t = 1 - q, c = Real(48 / std::numbers::pi);
-        return q <= Real(0.5) ? c * (2 - 3 * q) : c * t * t / q;
+        return select(q <= Real(0.5), c * (2 - 3 * q), c * t * t / q);
     }
 };
 
@@ -51,7 +51,7 @@ struct Spiky {
     static Real slope_over_q(Real q) {
         const Real t = 1 - q;
         // The slope is finite at q = 0; two particles at one place have no direction to part in and stay.
-        return Real(45 / std::numbers::pi) * t * t / (q > Real(1e-6) ? q : Real(1e-6));
+        return Real(45 / std::numbers::pi) * t * t / larger(q, Real(1e-6));
     }
 };
 

@@ -54,7 +54,8 @@ template <class Real>
 Deviator<Real> limit_to_friction(const Deviator<Real>& trial, Real internal_friction_coefficient, Real pressure) {
     const Real limit_square = 2 * internal_friction_coefficient * internal_friction_coefficient * pressure * pressure;
     const Real square = square_norm(trial);
-    return square > limit_square ? trial * std::sqrt(limit_square / square) : trial;
+    using std::sqrt;
+    return trial * select(square > limit_square, sqrt(limit_square / square), Real(1));
 }
 
 /// The stress that resists the shear of a step, in the units of lambda: every iteration adds to it until debris no
@@ -62,10 +63,9 @@ Deviator<Real> limit_to_friction(const Deviator<Real>& trial, Real internal_fric
 template <class Real>
 Deviator<Real> next_stress(const Deviator<Real>& before, const DisplacementGradient<Real>& deformation,
                            Real internal_friction_coefficient, Real multiplier, Real pair_square, Real jacobi_factor) {
-    constexpr Real gain = Real(0.5);  // shear has two components where compression has one
-    Deviator<Real> trial = before;
-    if (pair_square > 0) trial = trial + deformation.shear() * (gain * jacobi_factor / pair_square);
-    return limit_to_friction(trial, internal_friction_coefficient, -multiplier);
+    constexpr double gain = 0.5;  // shear has two components where compression has one
+    const Real share = select(pair_square > Real(0), Real(gain) * jacobi_factor / pair_square, Real(0));
+    return limit_to_friction(before + deformation.shear() * share, internal_friction_coefficient, -multiplier);
 }
 
 }  // namespace talus

@@ -1,0 +1,273 @@
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <concepts>
+#include <cstddef>
+#include <cstdint>
+#include <type_traits>
+
+/// Arithmetic that a formula written once runs through with one number or with as many side by side as a vector
+/// register holds. A formula takes `select` in place of a branch; the rest looks as ever.
+///
+/// Built on the vector types of GCC and Clang, so a formula in any header turns into the instructions of the function
+/// that it is inlined into. Nothing here fuses a multiplication and an addition: every instruction set gives the same
+/// bits.
+namespace talus {
+
+/// On what passes bare vectors: they travel in other registers where a wider instruction set is on, so that a call
+/// between the two would be wrong. Lanes and masks are safe by having copy constructors: they travel in memory.
+#define TALUS_INLINE [[gnu::always_inline]] inline
+
+/// Four numbers that lie together: a gather of all four is one load.
+using Quad = std::array<float, 4>;
+
+// A vector's size must not depend on a template parameter: GCC then drops the attribute (bug 88600).
+#define TALUS_SHUFFLES(...)                                                            \
+    TALUS_INLINE static Floats shuffled(const Floats& a, const Floats& b) {            \
+        return __builtin_shufflevector(a, b, __VA_ARGS__);                             \
+    }
+using FourFloats = float __attribute__((vector_size(16)));
+using EightFloats = float __attribute__((vector_size(32)));
+
+template <int count>
+struct LaneTypes;
+
+template <>
+struct LaneTypes<4> {
+    using Floats = float __attribute__((vector_size(16)));
+    using Ints = std::int32_t __attribute__((vector_size(16)));
+    struct Low { TALUS_SHUFFLES(0, 4, 1, 5) };
+    struct High { TALUS_SHUFFLES(2, 6, 3, 7) };
+    struct LowPairs { TALUS_SHUFFLES(0, 1, 4, 5) };
+    struct HighPairs { TALUS_SHUFFLES(2, 3, 6, 7) };
+    /// The blocks of 128 bits that `block(0)`, `block(1)`, ... give, one after another.
+    template <class Block>
+    TALUS_INLINE static Floats joined(const Block& block) {
+        return block(0);
+    }
+    template <class Take>
+    TALUS_INLINE static void split(const Floats& v, const Take& take) {
+        take(0, v);
+    }
+};
+
+template <>
+struct LaneTypes<8> {
+    using Floats = float __attribute__((vector_size(32)));
+    using Ints = std::int32_t __attribute__((vector_size(32)));
+    struct Low { TALUS_SHUFFLES(0, 8, 1, 9, 4, 12, 5, 13) };
+    struct High { TALUS_SHUFFLES(2, 10, 3, 11, 6, 14, 7, 15) };
+    struct LowPairs { TALUS_SHUFFLES(0, 1, 8, 9, 4, 5, 12, 13) };
+    struct HighPairs { TALUS_SHUFFLES(2, 3, 10, 11, 6, 7, 14, 15) };
+    template <class Block>
+    TALUS_INLINE static Floats joined(const Block& block) {
+        return __builtin_shufflevector(block(0), block(1), 0, 1, 2, 3, 4, 5, 6, 7);
+    }
+    template <class Take>
+    TALUS_INLINE static void split(const Floats& v, const Take& take) {
+        take(0, __builtin_shufflevector(v, v, 0, 1, 2, 3));
+        take(1, __builtin_shufflevector(v, v, 4, 5, 6, 7));
+    }
+};
+
+template <>
+struct LaneTypes<16> {
+    using Floats = float __attribute__((vector_size(64)));
+    using Ints = std::int32_t __attribute__((vector_size(64)));
+    struct Low { TALUS_SHUFFLES(0, 16, 1, 17, 4, 20, 5, 21, 8, 24, 9, 25, 12, 28, 13, 29) };
+    struct High { TALUS_SHUFFLES(2, 18, 3, 19, 6, 22, 7, 23, 10, 26, 11, 27, 14, 30, 15, 31) };
+    struct LowPairs { TALUS_SHUFFLES(0, 1, 16, 17, 4, 5, 20, 21, 8, 9, 24, 25, 12, 13, 28, 29) };
+    struct HighPairs { TALUS_SHUFFLES(2, 3, 18, 19, 6, 7, 22, 23, 10, 11, 26, 27, 14, 15, 30, 31) };
+    template <class Block>
+    TALUS_INLINE static Floats joined(const Block& block) {
+        const EightFloats low = __builtin_shufflevector(block(0), block(1), 0, 1, 2, 3, 4, 5, 6, 7);
+        const EightFloats high = __builtin_shufflevector(block(2), block(3), 0, 1, 2, 3, 4, 5, 6, 7);
+        return __builtin_shufflevector(low, high, 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15);
+    }
+    template <class Take>
+    TALUS_INLINE static void split(const Floats& v, const Take& take) {
+        take(0, __builtin_shufflevector(v, v, 0, 1, 2, 3));
+        take(1, __builtin_shufflevector(v, v, 4, 5, 6, 7));
+        take(2, __builtin_shufflevector(v, v, 8, 9, 10, 11));
+        take(3, __builtin_shufflevector(v, v, 12, 13, 14, 15));
+    }
+};
+#undef TALUS_SHUFFLES
+
+/// What a comparison of lanes gives: all bits of a lane, or none.
+template <int count>
+struct LaneMask {
+    using Ints = typename LaneTypes<count>::Ints;
+    Ints bits{};
+
+    LaneMask() = default;
+    TALUS_INLINE LaneMask(const Ints& all_bits) : bits(all_bits) {}
+    TALUS_INLINE LaneMask(const LaneMask& o) : bits(o.bits) {}
+    TALUS_INLINE LaneMask& operator=(const LaneMask& o) {
+        bits = o.bits;
+        return *this;
+    }
+
+    TALUS_INLINE friend LaneMask operator&(const LaneMask& a, const LaneMask& b) { return {a.bits & b.bits}; }
+    TALUS_INLINE friend LaneMask operator|(const LaneMask& a, const LaneMask& b) { return {a.bits | b.bits}; }
+    TALUS_INLINE friend LaneMask operator!(const LaneMask& a) { return {~a.bits}; }
+    [[nodiscard]] bool at(int lane) const { return bits[lane] != 0; }
+    TALUS_INLINE friend bool any(const LaneMask& a) {
+        std::int32_t all = 0;
+        for (int lane = 0; lane < count; ++lane) all |= a.bits[lane];
+        return all != 0;
+    }
+};
+
+/// `count` floats side by side. Not for arrays: GCC 12 fails over an array of vectors that the baseline lacks.
+template <int count>
+struct Lanes {
+    using Floats = typename LaneTypes<count>::Floats;
+    using Ints = typename LaneTypes<count>::Ints;
+    static constexpr int size = count;
+    Floats v{};
+
+    Lanes() = default;
+    TALUS_INLINE Lanes(const Floats& floats) : v(floats) {}
+    TALUS_INLINE Lanes(const Lanes& o) : v(o.v) {}
+    TALUS_INLINE Lanes& operator=(const Lanes& o) {
+        v = o.v;
+        return *this;
+    }
+    template <class Number>
+        requires std::is_arithmetic_v<Number>
+    TALUS_INLINE Lanes(Number number) : v(static_cast<float>(number) - Floats{}) {}
+
+    TALUS_INLINE static Lanes load(const float* from) {
+        Lanes result;
+        __builtin_memcpy(&result.v, from, sizeof result.v);
+        return result;
+    }
+    TALUS_INLINE void store(float* to) const { __builtin_memcpy(to, &v, sizeof v); }
+    [[nodiscard]] float at(int lane) const { return v[lane]; }
+    void set(int lane, float number) { v[lane] = number; }
+
+    TALUS_INLINE friend Lanes operator+(const Lanes& a, const Lanes& b) { return Lanes(Floats(a.v + b.v)); }
+    TALUS_INLINE friend Lanes operator-(const Lanes& a, const Lanes& b) { return Lanes(Floats(a.v - b.v)); }
+    TALUS_INLINE friend Lanes operator*(const Lanes& a, const Lanes& b) { return Lanes(Floats(a.v * b.v)); }
+    TALUS_INLINE friend Lanes operator/(const Lanes& a, const Lanes& b) { return Lanes(Floats(a.v / b.v)); }
+    TALUS_INLINE friend Lanes operator-(const Lanes& a) { return Lanes(Floats(-a.v)); }
+    TALUS_INLINE Lanes& operator+=(const Lanes& o) { return *this = *this + o; }
+    TALUS_INLINE Lanes& operator*=(const Lanes& o) { return *this = *this * o; }
+
+    TALUS_INLINE friend LaneMask<count> operator<(const Lanes& a, const Lanes& b) { return {a.v < b.v}; }
+    TALUS_INLINE friend LaneMask<count> operator>(const Lanes& a, const Lanes& b) { return {a.v > b.v}; }
+    TALUS_INLINE friend LaneMask<count> operator<=(const Lanes& a, const Lanes& b) { return {a.v <= b.v}; }
+    TALUS_INLINE friend LaneMask<count> operator>=(const Lanes& a, const Lanes& b) { return {a.v >= b.v}; }
+    TALUS_INLINE friend LaneMask<count> operator==(const Lanes& a, const Lanes& b) { return {a.v == b.v}; }
+    TALUS_INLINE friend LaneMask<count> operator!=(const Lanes& a, const Lanes& b) { return {a.v != b.v}; }
+    TALUS_INLINE friend Lanes select(const LaneMask<count>& mask, const Lanes& yes, const Lanes& no) {
+        return Lanes(Floats(mask.bits ? yes.v : no.v));
+    }
+    TALUS_INLINE friend Lanes sqrt(const Lanes& a) {
+        Lanes result;
+        for (int lane = 0; lane < count; ++lane) result.v[lane] = __builtin_sqrtf(a.v[lane]);
+        return result;
+    }
+    /// Towards zero; for what an int can hold.
+    TALUS_INLINE friend Ints truncated(const Lanes& a) { return __builtin_convertvector(a.v, Ints); }
+    TALUS_INLINE static Lanes from(const Ints& ints) { return Lanes(Floats(__builtin_convertvector(ints, Floats))); }
+};
+
+/// The numbers of a Quad, of one particle or of many.
+template <class Real>
+struct Quads {
+    Real x{}, y{}, z{}, w{};
+};
+
+/// Transposes 4 x 4 numbers within every block of 128 bits; its own inverse.
+template <int count>
+TALUS_INLINE Quads<Lanes<count>> transposed(const Quads<Lanes<count>>& r) {
+    using T = LaneTypes<count>;
+    const auto xy01 = T::Low::shuffled(r.x.v, r.y.v), zw01 = T::High::shuffled(r.x.v, r.y.v);
+    const auto xy23 = T::Low::shuffled(r.z.v, r.w.v), zw23 = T::High::shuffled(r.z.v, r.w.v);
+    return {T::LowPairs::shuffled(xy01, xy23), T::HighPairs::shuffled(xy01, xy23), T::LowPairs::shuffled(zw01, zw23),
+            T::HighPairs::shuffled(zw01, zw23)};
+}
+
+/// The rows that `row(lane)` points to: a load of 16 bytes each and a transposition. A gather instruction per number
+/// costs several times as much (measured on Zen 4).
+template <int count, class Row>
+TALUS_INLINE Quads<Lanes<count>> quads_from(const Row& row) {
+    const auto rows = [&](int first) __attribute__((always_inline)) {
+        return Lanes<count>(LaneTypes<count>::joined([&](int block) __attribute__((always_inline)) {
+            FourFloats four;
+            __builtin_memcpy(&four, row(first + 4 * block), sizeof four);
+            return four;
+        }));
+    };
+    return transposed(Quads<Lanes<count>>{rows(0), rows(1), rows(2), rows(3)});
+}
+
+/// rows[index] for every lane.
+template <int count>
+TALUS_INLINE Quads<Lanes<count>> quads_at(const Quad* rows, const std::uint32_t* index) {
+    return quads_from<count>([&](int lane) __attribute__((always_inline)) { return rows + index[lane]; });
+}
+template <class Ints>
+    requires(!std::is_integral_v<Ints>)
+TALUS_INLINE auto quads_at(const Quad* rows, const Ints& index) {
+    return quads_from<static_cast<int>(sizeof(Ints) / sizeof(std::int32_t))>(
+        [&](int lane) __attribute__((always_inline)) { return rows + index[lane]; });
+}
+/// As many rows from `rows` on as there are lanes.
+template <int count>
+TALUS_INLINE Quads<Lanes<count>> load_quads(const Quad* rows) {
+    return quads_from<count>([&](int lane) __attribute__((always_inline)) { return rows + lane; });
+}
+template <int count>
+TALUS_INLINE void store_quads(const Quads<Lanes<count>>& quads, Quad* rows) {
+    const Quads<Lanes<count>> r = transposed(quads);
+    const auto put = [&](int first, const Lanes<count>& from) __attribute__((always_inline)) {
+        LaneTypes<count>::split(from.v, [&](int block, const FourFloats& four) __attribute__((always_inline)) {
+            __builtin_memcpy(rows + first + 4 * block, &four, sizeof four);
+        });
+    };
+    put(0, r.x);
+    put(1, r.y);
+    put(2, r.z);
+    put(3, r.w);
+}
+
+// The same words for one number.
+template <std::floating_point Real>
+Real select(bool condition, Real yes, Real no) {
+    return condition ? yes : no;
+}
+inline bool any(bool condition) {
+    return condition;
+}
+template <std::floating_point Real>
+std::int32_t truncated(Real a) {
+    return static_cast<std::int32_t>(a);
+}
+inline Quads<float> quads_at(const Quad* rows, std::int32_t index) {
+    const Quad& row = rows[index];
+    return {row[0], row[1], row[2], row[3]};
+}
+template <class Real, class Index>
+TALUS_INLINE Real from_index(const Index& index) {
+    if constexpr (std::is_floating_point_v<Real>) {
+        return static_cast<Real>(index);
+    } else {
+        return Real::from(index);
+    }
+}
+
+/// As std::max and std::min: the first where they compare equal, or not at all.
+template <class Real>
+TALUS_INLINE Real larger(const Real& a, const Real& b) {
+    return select(a < b, b, a);
+}
+template <class Real>
+TALUS_INLINE Real smaller(const Real& a, const Real& b) {
+    return select(b < a, b, a);
+}
+
+}  // namespace talus

@@ -1,0 +1,162 @@
+// What every file of stages shares; included once per instruction set.
+#if defined(TALUS_LANES_INL) == defined(HWY_TARGET_TOGGLE)
+#ifdef TALUS_LANES_INL
+#undef TALUS_LANES_INL
+#else
+#define TALUS_LANES_INL
+#endif
+
+#include <hwy/highway.h>
+
+#include "core/lanes.hpp"
+#include "sim/cpu/work.hpp"
+
+/// Everything that a stage calls becomes part of it: formulas of any header turn into its instruction set.
+#define TALUS_STAGE [[gnu::flatten]]
+
+HWY_BEFORE_NAMESPACE();
+namespace talus::cpu::HWY_NAMESPACE {
+
+constexpr int lane_count = HWY_MAX_BYTES >= 64 ? 16 : HWY_MAX_BYTES >= 32 ? 8 : 4;
+static_assert(bundle_size % lane_count == 0);
+using L = Lanes<lane_count>;
+using V3 = Vec3<L>;
+using Stress = Deviator<L>;
+using Mask = LaneMask<lane_count>;
+
+/// Calls f(i) for the first of every lane_count particles of the bundles.
+template <class F>
+HWY_INLINE void for_each_lanes(std::size_t first_bundle, std::size_t last_bundle, const F& f) {
+    for (std::size_t i = first_bundle * bundle_size; i < last_bundle * bundle_size; i += lane_count) f(i);
+}
+
+/// The last bundle may be longer than the particles are many.
+HWY_INLINE Mask is_present(const State& state, std::size_t i) {
+    L place;
+    for (int lane = 0; lane < lane_count; ++lane) place.set(lane, static_cast<float>(lane));
+    return place < L(state.count > i ? state.count - i : 0);
+}
+
+HWY_INLINE L load(const std::vector<float>& from, std::size_t i) {
+    return L::load(from.data() + i);
+}
+HWY_INLINE V3 load(const VectorArray& from, std::size_t i) {
+    return {load(from.x, i), load(from.y, i), load(from.z, i)};
+}
+HWY_INLINE void store(const L& numbers, std::vector<float>& to, std::size_t i) {
+    numbers.store(to.data() + i);
+}
+HWY_INLINE void store(const V3& v, VectorArray& to, std::size_t i) {
+    store(v.x, to.x, i);
+    store(v.y, to.y, i);
+    store(v.z, to.z, i);
+}
+HWY_INLINE Stress load(const DeviatorArray& from, std::size_t i) {
+    return {load(from.xx, i), load(from.yy, i), load(from.xy, i), load(from.xz, i), load(from.yz, i)};
+}
+HWY_INLINE void store(const Stress& s, DeviatorArray& to, std::size_t i) {
+    store(s.xx, to.xx, i);
+    store(s.yy, to.yy, i);
+    store(s.xy, to.xy, i);
+    store(s.xz, to.xz, i);
+    store(s.yz, to.yz, i);
+}
+HWY_INLINE Quads<L> load(const std::vector<Quad>& from, std::size_t i) {
+    return load_quads<lane_count>(from.data() + i);
+}
+HWY_INLINE void store(const Quads<L>& quads, std::vector<Quad>& to, std::size_t i) {
+    store_quads(quads, to.data() + i);
+}
+HWY_INLINE V3 vector_of(const Quads<L>& quads) {
+    return {quads.x, quads.y, quads.z};
+}
+
+/// The neighbours of lane_count particles, side by side.
+struct LaneLists {
+    const std::uint32_t* neighbour;
+    float *gradient_x, *gradient_y, *gradient_z;
+    std::uint32_t length;
+    L count;
+
+    HWY_INLINE LaneLists(NeighbourLists& lists, std::size_t i)
+        : length(lists.length[i / bundle_size]), count(load(lists.count, i)) {
+        const std::size_t at = lists.start[i / bundle_size] + i % bundle_size;
+        neighbour = lists.neighbour.data() + at;
+        gradient_x = lists.gradient.x.data() + at;
+        gradient_y = lists.gradient.y.data() + at;
+        gradient_z = lists.gradient.z.data() + at;
+    }
+    /// A list that is shorter than its bundle's longest goes on with the particle itself.
+    HWY_INLINE Mask is_neighbour(std::uint32_t k) const { return L(static_cast<float>(k)) < count; }
+    HWY_INLINE V3 gradient(std::uint32_t k) const {
+        const std::size_t at = k * bundle_size;
+        return {L::load(gradient_x + at), L::load(gradient_y + at), L::load(gradient_z + at)};
+    }
+    HWY_INLINE void keep(std::uint32_t k, const V3& gradient) const {
+        const std::size_t at = k * bundle_size;
+        gradient.x.store(gradient_x + at);
+        gradient.y.store(gradient_y + at);
+        gradient.z.store(gradient_z + at);
+    }
+    HWY_INLINE Quads<L> gather(const std::vector<Quad>& from, std::uint32_t k) const {
+        return quads_at<lane_count>(from.data(), neighbour + k * bundle_size);
+    }
+};
+
+/// A kernel's constants as every pair needs them: V W = value_scale * W r^3, V grad W = -gradient_scale * slope_over_q
+/// x.
+struct PairScale {
+    float inverse_radius, value_scale, gradient_scale;
+
+    explicit PairScale(const Kernel& kernel) {
+        const double r = kernel.support_radius;
+        inverse_radius = static_cast<float>(1 / r);
+        value_scale = static_cast<float>(kernel.particle_volume / (r * r * r));
+        gradient_scale = static_cast<float>(kernel.particle_volume / (r * r * r * r * r));
+    }
+    /// distance / r, at most 1, where every kernel vanishes
+    HWY_INLINE L quotient(const L& distance) const { return smaller(L(1), distance * L(inverse_radius)); }
+};
+
+/// The share of ground and walls in a particle's density.
+struct BoundaryShare {
+    L density;
+    V3 gradient;
+};
+
+HWY_INLINE Mask near_walls(const Model& model, const V3& p) {
+    Mask near;
+    if (model.solids.empty()) return near;
+    for (int lane = 0; lane < lane_count; ++lane) {
+        near.bits[lane] = model.solids.near(p.x.at(lane), p.y.at(lane)) ? -1 : 0;
+    }
+    return near;
+}
+
+/// Samples ground and walls of particles at `p`, `displacement` from where they started the step.
+HWY_INLINE BoundaryShare sample_boundary_at(const Model& model, Work& work, std::size_t i, const V3& p,
+                                            const V3& displacement) {
+    const GroundFace<L> ground = sample_ground(model, p);
+    BoundaryShare share{ground.density, ground.normal * ground.slope};
+    store(ground.distance - dot(displacement, ground.normal), work.ground_distance, i);
+    store(ground.slope, work.ground_slope, i);
+    store(ground.normal, work.ground_normal, i);
+    store(share.gradient, work.boundary_gradient, i);
+    if (model.solids.empty()) return share;
+    const Mask near = near_walls(model, p);
+    std::fill_n(work.has_walls.begin() + static_cast<std::ptrdiff_t>(i), lane_count, 0);
+    if (!any(near)) return share;
+    for (int lane = 0; lane < lane_count; ++lane) {
+        if (!near.at(lane)) continue;
+        share.density.set(lane, sample_walls(model, work, i + static_cast<std::size_t>(lane),
+                                             {p.x.at(lane), p.y.at(lane), p.z.at(lane)},
+                                             {displacement.x.at(lane), displacement.y.at(lane), displacement.z.at(lane)}));
+    }
+    share.gradient = load(work.boundary_gradient, i);
+    return share;
+}
+
+}  // namespace talus::cpu::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif

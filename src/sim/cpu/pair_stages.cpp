@@ -1,0 +1,137 @@
+// The published method, eqs. (1) to (4): density and pair friction, both built up from nothing in every step.
+// Compiled once per instruction set by Highway's foreach_target.
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "sim/cpu/pair_stages.cpp"
+#include <hwy/foreach_target.h>
+// (must come after foreach_target)
+#include "sim/cpu/lanes-inl.hpp"
+#include "sim/cpu/stages.hpp"
+#include "sim/physics/density.hpp"
+#include "sim/physics/friction.hpp"
+
+HWY_BEFORE_NAMESPACE();
+namespace talus::cpu::HWY_NAMESPACE {
+namespace {
+
+TALUS_STAGE void pack_start(const StageData& data, std::size_t first, std::size_t last) {
+    const auto& [model, state, work, neighbours] = data;
+    for_each_lanes(first, last, [&](std::size_t i) {
+        const V3 p = load(state.position, i);
+        store(Quads<L>{p.x, p.y, p.z, L(0)}, work.velocities, i);
+    });
+}
+
+/// What a step starts with compressed may be undone only slowly, since a correction turns into velocity: the density
+/// constraint tolerates the rest.
+template <class Kernel>
+TALUS_STAGE void find_tolerated(const StageData& data, std::size_t first, std::size_t last) {
+    const auto& [model, state, work, neighbours] = data;
+    const L undone(model.solver.depenetration_speed * state.time_step / model.particle_spacing);
+    const PairScale scale(model.kernel);
+    for_each_lanes(first, last, [&](std::size_t i) {
+        const LaneLists lists(neighbours, i);
+        const V3 p = vector_of(load(work.velocities, i));
+        L density;
+        for (std::uint32_t k = 0; k < lists.length; ++k) {
+            const L q = scale.quotient(length(p - vector_of(lists.gather(work.velocities, k))));
+            density += select(lists.is_neighbour(k), Kernel::value(q), L(0));
+        }
+        density = L(scale.value_scale) * (density + Kernel::value(L(0)));
+        const L start = density + sample_boundary_at(model, work, i, p, V3{}).density - L(1);
+        store(larger(L(0), start - undone), work.tolerated_compression, i);
+        store(L(0), state.multiplier, i);
+        // The first contacts come before the first iteration.
+        sample_boundary_at(model, work, i, vector_of(load(work.points, i)), vector_of(load(work.displacement, i)));
+    });
+}
+
+struct PairSums {
+    L density, square;
+    V3 gradient;
+};
+
+/// Debris resists compression only.
+template <class Kernel>
+TALUS_STAGE void update_multipliers(const StageData& data, std::size_t first, std::size_t last) {
+    const auto& [model, state, work, neighbours] = data;
+    const L softness(model.solver.constraint_relaxation * model.kernel.rest_gradient_sum);
+    const L factor(jacobi_factor(model.solver.under_relaxation, model.kernel));
+    const PairScale scale(model.kernel);
+    for_each_lanes(first, last, [&](std::size_t i) {
+        const LaneLists lists(neighbours, i);
+        const V3 p = vector_of(load(work.points, i));
+        PairSums sums;
+        for (std::uint32_t k = 0; k < lists.length; ++k) {
+            const V3 separation = p - vector_of(lists.gather(work.points, k));
+            const L square = dot(separation, separation);
+            const L q = scale.quotient(sqrt(square));
+            const L slope = Kernel::slope_over_q(q) * L(-scale.gradient_scale);
+            sums.density += select(lists.is_neighbour(k), Kernel::value(q), L(0));
+            sums.square += slope * slope * square;
+            sums.gradient += separation * slope;
+        }
+        sums.density = L(scale.value_scale) * (sums.density + Kernel::value(L(0)));
+
+        Quads<L> moved = load(work.displacement, i);
+        const BoundaryShare boundary = sample_boundary_at(model, work, i, p, vector_of(moved));
+        const L compression = sums.density + boundary.density - L(1);
+        const L before = load(state.multiplier, i), mobile = load(work.mobile, i);
+        const L after = next_multiplier(before, compression - load(work.tolerated_compression, i),
+                                        gradient_square(sums, boundary, softness), factor);
+        moved.w = (after - before) * mobile;
+        store(select(mobile > L(0), after, before), state.multiplier, i);
+        store(larger(L(0), compression) * mobile, work.compression, i);
+        store(moved, work.displacement, i);
+    });
+}
+
+/// Pairs pressed together rub against each other. Equal and opposite for the two of a pair.
+template <class Kernel>
+TALUS_STAGE void apply(const StageData& data, std::size_t first, std::size_t last) {
+    const auto& [model, state, work, neighbours] = data;
+    const L cap(pair_friction_cap(model.internal_friction_coefficient));
+    const PairScale scale(model.kernel);
+    for_each_lanes(first, last, [&](std::size_t i) {
+        const LaneLists lists(neighbours, i);
+        const V3 p = vector_of(load(work.points, i));
+        const Quads<L> moved = load(work.displacement, i);
+        V3 correction = boundary_correction(load(work.boundary_gradient, i), moved.w);
+        for (std::uint32_t k = 0; k < lists.length; ++k) {
+            const Quads<L> other = lists.gather(work.displacement, k);
+            const V3 separation = p - vector_of(lists.gather(work.points, k));
+            const L square = dot(separation, separation), distance = sqrt(square);
+            const L q = scale.quotient(distance);
+            const L push = (moved.w + other.w) * L(-scale.gradient_scale) * Kernel::slope_over_q(q);
+            const L limit = larger(L(0), push * distance) * cap;  // none between particles that part
+            correction += separation * push + pair_friction(separation, square, vector_of(moved) - vector_of(other),
+                                                            limit, Kernel::value(q) * L(scale.value_scale));
+        }
+        const V3 end = vector_of(moved) + correction * load(work.mobile, i);
+        store(Quads<L>{end.x, end.y, end.z, moved.w}, work.velocities, i);
+    });
+}
+
+PairStages make_stages(KernelChoice kernel) {
+    return with_kernel(kernel, [&](auto k) {
+        using Kernel = decltype(k);
+        return PairStages{pack_start, find_tolerated<Kernel>, update_multipliers<Kernel>, apply<Kernel>};
+    });
+}
+
+}  // namespace
+}  // namespace talus::cpu::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+#include "sim/cpu/dispatch.hpp"
+
+namespace talus::cpu {
+
+HWY_EXPORT(make_stages);
+
+PairStages pair_stages_for(KernelChoice kernel) {
+    return with_wanted_instructions([&] { return HWY_DYNAMIC_DISPATCH(make_stages)(kernel); });
+}
+
+}  // namespace talus::cpu
+#endif

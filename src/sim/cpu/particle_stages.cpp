@@ -1,0 +1,216 @@
+// What a step does to every particle by itself, and viscosity.
+// Compiled once per instruction set by Highway's foreach_target.
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "sim/cpu/particle_stages.cpp"
+#include <hwy/foreach_target.h>
+// (must come after foreach_target)
+#include <algorithm>
+#include <limits>
+
+#include "sim/cpu/lanes-inl.hpp"
+#include "sim/cpu/stages.hpp"
+#include "sim/physics/viscosity.hpp"
+
+HWY_BEFORE_NAMESPACE();
+namespace talus::cpu::HWY_NAMESPACE {
+namespace {
+
+/// 1 for particles that may move, 0 for those that are held.
+HWY_INLINE L mobility(const State& state, std::size_t i) {
+    L mobile(1);
+    for (int lane = 0; lane < lane_count; ++lane) {
+        if (state.held[i + static_cast<std::size_t>(lane)]) mobile.set(lane, 0);
+    }
+    return mobile;
+}
+
+TALUS_STAGE void predict(const StageData& data, std::size_t first, std::size_t last) {
+    const auto& [model, state, work, neighbours] = data;
+    const L dt(state.time_step), fall(model.gravity * state.time_step);
+    for_each_lanes(first, last, [&](std::size_t i) {
+        const Mask moves = mobility(state, i) > L(0);
+        V3 velocity = load(state.velocity, i);
+        velocity.z = select(moves, velocity.z - fall, velocity.z);
+        store(velocity.z, state.velocity.z, i);
+        store(load(state.position, i) + select(moves, velocity * dt, V3{}), work.predicted, i);
+    });
+}
+
+TALUS_STAGE void begin(const StageData& data, std::size_t first, std::size_t last) {
+    const auto& [model, state, work, neighbours] = data;
+    const L dt(state.time_step);
+    for_each_lanes(first, last, [&](std::size_t i) {
+        const L mobile = mobility(state, i);
+        const V3 displacement = select(mobile > L(0), load(state.velocity, i) * dt, V3{});
+        const V3 predicted = load(state.position, i) + displacement;
+        store(mobile, work.mobile, i);
+        store(Quads<L>{displacement.x, displacement.y, displacement.z, L(0)}, work.displacement, i);
+        store(Quads<L>{predicted.x, predicted.y, predicted.z, L(0)}, work.points, i);
+        store(L(0), work.contact_normal, i);
+        store(V3{}, work.contact_friction, i);
+        for (std::size_t lane = 0; lane < lane_count; ++lane) {
+            if (work.has_walls[i + lane]) work.walls[i + lane].contacts = {};
+        }
+    });
+}
+
+/// Contact with ground and buildings, and the basal part of eq. (4).
+TALUS_STAGE void contacts(const StageData& data, std::size_t first, std::size_t last) {
+    const auto& [model, state, work, neighbours] = data;
+    const bool moves_points = model.solver.internal_friction == InternalFriction::pair;
+    for_each_lanes(first, last, [&](std::size_t i) {
+        const Quads<L> before = load(work.displacement, i);
+        const L mobile = load(work.mobile, i), multiplier = load(state.multiplier, i);
+        const V3 displacement = vector_of(before), normal = load(work.ground_normal, i);
+        ContactMemory<L> contact{load(work.contact_normal, i), load(work.contact_friction, i)};
+        const L distance = load(work.ground_distance, i) + dot(displacement, normal);
+        V3 after = displacement + resolve_face(model, distance, normal, displacement,
+                                               boundary_push(load(work.ground_slope, i), multiplier),
+                                               model.friction_coefficient, contact);
+        store(contact.normal, work.contact_normal, i);
+        store(contact.friction, work.contact_friction, i);
+        for (std::size_t lane = 0; lane < lane_count; ++lane) {
+            if (!work.has_walls[i + lane]) continue;
+            const int l = static_cast<int>(lane);
+            const Vec3<float> end = resolve_wall_contacts(model, work, i + lane, multiplier.at(l),
+                                                          {after.x.at(l), after.y.at(l), after.z.at(l)});
+            after.x.set(l, end.x);
+            after.y.set(l, end.y);
+            after.z.set(l, end.z);
+        }
+        after = select(mobile > L(0), after, displacement);
+        store(Quads<L>{after.x, after.y, after.z, before.w}, work.displacement, i);
+        if (!moves_points) return;
+        const V3 p = load(state.position, i) + after;
+        store(Quads<L>{p.x, p.y, p.z, L(0)}, work.points, i);
+    });
+}
+
+/// What overlaps is moved apart, and its velocity left alone: debris that is too dense (its shift is there already with
+/// stresses), debris that touches ground or walls too closely.
+TALUS_STAGE void undo_overlaps(const StageData& data, std::size_t first, std::size_t last) {
+    const auto& [model, state, work, neighbours] = data;
+    const bool spread = model.solver.internal_friction == InternalFriction::stress;
+    const L most(model.particle_spacing / 4), touching(model.contact_distance());
+    for_each_lanes(first, last, [&](std::size_t i) {
+        const V3 p = load(state.position, i) + vector_of(load(work.displacement, i));
+        const GroundSample<L> ground = model.terrain.sample(p.x, p.y);
+        const L overlap = touching - (p.z - ground.height) * ground.normal.z;
+        // Not so for the NaN of unknown ground.
+        V3 shift = ground.normal * select(overlap > L(0), smaller(overlap, most), L(0));
+        const Mask near = near_walls(model, p);
+        if (any(near)) {
+            for (int l = 0; l < lane_count; ++l) {
+                if (!near.at(l)) continue;
+                const Vec3<float> one = undo_overlap_near_walls(model, {p.x.at(l), p.y.at(l), p.z.at(l)}, most.at(l));
+                shift.x.set(l, one.x);
+                shift.y.set(l, one.y);
+                shift.z.set(l, one.z);
+            }
+        }
+        if (spread) shift += load(work.shift, i);
+        const L size = length(shift);
+        shift = shift * select(size > most, most / size, L(1));
+        store(select(load(work.mobile, i) > L(0), shift, V3{}), work.shift, i);
+    });
+}
+
+/// Most particles end their step where they are displaced to, without having come near a wall or below ground. Those
+/// that do not go one by one.
+TALUS_STAGE void enforce_boundaries(const StageData& data, std::size_t first, std::size_t last) {
+    const auto& [model, state, work, neighbours] = data;
+    constexpr int most_parts = 4;
+    const L longest_part(model.particle_spacing / 4);
+    const auto below_ground = [&](const V3& p) { return p.z < model.terrain.sample(p.x, p.y).height; };
+    for_each_lanes(first, last, [&](std::size_t i) {
+        const V3 start = load(state.position, i), displacement = vector_of(load(work.displacement, i));
+        const V3 end = start + displacement, shift = load(work.shift, i);
+        const L distance = length(displacement);
+        const L parts = select(distance > longest_part,
+                               from_index<L>(truncated(smaller(L(most_parts), distance / longest_part))) + L(1), L(1));
+        Mask doubtful = (parts > L(most_parts)) | (length(shift) > longest_part) | !(distance == distance);
+        for (int part = 1; part <= most_parts; ++part) {
+            const Mask on_the_way = L(part) <= parts;
+            if (!any(on_the_way)) break;
+            const V3 p = start + displacement * (L(part) / parts);
+            doubtful = doubtful | (on_the_way & below_ground(select(L(part) == parts, end, p)));
+        }
+        const V3 shifted = end + shift;
+        doubtful = doubtful | below_ground(shifted) | near_walls(model, end);
+        const L mobile = load(work.mobile, i);
+        doubtful = doubtful & (mobile > L(0));
+        store(select(mobile > L(0), shifted, start), work.predicted, i);
+        if (!any(doubtful)) return;
+        for (int lane = 0; lane < lane_count; ++lane) {
+            if (doubtful.at(lane)) enforce_particle(model, state, work, i + static_cast<std::size_t>(lane));
+        }
+    });
+}
+
+TALUS_STAGE float update_velocities(const StageData& data, std::size_t first, std::size_t last) {
+    const auto& [model, state, work, neighbours] = data;
+    const L inverse_dt(1 / state.time_step);
+    L largest(0), unknown(0);
+    for_each_lanes(first, last, [&](std::size_t i) {
+        const Mask moves = load(work.mobile, i) > L(0);
+        const V3 velocity = select(moves, vector_of(load(work.displacement, i)) * inverse_dt, load(state.velocity, i));
+        const V3 position = load(work.predicted, i);
+        store(velocity, state.velocity, i);
+        store(position, state.position, i);
+        store(Quads<L>{position.x, position.y, position.z, L(0)}, work.points, i);
+        store(Quads<L>{velocity.x, velocity.y, velocity.z, L(0)}, work.velocities, i);
+        const L square = select(is_present(state, i), dot(velocity, velocity), L(0));
+        largest = larger(largest, square);
+        unknown = select(square == square, unknown, L(1));
+    });
+    float result = 0;
+    for (int lane = 0; lane < lane_count; ++lane) {
+        if (unknown.at(lane) > 0) return std::numeric_limits<float>::quiet_NaN();
+        result = std::max(result, largest.at(lane));
+    }
+    return std::sqrt(result);
+}
+
+/// Eq. (5) as XSPH smoothing; the sum weighs both particles of a pair alike, so momentum is conserved.
+template <class Kernel>
+TALUS_STAGE void apply_viscosity(const StageData& data, std::size_t first, std::size_t last) {
+    const auto& [model, state, work, neighbours] = data;
+    const PairScale scale(model.kernel);
+    const L smoothing(step_smoothing(model.viscosity, state.time_step));
+    for_each_lanes(first, last, [&](std::size_t i) {
+        const LaneLists lists(neighbours, i);
+        const V3 p = vector_of(load(work.points, i)), own = vector_of(load(work.velocities, i));
+        V3 change;
+        for (std::uint32_t k = 0; k < lists.length; ++k) {
+            const V3 separation = p - vector_of(lists.gather(work.points, k));
+            const L weight = Kernel::value(scale.quotient(length(separation))) * L(scale.value_scale);
+            change += (vector_of(lists.gather(work.velocities, k)) - own) * weight;
+        }
+        store(own + change * (smoothing * load(work.mobile, i)), state.velocity, i);
+    });
+}
+
+ParticleStages make_stages(KernelChoice kernel) {
+    ParticleStages stages{predict,           begin,   contacts, undo_overlaps, enforce_boundaries,
+                          update_velocities, nullptr, hwy::TargetName(HWY_TARGET)};
+    with_kernel(kernel, [&](auto k) { stages.apply_viscosity = apply_viscosity<decltype(k)>; });
+    return stages;
+}
+
+}  // namespace
+}  // namespace talus::cpu::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+#include "sim/cpu/dispatch.hpp"
+
+namespace talus::cpu {
+
+HWY_EXPORT(make_stages);
+
+ParticleStages particle_stages_for(KernelChoice kernel) {
+    return with_wanted_instructions([&] { return HWY_DYNAMIC_DISPATCH(make_stages)(kernel); });
+}
+
+}  // namespace talus::cpu
+#endif

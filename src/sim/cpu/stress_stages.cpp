@@ -1,0 +1,177 @@
+// The default method: density and internal friction as a stress per particle that persists between steps.
+// Compiled once per instruction set by Highway's foreach_target.
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "sim/cpu/stress_stages.cpp"
+#include <hwy/foreach_target.h>
+// (must come after foreach_target)
+#include "sim/cpu/lanes-inl.hpp"
+#include "sim/cpu/stages.hpp"
+#include "sim/physics/density.hpp"
+#include "sim/physics/stress.hpp"
+
+HWY_BEFORE_NAMESPACE();
+namespace talus::cpu::HWY_NAMESPACE {
+namespace {
+
+/// Lays out what apply() reads of a particle. Debris that is held keeps what it carries, ready for its start, and
+/// presses on nothing.
+HWY_INLINE void pack_stress(Work& work, std::size_t i, const L& mobile, const L& pressure, const Stress& s) {
+    const L p = pressure * mobile;
+    const Stress t = s * mobile;
+    store(Quads<L>{p + t.xx, t.xy, t.xz, p + t.yy}, work.stress_rows, i);
+    store(Quads<L>{t.yz, p - t.xx - t.yy, L(0), p}, work.stress_rest, i);
+}
+
+struct PairSums {
+    L density, square, divergence;
+    V3 gradient;
+};
+
+template <class Kernel>
+HWY_INLINE PairSums sum_pairs(const PairScale& scale, const LaneLists& lists, const Work& work, const V3& p,
+                              const V3& moved) {
+    PairSums sums;
+    for (std::uint32_t k = 0; k < lists.length; ++k) {
+        const V3 separation = p - vector_of(lists.gather(work.points, k));
+        const L square = dot(separation, separation);
+        const L q = scale.quotient(sqrt(square));
+        const L slope = Kernel::slope_over_q(q) * L(-scale.gradient_scale);
+        const V3 gradient = separation * slope;
+        lists.keep(k, gradient);
+        sums.density += select(lists.is_neighbour(k), Kernel::value(q), L(0));
+        sums.square += slope * slope * square;
+        sums.gradient += gradient;
+        sums.divergence += dot(vector_of(lists.gather(work.displacement, k)) - moved, gradient);
+    }
+    sums.density = L(scale.value_scale) * (sums.density + Kernel::value(L(0)));
+    return sums;
+}
+
+/// Multipliers and stresses of the last step are where this one begins: debris at rest needs the same ones again. They
+/// are pressures times dt^2, so they scale with the step.
+template <class Kernel>
+TALUS_STAGE void linearise(const StageData& data, std::size_t first, std::size_t last) {
+    const auto& [model, state, work, neighbours] = data;
+    const double ratio = state.previous_time_step > 0 ? state.time_step / state.previous_time_step : 0;
+    const L scale_of_multipliers(ratio * ratio);
+    const L softness(model.solver.constraint_relaxation * model.kernel.rest_gradient_sum);
+    const PairScale scale(model.kernel);
+    for_each_lanes(first, last, [&](std::size_t i) {
+        const V3 p = vector_of(load(work.points, i)), moved = vector_of(load(work.displacement, i));
+        const PairSums sums = sum_pairs<Kernel>(scale, LaneLists(neighbours, i), work, p, moved);
+        const BoundaryShare boundary = sample_boundary_at(model, work, i, p, moved);
+        const DensityConstraint<L> constraint = linearise_density(model, sums, boundary, moved, softness);
+        store(constraint.start, work.constraint_start, i);
+        store(constraint.surface_share, work.surface_share, i);
+        store(constraint.gradient_square, work.gradient_square, i);
+        store(constraint.pair_square, work.pair_square, i);
+
+        const L multiplier = load(state.multiplier, i) * scale_of_multipliers;
+        const Stress stress = load(state.stress, i) * scale_of_multipliers;
+        store(multiplier, state.multiplier, i);
+        store(stress, state.stress, i);
+        pack_stress(work, i, load(work.mobile, i), multiplier, stress);
+    });
+}
+
+TALUS_STAGE void solve(const StageData& data, std::size_t first, std::size_t last) {
+    const auto& [model, state, work, neighbours] = data;
+    const L factor(jacobi_factor(model.solver.under_relaxation, model.kernel));
+    const L internal_friction(model.internal_friction_coefficient);
+    for_each_lanes(first, last, [&](std::size_t i) {
+        const LaneLists lists(neighbours, i);
+        const V3 moved = vector_of(load(work.displacement, i));
+        DisplacementGradient<L> deformation;
+        for (std::uint32_t k = 0; k < lists.length; ++k) {
+            deformation.add(vector_of(lists.gather(work.displacement, k)) - moved, lists.gradient(k));
+        }
+        const L start = load(work.constraint_start, i);
+        const L density =
+            start - deformation.divergence() + boundary_change(load(work.boundary_gradient, i), moved);
+        const L before = load(state.multiplier, i);
+        const L after =
+            next_multiplier(before, density - larger(L(0), start), load(work.gradient_square, i), factor);
+        const Stress stress_before = load(state.stress, i);
+        const Stress stress =
+            next_stress(stress_before, deformation, internal_friction, after, load(work.pair_square, i), factor);
+        const L mobile = load(work.mobile, i);
+        const Mask moves = mobile > L(0);
+        store(select(moves, after, before), state.multiplier, i);
+        store(Stress{select(moves, stress.xx, stress_before.xx), select(moves, stress.yy, stress_before.yy),
+                     select(moves, stress.xy, stress_before.xy), select(moves, stress.xz, stress_before.xz),
+                     select(moves, stress.yz, stress_before.yz)},
+              state.stress, i);
+        store(larger(L(0), density - load(work.surface_share, i)) * mobile, work.compression, i);
+        pack_stress(work, i, mobile, after - before, stress - stress_before);
+    });
+}
+
+/// u_i += sum_j [(d lambda_i + d lambda_j) I + ds_i + ds_j] V grad W, equal and opposite for the two particles of a
+/// pair.
+TALUS_STAGE void apply(const StageData& data, std::size_t first, std::size_t last) {
+    const auto& [model, state, work, neighbours] = data;
+    for_each_lanes(first, last, [&](std::size_t i) {
+        const LaneLists lists(neighbours, i);
+        const Quads<L> own = load(work.stress_rows, i), own_rest = load(work.stress_rest, i);
+        V3 correction;
+        for (std::uint32_t k = 0; k < lists.length; ++k) {
+            const V3 gradient = lists.gradient(k);
+            const Quads<L> rows = lists.gather(work.stress_rows, k), rest = lists.gather(work.stress_rest, k);
+            const L xy = own.y + rows.y, xz = own.z + rows.z, yz = own_rest.x + rest.x;
+            correction += {dot({own.x + rows.x, xy, xz}, gradient), dot({xy, own.w + rows.w, yz}, gradient),
+                           dot({xz, yz, own_rest.y + rest.y}, gradient)};
+        }
+        correction += boundary_correction(load(work.boundary_gradient, i), own_rest.w);
+        const Quads<L> moved = load(work.displacement, i);
+        const V3 end = vector_of(moved) + correction * load(work.mobile, i);
+        store(Quads<L>{end.x, end.y, end.z, moved.w}, work.displacement, i);
+    });
+}
+
+TALUS_STAGE void find_spread(const StageData& data, std::size_t first, std::size_t last) {
+    const auto& [model, state, work, neighbours] = data;
+    const L factor(jacobi_factor(model.solver.under_relaxation, model.kernel));
+    const L share(spreading_share(state.time_step));
+    for_each_lanes(first, last, [&](std::size_t i) {
+        const L excess = spread_in_step(load(work.compression, i), share);
+        const L multiplier = next_multiplier(L(0), excess, load(work.gradient_square, i), factor);
+        store(Quads<L>{L(0), L(0), L(0), multiplier}, work.stress_rest, i);
+    });
+}
+
+TALUS_STAGE void spread(const StageData& data, std::size_t first, std::size_t last) {
+    const auto& [model, state, work, neighbours] = data;
+    for_each_lanes(first, last, [&](std::size_t i) {
+        const LaneLists lists(neighbours, i);
+        const L own = load(work.stress_rest, i).w;
+        V3 shift = boundary_correction(load(work.boundary_gradient, i), own);
+        for (std::uint32_t k = 0; k < lists.length; ++k) {
+            shift += lists.gradient(k) * (own + lists.gather(work.stress_rest, k).w);
+        }
+        store(shift, work.shift, i);
+    });
+}
+
+StressStages make_stages(KernelChoice kernel) {
+    StressStages stages{nullptr, solve, apply, find_spread, spread};
+    with_kernel(kernel, [&](auto k) { stages.linearise = linearise<decltype(k)>; });
+    return stages;
+}
+
+}  // namespace
+}  // namespace talus::cpu::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+#include "sim/cpu/dispatch.hpp"
+
+namespace talus::cpu {
+
+HWY_EXPORT(make_stages);
+
+StressStages stress_stages_for(KernelChoice kernel) {
+    return with_wanted_instructions([&] { return HWY_DYNAMIC_DISPATCH(make_stages)(kernel); });
+}
+
+}  // namespace talus::cpu
+#endif
