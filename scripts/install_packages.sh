@@ -7,7 +7,7 @@ set -euo pipefail
 packages=(g++ cmake ninja-build pkg-config git libgdal-dev gdal-bin libtbb-dev libhwy-dev libpng-dev libtomlplusplus-dev libcli11-dev
           nlohmann-json3-dev libfmt-dev libgtest-dev libgmock-dev)
 if [[ ${1:-build} == test ]]; then
-    packages+=(clang-format clang-tidy python3 python3-gdal python3-numpy poppler-utils)
+    packages+=(libbenchmark-dev clang-format clang-tidy python3 python3-gdal python3-numpy poppler-utils)
     # Browser and Node.js also come from elsewhere than the distribution's packages.
     command -v chromium >/dev/null || command -v chromium-browser >/dev/null || command -v google-chrome >/dev/null ||
         packages+=(chromium)

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "core/result.hpp"
 #include "scene/new_scene.hpp"
 
 /// The program's commands. Each returns an exit code and has said on stderr, in one line, what went wrong.
@@ -43,11 +44,24 @@ struct ValidateArguments {
 };
 int validate_command(const ValidateArguments& arguments);
 
+struct BenchArguments {
+    std::vector<std::string> scenes, methods;  ///< empty: all
+    std::vector<int> particles, threads;       ///< empty: the usual ones; all cores
+    bool full = false;                         ///< particles up to a million
+    int iterations = 4, repeats = 7;
+    std::optional<int> steps, warm_up;  ///< left out: by the number of particles
+    std::string json;                   ///< a file to write; empty: none
+};
+int bench_command(const BenchArguments& arguments);
+
 /// The reference of scene files on stdout: for the terminal, or as Markdown.
 int reference_command(bool markdown);
 
 /// Prints "talus: error: MESSAGE" as exactly one line on stderr and returns `code`.
 int fail(int code, const std::string& message);
+
+/// Whether `file` (empty: none) can be written as far as one sees beforehand: it must not come up after half an hour.
+[[nodiscard]] Status check_output_file(const std::string& file);
 
 /// Makes `${TALUS_DATA}` in scene paths mean `folder`. Call before any thread starts.
 void set_data_folder(const std::string& folder);

@@ -9,6 +9,8 @@
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
+#include "bench/measure.hpp"
+#include "bench/scenes.hpp"
 #include "commands.hpp"
 #include "exit_code.hpp"
 #include "params/scene_text.hpp"
@@ -29,6 +31,7 @@ Examples:
                                             a commented scene from your own terrain, ready to run
   talus scene check my_scene/scene.toml     what a scene reads and means, without running it
   talus validate --quick                    computes cases whose results are known, and prints one table
+  talus bench                               how fast talus is here: milliseconds per stage, particles per second
 
 Exit codes:
     0  complete
@@ -59,6 +62,37 @@ Exit codes:
     2  bad input: command line or a case file; nothing was computed
     4  an expectation does not hold
   130  interrupted by Ctrl-C; the table shows the cases that were complete
+)";
+
+constexpr const char* bench_help = R"(
+Steps standard scenes with a fixed number of iterations and everything that a run has: terrain, friction, viscosity,
+houses, maps, front and impact. Scenes:
+  slab         ten layers of debris that slide down a plane of raster terrain towards two houses
+  column       a block of debris, at most 24 layers high, that collapses on flat ground beside a house
+  sham_tseng   600 m3 on the scar of the built-in scene, with its terrain, houses and flow path
+The debris of slab and column grows with the number of particles, that of sham_tseng gets finer.
+Methods: stress (the default of a scene) and pair (the published friction per pair of particles).
+
+A row of the table is the median of the repeats:
+  ms/step      wall time of a step, observers included; the second table has the share of each stage in it, in %
+  ns/p-it      wall time per particle and iteration: ms/step over particles times iterations
+  Mp-it/s      particle-iterations per second, in millions
+  x real time  simulated seconds per second; the time step is chosen as in a run of the scene
+  neighbours   mean number of neighbours of a particle
+  relative     particle-iterations per unit of a calibration loop that is timed before and after every repeat: it
+               changes with the program, and hardly with how busy the machine is
+  hash         of the state after the last step: the same for any number of threads
+
+Examples:
+  talus bench --scene slab --particles 20000 --threads 1,2
+  talus bench --full --json bench.json      up to a million particles, some minutes and 2 GB of memory
+
+Exit codes:
+    0  complete
+    1  the machine failed: disk full, out of memory
+    2  bad input: nothing was computed
+    3  a step could not be trusted; nothing was written
+  130  interrupted by Ctrl-C; the table shows what was complete, no file was written
 )";
 
 void add_scene_inputs(CLI::App& command, std::string& data) {
@@ -161,6 +195,43 @@ int talus_main(int argc, char** argv) {
         ->type_name("DIR");
     validate_app->footer(validate_help);
 
+    BenchArguments bench;
+    std::string backend = "cpu";
+    CLI::App* bench_app = app.add_subcommand("bench", "measure how fast talus steps standard scenes here");
+    const auto add_list = [bench_app](const std::string& name, auto& values, const std::string& help) {
+        return bench_app->add_option(name, values, help)->delimiter(',')->allow_extra_args(false);
+    };
+    add_list("--scene", bench.scenes, "scenes to step; left out: all")
+        ->type_name("NAME,NAME")
+        ->check(CLI::IsMember(bench::scene_names()));
+    CLI::Option* particles = add_list("--particles", bench.particles, "particles; left out: 5000,20000,75000")
+                                 ->type_name("N,N")
+                                 ->check(CLI::Range(bench::fewest_particles, bench::most_particles));
+    bench_app->add_flag("--full", bench.full, "300000 and 1000000 particles too")->excludes(particles);
+    add_list("--method", bench.methods, "how internal friction is solved; left out: both")
+        ->type_name("NAME,NAME")
+        ->check(CLI::IsMember(bench::method_names()));
+    bench_app->add_option("--iterations", bench.iterations, "solver iterations of a step; left out: 4")
+        ->type_name("N")
+        ->check(CLI::Range(1, 1000));
+    add_list("--threads", bench.threads, "numbers of threads; left out: all cores")
+        ->type_name("N,N")
+        ->check(CLI::Range(1, 4096));
+    bench_app->add_option("--backend", backend, "what computes the steps; left out: cpu")
+        ->type_name("NAME")
+        ->check(CLI::IsMember(std::vector<std::string>{"cpu"}));
+    bench_app->add_option("--repeats", bench.repeats, "repeats to take the median of; left out: 7")
+        ->type_name("N")
+        ->check(CLI::Range(1, 1000));
+    bench_app->add_option("--steps", bench.steps, "steps per repeat; left out: 10 to 2, by the number of particles")
+        ->type_name("N")
+        ->check(CLI::Range(1, 100000));
+    bench_app->add_option("--warm-up", bench.warm_up, "steps before the first repeat; left out: 10 to 3, likewise")
+        ->type_name("N")
+        ->check(CLI::Range(0, 100000));
+    bench_app->add_option("--json", bench.json, "write the rows as a list of objects")->type_name("FILE");
+    bench_app->footer(bench_help);
+
     app.footer(program_help);  // last: commands made after it would inherit it
 
     try {
@@ -176,6 +247,7 @@ int talus_main(int argc, char** argv) {
     if (*new_app) return new_command(create);
     if (*export_app) return export_builtin_command(builtin_folder, builtin_force);
     if (*validate_app) return validate_command(validate);
+    if (*bench_app) return bench_command(bench);
     if (*reference_app) return reference_command(markdown);
     std::fputs(app.help().c_str(), stdout);
     return exit_code::success;

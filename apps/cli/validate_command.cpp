@@ -48,16 +48,6 @@ Result<std::vector<Case>> load_cases(const ValidateArguments& arguments, const f
     return cases;
 }
 
-/// A file that cannot be written must not come up after half an hour.
-Status check_output(const std::string& file) {
-    if (file.empty()) return {};
-    const fs::path parent = fs::absolute(file).parent_path();
-    std::error_code error;
-    if (fs::is_directory(file, error)) return Error{file + ": is a folder, not a file to write"};
-    if (!fs::is_directory(parent, error)) return Error{fmt::format("{}: there is no folder {}", file, parent.string())};
-    return {};
-}
-
 std::string list_text(const std::vector<Case>& cases) {
     std::size_t widest = 0;
     for (const Case& c : cases) widest = std::max(widest, c.name.size());
@@ -84,7 +74,7 @@ int validate_command(const ValidateArguments& arguments) {
     if (!arguments.data.empty()) set_data_folder(arguments.data);
     InterruptWatch watch;
     for (const std::string& file : {arguments.json, arguments.html, arguments.markdown}) {
-        if (Status s = check_output(file); !s) return fail(exit_code::bad_input, s.error().message);
+        if (Status s = check_output_file(file); !s) return fail(exit_code::bad_input, s.error().message);
     }
     const TemporaryFolder unpacked;
     if (unpacked.path().empty()) return fail(exit_code::failure, "cannot make a temporary folder; set TMPDIR");

@@ -228,7 +228,7 @@ TEST(BuiltinScene, RunsWithoutAnyFileAndLeavesNoTemporaryFolder) {
 TEST(Help, TeachesCommandsExitCodesAndEveryTunable) {
     const auto general = run_program({"--help"});
     EXPECT_EQ(general.exit_code, 0);
-    for (const char* part : {"talus run", "scene new", "scene check", "Exit codes", "130"}) {
+    for (const char* part : {"talus run", "scene new", "scene check", "talus bench", "Exit codes", "130"}) {
         EXPECT_THAT(general.out, HasSubstr(part));
     }
     const auto run = run_program({"run", "--help"});

@@ -8,7 +8,8 @@ import pathlib
 import re
 import sys
 
-# A layer may include those named here and itself; sim and geo, products and calibrate do not know each other.
+# A layer may include those named here and itself; sim and geo do not know each other, nor do products and calibrate,
+# validate and bench.
 BELOW = {
     "core": [],
     "params": ["core"],
@@ -20,7 +21,9 @@ BELOW = {
     "products": ["core", "params", "terrain", "sim", "geo", "observe", "scene"],
     "calibrate": ["core", "params", "terrain", "sim", "geo", "observe", "scene"],
     "validate": ["core", "params", "terrain", "sim", "geo", "observe", "scene", "products"],
-    "apps": ["core", "params", "terrain", "sim", "geo", "observe", "scene", "products", "calibrate", "validate"],
+    "bench": ["core", "params", "terrain", "sim", "geo", "observe", "scene", "products"],
+    "apps": ["core", "params", "terrain", "sim", "geo", "observe", "scene", "products", "calibrate", "validate",
+             "bench"],
 }
 INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]')
 GDAL = re.compile(r"^(gdal|ogr|cpl_|proj\b|proj\.h)")
@@ -77,11 +80,13 @@ def self_test():
                 ("products", "gdal_priv.h"), ("apps", "ogrsf_frmts.h"), ("scene", "cpl_conv.h"), ("products", "proj.h"),
                 ("sim", "gtest/gtest.h"), ("scene", "support/fixtures.hpp"), ("sim", "../core/grid.hpp"),
                 ("products", "calibrate/misfit.hpp"), ("calibrate", "products/products.hpp"),
-                ("products", "validate/suite.hpp"), ("validate", "calibrate/misfit.hpp")]
+                ("products", "validate/suite.hpp"), ("validate", "calibrate/misfit.hpp"),
+                ("bench", "validate/set_up.hpp"), ("scene", "bench/measure.hpp")]
     accepted = [("params", "core/result.hpp"), ("sim", "sim/model.hpp"), ("sim", "terrain/terrain.hpp"),
                 ("geo", "gdal_priv.h"), ("geo", "proj.h"), ("scene", "geo/raster.hpp"), ("apps", "products/products.hpp"),
                 ("scene", "fmt/format.h"), ("core", "vector"), ("apps", "progress.hpp"),
-                ("apps", "validate/suite.hpp"), ("validate", "products/report_plot.hpp")]
+                ("apps", "validate/suite.hpp"), ("validate", "products/report_plot.hpp"),
+                ("apps", "bench/measure.hpp"), ("bench", "scene/scene.hpp")]
     wrong = [f"{layer} <- {name} passes" for layer, name in rejected if offence(layer, name) is None]
     wrong += [f"{layer} <- {name} is rejected" for layer, name in accepted if offence(layer, name) is not None]
     return wrong

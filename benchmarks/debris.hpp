@@ -1,0 +1,78 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "bench/scenes.hpp"
+#include "sim/cpu/cell_sort.hpp"
+#include "sim/cpu/neighbours.hpp"
+#include "sim/cpu/stages.hpp"
+#include "sim/cpu/work.hpp"
+#include "sim/simulation.hpp"
+
+namespace talus::benchmarks {
+
+/// The bench scene `slab` after some steps. Made once per number of particles: that takes longer than measuring.
+struct Debris {
+    explicit Debris(int particles);
+
+    [[nodiscard]] const Model& model() const { return simulation.model(); }
+    [[nodiscard]] const State& state() const { return simulation.state(); }
+
+    bench::Start start;
+    Simulation simulation;
+};
+[[nodiscard]] const Debris& debris_of(std::int64_t particles);
+
+/// A stage of a step that is compiled per instruction set; it works on bundles.
+struct Stage {
+    std::string name;
+    std::function<void(const cpu::StageData&, std::size_t first, std::size_t last)> run;
+};
+
+/// The stages of a step with one iteration, in order, up to where neighbours are found and from there on.
+struct Stages {
+    explicit Stages(const Model& model);
+
+    Stage predict;
+    std::vector<Stage> after_neighbours;
+};
+
+/// A step on its way: what the stages work on, as the backend has it.
+class Step {
+  public:
+    Step(const Debris& debris, InternalFriction method);
+
+    /// Runs the stages before the one of this place in Stages::after_neighbours.
+    void run_until(std::size_t place);
+    void run(const Stage& stage);
+
+    /// Remembers what stages change and are changed by, and puts it back: a stage that is run again and again would
+    /// end far from where a step begins.
+    void remember();
+    void restore();
+
+    [[nodiscard]] const Stages& stages() const { return stages_; }
+    [[nodiscard]] std::uint32_t count() const { return state_.count; }
+
+  private:
+    void find_neighbours();
+
+    Model model_;
+    State state_;
+    cpu::Work work_;
+    cpu::NeighbourLists neighbours_;
+    Stages stages_;
+    struct Memory {
+        std::vector<Quad> displacement;
+        VectorArray predicted, position, velocity, shift, contact_friction;
+        DeviatorArray stress;
+        std::vector<float> multiplier, contact_normal;
+    };
+    Memory memory_;
+};
+
+}  // namespace talus::benchmarks

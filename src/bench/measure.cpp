@@ -1,0 +1,183 @@
+#include "bench/measure.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <utility>
+
+#include <fmt/format.h>
+#include <tbb/global_control.h>
+#include <tbb/task_arena.h>
+
+#if defined(__GLIBC__)
+#include <malloc.h>
+#endif
+
+#include "observe/observer.hpp"
+#include "sim/simulation.hpp"
+
+namespace talus::bench {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double seconds_since(Clock::time_point start) {
+    return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+/// Bytes that the program has allocated; 0 where the system does not say.
+double allocated_bytes() {
+#if defined(__GLIBC__) && (__GLIBC__ > 2 || __GLIBC_MINOR__ >= 33)
+    const struct mallinfo2 info = mallinfo2();
+    return static_cast<double>(info.uordblks) + static_cast<double>(info.hblkhd);
+#else
+    return 0;
+#endif
+}
+
+double mean_neighbours(const Simulation& simulation) {
+    const cpu::NeighbourLists& lists = simulation.backend().neighbours();
+    const std::uint32_t count = simulation.state().count;
+    double pairs = 0;
+    for (std::uint32_t i = 0; i < count; ++i) pairs += lists.count_of(i);
+    return count > 0 ? pairs / count : 0;
+}
+
+Model model_for(const Start& start, const Task& task) {
+    Model model = start.model;
+    model.solver.internal_friction = task.method;
+    model.solver.iteration_count = task.iterations;
+    return model;
+}
+
+/// A run with its observers, as scene/run.cpp steps it.
+class Stepper {
+  public:
+    Stepper(const Start& start, const Task& task, const std::atomic<bool>* stop_requested)
+        : simulation_(model_for(start, task), start.state),
+          observer_(simulation_.model(), simulation_.state(), start.flow_path, start.outputs, start.map_cell),
+          stop_requested_(stop_requested) {}
+
+    Status take(int steps) {
+        for (int i = 0; i < steps; ++i) {
+            if (stop_requested_ && stop_requested_->load()) return Error{"stopped by the user"};
+            if (const auto fault = simulation_.advance()) return Error{*fault};
+            const StageTimer timer(simulation_.stage_times(), Stage::observe);
+            observer_.after_step(simulation_.model(), simulation_.state(), 0);
+        }
+        return {};
+    }
+
+    [[nodiscard]] Simulation& simulation() { return simulation_; }
+
+  private:
+    Simulation simulation_;
+    Observer observer_;
+    const std::atomic<bool>* stop_requested_;
+};
+
+/// What the repeats took, each with the calibration before and after it.
+struct Repeats {
+    std::vector<double> step_seconds, calibration_rate, relative_rate;
+    std::array<std::vector<double>, stage_count> stage_seconds;
+};
+
+Status run_repeats(Stepper& stepper, Row& row, Calibration& calibration) {
+    Simulation& simulation = stepper.simulation();
+    Repeats repeats;
+    const double start_time = simulation.state().time;
+    (void)calibration.measure();  // wakes the threads
+    double rate_before = calibration.measure();
+    for (int repeat = 0; repeat < row.repeats; ++repeat) {
+        const StageTimes before = simulation.stage_times();
+        const Clock::time_point start = Clock::now();
+        if (Status s = stepper.take(row.steps); !s) return s;
+        const double step_seconds = seconds_since(start) / row.steps;
+        const double rate_after = calibration.measure();
+        const double rate = (rate_before + rate_after) / 2;
+        rate_before = rate_after;
+        repeats.step_seconds.push_back(step_seconds);
+        repeats.calibration_rate.push_back(rate);
+        repeats.relative_rate.push_back(row.particle_iterations() / step_seconds / rate);
+        for (std::size_t stage = 0; stage < stage_count; ++stage) {
+            const double spent = simulation.stage_times().seconds[stage] - before.seconds[stage];
+            repeats.stage_seconds[stage].push_back(spent / row.steps);
+        }
+    }
+    row.step_seconds = median(repeats.step_seconds);
+    row.calibration_rate = median(repeats.calibration_rate);
+    row.relative_rate = median(repeats.relative_rate);
+    for (std::size_t stage = 0; stage < stage_count; ++stage) {
+        row.stage_seconds[stage] = median(repeats.stage_seconds[stage]);
+    }
+    row.time_step = (simulation.state().time - start_time) / (row.steps * row.repeats);
+    return {};
+}
+
+Result<Row> measure_in_arena(const Start& start, const Task& task, Calibration& calibration,
+                             const std::atomic<bool>* stop_requested) {
+    Row row;
+    row.scene = start.scene;
+    row.method = method_name(task.method);
+    row.particles = start.state.count;
+    row.iterations = task.iterations;
+    row.threads = task.threads;
+    row.repeats = task.length.repeats;
+    row.steps = task.length.steps.value_or(usual_steps(row.particles));
+    row.warm_up = task.length.warm_up.value_or(usual_warm_up(row.particles));
+    row.fixed_time_step = start.model.solver.time_step.has_value();
+
+    const double bytes_before = allocated_bytes();
+    Stepper stepper(start, task, stop_requested);
+    Status status = stepper.take(row.warm_up);
+    row.bytes_per_particle = std::max(0.0, allocated_bytes() - bytes_before) / std::max(1U, row.particles);
+    if (status) status = run_repeats(stepper, row, calibration);
+    if (!status) {
+        return Error{fmt::format("scene {}, method {}, {} particles: {}", row.scene, row.method, row.particles,
+                                 status.error().message)};
+    }
+    row.instruction_set = stepper.simulation().backend().instruction_set();
+    row.neighbours = mean_neighbours(stepper.simulation());
+    row.hash = hash_state(stepper.simulation().state());
+    return row;
+}
+
+}  // namespace
+
+std::string_view method_name(InternalFriction method) {
+    return method == InternalFriction::pair ? "pair" : "stress";
+}
+
+const std::vector<std::string>& method_names() {
+    static const std::vector<std::string> names = {"stress", "pair"};
+    return names;
+}
+
+InternalFriction method_of(std::string_view name) {
+    return name == "pair" ? InternalFriction::pair : InternalFriction::stress;
+}
+
+int usual_steps(std::uint32_t particles) {
+    return std::clamp(static_cast<int>(400000 / std::max(1U, particles)), 2, 10);
+}
+
+int usual_warm_up(std::uint32_t particles) {
+    return std::clamp(static_cast<int>(300000 / std::max(1U, particles)), 3, 10);
+}
+
+Result<Row> measure(const Start& start, const Task& task, Calibration& calibration,
+                    const std::atomic<bool>* stop_requested) {
+    const tbb::global_control limit(tbb::global_control::max_allowed_parallelism,
+                                    static_cast<std::size_t>(task.threads));
+    tbb::task_arena arena(task.threads);
+    return arena.execute([&] { return measure_in_arena(start, task, calibration, stop_requested); });
+}
+
+double median(std::vector<double> values) {
+    if (values.empty()) return 0;
+    std::sort(values.begin(), values.end());
+    const std::size_t middle = values.size() / 2;
+    return values.size() % 2 == 1 ? values[middle] : (values[middle - 1] + values[middle]) / 2;
+}
+
+}  // namespace talus::bench

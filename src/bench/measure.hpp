@@ -1,0 +1,75 @@
+#pragma once
+
+#include <array>
+#include <atomic>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "bench/calibration.hpp"
+#include "bench/scenes.hpp"
+#include "core/result.hpp"
+#include "params/spec.hpp"
+#include "sim/stage_times.hpp"
+
+namespace talus::bench {
+
+/// How long a measurement is: repeats of some steps each. What is absent follows from the number of particles.
+struct Length {
+    int repeats = 7;
+    std::optional<int> steps;    ///< per repeat
+    std::optional<int> warm_up;  ///< steps before the first repeat
+};
+
+/// What is done in a row of the table.
+struct Task {
+    InternalFriction method = InternalFriction::stress;
+    int iterations = 4;
+    int threads = 1;
+    Length length;
+};
+
+/// What was measured: medians over the repeats.
+struct Row {
+    std::string scene, method, instruction_set;
+    std::string backend = "cpu";
+    std::uint32_t particles = 0;  ///< at the start
+    int iterations = 0, threads = 0;
+    int warm_up = 0, steps = 0, repeats = 0;  ///< steps per repeat
+
+    std::array<double, stage_count> stage_seconds{};  ///< per step
+    double step_seconds = 0;
+    double time_step = 0;  ///< s, mean of the measured steps
+    bool fixed_time_step = false;
+    double neighbours = 0;          ///< mean per particle, after the last step
+    double bytes_per_particle = 0;  ///< allocated for it in memory; 0 where the system does not say
+    double calibration_rate = 0;    ///< units per second
+    double relative_rate = 0;       ///< particle-iterations per calibration unit
+    std::uint64_t hash = 0;         ///< of the state after the last step
+
+    [[nodiscard]] double particle_iterations() const { return static_cast<double>(particles) * iterations; }
+    [[nodiscard]] double particle_iterations_per_second() const { return particle_iterations() / step_seconds; }
+    [[nodiscard]] double steps_per_second() const { return 1 / step_seconds; }
+    [[nodiscard]] double real_time_factor() const { return time_step / step_seconds; }
+};
+
+/// "stress", "pair".
+[[nodiscard]] std::string_view method_name(InternalFriction method);
+[[nodiscard]] const std::vector<std::string>& method_names();
+/// The method of one of these names.
+[[nodiscard]] InternalFriction method_of(std::string_view name);
+
+/// The steps of a repeat, and before the first, where they are not set: fewer the more particles there are.
+[[nodiscard]] int usual_steps(std::uint32_t particles);
+[[nodiscard]] int usual_warm_up(std::uint32_t particles);
+
+/// Steps the scene with all that a run observes. Ends early, with an error, when `stop_requested`.
+/// Errors: a step that cannot be trusted (the number says nothing then).
+[[nodiscard]] Result<Row> measure(const Start& start, const Task& task, Calibration& calibration,
+                                  const std::atomic<bool>* stop_requested = nullptr);
+
+/// The middle one, or the mean of the two in the middle; 0 of none.
+[[nodiscard]] double median(std::vector<double> values);
+
+}  // namespace talus::bench

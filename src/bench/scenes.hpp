@@ -1,0 +1,42 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/result.hpp"
+#include "params/spec.hpp"
+#include "sim/model.hpp"
+#include "sim/state.hpp"
+#include "terrain/flow_path.hpp"
+
+namespace talus::bench {
+
+/// The standard scenes, by name:
+///   slab        ten layers of debris on a plane of raster terrain, sliding towards two houses
+///   column      a block of debris that collapses on flat ground beside a house; no higher than 24 layers
+///   sham_tseng  600 m3 on the scar of the built-in scene, with its terrain, houses and flow path
+[[nodiscard]] const std::vector<std::string>& scene_names();
+
+/// The fewest and the most particles that a scene can be asked for.
+inline constexpr int fewest_particles = 500, most_particles = 4000000;
+
+/// What a measurement begins with: the same for every method and number of threads.
+struct Start {
+    std::string scene;
+    Model model;
+    State state;
+    FlowPath flow_path;
+    OutputSpec outputs;
+    double map_cell = 0;  ///< m
+};
+
+/// A scene with about `particles` particles. Debris lies on the ground without having been brought to rest, which for a
+/// million particles would take minutes, but under its own weight, and moves down the slope.
+/// `builtin_scene`: the scene file that unpack_builtin_scene() has written; only sham_tseng reads it.
+/// Errors: no such scene; the built-in scene cannot be read.
+[[nodiscard]] Result<Start> make_start(std::string_view scene, int particles,
+                                       const std::filesystem::path& builtin_scene);
+
+}  // namespace talus::bench

@@ -1,0 +1,144 @@
+#include "bench/table.hpp"
+
+#include <algorithm>
+#include <array>
+#include <set>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <nlohmann/json.hpp>
+
+namespace talus::bench {
+namespace {
+
+using Json = nlohmann::ordered_json;
+using Line = std::vector<std::string>;
+
+// As long as a number can be read in the table.
+constexpr std::array<std::string_view, stage_count> short_stage_names = {
+    "predict", "neighbours", "warm start", "density", "contacts", "overlaps",
+    "bounds",  "velocities", "viscosity",  "remove",  "observe"};
+
+/// Columns as wide as their widest entry, the first `left` of them with their text on the left.
+std::string aligned(const std::vector<Line>& lines, std::size_t left) {
+    std::vector<std::size_t> width(lines.front().size());
+    for (const Line& line : lines) {
+        for (std::size_t i = 0; i < line.size(); ++i) width[i] = std::max(width[i], line[i].size());
+    }
+    std::string text;
+    for (const Line& line : lines) {
+        for (std::size_t i = 0; i < line.size(); ++i) {
+            const std::string gap = i == 0 ? "" : "  ";
+            text +=
+                gap + (i < left ? fmt::format("{:<{}}", line[i], width[i]) : fmt::format("{:>{}}", line[i], width[i]));
+        }
+        text += "\n";
+    }
+    return text;
+}
+
+std::string hash_text(const Row& row) {
+    return fmt::format("{:016x}", row.hash);
+}
+
+Line name_cells(const Row& row) {
+    return {row.scene, row.method, fmt::format("{}", row.particles), fmt::format("{}", row.threads)};
+}
+
+std::string rates_text(const std::vector<Row>& rows) {
+    std::vector<Line> lines = {{"scene", "method", "particles", "threads", "ms/step", "ns/p-it", "Mp-it/s", "steps/s",
+                                "x real time", "neighbours", "B/particle", "relative", "hash"}};
+    for (const Row& row : rows) {
+        Line line = name_cells(row);
+        for (std::string& cell :
+             Line{fmt::format("{:.2f}", 1e3 * row.step_seconds),
+                  fmt::format("{:.1f}", 1e9 / row.particle_iterations_per_second()),
+                  fmt::format("{:.2f}", 1e-6 * row.particle_iterations_per_second()),
+                  fmt::format("{:.4g}", row.steps_per_second()), fmt::format("{:.3g}", row.real_time_factor()),
+                  fmt::format("{:.1f}", row.neighbours),
+                  row.bytes_per_particle > 0 ? fmt::format("{:.0f}", row.bytes_per_particle) : "-",
+                  fmt::format("{:.4f}", row.relative_rate), hash_text(row)}) {
+            line.push_back(std::move(cell));
+        }
+        lines.push_back(std::move(line));
+    }
+    return aligned(lines, 2);
+}
+
+std::string shares_text(const std::vector<Row>& rows) {
+    std::vector<Line> lines = {{"scene", "method", "particles", "threads"}};
+    for (const std::string_view stage : short_stage_names) lines[0].emplace_back(stage);
+    for (const Row& row : rows) {
+        Line line = name_cells(row);
+        for (const double seconds : row.stage_seconds) {
+            line.push_back(fmt::format("{:.1f}", 100 * seconds / row.step_seconds));
+        }
+        lines.push_back(std::move(line));
+    }
+    return aligned(lines, 2);
+}
+
+/// The values that rows have, each once: "4", "AVX2, SSE4".
+template <class Get>
+std::string distinct(const std::vector<Row>& rows, const Get& get) {
+    std::set<std::string> values;
+    for (const Row& row : rows) values.insert(fmt::format("{}", get(row)));
+    return fmt::format("{}", fmt::join(values, ", "));
+}
+
+}  // namespace
+
+std::string table_text(const std::vector<Row>& rows) {
+    if (rows.empty()) return "nothing was measured\n";
+    return fmt::format(
+        "backend {}, {}; iterations {}; time step {}; medians of {} repeats\n\n{}\n"
+        "share of each stage in a step, %\n{}",
+        distinct(rows, [](const Row& r) { return r.backend; }),
+        distinct(rows, [](const Row& r) { return r.instruction_set; }),
+        distinct(rows, [](const Row& r) { return r.iterations; }),
+        distinct(rows, [](const Row& r) { return r.fixed_time_step ? "fixed" : "adaptive"; }),
+        distinct(rows, [](const Row& r) { return r.repeats; }), rates_text(rows), shares_text(rows));
+}
+
+std::string table_json(const std::vector<Row>& rows) {
+    Json list = Json::array();
+    for (const Row& row : rows) {
+        Json stages = Json::object();
+        for (std::size_t stage = 0; stage < stage_count; ++stage) {
+            stages[std::string(stage_names[stage])] = 1e3 * row.stage_seconds[stage];
+        }
+        list.push_back({
+            {"scene", row.scene},
+            {"method", row.method},
+            {"particles", row.particles},
+            {"iterations", row.iterations},
+            {"threads", row.threads},
+            {"backend", row.backend},
+            {"instruction_set", row.instruction_set},
+            {"warm_up_steps", row.warm_up},
+            {"steps", row.steps},
+            {"repeats", row.repeats},
+            {"time_step", row.fixed_time_step ? "fixed" : "adaptive"},
+            {"time_step_s", row.time_step},
+            {"step_ms", 1e3 * row.step_seconds},
+            {"stages_ms", std::move(stages)},
+            {"ns_per_particle_iteration", 1e9 / row.particle_iterations_per_second()},
+            {"particle_iterations_per_second", row.particle_iterations_per_second()},
+            {"steps_per_second", row.steps_per_second()},
+            {"real_time_factor", row.real_time_factor()},
+            {"neighbours_per_particle", row.neighbours},
+            {"bytes_per_particle", row.bytes_per_particle > 0 ? Json(row.bytes_per_particle) : Json()},
+            {"calibration_units_per_second", row.calibration_rate},
+            {"relative_rate", row.relative_rate},
+            {"hash", hash_text(row)},
+        });
+    }
+    return list.dump(2) + "\n";
+}
+
+std::string row_name(const Row& row) {
+    return fmt::format("{} {} {}, {} thread{}", row.scene, row.particles, row.method, row.threads,
+                       row.threads == 1 ? "" : "s");
+}
+
+}  // namespace talus::bench

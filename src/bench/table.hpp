@@ -1,0 +1,19 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "bench/measure.hpp"
+
+namespace talus::bench {
+
+/// Two tables for a terminal: what was measured, and each stage's share of the step.
+[[nodiscard]] std::string table_text(const std::vector<Row>& rows);
+
+/// A list of objects, one per row; docs/performance.md says what each key means.
+[[nodiscard]] std::string table_json(const std::vector<Row>& rows);
+
+/// "slab 20000 stress, 2 threads": names what a row measured.
+[[nodiscard]] std::string row_name(const Row& row);
+
+}  // namespace talus::bench
