@@ -77,8 +77,9 @@ void Step::find_neighbours() {
     cpu::CellGrid grid;
     cpu::NeighbourSearch search(state_.count);
     const auto by_cell = cell_sort.sort(work_.predicted, state_.count, radius, grid);
-    const std::span<const std::uint32_t> order = search.find(work_.predicted, by_cell, grid, radius);
+    const auto [order, awake] = search.find(work_.predicted, by_cell, state_.resting, grid, radius);
     const State before = state_;
+    state_.awake = awake;
     for (std::size_t i = 0; i < order.size(); ++i) {
         const std::uint32_t from = order[i];
         state_.position.set(i, before.position.at(from));

@@ -42,9 +42,9 @@ void find_neighbours(benchmark::State& run) {
     cpu::NeighbourSearch search(debris.state().count);
     for (auto _ : run) {
         benchmark::DoNotOptimize(search
-                                     .find(debris.state().position, sorted.by_cell, sorted.grid,
+                                     .find(debris.state().position, sorted.by_cell, debris.state().resting, sorted.grid,
                                            static_cast<float>(debris.model().support_radius))
-                                     .data());
+                                     .awake);
     }
     per_particle(run, debris);
 }
@@ -55,7 +55,7 @@ void write_neighbours(benchmark::State& run) {
     const Sorted sorted(debris);
     cpu::NeighbourSearch search(debris.state().count);
     cpu::NeighbourLists lists(debris.state().count);
-    (void)search.find(debris.state().position, sorted.by_cell, sorted.grid,
+    (void)search.find(debris.state().position, sorted.by_cell, debris.state().resting, sorted.grid,
                       static_cast<float>(debris.model().support_radius));
     for (auto _ : run) {
         search.write(lists);

@@ -23,9 +23,9 @@ namespace talus {
 using Quad = std::array<float, 4>;
 
 // A vector's size must not depend on a template parameter: GCC then drops the attribute (bug 88600).
-#define TALUS_SHUFFLES(...)                                                            \
-    TALUS_INLINE static Floats shuffled(const Floats& a, const Floats& b) {            \
-        return __builtin_shufflevector(a, b, __VA_ARGS__);                             \
+#define TALUS_SHUFFLES(...)                                                 \
+    TALUS_INLINE static Floats shuffled(const Floats& a, const Floats& b) { \
+        return __builtin_shufflevector(a, b, __VA_ARGS__);                  \
     }
 using FourFloats = float __attribute__((vector_size(16)));
 using EightFloats = float __attribute__((vector_size(32)));
@@ -37,10 +37,18 @@ template <>
 struct LaneTypes<4> {
     using Floats = float __attribute__((vector_size(16)));
     using Ints = std::int32_t __attribute__((vector_size(16)));
-    struct Low { TALUS_SHUFFLES(0, 4, 1, 5) };
-    struct High { TALUS_SHUFFLES(2, 6, 3, 7) };
-    struct LowPairs { TALUS_SHUFFLES(0, 1, 4, 5) };
-    struct HighPairs { TALUS_SHUFFLES(2, 3, 6, 7) };
+    struct Low {
+        TALUS_SHUFFLES(0, 4, 1, 5)
+    };
+    struct High {
+        TALUS_SHUFFLES(2, 6, 3, 7)
+    };
+    struct LowPairs {
+        TALUS_SHUFFLES(0, 1, 4, 5)
+    };
+    struct HighPairs {
+        TALUS_SHUFFLES(2, 3, 6, 7)
+    };
     /// The blocks of 128 bits that `block(0)`, `block(1)`, ... give, one after another.
     template <class Block>
     TALUS_INLINE static Floats joined(const Block& block) {
@@ -56,10 +64,18 @@ template <>
 struct LaneTypes<8> {
     using Floats = float __attribute__((vector_size(32)));
     using Ints = std::int32_t __attribute__((vector_size(32)));
-    struct Low { TALUS_SHUFFLES(0, 8, 1, 9, 4, 12, 5, 13) };
-    struct High { TALUS_SHUFFLES(2, 10, 3, 11, 6, 14, 7, 15) };
-    struct LowPairs { TALUS_SHUFFLES(0, 1, 8, 9, 4, 5, 12, 13) };
-    struct HighPairs { TALUS_SHUFFLES(2, 3, 10, 11, 6, 7, 14, 15) };
+    struct Low {
+        TALUS_SHUFFLES(0, 8, 1, 9, 4, 12, 5, 13)
+    };
+    struct High {
+        TALUS_SHUFFLES(2, 10, 3, 11, 6, 14, 7, 15)
+    };
+    struct LowPairs {
+        TALUS_SHUFFLES(0, 1, 8, 9, 4, 5, 12, 13)
+    };
+    struct HighPairs {
+        TALUS_SHUFFLES(2, 3, 10, 11, 6, 7, 14, 15)
+    };
     template <class Block>
     TALUS_INLINE static Floats joined(const Block& block) {
         return __builtin_shufflevector(block(0), block(1), 0, 1, 2, 3, 4, 5, 6, 7);
@@ -75,10 +91,18 @@ template <>
 struct LaneTypes<16> {
     using Floats = float __attribute__((vector_size(64)));
     using Ints = std::int32_t __attribute__((vector_size(64)));
-    struct Low { TALUS_SHUFFLES(0, 16, 1, 17, 4, 20, 5, 21, 8, 24, 9, 25, 12, 28, 13, 29) };
-    struct High { TALUS_SHUFFLES(2, 18, 3, 19, 6, 22, 7, 23, 10, 26, 11, 27, 14, 30, 15, 31) };
-    struct LowPairs { TALUS_SHUFFLES(0, 1, 16, 17, 4, 5, 20, 21, 8, 9, 24, 25, 12, 13, 28, 29) };
-    struct HighPairs { TALUS_SHUFFLES(2, 3, 18, 19, 6, 7, 22, 23, 10, 11, 26, 27, 14, 15, 30, 31) };
+    struct Low {
+        TALUS_SHUFFLES(0, 16, 1, 17, 4, 20, 5, 21, 8, 24, 9, 25, 12, 28, 13, 29)
+    };
+    struct High {
+        TALUS_SHUFFLES(2, 18, 3, 19, 6, 22, 7, 23, 10, 26, 11, 27, 14, 30, 15, 31)
+    };
+    struct LowPairs {
+        TALUS_SHUFFLES(0, 1, 16, 17, 4, 5, 20, 21, 8, 9, 24, 25, 12, 13, 28, 29)
+    };
+    struct HighPairs {
+        TALUS_SHUFFLES(2, 3, 18, 19, 6, 7, 22, 23, 10, 11, 26, 27, 14, 15, 30, 31)
+    };
     template <class Block>
     TALUS_INLINE static Floats joined(const Block& block) {
         const EightFloats low = __builtin_shufflevector(block(0), block(1), 0, 1, 2, 3, 4, 5, 6, 7);
@@ -136,8 +160,7 @@ struct Lanes {
         return *this;
     }
     template <class Number>
-        requires std::is_arithmetic_v<Number>
-    TALUS_INLINE Lanes(Number number) {
+    requires std::is_arithmetic_v<Number> TALUS_INLINE Lanes(Number number) {
         // By fours, which every baseline has: GCC takes a wider list of equal numbers apart, one by one.
         const FourFloats four = static_cast<float>(number) - FourFloats{};
         v = LaneTypes<count>::joined([&](int) __attribute__((always_inline)) { return four; });
@@ -215,10 +238,9 @@ TALUS_INLINE Quads<Lanes<count>> quads_at(const Quad* rows, const std::uint32_t*
     return quads_from<count>([&](int lane) __attribute__((always_inline)) { return rows + index[lane]; });
 }
 template <class Ints>
-    requires(!std::is_integral_v<Ints>)
-TALUS_INLINE auto quads_at(const Quad* rows, const Ints& index) {
-    return quads_from<static_cast<int>(sizeof(Ints) / sizeof(std::int32_t))>(
-        [&](int lane) __attribute__((always_inline)) { return rows + index[lane]; });
+requires(!std::is_integral_v<Ints>) TALUS_INLINE auto quads_at(const Quad* rows, const Ints& index) {
+    return quads_from<static_cast<int>(sizeof(Ints) / sizeof(std::int32_t))>([&](
+        int lane) __attribute__((always_inline)) { return rows + index[lane]; });
 }
 /// As many rows from `rows` on as there are lanes.
 template <int count>
@@ -229,9 +251,10 @@ template <int count>
 TALUS_INLINE void store_quads(const Quads<Lanes<count>>& quads, Quad* rows) {
     const Quads<Lanes<count>> r = transposed(quads);
     const auto put = [&](int first, const Lanes<count>& from) __attribute__((always_inline)) {
-        LaneTypes<count>::split(from.v, [&](int block, const FourFloats& four) __attribute__((always_inline)) {
-            __builtin_memcpy(rows + first + 4 * block, &four, sizeof four);
-        });
+        LaneTypes<count>::split(
+            from.v, [&](int block, const FourFloats& four) __attribute__((always_inline)) {
+                __builtin_memcpy(rows + first + 4 * block, &four, sizeof four);
+            });
     };
     put(0, r.x);
     put(1, r.y);

@@ -48,8 +48,7 @@ Terrain::Terrain(Grid<float> elevation) : elevation_(std::move(elevation)) {
         for (int column = 0; column < g.columns; ++column) {
             const std::size_t i = g.index(column, row);
             const float west = column > 0 ? local(i - 1) : none, east = column < last_column_ ? local(i + 1) : none;
-            const float south = row > 0 ? local(i - stride) : none,
-                        north = row < last_row_ ? local(i + stride) : none;
+            const float south = row > 0 ? local(i - stride) : none, north = row < last_row_ ? local(i + stride) : none;
             nodes_[i] = {local(i), rise(west, local(i), east), rise(south, local(i), north), 0};
         }
     }

@@ -92,7 +92,8 @@ class Terrain {
         const auto column = truncated(larger(Real(0), smaller(Real(last_column_ - 1), u)));
         const auto row = truncated(larger(Real(0), smaller(Real(last_row_ - 1), v)));
         using Index = std::remove_const_t<decltype(column)>;
-        return Cell<Index, Real>{Index(row * stride_ + column), u - from_index<Real>(column), v - from_index<Real>(row)};
+        return Cell<Index, Real>{Index(row * stride_ + column), u - from_index<Real>(column),
+                                 v - from_index<Real>(row)};
     }
 
     /// What the value and the rise of one end of a cell weigh, and the derivatives of that.

@@ -44,8 +44,8 @@ void for_each_array(State& a, State& b, const F& f) {
         f(a.position.*array, b.position.*array);
         f(a.velocity.*array, b.velocity.*array);
     }
-    for (auto array : {&DeviatorArray::xx, &DeviatorArray::yy, &DeviatorArray::xy, &DeviatorArray::xz,
-                       &DeviatorArray::yz}) {
+    for (auto array :
+         {&DeviatorArray::xx, &DeviatorArray::yy, &DeviatorArray::xy, &DeviatorArray::xz, &DeviatorArray::yz}) {
         f(a.stress.*array, b.stress.*array);
     }
     f(a.multiplier, b.multiplier);
@@ -253,11 +253,12 @@ double choose_time_step(const Model& model, const State& state) {
         const double eased = state.mean_compression > too_compressed ? state.time_step / 2 : state.time_step;
         dt = std::clamp(eased, std::max(dt / 8, std::min(dt, model.solver.smallest_time_step)), dt);
     }
-    // In steps of an eighth of an octave: with longer ones debris that is just too fast for a step would take one of half
-    // the length, with shorter ones the step would change, and multipliers with it, whenever the speed does.
+    // In steps of an eighth of an octave: with longer ones debris that is just too fast for a step would take one of
+    // half the length, with shorter ones the step would change, and multipliers with it, whenever the speed does.
     const double shorter = std::exp2(-0.125);
     const auto too_long = [&] { return dt * (state.largest_speed + model.gravity * dt) > reach; };
-    while (dt > model.solver.smallest_time_step && too_long()) dt = std::max(shorter * dt, model.solver.smallest_time_step);
+    while (dt > model.solver.smallest_time_step && too_long())
+        dt = std::max(shorter * dt, model.solver.smallest_time_step);
     return dt;
 }
 

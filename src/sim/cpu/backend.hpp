@@ -70,8 +70,9 @@ class Backend {
     std::vector<std::uint32_t> new_index_;  // of the particles that stay
 };
 
-/// The step to take next: `time_step` of the scene, or the largest dt_max / 2^(k/8) in which the fastest particle, falling
-/// freely, moves at most `displacement_limit` of a spacing; shorter while the debris is compressed, down to an eighth.
+/// The step to take next: `time_step` of the scene, or the largest dt_max / 2^(k/8) in which the fastest particle,
+/// falling freely, moves at most `displacement_limit` of a spacing; shorter while the debris is compressed, down to an
+/// eighth.
 [[nodiscard]] double choose_time_step(const Model& model, const State& state);
 
 }  // namespace talus::cpu

@@ -1,9 +1,8 @@
 #pragma once
 
 #include <cstdlib>
-#include <string_view>
-
 #include <hwy/highway.h>
+#include <string_view>
 
 namespace talus::cpu {
 

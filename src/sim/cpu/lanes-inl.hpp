@@ -171,9 +171,10 @@ HWY_INLINE BoundaryShare sample_boundary_at(const Model& model, Work& work, std:
     if (!any(near)) return share;
     for (int lane = 0; lane < lane_count; ++lane) {
         if (!near.at(lane)) continue;
-        share.density.set(lane, sample_walls(model, work, i + static_cast<std::size_t>(lane),
-                                             {p.x.at(lane), p.y.at(lane), p.z.at(lane)},
-                                             {displacement.x.at(lane), displacement.y.at(lane), displacement.z.at(lane)}));
+        share.density.set(
+            lane,
+            sample_walls(model, work, i + static_cast<std::size_t>(lane), {p.x.at(lane), p.y.at(lane), p.z.at(lane)},
+                         {displacement.x.at(lane), displacement.y.at(lane), displacement.z.at(lane)}));
     }
     share.gradient = load(work.boundary_gradient, i);
     return share;

@@ -12,9 +12,9 @@ namespace talus::cpu {
 namespace {
 
 constexpr std::size_t cells_per_task = 64;
-constexpr std::size_t usual_task_size = 65536;   // entries of lists; debris at rest density needs about half
-constexpr std::size_t usual_candidates = 4096;   // debris at rest density has some 290 around a cell
-constexpr std::size_t usual_neighbours = 48;     // per particle; debris at rest density has some 40
+constexpr std::size_t usual_task_size = 65536;    // entries of lists; debris at rest density needs about half
+constexpr std::size_t usual_candidates = 4096;    // debris at rest density has some 290 around a cell
+constexpr std::size_t usual_neighbours = 48;      // per particle; debris at rest density has some 40
 constexpr std::size_t window = 16 * bundle_size;  // particles that change places with each other
 constexpr std::uint32_t longest_told_apart = 127;
 
@@ -93,7 +93,8 @@ bool NeighbourSearch::try_find(const CellGrid& grid, float radius) {
         for (std::size_t task = first_task; task < last_task; ++task) {
             const std::size_t first_cell = task * cells_per_task;
             const std::size_t last_cell = std::min(grid.cell_count(), first_cell + cells_per_task);
-            find_in_cells_(sorted_, resting_.data(), grid, first_cell, last_cell, radius * radius, scratch, count_.data());
+            find_in_cells_(sorted_, resting_.data(), grid, first_cell, last_cell, radius * radius, scratch,
+                           count_.data());
             const auto size = static_cast<std::uint32_t>(scratch.found_count);
             std::uint32_t at = used_.fetch_add(size);
             if (at + size > found_.size()) continue;  // grown and found again
@@ -115,7 +116,9 @@ void NeighbourSearch::balance() {
         for (std::size_t w = first_window; w < last_window; ++w) {
             const std::size_t first = w * window, last = std::min(awake_, first + window);
             std::array<std::uint32_t, longest_told_apart + 1> next{};
-            const auto key = [&](std::size_t i) { return longest_told_apart - std::min(count_[i], longest_told_apart); };
+            const auto key = [&](std::size_t i) {
+                return longest_told_apart - std::min(count_[i], longest_told_apart);
+            };
             for (std::size_t i = first; i < last; ++i) ++next[key(window_[i])];
             auto sum = static_cast<std::uint32_t>(first);
             for (std::uint32_t& n : next) sum += std::exchange(n, sum);

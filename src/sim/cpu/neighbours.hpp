@@ -34,7 +34,8 @@ struct SearchScratch {
     std::size_t found_count = 0;  ///< of `found`, which is longer
 };
 
-/// Finds the neighbours of particles sorted by cell, and an order in which the lists of a bundle are about equally long.
+/// Finds the neighbours of particles sorted by cell, and an order in which the lists of a bundle are about equally
+/// long.
 class NeighbourSearch {
   public:
     explicit NeighbourSearch(std::size_t capacity);
@@ -53,8 +54,8 @@ class NeighbourSearch {
     /// Writes what find() found, by the new order.
     void write(NeighbourLists& lists);
 
-    /// Finds the neighbours of the particles in cells [first, last) that are not resting: put into `scratch.found`, their numbers into
-    /// `count`. Compiled per instruction set.
+    /// Finds the neighbours of the particles in cells [first, last) that are not resting: put into `scratch.found`,
+    /// their numbers into `count`. Compiled per instruction set.
     using FindInCells = void (*)(const VectorArray& sorted, const std::uint8_t* resting, const CellGrid& grid,
                                  std::size_t first, std::size_t last, float square_radius, SearchScratch& scratch,
                                  std::uint32_t* count);

@@ -201,13 +201,14 @@ TALUS_STAGE void settle(const StageData& data, std::size_t first, std::size_t la
         const L square = dot(velocity, velocity);
         const Mask moves = load(work.mobile, i) > L(0);
         const L calm = select(moves & (square < L(calm_speed * calm_speed)), load(state.calm_time, i) + dt, L(0));
-        store(select(moves, calm, load(state.calm_time, i)), state.calm_time, i);
+        store(calm, state.calm_time, i);
         const Mask rests = moves & (calm > rest_duration);
         if (any(rests)) {
             for (int l = 0; l < lane_count; ++l) {
                 const std::size_t particle = i + static_cast<std::size_t>(l);
                 if (!rests.at(l) || work.has_walls[particle]) continue;
                 state.resting[particle] = 1;
+                state.calm_time[particle] = 0;
                 state.velocity.set(particle, {});
             }
         }
@@ -224,15 +225,21 @@ TALUS_STAGE void settle(const StageData& data, std::size_t first, std::size_t la
                 if (j < state.awake) continue;
                 // Many may wake the same one at once, all in the same way.
                 std::atomic_ref(state.resting[j]).store(0, std::memory_order_relaxed);
-                std::atomic_ref(state.calm_time[j]).store(0, std::memory_order_relaxed);
             }
         }
     });
 }
 
 ParticleStages make_stages(KernelChoice kernel) {
-    ParticleStages stages{predict,           begin,   contacts, undo_overlaps, enforce_boundaries,
-                          update_velocities, nullptr, settle,   hwy::TargetName(HWY_TARGET)};
+    ParticleStages stages{predict,
+                          begin,
+                          contacts,
+                          undo_overlaps,
+                          enforce_boundaries,
+                          update_velocities,
+                          nullptr,
+                          settle,
+                          hwy::TargetName(HWY_TARGET)};
     with_kernel(kernel, [&](auto k) { stages.apply_viscosity = apply_viscosity<decltype(k)>; });
     return stages;
 }

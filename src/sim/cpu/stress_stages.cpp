@@ -107,11 +107,9 @@ TALUS_STAGE void solve(const StageData& data, std::size_t first, std::size_t las
             deformation.add(vector_of(lists.gather(work.displacement, k)) - moved, lists.gradient(k));
         }
         const L start = load(work.constraint_start, i);
-        const L density =
-            start - deformation.divergence() + boundary_change(load(work.boundary_gradient, i), moved);
+        const L density = start - deformation.divergence() + boundary_change(load(work.boundary_gradient, i), moved);
         const L before = load(state.multiplier, i);
-        const L after =
-            next_multiplier(before, density - larger(L(0), start), load(work.gradient_square, i), factor);
+        const L after = next_multiplier(before, density - larger(L(0), start), load(work.gradient_square, i), factor);
         const Stress stress_before = load(state.stress, i);
         const Stress stress =
             next_stress(stress_before, deformation, internal_friction, after, load(work.pair_square, i), factor);

@@ -11,9 +11,9 @@ Work::Work(std::size_t capacity) : has_walls(capacity + array_padding), walls(ca
     for (std::vector<Quad>* array : {&displacement, &points, &velocities, &stress_rows, &stress_rest}) {
         array->resize(capacity + array_padding);
     }
-    for (std::vector<float>* array : {&mobile, &ground_distance, &ground_slope, &constraint_start, &surface_share,
-                                      &gradient_square, &pair_square, &compression, &tolerated_compression,
-                                      &contact_normal}) {
+    for (std::vector<float>* array :
+         {&mobile, &ground_distance, &ground_slope, &constraint_start, &surface_share, &gradient_square, &pair_square,
+          &compression, &tolerated_compression, &contact_normal}) {
         array->resize(capacity + array_padding);
     }
 }
@@ -43,9 +43,9 @@ Vec3<float> resolve_wall_contacts(const Model& model, Work& work, std::size_t i,
     for (std::size_t f = 0; f < walls.faces.size(); ++f) {
         const BoundaryFace<float>& wall = walls.faces[f];
         if (wall.building < 0) break;
-        displacement += resolve_face(model, wall.distance + dot(displacement, wall.normal), wall.normal, displacement,
-                                     boundary_push(wall.slope, multiplier), model.building_friction_coefficient,
-                                     walls.contacts[f]);
+        displacement +=
+            resolve_face(model, wall.distance + dot(displacement, wall.normal), wall.normal, displacement,
+                         boundary_push(wall.slope, multiplier), model.building_friction_coefficient, walls.contacts[f]);
     }
     return displacement;
 }

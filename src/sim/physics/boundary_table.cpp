@@ -24,8 +24,7 @@ double plane_integral(const F& value, double q) {
 }  // namespace
 
 BoundaryTable::BoundaryTable(const Kernel& kernel, double particle_spacing)
-    : support_radius_(kernel.support_radius),
-      inverse_step_((node_count - 1) / (2 * kernel.support_radius)) {
+    : support_radius_(kernel.support_radius), inverse_step_((node_count - 1) / (2 * kernel.support_radius)) {
     struct Node {
         double density, slope;
     };

@@ -29,8 +29,8 @@ Real gradient_square(const Sums& sums, const Share& boundary, Real softness) {
     return sums.square + softness + dot(pushed, pushed);
 }
 
-/// `boundary` has the `density` and `gradient` of a Boundary; `density`, `square`, `gradient` and `divergence` as the pair sums give them at the predicted positions; `softness`
-/// in 1/m2.
+/// `boundary` has the `density` and `gradient` of a Boundary; `density`, `square`, `gradient` and `divergence` as the
+/// pair sums give them at the predicted positions; `softness` in 1/m2.
 ///
 /// At a free surface a particle lacks neighbours on one side. Left alone, it would bear no pressure before the debris
 /// below had packed closer; so, as with the ghost air of Schechter & Bridson (2012), the lattice is taken to go on

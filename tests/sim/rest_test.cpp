@@ -1,0 +1,116 @@
+#include <algorithm>
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "sim_fixtures.hpp"
+
+namespace talus {
+namespace {
+
+using testing::rectangle;
+
+constexpr double spacing = 0.4;
+
+/// A heap on level ground, 3 m to a side and 1.2 m high, and a block of the same size `fall` metres above its middle
+/// that starts after `start` seconds.
+Simulation heap_and_block(double rest_duration, double start) {
+    const Terrain terrain = testing::terrain_of(60, 60, 1, [](double, double) { return 0; });
+    SolverSpec solver;
+    solver.rest_duration = rest_duration;
+    MaterialSpec material;
+    material.friction_coefficient = 0.6;
+    std::vector<Release> releases = {testing::block(terrain, rectangle(27, 27, 30, 30), 1.2)};
+    if (start > 0) releases.push_back(testing::block(terrain, rectangle(34, 27, 37, 30), 1.2, start));
+    return testing::simulate(material, solver, terrain, releases, spacing);
+}
+
+void advance_to(Simulation& simulation, double time) {
+    while (simulation.state().time < time) ASSERT_FALSE(simulation.advance());
+}
+
+TEST(DebrisAtRest, falls_asleep_and_stays_where_it_is) {
+    Simulation simulation = heap_and_block(0.5, 0);
+    advance_to(simulation, 12);
+    const State& state = simulation.state();
+    ASSERT_LT(state.awake, state.count / 5) << "little should still move after 12 s";
+    std::vector<LocalPoint> before(state.count);
+    std::vector<bool> rested(state.count);
+    for (std::uint32_t i = 0; i < state.count; ++i) {
+        before[state.id[i]] = state.position.at(i);
+        rested[state.id[i]] = state.resting[i] != 0;
+    }
+    advance_to(simulation, 12.2);
+    int still = 0;
+    for (std::uint32_t i = 0; i < state.count; ++i) {
+        if (!state.resting[i] || !rested[state.id[i]]) continue;
+        ++still;
+        EXPECT_EQ(length(state.position.at(i) - before[state.id[i]]), 0);
+        EXPECT_EQ(length(state.velocity.at(i)), 0);
+    }
+    EXPECT_GT(still, 0.7 * state.count);
+}
+
+TEST(DebrisAtRest, never_falls_asleep_where_the_scene_says_so) {
+    Simulation simulation = heap_and_block(0, 0);
+    advance_to(simulation, 6);
+    EXPECT_EQ(simulation.state().awake, simulation.state().count);
+}
+
+TEST(DebrisAtRest, presses_as_it_did_on_what_is_awake) {
+    Simulation simulation = heap_and_block(0.5, 0);
+    double least = 1e9;
+    advance_to(simulation, 4);
+    // Were a sleeping neighbour's pressure missing, what lies on it would sink into it.
+    for (double time = 4; time < 12; time += 0.5) {
+        advance_to(simulation, time);
+        least = std::min(least, 1 - simulation.state().max_compression);
+    }
+    EXPECT_GT(least, 0.95);
+}
+
+/// Particles of the first release that rest: the mean of their distances from where they were.
+double mean_shift(const State& state, const std::vector<LocalPoint>& before) {
+    double sum = 0;
+    int count = 0;
+    for (std::uint32_t i = 0; i < state.count; ++i) {
+        if (state.id[i] >= before.size()) continue;
+        sum += length(state.position.at(i) - before[state.id[i]]);
+        ++count;
+    }
+    return sum / count;
+}
+
+TEST(DebrisAtRest, wakes_when_something_moves_beside_it_and_ends_where_it_would_have) {
+    double shift[2], top[2];
+    for (const bool sleeps : {false, true}) {
+        // A slope that debris runs down onto a level where a heap lies since long.
+        const Terrain terrain = testing::terrain_of(80, 30, 1, [](double x, double) { return x < 30 ? 30 - x : 0; });
+        SolverSpec solver;
+        solver.rest_duration = sleeps ? 0.5 : 0;
+        Simulation simulation = testing::simulate({}, solver, terrain,
+                                                  {testing::block(terrain, rectangle(33, 12, 36, 18), 0.8),
+                                                   testing::block(terrain, rectangle(8, 11, 18, 19), 1.2, 6.0)},
+                                                  spacing);
+        advance_to(simulation, 5.9);
+        const State& state = simulation.state();
+        const std::uint32_t first = simulation.model().releases[0].last_particle;
+        std::vector<LocalPoint> before(first);
+        std::uint32_t asleep = 0;
+        for (std::uint32_t i = 0; i < state.count; ++i) {
+            if (state.id[i] >= first) continue;
+            before[state.id[i]] = state.position.at(i);
+            asleep += state.resting[i];
+        }
+        EXPECT_TRUE(!sleeps || asleep > first / 2) << asleep;
+        advance_to(simulation, 14);
+        shift[sleeps] = mean_shift(state, before);
+        top[sleeps] = *std::max_element(state.position.x.begin(), state.position.x.begin() + state.count);
+    }
+    EXPECT_GT(shift[0], 0.5) << "the heap was not hit hard enough to show anything";
+    EXPECT_NEAR(shift[1], shift[0], 0.1 * shift[0]);
+    EXPECT_NEAR(top[1], top[0], 1.0);
+}
+
+}  // namespace
+}  // namespace talus
