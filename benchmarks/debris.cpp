@@ -56,7 +56,8 @@ Stages::Stages(const Model& model) {
     add({{"undo_overlaps", particle.undo_overlaps},
          {"enforce_boundaries", particle.enforce_boundaries},
          update_velocities,
-         {"apply_viscosity", particle.apply_viscosity}});
+         {"apply_viscosity", particle.apply_viscosity},
+         {"settle", particle.settle}});
 }
 
 Step::Step(const Debris& debris, InternalFriction method)
@@ -88,6 +89,8 @@ void Step::find_neighbours() {
         state_.multiplier[i] = before.multiplier[from];
         state_.id[i] = before.id[from];
         state_.held[i] = before.held[from];
+        state_.calm_time[i] = before.calm_time[from];
+        state_.resting[i] = before.resting[from];
     }
     search.write(neighbours_);
 }
@@ -101,12 +104,14 @@ void Step::run(const Stage& stage) {
 }
 
 void Step::remember() {
-    memory_ = {work_.displacement,     work_.predicted, state_.position,   state_.velocity,     work_.shift,
-               work_.contact_friction, state_.stress,   state_.multiplier, work_.contact_normal};
+    memory_ = {work_.motion,      work_.predicted,        state_.position, state_.velocity,
+               work_.shift,       work_.contact_friction, work_.corrected, state_.stress,
+               state_.multiplier, work_.contact_normal,   state_.calm_time};
 }
 
 void Step::restore() {
-    work_.displacement = memory_.displacement;
+    work_.motion = memory_.motion;
+    work_.corrected = memory_.corrected;
     work_.predicted = memory_.predicted;
     state_.position = memory_.position;
     state_.velocity = memory_.velocity;
@@ -115,6 +120,8 @@ void Step::restore() {
     state_.stress = memory_.stress;
     state_.multiplier = memory_.multiplier;
     work_.contact_normal = memory_.contact_normal;
+    state_.calm_time = memory_.calm_time;
+    std::fill(state_.resting.begin(), state_.resting.end(), std::uint8_t{0});
 }
 
 }  // namespace talus::benchmarks

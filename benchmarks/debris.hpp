@@ -67,10 +67,10 @@ class Step {
     cpu::NeighbourLists neighbours_;
     Stages stages_;
     struct Memory {
-        std::vector<Quad> displacement;
-        VectorArray predicted, position, velocity, shift, contact_friction;
+        std::vector<Oct> motion;
+        VectorArray predicted, position, velocity, shift, contact_friction, corrected;
         DeviatorArray stress;
-        std::vector<float> multiplier, contact_normal;
+        std::vector<float> multiplier, contact_normal, calm_time;
     };
     Memory memory_;
 };

@@ -15,14 +15,20 @@
 /// bits.
 namespace talus {
 
-/// On what passes bare vectors: they travel in other registers where a wider instruction set is on, so that a call
-/// between the two would be wrong. Lanes and masks are safe by having copy constructors: they travel in memory.
+/// On what is worth little when called, and on what passes bare vectors: they travel in other registers where a wider
+/// instruction set is on, so that a call between the two would be wrong. Lanes and masks are safe by having copy
+/// constructors: they travel in memory.
 #define TALUS_INLINE [[gnu::always_inline]] inline
 
 /// Four numbers that lie together: a gather of all four is one load.
 using Quad = std::array<float, 4>;
 
-// A vector's size must not depend on a template parameter: GCC then drops the attribute (bug 88600).
+/// Twice four, in one cache line: a gather of all eight costs less than two of four.
+struct alignas(32) Oct {
+    std::array<float, 8> v{};
+};
+
+// A vector's size must not depend on a template parameter: GCC 12 then drops the attribute.
 #define TALUS_SHUFFLES(...)                                                 \
     TALUS_INLINE static Floats shuffled(const Floats& a, const Floats& b) { \
         return __builtin_shufflevector(a, b, __VA_ARGS__);                  \
@@ -76,6 +82,12 @@ struct LaneTypes<8> {
     struct HighPairs {
         TALUS_SHUFFLES(2, 3, 10, 11, 6, 7, 14, 15)
     };
+    struct EvenBlocks {
+        TALUS_SHUFFLES(0, 1, 2, 3, 8, 9, 10, 11)
+    };
+    struct OddBlocks {
+        TALUS_SHUFFLES(4, 5, 6, 7, 12, 13, 14, 15)
+    };
     template <class Block>
     TALUS_INLINE static Floats joined(const Block& block) {
         return __builtin_shufflevector(block(0), block(1), 0, 1, 2, 3, 4, 5, 6, 7);
@@ -102,6 +114,12 @@ struct LaneTypes<16> {
     };
     struct HighPairs {
         TALUS_SHUFFLES(2, 3, 18, 19, 6, 7, 22, 23, 10, 11, 26, 27, 14, 15, 30, 31)
+    };
+    struct EvenBlocks {
+        TALUS_SHUFFLES(0, 1, 2, 3, 8, 9, 10, 11, 16, 17, 18, 19, 24, 25, 26, 27)
+    };
+    struct OddBlocks {
+        TALUS_SHUFFLES(4, 5, 6, 7, 12, 13, 14, 15, 20, 21, 22, 23, 28, 29, 30, 31)
     };
     template <class Block>
     TALUS_INLINE static Floats joined(const Block& block) {
@@ -233,27 +251,83 @@ TALUS_INLINE Quads<Lanes<count>> quads_from(const Row& row) {
 }
 
 /// rows[index] for every lane.
-template <int count>
-TALUS_INLINE Quads<Lanes<count>> quads_at(const Quad* rows, const std::uint32_t* index) {
-    return quads_from<count>([&](int lane) __attribute__((always_inline)) { return rows + index[lane]; });
-}
 template <class Ints>
 requires(!std::is_integral_v<Ints>) TALUS_INLINE auto quads_at(const Quad* rows, const Ints& index) {
     return quads_from<static_cast<int>(sizeof(Ints) / sizeof(std::int32_t))>([&](
         int lane) __attribute__((always_inline)) { return rows + index[lane]; });
 }
-/// As many rows from `rows` on as there are lanes.
+/// The numbers of an Oct, of one particle or of many.
+template <class Real>
+struct Octs {
+    Quads<Real> low, high;
+};
+
+/// The rows of eight that `row(lane)` points to.
+template <int count, class Row>
+TALUS_INLINE Octs<Lanes<count>> octs_from(const Row& row) {
+    if constexpr (count == 4) {
+        const auto high = [&](int lane) __attribute__((always_inline)) {
+            return row(lane) + 4;
+        };
+        return {quads_from<count>(row), quads_from<count>(high)};
+    } else {
+        const auto eight = [&](int lane) __attribute__((always_inline)) {
+            EightFloats floats;
+            __builtin_memcpy(&floats, row(lane), sizeof floats);
+            return floats;
+        };
+        // Four rows a register, or two: after the transposition their halves lie block by block in turns.
+        const auto rows = [&](int first) __attribute__((always_inline)) {
+            if constexpr (count == 8) {
+                return Lanes<count>(eight(first));
+            } else {
+                return Lanes<count>(__builtin_shufflevector(eight(first), eight(first + 4), 0, 1, 2, 3, 4, 5, 6, 7, 8,
+                                                            9, 10, 11, 12, 13, 14, 15));
+            }
+        };
+        constexpr int half = count / 2;
+        const auto a = transposed(Quads<Lanes<count>>{rows(0), rows(1), rows(2), rows(3)});
+        const auto b = transposed(Quads<Lanes<count>>{rows(half), rows(half + 1), rows(half + 2), rows(half + 3)});
+        using T = LaneTypes<count>;
+        return {{T::EvenBlocks::shuffled(a.x.v, b.x.v), T::EvenBlocks::shuffled(a.y.v, b.y.v),
+                 T::EvenBlocks::shuffled(a.z.v, b.z.v), T::EvenBlocks::shuffled(a.w.v, b.w.v)},
+                {T::OddBlocks::shuffled(a.x.v, b.x.v), T::OddBlocks::shuffled(a.y.v, b.y.v),
+                 T::OddBlocks::shuffled(a.z.v, b.z.v), T::OddBlocks::shuffled(a.w.v, b.w.v)}};
+    }
+}
+
+/// rows[index] for every lane.
 template <int count>
-TALUS_INLINE Quads<Lanes<count>> load_quads(const Quad* rows) {
-    return quads_from<count>([&](int lane) __attribute__((always_inline)) { return rows + lane; });
+TALUS_INLINE Octs<Lanes<count>> octs_at(const Oct* rows, const std::uint32_t* index) {
+    return octs_from<count>([&](int lane) __attribute__((always_inline)) { return rows[index[lane]].v.data(); });
+}
+/// Half a row: the first four numbers (part 0) or the last (part 1).
+template <int count, int part>
+TALUS_INLINE Quads<Lanes<count>> quads_at(const Oct* rows, const std::uint32_t* index) {
+    return quads_from<count>([&](int lane)
+                                 __attribute__((always_inline)) { return rows[index[lane]].v.data() + 4 * part; });
+}
+/// rows[index] and rows[index + 1].
+template <class Ints>
+requires(!std::is_integral_v<Ints>) TALUS_INLINE auto quad_pairs_at(const Quad* rows, const Ints& index) {
+    constexpr int count = static_cast<int>(sizeof(Ints) / sizeof(std::int32_t));
+    return octs_from<count>([&](int lane) __attribute__((always_inline)) { return rows[index[lane]].data(); });
 }
 template <int count>
-TALUS_INLINE void store_quads(const Quads<Lanes<count>>& quads, Quad* rows) {
+TALUS_INLINE Octs<Lanes<count>> load_octs(const Oct* rows) {
+    return octs_from<count>([&](int lane) __attribute__((always_inline)) { return rows[lane].v.data(); });
+}
+template <int count, int part>
+TALUS_INLINE Quads<Lanes<count>> load_quads(const Oct* rows) {
+    return quads_from<count>([&](int lane) __attribute__((always_inline)) { return rows[lane].v.data() + 4 * part; });
+}
+template <int count, int part>
+TALUS_INLINE void store_quads(const Quads<Lanes<count>>& quads, Oct* rows) {
     const Quads<Lanes<count>> r = transposed(quads);
     const auto put = [&](int first, const Lanes<count>& from) __attribute__((always_inline)) {
         LaneTypes<count>::split(
             from.v, [&](int block, const FourFloats& four) __attribute__((always_inline)) {
-                __builtin_memcpy(rows + first + 4 * block, &four, sizeof four);
+                __builtin_memcpy(rows[first + 4 * block].v.data() + 4 * part, &four, sizeof four);
             });
     };
     put(0, r.x);
@@ -273,6 +347,10 @@ inline bool any(bool condition) {
 template <std::floating_point Real>
 std::int32_t truncated(Real a) {
     return static_cast<std::int32_t>(a);
+}
+inline Octs<float> quad_pairs_at(const Quad* rows, std::int32_t index) {
+    const Quad &low = rows[index], &high = rows[index + 1];
+    return {{low[0], low[1], low[2], low[3]}, {high[0], high[1], high[2], high[3]}};
 }
 inline Quads<float> quads_at(const Quad* rows, std::int32_t index) {
     const Quad& row = rows[index];

@@ -48,13 +48,13 @@ class Terrain {
 
     /// Ground height and normal at a local plan position. Outside the grid, the nearest edge cell's plane goes on.
     template <class Real>
-    [[nodiscard]] GroundSample<Real> sample(Real x, Real y) const {
+    [[nodiscard]] TALUS_INLINE GroundSample<Real> sample(Real x, Real y) const {
         using std::sqrt;
         const auto c = locate(x, y);
         const Basis<Real> along_x(c.fx), along_y(c.fy);
         Real height{}, rise_x{}, rise_y{};  // rises per cell
-        const auto add_corner = [&](const End<Real>& in_x, const End<Real>& in_y, int offset) {
-            const auto node = quads_at(nodes_.data() + offset, c.index);
+        const auto add_corner = [&](const End<Real>& in_x, const End<Real>& in_y, const auto& node)
+            __attribute__((always_inline)) {
             const Real by_height = Real(node.x), by_x = Real(node.y), by_y = Real(node.z);
             const Real here = by_height * in_x.value + by_x * in_x.slope;
             height += here * in_y.value + by_y * in_x.value * in_y.slope;
@@ -62,10 +62,12 @@ class Terrain {
                       by_y * in_x.value_rise * in_y.slope;
             rise_y += here * in_y.value_rise + by_y * in_x.value * in_y.slope_rise;
         };
-        add_corner(along_x.first, along_y.first, 0);
-        add_corner(along_x.last, along_y.first, 1);
-        add_corner(along_x.first, along_y.last, stride_);
-        add_corner(along_x.last, along_y.last, stride_ + 1);
+        const auto south = quad_pairs_at(nodes_.data(), c.index),
+                   north = quad_pairs_at(nodes_.data() + stride_, c.index);
+        add_corner(along_x.first, along_y.first, south.low);
+        add_corner(along_x.last, along_y.first, south.high);
+        add_corner(along_x.first, along_y.last, north.low);
+        add_corner(along_x.last, along_y.last, north.high);
         height += rise_x * along_x.beyond + rise_y * along_y.beyond;
         const Real slope_x = rise_x * Real(inverse_cell_), slope_y = rise_y * Real(inverse_cell_);
         const Real inverse_length = Real(1) / sqrt(Real(1) + slope_x * slope_x + slope_y * slope_y);

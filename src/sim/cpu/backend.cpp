@@ -129,7 +129,6 @@ void Backend::warm_start(const Model& model, State& state) {
     } else {
         run(pair_stages_.pack_start, model, state, everything(state));
         run(pair_stages_.find_tolerated, model, state);
-        run(pair_stages_.hush, model, state, at_rest(state));
     }
     state.previous_time_step = state.time_step;
 }
@@ -141,7 +140,6 @@ void Backend::solve_density(const Model& model, State& state) {
     } else {
         run(pair_stages_.update_multipliers, model, state);
         run(pair_stages_.apply, model, state);
-        work_.displacement.swap(work_.velocities);
     }
 }
 

@@ -69,11 +69,24 @@ HWY_INLINE L flags(const std::vector<std::uint8_t>& from, std::size_t i, float s
     }
     return result;
 }
-HWY_INLINE Quads<L> load(const std::vector<Quad>& from, std::size_t i) {
-    return load_quads<lane_count>(from.data() + i);
+HWY_INLINE Octs<L> load(const std::vector<Oct>& from, std::size_t i) {
+    return load_octs<lane_count>(from.data() + i);
 }
-HWY_INLINE void store(const Quads<L>& quads, std::vector<Quad>& to, std::size_t i) {
-    store_quads(quads, to.data() + i);
+HWY_INLINE Quads<L> load_low(const std::vector<Oct>& from, std::size_t i) {
+    return load_quads<lane_count, 0>(from.data() + i);
+}
+HWY_INLINE Quads<L> load_high(const std::vector<Oct>& from, std::size_t i) {
+    return load_quads<lane_count, 1>(from.data() + i);
+}
+HWY_INLINE void store_low(const Quads<L>& quads, std::vector<Oct>& to, std::size_t i) {
+    store_quads<lane_count, 0>(quads, to.data() + i);
+}
+HWY_INLINE void store_high(const Quads<L>& quads, std::vector<Oct>& to, std::size_t i) {
+    store_quads<lane_count, 1>(quads, to.data() + i);
+}
+/// A vector and one number more.
+HWY_INLINE Quads<L> with(const V3& v, const L& w) {
+    return {v.x, v.y, v.z, w};
 }
 HWY_INLINE V3 vector_of(const Quads<L>& quads) {
     return {quads.x, quads.y, quads.z};
@@ -121,8 +134,14 @@ struct LaneLists {
         gradient.y.store(gradient_y + at);
         gradient.z.store(gradient_z + at);
     }
-    HWY_INLINE Quads<L> gather(const std::vector<Quad>& from, std::uint32_t k) const {
-        return quads_at<lane_count>(from.data(), neighbour + k * bundle_size);
+    HWY_INLINE Octs<L> gather(const std::vector<Oct>& from, std::uint32_t k) const {
+        return octs_at<lane_count>(from.data(), neighbour + k * bundle_size);
+    }
+    HWY_INLINE Quads<L> gather_low(const std::vector<Oct>& from, std::uint32_t k) const {
+        return quads_at<lane_count, 0>(from.data(), neighbour + k * bundle_size);
+    }
+    HWY_INLINE Quads<L> gather_high(const std::vector<Oct>& from, std::uint32_t k) const {
+        return quads_at<lane_count, 1>(from.data(), neighbour + k * bundle_size);
     }
 };
 

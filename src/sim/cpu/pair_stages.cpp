@@ -15,10 +15,7 @@ namespace {
 
 TALUS_STAGE void pack_start(const StageData& data, std::size_t first, std::size_t last) {
     const auto& [model, state, work, neighbours] = data;
-    for_each_lanes(first, last, [&](std::size_t i) {
-        const V3 p = load(state.position, i);
-        store(Quads<L>{p.x, p.y, p.z, L(0)}, work.velocities, i);
-    });
+    for_each_lanes(first, last, [&](std::size_t i) { store_low(with(load(state.position, i), L(0)), work.stress, i); });
 }
 
 /// What a step starts with compressed may be undone only slowly, since a correction turns into velocity: the density
@@ -30,10 +27,10 @@ TALUS_STAGE void find_tolerated(const StageData& data, std::size_t first, std::s
     const PairScale scale(model.kernel);
     for_each_lanes(first, last, [&](std::size_t i) {
         const LaneLists lists(neighbours, i);
-        const V3 p = vector_of(load(work.velocities, i));
+        const V3 p = vector_of(load_low(work.stress, i));
         L density;
         lists.for_each([&](std::uint32_t k, const L& left) {
-            const L q = scale.quotient(length(p - vector_of(lists.gather(work.velocities, k))));
+            const L q = scale.quotient(length(p - vector_of(lists.gather_low(work.stress, k))));
             density += select(left > L(0), Kernel::value(q), L(0));
         });
         density = L(scale.value_scale) * (density + Kernel::value(L(0)));
@@ -41,13 +38,9 @@ TALUS_STAGE void find_tolerated(const StageData& data, std::size_t first, std::s
         store(larger(L(0), start - undone), work.tolerated_compression, i);
         store(L(0), state.multiplier, i);
         // The first contacts come before the first iteration.
-        sample_boundary_at(model, work, i, vector_of(load(work.points, i)), vector_of(load(work.displacement, i)));
+        const auto [predicted, moved] = load(work.motion, i);
+        sample_boundary_at(model, work, i, vector_of(predicted), vector_of(moved));
     });
-}
-
-TALUS_STAGE void hush(const StageData& data, std::size_t first, std::size_t last) {
-    const auto& [model, state, work, neighbours] = data;
-    for_each_lanes(first, last, [&](std::size_t i) { store(Quads<L>{}, work.velocities, i); });
 }
 
 struct PairSums {
@@ -64,10 +57,11 @@ TALUS_STAGE void update_multipliers(const StageData& data, std::size_t first, st
     const PairScale scale(model.kernel);
     for_each_lanes(first, last, [&](std::size_t i) {
         const LaneLists lists(neighbours, i);
-        const V3 p = vector_of(load(work.points, i));
+        auto [point, moved] = load(work.motion, i);
+        const V3 p = vector_of(point);
         PairSums sums;
         lists.for_each([&](std::uint32_t k, const L& left) {
-            const V3 separation = p - vector_of(lists.gather(work.points, k));
+            const V3 separation = p - vector_of(lists.gather_low(work.motion, k));
             const L square = dot(separation, separation);
             const L q = scale.quotient(sqrt(square));
             const L slope = Kernel::slope_over_q(q) * L(-scale.gradient_scale);
@@ -77,7 +71,6 @@ TALUS_STAGE void update_multipliers(const StageData& data, std::size_t first, st
         });
         sums.density = L(scale.value_scale) * (sums.density + Kernel::value(L(0)));
 
-        Quads<L> moved = load(work.displacement, i);
         const BoundaryShare boundary = sample_boundary_at(model, work, i, p, vector_of(moved));
         const L compression = sums.density + boundary.density - L(1);
         const L before = load(state.multiplier, i), mobile = load(work.mobile, i);
@@ -86,7 +79,7 @@ TALUS_STAGE void update_multipliers(const StageData& data, std::size_t first, st
         moved.w = (after - before) * mobile;
         store(select(mobile > L(0), after, before), state.multiplier, i);
         store(larger(L(0), compression) * mobile, work.compression, i);
-        store(moved, work.displacement, i);
+        store_high(moved, work.motion, i);
     });
 }
 
@@ -98,12 +91,12 @@ TALUS_STAGE void apply(const StageData& data, std::size_t first, std::size_t las
     const PairScale scale(model.kernel);
     for_each_lanes(first, last, [&](std::size_t i) {
         const LaneLists lists(neighbours, i);
-        const V3 p = vector_of(load(work.points, i));
-        const Quads<L> moved = load(work.displacement, i);
+        const auto [point, moved] = load(work.motion, i);
+        const V3 p = vector_of(point);
         V3 correction = boundary_correction(load(work.boundary_gradient, i), moved.w);
         for (std::uint32_t k = 0; k < lists.length; ++k) {
-            const Quads<L> other = lists.gather(work.displacement, k);
-            const V3 separation = p - vector_of(lists.gather(work.points, k));
+            const auto [place, other] = lists.gather(work.motion, k);
+            const V3 separation = p - vector_of(place);
             const L square = dot(separation, separation), distance = sqrt(square);
             const L q = scale.quotient(distance);
             const L push = (moved.w + other.w) * L(-scale.gradient_scale) * Kernel::slope_over_q(q);
@@ -111,15 +104,14 @@ TALUS_STAGE void apply(const StageData& data, std::size_t first, std::size_t las
             correction += separation * push + pair_friction(separation, square, vector_of(moved) - vector_of(other),
                                                             limit, Kernel::value(q) * L(scale.value_scale));
         }
-        const V3 end = vector_of(moved) + correction * load(work.mobile, i);
-        store(Quads<L>{end.x, end.y, end.z, moved.w}, work.velocities, i);
+        store(vector_of(moved) + correction * load(work.mobile, i), work.corrected, i);
     });
 }
 
 PairStages make_stages(KernelChoice kernel) {
     return with_kernel(kernel, [&](auto k) {
         using Kernel = decltype(k);
-        return PairStages{pack_start, find_tolerated<Kernel>, hush, update_multipliers<Kernel>, apply<Kernel>};
+        return PairStages{pack_start, find_tolerated<Kernel>, update_multipliers<Kernel>, apply<Kernel>};
     });
 }
 

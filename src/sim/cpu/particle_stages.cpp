@@ -42,9 +42,9 @@ TALUS_STAGE void begin(const StageData& data, std::size_t first, std::size_t las
         const V3 displacement = select(mobile > L(0), load(state.velocity, i) * dt, V3{});
         const V3 predicted = load(state.position, i) + displacement;
         store(mobile, work.mobile, i);
-        store(Quads<L>{displacement.x, displacement.y, displacement.z, L(0)}, work.displacement, i);
-        store(Quads<L>{predicted.x, predicted.y, predicted.z, L(0)}, work.points, i);
-        store(Quads<L>{}, work.velocities, i);
+        store_low(with(predicted, L(0)), work.motion, i);
+        store_high(with(displacement, L(0)), work.motion, i);
+        store(displacement, work.corrected, i);
         store(L(0), work.contact_normal, i);
         store(V3{}, work.contact_friction, i);
         for (std::size_t lane = 0; lane < lane_count; ++lane) {
@@ -56,11 +56,10 @@ TALUS_STAGE void begin(const StageData& data, std::size_t first, std::size_t las
 /// Contact with ground and buildings, and the basal part of eq. (4).
 TALUS_STAGE void contacts(const StageData& data, std::size_t first, std::size_t last) {
     const auto& [model, state, work, neighbours] = data;
-    const bool moves_points = model.solver.internal_friction == InternalFriction::pair;
+
     for_each_lanes(first, last, [&](std::size_t i) {
-        const Quads<L> before = load(work.displacement, i);
         const L mobile = load(work.mobile, i), multiplier = load(state.multiplier, i);
-        const V3 displacement = vector_of(before), normal = load(work.ground_normal, i);
+        const V3 displacement = load(work.corrected, i), normal = load(work.ground_normal, i);
         ContactMemory<L> contact{load(work.contact_normal, i), load(work.contact_friction, i)};
         const L distance = load(work.ground_distance, i) + dot(displacement, normal);
         V3 after = displacement + resolve_face(model, distance, normal, displacement,
@@ -78,10 +77,8 @@ TALUS_STAGE void contacts(const StageData& data, std::size_t first, std::size_t 
             after.z.set(l, end.z);
         }
         after = select(mobile > L(0), after, displacement);
-        store(Quads<L>{after.x, after.y, after.z, before.w}, work.displacement, i);
-        if (!moves_points) return;
-        const V3 p = load(state.position, i) + after;
-        store(Quads<L>{p.x, p.y, p.z, L(0)}, work.points, i);
+        store_low(with(load(state.position, i) + after, L(0)), work.motion, i);
+        store_high(with(after, L(0)), work.motion, i);
     });
 }
 
@@ -92,7 +89,7 @@ TALUS_STAGE void undo_overlaps(const StageData& data, std::size_t first, std::si
     const bool spread = model.solver.internal_friction == InternalFriction::stress;
     const L most(model.particle_spacing / 4), touching(model.contact_distance());
     for_each_lanes(first, last, [&](std::size_t i) {
-        const V3 p = load(state.position, i) + vector_of(load(work.displacement, i));
+        const V3 p = vector_of(load_low(work.motion, i));
         const GroundSample<L> ground = model.terrain.sample(p.x, p.y);
         const L overlap = touching - (p.z - ground.height) * ground.normal.z;
         // Not so for the NaN of unknown ground.
@@ -122,7 +119,7 @@ TALUS_STAGE void enforce_boundaries(const StageData& data, std::size_t first, st
     const L longest_part(model.particle_spacing / 4);
     const auto below_ground = [&](const V3& p) { return p.z < model.terrain.sample(p.x, p.y).height; };
     for_each_lanes(first, last, [&](std::size_t i) {
-        const V3 start = load(state.position, i), displacement = vector_of(load(work.displacement, i));
+        const V3 start = load(state.position, i), displacement = vector_of(load_high(work.motion, i));
         const V3 end = start + displacement, shift = load(work.shift, i);
         const L distance = length(displacement);
         const L parts = select(distance > longest_part,
@@ -152,12 +149,12 @@ TALUS_STAGE float update_velocities(const StageData& data, std::size_t first, st
     L largest(0), unknown(0);
     for_each_lanes(first, last, [&](std::size_t i) {
         const Mask moves = load(work.mobile, i) > L(0);
-        const V3 velocity = select(moves, vector_of(load(work.displacement, i)) * inverse_dt, load(state.velocity, i));
+        const V3 velocity = select(moves, vector_of(load_high(work.motion, i)) * inverse_dt, load(state.velocity, i));
         const V3 position = load(work.predicted, i);
         store(velocity, state.velocity, i);
         store(position, state.position, i);
-        store(Quads<L>{position.x, position.y, position.z, L(0)}, work.points, i);
-        store(Quads<L>{velocity.x, velocity.y, velocity.z, L(0)}, work.velocities, i);
+        store_low(with(position, L(0)), work.motion, i);
+        store_high(with(velocity, L(0)), work.motion, i);
         const L square = select(is_present(state, i), dot(velocity, velocity), L(0));
         largest = larger(largest, square);
         unknown = select(square == square, unknown, L(1));
@@ -178,12 +175,13 @@ TALUS_STAGE void apply_viscosity(const StageData& data, std::size_t first, std::
     const L smoothing(step_smoothing(model.viscosity, state.time_step));
     for_each_lanes(first, last, [&](std::size_t i) {
         const LaneLists lists(neighbours, i);
-        const V3 p = vector_of(load(work.points, i)), own = vector_of(load(work.velocities, i));
+        const Octs<L> motion = load(work.motion, i);
+        const V3 p = vector_of(motion.low), own = vector_of(motion.high);
         V3 change;
         for (std::uint32_t k = 0; k < lists.length; ++k) {
-            const V3 separation = p - vector_of(lists.gather(work.points, k));
-            const L weight = Kernel::value(scale.quotient(length(separation))) * L(scale.value_scale);
-            change += (vector_of(lists.gather(work.velocities, k)) - own) * weight;
+            const Octs<L> other = lists.gather(work.motion, k);
+            const L weight = Kernel::value(scale.quotient(length(p - vector_of(other.low)))) * L(scale.value_scale);
+            change += (vector_of(other.high) - own) * weight;
         }
         store(own + change * (smoothing * load(work.mobile, i)), state.velocity, i);
     });

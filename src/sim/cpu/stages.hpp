@@ -40,7 +40,6 @@ struct StressStages {
 struct PairStages {
     StageFunction pack_start;          ///< positions at the step's start
     StageFunction find_tolerated;      ///< compression that the step starts with
-    StageFunction hush;                ///< debris at rest does not move
     StageFunction update_multipliers;  ///< eqs. (1) and (2)
     StageFunction apply;               ///< eqs. (3) and (4)
 };

@@ -17,8 +17,8 @@ namespace {
 HWY_INLINE void pack_stress(Work& work, std::size_t i, const L& presses, const L& pressure, const Stress& s) {
     const L p = pressure * presses;
     const Stress t = s * presses;
-    store(Quads<L>{p + t.xx, t.xy, t.xz, p + t.yy}, work.stress_rows, i);
-    store(Quads<L>{t.yz, p - t.xx - t.yy, L(0), p}, work.stress_rest, i);
+    store_low({p + t.xx, t.xy, t.xz, p + t.yy}, work.stress, i);
+    store_high({t.yz, p - t.xx - t.yy, L(0), p}, work.stress, i);
 }
 
 struct PairSums {
@@ -31,7 +31,8 @@ HWY_INLINE PairSums sum_pairs(const PairScale& scale, const LaneLists& lists, co
                               const V3& moved) {
     PairSums sums;
     lists.for_each([&](std::uint32_t k, const L& left) {
-        const V3 separation = p - vector_of(lists.gather(work.points, k));
+        const Octs<L> other = lists.gather(work.motion, k);
+        const V3 separation = p - vector_of(other.low);
         const L square = dot(separation, separation);
         const L q = scale.quotient(sqrt(square));
         const L slope = Kernel::slope_over_q(q) * L(-scale.gradient_scale);
@@ -40,7 +41,7 @@ HWY_INLINE PairSums sum_pairs(const PairScale& scale, const LaneLists& lists, co
         sums.density += select(left > L(0), Kernel::value(q), L(0));
         sums.square += slope * slope * square;
         sums.gradient += gradient;
-        sums.divergence += dot(vector_of(lists.gather(work.displacement, k)) - moved, gradient);
+        sums.divergence += dot(vector_of(other.high) - moved, gradient);
     });
     sums.density = L(scale.value_scale) * (sums.density + Kernel::value(L(0)));
     return sums;
@@ -71,8 +72,8 @@ TALUS_STAGE void press(const StageData& data, std::size_t first, std::size_t las
 TALUS_STAGE void hush(const StageData& data, std::size_t first, std::size_t last) {
     const auto& [model, state, work, neighbours] = data;
     for_each_lanes(first, last, [&](std::size_t i) {
-        store(Quads<L>{}, work.stress_rows, i);
-        store(Quads<L>{}, work.stress_rest, i);
+        store_low({}, work.stress, i);
+        store_high({}, work.stress, i);
     });
 }
 
@@ -83,7 +84,8 @@ TALUS_STAGE void linearise(const StageData& data, std::size_t first, std::size_t
     const L softness(model.solver.constraint_relaxation * model.kernel.rest_gradient_sum);
     const PairScale scale(model.kernel);
     for_each_lanes(first, last, [&](std::size_t i) {
-        const V3 p = vector_of(load(work.points, i)), moved = vector_of(load(work.displacement, i));
+        const Octs<L> motion = load(work.motion, i);
+        const V3 p = vector_of(motion.low), moved = vector_of(motion.high);
         const PairSums sums = sum_pairs<Kernel>(scale, LaneLists(neighbours, i), work, p, moved);
         const BoundaryShare boundary = sample_boundary_at(model, work, i, p, moved);
         const DensityConstraint<L> constraint = linearise_density(model, sums, boundary, moved, softness);
@@ -101,10 +103,10 @@ TALUS_STAGE void solve(const StageData& data, std::size_t first, std::size_t las
     const L internal_friction(model.internal_friction_coefficient);
     for_each_lanes(first, last, [&](std::size_t i) {
         const LaneLists lists(neighbours, i);
-        const V3 moved = vector_of(load(work.displacement, i));
+        const V3 moved = vector_of(load_high(work.motion, i));
         DisplacementGradient<L> deformation;
         for (std::uint32_t k = 0; k < lists.length; ++k) {
-            deformation.add(vector_of(lists.gather(work.displacement, k)) - moved, lists.gradient(k));
+            deformation.add(vector_of(lists.gather_high(work.motion, k)) - moved, lists.gradient(k));
         }
         const L start = load(work.constraint_start, i);
         const L density = start - deformation.divergence() + boundary_change(load(work.boundary_gradient, i), moved);
@@ -131,19 +133,17 @@ TALUS_STAGE void apply(const StageData& data, std::size_t first, std::size_t las
     const auto& [model, state, work, neighbours] = data;
     for_each_lanes(first, last, [&](std::size_t i) {
         const LaneLists lists(neighbours, i);
-        const Quads<L> own = load(work.stress_rows, i), own_rest = load(work.stress_rest, i);
+        const auto [own, own_rest] = load(work.stress, i);
         V3 correction;
         for (std::uint32_t k = 0; k < lists.length; ++k) {
             const V3 gradient = lists.gradient(k);
-            const Quads<L> rows = lists.gather(work.stress_rows, k), rest = lists.gather(work.stress_rest, k);
+            const auto [rows, rest] = lists.gather(work.stress, k);
             const L xy = own.y + rows.y, xz = own.z + rows.z, yz = own_rest.x + rest.x;
             correction += {dot({own.x + rows.x, xy, xz}, gradient), dot({xy, own.w + rows.w, yz}, gradient),
                            dot({xz, yz, own_rest.y + rest.y}, gradient)};
         }
         correction += boundary_correction(load(work.boundary_gradient, i), own_rest.w);
-        const Quads<L> moved = load(work.displacement, i);
-        const V3 end = vector_of(moved) + correction * load(work.mobile, i);
-        store(Quads<L>{end.x, end.y, end.z, moved.w}, work.displacement, i);
+        store(vector_of(load_high(work.motion, i)) + correction * load(work.mobile, i), work.corrected, i);
     });
 }
 
@@ -154,7 +154,7 @@ TALUS_STAGE void find_spread(const StageData& data, std::size_t first, std::size
     for_each_lanes(first, last, [&](std::size_t i) {
         const L excess = spread_in_step(load(work.compression, i), share);
         const L multiplier = next_multiplier(L(0), excess, load(work.gradient_square, i), factor);
-        store(Quads<L>{L(0), L(0), L(0), multiplier}, work.stress_rest, i);
+        store_high(with(V3{}, multiplier), work.stress, i);
     });
 }
 
@@ -162,10 +162,10 @@ TALUS_STAGE void spread(const StageData& data, std::size_t first, std::size_t la
     const auto& [model, state, work, neighbours] = data;
     for_each_lanes(first, last, [&](std::size_t i) {
         const LaneLists lists(neighbours, i);
-        const L own = load(work.stress_rest, i).w;
+        const L own = load_high(work.stress, i).w;
         V3 shift = boundary_correction(load(work.boundary_gradient, i), own);
         for (std::uint32_t k = 0; k < lists.length; ++k) {
-            shift += lists.gradient(k) * (own + lists.gather(work.stress_rest, k).w);
+            shift += lists.gradient(k) * (own + lists.gather_high(work.stress, k).w);
         }
         store(shift, work.shift, i);
     });

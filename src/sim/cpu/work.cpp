@@ -5,12 +5,10 @@
 namespace talus::cpu {
 
 Work::Work(std::size_t capacity) : has_walls(capacity + array_padding), walls(capacity + array_padding) {
-    for (VectorArray* array : {&predicted, &shift, &ground_normal, &boundary_gradient, &contact_friction}) {
+    for (VectorArray* array : {&predicted, &corrected, &shift, &ground_normal, &boundary_gradient, &contact_friction}) {
         array->resize(capacity);
     }
-    for (std::vector<Quad>* array : {&displacement, &points, &velocities, &stress_rows, &stress_rest}) {
-        array->resize(capacity + array_padding);
-    }
+    for (std::vector<Oct>* array : {&motion, &stress}) array->resize(capacity + array_padding);
     for (std::vector<float>* array :
          {&mobile, &ground_distance, &ground_slope, &constraint_start, &surface_share, &gradient_square, &pair_square,
           &compression, &tolerated_compression, &contact_normal}) {
@@ -55,8 +53,8 @@ Vec3<float> undo_overlap_near_walls(const Model& model, const Vec3<float>& p, fl
 }
 
 void enforce_particle(const Model& model, const State& state, Work& work, std::size_t i) {
-    Quad& moved = work.displacement[i];
-    const Vec3<float> start = state.position.at(i), displacement{moved[0], moved[1], moved[2]};
+    std::array<float, 8>& motion = work.motion[i].v;
+    const Vec3<float> start = state.position.at(i), displacement{motion[4], motion[5], motion[6]};
     const Vec3<float> wanted = start + displacement;
     const Vec3<float> end = free_end(model, start, displacement);
     work.predicted.set(i, free_end(model, end, work.shift.at(i)));
@@ -65,7 +63,9 @@ void enforce_particle(const Model& model, const State& state, Work& work, std::s
     const Vec3<float> reached = end - start;
     const float before = dot(displacement, displacement), after = dot(reached, reached);
     const Vec3<float> slowed = after > before ? reached * std::sqrt(before / after) : reached;
-    moved = {slowed.x, slowed.y, slowed.z, moved[3]};
+    motion[4] = slowed.x;
+    motion[5] = slowed.y;
+    motion[6] = slowed.z;
 }
 
 }  // namespace talus::cpu

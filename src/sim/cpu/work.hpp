@@ -13,19 +13,18 @@
 
 namespace talus::cpu {
 
-/// What a step knows about its particles and forgets at its end, by the same index as State. Arrays of Quad are those
+/// What a step knows about its particles and forgets at its end, by the same index as State. Arrays of Oct are those
 /// that neighbours read.
 struct Work {
     explicit Work(std::size_t capacity);
 
-    std::vector<float> mobile;       ///< 1, or 0 for debris that is held
-    VectorArray predicted;           ///< x*: before the step, for finding neighbours; after it, where it ends
-    std::vector<Quad> displacement;  ///< x* - x so far; with pair friction also the last change of lambda
-    std::vector<Quad> points;        ///< where sums over pairs are taken
-    std::vector<Quad> velocities;    ///< for viscosity; with pair friction also the displacement to come
-    std::vector<Quad> stress_rows;   ///< xx, xy, xz, yy of what apply_stress() applies
-    std::vector<Quad> stress_rest;   ///< yz, zz, nothing, pressure
-    VectorArray shift;               ///< undoes overlaps, becomes no velocity
+    std::vector<float> mobile;  ///< 1, or 0 for debris that is held
+    VectorArray predicted;      ///< x*: before the step, for finding neighbours; after it, where it ends
+    std::vector<Oct> motion;    ///< x*, nothing; x* - x so far, the last change of lambda. At last x and v
+    std::vector<Oct> stress;    ///< xx, xy, xz, yy; yz, zz, nothing, pressure: what is applied to neighbours.
+                                ///< With pair friction, at first: x
+    VectorArray corrected;      ///< the displacement that contacts have yet to agree to
+    VectorArray shift;          ///< undoes overlaps, becomes no velocity
 
     // The ground, taken to be plane within the step, and the share of ground and walls in the density.
     std::vector<float> ground_distance;  ///< m, of a particle that is not displaced; NaN where unknown
