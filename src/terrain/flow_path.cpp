@@ -43,8 +43,10 @@ FlowPath::FlowPath(const std::vector<PlanPoint>& points, double corridor_width) 
     const double cell = std::max(half_width / 8, std::sqrt(extent.width() * extent.height() / 4e6));
     table_ = {extent.x_min, extent.y_min, cell, static_cast<int>(extent.width() / cell) + 1,
               static_cast<int>(extent.height() / cell) + 1};
+    inverse_cell_ = 1 / cell;
     fill_nearest_segment();
     fill_chainage_bound();
+    fill_extent_beyond();
 }
 
 void FlowPath::fill_nearest_segment() {
@@ -94,6 +96,31 @@ void FlowPath::fill_chainage_bound() {
             chainage_bound_[k] = static_cast<float>(bound + 1e-3);  // for the rounding to float
         }
     }
+}
+
+void FlowPath::fill_extent_beyond() {
+    const double none = std::numeric_limits<double>::infinity();
+    extent_beyond_.assign(static_cast<std::size_t>((length() + 1) * inverse_cell_) + 1, {none, none, -none, -none});
+    for (int r = 0; r < table_.rows; ++r) {
+        for (int c = 0; c < table_.columns; ++c) {
+            const float bound = chainage_bound_[table_.index(c, r)];
+            if (bound < 0) continue;
+            Extent& extent = extent_beyond_[static_cast<std::size_t>(bound * inverse_cell_)];
+            const PlanPoint corner{table_.x_min + c * table_.cell, table_.y_min + r * table_.cell};
+            extent.include(corner);
+            extent.include({corner.x + table_.cell, corner.y + table_.cell});
+        }
+    }
+    for (std::size_t k = extent_beyond_.size() - 1; k > 0; --k) {
+        const Extent& beyond = extent_beyond_[k];
+        extent_beyond_[k - 1].include({beyond.x_min, beyond.y_min});
+        extent_beyond_[k - 1].include({beyond.x_max, beyond.y_max});
+    }
+}
+
+Extent FlowPath::extent_beyond(double chainage) const {
+    const auto k = static_cast<std::size_t>(std::max(0.0, chainage) * inverse_cell_);
+    return extent_beyond_[std::min(k, extent_beyond_.size() - 1)];
 }
 
 std::pair<std::size_t, std::size_t> FlowPath::segments_around(std::int32_t middle) const {
