@@ -17,6 +17,13 @@ struct PathPosition {
     double offset;    ///< distance from the path, m
 };
 
+/// From one point of a path to the next, as a projection on it needs it.
+struct PathSegment {
+    double x, y;              ///< where it begins
+    double dx, dy;            ///< from there to its end
+    double share_x, share_y;  ///< rise of a projection's share of the segment, 1/m
+};
+
 /// The line along which debris is expected to run (the thalweg), and the chainage along it.
 class FlowPath {
   public:
@@ -58,10 +65,12 @@ class FlowPath {
     void fill_chainage_bound();
     void fill_extent_beyond();
     /// The segments [first, last) that may be nearest to a position in a cell whose centre is nearest to `middle`.
-    [[nodiscard]] std::pair<std::size_t, std::size_t> segments_around(std::int32_t middle) const;
+    [[nodiscard]] std::pair<std::size_t, std::size_t> find_segments_around(std::size_t middle) const;
 
     std::vector<PlanPoint> points_;
     std::vector<double> chainage_;
+    std::vector<PathSegment> segments_;  // between one point and the next
+    std::vector<std::pair<std::size_t, std::size_t>> segments_around_;
     double corridor_width_ = 0;
     GridGeometry table_{0, 0, 1, 0, 0};
     double inverse_cell_ = 1;
