@@ -55,8 +55,7 @@ std::uint32_t FrontTracker::find_candidates(const Model& model, const State& sta
         std::array<Candidate, group> found;
         std::uint32_t count = 0;
         for (std::size_t i = first; i < last; ++i) {
-            const float x = state.position.x[i], y = state.position.y[i];
-            if (state.held[i] != 0 || !(x >= x_min && x <= x_max && y >= y_min && y <= y_max)) continue;
+            if (state.held[i] != 0) continue;
             const float chainage = chainage_of(i);
             if (chainage >= 0 && chainage >= from) found[count++] = {static_cast<std::uint32_t>(i), chainage};
         }
@@ -75,7 +74,7 @@ std::uint32_t FrontTracker::find_candidates(const Model& model, const State& sta
                     const float x = state.position.x[i], y = state.position.y[i];
                     inside |= static_cast<unsigned>(x >= x_min) & static_cast<unsigned>(x <= x_max) &
                               static_cast<unsigned>(y >= y_min) & static_cast<unsigned>(y <= y_max);
-                    held_here += state.held[i];
+                    held_here += static_cast<unsigned>(state.held[i] != 0);
                 }
                 held += held_here;
                 if (inside != 0) examine(begin, end);

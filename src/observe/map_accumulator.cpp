@@ -16,7 +16,7 @@ namespace {
 constexpr float one = 1 << 12;  ///< a weight of 1 along one axis
 constexpr double one_particle = static_cast<double>(one) * one;
 constexpr float speed_units = 1024;  ///< per m/s
-constexpr float fastest = 1000;      ///< m/s; keeps sums whole: a broken state of 500 such particles in a cell still is
+constexpr float fastest = 1000;      ///< m/s; with up to 500 particles of a broken state in a cell its sums are whole
 constexpr double margin = 20;        ///< m around the reached cells
 constexpr std::size_t grain = 2048;  ///< particles per task
 constexpr float not_a_number = std::numeric_limits<float>::quiet_NaN();
@@ -25,17 +25,18 @@ using L = Lanes<4>;
 constexpr std::size_t chunk = 16;  ///< particles whose shares are worked out at once
 static_assert(chunk <= array_padding);
 
-/// Whole-number weights of the cells before, at and after some positions along one axis: a quadratic B-spline. What
+/// Whole-number weights of the cells before, at and after the particles' along one axis: a quadratic B-spline. What
 /// would fall off the map's rim stays in its outermost cell.
 struct AxisShares {
     std::array<std::int32_t, chunk> cell;
     std::array<std::array<float, chunk>, 3> weight;
 
     /// `u`: in cells from the map's corner.
-    void set(std::size_t at, const L& u, const L& last_cell) {
-        const auto whole = truncated(larger(L(0), smaller(last_cell, u)));
+    void set(std::size_t at, const L& u, int cells) {
+        const L last_cell(cells - 1), inside = larger(L(0), smaller(L(cells), u));
+        const auto whole = truncated(smaller(last_cell, inside));
         const L here = from_index<L>(whole);
-        const L low = larger(L(0), smaller(L(1), u - here)), high = L(1) - low;  // shares of the cell on either side
+        const L low = inside - here, high = L(1) - low;  // shares of the cell on either side
         const L half(one / 2);
         const L after = select(here < last_cell, from_index<L>(truncated(half * low * low)), L(0));
         const L before = select(here > L(0), from_index<L>(truncated(half * high * high)), L(0));
@@ -64,7 +65,7 @@ MapAccumulator::MapAccumulator(const Model& model, const State& state, double ma
     depth_of_unit_ = particle_volume_ / one_particle / (map_cell * map_cell);
     thinnest_depth_ = 0.1 * model.particle_spacing;
 
-    // Cells before the first and after the last have tiles, too, but never get a share.
+    // Tiles also hold the cells just off the map's rim, which never get a share: every particle has its nine cells.
     const auto tiles_along = [](int cells_along) {
         return (static_cast<unsigned>(cells_along) + 2 + tile_size - 1) / tile_size;
     };
@@ -82,8 +83,8 @@ struct MapAccumulator::Shares {
     std::array<float, chunk> known;  ///< 0: its position is not finite
 };
 
-/// Sums of a tile and the two cells beyond it eastward and northward, which a task fills by itself: of the particles
-/// whose first cell lies in the tile.
+/// What a task has added up by itself for a tile: of the particles whose first cell, of the nine, lies in the tile. The
+/// others may lie up to two cells beyond it eastward and northward.
 struct MapAccumulator::Patch {
     static constexpr std::size_t edge = tile_size + 2;
     unsigned tile_column = 0, tile_row = 0;  // of the tile, in tiles
@@ -92,16 +93,16 @@ struct MapAccumulator::Patch {
     std::array<CellSum, edge * edge> sums{};
 };
 
-/// The patches that a task works on; where debris of one place is not quite together in the state, several take turns.
+/// The patches that a task works on. Particles that follow each other are near each other, but not always in one tile:
+/// there is room for several, and what no longer fits goes into the map. A particle by itself would have to lock the
+/// tile, or be sorted by tile first; either costs more than to add it.
 class MapAccumulator::Patches {
   public:
     explicit Patches(MapAccumulator& maps) : maps_(maps) {}
-    ~Patches() {
+
+    void take_all() {
         for (Patch& patch : patches_) maps_.take(patch);
     }
-    Patches(const Patches&) = delete;
-    Patches& operator=(const Patches&) = delete;
-
     Patch& at(unsigned tile_column, unsigned tile_row) {
         Patch& patch = patches_[tile_row % rows * columns + tile_column % columns];
         if (patch.tile_column != tile_column || patch.tile_row != tile_row) {
@@ -119,12 +120,12 @@ class MapAccumulator::Patches {
 };
 
 void MapAccumulator::find_shares(const State& state, std::size_t first, Shares& shares) const {
-    const L last_column(geometry_.columns - 1), last_row(geometry_.rows - 1), inverse_cell(inverse_cell_);
+    const L x_offset(x_offset_), y_offset(y_offset_), inverse_cell(inverse_cell_);
     for (std::size_t k = 0; k < chunk; k += L::size) {
         const std::size_t i = first + k;
         const L x = L::load(&state.position.x[i]), y = L::load(&state.position.y[i]);
-        shares.x.set(k, (x + L(x_offset_)) * inverse_cell, last_column);
-        shares.y.set(k, (y + L(y_offset_)) * inverse_cell, last_row);
+        shares.x.set(k, (x + x_offset) * inverse_cell, geometry_.columns);
+        shares.y.set(k, (y + y_offset) * inverse_cell, geometry_.rows);
         select((x - x == L(0)) & (y - y == L(0)), L(1), L(0)).store(&shares.known[k]);
         const L vx = L::load(&state.velocity.x[i]), vy = L::load(&state.velocity.y[i]),
                 vz = L::load(&state.velocity.z[i]);
@@ -142,7 +143,7 @@ void MapAccumulator::spread(const State& state, std::size_t first, std::size_t l
         const std::size_t present = std::min(chunk, last - i);
         for (std::size_t k = 0; k < present; ++k) {
             if (state.held[i + k] != 0 || shares.known[k] == 0) continue;
-            // In cells that count from the one before the map's first.
+            // The first cell of the nine, counted from the one before the map's.
             const auto column = static_cast<unsigned>(shares.x.cell[k]), row = static_cast<unsigned>(shares.y.cell[k]);
             Patch& patch = patches.at(column / tile_size, row / tile_size);
             const unsigned c = column % tile_size, r = row % tile_size;
@@ -158,6 +159,7 @@ void MapAccumulator::spread(const State& state, std::size_t first, std::size_t l
             }
         }
     }
+    patches.take_all();
 }
 
 MapAccumulator::Tile& MapAccumulator::tile_at(unsigned tile_column, unsigned tile_row) {

@@ -22,8 +22,8 @@ namespace talus {
 /// numbers (2^-24 of a particle, 2^-10 m/s), so a particle's shares add up to exactly one particle and sums do not
 /// depend on their order: the result is the same on any number of threads.
 ///
-/// The map is kept in tiles that exist from when debris first touches them. A step sorts the particles into tiles, and
-/// one task per tile adds them up: cost and memory follow the debris, not the terrain.
+/// The map is kept in tiles that exist from when debris first touches them. Tasks take the particles as they come, add
+/// them up in patches of their own and those to the tiles: cost and memory follow the debris, not the terrain.
 class MapAccumulator {
   public:
     /// The map's corner is the terrain grid's. `arrival_depth`, `map_cell` in m.
@@ -51,7 +51,7 @@ class MapAccumulator {
     static constexpr int column_of(std::size_t cell_in_tile) { return static_cast<int>(cell_in_tile % tile_size); }
     static constexpr int row_of(std::size_t cell_in_tile) { return static_cast<int>(cell_in_tile / tile_size); }
 
-    /// Whole numbers, far below 2^53: they add up exactly.
+    /// Whole numbers, far below 2^53: they add up exactly. Side by side, so that one addition does both.
     struct CellSum {
         using Pair = double __attribute__((vector_size(16)));
         Pair pair{};
@@ -61,7 +61,7 @@ class MapAccumulator {
     struct Tile {
         int column = 0, row = 0;  // of its first cell
         tbb::spin_mutex adding;
-        std::uint64_t added = 0;  // which add the sums are of
+        std::uint64_t added = 0;  // the add that the sums are of
         std::array<CellSum, tile_cells> sums{};
         std::array<float, tile_cells> peak_depth{};    // 0: not reached
         std::array<float, tile_cells> peak_speed{};    // depth-averaged
@@ -71,13 +71,16 @@ class MapAccumulator {
     struct Patch;
     class Patches;
 
+    /// What the next particles share out, and where.
     void find_shares(const State& state, std::size_t first, Shares& shares) const;
     /// Adds particles [first, last) to their tiles.
     void spread(const State& state, std::size_t first, std::size_t last);
     /// Moves the sums of a patch into the tiles that it lies over.
     void take(Patch& patch);
+    /// Made if it is not there yet.
     Tile& tile_at(unsigned tile_column, unsigned tile_row);
     void update_peaks(Tile& tile, double time) const;
+    /// As of the last add.
     [[nodiscard]] CellSum sum_of(const Tile& tile, std::size_t cell) const;
     [[nodiscard]] double depth(double volume) const { return volume * depth_of_unit_; }
     [[nodiscard]] Extent reached_cells() const;
@@ -91,7 +94,7 @@ class MapAccumulator {
     std::vector<Tile*> tile_at_;  // by tile position; null: not touched yet
     std::vector<std::unique_ptr<Tile>> tiles_;
     std::mutex new_tile_;
-    std::uint64_t adds_ = 0;
+    std::uint64_t adds_ = 0;     // so far
     std::vector<Tile*> active_;  // touched by the last add, the first active_count_
     std::uint32_t active_count_ = 0;
     PlanPoint first_particle_;  // world, for the frame of an empty map

@@ -116,7 +116,8 @@ void FlowPath::fill_chainage_bound() {
 
 void FlowPath::fill_extent_beyond() {
     const double none = std::numeric_limits<double>::infinity();
-    extent_beyond_.assign(static_cast<std::size_t>((length() + 1) * inverse_cell_) + 1, {none, none, -none, -none});
+    // The last: beyond the path's end.
+    extent_beyond_.assign(static_cast<std::size_t>((length() + 1) * inverse_cell_) + 2, {none, none, -none, -none});
     for (int r = 0; r < table_.rows; ++r) {
         for (int c = 0; c < table_.columns; ++c) {
             const float bound = chainage_bound_[table_.index(c, r)];
@@ -135,6 +136,7 @@ void FlowPath::fill_extent_beyond() {
 }
 
 Extent FlowPath::extent_beyond(double chainage) const {
+    assert(!empty());
     const auto k = static_cast<std::size_t>(std::max(0.0, chainage) * inverse_cell_);
     return extent_beyond_[std::min(k, extent_beyond_.size() - 1)];
 }
