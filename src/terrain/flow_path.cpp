@@ -130,6 +130,7 @@ void FlowPath::fill_extent_beyond() {
     }
     for (std::size_t k = extent_beyond_.size() - 1; k > 0; --k) {
         const Extent& beyond = extent_beyond_[k];
+        if (beyond.x_min > beyond.x_max) continue;
         extent_beyond_[k - 1].include({beyond.x_min, beyond.y_min});
         extent_beyond_[k - 1].include({beyond.x_max, beyond.y_max});
     }
