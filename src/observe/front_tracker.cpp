@@ -1,6 +1,8 @@
 #include "observe/front_tracker.hpp"
 
 #include <algorithm>
+#include <array>
+#include <atomic>
 #include <cmath>
 #include <functional>
 #include <utility>
@@ -8,6 +10,11 @@
 #include "sim/cpu/parallel.hpp"
 
 namespace talus {
+namespace {
+
+constexpr std::size_t group = 64;  ///< particles looked at together, most often to find that none matters
+
+}  // namespace
 
 std::uint32_t front_particle_count(const State& state) {
     const auto share = static_cast<std::uint32_t>(std::ceil(0.001 * state.seeded));
@@ -22,8 +29,7 @@ FrontTracker::FrontTracker(const Model& model, const State& state, FlowPath flow
       head_length_(std::max(2 * model.support_radius, chainage_interval)),
       front_count_(front_particle_count(state)) {
     if (flow_path_.empty()) return;
-    chainage_.resize(state.count);
-    candidates_.reserve(state.count);
+    candidates_.resize(state.count);
     const auto bins = static_cast<std::size_t>(flow_path_.length() / interval_) + 1;
     arrival_.assign(bins, never);
     speed_.assign(bins, never);
@@ -31,22 +37,47 @@ FrontTracker::FrontTracker(const Model& model, const State& state, FlowPath flow
     farthest_ = current_;
 }
 
-std::uint32_t FrontTracker::locate_particles(const Model& model, const State& state, double from) {
-    chainage_.resize(state.count);  // never grows: particles only leave
+std::uint32_t FrontTracker::find_candidates(const Model& model, const State& state, double from) {
+    // Debris behind the front is seen to be there without locating it: not in the rectangle around the path beyond, not
+    // in a cell of the path's table that reaches so far.
     const WorldPoint& origin = model.terrain.frame().origin;
+    const Extent beyond = flow_path_.extent_beyond(from).grown(0.01);  // for the rounding to float
+    const auto x_min = static_cast<float>(beyond.x_min - origin.x), x_max = static_cast<float>(beyond.x_max - origin.x);
+    const auto y_min = static_cast<float>(beyond.y_min - origin.y), y_max = static_cast<float>(beyond.y_max - origin.y);
+    const auto chainage_of = [&](std::size_t i) -> float {
+        const PlanPoint p{origin.x + state.position.x[i], origin.y + state.position.y[i]};
+        const float bound = flow_path_.chainage_bound(p);
+        if (bound < 0 || bound < from) return -1;
+        const auto at = flow_path_.locate(p);
+        return at ? static_cast<float>(at->chainage) : -1;
+    };
+    const auto examine = [&](std::size_t first, std::size_t last) {
+        std::array<Candidate, group> found;
+        std::uint32_t count = 0;
+        for (std::size_t i = first; i < last; ++i) {
+            if (state.held[i] != 0) continue;
+            const float chainage = chainage_of(i);
+            if (chainage >= 0 && chainage >= from) found[count++] = {static_cast<std::uint32_t>(i), chainage};
+        }
+        if (count == 0) return;
+        const std::uint32_t place = std::atomic_ref(candidate_count_).fetch_add(count, std::memory_order_relaxed);
+        std::copy_n(found.begin(), count, candidates_.begin() + place);
+    };
+    candidate_count_ = 0;
     return cpu::reduce_ranges(
-        state.count, 1024, std::uint32_t{0},
+        state.count, 4096, std::uint32_t{0},
         [&](std::size_t first, std::size_t last, std::uint32_t held) {
-            for (std::size_t i = first; i < last; ++i) {
-                chainage_[i] = -1;
-                if (state.held[i] != 0) {
-                    ++held;
-                    continue;
+            for (std::size_t begin = first; begin < last; begin += group) {
+                const std::size_t end = std::min(last, begin + group);
+                unsigned inside = 0, held_here = 0;
+                for (std::size_t i = begin; i < end; ++i) {
+                    const float x = state.position.x[i], y = state.position.y[i];
+                    inside |= static_cast<unsigned>(x >= x_min) & static_cast<unsigned>(x <= x_max) &
+                              static_cast<unsigned>(y >= y_min) & static_cast<unsigned>(y <= y_max);
+                    held_here += static_cast<unsigned>(state.held[i] != 0);
                 }
-                const PlanPoint p{origin.x + state.position.x[i], origin.y + state.position.y[i]};
-                const float bound = flow_path_.chainage_bound(p);
-                if (bound < 0 || bound < from) continue;
-                if (const auto at = flow_path_.locate(p)) chainage_[i] = static_cast<float>(at->chainage);
+                held += held_here;
+                if (inside != 0) examine(begin, end);
             }
             return held;
         },
@@ -55,33 +86,33 @@ std::uint32_t FrontTracker::locate_particles(const Model& model, const State& st
 
 std::uint32_t FrontTracker::find_front(const Model& model, const State& state) {
     std::uint32_t held = 0;
-    const auto collect = [&](double from) {
-        held = locate_particles(model, state, from);
-        candidates_.clear();
-        for (const float c : chainage_) {
-            if (c >= 0 && c >= from) candidates_.push_back(c);
-        }
-        return candidates_.size() >= front_count_;
+    const auto find_enough = [&](double from) {
+        held = find_candidates(model, state, from);
+        return candidate_count_ >= front_count_;
     };
     // The front hardly moves within a step: debris well behind where it was need not be located.
     const double nearly = std::isnan(current_) ? 0 : std::max(0.0, current_ - head_length_);
-    if (collect(nearly) || (nearly > 0 && collect(0))) {
+    if (find_enough(nearly) || (nearly > 0 && find_enough(0))) {
         const auto front = candidates_.begin() + static_cast<std::ptrdiff_t>(front_count_) - 1;
-        std::nth_element(candidates_.begin(), front, candidates_.end(), std::greater<>{});
-        current_ = *front;
+        std::nth_element(candidates_.begin(), front, candidates_.begin() + candidate_count_,
+                         [](const Candidate& a, const Candidate& b) { return a.chainage > b.chainage; });
+        current_ = front->chainage;
     } else {
         current_ = never;
     }
     return held;
 }
 
-double FrontTracker::speed_behind(double front, const State& state) const {
+double FrontTracker::speed_behind(double front, const State& state) {
     const auto from = static_cast<float>(std::max(0.0, front - head_length_));
+    // Always in the same order: the sum would hang on it.
+    const auto end = candidates_.begin() + candidate_count_;
+    std::sort(candidates_.begin(), end, [](const Candidate& a, const Candidate& b) { return a.particle < b.particle; });
     double sum = 0;
     std::size_t count = 0;
-    for (std::size_t i = 0; i < chainage_.size(); ++i) {
-        if (chainage_[i] < from) continue;
-        sum += length(state.velocity.at(i));
+    for (auto candidate = candidates_.begin(); candidate != end; ++candidate) {
+        if (candidate->chainage < from) continue;
+        sum += length(state.velocity.at(candidate->particle));
         ++count;
     }
     return sum / static_cast<double>(count);

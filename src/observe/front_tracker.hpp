@@ -34,11 +34,17 @@ class FrontTracker {
     [[nodiscard]] std::vector<FrontSample> samples() const;
 
   private:
-    /// Fills chainage_ for the particles beyond `from` and returns how many particles are held.
-    std::uint32_t locate_particles(const Model& model, const State& state, double from);
+    /// A particle on the path, not far behind the front.
+    struct Candidate {
+        std::uint32_t particle;
+        float chainage;
+    };
+
+    /// Finds the candidates beyond `from` and returns how many particles are held.
+    std::uint32_t find_candidates(const Model& model, const State& state, double from);
     /// Sets current_ and returns how many particles are held.
     std::uint32_t find_front(const Model& model, const State& state);
-    [[nodiscard]] double speed_behind(double front, const State& state) const;
+    [[nodiscard]] double speed_behind(double front, const State& state);
     [[nodiscard]] double fitted_velocity(std::size_t middle) const;
 
     FlowPath flow_path_;
@@ -46,9 +52,9 @@ class FrontTracker {
     std::size_t front_count_ = 1;
     std::uint32_t held_ = 0;
     double current_ = never, farthest_ = never;
-    std::vector<float> chainage_;    // by sorted index; -1: held, outside the corridor, or far behind the front
-    std::vector<float> candidates_;  // reused
-    std::vector<double> arrival_;    // by chainage / interval; NaN: not yet
+    std::vector<Candidate> candidates_;  // the first candidate_count_, in any order
+    std::uint32_t candidate_count_ = 0;
+    std::vector<double> arrival_;  // by chainage / interval; NaN: not yet
     std::vector<double> speed_;
 };
 

@@ -3,36 +3,49 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <cstring>
 #include <limits>
+#include <mutex>
 
+#include "core/lanes.hpp"
 #include "sim/cpu/parallel.hpp"
 
 namespace talus {
 namespace {
 
-constexpr int one = 1 << 12;  ///< a weight of 1 along one axis
+constexpr float one = 1 << 12;  ///< a weight of 1 along one axis
 constexpr double one_particle = static_cast<double>(one) * one;
-constexpr double speed_units = 1024;  ///< per m/s
-constexpr double fastest = 1e4;       ///< m/s; keeps a broken state from overflowing the sums
-constexpr double margin = 20;         ///< m around the reached cells
-constexpr std::size_t grain = 1024;   ///< particles per task
+constexpr float speed_units = 1024;  ///< per m/s
+constexpr float fastest = 1000;      ///< m/s; with up to 500 particles of a broken state in a cell its sums are whole
+constexpr double margin = 20;        ///< m around the reached cells
+constexpr std::size_t grain = 2048;  ///< particles per task
 constexpr float not_a_number = std::numeric_limits<float>::quiet_NaN();
 
-std::uint32_t fetch_add(std::uint32_t& counter, std::uint32_t n) {
-    return std::atomic_ref<std::uint32_t>(counter).fetch_add(n, std::memory_order_relaxed);
-}
+using L = Lanes<4>;
+constexpr std::size_t chunk = 16;  ///< particles whose shares are worked out at once
+static_assert(chunk <= array_padding);
 
-/// Whole-number weights of the cells before, at and after a position along one axis: a quadratic B-spline. What would
-/// fall off the map's rim stays in its outermost cell. `offset`: from the cell's centre, in cells.
-std::array<int, 3> weights(double offset, int cell, int cells) {
-    const double f = std::clamp(offset, -0.5, 0.5);
-    std::array<int, 3> weight{static_cast<int>(0.5 * (0.5 - f) * (0.5 - f) * one), 0,
-                              static_cast<int>(0.5 * (0.5 + f) * (0.5 + f) * one)};
-    if (cell == 0) weight[0] = 0;
-    if (cell == cells - 1) weight[2] = 0;
-    weight[1] = one - weight[0] - weight[2];
-    return weight;
-}
+/// Whole-number weights of the cells before, at and after the particles' along one axis: a quadratic B-spline. What
+/// would fall off the map's rim stays in its outermost cell.
+struct AxisShares {
+    std::array<std::int32_t, chunk> cell;
+    std::array<std::array<float, chunk>, 3> weight;
+
+    /// `u`: in cells from the map's corner.
+    void set(std::size_t at, const L& u, int cells) {
+        const L last_cell(cells - 1), inside = larger(L(0), smaller(L(cells), u));
+        const auto whole = truncated(smaller(last_cell, inside));
+        const L here = from_index<L>(whole);
+        const L low = inside - here, high = L(1) - low;  // shares of the cell on either side
+        const L half(one / 2);
+        const L after = select(here < last_cell, from_index<L>(truncated(half * low * low)), L(0));
+        const L before = select(here > L(0), from_index<L>(truncated(half * high * high)), L(0));
+        std::memcpy(cell.data() + at, &whole, sizeof whole);
+        before.store(weight[0].data() + at);
+        (L(one) - before - after).store(weight[1].data() + at);
+        after.store(weight[2].data() + at);
+    }
+};
 
 }  // namespace
 
@@ -52,177 +65,196 @@ MapAccumulator::MapAccumulator(const Model& model, const State& state, double ma
     depth_of_unit_ = particle_volume_ / one_particle / (map_cell * map_cell);
     thinnest_depth_ = 0.1 * model.particle_spacing;
 
-    tile_columns_ = (geometry_.columns + tile_size - 1) / tile_size;
-    const int tile_rows = (geometry_.rows + tile_size - 1) / tile_size;
-    const auto positions = static_cast<std::size_t>(tile_columns_) * static_cast<std::size_t>(tile_rows);
-    tile_at_.assign(positions, -1);
-    tile_count_.assign(positions, 0);
-    const std::size_t most_entries = 4 * static_cast<std::size_t>(state.count);
-    active_.resize(std::min(positions, most_entries));
-    entry_start_.resize(active_.size() + 1);
-    entries_.resize(most_entries);
-    cell_.resize(state.count);
+    // Tiles also hold the cells just off the map's rim, which never get a share: every particle has its nine cells.
+    const auto tiles_along = [](int cells_along) {
+        return (static_cast<unsigned>(cells_along) + 2 + tile_size - 1) / tile_size;
+    };
+    tile_columns_ = tiles_along(geometry_.columns);
+    const std::size_t positions = std::size_t{tile_columns_} * tiles_along(geometry_.rows);
+    tile_at_.assign(positions, nullptr);
+    active_.resize(std::min(positions, 4 * static_cast<std::size_t>(state.count)));
     if (state.count > 0) first_particle_ = {origin.x + state.position.x[0], origin.y + state.position.y[0]};
 }
 
-MapAccumulator::Cell MapAccumulator::cell_of(const LocalPoint& p) const {
-    const double u = (p.x + x_offset_) * inverse_cell_, v = (p.y + y_offset_) * inverse_cell_;
-    return {static_cast<int>(std::clamp(u, 0.0, geometry_.columns - 1.0)),
-            static_cast<int>(std::clamp(v, 0.0, geometry_.rows - 1.0))};
-}
+/// What the particles of a chunk share out, and where.
+struct MapAccumulator::Shares {
+    AxisShares x, y;
+    std::array<float, chunk> speed;
+    std::array<float, chunk> known;  ///< 0: its position is not finite
+};
 
-void MapAccumulator::locate_particles(const State& state) {
-    cpu::parallel_ranges(state.count, grain, [&](std::size_t first, std::size_t last) {
-        for (std::size_t i = first; i < last; ++i) {
-            const LocalPoint p = state.position.at(i);
-            const bool counts = state.held[i] == 0 && std::isfinite(p.x) && std::isfinite(p.y);
-            cell_[i] = counts ? cell_of(p) : Cell{-1, -1};
+/// What a task has added up by itself for a tile: of the particles whose first cell, of the nine, lies in the tile. The
+/// others may lie up to two cells beyond it eastward and northward.
+struct MapAccumulator::Patch {
+    static constexpr std::size_t edge = tile_size + 2;
+    unsigned tile_column = 0, tile_row = 0;  // of the tile, in tiles
+    unsigned rows = 0;                       // bit r: row r may have shares
+    unsigned east = 0;                       // 8: the columns beyond the tile may have shares
+    std::array<CellSum, edge * edge> sums{};
+};
+
+/// The patches that a task works on. Particles that follow each other are near each other, but not always in one tile:
+/// there is room for several, and what no longer fits goes into the map. A particle by itself would have to lock the
+/// tile, or be sorted by tile first; either costs more than to add it.
+class MapAccumulator::Patches {
+  public:
+    explicit Patches(MapAccumulator& maps) : maps_(maps) {}
+
+    void take_all() {
+        for (Patch& patch : patches_) maps_.take(patch);
+    }
+    Patch& at(unsigned tile_column, unsigned tile_row) {
+        Patch& patch = patches_[tile_row % rows * columns + tile_column % columns];
+        if (patch.tile_column != tile_column || patch.tile_row != tile_row) {
+            maps_.take(patch);
+            patch.tile_column = tile_column;
+            patch.tile_row = tile_row;
         }
-    });
+        return patch;
+    }
+
+  private:
+    static constexpr unsigned columns = 8, rows = 4;
+    MapAccumulator& maps_;
+    std::array<Patch, columns * rows> patches_;
+};
+
+void MapAccumulator::find_shares(const State& state, std::size_t first, Shares& shares) const {
+    const L x_offset(x_offset_), y_offset(y_offset_), inverse_cell(inverse_cell_);
+    for (std::size_t k = 0; k < chunk; k += L::size) {
+        const std::size_t i = first + k;
+        const L x = L::load(&state.position.x[i]), y = L::load(&state.position.y[i]);
+        shares.x.set(k, (x + x_offset) * inverse_cell, geometry_.columns);
+        shares.y.set(k, (y + y_offset) * inverse_cell, geometry_.rows);
+        select((x - x == L(0)) & (y - y == L(0)), L(1), L(0)).store(&shares.known[k]);
+        const L vx = L::load(&state.velocity.x[i]), vy = L::load(&state.velocity.y[i]),
+                vz = L::load(&state.velocity.z[i]);
+        const L speed = sqrt(vx * vx + vy * vy + vz * vz);
+        const L limited = select(speed < L(fastest), speed, L(fastest));
+        from_index<L>(truncated(limited * L(speed_units) + L(0.5))).store(&shares.speed[k]);
+    }
 }
 
-template <class F>
-void MapAccumulator::for_each_run(std::size_t first, std::size_t last, const F& f) const {
-    std::array<std::uint32_t, 64> run{};
-    std::uint32_t length = 0;
-    std::size_t run_position = 0;
-    for (std::size_t i = first; i < last; ++i) {
-        const Cell cell = cell_[i];
-        if (cell.column < 0) continue;
-        const int first_column = std::max(cell.column - 1, 0) / tile_size;
-        const int last_column = std::min(cell.column + 1, geometry_.columns - 1) / tile_size;
-        const int first_row = std::max(cell.row - 1, 0) / tile_size;
-        const int last_row = std::min(cell.row + 1, geometry_.rows - 1) / tile_size;
-        for (int row = first_row; row <= last_row; ++row) {
-            for (int column = first_column; column <= last_column; ++column) {
-                const std::size_t position = static_cast<std::size_t>(row) * static_cast<std::size_t>(tile_columns_) +
-                                             static_cast<std::size_t>(column);
-                if (length == run.size() || (length > 0 && position != run_position)) {
-                    f(run_position, run.data(), length);
-                    length = 0;
+void MapAccumulator::spread(const State& state, std::size_t first, std::size_t last) {
+    Patches patches(*this);
+    Shares shares;
+    for (std::size_t i = first; i < last; i += chunk) {
+        find_shares(state, i, shares);
+        const std::size_t present = std::min(chunk, last - i);
+        for (std::size_t k = 0; k < present; ++k) {
+            if (state.held[i + k] != 0 || shares.known[k] == 0) continue;
+            // The first cell of the nine, counted from the one before the map's.
+            const auto column = static_cast<unsigned>(shares.x.cell[k]), row = static_cast<unsigned>(shares.y.cell[k]);
+            Patch& patch = patches.at(column / tile_size, row / tile_size);
+            const unsigned c = column % tile_size, r = row % tile_size;
+            patch.east |= c + 2;
+            patch.rows |= 7U << r;
+            CellSum* sums = patch.sums.data() + r * Patch::edge + c;
+            const CellSum::Pair one_and_speed{1, shares.speed[k]};
+            for (std::size_t y = 0; y < 3; ++y) {
+                const CellSum::Pair in_row = one_and_speed * static_cast<double>(shares.y.weight[y][k]);
+                for (std::size_t x = 0; x < 3; ++x) {
+                    sums[y * Patch::edge + x].pair += in_row * static_cast<double>(shares.x.weight[x][k]);
                 }
-                run_position = position;
-                run[length++] = static_cast<std::uint32_t>(i);
             }
         }
     }
-    if (length > 0) f(run_position, run.data(), length);
+    patches.take_all();
 }
 
-void MapAccumulator::sort_into_tiles(const State& state) {
-    // Depths and speeds of tiles that debris has left are those of this step: none.
-    cpu::parallel_ranges(active_count_, 16, [&](std::size_t first, std::size_t last) {
-        for (std::size_t k = first; k < last; ++k) {
-            Tile& tile = *tiles_[static_cast<std::size_t>(tile_at_[active_[k]])];
-            tile.volume.fill(0);
-            tile.momentum.fill(0);
-        }
-    });
-    active_count_ = 0;
-    locate_particles(state);
-    cpu::parallel_ranges(state.count, grain, [&](std::size_t first, std::size_t last) {
-        for_each_run(first, last, [&](std::size_t position, const std::uint32_t*, std::uint32_t n) {
-            if (fetch_add(tile_count_[position], n) == 0) {
-                active_[fetch_add(active_count_, 1)] = static_cast<std::uint32_t>(position);
-            }
-        });
-    });
-    std::uint32_t start = 0;
-    for (std::uint32_t k = 0; k < active_count_; ++k) {
-        const std::uint32_t position = active_[k];
-        if (tile_at_[position] < 0) {
-            tile_at_[position] = static_cast<std::int32_t>(tiles_.size());
-            auto tile = std::make_unique<Tile>();
-            tile->column = static_cast<int>(position) % tile_columns_ * tile_size;
-            tile->row = static_cast<int>(position) / tile_columns_ * tile_size;
-            tile->arrival_time.fill(not_a_number);
-            tiles_.push_back(std::move(tile));
-        }
-        entry_start_[k] = start;
-        const std::uint32_t count = tile_count_[position];
-        tile_count_[position] = start;
-        start += count;
-    }
-    entry_start_[active_count_] = start;
-    cpu::parallel_ranges(state.count, grain, [&](std::size_t first, std::size_t last) {
-        for_each_run(first, last, [&](std::size_t position, const std::uint32_t* particles, std::uint32_t n) {
-            std::copy_n(particles, n, entries_.begin() + fetch_add(tile_count_[position], n));
-        });
-    });
-    for (std::uint32_t k = 0; k < active_count_; ++k) tile_count_[active_[k]] = 0;
+MapAccumulator::Tile& MapAccumulator::tile_at(unsigned tile_column, unsigned tile_row) {
+    const std::size_t position = std::size_t{tile_row} * tile_columns_ + tile_column;
+    const std::atomic_ref<Tile*> tile(tile_at_[position]);
+    if (Tile* found = tile.load(std::memory_order_acquire)) return *found;
+    const std::scoped_lock lock(new_tile_);
+    if (Tile* found = tile.load(std::memory_order_relaxed)) return *found;
+    Tile& made = *tiles_.emplace_back(std::make_unique<Tile>());
+    made.column = static_cast<int>(tile_column * tile_size) - 1;
+    made.row = static_cast<int>(tile_row * tile_size) - 1;
+    made.arrival_time.fill(not_a_number);
+    tile.store(&made, std::memory_order_release);
+    return made;
 }
 
-void MapAccumulator::sum_up(Tile& tile, const State& state, std::size_t first, std::size_t last) const {
-    for (std::size_t k = first; k < last; ++k) {
-        const std::size_t i = entries_[k];
-        const Cell cell = cell_[i];
-        const auto weight_x = weights((state.position.x[i] + x_offset_) * inverse_cell_ - cell.column - 0.5,
-                                      cell.column, geometry_.columns);
-        const auto weight_y =
-            weights((state.position.y[i] + y_offset_) * inverse_cell_ - cell.row - 0.5, cell.row, geometry_.rows);
-        const double speed = length(state.velocity.at(i));
-        const auto whole_speed = std::llround((speed < fastest ? speed : fastest) * speed_units);
-        // The particle's cells that lie in this tile.
-        const int column = cell.column - 1 - tile.column, row = cell.row - 1 - tile.row;
-        const int first_column = std::max(0, -column), last_column = std::min(3, tile_size - column);
-        const int first_row = std::max(0, -row), last_row = std::min(3, tile_size - row);
-        for (int r = first_row; r < last_row; ++r) {
-            for (int c = first_column; c < last_column; ++c) {
-                const std::int64_t weight = static_cast<std::int64_t>(weight_x[static_cast<std::size_t>(c)]) *
-                                            weight_y[static_cast<std::size_t>(r)];
-                const int cell_in_tile = (row + r) * tile_size + column + c;
-                const auto at = static_cast<std::size_t>(cell_in_tile);
-                tile.volume[at] += weight;
-                tile.momentum[at] += weight * whole_speed;
-            }
+void MapAccumulator::take(Patch& patch) {
+    constexpr std::size_t size = tile_size;
+    const auto take_part = [&](unsigned east, unsigned north) {
+        Tile& tile = tile_at(patch.tile_column + east, patch.tile_row + north);
+        const std::size_t columns = east != 0 ? 2 : size, row_begin = north != 0 ? size : 0;
+        const std::scoped_lock lock(tile.adding);
+        if (tile.added != adds_) {
+            tile.added = adds_;
+            tile.sums.fill({});
+            active_[std::atomic_ref(active_count_).fetch_add(1, std::memory_order_relaxed)] = &tile;
         }
+        for (std::size_t row = row_begin; row < (north != 0 ? Patch::edge : size); ++row) {
+            if ((patch.rows >> row & 1U) == 0) continue;
+            const CellSum* from = patch.sums.data() + row * Patch::edge + (east != 0 ? size : 0);
+            CellSum* to = tile.sums.data() + (row - row_begin) * size;
+            for (std::size_t column = 0; column < columns; ++column) to[column].pair += from[column].pair;
+        }
+    };
+    if (patch.rows == 0) return;
+    const bool east = (patch.east & tile_size) != 0, north = patch.rows >> tile_size != 0;
+    take_part(0, 0);
+    if (east) take_part(1, 0);
+    if (north) take_part(0, 1);
+    if (east && north) take_part(1, 1);
+    for (std::size_t row = 0; row < Patch::edge; ++row) {
+        if (patch.rows >> row & 1U) std::fill_n(patch.sums.begin() + row * Patch::edge, Patch::edge, CellSum{});
     }
+    patch.rows = patch.east = 0;
 }
 
 void MapAccumulator::update_peaks(Tile& tile, double time) const {
     for (std::size_t cell = 0; cell < tile_cells; ++cell) {
-        const double now = depth(tile.volume[cell]);
+        const CellSum& sum = tile.sums[cell];
+        const double now = depth(sum.volume());
         if (now < thinnest_depth_) continue;
-        const double speed =
-            static_cast<double>(tile.momentum[cell]) / static_cast<double>(tile.volume[cell]) / speed_units;
-        tile.peak_depth[cell] = std::max(tile.peak_depth[cell], static_cast<float>(now));
-        tile.peak_speed[cell] = std::max(tile.peak_speed[cell], static_cast<float>(speed));
-        if (now > arrival_depth_ && std::isnan(tile.arrival_time[cell])) {
-            tile.arrival_time[cell] = static_cast<float>(time);
+        if (sum.momentum() > sum.volume() * tile.peak_speed[cell] * speed_units) {
+            tile.peak_speed[cell] = static_cast<float>(sum.momentum() / sum.volume() / speed_units);
+        }
+        // Debris arrives with a depth that it never had.
+        if (now > tile.peak_depth[cell]) {
+            tile.peak_depth[cell] = static_cast<float>(now);
+            if (now > arrival_depth_ && std::isnan(tile.arrival_time[cell])) {
+                tile.arrival_time[cell] = static_cast<float>(time);
+            }
         }
     }
 }
 
 void MapAccumulator::add(const State& state) {
-    sort_into_tiles(state);
-    cpu::parallel_ranges(active_count_, 1, [&](std::size_t first, std::size_t last) {
-        for (std::size_t k = first; k < last; ++k) {
-            Tile& tile = *tiles_[static_cast<std::size_t>(tile_at_[active_[k]])];
-            sum_up(tile, state, entry_start_[k], entry_start_[k + 1]);
-            update_peaks(tile, state.time);
-        }
+    ++adds_;
+    active_count_ = 0;
+    cpu::parallel_ranges(state.count, grain, [&](std::size_t first, std::size_t last) { spread(state, first, last); });
+    cpu::parallel_ranges(active_count_, 16, [&](std::size_t first, std::size_t last) {
+        for (std::size_t k = first; k < last; ++k) update_peaks(*active_[k], state.time);
     });
 }
 
+MapAccumulator::CellSum MapAccumulator::sum_of(const Tile& tile, std::size_t cell) const {
+    return tile.added == adds_ ? tile.sums[cell] : CellSum{};
+}
+
 double MapAccumulator::speed_at(const LocalPoint& p) const {
-    const auto [column, row] = cell_of(p);
-    const std::int32_t index =
-        tile_at_[static_cast<std::size_t>(row / tile_size) * static_cast<std::size_t>(tile_columns_) +
-                 static_cast<std::size_t>(column / tile_size)];
-    if (index < 0) return 0;
-    const Tile& tile = *tiles_[static_cast<std::size_t>(index)];
-    const int cell_in_tile = row % tile_size * tile_size + column % tile_size;
-    const auto cell = static_cast<std::size_t>(cell_in_tile);
-    if (depth(tile.volume[cell]) < thinnest_depth_) return 0;
-    return static_cast<double>(tile.momentum[cell]) / static_cast<double>(tile.volume[cell]) / speed_units;
+    const auto cell_along = [&](double along, int cells) {  // counted from the one before the map's first
+        return static_cast<unsigned>(std::clamp(along * inverse_cell_, 0.0, cells - 1.0)) + 1;
+    };
+    const unsigned column = cell_along(p.x + x_offset_, geometry_.columns);
+    const unsigned row = cell_along(p.y + y_offset_, geometry_.rows);
+    const Tile* tile = tile_at_[std::size_t{row / tile_size} * tile_columns_ + column / tile_size];
+    if (tile == nullptr) return 0;
+    const CellSum sum = sum_of(*tile, row % tile_size * tile_size + column % tile_size);
+    return depth(sum.volume()) < thinnest_depth_ ? 0 : sum.momentum() / sum.volume() / speed_units;
 }
 
 double MapAccumulator::volume() const {
-    std::int64_t sum = 0;
+    double sum = 0;
     for (const auto& tile : tiles_) {
-        for (const std::int64_t v : tile->volume) sum += v;
+        for (std::size_t cell = 0; cell < tile_cells; ++cell) sum += sum_of(*tile, cell).volume();
     }
-    return static_cast<double>(sum) / one_particle * particle_volume_;
+    return sum / one_particle * particle_volume_;
 }
 
 Extent MapAccumulator::reached_cells() const {
@@ -231,9 +263,7 @@ Extent MapAccumulator::reached_cells() const {
     for (const auto& tile : tiles_) {
         for (std::size_t cell = 0; cell < tile_cells; ++cell) {
             if (tile->peak_depth[cell] == 0) continue;
-            const int column = tile->column + static_cast<int>(cell) % tile_size;
-            const int row = tile->row + static_cast<int>(cell) / tile_size;
-            reached.include(geometry_.centre(column, row));
+            reached.include(geometry_.centre(tile->column + column_of(cell), tile->row + row_of(cell)));
         }
     }
     if (reached.x_min > reached.x_max) {
@@ -259,14 +289,14 @@ HazardMaps MapAccumulator::maps() const {
     for (const auto& tile : tiles_) {
         for (std::size_t cell = 0; cell < tile_cells; ++cell) {
             if (tile->peak_depth[cell] == 0) continue;
-            const std::size_t k = g.index(tile->column + static_cast<int>(cell) % tile_size - first_column,
-                                          tile->row + static_cast<int>(cell) / tile_size - first_row);
+            const std::size_t k =
+                g.index(tile->column + column_of(cell) - first_column, tile->row + row_of(cell) - first_row);
             const double speed = tile->peak_speed[cell];
             maps.peak_depth.values[k] = tile->peak_depth[cell];
             maps.peak_speed.values[k] = tile->peak_speed[cell];
             maps.peak_pressure.values[k] = static_cast<float>(rest_density_ * speed * speed);
             maps.arrival_time.values[k] = tile->arrival_time[cell];
-            maps.deposit_depth.values[k] = static_cast<float>(depth(tile->volume[cell]));
+            maps.deposit_depth.values[k] = static_cast<float>(depth(sum_of(*tile, cell).volume()));
         }
     }
     return maps;

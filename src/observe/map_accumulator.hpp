@@ -3,7 +3,10 @@
 #include <array>
 #include <cstdint>
 #include <memory>
+#include <mutex>
 #include <vector>
+
+#include <tbb/spin_mutex.h>
 
 #include "core/grid.hpp"
 #include "observe/observation.hpp"
@@ -19,8 +22,8 @@ namespace talus {
 /// numbers (2^-24 of a particle, 2^-10 m/s), so a particle's shares add up to exactly one particle and sums do not
 /// depend on their order: the result is the same on any number of threads.
 ///
-/// The map is kept in tiles that exist from when debris first touches them. A step sorts the particles into tiles, and
-/// one task per tile adds them up: cost and memory follow the debris, not the terrain.
+/// The map is kept in tiles that exist from when debris first touches them. Tasks take the particles as they come, add
+/// them up in patches of their own and those to the tiles: cost and memory follow the debris, not the terrain.
 class MapAccumulator {
   public:
     /// The map's corner is the terrain grid's. `arrival_depth`, `map_cell` in m.
@@ -43,32 +46,43 @@ class MapAccumulator {
     [[nodiscard]] double thinnest_depth() const { return thinnest_depth_; }
 
   private:
-    static constexpr int tile_size = 8;  // cells along an edge
-    static constexpr std::size_t tile_cells = static_cast<std::size_t>(tile_size) * tile_size;
+    static constexpr unsigned tile_size = 8;  // cells along an edge
+    static constexpr std::size_t tile_cells = std::size_t{tile_size} * tile_size;
+    static constexpr int column_of(std::size_t cell_in_tile) { return static_cast<int>(cell_in_tile % tile_size); }
+    static constexpr int row_of(std::size_t cell_in_tile) { return static_cast<int>(cell_in_tile / tile_size); }
 
+    /// Whole numbers, far below 2^53: they add up exactly. Side by side, so that one addition does both.
+    struct CellSum {
+        using Pair = double __attribute__((vector_size(16)));
+        Pair pair{};
+        [[nodiscard]] double volume() const { return pair[0]; }    // 2^-24 of a particle
+        [[nodiscard]] double momentum() const { return pair[1]; }  // the same times 2^-10 m/s
+    };
     struct Tile {
-        int column = 0, row = 0;                          // of its first cell
-        std::array<std::int64_t, tile_cells> volume{};    // 2^-24 of a particle, as of the last add
-        std::array<std::int64_t, tile_cells> momentum{};  // the same times 2^-10 m/s
-        std::array<float, tile_cells> peak_depth{};       // 0: not reached
-        std::array<float, tile_cells> peak_speed{};       // depth-averaged
-        std::array<float, tile_cells> arrival_time{};     // NaN: never
+        int column = 0, row = 0;  // of its first cell
+        tbb::spin_mutex adding;
+        std::uint64_t added = 0;  // the add that the sums are of
+        std::array<CellSum, tile_cells> sums{};
+        std::array<float, tile_cells> peak_depth{};    // 0: not reached
+        std::array<float, tile_cells> peak_speed{};    // depth-averaged
+        std::array<float, tile_cells> arrival_time{};  // NaN: never
     };
-    /// The cell that a particle is in; column -1: it does not count.
-    struct Cell {
-        int column, row;
-    };
+    struct Shares;
+    struct Patch;
+    class Patches;
 
-    [[nodiscard]] Cell cell_of(const LocalPoint& p) const;
-    void locate_particles(const State& state);
-    /// Calls f(tile position, particles, how many) for particles [first, last): each comes once per tile that its cells
-    /// lie in, neighbours in the order of the state together.
-    template <class F>
-    void for_each_run(std::size_t first, std::size_t last, const F& f) const;
-    void sort_into_tiles(const State& state);
-    void sum_up(Tile& tile, const State& state, std::size_t first, std::size_t last) const;
+    /// What the next particles share out, and where.
+    void find_shares(const State& state, std::size_t first, Shares& shares) const;
+    /// Adds particles [first, last) to their tiles.
+    void spread(const State& state, std::size_t first, std::size_t last);
+    /// Moves the sums of a patch into the tiles that it lies over.
+    void take(Patch& patch);
+    /// Made if it is not there yet.
+    Tile& tile_at(unsigned tile_column, unsigned tile_row);
     void update_peaks(Tile& tile, double time) const;
-    [[nodiscard]] double depth(std::int64_t volume) const { return static_cast<double>(volume) * depth_of_unit_; }
+    /// As of the last add.
+    [[nodiscard]] CellSum sum_of(const Tile& tile, std::size_t cell) const;
+    [[nodiscard]] double depth(double volume) const { return volume * depth_of_unit_; }
     [[nodiscard]] Extent reached_cells() const;
 
     GridGeometry geometry_;  // of the whole terrain
@@ -76,16 +90,14 @@ class MapAccumulator {
     double particle_volume_ = 0, rest_density_ = 0;
     double depth_of_unit_ = 0, thinnest_depth_ = 0, arrival_depth_ = 0;
 
-    int tile_columns_ = 0;
-    std::vector<std::int32_t> tile_at_;      // index into tiles_ by tile position, -1: not touched yet
-    std::vector<std::uint32_t> tile_count_;  // particles of this step by tile position, then where the next one goes
+    unsigned tile_columns_ = 0;
+    std::vector<Tile*> tile_at_;  // by tile position; null: not touched yet
     std::vector<std::unique_ptr<Tile>> tiles_;
-    std::vector<std::uint32_t> active_;  // tile positions touched in this step, the first active_count_
+    std::mutex new_tile_;
+    std::uint64_t adds_ = 0;     // so far
+    std::vector<Tile*> active_;  // touched by the last add, the first active_count_
     std::uint32_t active_count_ = 0;
-    std::vector<Cell> cell_;                  // by particle
-    std::vector<std::uint32_t> entry_start_;  // by place in active_
-    std::vector<std::uint32_t> entries_;      // particles by tile
-    PlanPoint first_particle_;                // world, for the frame of an empty map
+    PlanPoint first_particle_;  // world, for the frame of an empty map
 };
 
 }  // namespace talus

@@ -13,11 +13,16 @@ struct Projection {
     double distance_squared;  ///< m2
 };
 
-Projection project(const PlanPoint& a, const PlanPoint& b, const PlanPoint& p) {
-    const double dx = b.x - a.x, dy = b.y - a.y;
-    const double share = std::clamp(((p.x - a.x) * dx + (p.y - a.y) * dy) / (dx * dx + dy * dy), 0.0, 1.0);
-    const double x = a.x + share * dx - p.x, y = a.y + share * dy - p.y;
+Projection project(const PathSegment& s, const PlanPoint& p) {
+    const double share = std::clamp((p.x - s.x) * s.share_x + (p.y - s.y) * s.share_y, 0.0, 1.0);
+    const double x = s.x + share * s.dx - p.x, y = s.y + share * s.dy - p.y;
     return {share, x * x + y * y};
+}
+
+/// Whether `p` is nearer to `a` than to `b`: where it is so in the corners of a cell, it is so in all of the cell.
+bool nearer_to(const PlanPoint& a, const PlanPoint& b, const PlanPoint& p) {
+    const double dx = b.x - a.x, dy = b.y - a.y;
+    return (2 * p.x - a.x - b.x) * dx + (2 * p.y - a.y - b.y) * dy < -1e-6;  // not so for rounding alone
 }
 
 }  // namespace
@@ -34,6 +39,11 @@ FlowPath::FlowPath(const std::vector<PlanPoint>& points, double corridor_width) 
         points_.push_back(p);
     }
     assert(points_.size() >= 2 && corridor_width > 0);
+    for (std::size_t i = 0; i + 1 < points_.size(); ++i) {
+        const PlanPoint &a = points_[i], &b = points_[i + 1];
+        const double dx = b.x - a.x, dy = b.y - a.y, square = dx * dx + dy * dy;
+        segments_.push_back({a.x, a.y, dx, dy, dx / square, dy / square});
+    }
 
     const double half_width = corridor_width / 2;
     Extent extent{points_[0].x, points_[0].y, points_[0].x, points_[0].y};
@@ -43,8 +53,11 @@ FlowPath::FlowPath(const std::vector<PlanPoint>& points, double corridor_width) 
     const double cell = std::max(half_width / 8, std::sqrt(extent.width() * extent.height() / 4e6));
     table_ = {extent.x_min, extent.y_min, cell, static_cast<int>(extent.width() / cell) + 1,
               static_cast<int>(extent.height() / cell) + 1};
+    inverse_cell_ = 1 / cell;
+    for (std::size_t i = 0; i < segments_.size(); ++i) segments_around_.push_back(find_segments_around(i));
     fill_nearest_segment();
     fill_chainage_bound();
+    fill_extent_beyond();
 }
 
 void FlowPath::fill_nearest_segment() {
@@ -62,7 +75,7 @@ void FlowPath::fill_nearest_segment() {
         const int last_column = column(std::max(a.x, b.x) + reach), last_row = row(std::max(a.y, b.y) + reach);
         for (int r = row(std::min(a.y, b.y) - reach); r <= last_row; ++r) {
             for (int c = column(std::min(a.x, b.x) - reach); c <= last_column; ++c) {
-                const double d = project(a, b, table_.centre(c, r)).distance_squared;
+                const double d = project(segments_[i], table_.centre(c, r)).distance_squared;
                 const std::size_t k = table_.index(c, r);
                 if (d >= nearest[k]) continue;
                 nearest[k] = d;
@@ -78,26 +91,59 @@ void FlowPath::fill_chainage_bound() {
         for (int c = 0; c < table_.columns; ++c) {
             const std::size_t k = table_.index(c, r);
             if (nearest_segment_[k] < 0) continue;
-            const auto [first, last] = segments_around(nearest_segment_[k]);
+            const auto [first, last] = segments_around_[static_cast<std::size_t>(nearest_segment_[k])];
             const PlanPoint centre = table_.centre(c, r);
             double bound = 0;
             for (std::size_t i = first; i < last; ++i) {
                 // The chainage of the projection on a segment is greatest in one of the cell's corners.
+                double share = 0;
+                bool nearer_before = i > first;
                 for (const double x : {-0.5, 0.5}) {
                     for (const double y : {-0.5, 0.5}) {
                         const PlanPoint corner{centre.x + x * table_.cell, centre.y + y * table_.cell};
-                        const double share = project(points_[i], points_[i + 1], corner).share;
-                        bound = std::max(bound, chainage_[i] + share * (chainage_[i + 1] - chainage_[i]));
+                        share = std::max(share, project(segments_[i], corner).share);
+                        nearer_before = nearer_before && nearer_to(points_[i - 1], points_[i], corner);
                     }
                 }
+                // All of the cell is before this segment, and nearer to where the one before begins.
+                if (share == 0 && nearer_before) continue;
+                bound = std::max(bound, chainage_[i] + share * (chainage_[i + 1] - chainage_[i]));
             }
             chainage_bound_[k] = static_cast<float>(bound + 1e-3);  // for the rounding to float
         }
     }
 }
 
-std::pair<std::size_t, std::size_t> FlowPath::segments_around(std::int32_t middle) const {
-    auto first = static_cast<std::size_t>(middle), last = first + 1;
+void FlowPath::fill_extent_beyond() {
+    const double none = std::numeric_limits<double>::infinity();
+    // The last: beyond the path's end.
+    extent_beyond_.assign(static_cast<std::size_t>((length() + 1) * inverse_cell_) + 2, {none, none, -none, -none});
+    for (int r = 0; r < table_.rows; ++r) {
+        for (int c = 0; c < table_.columns; ++c) {
+            const float bound = chainage_bound_[table_.index(c, r)];
+            if (bound < 0) continue;
+            Extent& extent = extent_beyond_[static_cast<std::size_t>(bound * inverse_cell_)];
+            const PlanPoint corner{table_.x_min + c * table_.cell, table_.y_min + r * table_.cell};
+            extent.include(corner);
+            extent.include({corner.x + table_.cell, corner.y + table_.cell});
+        }
+    }
+    for (std::size_t k = extent_beyond_.size() - 1; k > 0; --k) {
+        const Extent& beyond = extent_beyond_[k];
+        if (beyond.x_min > beyond.x_max) continue;
+        extent_beyond_[k - 1].include({beyond.x_min, beyond.y_min});
+        extent_beyond_[k - 1].include({beyond.x_max, beyond.y_max});
+    }
+}
+
+Extent FlowPath::extent_beyond(double chainage) const {
+    assert(!empty());
+    const auto k = static_cast<std::size_t>(std::max(0.0, chainage) * inverse_cell_);
+    return extent_beyond_[std::min(k, extent_beyond_.size() - 1)];
+}
+
+std::pair<std::size_t, std::size_t> FlowPath::find_segments_around(std::size_t middle) const {
+    std::size_t first = middle, last = middle + 1;
     const double begin = chainage_[first] - 2 * table_.cell, end = chainage_[last] + 2 * table_.cell;
     while (first > 0 && chainage_[first] >= begin) --first;
     while (last + 1 < points_.size() && chainage_[last] <= end) ++last;
@@ -109,10 +155,10 @@ std::optional<PathPosition> FlowPath::locate(const PlanPoint& p) const {
     if (cell >= nearest_segment_.size() || nearest_segment_[cell] < 0) return std::nullopt;
 
     // The cell's segment is nearest to its centre; nearest to this point may be one a little up or down the path.
-    const auto [first, last] = segments_around(nearest_segment_[cell]);
+    const auto [first, last] = segments_around_[static_cast<std::size_t>(nearest_segment_[cell])];
     double nearest = std::numeric_limits<double>::infinity(), chainage = 0;
     for (std::size_t i = first; i < last; ++i) {
-        const Projection q = project(points_[i], points_[i + 1], p);
+        const Projection q = project(segments_[i], p);
         if (q.distance_squared >= nearest) continue;
         nearest = q.distance_squared;
         chainage = chainage_[i] + q.share * (chainage_[i + 1] - chainage_[i]);

@@ -17,6 +17,13 @@ struct PathPosition {
     double offset;    ///< distance from the path, m
 };
 
+/// From one point of a path to the next, as a projection on it needs it.
+struct PathSegment {
+    double x, y;              ///< where it begins
+    double dx, dy;            ///< from there to its end
+    double share_x, share_y;  ///< rise of a projection's share of the segment, 1/m
+};
+
 /// The line along which debris is expected to run (the thalweg), and the chainage along it.
 class FlowPath {
   public:
@@ -40,27 +47,36 @@ class FlowPath {
         return cell < chainage_bound_.size() ? chainage_bound_[cell] : -1.0F;
     }
 
+    /// A rectangle around every position whose `chainage_bound` is `chainage` or more; empty (the greatest less than
+    /// the least) if there is none. A look-up.
+    [[nodiscard]] Extent extent_beyond(double chainage) const;
+
     /// World plan position at a chainage, clamped to the path's ends.
     [[nodiscard]] PlanPoint point_at(double chainage) const;
 
   private:
     /// Index into the tables; their size outside their extent.
     [[nodiscard]] std::size_t cell_of(const PlanPoint& p) const {
-        const double u = (p.x - table_.x_min) / table_.cell, v = (p.y - table_.y_min) / table_.cell;
+        const double u = (p.x - table_.x_min) * inverse_cell_, v = (p.y - table_.y_min) * inverse_cell_;
         if (!(u >= 0 && v >= 0 && u < table_.columns && v < table_.rows)) return nearest_segment_.size();  // NaN, too
         return table_.index(static_cast<int>(u), static_cast<int>(v));
     }
     void fill_nearest_segment();
     void fill_chainage_bound();
+    void fill_extent_beyond();
     /// The segments [first, last) that may be nearest to a position in a cell whose centre is nearest to `middle`.
-    [[nodiscard]] std::pair<std::size_t, std::size_t> segments_around(std::int32_t middle) const;
+    [[nodiscard]] std::pair<std::size_t, std::size_t> find_segments_around(std::size_t middle) const;
 
     std::vector<PlanPoint> points_;
     std::vector<double> chainage_;
+    std::vector<PathSegment> segments_;  // between one point and the next
+    std::vector<std::pair<std::size_t, std::size_t>> segments_around_;
     double corridor_width_ = 0;
     GridGeometry table_{0, 0, 1, 0, 0};
+    double inverse_cell_ = 1;
     std::vector<std::int32_t> nearest_segment_;  // to the cell's centre; -1: no part of the cell is in the corridor
     std::vector<float> chainage_bound_;
+    std::vector<Extent> extent_beyond_;  // by chainage in cells of the table
 };
 
 /// Steepest descent (D8) from `start` over a sink-filled copy of the elevations, to the edge of the data, to where

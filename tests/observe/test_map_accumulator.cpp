@@ -1,5 +1,10 @@
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <numeric>
+#include <random>
+#include <utility>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -42,6 +47,41 @@ TEST(MapAccumulator, the_map_holds_exactly_the_volume_of_the_particles) {
         maps.add(state);
         EXPECT_EQ(maps.volume(), state.count * model.particle_volume());
         advance(state, 0.37);
+    }
+}
+
+TEST(MapAccumulator, debris_in_any_order_makes_the_same_maps) {
+    const Model model = test::make_model(0.4);
+    State state;
+    std::mt19937 random(5);
+    std::uniform_real_distribution<float> place(-100, 100), speed(0, 30);
+    for (int i = 0; i < 60000; ++i) {  // over all of the ground and its rim: 4 x 4 times as many tiles as a task holds
+        test::add_particle(state, {place(random), place(random), 0}, {speed(random), speed(random), 0});
+    }
+    const auto maps_of = [&] {
+        MapAccumulator maps(model, state, 0.4, 0.1);
+        maps.add(state);
+        EXPECT_EQ(maps.volume(), state.count * model.particle_volume());
+        return maps.maps();
+    };
+    const HazardMaps scattered = maps_of();
+    std::vector<std::uint32_t> order(state.count);
+    std::iota(order.begin(), order.end(), 0U);
+    std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
+        return std::pair(std::floor(state.position.y[a] / 3), state.position.x[a]) <
+               std::pair(std::floor(state.position.y[b] / 3), state.position.x[b]);
+    });
+    const State before = state;
+    for (std::uint32_t i = 0; i < state.count; ++i) {
+        state.position.set(i, before.position.at(order[i]));
+        state.velocity.set(i, before.velocity.at(order[i]));
+    }
+    const HazardMaps sorted = maps_of();
+    ASSERT_EQ(scattered.peak_depth.geometry, sorted.peak_depth.geometry);
+    for (std::size_t k = 0; k < sorted.peak_depth.values.size(); ++k) {
+        if (std::isnan(sorted.peak_depth.values[k])) continue;
+        EXPECT_EQ(scattered.peak_depth.values[k], sorted.peak_depth.values[k]);
+        EXPECT_EQ(scattered.peak_speed.values[k], sorted.peak_speed.values[k]);
     }
 }
 

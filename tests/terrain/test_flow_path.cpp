@@ -89,7 +89,14 @@ TEST(FlowPath, random_positions_agree_with_brute_force_on_a_winding_path) {
         EXPECT_EQ(position.has_value(), nearest <= 12);
         if (position) {
             EXPECT_GE(path.chainage_bound(p), position->chainage);
-            EXPECT_LE(path.chainage_bound(p), position->chainage + 20);
+            EXPECT_LE(path.chainage_bound(p), position->chainage + 6);  // some cells of the table
+            for (const double before : {0.0, 0.1, 5.0, 50.0}) {
+                const Extent beyond = path.extent_beyond(position->chainage - before);
+                EXPECT_TRUE(p.x >= beyond.x_min && p.x <= beyond.x_max && p.y >= beyond.y_min && p.y <= beyond.y_max);
+            }
+            const double past = path.chainage_bound(p) + 50.0;
+            const Extent far_beyond = path.extent_beyond(past);
+            EXPECT_TRUE(p.x < far_beyond.x_min) << "the path runs eastward";
             ++located;
             EXPECT_NEAR(position->offset, nearest, 1e-9);
         }
