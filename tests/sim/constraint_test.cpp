@@ -1,3 +1,4 @@
+#include <cmath>
 #include <cstdlib>
 #include <numeric>
 #include <string>
@@ -135,6 +136,27 @@ TEST_P(InstructionSet, agrees_with_the_reference_for_the_published_model) {
 TEST_P(InstructionSet, agrees_with_the_reference_for_the_other_kernels) {
     expect_agreement(InternalFriction::stress, KernelChoice::cubic_spline, 4, 2e-4);
     expect_agreement(InternalFriction::stress, KernelChoice::spiky, 4, 2e-4);
+}
+
+TEST_P(InstructionSet, gives_the_same_bits_as_the_baseline) {
+    const auto hash_after = [](const char* set, InternalFriction friction) {
+        setenv("TALUS_SIMD", set, 1);
+        SolverSpec solver;
+        solver.internal_friction = friction;
+        const Terrain terrain = testing::terrain_of(
+            40, 40, 1, [](double x, double y) { return 20 - 0.5 * x + 0.3 * std::sin(x) * std::cos(0.7 * y); });
+        Building house;
+        house.footprint = {testing::rectangle(20.6, 18, 24, 22)};
+        house.height = 3;
+        Simulation simulation =
+            testing::simulate({}, solver, terrain,
+                              {testing::block(terrain, testing::rectangle(17.5, 18.5, 20.5, 21.5), 1.2)}, 0.3, {house});
+        for (int i = 0; i < 30; ++i) simulation.advance();
+        return hash_state(simulation.state());
+    };
+    for (const InternalFriction friction : {InternalFriction::stress, InternalFriction::pair}) {
+        EXPECT_EQ(hash_after(GetParam(), friction), hash_after("SCALAR", friction));
+    }
 }
 
 INSTANTIATE_TEST_SUITE_P(CpuBackend, InstructionSet, ::testing::Values("SSE2", "SSE4", "AVX2", "AVX3"),
