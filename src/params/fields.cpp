@@ -294,9 +294,10 @@ Section declare_solver() {
           "Ends the run when momentum stays below this share of its peak; 0 never does.");
     s.key("stop_duration_s", "s", &SolverSpec::stop_duration, at_least(0),
           "For how long momentum must stay below that share.");
-    s.key("rest_duration_s", "s", &SolverSpec::rest_duration, at_least(0),
-          "Debris that has hardly moved (a hundredth of a particle's free-fall speed) for so long is at rest: it presses "
-          "as before and costs little until something moves beside it. 0 keeps everything moving.");
+    s.key(
+        "rest_duration_s", "s", &SolverSpec::rest_duration, at_least(0),
+        "Debris that has hardly moved (a hundredth of a particle's free-fall speed) for so long is at rest: it presses "
+        "as before and costs little until something moves beside it. 0 keeps everything moving.");
     s.key("compression_limit", "", &SolverSpec::compression_limit, above(0),
           "Mean over-density (density over rest density, less 1) above which the run stops as a fault.");
     s.key("thread_count", "", &SolverSpec::thread_count, between(0, 4096),
