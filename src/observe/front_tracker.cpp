@@ -52,7 +52,7 @@ std::uint32_t FrontTracker::find_candidates(const Model& model, const State& sta
         return at ? static_cast<float>(at->chainage) : -1;
     };
     const auto examine = [&](std::size_t first, std::size_t last) {
-        std::array<Candidate, group> found;
+        std::array<Candidate, group> found{};
         std::uint32_t count = 0;
         for (std::size_t i = first; i < last; ++i) {
             if (state.held[i] != 0) continue;

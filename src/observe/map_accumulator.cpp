@@ -137,7 +137,7 @@ void MapAccumulator::find_shares(const State& state, std::size_t first, Shares& 
 
 void MapAccumulator::spread(const State& state, std::size_t first, std::size_t last) {
     Patches patches(*this);
-    Shares shares;
+    Shares shares{};
     for (std::size_t i = first; i < last; i += chunk) {
         find_shares(state, i, shares);
         const std::size_t present = std::min(chunk, last - i);

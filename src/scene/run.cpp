@@ -49,13 +49,13 @@ class RestDetector {
 double total_momentum(const Model& model, const State& state) {
     using L = Lanes<4>;
     constexpr std::size_t group = 64;
-    const auto& [x, y, z] = state.velocity;
+    const VectorArray& v = state.velocity;
     const auto add_speeds = [&](std::size_t first, std::size_t last, double sum) {
         std::size_t i = first;
         for (; i + group <= last; i += group) {
             L speeds(0);
             for (std::size_t k = i; k < i + group; k += L::size) {
-                const L vx = L::load(&x[k]), vy = L::load(&y[k]), vz = L::load(&z[k]);
+                const L vx = L::load(&v.x[k]), vy = L::load(&v.y[k]), vz = L::load(&v.z[k]);
                 speeds += sqrt(vx * vx + vy * vy + vz * vz);
             }
             for (int lane = 0; lane < L::size; ++lane) sum += speeds.at(lane);

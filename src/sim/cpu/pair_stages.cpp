@@ -14,7 +14,8 @@ namespace talus::cpu::HWY_NAMESPACE {
 namespace {
 
 TALUS_STAGE void pack_start(const StageData& data, std::size_t first, std::size_t last) {
-    const auto& [model, state, work, neighbours] = data;
+    State& state = data.state;
+    Work& work = data.work;
     for_each_lanes(first, last, [&](std::size_t i) { store_low(with(load(state.position, i), L(0)), work.stress, i); });
 }
 
@@ -22,7 +23,10 @@ TALUS_STAGE void pack_start(const StageData& data, std::size_t first, std::size_
 /// constraint tolerates the rest.
 template <class Kernel>
 TALUS_STAGE void find_tolerated(const StageData& data, std::size_t first, std::size_t last) {
-    const auto& [model, state, work, neighbours] = data;
+    const Model& model = data.model;
+    State& state = data.state;
+    Work& work = data.work;
+    NeighbourLists& neighbours = data.neighbours;
     const L undone(model.solver.depenetration_speed * state.time_step / model.particle_spacing);
     const PairScale scale(model.kernel);
     for_each_lanes(first, last, [&](std::size_t i) {
@@ -51,7 +55,10 @@ struct PairSums {
 /// Debris resists compression only.
 template <class Kernel>
 TALUS_STAGE void update_multipliers(const StageData& data, std::size_t first, std::size_t last) {
-    const auto& [model, state, work, neighbours] = data;
+    const Model& model = data.model;
+    State& state = data.state;
+    Work& work = data.work;
+    NeighbourLists& neighbours = data.neighbours;
     const L softness(model.solver.constraint_relaxation * model.kernel.rest_gradient_sum);
     const L factor(jacobi_factor(model.solver.under_relaxation, model.kernel));
     const PairScale scale(model.kernel);
@@ -86,7 +93,9 @@ TALUS_STAGE void update_multipliers(const StageData& data, std::size_t first, st
 /// Pairs pressed together rub against each other. Equal and opposite for the two of a pair.
 template <class Kernel>
 TALUS_STAGE void apply(const StageData& data, std::size_t first, std::size_t last) {
-    const auto& [model, state, work, neighbours] = data;
+    const Model& model = data.model;
+    Work& work = data.work;
+    NeighbourLists& neighbours = data.neighbours;
     const L cap(pair_friction_cap(model.internal_friction_coefficient));
     const PairScale scale(model.kernel);
     for_each_lanes(first, last, [&](std::size_t i) {

@@ -23,7 +23,9 @@ HWY_INLINE L mobility(const State& state, std::size_t i) {
 }
 
 TALUS_STAGE void predict(const StageData& data, std::size_t first, std::size_t last) {
-    const auto& [model, state, work, neighbours] = data;
+    const Model& model = data.model;
+    State& state = data.state;
+    Work& work = data.work;
     const L dt(state.time_step), fall(model.gravity * state.time_step);
     for_each_lanes(first, last, [&](std::size_t i) {
         const Mask moves = mobility(state, i) > L(0);
@@ -35,7 +37,8 @@ TALUS_STAGE void predict(const StageData& data, std::size_t first, std::size_t l
 }
 
 TALUS_STAGE void begin(const StageData& data, std::size_t first, std::size_t last) {
-    const auto& [model, state, work, neighbours] = data;
+    State& state = data.state;
+    Work& work = data.work;
     const L dt(state.time_step);
     for_each_lanes(first, last, [&](std::size_t i) {
         const L mobile = mobility(state, i);
@@ -55,7 +58,9 @@ TALUS_STAGE void begin(const StageData& data, std::size_t first, std::size_t las
 
 /// Contact with ground and buildings, and the basal part of eq. (4).
 TALUS_STAGE void contacts(const StageData& data, std::size_t first, std::size_t last) {
-    const auto& [model, state, work, neighbours] = data;
+    const Model& model = data.model;
+    State& state = data.state;
+    Work& work = data.work;
 
     for_each_lanes(first, last, [&](std::size_t i) {
         const L mobile = load(work.mobile, i), multiplier = load(state.multiplier, i);
@@ -85,7 +90,8 @@ TALUS_STAGE void contacts(const StageData& data, std::size_t first, std::size_t 
 /// What overlaps is moved apart, and its velocity left alone: debris that is too dense (its shift is there already with
 /// stresses), debris that touches ground or walls too closely.
 TALUS_STAGE void undo_overlaps(const StageData& data, std::size_t first, std::size_t last) {
-    const auto& [model, state, work, neighbours] = data;
+    const Model& model = data.model;
+    Work& work = data.work;
     const bool spread = model.solver.internal_friction == InternalFriction::stress;
     const L most(model.particle_spacing / 4), touching(model.contact_distance());
     for_each_lanes(first, last, [&](std::size_t i) {
@@ -114,7 +120,9 @@ TALUS_STAGE void undo_overlaps(const StageData& data, std::size_t first, std::si
 /// Most particles end their step where they are displaced to, without having come near a wall or below ground. Those
 /// that do not go one by one.
 TALUS_STAGE void enforce_boundaries(const StageData& data, std::size_t first, std::size_t last) {
-    const auto& [model, state, work, neighbours] = data;
+    const Model& model = data.model;
+    State& state = data.state;
+    Work& work = data.work;
     constexpr int most_parts = 4;
     const L longest_part(model.particle_spacing / 4);
     const auto below_ground = [&](const V3& p) { return p.z < model.terrain.sample(p.x, p.y).height; };
@@ -144,7 +152,8 @@ TALUS_STAGE void enforce_boundaries(const StageData& data, std::size_t first, st
 }
 
 TALUS_STAGE float update_velocities(const StageData& data, std::size_t first, std::size_t last) {
-    const auto& [model, state, work, neighbours] = data;
+    State& state = data.state;
+    Work& work = data.work;
     const L inverse_dt(1 / state.time_step);
     L largest(0), unknown(0);
     for_each_lanes(first, last, [&](std::size_t i) {
@@ -170,7 +179,10 @@ TALUS_STAGE float update_velocities(const StageData& data, std::size_t first, st
 /// Eq. (5) as XSPH smoothing; the sum weighs both particles of a pair alike, so momentum is conserved.
 template <class Kernel>
 TALUS_STAGE void apply_viscosity(const StageData& data, std::size_t first, std::size_t last) {
-    const auto& [model, state, work, neighbours] = data;
+    const Model& model = data.model;
+    State& state = data.state;
+    Work& work = data.work;
+    NeighbourLists& neighbours = data.neighbours;
     const PairScale scale(model.kernel);
     const L smoothing(step_smoothing(model.viscosity, state.time_step));
     for_each_lanes(first, last, [&](std::size_t i) {
@@ -191,7 +203,10 @@ TALUS_STAGE void apply_viscosity(const StageData& data, std::size_t first, std::
 /// beside it. Hardly: a hundredth of the speed of a fall through its own size; twice that wakes, so that nothing falls
 /// asleep and wakes in turns. Debris against walls stays awake: what presses on them is measured.
 TALUS_STAGE void settle(const StageData& data, std::size_t first, std::size_t last) {
-    const auto& [model, state, work, neighbours] = data;
+    const Model& model = data.model;
+    State& state = data.state;
+    Work& work = data.work;
+    NeighbourLists& neighbours = data.neighbours;
     const double calm_speed = 0.01 * std::sqrt(model.gravity * model.particle_spacing), waking_speed = 2 * calm_speed;
     const L dt(state.time_step), rest_duration(model.solver.rest_duration);
     for_each_lanes(first, last, [&](std::size_t i) {

@@ -64,13 +64,14 @@ HWY_INLINE L warm_start_scale(const State& state) {
 }
 
 TALUS_STAGE void press(const StageData& data, std::size_t first, std::size_t last) {
-    const auto& [model, state, work, neighbours] = data;
+    State& state = data.state;
+    Work& work = data.work;
     const L scale = warm_start_scale(state);
     for_each_lanes(first, last, [&](std::size_t i) { warm_start(state, work, i, scale); });
 }
 
 TALUS_STAGE void hush(const StageData& data, std::size_t first, std::size_t last) {
-    const auto& [model, state, work, neighbours] = data;
+    Work& work = data.work;
     for_each_lanes(first, last, [&](std::size_t i) {
         store_low({}, work.stress, i);
         store_high({}, work.stress, i);
@@ -79,7 +80,10 @@ TALUS_STAGE void hush(const StageData& data, std::size_t first, std::size_t last
 
 template <class Kernel>
 TALUS_STAGE void linearise(const StageData& data, std::size_t first, std::size_t last) {
-    const auto& [model, state, work, neighbours] = data;
+    const Model& model = data.model;
+    State& state = data.state;
+    Work& work = data.work;
+    NeighbourLists& neighbours = data.neighbours;
     const L scale_of_multipliers = warm_start_scale(state);
     const L softness(model.solver.constraint_relaxation * model.kernel.rest_gradient_sum);
     const PairScale scale(model.kernel);
@@ -98,7 +102,10 @@ TALUS_STAGE void linearise(const StageData& data, std::size_t first, std::size_t
 }
 
 TALUS_STAGE void solve(const StageData& data, std::size_t first, std::size_t last) {
-    const auto& [model, state, work, neighbours] = data;
+    const Model& model = data.model;
+    State& state = data.state;
+    Work& work = data.work;
+    NeighbourLists& neighbours = data.neighbours;
     const L factor(jacobi_factor(model.solver.under_relaxation, model.kernel));
     const L internal_friction(model.internal_friction_coefficient);
     for_each_lanes(first, last, [&](std::size_t i) {
@@ -130,7 +137,8 @@ TALUS_STAGE void solve(const StageData& data, std::size_t first, std::size_t las
 /// u_i += sum_j [(d lambda_i + d lambda_j) I + ds_i + ds_j] V grad W, equal and opposite for the two particles of a
 /// pair.
 TALUS_STAGE void apply(const StageData& data, std::size_t first, std::size_t last) {
-    const auto& [model, state, work, neighbours] = data;
+    Work& work = data.work;
+    NeighbourLists& neighbours = data.neighbours;
     for_each_lanes(first, last, [&](std::size_t i) {
         const LaneLists lists(neighbours, i);
         const auto [own, own_rest] = load(work.stress, i);
@@ -148,7 +156,9 @@ TALUS_STAGE void apply(const StageData& data, std::size_t first, std::size_t las
 }
 
 TALUS_STAGE void find_spread(const StageData& data, std::size_t first, std::size_t last) {
-    const auto& [model, state, work, neighbours] = data;
+    const Model& model = data.model;
+    State& state = data.state;
+    Work& work = data.work;
     const L factor(jacobi_factor(model.solver.under_relaxation, model.kernel));
     const L share(spreading_share(state.time_step));
     for_each_lanes(first, last, [&](std::size_t i) {
@@ -159,7 +169,8 @@ TALUS_STAGE void find_spread(const StageData& data, std::size_t first, std::size
 }
 
 TALUS_STAGE void spread(const StageData& data, std::size_t first, std::size_t last) {
-    const auto& [model, state, work, neighbours] = data;
+    Work& work = data.work;
+    NeighbourLists& neighbours = data.neighbours;
     for_each_lanes(first, last, [&](std::size_t i) {
         const LaneLists lists(neighbours, i);
         const L own = load_high(work.stress, i).w;

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <exception>
 #include <filesystem>
 #include <map>
 #include <optional>
@@ -146,5 +147,10 @@ int run(const std::vector<std::string>& arguments) {
 }  // namespace talus::bench
 
 int main(int argc, char** argv) {
-    return talus::bench::run({argv + 1, argv + argc});
+    try {
+        return talus::bench::run({argv + 1, argv + argc});
+    } catch (const std::exception& error) {
+        (void)std::fprintf(stderr, "%s\n", error.what());
+        return 1;
+    }
 }
