@@ -37,6 +37,7 @@ TALUS_STAGE void predict(const StageData& data, std::size_t first, std::size_t l
 }
 
 TALUS_STAGE void begin(const StageData& data, std::size_t first, std::size_t last) {
+    const Model& model = data.model;
     State& state = data.state;
     Work& work = data.work;
     const L dt(state.time_step);
@@ -50,9 +51,8 @@ TALUS_STAGE void begin(const StageData& data, std::size_t first, std::size_t las
         store(displacement, work.corrected, i);
         store(L(0), work.contact_normal, i);
         store(V3{}, work.contact_friction, i);
-        for (std::size_t lane = 0; lane < lane_count; ++lane) {
-            if (work.has_walls[i + lane]) work.walls[i + lane].contacts = {};
-        }
+        if (model.solids.empty()) return;
+        for (std::size_t lane = 0; lane < lane_count; ++lane) work.walls[i + lane].contacts = {};
     });
 }
 
