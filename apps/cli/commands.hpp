@@ -23,6 +23,15 @@ struct RunArguments {
 };
 int run_command(const RunArguments& arguments);
 
+struct ReplayArguments {
+    std::string journal;
+    std::string scene;  ///< in place of the journal's; empty: that one
+    std::optional<int> threads;
+    std::string data;
+    bool quiet = false;
+};
+int replay_command(const ReplayArguments& arguments);
+
 struct CheckArguments {
     std::string scene;
     std::vector<std::string> overrides;

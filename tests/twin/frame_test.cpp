@@ -1,9 +1,9 @@
 #include "twin/frame.hpp"
 
 #include <cstring>
+#include <zlib.h>
 
 #include <gmock/gmock.h>
-#include <zlib.h>
 
 #include "twin/recording.hpp"
 #include "twin_fixtures.hpp"
@@ -18,9 +18,9 @@ struct Decoded {
     double time = 0;
     std::uint64_t step = 0;
     std::uint32_t slots = 0, stride = 0;
-    std::array<std::vector<int>, 3> place;           // as stored
-    std::array<std::vector<double>, 3> position;     // m
-    std::vector<double> speed;                       // m/s
+    std::array<std::vector<int>, 3> place;        // as stored
+    std::array<std::vector<double>, 3> position;  // m
+    std::vector<double> speed;                    // m/s
     std::array<std::uint32_t, 4> window{};
     std::vector<double> depth, depth_speed;
     std::array<float, 3> unit{};
@@ -65,7 +65,8 @@ Decoded decode(const std::string& bytes) {
     const auto depth_speed_unit = at<float>(bytes, 80);
     std::vector<std::uint8_t> body(at<std::uint32_t>(bytes, 84));
     uLongf size = body.size();
-    EXPECT_EQ(uncompress(body.data(), &size, reinterpret_cast<const Bytef*>(bytes.data() + 88), bytes.size() - 88), Z_OK);
+    EXPECT_EQ(uncompress(body.data(), &size, reinterpret_cast<const Bytef*>(bytes.data() + 88), bytes.size() - 88),
+              Z_OK);
     EXPECT_EQ(size, body.size());
     const std::size_t n = (d.slots + d.stride - 1) / d.stride, m = std::size_t{d.window[2]} * d.window[3];
     EXPECT_EQ(body.size(), 7 * n + 3 * m);

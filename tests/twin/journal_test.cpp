@@ -133,8 +133,10 @@ TEST(Journal, refuses_what_is_none_naming_key_and_value) {
     EXPECT_THAT(error_of("/first_setup/releases/0/scene", 5), HasSubstr("scene = 5: must be from 0 to 0"));
     EXPECT_THAT(error_of("/first_setup/releases/0", 1), HasSubstr("setup.releases[0]: id = 1"));
     EXPECT_THAT(error_of("/first_setup/buildings/0", {{"id", "x"}}), HasSubstr("setup.buildings[0]: footprint"));
-    EXPECT_THAT(error_of("/first_setup/material/viscosity", 2), HasSubstr("viscosity = 2: must be a number 0 to below 1"));
-    EXPECT_THAT(error_of("/actions/1/setup/barriers", {{{"id", "b"}, {"name", "n"}, {"line", 3}}}), HasSubstr("line = 3"));
+    EXPECT_THAT(error_of("/first_setup/material/viscosity", 2),
+                HasSubstr("viscosity = 2: must be a number 0 to below 1"));
+    EXPECT_THAT(error_of("/actions/1/setup/barriers", {{{"id", "b"}, {"name", "n"}, {"line", 3}}}),
+                HasSubstr("line = 3"));
 }
 
 }  // namespace

@@ -152,7 +152,8 @@ TEST(Release, refuses_what_cannot_fail) {
     EXPECT_THAT(refusal(*scenario, action), HasSubstr("overlaps release \"scar\""));
     action["polygon"] = ring(west - 10, south + 28, west + 3, south + 40);
     EXPECT_THAT(refusal(*scenario, action), HasSubstr("the ground is not known; the terrain covers x 824000.5"));
-    action["polygon"] = {{west + 30, south + 20}, {west + 36, south + 26}, {west + 36, south + 20}, {west + 30, south + 26}};
+    action["polygon"] = {
+        {west + 30, south + 20}, {west + 36, south + 26}, {west + 36, south + 20}, {west + 30, south + 26}};
     EXPECT_THAT(refusal(*scenario, action), HasSubstr("polygon: touches or crosses itself"));
     action["polygon"] = {{west + 30, south + 20}, {west + 36, south + 26}};
     EXPECT_THAT(refusal(*scenario, action), HasSubstr("must be 3 to 500 points"));
