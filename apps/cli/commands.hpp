@@ -50,7 +50,7 @@ struct BenchArguments {
     bool full = false;                         ///< particles up to a million
     int iterations = 4, repeats = 7;
     std::optional<int> steps, warm_up;  ///< left out: by the number of particles
-    std::string json;                   ///< a file to write; empty: none
+    std::string json, svg;              ///< files to write; empty: none
 };
 int bench_command(const BenchArguments& arguments);
 

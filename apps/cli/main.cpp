@@ -230,6 +230,8 @@ int talus_main(int argc, char** argv) {
         ->type_name("N")
         ->check(CLI::Range(0, 100000));
     bench_app->add_option("--json", bench.json, "write the rows as a list of objects")->type_name("FILE");
+    bench_app->add_option("--svg", bench.svg, "draw particle-iterations per second against particles")
+        ->type_name("FILE");
     bench_app->footer(bench_help);
 
     app.footer(program_help);  // last: commands made after it would inherit it

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdio>
 #include <numeric>
+#include <utility>
 
 #include "sim/cpu/backend.hpp"
 #include "sim/physics/viscosity.hpp"
@@ -97,7 +98,7 @@ void put_out_of_buildings(const Model& model, State& state) {
 
 /// Runs rounds of a step without inertia until `done` says so: velocities are forgotten after each.
 template <class Done>
-void creep(const Model& model, State& state, int most_rounds, const Done& done) {
+void creep(const Model& model, State& state, int most_rounds, Done done) {
     cpu::Backend backend(model, state.count);
     StageTimes times;
     for (int round = 0; round < most_rounds; ++round) {
@@ -109,11 +110,29 @@ void creep(const Model& model, State& state, int most_rounds, const Done& done) 
     }
 }
 
+/// Says after every tenth round whether pressures have stopped to grow.
+class LoadWatch {
+  public:
+    bool operator()(const State& state) {
+        if (++round_ % interval_ != 0) return false;
+        const double load = std::accumulate(state.multiplier.begin(), state.multiplier.begin() + state.count, 0.0);
+        const double before = std::exchange(load_, load);
+        return std::abs(load - before) < carried_ * std::abs(load);
+    }
+
+  private:
+    static constexpr int interval_ = 10;
+    static constexpr double carried_ = 0.01;
+    int round_ = 0;
+    double load_ = 0;
+};
+
 /// Brings the seeded lattice to rest: first pushed apart, without gravity, until it is nowhere denser than rest; then
 /// loaded by gravity until it carries its own weight, in steps so short that a slope steeper than its friction angle
 /// hardly moves meanwhile. Without the second part friction would find no pressure to work with in the first steps, and
-/// the mass would start with a jolt.
-void relax(const Model& model, State& state) {
+/// the mass would start with a jolt. `overburden`, by id: thickness above a particle, m, whose weight along the normal
+/// is the first guess of its pressure.
+void relax(const Model& model, State& state, const std::vector<float>& overburden) {
     constexpr double dense_enough = 0.005;
     constexpr int most_rounds = 400, loading_rounds = 200;
     Model still = model;
@@ -133,8 +152,12 @@ void relax(const Model& model, State& state) {
     still.solver.internal_friction = model.solver.internal_friction;
     still.friction_coefficient = model.friction_coefficient;
     still.building_friction_coefficient = model.building_friction_coefficient;
-    state.time_step = model.solver.largest_time_step / 4;
-    creep(still, state, loading_rounds, [](const State&) { return false; });
+    state.time_step = state.previous_time_step = model.solver.largest_time_step / 4;
+    const double scale = -model.gravity * state.time_step * state.time_step;
+    for (std::uint32_t i = 0; i < state.count; ++i) {
+        state.multiplier[i] = static_cast<float>(scale * overburden[state.id[i]]);
+    }
+    creep(still, state, loading_rounds, LoadWatch());
     state.time = 0;
     state.step = 0;
 }
@@ -221,6 +244,7 @@ Result<State> seed_releases(Model& model, const std::vector<Release>& releases) 
     state.resize(count);
     std::iota(state.id.begin(), state.id.begin() + count, 0u);
     model.releases.clear();
+    std::vector<float> overburden(count);
     std::uint32_t next = 0;
     for (std::size_t r = 0; r < releases.size(); ++r) {
         const std::uint32_t first = next;
@@ -231,13 +255,15 @@ Result<State> seed_releases(Model& model, const std::vector<Release>& releases) 
             const double bottom = ground.height + spacing / 2 / ground.normal.z;
             for (int layer = 0; layer < column.particles && next < count; ++layer, ++next) {
                 state.position.set(next, {plan.x, plan.y, static_cast<float>(bottom + layer * spacing)});
+                const double above = (column.particles - layer - 0.5) * spacing;
+                overburden[next] = static_cast<float>(above * ground.normal.z * ground.normal.z);
             }
         }
         model.releases.push_back({releases[r].name, releases[r].start_time, first, next});
     }
     state.seeded = state.count = next;
     put_out_of_buildings(model, state);
-    relax(model, state);
+    relax(model, state, overburden);
     for (std::uint32_t i = 0; i < state.count; ++i) {
         for (const ReleaseGroup& release : model.releases) {
             const bool own = state.id[i] >= release.first_particle && state.id[i] < release.last_particle;
