@@ -114,15 +114,15 @@ void creep(const Model& model, State& state, int most_rounds, Done done) {
 class LoadWatch {
   public:
     bool operator()(const State& state) {
-        if (++round_ % interval_ != 0) return false;
+        if (++round_ % interval != 0) return false;
         const double load = std::accumulate(state.multiplier.begin(), state.multiplier.begin() + state.count, 0.0);
         const double before = std::exchange(load_, load);
-        return std::abs(load - before) < carried_ * std::abs(load);
+        return std::abs(load - before) < carried * std::abs(load);
     }
 
   private:
-    static constexpr int interval_ = 10;
-    static constexpr double carried_ = 0.01;
+    static constexpr int interval = 10;
+    static constexpr double carried = 0.01;
     int round_ = 0;
     double load_ = 0;
 };
