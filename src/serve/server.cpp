@@ -53,10 +53,11 @@ struct Server::Parts {
     Parts() : acceptor(io), retry(io), ticker(io), guard(asio::make_work_guard(io)) {}
     ~Parts();
 
-    [[nodiscard]] Status listen(const std::string& host, std::uint16_t port);
+    [[nodiscard]] Status bind(const std::string& host, std::uint16_t port);
     void accept();
     [[nodiscard]] Thread thread_of_session();
 
+    ServerOptions options;
     asio::io_context io{1};
     tcp::acceptor acceptor;
     asio::steady_timer retry, ticker;
@@ -76,7 +77,7 @@ Server::Parts::~Parts() {
     if (session) session->close();
 }
 
-Status Server::Parts::listen(const std::string& host, std::uint16_t port) {
+Status Server::Parts::bind(const std::string& host, std::uint16_t port) {
     boost::system::error_code error;
     const auto address = asio::ip::make_address(host == "localhost" ? "127.0.0.1" : host, error);
     if (error) return Error{fmt::format("--host {}: not an address; for example 127.0.0.1, 0.0.0.0 or ::1", host)};
@@ -127,25 +128,31 @@ Thread Server::Parts::thread_of_session() {
 Server::Server(std::unique_ptr<Parts> parts) : parts_(std::move(parts)) {}
 Server::~Server() = default;
 
-Result<std::unique_ptr<Server>> Server::start(std::shared_ptr<const Scene> scene, ServerOptions options) {
+Result<std::unique_ptr<Server>> Server::listen(ServerOptions options) {
     if (Status good = check_tokens(options.tokens); !good) return good.error();
     auto parts = std::make_unique<Parts>();
-    if (Status listening = parts->listen(options.host, options.port); !listening) return listening.error();
-
-    parts->session.emplace(parts->thread_of_session(), std::move(scene), options.tokens);
-    const auto on_failure = options.on_failure ? options.on_failure : [](const std::string&) {};
-    if (Status opened = parts->session->open(std::move(options.scenario), on_failure); !opened) return opened.error();
-    parts->exports.emplace(*parts->session, options.export_folder);
-    parts->connection_limit = raise_connection_limit();
-    parts->desk.emplace(
-        Desk{Access(options.tokens, bracketed(parts->bound.address()), parts->bound.port(), options.allowed_hosts),
-             make_api(*parts->session, *parts->exports), *parts->session, Site(), 0, parts->connection_limit / 2});
-    if (options.run) {
-        parts->session->loop().post([](Scenarios& all) { (void)all.act(0, {{"action", "run"}}, ""); });
-    }
-    parts->accept();
-    parts->thread = std::thread([raw = parts.get()] { raw->io.run(); });
+    if (Status bound = parts->bind(options.host, options.port); !bound) return bound.error();
+    parts->options = std::move(options);
     return std::unique_ptr<Server>(new Server(std::move(parts)));
+}
+
+Status Server::serve(std::shared_ptr<const Scene> scene) {
+    Parts& parts = *parts_;
+    const ServerOptions& options = parts.options;
+    parts.session.emplace(parts.thread_of_session(), std::move(scene), options.tokens);
+    const auto on_failure = options.on_failure ? options.on_failure : [](const std::string&) {};
+    if (Status opened = parts.session->open(options.scenario, on_failure); !opened) return opened;
+    parts.exports.emplace(*parts.session, options.export_folder);
+    parts.connection_limit = raise_connection_limit();
+    parts.desk.emplace(
+        Desk{Access(options.tokens, bracketed(parts.bound.address()), parts.bound.port(), options.allowed_hosts),
+             make_api(*parts.session, *parts.exports), *parts.session, Site(), 0, parts.connection_limit / 2});
+    if (options.run) {
+        parts.session->loop().post([](Scenarios& all) { (void)all.act(0, {{"action", "run"}}, ""); });
+    }
+    parts.accept();
+    parts.thread = std::thread([&parts] { parts.io.run(); });
+    return {};
 }
 
 std::uint16_t Server::port() const {
@@ -153,7 +160,7 @@ std::uint16_t Server::port() const {
 }
 
 std::string Server::link(Role role) const {
-    const Tokens& tokens = parts_->desk->access.tokens();
+    const Tokens& tokens = parts_->options.tokens;
     return fmt::format("http://{}:{}/#token={}", host_for_links(parts_->bound.address()), port(),
                        role == Role::controller ? tokens.controller : tokens.viewer);
 }

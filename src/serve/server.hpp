@@ -30,9 +30,10 @@ struct ServerOptions {
 /// own until it is destroyed.
 class Server {
   public:
-    /// Errors: the scene cannot be run, bad address, port in use, bad tokens.
-    [[nodiscard]] static Result<std::unique_ptr<Server>> start(std::shared_ptr<const Scene> scene,
-                                                               ServerOptions options);
+    /// Takes the port. Errors: bad address, port in use, bad tokens.
+    [[nodiscard]] static Result<std::unique_ptr<Server>> listen(ServerOptions options);
+    /// Opens the scene and begins to answer; once. Errors: the scene cannot be run.
+    [[nodiscard]] Status serve(std::shared_ptr<const Scene> scene);
     ~Server();
     Server(const Server&) = delete;
     Server& operator=(const Server&) = delete;
