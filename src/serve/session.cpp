@@ -94,11 +94,10 @@ bool Session::receive(Viewer& viewer, std::string_view text) {
     View& view = found->second;
     if (*type == "view") {
         try {
-            set_view(viewer, view, message);
+            return set_view(viewer, view, message);
         } catch (const json::exception&) {
-            return false;
+            return false;  // something is missing, or of another type
         }
-        return true;
     }
     if (*type == "mark") {
         std::optional<std::array<double, 3>> mark;
@@ -116,10 +115,12 @@ bool Session::receive(Viewer& viewer, std::string_view text) {
     return false;
 }
 
-void Session::set_view(Viewer& viewer, View& view, const json& message) {
+bool Session::set_view(Viewer& viewer, View& view, const json& message) {
     View wanted;
     wanted.person = view.person;
-    for (const json& name : message.at("scenarios")) {
+    const json& scenarios = message.at("scenarios");
+    if (!scenarios.is_array()) return false;
+    for (const json& name : scenarios) {
         const std::string text = name.get<std::string>();
         for (int i = 0; i < Scenarios::most; ++i) wanted.looks[i] = wanted.looks[i] || text == Scenarios::name_of(i);
     }
@@ -132,6 +133,7 @@ void Session::set_view(Viewer& viewer, View& view, const json& message) {
     for (int i = 0; i < Scenarios::most; ++i) {
         if (view.looks[i]) offer_newest(viewer, view, i);
     }
+    return true;
 }
 
 /// Where this changes what frames are made, the loop makes one at once.

@@ -78,7 +78,7 @@ class Session final : public Watcher {
         double rate_hz = 0;
         unsigned cap = 0;
     };
-    void set_view(Viewer& viewer, View& view, const nlohmann::json& message);
+    [[nodiscard]] bool set_view(Viewer& viewer, View& view, const nlohmann::json& message);
     void update_audience();
     void deliver_frames();
     void offer_newest(Viewer& viewer, const View& view, int scenario);
