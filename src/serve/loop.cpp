@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <exception>
+#include <pthread.h>
 #include <utility>
 
 #include <tbb/global_control.h>
@@ -51,6 +52,7 @@ void Loop::post(Task task) {
 }
 
 void Loop::run() {
+    pthread_setname_np(pthread_self(), "loop");  // as tools that watch threads show it
     try {
         threads_->arena.execute([this] { work_until_done(); });
     } catch (const std::exception& error) {

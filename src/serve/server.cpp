@@ -8,6 +8,7 @@
 #include <boost/asio/steady_timer.hpp>
 #include <chrono>
 #include <optional>
+#include <pthread.h>
 #include <sys/resource.h>
 #include <thread>
 #include <utility>
@@ -151,7 +152,10 @@ Status Server::serve(std::shared_ptr<const Scene> scene) {
         parts.session->loop().post([](Scenarios& all) { (void)all.act(0, {{"action", "run"}}, ""); });
     }
     parts.accept();
-    parts.thread = std::thread([&parts] { parts.io.run(); });
+    parts.thread = std::thread([&parts] {
+        pthread_setname_np(pthread_self(), "server");
+        parts.io.run();
+    });
     return {};
 }
 

@@ -1,5 +1,6 @@
 #include "serve/worker.hpp"
 
+#include <pthread.h>
 #include <utility>
 
 namespace talus::serve {
@@ -24,6 +25,7 @@ void Worker::post(std::function<void()> task) {
 }
 
 void Worker::run() {
+    pthread_setname_np(pthread_self(), "worker");
     std::unique_lock lock(mutex_);
     while (true) {
         wake_.wait(lock, [this] { return done_ || !tasks_.empty(); });
