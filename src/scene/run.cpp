@@ -136,9 +136,13 @@ Result<RunResult> run_in_arena(const Scene& scene, const RunOptions& options, in
 
 }  // namespace
 
+int thread_count(const SolverSpec& solver) {
+    if (solver.thread_count > 0) return solver.thread_count;
+    return static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+}
+
 Result<RunResult> run_scene(const Scene& scene, const RunOptions& options) {
-    const int wanted = scene.spec.solver.thread_count;
-    const int threads = wanted > 0 ? wanted : static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+    const int threads = thread_count(scene.spec.solver);
     const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads));
     tbb::task_arena arena(threads);
     return arena.execute([&] { return run_in_arena(scene, options, threads); });

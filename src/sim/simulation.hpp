@@ -27,6 +27,7 @@ class Simulation {
     [[nodiscard]] const Model& model() const { return model_; }
     [[nodiscard]] const State& state() const { return state_; }
     [[nodiscard]] StageTimes& stage_times() { return times_; }
+    [[nodiscard]] const StageTimes& stage_times() const { return times_; }
     [[nodiscard]] const cpu::Backend& backend() const { return *backend_; }
 
   private:

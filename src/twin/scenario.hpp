@@ -16,6 +16,9 @@
 
 namespace talus::twin {
 
+struct Journal;
+struct JournalEntry;
+
 enum class Phase {
     ready,    ///< advance() would take a step
     at_rest,  ///< debris came to rest, or none is left; a change of the setup makes it ready again
@@ -48,6 +51,10 @@ class Scenario {
     /// Errors: as run_scene's before the first step.
     [[nodiscard]] static Result<std::unique_ptr<Scenario>> open(std::shared_ptr<const Scene> scene,
                                                                 ScenarioOptions options = {});
+    /// At the beginning of a session that a journal tells of.
+    [[nodiscard]] static Result<std::unique_ptr<Scenario>> open_at(const Journal& journal,
+                                                                   std::shared_ptr<const Scene> scene,
+                                                                   ScenarioOptions options);
     /// The same scene and the setup of this one as it is now, at time 0.
     [[nodiscard]] Result<std::unique_ptr<Scenario>> copy() const;
     ~Scenario();
@@ -59,6 +66,9 @@ class Scenario {
     /// Any action of docs/protocol.md that changes results: not run, pause, step, set_speed.
     /// Errors name key, value and allowed range; nothing has changed then.
     [[nodiscard]] Result<Done> apply(const nlohmann::json& action, const std::string& by);
+
+    /// Does again what an entry of a journal tells of. Errors: as apply().
+    [[nodiscard]] Status follow(const JournalEntry& entry);
 
     [[nodiscard]] Phase phase() const;
     [[nodiscard]] std::string message() const;  ///< why it is at rest, ended or at fault; empty while ready
