@@ -1,7 +1,7 @@
 // Run, pause, step, restart, speed; the timeline with the recording, and the way back to live.
 import { watchAll } from "../state/cell";
 import { fixed } from "../state/format";
-import { Playback } from "../state/playback";
+import type { Playback } from "../state/playback";
 import type { Twin } from "../state/twin";
 import { button, h, icon, type IconName } from "../ui/dom";
 
@@ -10,8 +10,7 @@ const speeds: [string, string][] = [
   ["", "as fast as it goes"],
 ];
 
-export function transport(twin: Twin): HTMLElement {
-  const playback = new Playback(twin);
+export function transport(twin: Twin, playback: Playback): HTMLElement {
   const run = button("Run", { class: "primary run", icon: "run", onclick: () => void toggle(twin) });
   const step = button("Step", { icon: "step", bare: true, title: "One step (period key)", onclick: () => void twin.act({ action: "step" }) });
   const restart = button("Restart", { icon: "restart", bare: true, title: "Back to time 0 with the setup as it is now",

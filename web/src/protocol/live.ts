@@ -19,6 +19,8 @@ export class Live {
   private wait_s = firstWait_s;
   private everOpen = false;
   private view: View | null = null;
+  /** Id given by the last hello: sent again after a break, so that the same person comes back. */
+  person: string | null = null;
   private timer: number | undefined;
   // Of each scenario only the newest frame that waits is kept: a page that cannot keep up shows fewer frames.
   private readonly waiting = new Map<number, ArrayBuffer>();
@@ -33,7 +35,7 @@ export class Live {
     const base = new URL("ws", location.href);
     base.protocol = base.protocol === "https:" ? "wss:" : "ws:";
     base.hash = "";
-    base.search = new URLSearchParams({ token: this.token, name: this.name }).toString();
+    base.search = new URLSearchParams({ token: this.token, name: this.name, ...(this.person ? { person: this.person } : {}) }).toString();
     const socket = new WebSocket(base);
     socket.binaryType = "arraybuffer";
     this.socket = socket;

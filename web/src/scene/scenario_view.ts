@@ -1,5 +1,7 @@
 // Everything that is drawn of one scenario.
-import { Box3, Color, Group, Scene, Vector3, type BufferGeometry, type Mesh, type MeshLambertMaterial, type PerspectiveCamera, type Texture } from "three";
+import {
+  Box3, Color, Group, Scene, Vector3, type BufferGeometry, type Mesh, type MeshLambertMaterial, type PerspectiveCamera, type Raycaster, type Texture,
+} from "three";
 import type { Line2 } from "three/examples/jsm/lines/Line2.js";
 import type { Frame, ScenarioName } from "../protocol/frame";
 import type { Impacts, SceneInfo, Setup } from "../protocol/messages";
@@ -130,6 +132,16 @@ export class ScenarioView {
   solidAt(id: string): Vector3 | null {
     const group = this.solids.children.find((g) => g.userData["id"] === id);
     return group ? new Box3().setFromObject(group).getCenter(new Vector3()) : null;
+  }
+
+  /** Id of the nearest house or barrier that the ray meets before the ground does. */
+  solidUnder(ray: Raycaster): string | null {
+    const [first] = ray.intersectObjects(this.solids.children.map((group) => group.children[0]), false);
+    if (!first) return null;
+    const ground = this.shared.relief.meet(ray.ray.origin.toArray(), ray.ray.direction.toArray());
+    const [ox, oy, oz] = this.shared.relief.origin;
+    const far = ground ? ray.ray.origin.distanceTo(new Vector3(ground[0] - ox, ground[1] - oy, ground[2] - oz)) : Infinity;
+    return first.distance < far + 1 ? ((first.object.parent?.userData["id"] as string | undefined) ?? null) : null;
   }
 
   refreshLabels(): void {

@@ -138,7 +138,7 @@ export class Twin {
     switch (message.type) {
       case "hello":
         this.you.value = message.you;
-        this.api.person = message.you.id;
+        this.api.person = this.live.person = message.you.id;
         this.controller.value = message.session.controller;
         this.people.value = message.session.people;
         this.setScenarios(message.session.scenarios);
