@@ -1,6 +1,6 @@
 // A plot with axes that carry units; uPlot draws it, this file gives it the page's look, its size and its words.
 import uPlot, { type AlignedData, type Options, type Series } from "uplot";
-import { number, unitText } from "../state/format";
+import { number, tick, unitText } from "../state/format";
 import { h } from "../ui/dom";
 
 export interface Curve {
@@ -74,7 +74,7 @@ export class Chart {
     const axis = (label: string, unit: string, side: 0 | 1 | 2 | 3): NonNullable<Options["axes"]>[number] => ({
       label: unit === "" ? label : `${label}, ${unitText(unit)}`, labelFont: font, font, stroke: ink, labelSize: 16, size: side === 2 ? 30 : 40, gap: 3, labelGap: 0,
       side, grid: { show: side !== 1, stroke: "#e4e8eb", width: 1 }, ticks: { stroke: "#c3cad1", size: 4, width: 1 },
-      values: (_, values) => values.map((v) => number(v, 3).replace(/\.0+$/, "")),
+      values: (_, values) => values.map((v) => tick(v)),
     });
     const series: Series[] = [{ label: x.label, value: (_, v) => (v === null ? "–" : `${number(v, 4)} ${unitText(x.unit)}`) },
       ...this.curves.map((c): Series => ({

@@ -65,7 +65,7 @@ class SortedTable<Row extends Impact> {
           this.down = c.key === this.sortKey ? !this.down : c.key !== "name";
           this.sortKey = c.key;
           this.draw();
-        } }, c.title, c.unit ? h("small", {}, ` ${unitText(c.unit)}`) : null, h("span", { class: "sort" }, c.key === this.sortKey ? (this.down ? "▾" : "▴") : "")))))),
+        } }, h("span", {}, c.title, c.key === this.sortKey ? (this.down ? " ▾" : " ▴") : ""), c.unit ? h("small", {}, unitText(c.unit)) : null))))),
       h("tbody", {}, ...rows.map((row) => {
         const colour = this.mark(row);
         const dot = h("i", { class: "dot" });

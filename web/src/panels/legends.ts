@@ -5,7 +5,7 @@ import { layerInfo } from "../scene/layers";
 import type { ShownLayers } from "../scene/shown_layers";
 import type { Stage } from "../scene/stage";
 import { watchAll } from "../state/cell";
-import { number, quantity, unitText } from "../state/format";
+import { quantity, tick, unitText } from "../state/format";
 import type { Twin } from "../state/twin";
 import { h } from "../ui/dom";
 
@@ -47,9 +47,9 @@ export function legends(twin: Twin, stage: Stage, layers: ShownLayers): HTMLElem
       bar.style.background = `linear-gradient(to right, ${stops.join(", ")})`;
       const scale = h("div", { class: "legend-ticks" });
       for (const value of ticks(legend.low, legend.high)) {
-        const tick = h("span", {}, number(value, 2));
-        tick.style.left = `${(100 * (value - legend.low)) / (legend.high - legend.low)}%`;
-        scale.append(tick);
+        const mark = h("span", {}, tick(value));
+        mark.style.left = `${(100 * (value - legend.low)) / (legend.high - legend.low)}%`;
+        scale.append(mark);
       }
       return h("div", { class: "legend", role: "img",
         "aria-label": `${legend.title}: colours from ${quantity(legend.low, legend.unit)} to ${quantity(legend.high, legend.unit)}` },
@@ -72,9 +72,9 @@ export function scaleAndCompass(twin: Twin, stage: Stage): HTMLElement {
     const perPixel = stage.metresPerPixel;
     const length = roundStep(perPixel * 60);
     bar.style.width = `${Math.round(length / perPixel)}px`;
-    text.textContent = quantity(length, "m", 2);
+    text.textContent = length >= 1000 ? `${tick(length / 1000)}\u202fkm` : `${tick(length)}\u202fm`;
   });
   return h("div", { class: "map-marks" }, compass,
     h("div", { class: "scale", title: "Holds at the middle of the view" }, text, bar),
-    h("div", { class: "map-note" }, `Contours every ${quantity(contourInterval(stage.relief), "m", 2)} · ${twin.scene.crs}`));
+    h("div", { class: "map-note" }, `Contours every ${tick(contourInterval(stage.relief))}\u202fm · ${twin.scene.crs}`));
 }

@@ -2,7 +2,7 @@
 import type { ShownLayers } from "../scene/shown_layers";
 import type { Stage } from "../scene/stage";
 import { css, roundStep } from "../scene/colour";
-import { fixed, number, quantity, unitText } from "../state/format";
+import { fixed, tick, unitText } from "../state/format";
 import type { Twin } from "../state/twin";
 import { presentLegends } from "./legends";
 
@@ -71,7 +71,7 @@ export class Picture {
       const step = roundStep((legend.high - legend.low) / 4.5);
       c.textAlign = "center";
       for (let v = Math.ceil(legend.low / step) * step; v <= legend.high + 1e-9; v += step) {
-        c.fillText(number(v, 2), 20 + (188 * (v - legend.low)) / (legend.high - legend.low), bottom - 9);
+        c.fillText(tick(v), 20 + (188 * (v - legend.low)) / (legend.high - legend.low), bottom - 9);
       }
       c.textAlign = "left";
       bottom -= 54;
@@ -80,7 +80,7 @@ export class Picture {
     const length = roundStep(perPixel * 60);
     plate(width - 30 - length / perPixel, height - 40, length / perPixel + 20, 30);
     c.font = `11px ${font}`;
-    c.fillText(quantity(length, "m", 2), width - 20 - length / perPixel, height - 31);
+    c.fillText(`${tick(length)}\u202fm`, width - 20 - length / perPixel, height - 31);
     c.fillRect(width - 20 - length / perPixel, height - 19, length / perPixel, 2);
     c.fillStyle = "#5a646e";
     c.font = `10px ${font}`;

@@ -1,6 +1,6 @@
 // The numbers of the run that are always in sight, and the mass balance.
 import { watchAll } from "../state/cell";
-import { bytes, fixed, quantity } from "../state/format";
+import { bytes, count, fixed, quantity } from "../state/format";
 import type { Twin } from "../state/twin";
 import { h } from "../ui/dom";
 
@@ -23,7 +23,7 @@ export function runCard(twin: Twin): HTMLElement {
     front.value.textContent = quantity(s?.front_velocity_mps, "m/s");
     fastest.value.textContent = quantity(s?.largest_speed_mps, "m/s");
     chainage.value.textContent = s?.front_chainage_m === null || !s ? "–" : `${fixed(s.front_chainage_m, 0)} m`;
-    particles.value.textContent = quantity(s?.particles, "", 6);
+    particles.value.textContent = count(s?.particles);
     steps.value.textContent = s ? `${fixed(s.steps_per_second, 0)} /s` : "–";
     real.value.textContent = s ? `${fixed(s.real_time_factor, 2)} ×` : "–";
     light.className = `converged ${s?.converged === false ? "bad" : "good"}`;
@@ -60,7 +60,7 @@ export function balance(twin: Twin): HTMLElement {
     const error = s.volume_released_m3 - s.volume_moving_m3 - s.volume_deposited_m3 - s.volume_left_m3;
     body.replaceChildren(...parts.map(([key, label, colour]) => row(label, `${fixed(s[key], 1)} m³`, colour)), row("Released", `${fixed(s.volume_released_m3, 1)} m³`),
       row("Released − (moving + deposited + left)", `${fixed(Math.abs(error) < 0.05 ? 0 : error, 1)} m³`));
-    more.tBodies[0]?.replaceChildren(row("Step", quantity(s.step, "", 7)), row("Compression, mean", `${fixed(100 * s.mean_compression, 2)} %`),
+    more.tBodies[0]?.replaceChildren(row("Step", count(s.step)), row("Compression, mean", `${fixed(100 * s.mean_compression, 2)} %`),
       row("Compression, largest", `${fixed(100 * s.max_compression, 2)} %`), row("Recording", `${s.recording.frames} frames, ${bytes(s.recording.bytes)}`),
       row("State hash", s.hash ?? "while paused"));
   });

@@ -64,7 +64,7 @@ const ramp = (lowHue: number, lowChroma: number, highHue: number, highChroma: nu
 
 export const ramps = {
   /** Debris by speed: dark plum at rest to pale yellow when fast, so that it stands out from pale ground. */
-  speed: ramp(318, 0.06, 462, 0.12, 0.3, 0.93),
+  speed: ramp(330, 0.05, 458, 0.12, 0.38, 0.93),
   depth: ramp(205, 0.05, 268, 0.15, 0.9, 0.28),
   peak_depth: ramp(205, 0.05, 268, 0.15, 0.9, 0.28),
   peak_speed: ramp(104, 0.11, 8, 0.13, 0.93, 0.28),

@@ -20,6 +20,14 @@ export function quantity(value: number | null | undefined, unit: string, digits 
   const text = number(value, digits);
   return unit === "" || text === nothing ? text : `${text}\u202f${unitText(unit)}`;
 }
+/** A whole number of things. */
+export function count(value: number | null | undefined): string {
+  return value === null || value === undefined || !Number.isFinite(value) ? nothing : number(Math.round(value), Math.max(1, String(Math.abs(Math.round(value))).length));
+}
+/** At a tick of a scale: without zeros that say nothing. */
+export function tick(value: number): string {
+  return number(value, 3).replace(/(\.\d*?)0+$/, "$1").replace(/\.$/, "");
+}
 /** With a fixed number of digits after the point: for values that change in place. */
 export function fixed(value: number | null | undefined, after: number): string {
   return value === null || value === undefined || !Number.isFinite(value) ? nothing : value.toFixed(after).replace("-", "\u2212");
