@@ -3,7 +3,8 @@ const lengthOf = (line) => line.slice(1).reduce((sum, [x, y], k) => sum + Math.h
 const between = (key, value, low, high, unit) =>
   typeof value === "number" && value >= low && value <= high ? null : `${key} is ${value}; allowed is ${low} to ${high} ${unit}`.trim();
 
-function put(scenario, list, kind, item, measure) {
+function put(scenario, list, kind, given, measure) {
+  const item = Object.fromEntries(Object.entries(given).filter(([, value]) => value !== undefined));
   const old = list.find((entry) => entry.id === item.id);
   if (item.id !== undefined && !old) return { error: `${kind}: there is none with id ${item.id}` };
   const number = list.length + 1;
@@ -66,12 +67,12 @@ export function act(scenario, body) {
       return { done: `${p.label} is ${rest.value} ${p.unit}`.trim(), created: null };
     }
     case "put_release": {
-      const error = between("thickness_m", rest.thickness_m, 0.01, 100, "m");
+      const old = setup.releases.find((r) => r.id === rest.id);
+      const error = between("thickness_m", rest.thickness_m ?? old?.thickness_m, 0.01, 100, "m");
       if (error) return { error };
       const { polygon, ...others } = rest;
-      return put(scenario, setup.releases, "release", { status: "held", from_scene: false, start_time_s: null, ...others,
-        polygons: [polygon], ...(setup.releases.find((r) => r.id === rest.id) ? { status: setup.releases.find((r) => r.id === rest.id).status } : {}) },
-      (r) => scenario.measured(r));
+      return put(scenario, setup.releases, "release", { ...(old ? {} : { status: "held", from_scene: false, start_time_s: null }), ...others,
+        polygons: polygon && [polygon] }, (r) => scenario.measured(r));
     }
     case "trigger_release": {
       const found = setup.releases.find((r) => r.id === rest.id);
@@ -82,13 +83,15 @@ export function act(scenario, body) {
       return { done: `${found.name} triggered`, created: null };
     }
     case "put_barrier": {
-      const error = between("height_m", rest.height_m, 0.1, 100, "m") ?? between("thickness_m", rest.thickness_m, 0.1, 100, "m");
+      const old = setup.barriers.find((b) => b.id === rest.id);
+      const error = between("height_m", rest.height_m ?? old?.height_m, 0.1, 100, "m") ?? between("thickness_m", rest.thickness_m ?? old?.thickness_m, 0.1, 100, "m");
       return error ? { error } : put(scenario, setup.barriers, "barrier", rest, (b) => ({ ...b, crest_length_m: lengthOf(b.line) }));
     }
     case "put_building": {
-      const error = between("height_m", rest.height_m, 0.1, 1000, "m");
-      return error ? { error } : put(scenario, setup.buildings, "building", { from_scene: false, ...rest, footprint: [rest.footprint] },
-        (b) => scenario.based(b));
+      const old = setup.buildings.find((b) => b.id === rest.id);
+      const error = between("height_m", rest.height_m ?? old?.height_m, 0.1, 1000, "m");
+      return error ? { error } : put(scenario, setup.buildings, "building", { ...(old ? {} : { from_scene: false }), ...rest,
+        footprint: rest.footprint && [rest.footprint] }, (b) => scenario.based(b));
     }
     case "remove_release":
     case "remove_barrier":

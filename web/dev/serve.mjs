@@ -203,5 +203,6 @@ setInterval(() => {
 
 server.listen(Number(args.port), "127.0.0.1", () => {
   const base = `http://127.0.0.1:${server.address().port}/`;
-  console.log(JSON.stringify({ viewer: `${base}#token=${tokens.viewer}`, controller: `${base}#token=${tokens.controller}` }));
+  console.log(JSON.stringify({ title: scene.title, port: server.address().port, controller_url: `${base}#token=${tokens.controller}`,
+    viewer_url: `${base}#token=${tokens.viewer}` }));
 });

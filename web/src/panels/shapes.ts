@@ -151,7 +151,7 @@ function showEditor(twin: Twin, drawing: Drawing, shape: Shape, holder: HTMLElem
     const values = fresh.shape === "release" ? [fresh.thickness_m] : fresh.shape === "barrier" ? [fresh.height_m, fresh.thickness_m] : [fresh.height_m];
     fields.forEach((f, i) => {
       f.show(values[i] ?? null);
-      f.enable(hindrance ?? (canReshape(fresh) ? null : "This release has several parts; its thickness is set in the scene file."));
+      f.enable(hindrance);
     });
     if (trigger) {
       trigger.hidden = fresh.shape === "release" && fresh.status === "released";

@@ -141,9 +141,10 @@ export type Action =
   | { action: "run" | "pause" | "step" | "restart" | "undo" | "redo" }
   | { action: "set_speed"; factor: number | null }
   | { action: "set_parameter"; key: string; value: number }
-  | { action: "put_release"; id?: string; name?: string; polygon: Point[]; thickness_m: number }
-  | { action: "put_barrier"; id?: string; name?: string; line: Point[]; height_m: number; thickness_m: number }
-  | { action: "put_building"; id?: string; name?: string; footprint: Point[]; height_m: number }
+  // With an id just what changes has to be given.
+  | { action: "put_release"; id?: string; name?: string; polygon?: Point[]; thickness_m?: number }
+  | { action: "put_barrier"; id?: string; name?: string; line?: Point[]; height_m?: number; thickness_m?: number }
+  | { action: "put_building"; id?: string; name?: string; footprint?: Point[]; height_m?: number }
   | { action: "remove_release" | "trigger_release" | "remove_barrier" | "remove_building"; id: string };
 export interface Done { done: string; created: string | null }
 

@@ -1,6 +1,6 @@
 // Changes of the setup as the page asks for them.
-import type { Point } from "../protocol/messages";
-import { area, type Item } from "./shapes";
+import type { Action, Point } from "../protocol/messages";
+import type { Item } from "./shapes";
 import type { Shape, Twin } from "./twin";
 
 const rounded = (points: readonly Point[]): Point[] => points.map(([x, y]) => [Number(x.toFixed(2)), Number(y.toFixed(2))]);
@@ -18,20 +18,15 @@ export async function create(twin: Twin, shape: Shape, points: readonly Point[])
 
 export interface Change { points?: readonly Point[]; name?: string; thickness_m?: number; height_m?: number }
 
+/** Sends just what changes: all else stays as it is. */
 export async function change(twin: Twin, item: Item, what: Change): Promise<boolean> {
-  const name = what.name ?? item.name;
+  const { points, ...sizes } = what;
+  const corners = points === undefined ? null : rounded(points);
   const { id } = item;
-  if (item.shape === "release") {
-    const polygon = rounded(what.points ?? item.polygons[0] ?? []);
-    const thickness_m = what.thickness_m ?? item.thickness_m ?? item.volume_m3 / Math.max(1, area(polygon));
-    return (await twin.act({ action: "put_release", id, name, polygon, thickness_m })) !== null;
-  }
-  if (item.shape === "barrier") {
-    return (await twin.act({ action: "put_barrier", id, name, line: rounded(what.points ?? item.line),
-      height_m: what.height_m ?? item.height_m, thickness_m: what.thickness_m ?? item.thickness_m })) !== null;
-  }
-  return (await twin.act({ action: "put_building", id, name, footprint: rounded(what.points ?? item.footprint[0] ?? []),
-    height_m: what.height_m ?? item.height_m })) !== null;
+  const action: Action = item.shape === "release" ? { action: "put_release", id, ...sizes, ...(corners ? { polygon: corners } : {}) }
+    : item.shape === "barrier" ? { action: "put_barrier", id, ...sizes, ...(corners ? { line: corners } : {}) }
+      : { action: "put_building", id, ...sizes, ...(corners ? { footprint: corners } : {}) };
+  return (await twin.act(action)) !== null;
 }
 
 export async function remove(twin: Twin, item: Item): Promise<void> {

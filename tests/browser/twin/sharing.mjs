@@ -1,0 +1,1 @@
+export async function testSharing(run, server) { return server; }
