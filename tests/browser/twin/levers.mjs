@@ -69,6 +69,7 @@ export async function testLevers(run, server) {
     await number.press("Enter");
     assert.match(await friction.locator(".field-note").textContent(), /-3.*allowed/i);
     assert.equal((await setup()).parameters[key], 0.55);
+    await number.press("Escape");
     const slider = friction.locator("input[type=range]");
     await slider.focus();
     await slider.press("ArrowRight");
@@ -105,7 +106,7 @@ export async function testLevers(run, server) {
     await page.locator(".draft:visible input[type=number]").first().press("Enter");
     for (const [u, v] of [[0.40, 0.42], [0.47, 0.41], [0.48, 0.47], [0.41, 0.48]]) await clickGround(page, u, v);
     const live = await page.textContent(".draft:visible .measure");
-    assert.match(live, /m² × 2\.00 m = .* m³/);
+    assert.match(live, /m² × 2\.00 m = .*\sm³/);
     const area = Number(live.split("m²")[0].replace(/\s/g, ""));
     await page.keyboard.press("Enter");
     const fresh = (await until(setup, (s) => s.releases.some((r) => !known.has(r.id)), "a new release")).releases.find((r) => !known.has(r.id));

@@ -55,8 +55,8 @@ export function numberField(options: NumberFieldOptions): NumberField {
     options.onset(value);
   };
   input.addEventListener("change", () => {
-    if (slider) slider.value = input.value;
     set(input.valueAsNumber);
+    if (slider && shown !== null) slider.value = String(shown);
   });
   input.addEventListener("keydown", (event) => {
     if (event.key === "ArrowUp" || event.key === "ArrowDown") {
