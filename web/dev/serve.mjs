@@ -113,7 +113,7 @@ async function api(message, response, url) {
     for (const other of both) if (other !== s) act(other, body);
     for (const other of both) { tellState(other); push(other); }
     tellSetup(s);
-    tell({ type: "done", scenario: s.letter, by: people.get(person)?.name ?? "a program", done: result.done });
+    if (both.length === 1 && both[0] === s && !["run", "pause", "step", "set_speed"].includes(body.action)) tell({ type: "done", scenario: s.letter, by: people.get(person)?.name ?? "a program", done: result.done });
     return answer(response, 200, result);
   }
   if (parts[0] === "session") {

@@ -65,11 +65,14 @@ export function buildPage(page: HTMLElement, twin: Twin): void {
     drawer.setAttribute("aria-expanded", String(open));
   } });
   const badge = twin.scene.reconstruction ? h("span", { class: "badge", title: twin.scene.assumptions.join(" ") }, "Reconstruction, no survey") : null;
+  const key = legends(twin, stage, layers);
+  const scale = scaleAndCompass(twin, stage, readOut);
+  stage.covers = [bar.camera, bar.show, key, scale];
   page.replaceChildren(
     h("header", { class: "topbar" }, h("span", { class: "wordmark" }, "talus"), h("h1", {}, twin.scene.title), badge, h("span", { class: "spring" }),
       people(twin), ...exportButtons(twin, picture), button("Help", { icon: "help", bare: true, title: "Help and shortcuts (?)", onclick: help }), drawer),
     levers(twin, drawing),
-    h("main", { class: "middle" }, stage.element, bar.camera, bar.show, legends(twin, stage, layers), scaleAndCompass(twin, stage), readOut),
+    h("main", { class: "middle" }, stage.element, bar.camera, bar.show, key, scale),
     h("aside", { class: "readings", "aria-label": "Readings" }, runCard(twin), readings.element, readings.panel),
     transport(twin, playback),
     toasts.polite, toasts.urgent,

@@ -31,7 +31,7 @@ export async function testSharing(run, server, command) {
     const box = await ada.locator(".stage canvas").boundingBox();
     await ada.mouse.move(box.x + 0.5 * box.width, box.y + 0.5 * box.height);
     await ada.mouse.move(box.x + 0.52 * box.width, box.y + 0.55 * box.height, { steps: 3 });
-    await until(() => eve.locator(".person-mark:visible").allTextContents(), (names) => names.includes("Ada"), "Ada's mark");
+    await until(() => eve.locator(".person-mark:not([hidden])").allTextContents(), (names) => names.includes("Ada"), "Ada's mark");
     await run.shot(eve, "14-viewer");
     await eve.context().close();
     await until(() => ada.locator(".chips .person").count(), (n) => n === 1, "one person again", 12_000);

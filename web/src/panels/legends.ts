@@ -59,7 +59,7 @@ export function legends(twin: Twin, stage: Stage, layers: ShownLayers): HTMLElem
   return holder;
 }
 
-export function scaleAndCompass(twin: Twin, stage: Stage): HTMLElement {
+export function scaleAndCompass(twin: Twin, stage: Stage, readOut: HTMLElement): HTMLElement {
   const needle = h("div", { class: "needle" }, h("i", {}), h("b", {}, "N"));
   const compass = h("button", { type: "button", class: "compass", "aria-label": "Compass: turn the view north up", title: "North; click for the top view",
     onclick: () => stage.rig.top() }, needle);
@@ -75,6 +75,6 @@ export function scaleAndCompass(twin: Twin, stage: Stage): HTMLElement {
     text.textContent = length >= 1000 ? `${tick(length / 1000)}\u202fkm` : `${tick(length)}\u202fm`;
   });
   return h("div", { class: "map-marks" }, compass,
-    h("div", { class: "scale", title: "Holds at the middle of the view" }, text, bar),
+    h("div", { class: "scale", title: "Holds at the middle of the view" }, text, bar), readOut,
     h("div", { class: "map-note" }, `Contours every ${tick(contourInterval(stage.relief))}\u202fm · ${twin.scene.crs}`));
 }

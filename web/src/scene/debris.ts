@@ -8,7 +8,7 @@ const vertex = /* glsl */ `
   attribute vec4 particle1;
   uniform vec3 uOrigin0, uOrigin1, uScale0, uScale1;
   uniform float uSpeedUnit0, uSpeedUnit1, uMix, uFastest, uDiameter, uPixels;
-  varying float vShare;
+  varying float vShare, vRim;
   void main() {
     bool there0 = particle0.x < 65534.5 || particle0.y < 65534.5 || particle0.z < 65534.5;
     bool there1 = particle1.x < 65534.5 || particle1.y < 65534.5 || particle1.z < 65534.5;
@@ -19,23 +19,26 @@ const vertex = /* glsl */ `
     vShare = mix(particle0.w * uSpeedUnit0, particle1.w * uSpeedUnit1, share) / uFastest;
     vec4 seen = modelViewMatrix * vec4(mix(at0, at1, share), 1.0);
     gl_Position = shown ? projectionMatrix * seen : vec4(2.0, 2.0, 2.0, 1.0);
-    gl_PointSize = shown ? max(2.0, uDiameter * uPixels / -seen.z) : 0.0;
+    gl_PointSize = shown ? max(2.5, uDiameter * uPixels / -seen.z) : 0.0;
+    vRim = 0.4 * smoothstep(3.0, 12.0, gl_PointSize);
   }
 `;
 
 const fragment = /* glsl */ `
   uniform sampler2D uRamp;
   uniform vec3 uSun;
-  varying float vShare;
+  varying float vShare, vRim;
   void main() {
     vec2 at = 2.0 * gl_PointCoord - 1.0;
     float r2 = dot(at, at);
     if (r2 > 1.0) discard;
     vec3 normal = vec3(at.x, -at.y, sqrt(1.0 - r2));
     vec3 colour = texture2D(uRamp, vec2(clamp(vShare, 0.002, 0.998), 0.5)).rgb;
-    float light = 0.62 + 0.48 * max(dot(normal, uSun), 0.0);
-    light *= mix(1.0, 0.62, smoothstep(0.55, 1.0, r2));
+    float light = 0.55 + 0.62 * max(dot(normal, uSun), 0.0);
+    // The rim parts grains from one another; where grains are a few pixels it would only darken them.
+    light *= 1.0 - vRim * smoothstep(0.55, 1.0, r2);
     gl_FragColor = vec4(colour * light, 1.0);
+    #include <colorspace_fragment>
   }
 `;
 

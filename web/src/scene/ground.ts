@@ -19,7 +19,7 @@ export function rampTexture(at: (share: number) => Rgb): DataTexture {
 /** Muted, so that debris and layers carry the strong colours: moss to straw to pale stone. */
 function groundColour(share: number): Rgb {
   const stops: [number, Rgb][] = [
-    [0, [176, 190, 168]], [0.25, [199, 204, 176]], [0.5, [217, 211, 188]], [0.75, [224, 216, 203]], [1, [238, 235, 230]],
+    [0, [190, 206, 178]], [0.25, [212, 216, 186]], [0.5, [229, 222, 197]], [0.75, [235, 227, 212]], [1, [246, 243, 238]],
   ];
   const k = Math.min(stops.length - 2, Math.floor(share * (stops.length - 1)));
   const [s0, c0] = stops[k];
@@ -97,9 +97,9 @@ const groundRamp = rampTexture(groundColour);
 const nothing = new DataTexture(new Uint8Array(4), 1, 1, RGBAFormat);
 nothing.needsUpdate = true;
 
-/** Contour interval that gives some 25 lines over the relief, and every fifth is an index contour. */
+/** Contour interval that gives some 30 lines over the relief, and every fifth is an index contour. */
 export function contourInterval(relief: Relief): number {
-  return roundStep((relief.highest - relief.lowest) / 32);
+  return roundStep((relief.highest - relief.lowest) / 40);
 }
 
 export class Ground {

@@ -15,6 +15,7 @@ export interface Label {
   farthest?: number;
 }
 
+export type Box = readonly [number, number, number, number];
 interface Shown extends Label { element: HTMLElement; width: number; height: number }
 
 export class Labels {
@@ -37,15 +38,16 @@ export class Labels {
     }
   }
 
-  place(camera: PerspectiveCamera, width: number, height: number): void {
-    const taken: [number, number, number, number][] = [];
+  /** reserved: boxes (left, top, right, bottom) of the view that are covered by something else. */
+  place(camera: PerspectiveCamera, width: number, height: number, reserved: readonly Box[]): void {
+    const taken: Box[] = [...reserved];
     const seen = new Vector3();
     for (const label of this.shown) {
       seen.set(...label.at).project(camera);
       const x = ((seen.x + 1) / 2) * width;
       const y = ((1 - seen.y) / 2) * height;
       // The anchor of a label is the middle of its lower edge.
-      const box: [number, number, number, number] = [x - label.width / 2, y - label.height, x + label.width / 2, y];
+      const box: Box = [x - label.width / 2, y - label.height, x + label.width / 2, y];
       const visible =
         seen.z < 1 && box[0] > 2 && box[1] > 2 && box[2] < width - 2 && box[3] < height - 2 &&
         !taken.some((t) => box[0] < t[2] + 3 && box[2] > t[0] - 3 && box[1] < t[3] + 2 && box[3] > t[1] - 2) &&

@@ -125,8 +125,8 @@ export class ScenarioView {
       const material = mesh.material as MeshLambertMaterial;
       const colour = impacts === null || isBarrier ? null : colourOf(id);
       material.color.set(colour ?? (isBarrier ? barrierColour : plainHouse));
-      material.emissive.set(id === selected ? new Color("#0e4a5f") : new Color(0));
-      material.emissiveIntensity = 0.55;
+      material.emissive.set(id === selected ? new Color("#1d86ab") : new Color(0));
+      material.emissiveIntensity = 0.6;
     }
   }
   solidAt(id: string): Vector3 | null {

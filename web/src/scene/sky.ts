@@ -25,7 +25,7 @@ const fragment = /* glsl */ `
 `;
 
 export class Sky {
-  readonly sun = new DirectionalLight(0xfff2df, 3.3);
+  readonly sun = new DirectionalLight(0xfff2df, 3.5);
   private readonly dome: Mesh;
 
   constructor(scene: Scene) {
@@ -35,7 +35,7 @@ export class Sky {
     );
     this.dome.frustumCulled = false;
     this.dome.renderOrder = -10;
-    const fill = new HemisphereLight(0xdfeaf5, 0xb3a48e, 1.9);
+    const fill = new HemisphereLight(0xdfeaf5, 0xb3a48e, 1.75);
     fill.position.set(0, 0, 1);
     this.sun.castShadow = true;
     this.sun.shadow.mapSize.set(2048, 2048);

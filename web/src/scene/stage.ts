@@ -6,6 +6,7 @@ import type { Twin } from "../state/twin";
 import { h } from "../ui/dom";
 import { ramps } from "./colour";
 import { groundGeometry, rampTextureOf } from "./ground";
+import type { Box } from "./labels";
 import type { Relief } from "./relief";
 import { Rig } from "./rig";
 import { ScenarioView } from "./scenario_view";
@@ -37,6 +38,8 @@ export class Stage {
   readonly views = new Map<ScenarioName, ScenarioView>();
   readonly stats: Stats = { frames: 0, script_ms: 0, draw_ms: 0, decode_ms: 0, upload_ms: 0, particles: 0, shownTime_s: 0 };
   fastest_mps = 15;
+  /** Elements that lie over the view; labels keep clear of them. */
+  covers: readonly HTMLElement[] = [];
   private readonly renderer: WebGLRenderer;
   private readonly geometry: BufferGeometry;
   private readonly panes = new Map<ScenarioName, HTMLElement>();
@@ -140,7 +143,7 @@ export class Stage {
     for (const view of this.views.values()) {
       if (view.update(now, camera, pixels, this.fastest_mps)) more = true;
       if (this.cameraMoved || view.labels.layer.dataset["stale"] !== "no") {
-        view.labels.place(camera, wide, this.height);
+        view.labels.place(camera, wide, this.height, this.covered(column * wide));
         view.labels.layer.dataset["stale"] = "no";
       }
       this.renderer.setViewport(column * wide, 0, wide, this.height);
@@ -164,6 +167,14 @@ export class Stage {
     for (const reader of this.readers) reader();
     ++this.stats.frames;
     this.stats.script_ms = performance.now() - begun;
+  }
+  /** What lies over a view whose left edge is at `left`, as boxes in that view. */
+  private covered(left: number): Box[] {
+    const own = this.canvas.getBoundingClientRect();
+    return this.covers.filter((e) => !e.hidden).flatMap((element) => [...(element.classList.contains("bar") ? [element] : element.children)]).map((element) => {
+      const box = element.getBoundingClientRect();
+      return [box.left - own.left - left, box.top - own.top, box.right - own.left - left, box.bottom - own.top];
+    });
   }
   relabel(view: ScenarioView): void {
     view.refreshLabels();
