@@ -23,6 +23,20 @@ struct RunArguments {
 };
 int run_command(const RunArguments& arguments);
 
+struct ServeArguments {
+    std::string scene;  ///< a scene file; empty: the built-in scene
+    std::string host = "127.0.0.1";
+    int port = 8123;
+    std::vector<std::string> allowed_hosts;
+    std::vector<std::string> tokens;  ///< the controllers', then the viewers'; left out: random ones
+    std::optional<int> threads;
+    std::vector<std::string> overrides;  ///< "section.key=value"
+    std::string data;                    ///< value of TALUS_DATA; empty: as in the environment
+    bool run = false;                    ///< begin at once
+    bool quiet = false, json = false;
+};
+int serve_command(const ServeArguments& arguments);
+
 struct CheckArguments {
     std::string scene;
     std::vector<std::string> overrides;

@@ -8,10 +8,10 @@
 
 #include <fmt/format.h>
 
+#include "builtin_names.hpp"
 #include "commands.hpp"
 #include "exit_code.hpp"
 #include "interrupt.hpp"
-#include "params/fields.hpp"
 #include "products/particle_series.hpp"
 #include "products/products.hpp"
 #include "progress.hpp"
@@ -55,26 +55,6 @@ std::string scene_name(const fs::path& file) {
 void print(const std::string& text) {
     (void)std::fputs(text.c_str(), stdout);
     (void)std::fflush(stdout);
-}
-
-/// Paths into the temporary folder would mean nothing to the reader of a manifest.
-void name_builtin_files(Scene& scene, const fs::path& unpacked) {
-    const std::string prefix = (unpacked / "").string();
-    const auto named = [&](const std::string& path) {
-        if (!path.starts_with(prefix)) return path;
-        return fmt::format("built-in:{}/{}", builtin_scene_name, path.substr(prefix.size()));
-    };
-    scene.file = named(scene.file.string());
-    for (InputFile& input : scene.inputs) input.path = named(input.path);
-    for (const Section& section : scene_sections()) {
-        for (std::size_t index = 0; index < section.count(scene.spec); ++index) {
-            for (const Parameter& parameter : section.parameters) {
-                const ParameterValue value = parameter.get(scene.spec, index);
-                const auto* path = std::get_if<std::string>(&value);
-                if (parameter.kind == ParameterKind::path && path) parameter.set(scene.spec, index, named(*path));
-            }
-        }
-    }
 }
 
 /// `shown`: the output folder as the user wrote it.

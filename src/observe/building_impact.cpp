@@ -6,15 +6,25 @@
 namespace talus {
 
 ImpactRecorder::ImpactRecorder(const Model& model, const State& state, double filter_window)
-    : window_(filter_window),
-      particle_area_(model.particle_spacing * model.particle_spacing),
-      impacts_(model.buildings.size()),
-      records_(model.buildings.size()) {
+    : window_(filter_window), particle_area_(model.particle_spacing * model.particle_spacing) {
+    follow(model, state);
+}
+
+void ImpactRecorder::follow(const Model& model, const State& state) {
+    impacts_.resize(model.buildings.size());
+    records_.resize(model.buildings.size());
     for (std::size_t b = 0; b < impacts_.size(); ++b) impacts_[b].name = model.buildings[b].name;
     touched_.reserve(impacts_.size());
-    if (!impacts_.empty() && !state.id.empty()) {
-        last_touch_.resize(
-            std::max<std::size_t>(state.seeded, *std::max_element(state.id.begin(), state.id.end()) + 1));
+    if (impacts_.empty() || state.count == 0) return;
+    const std::uint32_t greatest = *std::max_element(state.id.begin(), state.id.begin() + state.count);
+    last_touch_.resize(std::max({last_touch_.size(), std::size_t{state.seeded}, std::size_t{greatest} + 1}));
+}
+
+void ImpactRecorder::forget(std::size_t building) {
+    impacts_[building] = {.name = impacts_[building].name};
+    records_[building] = {};
+    for (LastTouch& last : last_touch_) {
+        if (last.building == static_cast<std::int32_t>(building)) last = {};
     }
 }
 
@@ -48,6 +58,7 @@ void ImpactRecorder::add_contact(const Model& model, const State& state, const B
     impact.peak_depth = std::max(impact.peak_depth, depth);
     const double speed = maps.speed_at(p);
     impact.peak_dynamic_pressure = std::max(impact.peak_dynamic_pressure, model.rest_density * speed * speed);
+    impact.peak_speed = std::max(impact.peak_speed, speed);
 }
 
 void ImpactRecorder::update_peaks(std::size_t building, const State& state) {

@@ -21,6 +21,11 @@ class ImpactRecorder {
     /// `filter_window` in s.
     ImpactRecorder(const Model& model, const State& state, double filter_window);
 
+    /// Call when model or state were changed between two steps. Buildings keep their index; new ones come behind.
+    void follow(const Model& model, const State& state);
+    /// Begins a building's record anew, as for one that was moved.
+    void forget(std::size_t building);
+
     /// `maps` as of this step.
     void after_step(const Model& model, const State& state, const MapAccumulator& maps);
 

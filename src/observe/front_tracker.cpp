@@ -17,8 +17,9 @@ constexpr std::size_t group = 64;  ///< particles looked at together, most often
 }  // namespace
 
 std::uint32_t front_particle_count(const State& state) {
-    const auto share = static_cast<std::uint32_t>(std::ceil(0.001 * state.seeded));
-    return std::max(1U, std::min(state.seeded, std::max(5U, share)));
+    const std::uint32_t released = state.seeded - state.taken;
+    const auto share = static_cast<std::uint32_t>(std::ceil(0.001 * released));
+    return std::max(1U, std::min(released, std::max(5U, share)));
 }
 
 FrontTracker::FrontTracker(const Model& model, const State& state, FlowPath flow_path, double chainage_interval,
@@ -35,6 +36,14 @@ FrontTracker::FrontTracker(const Model& model, const State& state, FlowPath flow
     speed_.assign(bins, never);
     held_ = find_front(model, state);
     farthest_ = current_;
+}
+
+void FrontTracker::follow(const State& state) {
+    front_count_ = front_particle_count(state);
+    if (flow_path_.empty()) return;
+    candidates_.resize(std::max<std::size_t>(candidates_.size(), state.count));
+    held_ = static_cast<std::uint32_t>(std::count_if(state.held.begin(), state.held.begin() + state.count,
+                                                     [](std::uint8_t held) { return held != 0; }));
 }
 
 std::uint32_t FrontTracker::find_candidates(const Model& model, const State& state, double from) {

@@ -24,6 +24,8 @@ class FrontTracker {
                  double velocity_window);
 
     void after_step(const Model& model, const State& state);
+    /// Call when the state was changed between two steps.
+    void follow(const State& state);
 
     [[nodiscard]] const FlowPath& flow_path() const { return flow_path_; }
     /// Chainage of the front now, m; NaN: none on the path.

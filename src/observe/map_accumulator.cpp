@@ -206,6 +206,25 @@ void MapAccumulator::take(Patch& patch) {
     patch.rows = patch.east = 0;
 }
 
+void MapAccumulator::follow(const Model& model, const State& state) {
+    active_.resize(std::max(active_.size(), std::min(tile_at_.size(), 4 * static_cast<std::size_t>(state.count))));
+    if (model.rest_density == rest_density_) return;
+    if (!density_changed_) {
+        for (const auto& tile : tiles_) {
+            for (std::size_t cell = 0; cell < tile_cells; ++cell)
+                tile->peak_pressure[cell] = peak_pressure(*tile, cell);
+        }
+    }
+    density_changed_ = true;
+    rest_density_ = model.rest_density;
+}
+
+float MapAccumulator::peak_pressure(const Tile& tile, std::size_t cell) const {
+    if (density_changed_) return tile.peak_pressure[cell];
+    const double speed = tile.peak_speed[cell];
+    return static_cast<float>(rest_density_ * speed * speed);
+}
+
 void MapAccumulator::update_peaks(Tile& tile, double time) const {
     for (std::size_t cell = 0; cell < tile_cells; ++cell) {
         const CellSum& sum = tile.sums[cell];
@@ -213,6 +232,11 @@ void MapAccumulator::update_peaks(Tile& tile, double time) const {
         if (now < thinnest_depth_) continue;
         if (sum.momentum() > sum.volume() * tile.peak_speed[cell] * speed_units) {
             tile.peak_speed[cell] = static_cast<float>(sum.momentum() / sum.volume() / speed_units);
+        }
+        if (density_changed_) {
+            const double speed = sum.momentum() / sum.volume() / speed_units;
+            const auto pressure = static_cast<float>(rest_density_ * speed * speed);
+            tile.peak_pressure[cell] = std::max(tile.peak_pressure[cell], pressure);
         }
         // Debris arrives with a depth that it never had.
         if (now > tile.peak_depth[cell]) {
@@ -257,6 +281,39 @@ double MapAccumulator::volume() const {
     return sum / one_particle * particle_volume_;
 }
 
+MapAccumulator::Present MapAccumulator::present() const {
+    int first_column = geometry_.columns, first_row = geometry_.rows, last_column = -1, last_row = -1;
+    const auto edge = static_cast<int>(tile_size);
+    for (std::uint32_t t = 0; t < active_count_; ++t) {
+        const Tile& tile = *active_[t];
+        first_column = std::min(first_column, std::max(tile.column, 0));
+        first_row = std::min(first_row, std::max(tile.row, 0));
+        last_column = std::max(last_column, std::min(tile.column + edge, geometry_.columns) - 1);
+        last_row = std::max(last_row, std::min(tile.row + edge, geometry_.rows) - 1);
+    }
+    Present present;
+    if (last_column < first_column || last_row < first_row) return present;
+    present.first_column = first_column;
+    present.first_row = first_row;
+    const GridGeometry window{geometry_.x_min + first_column * geometry_.cell,
+                              geometry_.y_min + first_row * geometry_.cell, geometry_.cell,
+                              last_column - first_column + 1, last_row - first_row + 1};
+    present.depth = present.speed = Grid<float>(window);
+    for (std::uint32_t t = 0; t < active_count_; ++t) {
+        const Tile& tile = *active_[t];
+        for (std::size_t cell = 0; cell < tile_cells; ++cell) {
+            const CellSum& sum = tile.sums[cell];
+            if (sum.volume() == 0) continue;  // those off the rim of the map, too
+            const std::size_t k =
+                window.index(tile.column + column_of(cell) - first_column, tile.row + row_of(cell) - first_row);
+            present.depth.values[k] = static_cast<float>(depth(sum.volume()));
+            if (present.depth.values[k] < thinnest_depth_) continue;
+            present.speed.values[k] = static_cast<float>(sum.momentum() / sum.volume() / speed_units);
+        }
+    }
+    return present;
+}
+
 Extent MapAccumulator::reached_cells() const {
     const double none = std::numeric_limits<double>::infinity();
     Extent reached{none, none, -none, -none};
@@ -291,10 +348,9 @@ HazardMaps MapAccumulator::maps() const {
             if (tile->peak_depth[cell] == 0) continue;
             const std::size_t k =
                 g.index(tile->column + column_of(cell) - first_column, tile->row + row_of(cell) - first_row);
-            const double speed = tile->peak_speed[cell];
             maps.peak_depth.values[k] = tile->peak_depth[cell];
             maps.peak_speed.values[k] = tile->peak_speed[cell];
-            maps.peak_pressure.values[k] = static_cast<float>(rest_density_ * speed * speed);
+            maps.peak_pressure.values[k] = peak_pressure(*tile, cell);
             maps.arrival_time.values[k] = tile->arrival_time[cell];
             maps.deposit_depth.values[k] = static_cast<float>(depth(sum_of(*tile, cell).volume()));
         }

@@ -29,6 +29,9 @@ class MapAccumulator {
     /// The map's corner is the terrain grid's. `arrival_depth`, `map_cell` in m.
     MapAccumulator(const Model& model, const State& state, double map_cell, double arrival_depth);
 
+    /// Call when model or state were changed between two steps. Peak pressures so far stay those of the density so far.
+    void follow(const Model& model, const State& state);
+
     /// Takes the present state into the peaks. Particles of releases that have not started do not count.
     void add(const State& state);
 
@@ -37,6 +40,17 @@ class MapAccumulator {
 
     /// Volume on the map as of the last `add`, m3: exactly the particles added.
     [[nodiscard]] double volume() const;
+
+    /// Debris as of the last `add`, over the part of the map in which any lies; 0 where none does.
+    struct Present {
+        int first_column = 0, first_row = 0;  ///< of geometry()
+        Grid<float> depth;                    ///< m
+        Grid<float> speed;                    ///< depth-averaged, m/s; 0 where debris is too thin to tell
+    };
+    [[nodiscard]] Present present() const;
+
+    /// Of the whole map.
+    [[nodiscard]] const GridGeometry& geometry() const { return geometry_; }
 
     /// The peaks so far, with the depths of the last `add` as deposit, over the cells that debris reached and a margin.
     [[nodiscard]] HazardMaps maps() const;
@@ -63,9 +77,10 @@ class MapAccumulator {
         tbb::spin_mutex adding;
         std::uint64_t added = 0;  // the add that the sums are of
         std::array<CellSum, tile_cells> sums{};
-        std::array<float, tile_cells> peak_depth{};    // 0: not reached
-        std::array<float, tile_cells> peak_speed{};    // depth-averaged
-        std::array<float, tile_cells> arrival_time{};  // NaN: never
+        std::array<float, tile_cells> peak_depth{};     // 0: not reached
+        std::array<float, tile_cells> peak_speed{};     // depth-averaged
+        std::array<float, tile_cells> arrival_time{};   // NaN: never
+        std::array<float, tile_cells> peak_pressure{};  // Pa; only where the density has changed
     };
     struct Shares;
     struct Patch;
@@ -80,6 +95,7 @@ class MapAccumulator {
     /// Made if it is not there yet.
     Tile& tile_at(unsigned tile_column, unsigned tile_row);
     void update_peaks(Tile& tile, double time) const;
+    [[nodiscard]] float peak_pressure(const Tile& tile, std::size_t cell) const;
     /// As of the last add.
     [[nodiscard]] CellSum sum_of(const Tile& tile, std::size_t cell) const;
     [[nodiscard]] double depth(double volume) const { return volume * depth_of_unit_; }
@@ -88,6 +104,7 @@ class MapAccumulator {
     GridGeometry geometry_;  // of the whole terrain
     double x_offset_ = 0, y_offset_ = 0, inverse_cell_ = 0;
     double particle_volume_ = 0, rest_density_ = 0;
+    bool density_changed_ = false;
     double depth_of_unit_ = 0, thinnest_depth_ = 0, arrival_depth_ = 0;
 
     unsigned tile_columns_ = 0;

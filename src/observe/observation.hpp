@@ -45,11 +45,13 @@ struct BuildingImpact {
     double peak_pressure = 0;          ///< Pa, filtered force over the wall area in contact
     double peak_depth = 0;             ///< m, highest debris at the walls above the ground
     double peak_dynamic_pressure = 0;  ///< Pa, rest_density * speed^2 of debris within a cell of the walls
+    double peak_speed = 0;             ///< m/s, depth-averaged, of debris within a cell of the walls
 };
 
 /// A row of the time series. Volumes add up exactly: released = held + moving + deposited + left.
 struct TimeSample {
     double time = 0;
+    double volume_released = 0;     ///< m3, until then, without what was taken away again
     double front_chainage = never;  ///< m, of the moving front now; NaN: none on the path
     double volume_held = 0;         ///< m3, in releases that have not started
     double volume_moving = 0;
@@ -69,7 +71,7 @@ struct Observation {
     RunOut run_out;
     std::vector<BuildingImpact> buildings;  ///< as in Model::buildings
     std::vector<TimeSample> timeseries;
-    double volume_released = 0;  ///< m3
+    double volume_released = 0;  ///< m3, without what was taken away again
     /// Compression, max(0, density / rest density - 1), as the last iteration of every step found it: the mean over all
     /// particles in the worst step, and the worst particle of all steps.
     double worst_mean_compression = 0, worst_max_compression = 0;

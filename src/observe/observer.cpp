@@ -49,6 +49,7 @@ TimeSample make_sample(const Model& model, const State& state, double deposited_
     const Totals totals = sum_up(state, deposited_speed);
     TimeSample sample;
     sample.time = state.time;
+    sample.volume_released = (state.seeded - state.taken) * model.particle_volume();
     sample.front_chainage = front_chainage;
     sample.volume_held = totals.held * model.particle_volume();
     sample.volume_moving = totals.moving * model.particle_volume();
@@ -72,7 +73,30 @@ struct Observer::Parts {
           maps(model, state, map_cell, o.arrival_depth),
           front(model, state, flow_path, o.chainage_interval, o.front_velocity_window),
           impact(model, state, o.impact_filter_window),
-          released(measure_release(model, state, flow_path)) {}
+          released(measure_release(model, state, flow_path)) {
+        keep_starts(state, 0);
+    }
+
+    /// Keeps where the particles with ids from `first_id` on lie.
+    void keep_starts(const State& state, std::uint32_t first_id) {
+        start.resize(state.seeded);
+        for (std::uint32_t i = 0; i < state.count; ++i) {
+            const std::uint32_t id = state.id[i];
+            if (id >= first_id && id < start.size()) start[id] = state.position.at(i);
+        }
+    }
+
+    /// The debris of all releases that there are, as it lay at its start.
+    [[nodiscard]] ReleasedMass measure_starts(const Model& model) const {
+        State lay;
+        lay.resize(start.size());
+        for (const ReleaseGroup& release : model.releases) {
+            for (std::uint32_t id = release.first_particle; id < release.last_particle; ++id) {
+                lay.position.set(lay.count++, start[id]);
+            }
+        }
+        return measure_release(model, lay, front.flow_path());
+    }
 
     void watch_compression(const State& state) {
         if (state.mean_compression > worst_mean_compression) {
@@ -97,6 +121,7 @@ struct Observer::Parts {
     FrontTracker front;
     ImpactRecorder impact;
     ReleasedMass released;
+    std::vector<LocalPoint> start;  ///< by particle id
     std::vector<TimeSample> timeseries;
     std::uint64_t next_row = 1;  ///< due at next_row * sample_interval
     double steps_per_second = 0;
@@ -129,6 +154,20 @@ void Observer::after_step(const Model& model, const State& state, double steps_p
     }
 }
 
+void Observer::follow(const Model& model, const State& state, std::uint32_t first_new_id) {
+    Parts& p = *parts_;
+    p.keep_starts(state, first_new_id);
+    p.released = p.measure_starts(model);
+    p.maps.follow(model, state);
+    p.maps.add(state);
+    p.front.follow(state);
+    p.impact.follow(model, state);
+}
+
+void Observer::forget_building(std::size_t building) {
+    parts_->impact.forget(building);
+}
+
 double Observer::front_chainage() const {
     return parts_->front.farthest();
 }
@@ -137,16 +176,37 @@ const TimeSample& Observer::latest() const {
     return parts_->timeseries.back();
 }
 
-Observation Observer::finish(const Model& model, const State& state) {
-    Parts& p = *parts_;
-    if (p.timeseries.back().time != state.time) p.add_row(model, state);
+TimeSample Observer::sample(const Model& model, const State& state) const {
+    const Parts& p = *parts_;
+    return make_sample(model, state, p.outputs.deposited_speed, p.front.current(), p.steps_per_second);
+}
+
+const std::vector<TimeSample>& Observer::timeseries() const {
+    return parts_->timeseries;
+}
+
+std::vector<FrontSample> Observer::front() const {
+    return parts_->front.samples();
+}
+
+const std::vector<BuildingImpact>& Observer::impacts() const {
+    return parts_->impact.impacts();
+}
+
+const MapAccumulator& Observer::maps() const {
+    return parts_->maps;
+}
+
+Observation Observer::finish(const Model& model, const State& state) const {
+    const Parts& p = *parts_;
     Observation observation;
     observation.maps = p.maps.maps();
     observation.front = p.front.samples();
     observation.run_out = measure_run_out(model, state, p.front.flow_path(), p.released, p.front.farthest());
     observation.buildings = p.impact.impacts();
     observation.timeseries = p.timeseries;
-    observation.volume_released = state.seeded * model.particle_volume();
+    if (p.timeseries.back().time != state.time) observation.timeseries.push_back(sample(model, state));
+    observation.volume_released = (state.seeded - state.taken) * model.particle_volume();
     observation.worst_mean_compression = p.worst_mean_compression;
     observation.worst_max_compression = p.worst_max_compression;
     observation.worst_mean_time = p.worst_mean_time;

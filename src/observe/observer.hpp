@@ -1,7 +1,11 @@
 #pragma once
 
+#include <cstddef>
+#include <cstdint>
 #include <memory>
+#include <vector>
 
+#include "observe/map_accumulator.hpp"
 #include "observe/observation.hpp"
 #include "params/spec.hpp"
 #include "sim/model.hpp"
@@ -24,13 +28,27 @@ class Observer {
     /// Call after every step. `steps_per_second` goes into the time series as it is.
     void after_step(const Model& model, const State& state, double steps_per_second);
 
+    /// Call when model or state were changed between two steps: particles with ids from `first_new_id` on are new.
+    void follow(const Model& model, const State& state, std::uint32_t first_new_id);
+    /// Begins what is known of a building anew, as for one that was moved.
+    void forget_building(std::size_t building);
+
     /// Farthest chainage that the front has reached, m; NaN: none yet.
     [[nodiscard]] double front_chainage() const;
     /// The last row of the time series (one at construction).
     [[nodiscard]] const TimeSample& latest() const;
 
-    /// What was measured, with the deposit as it lies now. Call at the end.
-    [[nodiscard]] Observation finish(const Model& model, const State& state);
+    /// What a row of the time series would be now.
+    [[nodiscard]] TimeSample sample(const Model& model, const State& state) const;
+
+    // What has been measured so far.
+    [[nodiscard]] const std::vector<TimeSample>& timeseries() const;
+    [[nodiscard]] std::vector<FrontSample> front() const;
+    [[nodiscard]] const std::vector<BuildingImpact>& impacts() const;  ///< as in Model::buildings
+    [[nodiscard]] const MapAccumulator& maps() const;
+
+    /// All of it, with the debris as it lies now for the deposit.
+    [[nodiscard]] Observation finish(const Model& model, const State& state) const;
 
   private:
     struct Parts;

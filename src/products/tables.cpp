@@ -49,7 +49,7 @@ std::string time_table(const Observation& observation) {
         "time_step_s,steps_per_second");
     for (const TimeSample& s : observation.timeseries) {
         const double balance =
-            observation.volume_released - (s.volume_held + s.volume_moving + s.volume_deposited + s.volume_left);
+            s.volume_released - (s.volume_held + s.volume_moving + s.volume_deposited + s.volume_left);
         csv.row({s.time, s.front_chainage, s.volume_held, s.volume_moving, s.volume_deposited, s.volume_left, balance,
                  s.kinetic_energy, s.potential_energy, s.largest_speed, s.mean_compression, s.max_compression,
                  s.time_step, s.steps_per_second});

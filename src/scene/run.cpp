@@ -9,9 +9,9 @@
 #include <tbb/global_control.h>
 #include <tbb/task_arena.h>
 
-#include "core/lanes.hpp"
 #include "observe/observer.hpp"
-#include "sim/cpu/parallel.hpp"
+#include "scene/rate_meter.hpp"
+#include "scene/stop_rule.hpp"
 #include "sim/seed.hpp"
 #include "sim/simulation.hpp"
 
@@ -23,70 +23,6 @@ using Clock = std::chrono::steady_clock;
 double seconds_since(Clock::time_point start) {
     return std::chrono::duration<double>(Clock::now() - start).count();
 }
-
-/// Decides when debris has come to rest: its momentum stayed below a share of its peak for long enough.
-class RestDetector {
-  public:
-    explicit RestDetector(const SolverSpec& solver)
-        : fraction_(solver.stop_momentum_fraction), duration_(solver.stop_duration) {}
-
-    /// `momentum`: root mean square stands in for it, it needs no direction. `waiting`: a release has yet to start.
-    bool at_rest(double time, double momentum, bool waiting) {
-        peak_ = std::max(peak_, momentum);
-        if (fraction_ <= 0 || waiting || momentum > fraction_ * peak_) {
-            quiet_since_ = time;
-            return false;
-        }
-        return time - quiet_since_ >= duration_;
-    }
-
-  private:
-    double fraction_, duration_;
-    double peak_ = 0, quiet_since_ = 0;
-};
-
-/// Sum of m |v|, kg m/s: floats side by side over a group of particles, doubles over the groups.
-double total_momentum(const Model& model, const State& state) {
-    using L = Lanes<4>;
-    constexpr std::size_t group = 64;
-    const VectorArray& v = state.velocity;
-    const auto add_speeds = [&](std::size_t first, std::size_t last, double sum) {
-        std::size_t i = first;
-        for (; i + group <= last; i += group) {
-            L speeds(0);
-            for (std::size_t k = i; k < i + group; k += L::size) {
-                const L vx = L::load(&v.x[k]), vy = L::load(&v.y[k]), vz = L::load(&v.z[k]);
-                speeds += sqrt(vx * vx + vy * vy + vz * vz);
-            }
-            for (int lane = 0; lane < L::size; ++lane) sum += speeds.at(lane);
-        }
-        for (; i < last; ++i) sum += length(state.velocity.at(i));
-        return sum;
-    };
-    return model.particle_mass() *
-           cpu::reduce_ranges(state.count, 8192, 0.0, add_speeds, [](double a, double b) { return a + b; });
-}
-
-/// Steps per second of wall time, over the last half second.
-class RateMeter {
-  public:
-    double update(std::uint64_t steps) {
-        const double elapsed = seconds_since(start_);
-        if (elapsed > 0.5) {
-            rate_ = static_cast<double>(steps - steps_) / elapsed;
-            steps_ = steps;
-            start_ = Clock::now();
-        } else if (rate_ == 0 && elapsed > 0) {
-            return static_cast<double>(steps - steps_) / elapsed;
-        }
-        return rate_;
-    }
-
-  private:
-    Clock::time_point start_ = Clock::now();
-    std::uint64_t steps_ = 0;
-    double rate_ = 0;
-};
 
 struct Run {
     const Scene& scene;
@@ -124,11 +60,6 @@ void Run::step_until_done(Simulation& simulation, Observer& observer) {
         options.on_frame(model, state);
         next_frame += frame_interval;
     };
-    const double last_start =
-        std::max_element(model.releases.begin(), model.releases.end(), [](const auto& a, const auto& b) {
-            return a.start_time < b.start_time;
-        })->start_time;
-
     RestDetector rest(solver);
     RateMeter rate;
     result.smallest_time_step = solver.end_time;
@@ -142,13 +73,12 @@ void Run::step_until_done(Simulation& simulation, Observer& observer) {
             result.stop_reason = text;
             break;
         }
-        if (state.time >= solver.end_time - 1e-9) {
-            std::snprintf(text, sizeof text, "reached solver.end_time_s = %.4g", solver.end_time);
-            result.stop_reason = text;
+        if (reached_end_time(solver, state)) {
+            result.stop_reason = end_time_reason(solver);
             break;
         }
         if (state.count == 0) {
-            result.stop_reason = "all debris has left the terrain";
+            result.stop_reason = no_debris_reason;
             break;
         }
         const auto fault = simulation.advance();
@@ -165,10 +95,8 @@ void Run::step_until_done(Simulation& simulation, Observer& observer) {
         }
         show_frame();
         report_progress(simulation, observer, seconds_since(start));
-        if (rest.at_rest(state.time, total_momentum(model, state), state.time <= last_start)) {
-            std::snprintf(text, sizeof text, "debris came to rest (momentum below %.3g %% of its peak for %.3g s)",
-                          100 * solver.stop_momentum_fraction, solver.stop_duration);
-            result.stop_reason = text;
+        if (rest.at_rest(state.time, total_momentum(model, state), still_waiting(model, state))) {
+            result.stop_reason = rest.reason();
             break;
         }
     }
@@ -208,9 +136,13 @@ Result<RunResult> run_in_arena(const Scene& scene, const RunOptions& options, in
 
 }  // namespace
 
+int thread_count(const SolverSpec& solver) {
+    if (solver.thread_count > 0) return solver.thread_count;
+    return static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+}
+
 Result<RunResult> run_scene(const Scene& scene, const RunOptions& options) {
-    const int wanted = scene.spec.solver.thread_count;
-    const int threads = wanted > 0 ? wanted : static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+    const int threads = thread_count(scene.spec.solver);
     const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads));
     tbb::task_arena arena(threads);
     return arena.execute([&] { return run_in_arena(scene, options, threads); });

@@ -51,6 +51,9 @@ struct RunOptions {
     const std::atomic<bool>* stop_requested = nullptr;         ///< ends the run as interrupted
 };
 
+/// Threads to compute with: as the scene wants, or all cores.
+[[nodiscard]] int thread_count(const SolverSpec& solver);
+
 /// Seeds the releases and steps until debris rests, end_time, a fault, or stop_requested.
 /// Errors (before anything ran): more particles than the limit, an empty release.
 [[nodiscard]] Result<RunResult> run_scene(const Scene& scene, const RunOptions& options);

@@ -7,6 +7,7 @@
 
 #include "sim/cpu/backend.hpp"
 #include "sim/physics/viscosity.hpp"
+#include "sim/relax.hpp"
 #include "sim/step.hpp"
 
 namespace talus {
@@ -81,62 +82,11 @@ std::vector<Column> fill_columns(const Terrain& terrain, const Release& release,
 /// A column's particles lie in its middle, which can be behind a wall that cuts its edge.
 void put_out_of_buildings(const Model& model, State& state) {
     if (model.solids.empty()) return;
-    const auto touching = static_cast<float>(model.contact_distance());
     for (std::uint32_t i = 0; i < state.count; ++i) {
         LocalPoint p = state.position.at(i);
-        // Once per wall at most in a corner; buildings that touch act as one solid.
-        for (int wall = 0; wall < 4 && model.solids.inside(p); ++wall) {
-            const SolidSample<float> nearest = model.solids.nearest(p);
-            p += nearest.normal * (touching - nearest.distance);
-        }
-        const float ground = model.terrain.sample(p.x, p.y).height;
-        p.z = std::max(p.z, ground);
+        put_out_of_solids(model, p, [](const LocalPoint&) {});
         state.position.set(i, p);
     }
-}
-
-/// Runs rounds of a step without inertia until `done` says so: velocities are forgotten after each.
-template <class Done>
-void creep(const Model& model, State& state, int most_rounds, const Done& done) {
-    cpu::Backend backend(model, state.count);
-    StageTimes times;
-    for (int round = 0; round < most_rounds; ++round) {
-        step(backend, model, state, times);
-        for (auto* component : {&state.velocity.x, &state.velocity.y, &state.velocity.z}) {
-            std::fill(component->begin(), component->end(), 0.0f);
-        }
-        if (done(state)) break;
-    }
-}
-
-/// Brings the seeded lattice to rest: first pushed apart, without gravity, until it is nowhere denser than rest; then
-/// loaded by gravity until it carries its own weight, in steps so short that a slope steeper than its friction angle
-/// hardly moves meanwhile. Without the second part friction would find no pressure to work with in the first steps, and
-/// the mass would start with a jolt.
-void relax(const Model& model, State& state) {
-    constexpr double dense_enough = 0.005;
-    constexpr int most_rounds = 400, loading_rounds = 200;
-    Model still = model;
-    still.viscosity = 0;
-    still.solver.rest_duration = 0;
-    for (ReleaseGroup& release : still.releases) release.start_time = 0;
-
-    still.solver.depenetration_speed = 1e3;  // without inertia nothing can fly apart
-    still.gravity = 0;
-    still.friction_coefficient = still.building_friction_coefficient = still.internal_friction_coefficient = 0;
-    still.solver.internal_friction = InternalFriction::pair;
-    state.time_step = model.solver.largest_time_step;
-    creep(still, state, most_rounds, [](const State& s) { return s.max_compression < dense_enough; });
-
-    still.gravity = model.gravity;
-    still.internal_friction_coefficient = model.internal_friction_coefficient;
-    still.solver.internal_friction = model.solver.internal_friction;
-    still.friction_coefficient = model.friction_coefficient;
-    still.building_friction_coefficient = model.building_friction_coefficient;
-    state.time_step = model.solver.largest_time_step / 4;
-    creep(still, state, loading_rounds, [](const State&) { return false; });
-    state.time = 0;
-    state.step = 0;
 }
 
 }  // namespace
@@ -165,24 +115,28 @@ double choose_particle_spacing(const SolverSpec& solver, double released_volume)
     return std::cbrt(released_volume / solver.target_particle_count);
 }
 
-Model make_model(const MaterialSpec& material, const SolverSpec& solver, Terrain terrain,
-                 std::vector<Building> buildings, double particle_spacing) {
-    Model model;
-    model.particle_spacing = particle_spacing;
-    model.support_radius = solver.support_ratio * particle_spacing;
+void set_material(Model& model, const MaterialSpec& material) {
     model.rest_density = material.rest_density;
     model.friction_coefficient = material.friction_coefficient;
     model.building_friction_coefficient =
         material.building_friction_coefficient.value_or(material.friction_coefficient);
     model.internal_friction_coefficient =
         material.internal_friction_coefficient.value_or(material.friction_coefficient);
-    model.solver = solver;
-    model.kernel = make_kernel(solver.kernel, particle_spacing, model.support_radius);
-    model.boundary = BoundaryTable(model.kernel, particle_spacing);
     model.viscosity = material.kinematic_viscosity
                           ? smoothing_viscosity(*material.kinematic_viscosity, model.kernel.second_moment)
                           : material.viscosity;
     model.kinematic_viscosity = kinematic_viscosity(model.viscosity, model.kernel.second_moment);
+}
+
+Model make_model(const MaterialSpec& material, const SolverSpec& solver, Terrain terrain,
+                 std::vector<Building> buildings, double particle_spacing) {
+    Model model;
+    model.particle_spacing = particle_spacing;
+    model.support_radius = solver.support_ratio * particle_spacing;
+    model.solver = solver;
+    model.kernel = make_kernel(solver.kernel, particle_spacing, model.support_radius);
+    model.boundary = BoundaryTable(model.kernel, particle_spacing);
+    set_material(model, material);
     model.solids = BuildingSolids(terrain, buildings, model.support_radius);
     model.buildings = std::move(buildings);
     model.terrain = std::move(terrain);
@@ -236,6 +190,7 @@ Result<State> seed_releases(Model& model, const std::vector<Release>& releases) 
         model.releases.push_back({releases[r].name, releases[r].start_time, first, next});
     }
     state.seeded = state.count = next;
+    if (state.count == 0) return state;
     put_out_of_buildings(model, state);
     relax(model, state);
     for (std::uint32_t i = 0; i < state.count; ++i) {

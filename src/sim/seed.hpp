@@ -13,6 +13,9 @@ namespace talus {
 /// The scene's spacing, or the one that makes `target_particle_count` particles of the volume, m.
 [[nodiscard]] double choose_particle_spacing(const SolverSpec& solver, double released_volume);
 
+/// What the model takes from the scene's material section. The model has its kernel.
+void set_material(Model& model, const MaterialSpec& material);
+
 /// Everything constant, from the scene's material and solver sections.
 [[nodiscard]] Model make_model(const MaterialSpec& material, const SolverSpec& solver, Terrain terrain,
                                std::vector<Building> buildings, double particle_spacing);

@@ -13,8 +13,15 @@
 namespace talus {
 
 Simulation::Simulation(Model model, State state)
-    : model_(std::move(model)), state_(std::move(state)), backend_(model_, state_.count) {
-    highest_energy_head_ = std::numeric_limits<double>::lowest();
+    : model_(std::move(model)),
+      state_(std::move(state)),
+      capacity_(state_.count),
+      highest_energy_head_(std::numeric_limits<double>::lowest()) {
+    backend_.emplace(model_, capacity_);
+    take_energy_and_speed();
+}
+
+void Simulation::take_energy_and_speed() {
     for (std::uint32_t i = 0; i < state_.count; ++i) {
         const LocalPoint v = state_.velocity.at(i);
         highest_energy_head_ = std::max(highest_energy_head_, state_.position.z[i] + dot(v, v) / (2 * model_.gravity));
@@ -25,8 +32,20 @@ Simulation::Simulation(Model model, State state)
 
 std::optional<std::string> Simulation::advance() {
     state_.time_step = cpu::choose_time_step(model_, state_);
-    step(backend_, model_, state_, times_);
+    step(*backend_, model_, state_, times_);
     return find_fault(model_, state_, highest_energy_head_);
+}
+
+void Simulation::change(const std::function<void(Model&, State&)>& edit) {
+    edit(model_, state_);
+    state_.building_contacts.clear();
+    if (state_.count > capacity_) {
+        // The backend changes its arrays with those of the state: both must have the same room.
+        capacity_ = state_.count;
+        state_.resize(capacity_);
+        backend_.emplace(model_, capacity_);
+    }
+    take_energy_and_speed();
 }
 
 std::uint64_t hash_state(const State& state) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <string>
 
@@ -19,17 +20,25 @@ class Simulation {
     /// Takes one step. Returns why it cannot be trusted, if it cannot; the state is then as that step left it.
     std::optional<std::string> advance();
 
+    /// Lets `edit` change model and state between two steps. What it must leave as it is: terrain, particle spacing,
+    /// kernel, time. The contacts of the last step are forgotten.
+    void change(const std::function<void(Model&, State&)>& edit);
+
     [[nodiscard]] const Model& model() const { return model_; }
     [[nodiscard]] const State& state() const { return state_; }
     [[nodiscard]] StageTimes& stage_times() { return times_; }
-    [[nodiscard]] const cpu::Backend& backend() const { return backend_; }
+    [[nodiscard]] const StageTimes& stage_times() const { return times_; }
+    [[nodiscard]] const cpu::Backend& backend() const { return *backend_; }
 
   private:
+    void take_energy_and_speed();
+
     Model model_;
     State state_;
-    cpu::Backend backend_;
+    std::uint32_t capacity_ = 0;           // particles that the backend has room for
+    std::optional<cpu::Backend> backend_;  // anew when there are more
     StageTimes times_;
-    double highest_energy_head_ = 0;
+    double highest_energy_head_;
 };
 
 /// Hash of time, ids, positions and velocities in id order: equal for equal results, whatever the threads.

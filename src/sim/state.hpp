@@ -63,8 +63,9 @@ struct State {
 
     std::uint32_t count = 0;        ///< particles present, including those of releases that have not started
     std::uint32_t awake = 0;        ///< the first of them, which a step works on; the others are at rest
-    std::uint32_t seeded = 0;       ///< particles at the start
-    std::uint32_t left = 0;         ///< particles that left the terrain; seeded = count + left, always
+    std::uint32_t seeded = 0;       ///< particles that were ever there
+    std::uint32_t left = 0;         ///< particles that left the terrain; seeded = count + left + taken, always
+    std::uint32_t taken = 0;        ///< particles that were taken away between two steps (take_away())
     VectorArray position;           ///< local, m
     VectorArray velocity;           ///< m/s
     std::vector<float> multiplier;  ///< lambda of the density constraint in the last step, <= 0, m2 (scales with dt^2)
@@ -90,5 +91,23 @@ struct State {
     double largest_speed = 0;                          ///< m/s
     std::vector<BuildingContact> building_contacts;
 };
+
+/// Calls f(array of a, the same of b) for everything that a state holds per particle.
+template <class F>
+void for_each_array(State& a, State& b, const F& f) {
+    for (auto array : {&VectorArray::x, &VectorArray::y, &VectorArray::z}) {
+        f(a.position.*array, b.position.*array);
+        f(a.velocity.*array, b.velocity.*array);
+    }
+    for (auto array :
+         {&DeviatorArray::xx, &DeviatorArray::yy, &DeviatorArray::xy, &DeviatorArray::xz, &DeviatorArray::yz}) {
+        f(a.stress.*array, b.stress.*array);
+    }
+    f(a.multiplier, b.multiplier);
+    f(a.id, b.id);
+    f(a.held, b.held);
+    f(a.calm_time, b.calm_time);
+    f(a.resting, b.resting);
+}
 
 }  // namespace talus

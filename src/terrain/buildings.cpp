@@ -96,9 +96,13 @@ BuildingSolids::BuildingSolids(const Terrain& terrain, const std::vector<Buildin
     : range_(range) {
     // A solid per part of a footprint: parts may touch or overlap like different buildings.
     for (std::size_t b = 0; b < buildings.size(); ++b) {
-        const double roof = buildings[b].roof_elevation - terrain.frame().origin.z;
-        if (!std::isfinite(roof)) continue;
-        for (const Polygon& part : buildings[b].footprint) {
+        const Building& building = buildings[b];
+        for (std::size_t p = 0; p < building.footprint.size(); ++p) {
+            const Polygon& part = building.footprint[p];
+            const double elevation =
+                building.part_roof_elevations.empty() ? building.roof_elevation : building.part_roof_elevations[p];
+            const double roof = elevation - terrain.frame().origin.z;
+            if (!std::isfinite(roof)) continue;
             const std::size_t first = edges_.size();
             append_edges(part.outer, terrain.frame(), false, edges_);
             if (edges_.size() == first) continue;

@@ -37,24 +37,6 @@ Bundles at_rest(const State& state) {
     return {bundles_of(state.awake), bundles_of(state.count)};
 }
 
-/// Calls f(array of a, the same of b) for everything that a state holds per particle.
-template <class F>
-void for_each_array(State& a, State& b, const F& f) {
-    for (auto array : {&VectorArray::x, &VectorArray::y, &VectorArray::z}) {
-        f(a.position.*array, b.position.*array);
-        f(a.velocity.*array, b.velocity.*array);
-    }
-    for (auto array :
-         {&DeviatorArray::xx, &DeviatorArray::yy, &DeviatorArray::xy, &DeviatorArray::xz, &DeviatorArray::yz}) {
-        f(a.stress.*array, b.stress.*array);
-    }
-    f(a.multiplier, b.multiplier);
-    f(a.id, b.id);
-    f(a.held, b.held);
-    f(a.calm_time, b.calm_time);
-    f(a.resting, b.resting);
-}
-
 }  // namespace
 
 Backend::Backend(const Model& model, std::size_t capacity)

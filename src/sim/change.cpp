@@ -1,0 +1,100 @@
+#include "sim/change.hpp"
+
+#include <algorithm>
+#include <vector>
+
+#include "sim/relax.hpp"
+
+namespace talus {
+
+void append_particles(State& state, const State& more, std::uint32_t first_id) {
+    // Multipliers and stresses are pressures times the square of the step that they belong to.
+    if (state.count == 0 || !(state.previous_time_step > 0)) state.previous_time_step = more.previous_time_step;
+    const double ratio = more.previous_time_step > 0 ? state.previous_time_step / more.previous_time_step : 0;
+    const auto scale = static_cast<float>(ratio * ratio);
+    const std::uint32_t count = state.count + more.count;
+    // Never less room than the arrays have: the backend relies on it.
+    state.resize(std::max<std::size_t>(count, state.id.size() - std::min(state.id.size(), array_padding)));
+    for (std::uint32_t k = 0; k < more.count; ++k) {
+        const std::uint32_t i = state.count + k;
+        const Deviator<float> s = more.stress.at(k);
+        state.position.set(i, more.position.at(k));
+        state.velocity.set(i, more.velocity.at(k));
+        state.stress.set(i, {s.xx * scale, s.yy * scale, s.xy * scale, s.xz * scale, s.yz * scale});
+        state.multiplier[i] = more.multiplier[k] * scale;
+        state.id[i] = more.id[k] + first_id;
+        state.held[i] = more.held[k];
+        state.calm_time[i] = 0;
+        state.resting[i] = 0;
+    }
+    state.count = count;
+    state.seeded += more.seeded;
+    state.left += more.left;
+}
+
+void take_away(State& state, std::uint32_t first, std::uint32_t last) {
+    std::uint32_t kept = 0;
+    for (std::uint32_t i = 0; i < state.count; ++i) {
+        if (state.id[i] >= first && state.id[i] < last) continue;
+        for_each_array(state, state, [&](auto& array, auto&) { array[kept] = array[i]; });
+        ++kept;
+    }
+    state.taken += state.count - kept;
+    state.count = kept;
+}
+
+void wake(State& state, const Extent& local) {
+    for (std::uint32_t i = 0; i < state.count; ++i) {
+        if (!local.contains({state.position.x[i], state.position.y[i]})) continue;
+        state.resting[i] = 0;
+        state.calm_time[i] = 0;
+    }
+}
+
+void clear_solids(const Model& model, State& state, const Extent& local) {
+    std::vector<std::uint32_t> moved;
+    Extent around;
+    for (std::uint32_t i = 0; i < state.count; ++i) {
+        LocalPoint p = state.position.at(i), v = state.velocity.at(i);
+        if (state.held[i] != 0 || !local.contains({p.x, p.y}) || !model.solids.inside(p)) continue;
+        put_out_of_solids(model, p, [&](const LocalPoint& normal) {
+            const float into = dot(v, normal);
+            if (into < 0) v -= normal * into;
+        });
+        const PlanPoint before{state.position.x[i], state.position.y[i]};
+        if (moved.empty()) around = {before.x, before.y, before.x, before.y};
+        around.include(before);
+        around.include({p.x, p.y});
+        moved.push_back(i);
+        state.position.set(i, p);
+        state.velocity.set(i, v);
+        state.multiplier[i] = 0;
+        state.stress.set(i, {});
+    }
+    if (moved.empty()) return;
+
+    // What lies around makes room; what lies around that stands still.
+    const Extent yields = around.grown(3 * model.support_radius), stands = yields.grown(model.support_radius);
+    State part;
+    std::vector<std::uint32_t> source;
+    for (std::uint32_t i = 0; i < state.count; ++i) {
+        if (stands.contains({state.position.x[i], state.position.y[i]})) source.push_back(i);
+    }
+    part.resize(source.size());
+    part.count = part.seeded = static_cast<std::uint32_t>(source.size());
+    for (std::uint32_t k = 0; k < part.count; ++k) {
+        const std::uint32_t i = source[k];
+        part.position.set(k, state.position.at(i));
+        part.id[k] = k;
+        part.held[k] = state.held[i] != 0 || !yields.contains({state.position.x[i], state.position.y[i]});
+    }
+    push_apart(model, part);
+    for (std::uint32_t k = 0; k < part.count; ++k) {
+        if (part.held[k] != 0) continue;
+        const std::uint32_t i = source[part.id[k]];
+        state.position.set(i, part.position.at(k));
+        state.resting[i] = 0;
+    }
+}
+
+}  // namespace talus

@@ -1,0 +1,26 @@
+#pragma once
+
+#include <cstdint>
+
+#include "core/geometry.hpp"
+#include "sim/model.hpp"
+#include "sim/state.hpp"
+
+/// What can be done to a state between two steps, within Simulation::change().
+namespace talus {
+
+/// Adds the particles of `more` (see seed_releases), their ids raised by `first_id`, and counts them as seeded.
+void append_particles(State& state, const State& more, std::uint32_t first_id);
+
+/// Takes the particles with ids [first, last) away; those that have left the terrain stay counted as left.
+void take_away(State& state, std::uint32_t first, std::uint32_t last);
+
+/// Wakes debris at rest that lies in a rectangle of local plan coordinates: it moves if anything moves it.
+void wake(State& state, const Extent& local);
+
+/// Moves debris out of solids that came to stand where it lies, within a rectangle of local plan coordinates. Nothing
+/// gains speed: velocity into a wall is lost, and what then lies too close is pushed apart without inertia. Held
+/// particles stay.
+void clear_solids(const Model& model, State& state, const Extent& local);
+
+}  // namespace talus

@@ -1,0 +1,67 @@
+#include "sim/relax.hpp"
+
+#include <limits>
+
+#include "sim/cpu/backend.hpp"
+#include "sim/step.hpp"
+
+namespace talus {
+namespace {
+
+/// Runs rounds of a step without inertia until `done` says so: velocities are forgotten after each.
+template <class Done>
+void creep(const Model& model, State& state, int most_rounds, const Done& done) {
+    cpu::Backend backend(model, state.count);
+    StageTimes times;
+    for (int round = 0; round < most_rounds; ++round) {
+        step(backend, model, state, times);
+        for (auto* component : {&state.velocity.x, &state.velocity.y, &state.velocity.z}) {
+            std::fill(component->begin(), component->end(), 0.0f);
+        }
+        if (done(state)) break;
+    }
+}
+
+/// The model without anything that drives or holds debris back.
+Model without_forces(const Model& model) {
+    Model still = model;
+    still.viscosity = 0;
+    still.solver.rest_duration = 0;
+    still.solver.depenetration_speed = 1e3;  // without inertia nothing can fly apart
+    still.gravity = 0;
+    still.friction_coefficient = still.building_friction_coefficient = still.internal_friction_coefficient = 0;
+    still.solver.internal_friction = InternalFriction::pair;
+    return still;
+}
+
+}  // namespace
+
+void relax(const Model& model, State& state) {
+    constexpr double dense_enough = 0.005;
+    constexpr int most_rounds = 400, loading_rounds = 200;
+    Model still = without_forces(model);
+    for (ReleaseGroup& release : still.releases) release.start_time = 0;
+    state.time_step = model.solver.largest_time_step;
+    creep(still, state, most_rounds, [](const State& s) { return s.max_compression < dense_enough; });
+
+    still.gravity = model.gravity;
+    still.internal_friction_coefficient = model.internal_friction_coefficient;
+    still.solver.internal_friction = model.solver.internal_friction;
+    still.friction_coefficient = model.friction_coefficient;
+    still.building_friction_coefficient = model.building_friction_coefficient;
+    state.time_step = model.solver.largest_time_step / 4;
+    creep(still, state, loading_rounds, [](const State&) { return false; });
+    state.time = 0;
+    state.step = 0;
+}
+
+void push_apart(const Model& model, State& state) {
+    constexpr double dense_enough = 0.02;
+    constexpr int most_rounds = 100;
+    Model still = without_forces(model);
+    still.releases = {{"", std::numeric_limits<double>::infinity(), 0, std::numeric_limits<std::uint32_t>::max()}};
+    state.time_step = model.solver.largest_time_step;
+    creep(still, state, most_rounds, [](const State& s) { return s.max_compression < dense_enough; });
+}
+
+}  // namespace talus

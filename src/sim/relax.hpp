@@ -1,0 +1,35 @@
+#pragma once
+
+#include <algorithm>
+
+#include "sim/model.hpp"
+#include "sim/state.hpp"
+
+/// Particles that were put where they are, and not brought there by a step, are moved until they fit; none gains speed.
+namespace talus {
+
+/// Moves a local position out of the solids that it lies in, to where it touches their surface, and up to the ground.
+/// `on_wall` is told the normal of every surface that it is put out of.
+template <class OnWall>
+void put_out_of_solids(const Model& model, LocalPoint& p, const OnWall& on_wall) {
+    const auto touching = static_cast<float>(model.contact_distance());
+    // Once per wall at most in a corner; buildings that touch act as one solid.
+    for (int wall = 0; wall < 4 && model.solids.inside(p); ++wall) {
+        const SolidSample<float> nearest = model.solids.nearest(p);
+        p += nearest.normal * (touching - nearest.distance);
+        on_wall(nearest.normal);
+    }
+    p.z = std::max(p.z, model.terrain.sample(p.x, p.y).height);
+}
+
+/// Brings the seeded lattice to rest: first pushed apart, without gravity, until it is nowhere denser than rest; then
+/// loaded by gravity until it carries its own weight, in steps so short that a slope steeper than its friction angle
+/// hardly moves meanwhile. Without the second part friction would find no pressure to work with in the first steps, and
+/// the mass would start with a jolt.
+void relax(const Model& model, State& state);
+
+/// Pushes what is denser than at rest apart, without gravity, friction or inertia, until it hardly is any more; held
+/// particles stay where they are. Positions change, time and velocities are lost.
+void push_apart(const Model& model, State& state);
+
+}  // namespace talus

@@ -1,0 +1,152 @@
+#include "twin/barrier.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+namespace talus::twin {
+namespace {
+
+constexpr double usual_part = 2;         ///< m of line
+constexpr std::size_t most_parts = 500;  ///< a longer line gets longer parts
+constexpr double sharpest_turn = 150;    ///< degrees; a mitre is then four times as long as the wall is thick
+
+PlanPoint operator-(const PlanPoint& a, const PlanPoint& b) {
+    return {a.x - b.x, a.y - b.y};
+}
+double cross(const PlanPoint& a, const PlanPoint& b) {
+    return a.x * b.y - a.y * b.x;
+}
+double dot(const PlanPoint& a, const PlanPoint& b) {
+    return a.x * b.x + a.y * b.y;
+}
+PlanPoint between(const PlanPoint& a, const PlanPoint& b, double share) {
+    return {a.x + share * (b.x - a.x), a.y + share * (b.y - a.y)};
+}
+double distance(const PlanPoint& a, const PlanPoint& b) {
+    return std::hypot(b.x - a.x, b.y - a.y);
+}
+
+/// Half the wall across the line at each of its points, to the left: along the mitre where it bends.
+Result<std::vector<PlanPoint>> find_mitres(const std::vector<PlanPoint>& line, double thickness) {
+    std::vector<PlanPoint> normals;
+    for (std::size_t k = 0; k + 1 < line.size(); ++k) {
+        const double length = distance(line[k], line[k + 1]);
+        normals.push_back({-(line[k + 1].y - line[k].y) / length, (line[k + 1].x - line[k].x) / length});
+    }
+    std::vector<PlanPoint> mitres;
+    for (std::size_t k = 0; k < line.size(); ++k) {
+        const PlanPoint before = normals[k == 0 ? 0 : k - 1], after = normals[std::min(k, normals.size() - 1)];
+        const double turn = std::atan2(std::abs(cross(before, after)), dot(before, after)) * 180 / M_PI;
+        if (turn > sharpest_turn) {
+            return Error{fmt::format("line: turns by {:.0f} degrees at point {}; it must be at most {:.0f}", turn,
+                                     k + 1, sharpest_turn)};
+        }
+        const PlanPoint sum{before.x + after.x, before.y + after.y};
+        const double scale = thickness / 2 / (1 + dot(before, after));
+        mitres.push_back({sum.x * scale, sum.y * scale});
+    }
+    return mitres;
+}
+
+Status check_line(const Terrain& terrain, const std::vector<PlanPoint>& line) {
+    for (std::size_t k = 0; k < line.size(); ++k) {
+        if (std::isnan(terrain.elevation_at(line[k]))) {
+            return Error{
+                fmt::format("line: point {} at ({:.1f}, {:.1f}) is not on known ground", k + 1, line[k].x, line[k].y)};
+        }
+        if (k > 0 && distance(line[k - 1], line[k]) < 0.01) {
+            return Error{fmt::format("line: points {} and {} are the same", k, k + 1)};
+        }
+    }
+    for (std::size_t k = 0; k + 1 < line.size(); ++k) {
+        for (std::size_t other = k + 2; other + 1 < line.size(); ++other) {
+            if (segments_meet(line[k], line[k + 1], line[other], line[other + 1])) {
+                return Error{fmt::format("line: crosses itself between points {} and {}", other + 1, other + 2)};
+            }
+        }
+    }
+    return {};
+}
+
+}  // namespace
+
+Result<Building> make_barrier(const Terrain& terrain, const std::string& name, const std::vector<PlanPoint>& line,
+                              double height, double thickness) {
+    if (Status s = check_line(terrain, line); !s) return s.error();
+    const Result<std::vector<PlanPoint>> mitres = find_mitres(line, thickness);
+    if (!mitres) return mitres.error();
+    Building barrier;
+    barrier.name = name;
+    barrier.height = height;
+    const double part_length = std::max(usual_part, length_of(line) / most_parts);
+    double roofs = 0;
+    for (std::size_t k = 0; k + 1 < line.size(); ++k) {
+        const PlanPoint &a = line[k], &b = line[k + 1], &ma = (*mitres)[k], &mb = (*mitres)[k + 1];
+        const PlanPoint left_a{a.x + ma.x, a.y + ma.y}, left_b{b.x + mb.x, b.y + mb.y};
+        const PlanPoint right_a{a.x - ma.x, a.y - ma.y}, right_b{b.x - mb.x, b.y - mb.y};
+        if (dot(left_b - left_a, b - a) <= 0 || dot(right_b - right_a, b - a) <= 0) {
+            return Error{
+                fmt::format("thickness_m = {:.6g}: too thick for the bends at points {} and {}, {:.3g} m apart",
+                            thickness, k + 1, k + 2, distance(a, b))};
+        }
+        const int parts = std::max(1, static_cast<int>(std::ceil(distance(a, b) / part_length)));
+        for (int p = 0; p < parts; ++p) {
+            const double from = static_cast<double>(p) / parts, to = static_cast<double>(p + 1) / parts;
+            double ground = 0;
+            for (const double share : {from, (from + to) / 2, to}) {
+                ground += terrain.elevation_at(between(a, b, share)) / 3;
+            }
+            if (std::isnan(ground)) {
+                const PlanPoint middle = between(a, b, (from + to) / 2);
+                return Error{fmt::format("line: leaves the known ground at ({:.1f}, {:.1f}), between points {} and {}",
+                                         middle.x, middle.y, k + 1, k + 2)};
+            }
+            barrier.footprint.push_back({{between(right_a, right_b, from), between(right_a, right_b, to),
+                                          between(left_a, left_b, to), between(left_a, left_b, from)},
+                                         {}});
+            barrier.part_roof_elevations.push_back(ground + height);
+            roofs += ground + height;
+        }
+    }
+    barrier.roof_elevation = roofs / static_cast<double>(barrier.footprint.size());
+    return barrier;
+}
+
+double length_of(const std::vector<PlanPoint>& line) {
+    double length = 0;
+    for (std::size_t k = 0; k + 1 < line.size(); ++k) length += distance(line[k], line[k + 1]);
+    return length;
+}
+
+bool segments_meet(const PlanPoint& a, const PlanPoint& b, const PlanPoint& c, const PlanPoint& d) {
+    const auto side = [](const PlanPoint& p, const PlanPoint& q, const PlanPoint& r) {
+        const double value = cross(q - p, r - p);
+        return value > 0 ? 1 : value < 0 ? -1 : 0;
+    };
+    const auto in_box = [](const PlanPoint& p, const PlanPoint& q, const PlanPoint& r) {
+        return r.x >= std::min(p.x, q.x) && r.x <= std::max(p.x, q.x) && r.y >= std::min(p.y, q.y) &&
+               r.y <= std::max(p.y, q.y);
+    };
+    const int c_side = side(a, b, c), d_side = side(a, b, d), a_side = side(c, d, a), b_side = side(c, d, b);
+    if (c_side * d_side < 0 && a_side * b_side < 0) return true;
+    return (c_side == 0 && in_box(a, b, c)) || (d_side == 0 && in_box(a, b, d)) || (a_side == 0 && in_box(c, d, a)) ||
+           (b_side == 0 && in_box(c, d, b));
+}
+
+bool meets_itself(const Ring& ring) {
+    const std::size_t n = ring.size();
+    for (std::size_t i = 0; i < n; ++i) {
+        const PlanPoint &a = ring[i], &b = ring[(i + 1) % n], &next = ring[(i + 2) % n];
+        if (distance(a, b) == 0) return true;
+        if (cross(b - a, next - b) == 0 && dot(b - a, next - b) < 0) return true;  // back on itself
+        for (std::size_t k = i + 2; k < n; ++k) {
+            if (i == 0 && k == n - 1) continue;
+            if (segments_meet(a, b, ring[k], ring[(k + 1) % n])) return true;
+        }
+    }
+    return false;
+}
+
+}  // namespace talus::twin

@@ -1,0 +1,43 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "observe/map_accumulator.hpp"
+#include "sim/state.hpp"
+
+namespace talus::twin {
+
+/// Where the debris is at one moment, in whole numbers: what docs/protocol.md calls a frame, before compression.
+struct Frame {
+    double time = 0;  ///< s
+    std::uint64_t step = 0;
+    unsigned flags = 0;
+    std::uint32_t slots = 0, stride = 1;
+    std::array<float, 3> zero{}, unit{};    ///< local m
+    float speed_unit = 0;                   ///< m/s
+    std::array<std::uint32_t, 4> window{};  ///< first column, first row, columns, rows
+    float depth_unit = 0;                   ///< m
+    float depth_speed_unit = 0;             ///< m/s
+    double rest_density = 0;                ///< kg/m3, at that time; stays here
+    std::vector<std::uint8_t> body;         ///< byte planes
+
+    [[nodiscard]] std::size_t bytes() const { return sizeof(Frame) + body.size(); }
+};
+
+/// `slots`: more than any id. Every `stride`-th id is in the frame.
+[[nodiscard]] Frame make_frame(const State& state, const MapAccumulator::Present& debris, std::uint32_t slots,
+                               unsigned stride, unsigned flags);
+
+/// As it goes over the wire.
+[[nodiscard]] std::string encode(const Frame& frame, int scenario_index, unsigned further_flags = 0);
+
+/// Depth, m, and depth-averaged speed, m/s, in a cell of the map grid; 0 outside the window.
+struct DebrisAt {
+    double depth = 0, speed = 0;
+};
+[[nodiscard]] DebrisAt debris_at(const Frame& frame, std::uint32_t column, std::uint32_t row);
+
+}  // namespace talus::twin

@@ -1,0 +1,179 @@
+#include "twin/journal.hpp"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "core/hash.hpp"
+#include "twin/json_keys.hpp"
+#include "twin/scenario.hpp"
+
+namespace talus::twin {
+namespace {
+
+using nlohmann::json;
+
+constexpr int version = 1;
+
+/// Reads keys of known kinds; the first that does not fit stays as the error.
+class JournalReader {
+  public:
+    const json& object(const json& parent, const char* key) {
+        return take(parent, key, "an object", [](const json& v) { return v.is_object(); });
+    }
+    const json& list(const json& parent, const char* key) {
+        return take(parent, key, "a list", [](const json& v) { return v.is_array(); });
+    }
+    std::string text(const json& parent, const char* key) {
+        const json& v = take(parent, key, "a text", [](const json& value) { return value.is_string(); });
+        return v.is_string() ? v.get<std::string>() : "";
+    }
+    std::uint64_t whole(const json& parent, const char* key) {
+        const json& v = take(parent, key, "a whole number, 0 or more",
+                             [](const json& value) { return value.is_number_unsigned(); });
+        return v.is_number_unsigned() ? v.get<std::uint64_t>() : 0;
+    }
+    double number(const json& parent, const char* key) {
+        const json& v = take(parent, key, "a number", [](const json& value) { return value.is_number(); });
+        return v.is_number() ? v.get<double>() : 0;
+    }
+    [[nodiscard]] const Status& status() const { return status_; }
+    void refuse(std::string message) {
+        if (status_) status_ = Error{std::move(message)};
+    }
+
+  private:
+    template <class Fits>
+    const json& take(const json& parent, const char* key, const char* kind, const Fits& fits) {
+        static const json nothing;
+        const auto found = parent.is_object() ? parent.find(key) : parent.end();
+        if (!parent.is_object() || found == parent.end()) {
+            refuse(fmt::format("{}: missing; it must be {}", key, kind));
+            return nothing;
+        }
+        if (!fits(*found)) {
+            refuse(fmt::format("{} = {}: must be {}", key, shown(*found), kind));
+            return nothing;
+        }
+        return *found;
+    }
+
+    Status status_;
+};
+
+}  // namespace
+
+json write_journal(const Journal& journal) {
+    json inputs = json::array(), actions = json::array();
+    for (const InputFile& input : journal.inputs) {
+        inputs.push_back({{"role", input.role}, {"path", input.path}, {"fnv1a_64", input.hash}});
+    }
+    for (const JournalEntry& entry : journal.entries) {
+        json written = {{"step", entry.step}, {"by", entry.by}, {"action", entry.action}};
+        if (!entry.setup.is_null()) written["setup"] = entry.setup;
+        actions.push_back(std::move(written));
+    }
+    return {
+        {"talus_journal", version},
+        {"scene", {{"file", journal.scene_file}, {"overrides", journal.overrides}, {"inputs", inputs}}},
+        {"first_setup", journal.first_setup},
+        {"next",
+         {{"release", journal.next.release}, {"barrier", journal.next.barrier}, {"building", journal.next.building}}},
+        {"actions", actions},
+        {"last",
+         {{"step", journal.steps},
+          {"time_s", journal.time},
+          {"hash", journal.hash},
+          {"instruction_set", journal.instruction_set}}}};
+}
+
+Result<Journal> read_journal(const std::string& text) {
+    const json file = json::parse(text, nullptr, false);
+    if (file.is_discarded()) return Error{"is not JSON"};
+    JournalReader read;
+    if (const std::uint64_t found = read.whole(file, "talus_journal"); read.status() && found != version) {
+        return Error{fmt::format("talus_journal = {}: this program reads version {}", found, version)};
+    }
+    Journal journal;
+    const json& scene = read.object(file, "scene");
+    journal.scene_file = read.text(scene, "file");
+    for (const json& entry : read.list(scene, "overrides")) {
+        if (entry.is_string()) {
+            journal.overrides.push_back(entry);
+        } else {
+            read.refuse(fmt::format("overrides = {}: must be texts", shown(entry)));
+        }
+    }
+    for (const json& input : read.list(scene, "inputs")) {
+        journal.inputs.push_back({read.text(input, "role"), read.text(input, "path"), 0, read.text(input, "fnv1a_64")});
+    }
+    journal.first_setup = read.object(file, "first_setup");
+    const json& next = read.object(file, "next");
+    journal.next = {static_cast<int>(read.whole(next, "release")), static_cast<int>(read.whole(next, "barrier")),
+                    static_cast<int>(read.whole(next, "building"))};
+    std::uint64_t before = 0;
+    for (const json& entry : read.list(file, "actions")) {
+        JournalEntry action{read.whole(entry, "step"), read.text(entry, "by"), read.object(entry, "action"), {}};
+        if (entry.is_object() && entry.contains("setup")) action.setup = read.object(entry, "setup");
+        if (action.step < before) {
+            read.refuse(fmt::format("step = {}: comes after step {}; actions must be in order", action.step, before));
+        }
+        before = action.step;
+        journal.entries.push_back(std::move(action));
+    }
+    const json& last = read.object(file, "last");
+    journal.steps = read.whole(last, "step");
+    journal.time = read.number(last, "time_s");
+    journal.hash = read.text(last, "hash");
+    journal.instruction_set = read.text(last, "instruction_set");
+    if (before > journal.steps) {
+        read.refuse(fmt::format("last.step = {}: an action comes after it, at step {}", journal.steps, before));
+    }
+    if (!read.status()) return read.status().error();
+    return journal;
+}
+
+std::vector<std::string> changed_inputs(const Journal& journal, const Scene& scene) {
+    std::vector<std::string> sentences;
+    for (const InputFile& then : journal.inputs) {
+        const auto now = std::find_if(scene.inputs.begin(), scene.inputs.end(),
+                                      [&](const InputFile& input) { return input.role == then.role; });
+        if (now == scene.inputs.end()) {
+            sentences.push_back(
+                fmt::format("the session read {} ({}); the scene does not any more", then.role, then.path));
+        } else if (now->hash != then.hash) {
+            sentences.push_back(fmt::format("{} has changed since the session: {} has hash {} and had {}", then.role,
+                                            now->path, now->hash, then.hash));
+        }
+    }
+    return sentences;
+}
+
+Result<Replayed> replay(const Journal& journal, std::shared_ptr<const Scene> scene,
+                        const std::function<bool(std::uint64_t)>& on_step) {
+    // Nobody asks for frames of a replay.
+    auto opened = Scenario::open_at(journal, std::move(scene), {journal.overrides, 1e9, 0});
+    if (!opened) return opened.error();
+    Scenario& scenario = **opened;
+    bool stopped = false;
+    const auto go_to = [&](std::uint64_t step) -> Status {
+        while (scenario.step() < step && !stopped) {
+            if (scenario.phase() != Phase::ready) {
+                return Error{
+                    fmt::format("step = {}: the run ended at step {} ({})", step, scenario.step(), scenario.message())};
+            }
+            scenario.advance();
+            stopped = on_step && !on_step(scenario.step());
+        }
+        return {};
+    };
+    for (std::size_t k = 0; k < journal.entries.size() && !stopped; ++k) {
+        const JournalEntry& entry = journal.entries[k];
+        if (Status s = go_to(entry.step); !s) return Error{fmt::format("actions[{}]: {}", k, s.error().message)};
+        if (Status s = scenario.follow(entry); !s) return Error{fmt::format("actions[{}]: {}", k, s.error().message)};
+    }
+    if (Status s = go_to(journal.steps); !s) return Error{"last." + s.error().message};
+    return Replayed{scenario.step(), scenario.time(), to_hex(scenario.hash())};
+}
+
+}  // namespace talus::twin

@@ -1,0 +1,59 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+#include "core/result.hpp"
+#include "scene/scene.hpp"
+#include "twin/setup.hpp"
+
+namespace talus::twin {
+
+/// An action and when it came.
+struct JournalEntry {
+    std::uint64_t step = 0;  ///< steps taken before it
+    std::string by;
+    nlohmann::json action;
+    nlohmann::json setup;  ///< that undo and redo came back to (write_setup); null for other actions
+};
+
+/// Everything that a session's result follows from, and the result.
+struct Journal {
+    std::string scene_file;  ///< absolute, or "built-in:sham_tseng/scene.toml"
+    std::vector<std::string> overrides;
+    std::vector<InputFile> inputs;
+    nlohmann::json first_setup;  ///< write_setup
+    NextNumbers next;
+    std::vector<JournalEntry> entries;
+    std::uint64_t steps = 0;
+    double time = 0;   ///< s
+    std::string hash;  ///< of the state after the last step, hexadecimal
+    std::string instruction_set;
+};
+
+[[nodiscard]] nlohmann::json write_journal(const Journal& journal);
+
+/// Errors name key and value.
+[[nodiscard]] Result<Journal> read_journal(const std::string& text);
+
+/// A sentence for every input of the scene that is not as it was in the session.
+[[nodiscard]] std::vector<std::string> changed_inputs(const Journal& journal, const Scene& scene);
+
+/// What a journal led to when it was run again.
+struct Replayed {
+    std::uint64_t steps = 0;
+    double time = 0;   ///< s
+    std::string hash;  ///< as in the journal
+};
+
+/// Runs a journal on its scene. `on_step` is told the step after each; false stops. Errors: the setup does not fit the
+/// scene, an action cannot be done, the run ends before the journal does.
+[[nodiscard]] Result<Replayed> replay(const Journal& journal, std::shared_ptr<const Scene> scene,
+                                      const std::function<bool(std::uint64_t step)>& on_step = {});
+
+}  // namespace talus::twin

@@ -1,0 +1,166 @@
+#include "twin/live_run.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <utility>
+
+#include "sim/seed.hpp"
+
+namespace talus::twin {
+
+Result<std::unique_ptr<LiveRun>> LiveRun::start(const Scene& scene, const Setup& setup, double spacing,
+                                                const ScenarioOptions& options) {
+    const int threads = thread_count(scene.spec.solver);
+    std::vector<Building> buildings;
+    for (const BuildingSetup& building : setup.buildings) buildings.push_back(*building.body);
+    for (const BarrierSetup& barrier : setup.barriers) buildings.push_back(*barrier.body);
+    std::vector<Release> releases;
+    for (const ReleaseSetup& release : setup.releases) releases.push_back(*release.body);
+    tbb::task_arena arena(threads);
+    return arena.execute([&]() -> Result<std::unique_ptr<LiveRun>> {
+        Model model = make_model(setup.material, scene.spec.solver, scene.terrain, std::move(buildings), spacing);
+        Result<State> state = seed_releases(model, releases);
+        if (!state) return state.error();
+        return std::unique_ptr<LiveRun>(
+            new LiveRun(scene, setup, options, std::move(model), *std::move(state), threads));
+    });
+}
+
+LiveRun::LiveRun(const Scene& scene, Setup setup, const ScenarioOptions& options, Model model, State state, int threads)
+    : scene_(scene),
+      setup_(std::move(setup)),
+      thread_limit_(std::make_unique<tbb::global_control>(tbb::global_control::max_allowed_parallelism,
+                                                          static_cast<std::size_t>(threads))),
+      arena_(threads),
+      threads_(threads),
+      simulation_(std::move(model), std::move(state)),
+      recording_(options.frame_interval, options.recording_bytes),
+      rest_(scene.spec.solver),
+      smallest_time_step_(scene.spec.solver.end_time) {
+    for (const ReleaseSetup& release : setup_.releases) groups_.push_back({release.id, false});
+    for (const BuildingSetup& building : setup_.buildings) obstacles_.push_back({building.id, building.body, true});
+    for (const BarrierSetup& barrier : setup_.barriers) obstacles_.push_back({barrier.id, barrier.body, true});
+    const OutputSpec& outputs = scene.spec.outputs;
+    const double map_cell =
+        outputs.map_cell.value_or(default_map_cell(scene.terrain.cell(), this->model().particle_spacing));
+    observer_ = std::make_unique<Observer>(this->model(), this->state(), scene.flow_path, outputs, map_cell);
+    slots_ = this->state().seeded;
+    follow_barriers(setup_);
+    if (this->state().count == 0) stop(Phase::at_rest, "there is no debris");
+    record();
+}
+
+bool LiveRun::has_begun(const std::string& release_id) const {
+    const Group* group = find_id(groups_, release_id);
+    return group != nullptr && group->begun;
+}
+
+bool LiveRun::not_converged() const {
+    return state().mean_compression > mean_compression_limit || state().max_compression > max_compression_limit;
+}
+
+Frame LiveRun::frame(unsigned stride, unsigned flags) const {
+    Frame frame = make_frame(state(), observer_->maps().present(), slots_, stride,
+                             flags | (not_converged() ? frame_not_converged : 0));
+    frame.rest_density = model().rest_density;
+    return frame;
+}
+
+void LiveRun::record() {
+    if (recording_.due(state().time)) recording_.add(frame(1, 0));
+}
+
+void LiveRun::stop(Phase phase, std::string why) {
+    phase_ = phase;
+    message_ = std::move(why);
+}
+
+void LiveRun::advance() {
+    if (phase_ != Phase::ready) return;
+    if (reached_end_time(scene_.spec.solver, state())) return stop(Phase::ended, end_time_reason(scene_.spec.solver));
+    if (state().count == 0) return stop(Phase::at_rest, no_debris_reason);
+    const auto start = std::chrono::steady_clock::now();
+    arena_.execute([&] { take_step(); });
+    wall_time_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+void LiveRun::take_step() {
+    for (std::size_t g = 0; g < groups_.size(); ++g) {
+        groups_[g].begun = groups_[g].begun || model().releases[g].start_time <= state().time;
+    }
+    const auto fault = simulation_.advance();
+    smallest_time_step_ = std::min(smallest_time_step_, state().time_step);
+    largest_time_step_ = std::max(largest_time_step_, state().time_step);
+    if (fault) return stop(Phase::fault, *fault);
+    {
+        const StageTimer timer(simulation_.stage_times(), Stage::observe);
+        observer_->after_step(model(), state(), rate_.update(state().step));
+        for (auto& [id, watch] : overtopping_) watch.overtopping->after_step(state(), jumped_);
+        jumped_ = false;
+    }
+    record();
+    if (rest_.at_rest(state().time, total_momentum(model(), state()), still_waiting(model(), state()))) {
+        stop(Phase::at_rest, rest_.reason());
+    } else if (state().count == 0) {
+        stop(Phase::at_rest, no_debris_reason);
+    } else if (reached_end_time(scene_.spec.solver, state())) {
+        stop(Phase::ended, end_time_reason(scene_.spec.solver));
+    }
+}
+
+const BuildingImpact* LiveRun::impact_on(const std::string& obstacle_id) const {
+    const Obstacle* obstacle = find_id(obstacles_, obstacle_id);
+    return obstacle == nullptr ? nullptr
+                               : &observer_->impacts()[static_cast<std::size_t>(obstacle - obstacles_.data())];
+}
+
+const Overtopping& LiveRun::overtopping_of(const std::string& barrier_id) const {
+    return *overtopping_.at(barrier_id).overtopping;
+}
+
+void LiveRun::follow_barriers(const Setup& next) {
+    std::erase_if(overtopping_, [&](const auto& entry) { return find_id(next.barriers, entry.first) == nullptr; });
+    for (const BarrierSetup& barrier : next.barriers) {
+        Watch& watch = overtopping_[barrier.id];
+        if (watch.body && same_shape(watch.body, barrier.body)) continue;
+        watch = {barrier.body, std::make_unique<Overtopping>(model(), barrier.line, barrier.height)};
+        watch.overtopping->after_step(state());
+    }
+}
+
+RunResult LiveRun::result() const {
+    RunResult result;
+    result.status = phase_ == Phase::fault   ? RunStatus::fault
+                    : phase_ == Phase::ready ? RunStatus::interrupted
+                                             : RunStatus::complete;
+    char text[80];
+    std::snprintf(text, sizeof text, "written while running, at t = %.4g s", state().time);
+    result.stop_reason = phase_ == Phase::ready ? text : message_;
+    result.observation = arena_.execute([&] { return observer_->finish(model(), state()); });
+    std::vector<BuildingImpact> standing;
+    const auto take = [&](const auto& entries) {
+        for (const auto& entry : entries) standing.push_back(*impact_on(entry.id));
+    };
+    take(setup_.buildings);
+    take(setup_.barriers);
+    result.observation.buildings = std::move(standing);
+    result.stage_times = simulation_.stage_times();
+    result.instruction_set = simulation_.backend().instruction_set();
+    result.hash = hash_state(state());
+    result.particles = state().seeded - state().taken;
+    result.steps = state().step;
+    result.simulated_time = state().time;
+    result.wall_time = wall_time_;
+    result.smallest_time_step = std::min(smallest_time_step_, largest_time_step_);
+    result.largest_time_step = largest_time_step_;
+    result.particle_spacing = model().particle_spacing;
+    result.support_radius = model().support_radius;
+    result.map_cell = observer_->maps().geometry().cell;
+    result.viscosity = model().viscosity;
+    result.kinematic_viscosity = model().kinematic_viscosity;
+    result.thread_count = threads_;
+    return result;
+}
+
+}  // namespace talus::twin

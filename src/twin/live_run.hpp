@@ -1,0 +1,111 @@
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <tbb/global_control.h>
+#include <tbb/task_arena.h>
+
+#include "core/result.hpp"
+#include "observe/observer.hpp"
+#include "scene/rate_meter.hpp"
+#include "scene/run.hpp"
+#include "scene/scene.hpp"
+#include "scene/stop_rule.hpp"
+#include "sim/simulation.hpp"
+#include "twin/overtopping.hpp"
+#include "twin/recording.hpp"
+#include "twin/scenario.hpp"
+#include "twin/setup.hpp"
+
+namespace talus::twin {
+
+/// The simulation of a setup, from time 0, and what watches it; between two steps it can be brought to another setup.
+class LiveRun {
+  public:
+    /// `scene` must live as long. `spacing`: of the particles, m. Errors: as run_scene's.
+    [[nodiscard]] static Result<std::unique_ptr<LiveRun>> start(const Scene& scene, const Setup& setup, double spacing,
+                                                                const ScenarioOptions& options);
+
+    /// Takes a step if ready.
+    void advance();
+    /// Changes what differs. A release whose debris has begun to move keeps its old shape. Errors: too many particles,
+    /// a release smaller than a particle; nothing has changed then.
+    [[nodiscard]] Status bring_to(const Setup& next);
+
+    [[nodiscard]] const Setup& setup() const { return setup_; }
+    /// Whether a release's debris has been let go.
+    [[nodiscard]] bool has_begun(const std::string& release_id) const;
+
+    [[nodiscard]] Phase phase() const { return phase_; }
+    [[nodiscard]] const std::string& message() const { return message_; }
+    [[nodiscard]] const Model& model() const { return simulation_.model(); }
+    [[nodiscard]] const State& state() const { return simulation_.state(); }
+    [[nodiscard]] const Observer& observer() const { return *observer_; }
+    [[nodiscard]] const Recording& recording() const { return recording_; }
+    [[nodiscard]] bool not_converged() const;
+    [[nodiscard]] std::string instruction_set() const { return std::string(simulation_.backend().instruction_set()); }
+    [[nodiscard]] Frame frame(unsigned stride, unsigned flags) const;
+
+    /// nullptr: no such obstacle.
+    [[nodiscard]] const BuildingImpact* impact_on(const std::string& obstacle_id) const;
+    [[nodiscard]] const Overtopping& overtopping_of(const std::string& barrier_id) const;
+
+    /// As run_scene would return it if the run ended here; buildings are those that stand, in the setup's order,
+    /// barriers last.
+    [[nodiscard]] RunResult result() const;
+
+  private:
+    struct Group {  ///< beside Model::releases
+        std::string id;
+        bool begun = false;  ///< a step was taken in which its debris could move
+    };
+    struct Obstacle {  ///< beside Model::buildings, which only grows
+        std::string id;
+        std::shared_ptr<const Building> body;  ///< also of one that was taken away
+        bool stands = true;
+    };
+    struct Change;
+
+    LiveRun(const Scene& scene, Setup setup, const ScenarioOptions& options, Model model, State state, int threads);
+
+    [[nodiscard]] Result<Change> plan(const Setup& next) const;
+    void plan_obstacles(const Setup& next, Change& change) const;
+    [[nodiscard]] Status plan_releases(const Setup& next, Change& change) const;
+    void carry_out(Change& change, const Setup& next);
+    void replace_releases(Model& model, State& state, Change& change);
+    void set_start_times(Model& model, const State& state, const Setup& next, bool& let_go);
+    void follow_barriers(const Setup& next);
+    void take_step();
+    void record();
+    void stop(Phase phase, std::string why);
+
+    const Scene& scene_;
+    Setup setup_;
+    std::unique_ptr<tbb::global_control> thread_limit_;
+    mutable tbb::task_arena arena_;
+    int threads_;
+    Simulation simulation_;
+    std::unique_ptr<Observer> observer_;
+    std::vector<Group> groups_;
+    std::vector<Obstacle> obstacles_;
+    struct Watch {
+        std::shared_ptr<const Building> body;
+        std::unique_ptr<Overtopping> overtopping;
+    };
+    std::map<std::string, Watch> overtopping_;  // by barrier id
+    bool jumped_ = false;                       // particles were moved between steps
+    std::uint32_t slots_ = 0;
+    Recording recording_;
+    RestDetector rest_;
+    RateMeter rate_;
+    Phase phase_ = Phase::ready;
+    std::string message_;
+    double wall_time_ = 0, smallest_time_step_ = 0, largest_time_step_ = 0;
+};
+
+}  // namespace talus::twin

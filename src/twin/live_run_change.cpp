@@ -1,0 +1,261 @@
+// How a live run is brought from one setup to another: first everything that can fail, then the change.
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "sim/change.hpp"
+#include "sim/seed.hpp"
+#include "twin/live_run.hpp"
+
+namespace talus::twin {
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+Extent extent_of(const Building& building) {
+    Extent extent = talus::extent_of(building.footprint.front());
+    for (const Polygon& part : building.footprint) {
+        const Extent e = talus::extent_of(part);
+        extent.include({e.x_min, e.y_min});
+        extent.include({e.x_max, e.y_max});
+    }
+    return extent;
+}
+
+bool overlap(const Extent& a, const Extent& b) {
+    return a.x_min <= b.x_max && b.x_min <= a.x_max && a.y_min <= b.y_max && b.y_min <= a.y_max;
+}
+
+bool overlaps_any(const Extent& a, const std::vector<Extent>& others) {
+    return std::any_of(others.begin(), others.end(), [&](const Extent& other) { return overlap(a, other); });
+}
+
+/// A building that is there no more: it keeps its index and has no solid.
+Building without_solid(Building building) {
+    building.roof_elevation = std::numeric_limits<double>::quiet_NaN();
+    building.part_roof_elevations.clear();
+    return building;
+}
+
+/// What holds debris back: when any of it changes, debris at rest may move again.
+std::array<double, 4> holding_back(const Model& model) {
+    return {model.friction_coefficient, model.building_friction_coefficient, model.internal_friction_coefficient,
+            model.viscosity};
+}
+
+}  // namespace
+
+/// What a change of setup comes to.
+struct LiveRun::Change {
+    std::vector<Obstacle> obstacles;
+    std::vector<Building> buildings;
+    std::vector<Extent> touched;       ///< world, of obstacles that came, went or were moved
+    std::vector<std::size_t> renewed;  ///< obstacles whose record begins anew
+
+    struct Seed {
+        const ReleaseSetup* release;
+        State state;
+    };
+    std::vector<Seed> seeds;
+    std::vector<bool> gone;  ///< by group: its debris is taken away
+    std::optional<Model> model;
+};
+
+void LiveRun::plan_obstacles(const Setup& next, Change& change) const {
+    change.obstacles = obstacles_;
+    change.buildings = model().buildings;
+    for (std::size_t k = 0; k < obstacles_.size(); ++k) {
+        Obstacle& obstacle = change.obstacles[k];
+        const bool wanted =
+            find_id(next.buildings, obstacle.id) != nullptr || find_id(next.barriers, obstacle.id) != nullptr;
+        if (wanted || !obstacle.stands) continue;
+        obstacle.stands = false;
+        change.buildings[k] = without_solid(change.buildings[k]);
+        change.touched.push_back(extent_of(*obstacle.body));
+    }
+    const auto put = [&](const auto& entry) {
+        Obstacle* obstacle = find_id(change.obstacles, entry.id);
+        if (obstacle == nullptr) {
+            change.obstacles.push_back({entry.id, entry.body, true});
+            change.buildings.push_back(*entry.body);
+            change.touched.push_back(extent_of(*entry.body));
+            return;
+        }
+        const auto k = static_cast<std::size_t>(obstacle - change.obstacles.data());
+        const bool moved = !same_shape(obstacle->body, entry.body);
+        change.buildings[k].name = entry.body->name;
+        if (obstacle->stands && !moved) return;
+        if (obstacle->stands) change.touched.push_back(extent_of(*obstacle->body));
+        change.touched.push_back(extent_of(*entry.body));
+        if (moved) change.renewed.push_back(k);
+        *obstacle = {entry.id, entry.body, true};
+        change.buildings[k] = *entry.body;
+    };
+    for (const BuildingSetup& building : next.buildings) put(building);
+    for (const BarrierSetup& barrier : next.barriers) put(barrier);
+}
+
+Status LiveRun::plan_releases(const Setup& next, Change& change) const {
+    change.gone.assign(groups_.size(), false);
+    std::vector<const ReleaseSetup*> to_seed;
+    for (const ReleaseSetup& release : next.releases) {
+        const Group* group = find_id(groups_, release.id);
+        const ReleaseSetup* before = find_id(setup_.releases, release.id);
+        bool seed = group == nullptr;
+        if (group != nullptr && !group->begun) {
+            seed = !same_shape(before->body, release.body) || overlaps_any(release.body->extent(), change.touched);
+        } else if (group != nullptr && before->triggered && !release.triggered) {
+            seed = release.body->start_time > state().time;  // its start is taken back
+        }
+        if (!seed) continue;
+        to_seed.push_back(&release);
+        if (group != nullptr) change.gone[static_cast<std::size_t>(group - groups_.data())] = true;
+    }
+    for (std::size_t g = 0; g < groups_.size(); ++g) {
+        if (find_id(next.releases, groups_[g].id) == nullptr) change.gone[g] = true;
+    }
+    if (to_seed.empty()) return {};
+
+    Model alone = *change.model;
+    double particles = state().count;
+    for (std::uint32_t i = 0; i < state().count; ++i) {
+        for (std::size_t g = 0; g < groups_.size(); ++g) {
+            const ReleaseGroup& group = model().releases[g];
+            const bool own = state().id[i] >= group.first_particle && state().id[i] < group.last_particle;
+            if (change.gone[g] && own) particles -= 1;
+        }
+    }
+    for (const ReleaseSetup* release : to_seed) {
+        particles += std::round(release->body->volume / model().particle_volume());
+        if (particles > model().solver.particle_limit) {
+            return Error{fmt::format(
+                "release \"{}\": {:.4g} m3 would make {:.0f} particles in all; solver.particle_limit must be at least "
+                "that, and is {}",
+                release->body->name, release->body->volume, particles, model().solver.particle_limit)};
+        }
+        Result<State> seeded = seed_releases(alone, {*release->body});
+        if (!seeded) return seeded.error();
+        change.seeds.push_back({release, *std::move(seeded)});
+    }
+    return {};
+}
+
+Result<LiveRun::Change> LiveRun::plan(const Setup& next) const {
+    Change change;
+    plan_obstacles(next, change);
+    change.model = model();
+    set_material(*change.model, next.material);
+    if (!change.touched.empty()) {
+        change.model->buildings = change.buildings;
+        change.model->solids = BuildingSolids(model().terrain, change.buildings, model().support_radius);
+    }
+    if (Status s = plan_releases(next, change); !s) return s.error();
+    return change;
+}
+
+/// Takes away the debris of releases that are gone and adds that of new ones, held.
+void LiveRun::replace_releases(Model& model, State& state, Change& change) {
+    // Ids of debris that never moved and lie at the end are given back: to drag the outline of a release would else
+    // use up ids without end.
+    bool given_back = true;
+    std::vector<bool> done(groups_.size(), false);
+    while (given_back) {
+        given_back = false;
+        for (std::size_t g = 0; g < groups_.size(); ++g) {
+            const ReleaseGroup group = model.releases[g];
+            if (done[g] || !change.gone[g] || groups_[g].begun || group.last_particle != state.seeded) continue;
+            const std::uint32_t taken = state.taken;
+            take_away(state, group.first_particle, group.last_particle);
+            state.taken = taken;
+            state.seeded = group.first_particle;
+            done[g] = given_back = true;
+        }
+    }
+    for (std::size_t g = 0; g < groups_.size(); ++g) {
+        if (!change.gone[g] || done[g]) continue;
+        const ReleaseGroup& group = model.releases[g];
+        Extent lay{infinity, infinity, -infinity, -infinity};
+        for (std::uint32_t i = 0; i < state.count; ++i) {
+            if (state.id[i] < group.first_particle || state.id[i] >= group.last_particle) continue;
+            lay.include({state.position.x[i], state.position.y[i]});
+        }
+        take_away(state, group.first_particle, group.last_particle);
+        wake(state, lay.grown(2 * model.support_radius));
+    }
+    std::vector<Group> groups;
+    std::vector<ReleaseGroup> ranges;
+    for (std::size_t g = 0; g < groups_.size(); ++g) {
+        if (change.gone[g]) continue;
+        groups.push_back(groups_[g]);
+        ranges.push_back(model.releases[g]);
+    }
+    for (Change::Seed& seed : change.seeds) {
+        const std::uint32_t first = state.seeded;
+        append_particles(state, seed.state, first);
+        groups.push_back({seed.release->id, false});
+        ranges.push_back({seed.release->body->name, seed.release->body->start_time, first, state.seeded});
+    }
+    groups_ = std::move(groups);
+    model.releases = std::move(ranges);
+}
+
+/// `let_go`: whether any release starts that did not before.
+void LiveRun::set_start_times(Model& model, const State& state, const Setup& next, bool& let_go) {
+    for (std::size_t g = 0; g < groups_.size(); ++g) {
+        if (groups_[g].begun) continue;
+        const ReleaseSetup& release = *find_id(next.releases, groups_[g].id);
+        double& start_time = model.releases[g].start_time;
+        const double before = start_time;
+        start_time = release.triggered ? std::min(release.body->start_time, state.time) : release.body->start_time;
+        let_go = let_go || (start_time <= state.time && before > state.time);
+    }
+}
+
+void LiveRun::carry_out(Change& change, const Setup& next) {
+    const auto held_back = holding_back(model());
+    const WorldPoint origin = model().terrain.frame().origin;
+    std::uint32_t first_new = 0;
+    bool let_go = false;
+    simulation_.change([&](Model& model, State& state) {
+        change.model->releases = model.releases;
+        model = std::move(*change.model);
+        replace_releases(model, state, change);
+        set_start_times(model, state, next, let_go);
+        first_new = state.seeded;
+        for (const Change::Seed& seed : change.seeds) first_new -= seed.state.seeded;
+        for (const Extent& e : change.touched) {
+            const Extent local{e.x_min - origin.x, e.y_min - origin.y, e.x_max - origin.x, e.y_max - origin.y};
+            wake(state, local.grown(2 * model.support_radius));
+            clear_solids(model, state, local);
+        }
+        if (held_back != holding_back(model)) wake(state, {-infinity, -infinity, infinity, infinity});
+    });
+    slots_ = std::max(slots_, state().seeded);
+    obstacles_ = std::move(change.obstacles);
+    observer_->follow(model(), state(), first_new);
+    for (const std::size_t k : change.renewed) observer_->forget_building(k);
+    jumped_ = true;
+    follow_barriers(next);
+    if (let_go || !change.seeds.empty()) {
+        rest_.begin_anew(state().time);
+    } else {
+        rest_.stir(state().time);
+    }
+}
+
+Status LiveRun::bring_to(const Setup& next) {
+    return arena_.execute([&]() -> Status {
+        Result<Change> change = plan(next);
+        if (!change) return change.error();
+        carry_out(*change, next);
+        setup_ = next;
+        if (phase_ == Phase::at_rest) stop(Phase::ready, "");
+        return {};
+    });
+}
+
+}  // namespace talus::twin

@@ -1,0 +1,37 @@
+#include "twin/recording.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace talus::twin {
+
+void Recording::add(Frame frame) {
+    next_ = (std::floor(frame.time / interval_ + 1e-6) + 1) * interval_;
+    bytes_ += frame.bytes();
+    frames_.push_back(std::move(frame));
+    while (bytes_ > room_ && frames_.size() > 2) thin_out();
+}
+
+void Recording::thin_out() {
+    // The first one stays: it is where everything began.
+    const std::size_t half = std::max<std::size_t>(2, frames_.size() / 2);
+    std::size_t kept = 0;
+    for (std::size_t k = 0; k < frames_.size(); ++k) {
+        if (k < half && k % 2 == 1) {
+            bytes_ -= frames_[k].bytes();
+            continue;
+        }
+        if (kept != k) frames_[kept] = std::move(frames_[k]);
+        ++kept;
+    }
+    frames_.resize(kept);
+}
+
+const Frame* Recording::at(double time) const {
+    const auto after = std::upper_bound(frames_.begin(), frames_.end(), time + 1e-9,
+                                        [](double t, const Frame& frame) { return t < frame.time; });
+    return after == frames_.begin() ? nullptr : &*(after - 1);
+}
+
+}  // namespace talus::twin

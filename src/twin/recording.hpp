@@ -1,0 +1,34 @@
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "twin/frame.hpp"
+
+namespace talus::twin {
+
+/// Frames at even intervals of simulated time, uncompressed: to compress what nobody may ever ask for would cost more
+/// than to keep it. When there is no more room, every second frame of the older half goes.
+class Recording {
+  public:
+    /// `interval` in s of simulated time, `room` in bytes.
+    Recording(double interval, std::size_t room) : interval_(interval), room_(room) {}
+
+    [[nodiscard]] bool due(double time) const { return time >= next_ - 1e-9; }
+    /// In the order of time.
+    void add(Frame frame);
+
+    /// The frame at or before a time; nullptr: none.
+    [[nodiscard]] const Frame* at(double time) const;
+    [[nodiscard]] const std::vector<Frame>& frames() const { return frames_; }
+    [[nodiscard]] std::size_t bytes() const { return bytes_; }
+
+  private:
+    void thin_out();
+
+    double interval_, next_ = 0;  // s
+    std::size_t room_, bytes_ = 0;
+    std::vector<Frame> frames_;
+};
+
+}  // namespace talus::twin

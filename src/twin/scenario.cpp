@@ -1,0 +1,226 @@
+#include "twin/scenario.hpp"
+
+#include <filesystem>
+#include <limits>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "core/hash.hpp"
+#include "products/products.hpp"
+#include "sim/seed.hpp"
+#include "twin/action.hpp"
+#include "twin/json_keys.hpp"
+#include "twin/scenario_parts.hpp"
+#include "twin/setup_file.hpp"
+
+namespace talus::twin {
+namespace {
+
+using nlohmann::json;
+
+constexpr std::size_t most_undo = 200;
+
+/// Whether a setup's releases wait again, as they do at time 0.
+Setup held_again(Setup setup) {
+    for (ReleaseSetup& release : setup.releases) release.triggered = false;
+    return setup;
+}
+
+}  // namespace
+
+std::string_view phase_name(Phase phase) {
+    switch (phase) {
+        case Phase::ready:
+            return "ready";
+        case Phase::at_rest:
+            return "at_rest";
+        case Phase::ended:
+            return "ended";
+        case Phase::fault:
+            return "fault";
+    }
+    return "";
+}
+
+Status Scenario::Parts::start(const Setup& setup) {
+    auto started = LiveRun::start(*scene, setup, particle_spacing, options);
+    if (!started) return Error{scene->file.string() + ": " + started.error().message};
+    run = std::move(*started);
+    first_setup = write_setup(setup);
+    first_next = next;
+    entries.clear();
+    ++revision;
+    return {};
+}
+
+Scenario::Scenario(std::unique_ptr<Parts> parts) : parts_(std::move(parts)) {}
+Scenario::~Scenario() = default;
+
+Scenario::Parts::Parts(std::shared_ptr<const Scene> its_scene, ScenarioOptions its_options)
+    : scene(std::move(its_scene)), options(std::move(its_options)) {
+    double volume = 0;
+    for (const Release& release : scene->releases) volume += release.volume;
+    particle_spacing = choose_particle_spacing(scene->spec.solver, volume);
+}
+
+Result<std::unique_ptr<Scenario>> Scenario::open(std::shared_ptr<const Scene> scene, ScenarioOptions options) {
+    auto parts = std::make_unique<Parts>(std::move(scene), std::move(options));
+    const Setup setup = setup_of(*parts->scene, parts->next);
+    if (Status s = parts->start(setup); !s) return s.error();
+    return std::unique_ptr<Scenario>(new Scenario(std::move(parts)));
+}
+
+Result<std::unique_ptr<Scenario>> Scenario::open_at(const Journal& journal, std::shared_ptr<const Scene> scene,
+                                                    ScenarioOptions options) {
+    auto setup = read_setup(journal.first_setup, *scene);
+    if (!setup) return Error{"first_setup: " + setup.error().message};
+    auto parts = std::make_unique<Parts>(std::move(scene), std::move(options));
+    parts->next = journal.next;
+    if (Status s = parts->start(*setup); !s) return s.error();
+    return std::unique_ptr<Scenario>(new Scenario(std::move(parts)));
+}
+
+Result<std::unique_ptr<Scenario>> Scenario::copy() const {
+    auto parts = std::make_unique<Parts>(parts_->scene, parts_->options);
+    parts->next = parts_->next;
+    if (Status s = parts->start(held_again(parts_->setup())); !s) return s.error();
+    return std::unique_ptr<Scenario>(new Scenario(std::move(parts)));
+}
+
+void Scenario::advance() {
+    parts_->run->advance();
+}
+
+Result<Done> Scenario::Parts::edit(const json& action) {
+    const ActionContext context{*scene, particle_spacing, run->model().viscosity,
+                                [&](const std::string& id) { return run->has_begun(id); }};
+    NextNumbers numbers = next;
+    Result<Edit> made = read_action(action, setup(), numbers, context);
+    if (!made) return made.error();
+    Setup before = setup();
+    if (Status s = run->bring_to(made->setup); !s) return s.error();
+    next = numbers;
+    undo.push_back({std::move(before), made->sentence, action["action"] == "trigger_release"});
+    if (undo.size() > most_undo) undo.erase(undo.begin());
+    redo.clear();
+    return Done{made->sentence, made->created};
+}
+
+Result<Done> Scenario::Parts::step_back(std::vector<Past>& from, std::vector<Past>& to, const char* word) {
+    if (from.empty()) return Error{fmt::format("action = \"{}\": there is nothing to {}", word, word)};
+    Setup before = setup();
+    if (Status s = run->bring_to(from.back().setup); !s) return s.error();
+    Past past = std::move(from.back());
+    from.pop_back();
+    to.push_back({std::move(before), past.sentence, past.by_trigger});
+    return Done{fmt::format("{}: {}", word, past.sentence), ""};
+}
+
+Result<Done> Scenario::Parts::restart() {
+    if (Status s = start(held_again(setup())); !s) return s.error();
+    // All releases wait again: there is no start left to take back.
+    for (std::vector<Past>* pasts : {&undo, &redo}) {
+        std::erase_if(*pasts, [](const Past& past) { return past.by_trigger; });
+        for (Past& past : *pasts) past.setup = held_again(std::move(past.setup));
+    }
+    return Done{"started again from time 0", ""};
+}
+
+Result<Done> Scenario::apply(const json& action, const std::string& by) {
+    const Result<std::string> name = action_name(action);
+    if (!name) return name.error();
+    const bool back = *name == "undo", forth = *name == "redo", again = *name == "restart";
+    if (back || forth || again) {
+        if (Status s = check_keys(action, {"action"}); !s) return s.error();
+    }
+    Parts& p = *parts_;
+    JournalEntry entry{step(), by, action, nullptr};
+    Result<Done> done = back    ? p.step_back(p.undo, p.redo, "undo")
+                        : forth ? p.step_back(p.redo, p.undo, "redo")
+                        : again ? p.restart()
+                                : p.edit(action);
+    if (!done || again) return done;
+    if (back || forth) entry.setup = write_setup(p.setup());
+    p.entries.push_back(std::move(entry));
+    ++p.revision;
+    return done;
+}
+
+Status Scenario::follow(const JournalEntry& entry) {
+    if (entry.setup.is_null()) {
+        const Result<Done> done = apply(entry.action, entry.by);
+        return done ? Status() : done.error();
+    }
+    auto setup = read_setup(entry.setup, *parts_->scene);
+    if (!setup) return setup.error();
+    if (Status s = parts_->run->bring_to(*setup); !s) return s;
+    parts_->entries.push_back(entry);
+    ++parts_->revision;
+    return {};
+}
+
+Phase Scenario::phase() const {
+    return parts_->run->phase();
+}
+std::string Scenario::message() const {
+    return parts_->run->message();
+}
+double Scenario::time() const {
+    return parts_->run->state().time;
+}
+std::uint64_t Scenario::step() const {
+    return parts_->run->state().step;
+}
+std::uint64_t Scenario::hash() const {
+    return hash_state(parts_->run->state());
+}
+const Scene& Scenario::scene() const {
+    return *parts_->scene;
+}
+
+std::string Scenario::frame(int scenario_index, unsigned stride, unsigned flags) const {
+    return encode(parts_->run->frame(stride, flags), scenario_index);
+}
+
+std::string Scenario::recorded_frame(int scenario_index, double time) const {
+    const Frame* frame = parts_->run->recording().at(time);
+    return frame == nullptr ? std::string() : encode(*frame, scenario_index, frame_recorded);
+}
+
+Result<Grid<float>> Scenario::layer(const std::string& name) const {
+    const MapAccumulator& maps = parts_->run->observer().maps();
+    if (name == "depth") {
+        Grid<float> depth = maps.present().depth;
+        for (float& value : depth.values) {
+            if (value == 0) value = std::numeric_limits<float>::quiet_NaN();
+        }
+        return depth;
+    }
+    HazardMaps peaks = maps.maps();
+    if (name == "peak_depth") return std::move(peaks.peak_depth);
+    if (name == "peak_speed") return std::move(peaks.peak_speed);
+    if (name == "peak_pressure") return std::move(peaks.peak_pressure);
+    if (name == "arrival_time") return std::move(peaks.arrival_time);
+    if (name == "deposit_depth") return std::move(peaks.deposit_depth);
+    return Error{fmt::format(
+        "layer = {}: must be one of depth, peak_depth, peak_speed, peak_pressure, arrival_time, deposit_depth",
+        shown(json(name)))};
+}
+
+Status Scenario::write_products(const std::filesystem::path& folder) const {
+    const Parts& p = *parts_;
+    Scene scene = *p.scene;
+    scene.spec.material = p.setup().material;
+    scene.releases.clear();
+    for (const ReleaseSetup& release : p.setup().releases) scene.releases.push_back(*release.body);
+    scene.buildings.clear();
+    for (const BuildingSetup& building : p.setup().buildings) scene.buildings.push_back(*building.body);
+    for (const BarrierSetup& barrier : p.setup().barriers) scene.buildings.push_back(*barrier.body);
+    for (const JournalEntry& entry : p.entries) {
+        scene.notes.push_back(fmt::format("before step {}, by {}: {}", entry.step, entry.by, entry.action.dump()));
+    }
+    return talus::write_products(scene, p.run->result(), folder);
+}
+
+}  // namespace talus::twin

@@ -1,0 +1,111 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+#include "core/grid.hpp"
+#include "core/result.hpp"
+#include "scene/scene.hpp"
+
+namespace talus::twin {
+
+struct Journal;
+struct JournalEntry;
+
+enum class Phase {
+    ready,    ///< advance() would take a step
+    at_rest,  ///< debris came to rest, or none is left; a change of the setup makes it ready again
+    ended,    ///< solver.end_time is reached; only restart goes on
+    fault,    ///< the last step cannot be trusted; only restart goes on
+};
+
+/// "ready", "at_rest", "ended", "fault".
+[[nodiscard]] std::string_view phase_name(Phase phase);
+
+struct ScenarioOptions {
+    std::vector<std::string> overrides;         ///< that the scene was loaded with, for the journal
+    double frame_interval = 0.1;                ///< s of simulated time between recorded frames
+    std::size_t recording_bytes = 512'000'000;  ///< when full, every second frame of the older half goes
+};
+
+/// What an action did.
+struct Done {
+    std::string sentence;  ///< for people: "friction coefficient 0.4 -> 0.3"
+    std::string created;   ///< id of a new release, barrier or building; empty: none
+};
+
+/// Bits of a frame's `flags`.
+inline constexpr unsigned frame_running = 1, frame_not_converged = 2, frame_recorded = 4;
+
+/// A run that can be changed while it runs. No thread, no socket: one caller at a time. docs/twin.md has the plan,
+/// docs/protocol.md the JSON of actions and answers.
+class Scenario {
+  public:
+    /// Errors: as run_scene's before the first step.
+    [[nodiscard]] static Result<std::unique_ptr<Scenario>> open(std::shared_ptr<const Scene> scene,
+                                                                ScenarioOptions options = {});
+    /// At the beginning of a session that a journal tells of.
+    [[nodiscard]] static Result<std::unique_ptr<Scenario>> open_at(const Journal& journal,
+                                                                   std::shared_ptr<const Scene> scene,
+                                                                   ScenarioOptions options);
+    /// The same scene and the setup of this one as it is now, at time 0.
+    [[nodiscard]] Result<std::unique_ptr<Scenario>> copy() const;
+    ~Scenario();
+    Scenario(const Scenario&) = delete;
+    Scenario& operator=(const Scenario&) = delete;
+
+    /// Takes one step, observers and recording included. Nothing happens unless phase() is ready.
+    void advance();
+    /// Any action of docs/protocol.md that changes results: not run, pause, step, set_speed.
+    /// Errors name key, value and allowed range; nothing has changed then.
+    [[nodiscard]] Result<Done> apply(const nlohmann::json& action, const std::string& by);
+
+    /// Does again what an entry of a journal tells of. Errors: as apply().
+    [[nodiscard]] Status follow(const JournalEntry& entry);
+
+    [[nodiscard]] Phase phase() const;
+    [[nodiscard]] std::string message() const;  ///< why it is at rest, ended or at fault; empty while ready
+    [[nodiscard]] double time() const;          ///< s
+    [[nodiscard]] std::uint64_t step() const;
+    [[nodiscard]] std::uint64_t hash() const;
+    [[nodiscard]] const Scene& scene() const;
+
+    // Answers, as docs/protocol.md has them. They lack `scenario`, which only the loop knows; state_json() also lacks
+    // speed_factor, real_time_factor, steps_per_second, and its "status" is phase_name(phase()).
+    [[nodiscard]] nlohmann::json scene_json() const;
+    [[nodiscard]] nlohmann::json state_json() const;
+    [[nodiscard]] nlohmann::json setup_json() const;
+    [[nodiscard]] nlohmann::json series_json() const;
+    [[nodiscard]] nlohmann::json impacts_json() const;
+    [[nodiscard]] nlohmann::json journal_json() const;
+    [[nodiscard]] nlohmann::json recording_json() const;
+    [[nodiscard]] nlohmann::json probe_json(const PlanPoint& p) const;
+
+    /// The present frame, encoded. `stride` >= 1: every stride-th particle. `flags`: frame_running; the frame adds
+    /// frame_not_converged itself.
+    [[nodiscard]] std::string frame(int scenario_index, unsigned stride, unsigned flags) const;
+    /// The recorded frame at or before a time, s, encoded; empty: none.
+    [[nodiscard]] std::string recorded_frame(int scenario_index, double time) const;
+    /// `depth` (now), `peak_depth`, `peak_speed`, `peak_pressure`, `arrival_time`, `deposit_depth`; NaN: nothing
+    /// there. SI units. Error: no such layer.
+    [[nodiscard]] Result<Grid<float>> layer(const std::string& name) const;
+    /// Writes the run so far as `talus run` would, into an existing empty folder.
+    [[nodiscard]] Status write_products(const std::filesystem::path& folder) const;
+
+  private:
+    struct Parts;
+    explicit Scenario(std::unique_ptr<Parts> parts);
+    std::unique_ptr<Parts> parts_;
+};
+
+/// Encodes a grid message.
+[[nodiscard]] std::string encode_grid(const Grid<float>& grid);
+
+}  // namespace talus::twin

@@ -1,0 +1,302 @@
+// The scenario's answers, as docs/protocol.md has them.
+#include <cmath>
+#include <filesystem>
+
+#include <fmt/format.h>
+
+#include "core/hash.hpp"
+#include "twin/barrier.hpp"
+#include "twin/intensity.hpp"
+#include "twin/json_keys.hpp"
+#include "twin/scenario_parts.hpp"
+
+namespace talus::twin {
+namespace {
+
+using nlohmann::json;
+
+json rings_json(const Polygon& polygon) {
+    json rings = json::array({to_json(polygon.outer)});
+    for (const Ring& hole : polygon.holes) rings.push_back(to_json(hole));
+    return rings;
+}
+
+json range_json(const Range& range) {
+    return {{"low", number_or_null(range.low)},
+            {"high", number_or_null(range.high)},
+            {"low_included", range.low_included},
+            {"high_included", range.high_included}};
+}
+
+json levers_json(const Scene& scene, const Model& model, const MaterialSpec& now) {
+    json list = json::array();
+    for (const Parameter* lever : levers()) {
+        // A scene that gives another viscosity gives this one, too, at its spacing.
+        const double scene_viscosity =
+            scene.spec.material.kinematic_viscosity && now.kinematic_viscosity ? model.viscosity : 0;
+        list.push_back({{"key", "material." + lever->key},
+                        {"label", label_of(*lever)},
+                        {"unit", lever->unit},
+                        {"default", value_in_force(scene.spec.material, *lever, scene_viscosity)},
+                        {"range", range_json(lever->range)},
+                        {"help", lever->help},
+                        {"value", value_in_force(now, *lever, model.viscosity)}});
+    }
+    return list;
+}
+
+json flow_path_json(const Scene& scene) {
+    const FlowPath& path = scene.flow_path;
+    if (path.empty()) return nullptr;
+    json points = json::array(), chainages = json::array();
+    double chainage = 0;
+    const PlanPoint* before = nullptr;
+    for (const PlanPoint& p : path.points()) {
+        if (before != nullptr) chainage += std::hypot(p.x - before->x, p.y - before->y);
+        points.push_back({p.x, p.y, number_or_null(scene.terrain.elevation_at(p))});
+        chainages.push_back(chainage);
+        before = &p;
+    }
+    return {{"points", points},
+            {"chainage_m", chainages},
+            {"corridor_width_m", path.corridor_width()},
+            {"traced", scene.flow_path_traced}};
+}
+
+std::pair<float, float> elevation_range(const Terrain& terrain) {
+    float lowest = INFINITY, highest = -INFINITY;
+    for (const float z : terrain.elevation().values) {
+        if (z < lowest) lowest = z;
+        if (z > highest) highest = z;
+    }
+    return {lowest, highest};
+}
+
+json impact_json(const std::string& id, const BuildingImpact& impact) {
+    const char* intensity = intensity_class(impact);
+    return {{"id", id},
+            {"name", impact.name},
+            {"hit", impact.hit},
+            {"first_hit_s", number_or_null(impact.first_hit_time)},
+            {"peak_force_kN", impact.peak_force / 1e3},
+            {"peak_pressure_kPa", impact.peak_pressure / 1e3},
+            {"peak_depth_m", impact.peak_depth},
+            {"peak_speed_mps", impact.peak_speed},
+            {"peak_dynamic_pressure_kPa", impact.peak_dynamic_pressure / 1e3},
+            {"intensity", intensity != nullptr ? json(intensity) : json()}};
+}
+
+}  // namespace
+
+json Scenario::scene_json() const {
+    const Scene& scene = this->scene();
+    const LiveRun& run = *parts_->run;
+    const Model& model = run.model();
+    const WorldPoint origin = model.terrain.frame().origin;
+    const Extent e = scene.terrain.elevation().geometry.extent();
+    const auto [lowest, highest] = elevation_range(scene.terrain);
+    const GridGeometry& map = run.observer().maps().geometry();
+    json observations = json::array();
+    for (const ObservationSpec& o : scene.spec.observations) {
+        observations.push_back({{"name", o.name},
+                                {"chainage_m", o.chainage},
+                                {"front_velocity_mps", o.front_velocity},
+                                {"source", o.source}});
+    }
+    return {{"title", scene.spec.scene.title},
+            {"description", scene.spec.scene.description},
+            {"reconstruction", scene.spec.scene.reconstruction},
+            {"assumptions", scene.spec.scene.assumptions},
+            {"sources", scene.spec.scene.sources},
+            {"crs", scene.crs.epsg != 0 ? fmt::format("EPSG:{}", scene.crs.epsg) : scene.crs.name},
+            {"crs_name", scene.crs.name},
+            {"vertical_unit", scene.vertical_unit},
+            {"origin", {origin.x, origin.y, origin.z}},
+            {"extent_m", {e.x_min, e.y_min, e.x_max, e.y_max}},
+            {"elevation_m", {lowest, highest}},
+            {"map",
+             {{"x_min_m", map.x_min},
+              {"y_min_m", map.y_min},
+              {"cell_m", map.cell},
+              {"columns", map.columns},
+              {"rows", map.rows}}},
+            {"particle_spacing_m", model.particle_spacing},
+            {"end_time_s", scene.spec.solver.end_time},
+            {"gravity_mps2", model.gravity},
+            {"flow_path", flow_path_json(scene)},
+            {"observations", observations},
+            {"parameters", levers_json(scene, model, parts_->setup().material)},
+            {"intensity", intensity_json()}};
+}
+
+json Scenario::state_json() const {
+    const LiveRun& run = *parts_->run;
+    const State& state = run.state();
+    const TimeSample now = run.observer().sample(run.model(), state);
+    const std::vector<FrontSample> front = run.observer().front();
+    // The front moves as long as it reaches new chainages.
+    constexpr double lately = 1;  // s
+    const bool advances = !front.empty() && state.time - front.back().arrival_time <= lately;
+    const std::vector<Frame>& frames = run.recording().frames();
+    return {{"status", phase_name(run.phase())},
+            {"message", run.message()},
+            {"time_s", state.time},
+            {"end_time_s", scene().spec.solver.end_time},
+            {"step", state.step},
+            {"particles", state.count},
+            {"volume_released_m3", now.volume_released},
+            {"volume_held_m3", now.volume_held},
+            {"volume_moving_m3", now.volume_moving},
+            {"volume_deposited_m3", now.volume_deposited},
+            {"volume_left_m3", now.volume_left},
+            {"front_chainage_m", number_or_null(now.front_chainage)},
+            {"front_velocity_mps", advances ? number_or_null(front.back().front_velocity) : json()},
+            {"largest_speed_mps", number_or_null(state.largest_speed)},
+            {"mean_compression", number_or_null(state.mean_compression)},
+            {"max_compression", number_or_null(state.max_compression)},
+            {"converged", !run.not_converged()},
+            {"recording",
+             {{"first_s", frames.empty() ? json() : json(frames.front().time)},
+              {"last_s", frames.empty() ? json() : json(frames.back().time)},
+              {"frames", frames.size()},
+              {"bytes", run.recording().bytes()}}},
+            {"hash", to_hex(hash())}};
+}
+
+json Scenario::setup_json() const {
+    const Parts& p = *parts_;
+    const Setup& setup = p.setup();
+    json parameters = json::object(), releases = json::array(), barriers = json::array(), buildings = json::array();
+    for (const Parameter* lever : levers()) {
+        parameters["material." + lever->key] = value_in_force(setup.material, *lever, p.run->model().viscosity);
+    }
+    for (const ReleaseSetup& release : setup.releases) {
+        json polygons = json::array();
+        const Release& body = *release.body;
+        double thickness = body.patches.empty() || body.thickness_raster ? never : body.patches.front().thickness;
+        for (const ReleasePatch& patch : body.patches) {
+            polygons.push_back(to_json(patch.polygon.outer));
+            if (patch.thickness != thickness) thickness = never;
+        }
+        const bool released = release.triggered || p.run->has_begun(release.id);
+        releases.push_back({{"id", release.id},
+                            {"name", body.name},
+                            {"polygons", polygons},
+                            {"thickness_m", number_or_null(thickness)},
+                            {"volume_m3", body.volume},
+                            {"from_scene", release.scene_index >= 0},
+                            {"status", released ? "released" : "held"},
+                            {"start_time_s", number_or_null(body.start_time)}});
+    }
+    for (const BarrierSetup& barrier : setup.barriers) {
+        barriers.push_back({{"id", barrier.id},
+                            {"name", barrier.body->name},
+                            {"line", to_json(barrier.line)},
+                            {"height_m", barrier.height},
+                            {"thickness_m", barrier.thickness},
+                            {"crest_length_m", length_of(barrier.line)}});
+    }
+    for (const BuildingSetup& building : setup.buildings) {
+        const Building& body = *building.body;
+        json footprint = json::array();
+        for (const Polygon& part : body.footprint) footprint.push_back(rings_json(part));
+        buildings.push_back({{"id", building.id},
+                             {"name", body.name},
+                             {"footprint", footprint},
+                             {"height_m", body.height},
+                             {"base_m", number_or_null(body.roof_elevation - body.height)},
+                             {"roof_m", number_or_null(body.roof_elevation)},
+                             {"from_scene", building.scene_index >= 0}});
+    }
+    return {{"revision", p.revision},
+            {"parameters", parameters},
+            {"releases", releases},
+            {"barriers", barriers},
+            {"buildings", buildings},
+            {"undo", p.undo.empty() ? json() : json(p.undo.back().sentence)},
+            {"redo", p.redo.empty() ? json() : json(p.redo.back().sentence)}};
+}
+
+json Scenario::series_json() const {
+    const Observer& observer = parts_->run->observer();
+    json time = json::object();
+    const auto column = [&](const char* name, double TimeSample::*member) {
+        json& values = time[name] = json::array();
+        for (const TimeSample& row : observer.timeseries()) values.push_back(number_or_null(row.*member));
+    };
+    column("time_s", &TimeSample::time);
+    column("front_chainage_m", &TimeSample::front_chainage);
+    column("volume_released_m3", &TimeSample::volume_released);
+    column("volume_held_m3", &TimeSample::volume_held);
+    column("volume_moving_m3", &TimeSample::volume_moving);
+    column("volume_deposited_m3", &TimeSample::volume_deposited);
+    column("volume_left_m3", &TimeSample::volume_left);
+    column("kinetic_energy_J", &TimeSample::kinetic_energy);
+    column("potential_energy_J", &TimeSample::potential_energy);
+    column("largest_speed_mps", &TimeSample::largest_speed);
+    column("mean_compression", &TimeSample::mean_compression);
+    column("max_compression", &TimeSample::max_compression);
+    column("time_step_s", &TimeSample::time_step);
+    const std::vector<FrontSample> samples = observer.front();
+    json front = json::object();
+    const auto front_column = [&](const char* name, double FrontSample::*member) {
+        json& values = front[name] = json::array();
+        for (const FrontSample& row : samples) values.push_back(number_or_null(row.*member));
+    };
+    front_column("chainage_m", &FrontSample::chainage);
+    front_column("arrival_time_s", &FrontSample::arrival_time);
+    front_column("front_velocity_mps", &FrontSample::front_velocity);
+    front_column("particle_speed_mps", &FrontSample::particle_speed);
+    return {{"time", time}, {"front", front}};
+}
+
+json Scenario::impacts_json() const {
+    const LiveRun& run = *parts_->run;
+    json buildings = json::array(), barriers = json::array();
+    for (const BuildingSetup& building : parts_->setup().buildings) {
+        buildings.push_back(impact_json(building.id, *run.impact_on(building.id)));
+    }
+    for (const BarrierSetup& barrier : parts_->setup().barriers) {
+        const Overtopping& over = run.overtopping_of(barrier.id);
+        json row = impact_json(barrier.id, *run.impact_on(barrier.id));
+        row["overtopped_m3"] = over.volume();
+        row["first_overtopped_s"] = number_or_null(over.first_time());
+        row["held_m3"] = over.held_volume(run.state());
+        barriers.push_back(std::move(row));
+    }
+    return {{"buildings", buildings}, {"barriers", barriers}};
+}
+
+json Scenario::journal_json() const {
+    const Parts& p = *parts_;
+    std::string file = p.scene->file.string();
+    if (!file.starts_with("built-in:")) file = std::filesystem::absolute(p.scene->file).lexically_normal().string();
+    return write_journal({file, p.options.overrides, p.scene->inputs, p.first_setup, p.first_next, p.entries, step(),
+                          time(), to_hex(hash()), p.run->instruction_set()});
+}
+
+json Scenario::recording_json() const {
+    const Recording& recording = parts_->run->recording();
+    json times = json::array();
+    for (const Frame& frame : recording.frames()) times.push_back(frame.time);
+    return {{"times_s", times}, {"bytes", recording.bytes()}};
+}
+
+json Scenario::probe_json(const PlanPoint& p) const {
+    const LiveRun& run = *parts_->run;
+    const GridGeometry& map = run.observer().maps().geometry();
+    json times = json::array(), depths = json::array(), speeds = json::array(), pressures = json::array();
+    const double column = std::floor((p.x - map.x_min) / map.cell), row = std::floor((p.y - map.y_min) / map.cell);
+    const bool on_map = column >= 0 && row >= 0 && column < map.columns && row < map.rows;
+    for (const Frame& frame : run.recording().frames()) {
+        const DebrisAt here =
+            on_map ? debris_at(frame, static_cast<std::uint32_t>(column), static_cast<std::uint32_t>(row)) : DebrisAt{};
+        times.push_back(frame.time);
+        depths.push_back(here.depth);
+        speeds.push_back(here.speed);
+        pressures.push_back(frame.rest_density * here.speed * here.speed / 1e3);
+    }
+    return {{"time_s", times}, {"depth_m", depths}, {"speed_mps", speeds}, {"pressure_kPa", pressures}};
+}
+
+}  // namespace talus::twin

@@ -1,0 +1,43 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "twin/journal.hpp"
+#include "twin/live_run.hpp"
+#include "twin/scenario.hpp"
+#include "twin/setup.hpp"
+
+namespace talus::twin {
+
+/// What scenario*.cpp share.
+struct Scenario::Parts {
+    /// A setup that can be gone back to, and what the change from it, or to it, was.
+    struct Past {
+        Setup setup;
+        std::string sentence;
+        bool by_trigger = false;
+    };
+
+    Parts(std::shared_ptr<const Scene> its_scene, ScenarioOptions its_options);
+
+    std::shared_ptr<const Scene> scene;
+    ScenarioOptions options;
+    double particle_spacing = 0;
+    std::unique_ptr<LiveRun> run;
+    std::vector<Past> undo, redo;
+    NextNumbers next;
+    std::uint64_t revision = 0;  ///< of the setup
+    nlohmann::json first_setup;  ///< the journal begins with it
+    NextNumbers first_next;
+    std::vector<JournalEntry> entries;
+
+    [[nodiscard]] const Setup& setup() const { return run->setup(); }
+    /// Starts, or starts anew, with a setup.
+    [[nodiscard]] Status start(const Setup& setup);
+    [[nodiscard]] Result<Done> edit(const nlohmann::json& action);
+    [[nodiscard]] Result<Done> step_back(std::vector<Past>& from, std::vector<Past>& to, const char* word);
+    [[nodiscard]] Result<Done> restart();
+};
+
+}  // namespace talus::twin

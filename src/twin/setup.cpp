@@ -1,0 +1,91 @@
+#include "twin/setup.hpp"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+namespace talus::twin {
+namespace {
+
+bool same_ring(const Ring& a, const Ring& b) {
+    return std::equal(a.begin(), a.end(), b.begin(), b.end(),
+                      [](const PlanPoint& p, const PlanPoint& q) { return p.x == q.x && p.y == q.y; });
+}
+
+bool same(const Polygon& a, const Polygon& b) {
+    return same_ring(a.outer, b.outer) &&
+           std::equal(a.holes.begin(), a.holes.end(), b.holes.begin(), b.holes.end(), same_ring);
+}
+
+}  // namespace
+
+Setup setup_of(const Scene& scene, NextNumbers& next) {
+    Setup setup;
+    setup.material = scene.spec.material;
+    int index = 0;
+    for (const Release& release : scene.releases) {
+        setup.releases.push_back({fmt::format("release-{}", next.release++), std::make_shared<const Release>(release),
+                                  index++, true, false});
+    }
+    index = 0;
+    for (const Building& building : scene.buildings) {
+        setup.buildings.push_back(
+            {fmt::format("building-{}", next.building++), std::make_shared<const Building>(building), index++, true});
+    }
+    return setup;
+}
+
+bool same_shape(const std::shared_ptr<const Release>& a, const std::shared_ptr<const Release>& b) {
+    if (a == b) return true;
+    const auto same_patch = [](const ReleasePatch& p, const ReleasePatch& q) {
+        return p.thickness == q.thickness && same(p.polygon, q.polygon);
+    };
+    const auto& r = a->thickness_raster;
+    const auto& s = b->thickness_raster;
+    const auto same_value = [](float p, float q) { return p == q || (p != p && q != q); };
+    const bool same_raster =
+        r.has_value() == s.has_value() &&
+        (!r || (r->geometry == s->geometry &&
+                std::equal(r->values.begin(), r->values.end(), s->values.begin(), s->values.end(), same_value)));
+    return a->start_time == b->start_time && same_raster &&
+           std::equal(a->patches.begin(), a->patches.end(), b->patches.begin(), b->patches.end(), same_patch);
+}
+
+bool same_shape(const std::shared_ptr<const Building>& a, const std::shared_ptr<const Building>& b) {
+    return a == b ||
+           (a->height == b->height && a->roof_elevation == b->roof_elevation &&
+            a->part_roof_elevations == b->part_roof_elevations &&
+            std::equal(a->footprint.begin(), a->footprint.end(), b->footprint.begin(), b->footprint.end(), same));
+}
+
+const std::vector<const Parameter*>& levers() {
+    static const std::vector<const Parameter*> found = [] {
+        std::vector<const Parameter*> list;
+        for (const char* key : {"friction_coefficient", "building_friction_coefficient",
+                                "internal_friction_coefficient", "viscosity", "rest_density_kgpm3"}) {
+            list.push_back(find_section("material")->find(key));
+        }
+        return list;
+    }();
+    return found;
+}
+
+std::string label_of(const Parameter& parameter) {
+    std::string label = parameter.key;
+    if (!parameter.unit.empty()) label.erase(label.rfind('_'));
+    for (char& c : label) {
+        if (c == '_') c = ' ';
+    }
+    return label;
+}
+
+double value_in_force(const MaterialSpec& material, const Parameter& lever, double viscosity) {
+    SceneSpec spec;
+    spec.material = material;
+    if (lever.key == "viscosity" && material.kinematic_viscosity) return viscosity;
+    const ParameterValue value = lever.get(spec, 0);
+    if (const double* number = std::get_if<double>(&value)) return *number;
+    return material.friction_coefficient;  // both that may be left out follow it
+}
+
+}  // namespace talus::twin

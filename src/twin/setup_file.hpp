@@ -1,0 +1,16 @@
+#pragma once
+
+#include <nlohmann/json.hpp>
+
+#include "core/result.hpp"
+#include "twin/setup.hpp"
+
+/// A setup in a journal: everything that makes it, what is as in the scene by its place there only.
+namespace talus::twin {
+
+[[nodiscard]] nlohmann::json write_setup(const Setup& setup);
+
+/// Errors name key and value.
+[[nodiscard]] Result<Setup> read_setup(const nlohmann::json& file, const Scene& scene);
+
+}  // namespace talus::twin
