@@ -105,9 +105,10 @@ function showSetups(twin: Twin, stage: Stage): void {
       if (twin.scenarios.value.length > 1) pane?.append(h("div", { class: `pane-name${name === twin.edited.value ? " edited" : ""}` }, name));
     }
   });
-  watchAll([twin.names, twin.scenarios], () => {
+  watchAll([twin.names, twin.scenarios, twin.selection], () => {
     for (const view of stage.views.values()) {
       view.namesShown = twin.names.value;
+      view.selected = twin.hindrance === null ? (twin.selection.value?.id ?? null) : null;
       stage.relabel(view);
     }
   });

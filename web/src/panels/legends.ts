@@ -15,7 +15,7 @@ export interface Legend { title: string; unit: string; low: number; high: number
 export function presentLegends(twin: Twin, stage: Stage, layers: ShownLayers): Legend[] {
   const list: Legend[] = [];
   if (twin.particles.value || twin.surface.value === "speed") {
-    list.push({ title: "Speed of debris", unit: "m/s", low: 0, high: stage.fastest_mps, at: (s) => rampAt(ramps.speed, s) });
+    list.push({ title: "Speed of debris", unit: "m/s", low: 0, high: stage.fastest_mps.value, at: (s) => rampAt(ramps.speed, s) });
   }
   if (twin.surface.value === "depth") {
     list.push({ title: "Flow depth", unit: "m", low: 0, high: layers.surfaceTop, at: (s) => rampAt(ramps.depth, s) });
@@ -40,7 +40,7 @@ function ticks(low: number, high: number): number[] {
 
 export function legends(twin: Twin, stage: Stage, layers: ShownLayers): HTMLElement {
   const holder = h("div", { class: "legends", role: "group", "aria-label": "Legends" });
-  watchAll([twin.particles, twin.surface, twin.layer, twin.difference, layers.range], () => {
+  watchAll([twin.particles, twin.surface, twin.layer, twin.difference, layers.range, stage.fastest_mps], () => {
     holder.replaceChildren(...presentLegends(twin, stage, layers).map((legend) => {
       const bar = h("div", { class: "legend-bar" });
       const stops = Array.from({ length: 17 }, (_, i) => css(legend.at(i / 16)));

@@ -39,6 +39,8 @@ export class ScenarioView {
   readonly overlay = new Group();
   extraLabels: Label[] = [];
   namesShown = true;
+  /** Id of what is being edited: its handles take the place of its name. */
+  selected: string | null = null;
   private readonly depths: DepthField;
   private readonly solids = new Group();
   private readonly outlines = new Group();
@@ -160,6 +162,7 @@ export class ScenarioView {
         }
       }
       for (const release of this.setup?.releases ?? []) {
+        if (release.id === this.selected) continue;
         const ring = release.polygons[0] ?? [];
         if (ring.length === 0) continue;
         const x = ring.reduce((sum, p) => sum + p[0], 0) / ring.length;
@@ -167,6 +170,7 @@ export class ScenarioView {
         labels.push({ at: relief.local(x, y, 3), text: `${release.name}, ${quantity(release.volume_m3, "m3")}`, kind: "release", priority: 8 });
       }
       for (const barrier of this.setup?.barriers ?? []) {
+        if (barrier.id === this.selected) continue;
         const [x, y] = barrier.line[Math.floor(barrier.line.length / 2)] ?? [0, 0];
         labels.push({ at: relief.local(x, y, barrier.height_m + 1), text: `${barrier.name}, ${quantity(barrier.height_m, "m")}`, kind: "barrier", priority: 7 });
       }

@@ -25,7 +25,7 @@ export class ShownLayers {
   constructor(private readonly twin: Twin, private readonly stage: Stage) {
     watchAll([twin.layer, twin.difference, twin.scenarios], () => void this.load());
     twin.layerOpacity.watch(() => this.put());
-    watchAll([twin.surface, twin.particles, twin.contours, twin.scenarios], () => this.putSurface());
+    watchAll([twin.surface, twin.particles, twin.contours, twin.scenarios, stage.fastest_mps], () => this.putSurface());
     setInterval(() => {
       const running = twin.scenarios.value.some((s) => twin.cells[s].state.value?.status === "running");
       if (running && twin.layer.value !== "none") void this.load();
@@ -133,7 +133,7 @@ export class ShownLayers {
       view.debris.points.visible = twin.particles.value;
       const bySpeed = twin.surface.value === "speed";
       view.ground.showSurface(twin.surface.value !== "off", bySpeed, bySpeed ? this.rampFor("speed") : this.surfaceRamp(),
-        bySpeed ? stage.fastest_mps : this.surfaceTop);
+        bySpeed ? stage.fastest_mps.value : this.surfaceTop);
       view.ground.uniforms.uContour.value = twin.contours.value ? 1 : 0;
     }
     stage.invalidate();

@@ -4,7 +4,8 @@ import type { Frame, ScenarioName } from "../protocol/frame";
 import type { Place } from "../protocol/messages";
 import type { Twin } from "../state/twin";
 import { h } from "../ui/dom";
-import { ramps } from "./colour";
+import { Cell } from "../state/cell";
+import { ramps, roundStep } from "./colour";
 import { groundGeometry, rampTextureOf } from "./ground";
 import type { Box } from "./labels";
 import type { Relief } from "./relief";
@@ -37,7 +38,8 @@ export class Stage {
   readonly rig: Rig;
   readonly views = new Map<ScenarioName, ScenarioView>();
   readonly stats: Stats = { frames: 0, script_ms: 0, draw_ms: 0, decode_ms: 0, upload_ms: 0, particles: 0, shownTime_s: 0 };
-  fastest_mps = 15;
+  /** Speed at the upper end of the colours; it grows with what is seen, in round steps. */
+  readonly fastest_mps = new Cell(10);
   /** Elements that lie over the view; labels keep clear of them. */
   covers: readonly HTMLElement[] = [];
   private readonly renderer: WebGLRenderer;
@@ -64,6 +66,11 @@ export class Stage {
     });
     window.talusStats = this.stats;
     new ResizeObserver(() => this.resize()).observe(this.element);
+    for (const name of ["A", "B"] as const) {
+      twin.cells[name].state.watch((state) => {
+        if (state && state.largest_speed_mps > this.fastest_mps.value) this.fastest_mps.value = roundStep(state.largest_speed_mps);
+      });
+    }
     twin.scenarios.watch((names) => this.arrange(names));
     twin.onFrame((frame) => this.push(frame));
     requestAnimationFrame((now) => this.tick(now));
@@ -141,7 +148,7 @@ export class Stage {
     let column = 0;
     let more = false;
     for (const view of this.views.values()) {
-      if (view.update(now, camera, pixels, this.fastest_mps)) more = true;
+      if (view.update(now, camera, pixels, this.fastest_mps.value)) more = true;
       if (this.cameraMoved || view.labels.layer.dataset["stale"] !== "no") {
         view.labels.place(camera, wide, this.height, this.covered(column * wide));
         view.labels.layer.dataset["stale"] = "no";
