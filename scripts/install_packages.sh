@@ -5,16 +5,16 @@
 set -euo pipefail
 
 packages=(g++ cmake ninja-build pkg-config git libgdal-dev gdal-bin libtbb-dev libhwy-dev libpng-dev libtomlplusplus-dev libcli11-dev
-          nlohmann-json3-dev libfmt-dev libgtest-dev libgmock-dev)
+          nlohmann-json3-dev libfmt-dev libgtest-dev libgmock-dev libboost-dev zlib1g-dev)
+# Node.js builds the page; like the browser of the tests, it also comes from elsewhere than the distribution's packages.
+node_version=$(node --version 2>/dev/null || echo v0)
+node_version=${node_version#v}
+if ((${node_version%%.*} < 18)); then packages+=(nodejs); fi
+command -v npm >/dev/null || packages+=(npm)
 if [[ ${1:-build} == test ]]; then
     packages+=(libbenchmark-dev clang-format clang-tidy python3 python3-gdal python3-numpy poppler-utils)
-    # Browser and Node.js also come from elsewhere than the distribution's packages.
     command -v chromium >/dev/null || command -v chromium-browser >/dev/null || command -v google-chrome >/dev/null ||
         packages+=(chromium)
-    node_version=$(node --version 2>/dev/null || echo v0)
-    node_version=${node_version#v}
-    if ((${node_version%%.*} < 18)); then packages+=(nodejs); fi
-    command -v npm >/dev/null || packages+=(npm)
 fi
 
 if ! command -v dpkg-query >/dev/null; then

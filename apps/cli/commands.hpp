@@ -32,6 +32,20 @@ struct ReplayArguments {
 };
 int replay_command(const ReplayArguments& arguments);
 
+struct ServeArguments {
+    std::string scene;  ///< a scene file; empty: the built-in scene
+    std::string host = "127.0.0.1";
+    int port = 8123;
+    std::vector<std::string> allowed_hosts;
+    std::vector<std::string> tokens;  ///< the controllers', then the viewers'; left out: random ones
+    std::optional<int> threads;
+    std::vector<std::string> overrides;  ///< "section.key=value"
+    std::string data;                    ///< value of TALUS_DATA; empty: as in the environment
+    bool run = false;                    ///< begin at once
+    bool quiet = false, json = false;
+};
+int serve_command(const ServeArguments& arguments);
+
 struct CheckArguments {
     std::string scene;
     std::vector<std::string> overrides;
@@ -59,7 +73,7 @@ struct BenchArguments {
     bool full = false;                         ///< particles up to a million
     int iterations = 4, repeats = 7;
     std::optional<int> steps, warm_up;  ///< left out: by the number of particles
-    std::string json;                   ///< a file to write; empty: none
+    std::string json, svg;              ///< files to write; empty: none
 };
 int bench_command(const BenchArguments& arguments);
 

@@ -49,7 +49,9 @@ void InterruptWatch::watch() {
     const sigset_t signals = watched_signals();
     int number = 0;
     while (sigwait(&signals, &number) == 0 && !done_) {
-        if (number != wake_signal && stop_requested_.exchange(true)) end_at_once();
+        if (number == wake_signal) continue;
+        if (stop_requested_.exchange(true)) end_at_once();
+        stop_requested_.notify_all();
     }
 }
 

@@ -21,7 +21,12 @@ class InterruptWatch {
     [[nodiscard]] const std::atomic<bool>& stop_requested() const { return stop_requested_; }
 
     /// Asks the run to end, as the first signal does.
-    void request_stop() { stop_requested_ = true; }
+    void request_stop() {
+        stop_requested_ = true;
+        stop_requested_.notify_all();
+    }
+    /// Sleeps until a stop is requested.
+    void wait() const { stop_requested_.wait(false); }
     /// A folder to remove when the program is ended at once.
     void remove_at_once(const std::filesystem::path& folder);
     /// While held, a second signal waits (two seconds at most) before it ends the program: for renames.

@@ -32,6 +32,7 @@ Examples:
   talus scene check my_scene/scene.toml     what a scene reads and means, without running it
   talus replay session.json                 runs a saved live session again and compares its result
   talus validate --quick                    computes cases whose results are known, and prints one table
+  talus serve                               the built-in scene live in the browser: watch, steer and share it
   talus bench                               how fast talus is here: milliseconds per stage, particles per second
 
 Exit codes:
@@ -76,6 +77,27 @@ Exit codes:
     2  bad input: command line or a case file; nothing was computed
     4  an expectation does not hold
   130  interrupted by Ctrl-C; the table shows the cases that were complete
+)";
+
+constexpr const char* serve_help = R"(
+Opens the scene as a live twin in the browser: press Run in the page, change parameters, releases, barriers and buildings
+while debris moves, look at every moment again, compare two scenarios, take maps and report away. It prints two links.
+Who has the first can steer (one at a time), who has the second can look; both carry a secret, so pass on the right one.
+Ctrl-C ends it.
+
+Only this computer can reach it. To share it in a network, let it listen on all addresses and name those by which
+browsers will know it; connections are not encrypted, so put a web server with TLS before it where that matters:
+  talus serve my_scene.toml --host 0.0.0.0 --allow-host twin.example.org
+
+The page's whole interface is open to programs: docs/protocol.md, or /api/openapi.json of the running server.
+  talus serve my_scene.toml --run --json
+  curl -H "Authorization: Bearer TOKEN" http://127.0.0.1:8123/api/scenarios/A/state
+
+Exit codes:
+    0  ended by Ctrl-C
+    1  the machine failed: port in use, out of memory
+    2  bad input: command line, scene or a file it names
+  130  ended at once by a second Ctrl-C
 )";
 
 constexpr const char* bench_help = R"(
@@ -130,6 +152,37 @@ std::string deepest_command(const CLI::App& app) {
     return name;
 }
 
+CLI::App* add_serve(CLI::App& app, ServeArguments& serve) {
+    CLI::App* command = app.add_subcommand("serve", "open a scene live in the browser: watch, steer and share it");
+    command->add_option("scene", serve.scene, "scene file; left out: the built-in scene")->type_name("SCENE");
+    command->add_option("--port", serve.port, "port to listen on; left out: 8123; 0: any that is free")
+        ->type_name("N")
+        ->check(CLI::Range(0, 65535));
+    command
+        ->add_option("--host", serve.host,
+                     "address to listen on; left out: 127.0.0.1, this computer alone; 0.0.0.0: all")
+        ->type_name("ADDRESS");
+    command
+        ->add_option("--allow-host", serve.allowed_hosts,
+                     "a name that browsers know this server by; may be given many times")
+        ->type_name("NAME")
+        ->allow_extra_args(false);
+    command
+        ->add_option("--token", serve.tokens,
+                     "secret of the links, once for controllers, again for viewers; left out: new ones each time")
+        ->type_name("TOKEN")
+        ->allow_extra_args(false);
+    command->add_flag("--run", serve.run, "begin at once instead of paused at time 0");
+    command->add_option("--threads", serve.threads, "number of threads; left out: all cores; the result is the same")
+        ->type_name("N");
+    add_overrides(*command, serve.overrides);
+    add_scene_inputs(*command, serve.data);
+    CLI::Option* quiet = command->add_flag("--quiet", serve.quiet, "print nothing but errors");
+    command->add_flag("--json", serve.json, "print the links as one JSON object on stdout")->excludes(quiet);
+    command->footer(serve_help);
+    return command;
+}
+
 int talus_main(int argc, char** argv) {
     CLI::App app("talus simulates landslides and debris flows on a terrain model, and writes hazard maps and a report.",
                  "talus");
@@ -152,6 +205,9 @@ int talus_main(int argc, char** argv) {
     add_scene_inputs(*run_app, run.data);
     CLI::Option* quiet = run_app->add_flag("--quiet", run.quiet, "print nothing but errors");
     run_app->add_flag("--json", run.json, "progress and result as one JSON object per line on stdout")->excludes(quiet);
+    ServeArguments serve;
+    CLI::App* serve_app = add_serve(app, serve);
+
     run_app->footer([] { return run_help + scene_reference_text(); });
 
     ReplayArguments replay;
@@ -257,6 +313,8 @@ int talus_main(int argc, char** argv) {
         ->type_name("N")
         ->check(CLI::Range(0, 100000));
     bench_app->add_option("--json", bench.json, "write the rows as a list of objects")->type_name("FILE");
+    bench_app->add_option("--svg", bench.svg, "draw particle-iterations per second against particles")
+        ->type_name("FILE");
     bench_app->footer(bench_help);
 
     app.footer(program_help);  // last: commands made after it would inherit it
@@ -271,6 +329,7 @@ int talus_main(int argc, char** argv) {
 
     if (*run_app) return run_command(run);
     if (*replay_app) return replay_command(replay);
+    if (*serve_app) return serve_command(serve);
     if (*check_app) return check_command(check);
     if (*new_app) return new_command(create);
     if (*export_app) return export_builtin_command(builtin_folder, builtin_force);

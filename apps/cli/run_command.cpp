@@ -140,7 +140,7 @@ int run_command(const RunArguments& arguments) {
     if (!scene) return fail(exit_code::bad_input, scene.error().message);
     auto plan = VariantPlan::make(arguments, source, *scene);
     if (!plan) return fail(exit_code::bad_input, plan.error().message);
-    if (unpacked) name_builtin_files(unpacked->path(), *scene);
+    if (unpacked) name_builtin_files(*scene, unpacked->path());
     if (watch.stop_requested()) return fail(exit_code::interrupted, "interrupted before the run began");
 
     std::optional<DefaultParent> parent;

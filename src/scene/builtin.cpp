@@ -24,7 +24,7 @@ Result<std::filesystem::path> unpack_builtin_scene(const std::filesystem::path& 
     return folder / "scene.toml";
 }
 
-void name_builtin_files(const std::filesystem::path& folder, Scene& scene) {
+void name_builtin_files(Scene& scene, const std::filesystem::path& folder) {
     const std::string prefix = (folder / "").string();
     const auto named = [&](const std::string& path) {
         if (!path.starts_with(prefix)) return path;
@@ -48,7 +48,7 @@ Result<Scene> load_builtin_scene(const std::filesystem::path& folder, const std:
     if (!file) return file.error();
     auto scene = load_scene(*file, overrides);
     if (!scene) return scene.error();
-    name_builtin_files(folder, *scene);
+    name_builtin_files(*scene, folder);
     return scene;
 }
 

@@ -19,7 +19,7 @@ inline constexpr std::string_view builtin_scene_name = "sham_tseng";
 
 /// Names all files of a scene that was loaded from `folder` "built-in:sham_tseng/...": paths into a temporary folder
 /// would mean nothing to the reader of a manifest or a journal.
-void name_builtin_files(const std::filesystem::path& folder, Scene& scene);
+void name_builtin_files(Scene& scene, const std::filesystem::path& folder);
 
 /// The built-in scene, unpacked into `folder`, which is no longer needed then, with its files so named.
 [[nodiscard]] Result<Scene> load_builtin_scene(const std::filesystem::path& folder,

@@ -23,12 +23,14 @@ BELOW = {
     "validate": ["core", "params", "terrain", "sim", "geo", "observe", "scene", "products"],
     "bench": ["core", "params", "terrain", "sim", "geo", "observe", "scene", "products"],
     "twin": ["core", "params", "terrain", "sim", "geo", "observe", "scene", "products"],
+    "serve": ["core", "params", "terrain", "sim", "geo", "observe", "scene", "products", "twin"],
     "apps": ["core", "params", "terrain", "sim", "geo", "observe", "scene", "products", "calibrate", "validate",
-             "bench", "twin"],
+             "bench", "twin", "serve"],
 }
 INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]')
 GDAL = re.compile(r"^(gdal|ogr|cpl_|proj\b|proj\.h)")
 TESTING = re.compile(r"^(tests|support|gtest|gmock)/")
+BOOST = re.compile(r"^boost/")
 THIRD_PARTY = re.compile(r"^(fmt|spdlog|nlohmann|toml\+\+|CLI|tbb|oneapi|boost)/|^toml\.hpp")
 
 
@@ -38,6 +40,8 @@ def offence(layer, name):
         return "only tests include tests"
     if GDAL.match(name) and layer != "geo":
         return "only src/geo includes GDAL and PROJ"
+    if BOOST.match(name) and layer != "serve":
+        return "only src/serve includes Boost"
     if THIRD_PARTY.match(name) and layer == "core":
         return "core uses the standard library only"
     if name.startswith("../"):
@@ -82,7 +86,8 @@ def self_test():
                 ("sim", "gtest/gtest.h"), ("scene", "support/fixtures.hpp"), ("sim", "../core/grid.hpp"),
                 ("products", "calibrate/misfit.hpp"), ("calibrate", "products/products.hpp"),
                 ("products", "validate/suite.hpp"), ("validate", "calibrate/misfit.hpp"),
-                ("bench", "validate/set_up.hpp"), ("scene", "bench/measure.hpp"), ("products", "twin/scenario.hpp"),
+                ("bench", "validate/set_up.hpp"), ("twin", "serve/loop.hpp"), ("apps", "boost/asio.hpp"),
+                ("serve", "gdal_priv.h"), ("scene", "bench/measure.hpp"), ("products", "twin/scenario.hpp"),
                 ("twin", "bench/measure.hpp")]
     accepted = [("params", "core/result.hpp"), ("sim", "sim/model.hpp"), ("sim", "terrain/terrain.hpp"),
                 ("geo", "gdal_priv.h"), ("geo", "proj.h"), ("scene", "geo/raster.hpp"), ("apps", "products/products.hpp"),

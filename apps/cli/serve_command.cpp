@@ -1,0 +1,127 @@
+#include <arpa/inet.h>
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "commands.hpp"
+#include "exit_code.hpp"
+#include "interrupt.hpp"
+#include "scene/builtin.hpp"
+#include "scene/scene.hpp"
+#include "serve/server.hpp"
+#include "temporary_folder.hpp"
+
+namespace talus {
+namespace {
+
+namespace fs = std::filesystem;
+
+bool is_address(const std::string& text) {
+    in6_addr ignored{};
+    return text == "localhost" || inet_pton(AF_INET, text.c_str(), &ignored) == 1 ||
+           inet_pton(AF_INET6, text.c_str(), &ignored) == 1;
+}
+
+/// Tokens as given, new ones where not.
+Result<serve::Tokens> choose_tokens(const std::vector<std::string>& given) {
+    if (given.size() > 2) return Error{"--token is given more than twice; it is for controllers, then for viewers"};
+    serve::Tokens tokens;
+    std::string* const wanted[] = {&tokens.controller, &tokens.viewer};
+    for (std::size_t i = 0; i < 2; ++i) {
+        auto token = i < given.size() ? Result<std::string>(given[i]) : serve::random_token();
+        if (!token) return token.error();
+        *wanted[i] = std::move(*token);
+    }
+    if (Status good = serve::check_tokens(tokens); !good) return Error{"--token: " + good.error().message};
+    return tokens;
+}
+
+void print_links(const ServeArguments& arguments, const Scene& scene, const serve::Server& server) {
+    if (arguments.quiet) return;
+    const std::string control = server.link(serve::Role::controller), view = server.link(serve::Role::viewer);
+    std::string text;
+    if (arguments.json) {
+        const nlohmann::json links = {{"title", scene.spec.scene.title},
+                                      {"port", server.port()},
+                                      {"controller_url", control},
+                                      {"viewer_url", view}};
+        text = links.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
+    } else {
+        for (const std::string& note : scene.notes) text += fmt::format("note: {}\n", note);
+        text += fmt::format("{}\n\n  to steer it   {}\n  to look only  {}\n\n{} Ctrl-C ends it.\n",
+                            scene.spec.scene.title, control, view,
+                            arguments.run ? "It runs. Open a link in the browser."
+                                          : "Open the first link in the browser and press Run.");
+    }
+    (void)std::fputs(text.c_str(), stdout);
+    (void)std::fflush(stdout);
+}
+
+}  // namespace
+
+int serve_command(const ServeArguments& arguments) {
+    if (!arguments.data.empty()) set_data_folder(arguments.data);
+    InterruptWatch watch;
+    if (!is_address(arguments.host)) {
+        return fail(exit_code::bad_input,
+                    fmt::format("--host {}: not an address; for example 127.0.0.1, 0.0.0.0 or ::1", arguments.host));
+    }
+    auto tokens = choose_tokens(arguments.tokens);
+    if (!tokens) return fail(exit_code::bad_input, tokens.error().message);
+
+    TemporaryFolder folder;
+    if (folder.path().empty()) return fail(exit_code::failure, "cannot make a temporary folder; set TMPDIR");
+    watch.remove_at_once(folder.path());
+    fs::path file = arguments.scene;
+    const fs::path unpacked = folder.path() / "scene";
+    if (arguments.scene.empty()) {
+        auto scene_file = unpack_builtin_scene(unpacked);
+        if (!scene_file) return fail(exit_code::failure, scene_file.error().message);
+        file = *scene_file;
+    }
+    std::vector<std::string> overrides = arguments.overrides;
+    if (arguments.threads) overrides.push_back(fmt::format("solver.thread_count={}", *arguments.threads));
+    auto loaded = load_scene(file, overrides);
+    if (!loaded) return fail(exit_code::bad_input, loaded.error().message);
+    if (arguments.scene.empty()) name_builtin_files(*loaded, unpacked);
+    if (watch.stop_requested()) return exit_code::success;
+    const auto scene = std::make_shared<const Scene>(std::move(*loaded));
+
+    std::mutex mutex;  // guards failure, which another thread writes
+    std::string failure;
+    serve::ServerOptions options;
+    options.host = arguments.host;
+    options.port = static_cast<std::uint16_t>(arguments.port);
+    options.allowed_hosts = arguments.allowed_hosts;
+    options.tokens = std::move(*tokens);
+    options.export_folder = folder.path();
+    options.scenario.overrides = overrides;
+    options.run = arguments.run;
+    options.on_failure = [&](const std::string& message) {
+        {
+            const std::lock_guard lock(mutex);
+            failure = message;
+        }
+        watch.request_stop();
+    };
+    auto server = serve::Server::listen(std::move(options));
+    if (!server) return fail(exit_code::failure, server.error().message);
+    if (const Status serving = (*server)->serve(scene); !serving)
+        return fail(exit_code::bad_input, serving.error().message);
+    print_links(arguments, *scene, **server);
+    watch.wait();
+    server->reset();
+
+    const std::lock_guard lock(mutex);
+    if (!failure.empty()) return fail(exit_code::failure, "the simulation cannot go on: " + failure);
+    return exit_code::success;
+}
+
+}  // namespace talus

@@ -1,0 +1,108 @@
+#include "serve/access.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <cerrno>
+#include <cstring>
+#include <sys/random.h>
+
+#include <fmt/format.h>
+
+namespace talus::serve {
+namespace {
+
+constexpr std::size_t shortest_token = 16, longest_token = 128;
+
+std::string lower_case(std::string_view text) {
+    std::string lower(text);
+    for (char& c : lower) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    return lower;
+}
+
+/// Every byte is looked at, so that the time says nothing of where the first difference is.
+bool same(std::string_view given, std::string_view secret) {
+    unsigned difference = given.size() == secret.size() ? 0 : 1;
+    for (std::size_t i = 0; i < secret.size(); ++i) {
+        const char c = i < given.size() ? given[i] : '\0';
+        difference |= static_cast<unsigned char>(c) ^ static_cast<unsigned char>(secret[i]);
+    }
+    return difference == 0 && !secret.empty();
+}
+
+bool has_port(std::string_view name) {
+    const std::size_t colon = name.rfind(':');
+    if (colon == std::string_view::npos) return false;
+    const bool bare_ip6 = name.find(':') != colon && name.front() != '[';
+    const bool inside_brackets = name.front() == '[' && name.find(']') > colon;
+    return !bare_ip6 && !inside_brackets;
+}
+
+}  // namespace
+
+Result<std::string> random_token() {
+    std::array<unsigned char, 16> bytes{};
+    std::size_t filled = 0;
+    while (filled < bytes.size()) {
+        const ssize_t got = getrandom(bytes.data() + filled, bytes.size() - filled, 0);
+        if (got < 0 && errno == EINTR) continue;
+        if (got <= 0) return Error{fmt::format("the system gives no random numbers for tokens: {}", strerror(errno))};
+        filled += static_cast<std::size_t>(got);
+    }
+    std::string text;
+    for (const unsigned char byte : bytes) text += fmt::format("{:02x}", byte);
+    return text;
+}
+
+Status check_tokens(const Tokens& tokens) {
+    for (const std::string* token : {&tokens.controller, &tokens.viewer}) {
+        const bool plain = std::all_of(token->begin(), token->end(), [](unsigned char c) {
+            return std::isalnum(c) || c == '_' || c == '-' || c == '.' || c == '~';
+        });
+        if (token->size() < shortest_token || token->size() > longest_token || !plain) {
+            return Error{fmt::format("a token of {} characters; a token has {} to {} of A-Z a-z 0-9 _ - . ~",
+                                     token->size(), shortest_token, longest_token)};
+        }
+    }
+    if (tokens.controller == tokens.viewer) return Error{"the tokens of controllers and viewers are the same"};
+    return {};
+}
+
+Access::Access(Tokens tokens, const std::string& bound, std::uint16_t port, const std::vector<std::string>& allowed)
+    : tokens_(std::move(tokens)) {
+    const auto add = [&](const std::string& name) {
+        const bool ip6 = name.find(':') != std::string::npos && name.front() != '[' && !has_port(name);
+        const std::string host = lower_case(ip6 ? "[" + name + "]" : name);
+        if (has_port(host)) {
+            hosts_.push_back(host);
+            return;
+        }
+        hosts_.push_back(fmt::format("{}:{}", host, port));
+        if (port == 80) hosts_.push_back(host);
+    };
+    for (const char* name : {"127.0.0.1", "localhost", "[::1]"}) add(name);
+    if (!bound.empty()) add(bound);
+    for (const std::string& name : allowed) {
+        if (name.empty()) continue;
+        add(name);
+        // A server in front of this one listens where browsers leave out the port.
+        if (!has_port(name)) hosts_.push_back(lower_case(name));
+    }
+}
+
+bool Access::host_allowed(std::string_view host) const {
+    return std::find(hosts_.begin(), hosts_.end(), lower_case(host)) != hosts_.end();
+}
+
+bool Access::origin_allowed(std::string_view origin, std::string_view host) const {
+    const std::string from = lower_case(origin), own = lower_case(host);
+    return from == "http://" + own || from == "https://" + own;
+}
+
+Role Access::role_of(std::string_view token) const {
+    const bool controller = same(token, tokens_.controller);
+    const bool viewer = same(token, tokens_.viewer);
+    return controller ? Role::controller : viewer ? Role::viewer : Role::nobody;
+}
+
+}  // namespace talus::serve

@@ -1,0 +1,52 @@
+#include "serve/api.hpp"
+
+#include <charconv>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "serve/json_text.hpp"
+
+namespace talus::serve {
+
+Router make_api(Session& session, Exports& exports) {
+    Router router;
+    add_session_routes(router, session);
+    add_scenario_routes(router, session, exports);
+    return router;
+}
+
+void change(Session& session, const Request& request, const Respond& respond,
+            const std::function<void(const std::string& by)>& act) {
+    if (const Status allowed = session.people().may_act(request.person); !allowed) {
+        respond(error_response(409, allowed.error().message));
+        return;
+    }
+    const Person* who = session.people().find(request.person);
+    act(who ? who->name : "a program");
+}
+
+Response no_scenario(const std::string& name) {
+    return error_response(404, fmt::format("there is no scenario {}", tidy_name(name, 20)));
+}
+
+Response binary_response(std::string bytes) {
+    Response response;
+    response.type = "application/octet-stream";
+    response.body = std::make_shared<const std::string>(std::move(bytes));
+    return response;
+}
+
+Result<std::optional<double>> number_of(const Request& request, const char* key, double low, double high) {
+    const auto found = request.query.find(key);
+    if (found == request.query.end()) return std::optional<double>();
+    const std::string& text = found->second;
+    double value = 0;
+    const auto [end, code] = std::from_chars(text.data(), text.data() + text.size(), value);
+    if (code != std::errc() || end != text.data() + text.size() || !(value >= low && value <= high)) {
+        return Error{fmt::format("{} = {}; it is a number from {} to {}", key, tidy_name(text, 30), low, high)};
+    }
+    return std::optional<double>(value);
+}
+
+}  // namespace talus::serve

@@ -1,0 +1,26 @@
+#pragma once
+
+#include "serve/exports.hpp"
+#include "serve/router.hpp"
+#include "serve/session.hpp"
+
+namespace talus::serve {
+
+/// The routes of docs/protocol.md. `session` and `exports` must outlive them.
+[[nodiscard]] Router make_api(Session& session, Exports& exports);
+
+// The parts of it.
+void add_session_routes(Router& router, Session& session);
+void add_scenario_routes(Router& router, Session& session, Exports& exports);
+
+/// Calls `act` with the name of who asks if that may change something now, and answers why not otherwise.
+void change(Session& session, const Request& request, const Respond& respond,
+            const std::function<void(const std::string& by)>& act);
+
+[[nodiscard]] Response no_scenario(const std::string& name);
+[[nodiscard]] Response binary_response(std::string bytes);
+
+/// The number that the query has for `key`; nothing: it is not there. Error: not a number from `low` to `high`.
+[[nodiscard]] Result<std::optional<double>> number_of(const Request& request, const char* key, double low, double high);
+
+}  // namespace talus::serve

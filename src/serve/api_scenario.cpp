@@ -1,0 +1,128 @@
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "serve/api.hpp"
+#include "serve/json_text.hpp"
+
+namespace talus::serve {
+namespace {
+
+using nlohmann::json;
+
+/// Asks the scenario that a request is about, on the loop's thread.
+void ask(Session& session, const Request& request, const Respond& respond,
+         std::function<Response(Scenarios&, int index)> question) {
+    session.loop().post([respond, name = request.parameters.at("s"), question = std::move(question)](Scenarios& all) {
+        const auto index = all.find(name);
+        respond(index ? question(all, *index) : no_scenario(name));
+    });
+}
+
+using Question = std::function<json(Scenarios&, int index)>;
+
+void add_questions(Router& router, Session& session) {
+    const std::pair<const char*, Question> questions[] = {
+        {"state", [](Scenarios& all, int index) { return all.state(index); }},
+        {"setup", [](Scenarios& all, int index) { return all.setup(index); }},
+        {"series", [](Scenarios& all, int index) { return all.at(index).series_json(); }},
+        {"impacts", [](Scenarios& all, int index) { return all.at(index).impacts_json(); }},
+        {"journal", [](Scenarios& all, int index) { return all.at(index).journal_json(); }},
+        {"recording", [](Scenarios& all, int index) { return all.at(index).recording_json(); }},
+    };
+    for (const auto& [name, question] : questions) {
+        router.add({"GET", std::string("/api/scenarios/{s}/") + name, Role::viewer,
+                    [&session, question = question](const Request& request, const Respond& respond) {
+                        ask(session, request, respond,
+                            [question](Scenarios& all, int index) { return json_response(200, question(all, index)); });
+                    }});
+    }
+}
+
+void frame(Session& session, const Request& request, const Respond& respond) {
+    const auto time = number_of(request, "time_s", 0, 1e9);
+    if (!time) {
+        respond(error_response(400, time.error().message));
+        return;
+    }
+    ask(session, request, respond, [time = *time](Scenarios& all, int index) {
+        if (!time) return binary_response(all.frame(index, 1));
+        std::string recorded = all.at(index).recorded_frame(index, *time);
+        if (recorded.empty())
+            return error_response(404, fmt::format("nothing is recorded at or before time_s = {}", *time));
+        return binary_response(std::move(recorded));
+    });
+}
+
+void probe(Session& session, const Request& request, const Respond& respond) {
+    const auto x = number_of(request, "x_m", -1e9, 1e9), y = number_of(request, "y_m", -1e9, 1e9);
+    if (!x || !y) {
+        respond(error_response(400, x ? y.error().message : x.error().message));
+        return;
+    }
+    if (!*x || !*y) {
+        respond(error_response(400, "the query needs x_m and y_m"));
+        return;
+    }
+    ask(session, request, respond, [point = PlanPoint{**x, **y}](Scenarios& all, int index) {
+        return json_response(200, all.at(index).probe_json(point));
+    });
+}
+
+/// The grid is copied between two steps and compressed elsewhere.
+void layer(Session& session, const Request& request, const Respond& respond) {
+    session.loop().post([&session, respond, request](Scenarios& all) {
+        const auto index = all.find(request.parameters.at("s"));
+        if (!index) {
+            respond(no_scenario(request.parameters.at("s")));
+            return;
+        }
+        auto grid = all.at(*index).layer(request.parameters.at("name"));
+        if (!grid) {
+            respond(error_response(404, grid.error().message));
+            return;
+        }
+        session.worker().post(
+            [respond, grid = std::move(*grid)] { respond(binary_response(twin::encode_grid(grid))); });
+    });
+}
+
+void action(Session& session, const Request& request, const Respond& respond) {
+    change(session, request, respond, [&](const std::string& by) {
+        auto wanted = parse_json(request.body);
+        if (!wanted) {
+            respond(error_response(400, wanted.error().message));
+            return;
+        }
+        ask(session, request, respond, [wanted = std::move(*wanted), by](Scenarios& all, int index) {
+            const auto done = all.act(index, wanted, by);
+            if (!done) return error_response(400, done.error().message);
+            return json_response(
+                200, {{"done", done->sentence}, {"created", done->created.empty() ? json() : json(done->created)}});
+        });
+    });
+}
+
+}  // namespace
+
+void add_scenario_routes(Router& router, Session& session, Exports& exports) {
+    add_questions(router, session);
+    const auto with_session = [&session](void (*handler)(Session&, const Request&, const Respond&)) -> Handler {
+        return
+            [&session, handler](const Request& request, const Respond& respond) { handler(session, request, respond); };
+    };
+    router.add({"GET", "/api/scenarios/{s}/frame", Role::viewer, with_session(frame)});
+    router.add({"GET", "/api/scenarios/{s}/probe", Role::viewer, with_session(probe)});
+    router.add({"GET", "/api/scenarios/{s}/layers/{name}", Role::viewer, with_session(layer)});
+    router.add({"POST", "/api/scenarios/{s}/actions", Role::controller, with_session(action)});
+    router.add(
+        {"GET", "/api/scenarios/{s}/exports", Role::viewer, [&exports](const Request& request, const Respond& respond) {
+             exports.list(request.parameters.at("s"), respond);
+         }});
+    router.add({"GET", "/api/scenarios/{s}/exports/{name}", Role::viewer,
+                [&exports](const Request& request, const Respond& respond) {
+                    exports.file(request.parameters.at("s"), request.parameters.at("name"), respond);
+                }});
+}
+
+}  // namespace talus::serve

@@ -1,0 +1,176 @@
+#include <algorithm>
+#include <map>
+#include <memory>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "openapi_file.hpp"
+#include "serve/api.hpp"
+#include "serve/json_text.hpp"
+
+namespace talus::serve {
+namespace {
+
+using nlohmann::json;
+
+constexpr double fewest_cells = 100, most_cells = 16e6, usual_cells = 1e6;
+
+int reduced(int count, int factor) {
+    return (count + factor - 1) / factor;
+}
+
+/// The whole factor by which columns and rows are thinned so that at most `max_cells` are left.
+int thinning(const GridGeometry& grid, double max_cells) {
+    int factor = 1;
+    while (static_cast<double>(reduced(grid.columns, factor)) * reduced(grid.rows, factor) > max_cells) ++factor;
+    return factor;
+}
+
+/// Of every `factor` x `factor` cells the one in the middle.
+Grid<float> thinned(const Grid<float>& whole, int factor) {
+    const GridGeometry& from = whole.geometry;
+    GridGeometry to = from;
+    to.cell = from.cell * factor;
+    to.columns = reduced(from.columns, factor);
+    to.rows = reduced(from.rows, factor);
+    // A value holds at its cell's centre; for an even factor the one taken is half a cell beside the middle.
+    const int middle = factor / 2;
+    const double shift = (middle + 0.5 - 0.5 * factor) * from.cell;
+    to.x_min += shift;
+    to.y_min += shift;
+    Grid<float> thin(to);
+    for (int row = 0; row < to.rows; ++row) {
+        for (int column = 0; column < to.columns; ++column) {
+            thin.at(column, row) = whole.at(std::min(column * factor + middle, from.columns - 1),
+                                            std::min(row * factor + middle, from.rows - 1));
+        }
+    }
+    return thin;
+}
+
+void add_terrain(Router& router, Session& session) {
+    // By the factor of thinning, so there can be few. Only the worker's thread touches it.
+    const auto encoded = std::make_shared<std::map<int, Bytes>>();
+    router.add(
+        {"GET", "/api/terrain", Role::viewer, [&session, encoded](const Request& request, const Respond& respond) {
+             const auto wanted = number_of(request, "max_cells", fewest_cells, most_cells);
+             if (!wanted) {
+                 respond(error_response(400, wanted.error().message));
+                 return;
+             }
+             const Grid<float>& whole = session.scene()->terrain.elevation();
+             const int factor = thinning(whole.geometry, wanted->value_or(usual_cells));
+             session.worker().post([respond, encoded, factor, scene = session.scene()] {
+                 Bytes& bytes = (*encoded)[factor];
+                 if (!bytes) {
+                     bytes = std::make_shared<const std::string>(
+                         twin::encode_grid(thinned(scene->terrain.elevation(), factor)));
+                 }
+                 Response response;
+                 response.type = "application/octet-stream";
+                 response.body = bytes;
+                 respond(response);
+             });
+         }});
+}
+
+/// The scenario that `{"copy_of": "A"}` names. Error: it names none.
+Result<std::string> read_copy_of(const std::string& body) {
+    const auto wanted = parse_json(body);
+    if (!wanted) return wanted.error();
+    const auto name = wanted->is_object() ? wanted->find("copy_of") : wanted->end();
+    if (name == wanted->end() || !name->is_string())
+        return Error{"the body is an object with copy_of, a scenario's name"};
+    return name->get<std::string>();
+}
+
+void add_scenario(Session& session, const Request& request, const Respond& respond) {
+    change(session, request, respond, [&](const std::string&) {
+        const auto from = read_copy_of(request.body);
+        if (!from) {
+            respond(error_response(400, from.error().message));
+            return;
+        }
+        session.loop().post([respond, name = *from](Scenarios& all) {
+            const auto index = all.find(name);
+            if (!index) {
+                respond(no_scenario(name));
+                return;
+            }
+            const auto made = all.copy(*index);
+            if (!made) {
+                respond(error_response(409, made.error().message));
+                return;
+            }
+            respond(json_response(
+                200, {{"done", fmt::format("scenario {}, a copy of {}", *made, name)}, {"created", *made}}));
+        });
+    });
+}
+
+void end_scenario(Session& session, const Request& request, const Respond& respond) {
+    change(session, request, respond, [&](const std::string&) {
+        session.loop().post([respond, name = request.parameters.at("s")](Scenarios& all) {
+            const auto index = all.find(name);
+            if (!index) {
+                respond(no_scenario(name));
+                return;
+            }
+            const Status removed = all.remove(*index);
+            respond(removed ? json_response(200, {{"done", "scenario " + name + " ended"}, {"created", nullptr}})
+                            : error_response(409, removed.error().message));
+        });
+    });
+}
+
+void control(Session& session, const Request& request, const Respond& respond) {
+    const auto wanted = parse_json(request.body);
+    if (!wanted) {
+        respond(error_response(400, wanted.error().message));
+        return;
+    }
+    const auto text_of = [&](const char* key) -> std::string {
+        const auto found = wanted->is_object() ? wanted->find(key) : wanted->end();
+        return found != wanted->end() && found->is_string() ? found->get<std::string>() : "";
+    };
+    const std::string what = text_of("do"), person = text_of("person");
+    if (what != "request" && what != "release" && what != "grant" && what != "decline") {
+        respond(error_response(400, fmt::format("do = \"{}\"; it is request, release, grant or decline", what)));
+        return;
+    }
+    const Status changed = session.people().control(what, person.empty() ? request.person : person, Clock::now());
+    if (!changed) {
+        respond(error_response(409, changed.error().message));
+        return;
+    }
+    session.people_changed();
+    respond(json_response(200, {{"done", what}}));
+}
+
+}  // namespace
+
+void add_session_routes(Router& router, Session& session) {
+    router.add({"GET", "/api/openapi.json", Role::nobody, [](const Request&, const Respond& respond) {
+                    Response response;
+                    response.body = std::make_shared<const std::string>(openapi_file::openapi_json);
+                    respond(response);
+                }});
+    router.add({"GET", "/api/session", Role::viewer, [&session](const Request& request, const Respond& respond) {
+                    respond(json_response(200, session.describe(request.role)));
+                }});
+    router.add({"GET", "/api/scene", Role::viewer, [&session](const Request&, const Respond& respond) {
+                    session.loop().post(
+                        [respond](Scenarios& all) { respond(json_response(200, all.at(0).scene_json())); });
+                }});
+    add_terrain(router, session);
+    const auto with_session = [&session](void (*handler)(Session&, const Request&, const Respond&)) -> Handler {
+        return
+            [&session, handler](const Request& request, const Respond& respond) { handler(session, request, respond); };
+    };
+    router.add({"POST", "/api/scenarios", Role::controller, with_session(add_scenario)});
+    router.add({"DELETE", "/api/scenarios/{s}", Role::controller, with_session(end_scenario)});
+    router.add({"POST", "/api/control", Role::controller, with_session(control)});
+}
+
+}  // namespace talus::serve

@@ -1,0 +1,54 @@
+#pragma once
+
+#include <boost/asio/ip/tcp.hpp>
+#include <boost/beast/core/flat_buffer.hpp>
+#include <boost/beast/core/tcp_stream.hpp>
+#include <boost/beast/http/message.hpp>
+#include <boost/beast/http/string_body.hpp>
+
+#include "serve/access.hpp"
+#include "serve/router.hpp"
+#include "serve/session.hpp"
+#include "serve/site.hpp"
+
+/// What the files that speak HTTP and WebSocket share.
+namespace talus::serve {
+
+namespace asio = boost::asio;
+namespace beast = boost::beast;
+namespace http = boost::beast::http;
+
+/// What a connection needs to answer. One for all; outlives them.
+struct Desk {
+    Access access;
+    Router router;
+    Session& session;
+    Site site;
+    std::size_t connections = 0;   ///< open ones
+    std::size_t people_limit = 0;  ///< WebSockets at once, at most
+};
+
+inline constexpr std::size_t largest_header = 16 * 1024, largest_body = 1024 * 1024, largest_message = 64 * 1024;
+
+using HttpRequest = http::request<http::string_body>;
+
+/// Serves HTTP on a new connection until it ends or becomes a WebSocket.
+void serve_http(asio::ip::tcp::socket socket, Desk& desk);
+
+/// Goes on with `request`, which asks for a WebSocket and has passed all checks.
+void serve_websocket(beast::tcp_stream stream, HttpRequest request, Desk& desk, Role role, const std::string& name,
+                     const std::string& former);
+
+/// Counts an open connection for as long as it lives.
+class ConnectionCount {
+  public:
+    explicit ConnectionCount(std::size_t& count) : count_(count) { ++count_; }
+    ~ConnectionCount() { --count_; }
+    ConnectionCount(const ConnectionCount&) = delete;
+    ConnectionCount& operator=(const ConnectionCount&) = delete;
+
+  private:
+    std::size_t& count_;
+};
+
+}  // namespace talus::serve

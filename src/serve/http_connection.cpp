@@ -1,0 +1,303 @@
+#include <boost/asio/post.hpp>
+#include <boost/beast/http/parser.hpp>
+#include <boost/beast/http/read.hpp>
+#include <boost/beast/http/span_body.hpp>
+#include <boost/beast/http/write.hpp>
+#include <boost/beast/websocket/rfc6455.hpp>
+#include <chrono>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "serve/connection.hpp"
+#include "serve/url.hpp"
+
+namespace talus::serve {
+namespace {
+
+using std::chrono::seconds;
+
+constexpr seconds idle_time{60};                   // between requests, the next header included
+constexpr seconds body_time{30};                   // a body of at most a megabyte
+constexpr std::size_t slowest_reader = 16 * 1024;  // bytes per second
+constexpr seconds linger_time{2};
+constexpr std::size_t linger_bytes = 8 * 1024 * 1024;
+
+std::string text_of(beast::string_view text) {
+    return std::string(text.data(), text.size());
+}
+
+class HttpConnection : public std::enable_shared_from_this<HttpConnection> {
+  public:
+    HttpConnection(asio::ip::tcp::socket socket, Desk& desk)
+        : desk_(desk), count_(desk.connections), stream_(std::move(socket)) {}
+
+    void read_header();
+
+  private:
+    void on_header(beast::error_code error);
+    void read_body();
+    void on_error(beast::error_code error);
+    /// The answer to a request that is refused by its header; nothing: go on.
+    std::optional<Response> refusal();
+    void handle();
+    void upgrade();
+    void give_file();
+    void respond(Response response);
+    void write(http::response<http::span_body<const char>> message);
+    void on_written(beast::error_code error);
+    void linger();
+    [[nodiscard]] std::string header(http::field name) const { return text_of(parser_->get()[name]); }
+
+    Desk& desk_;
+    ConnectionCount count_;
+    beast::tcp_stream stream_;
+    beast::flat_buffer buffer_{64 * 1024};
+    std::optional<http::request_parser<http::string_body>> parser_;
+    Request request_;
+    const Route* route_ = nullptr;
+    // Of the answer that is being written.
+    Bytes body_;
+    std::optional<http::response<http::span_body<const char>>> message_;
+    bool close_ = false;
+    std::size_t drained_ = 0;
+};
+
+void HttpConnection::read_header() {
+    parser_.emplace();
+    parser_->header_limit(largest_header);
+    parser_->body_limit(largest_body);
+    request_ = {};
+    route_ = nullptr;
+    close_ = false;
+    stream_.expires_after(idle_time);
+    http::async_read_header(
+        stream_, buffer_, *parser_,
+        [self = shared_from_this()](beast::error_code error, std::size_t) { self->on_header(error); });
+}
+
+void HttpConnection::on_error(beast::error_code error) {
+    close_ = true;
+    if (error == http::error::end_of_stream || error == beast::error::timeout) {
+        linger();
+    } else if (error == http::error::header_limit || error == http::error::buffer_overflow) {
+        respond(error_response(431, fmt::format("the header is longer than {} bytes", largest_header)));
+    } else if (error == http::error::body_limit) {
+        respond(error_response(413, fmt::format("the body is longer than {} bytes", largest_body)));
+    } else if (error.category() == http::make_error_code(http::error::bad_method).category() &&
+               error != http::error::partial_message) {
+        respond(error_response(400, "the request is not valid HTTP"));
+    }
+    // Anything else: the connection broke.
+}
+
+void HttpConnection::on_header(beast::error_code error) {
+    if (error) {
+        on_error(error);
+        return;
+    }
+    const auto& message = parser_->get();
+    request_.method = text_of(message.method_string());
+    request_.person = text_of(message["Talus-Person"]);
+    if (auto refused = refusal()) {
+        // A body that comes with it is not read.
+        close_ = close_ || !parser_->is_done() || parser_->chunked() || parser_->content_length().value_or(0) > 0;
+        respond(std::move(*refused));
+        return;
+    }
+    if (parser_->is_done()) {
+        handle();
+    } else {
+        read_body();
+    }
+}
+
+std::optional<Response> HttpConnection::refusal() {
+    const auto& message = parser_->get();
+    const std::string host = header(http::field::host), origin = header(http::field::origin);
+    if (message.count(http::field::host) != 1 || !desk_.access.host_allowed(host)) {
+        return error_response(403,
+                              "this server is not known by the host name of the request; start it with --allow-host");
+    }
+    if (message.count(http::field::origin) > 1 || (!origin.empty() && !desk_.access.origin_allowed(origin, host))) {
+        return error_response(403, "the request comes from a page of another origin");
+    }
+    if (parser_->content_length().value_or(0) > largest_body) {
+        return error_response(413, fmt::format("the body is longer than {} bytes", largest_body));
+    }
+    auto target = parse_target({message.target().data(), message.target().size()});
+    if (!target) return error_response(400, target.error().message);
+    request_.path = std::move(target->path);
+    request_.query = std::move(target->query);
+
+    const bool websocket = request_.path == "/ws";
+    if (!websocket && !request_.path.starts_with("/api/") && request_.path != "/api") {
+        if (request_.method == "GET" || request_.method == "HEAD") return {};
+        Response wrong = error_response(405, "the page's files can only be read");
+        wrong.allow = "GET, HEAD";
+        return wrong;
+    }
+    Role needs = Role::viewer;
+    if (!websocket) {
+        auto match = desk_.router.find(request_.method, request_.path);
+        if (match.route == nullptr) {
+            if (match.allow.empty()) return error_response(404, "there is no such route; see /api/openapi.json");
+            Response wrong =
+                error_response(405, "this route has no method " + request_.method + "; it has " + match.allow);
+            wrong.allow = match.allow;
+            return wrong;
+        }
+        route_ = match.route;
+        request_.parameters = std::move(match.parameters);
+        needs = route_->needs;
+    }
+    std::string token;
+    if (websocket) {
+        token = request_.query["token"];
+    } else {
+        constexpr std::string_view scheme = "Bearer ";
+        const std::string authorization = header(http::field::authorization);
+        if (authorization.starts_with(scheme)) token = authorization.substr(scheme.size());
+    }
+    request_.role = desk_.access.role_of(token);
+    if (request_.role >= needs) return {};
+    if (request_.role == Role::nobody) {
+        return error_response(
+            401, "a token is needed, as header \"Authorization: Bearer TOKEN\"; the server printed it in its links");
+    }
+    return error_response(403, "a viewer's token only reads; this needs the token of controllers");
+}
+
+void HttpConnection::read_body() {
+    stream_.expires_after(body_time);
+    http::async_read(stream_, buffer_, *parser_, [self = shared_from_this()](beast::error_code error, std::size_t) {
+        if (error) {
+            self->on_error(error);
+        } else {
+            self->handle();
+        }
+    });
+}
+
+void HttpConnection::handle() {
+    close_ = !parser_->get().keep_alive();
+    if (request_.path == "/ws") {
+        upgrade();
+    } else if (route_ == nullptr) {
+        give_file();
+    } else {
+        stream_.expires_never();
+        request_.body = std::move(parser_->get().body());
+        // The answer may come from another thread, and after the client has gone.
+        route_->handler(request_, [self = shared_from_this()](Response response) {
+            asio::post(self->stream_.get_executor(),
+                       [self, response = std::move(response)]() mutable { self->respond(std::move(response)); });
+        });
+    }
+}
+
+void HttpConnection::upgrade() {
+    if (!beast::websocket::is_upgrade(parser_->get())) {
+        respond(error_response(400, "/ws speaks WebSocket; this was an ordinary request"));
+        return;
+    }
+    if (desk_.session.people().count() >= desk_.people_limit) {
+        respond(error_response(503, fmt::format("{} people are here, the most there can be", desk_.people_limit)));
+        return;
+    }
+    stream_.expires_never();
+    serve_websocket(std::move(stream_), parser_->release(), desk_, request_.role, request_.query["name"],
+                    request_.query["person"]);
+}
+
+void HttpConnection::give_file() {
+    const Site::File* file = desk_.site.find(request_.path);
+    if (file == nullptr) {
+        respond(error_response(404, "there is no such file"));
+        return;
+    }
+    http::response<http::span_body<const char>> message;
+    const std::string host = header(http::field::host);
+    const bool packed = file->gzipped && header(http::field::accept_encoding).find("gzip") != std::string::npos;
+    body_ = packed ? file->gzipped : file->content;
+    message.result(http::status::ok);
+    message.set(http::field::content_type, file->type);
+    if (packed) message.set(http::field::content_encoding, "gzip");
+    message.set(http::field::vary, "Accept-Encoding");
+    message.set(http::field::cache_control, file->for_ever ? "public, max-age=31536000, immutable" : "no-cache");
+    // Not every browser takes 'self' to mean the WebSocket too. The host is one of the list.
+    message.set(
+        "Content-Security-Policy",
+        fmt::format("default-src 'self'; script-src 'self'; style-src 'self'; connect-src 'self' ws://{0} wss://{0}; "
+                    "img-src 'self' blob: data:; worker-src 'self' blob:; media-src 'self' blob:; object-src 'none'; "
+                    "base-uri 'none'; form-action 'none'; frame-ancestors 'none'",
+                    host));
+    message.set("Cross-Origin-Opener-Policy", "same-origin");
+    write(std::move(message));
+}
+
+void HttpConnection::respond(Response response) {
+    http::response<http::span_body<const char>> message;
+    message.result(static_cast<unsigned>(response.status));
+    message.set(http::field::content_type, response.type);
+    message.set(http::field::cache_control, "no-store");
+    message.set("Content-Security-Policy", "default-src 'none'; frame-ancestors 'none'; sandbox");
+    if (response.status == 401) message.set(http::field::www_authenticate, "Bearer");
+    if (!response.allow.empty()) message.set(http::field::allow, response.allow);
+    if (!response.file_name.empty()) {
+        message.set(http::field::content_disposition, fmt::format("attachment; filename=\"{}\"", response.file_name));
+    }
+    body_ = std::move(response.body);
+    write(std::move(message));
+}
+
+void HttpConnection::write(http::response<http::span_body<const char>> message) {
+    message.version(11);
+    message.keep_alive(!close_);
+    message.set("X-Content-Type-Options", "nosniff");
+    message.set("Referrer-Policy", "no-referrer");
+    message.set("Cross-Origin-Resource-Policy", "same-origin");
+    message.content_length(body_->size());
+    if (request_.method != "HEAD") message.body() = beast::span<const char>(body_->data(), body_->size());
+    message_ = std::move(message);
+    stream_.expires_after(idle_time + seconds(body_->size() / slowest_reader));
+    http::async_write(stream_, *message_,
+                      [self = shared_from_this()](beast::error_code error, std::size_t) { self->on_written(error); });
+}
+
+void HttpConnection::on_written(beast::error_code error) {
+    message_.reset();
+    body_.reset();
+    if (error) return;
+    if (close_) {
+        linger();
+    } else {
+        read_header();
+    }
+}
+
+/// Ends the connection so that the answer gets there: what the client still sends would else make the system drop it.
+void HttpConnection::linger() {
+    beast::error_code ignored;
+    if (drained_ == 0) {
+        stream_.socket().shutdown(asio::ip::tcp::socket::shutdown_send, ignored);
+        stream_.expires_after(linger_time);
+    }
+    buffer_.consume(buffer_.size());
+    stream_.async_read_some(buffer_.prepare(16 * 1024),
+                            [self = shared_from_this()](beast::error_code error, std::size_t n) {
+                                self->drained_ += n;
+                                if (!error && self->drained_ < linger_bytes) self->linger();
+                            });
+}
+
+}  // namespace
+
+void serve_http(asio::ip::tcp::socket socket, Desk& desk) {
+    std::make_shared<HttpConnection>(std::move(socket), desk)->read_header();
+}
+
+}  // namespace talus::serve

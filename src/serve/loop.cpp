@@ -1,0 +1,82 @@
+#include "serve/loop.hpp"
+
+#include <algorithm>
+#include <exception>
+#include <pthread.h>
+#include <utility>
+
+#include <tbb/global_control.h>
+#include <tbb/task_arena.h>
+
+namespace talus::serve {
+
+struct Loop::Threads {
+    explicit Threads(int count)
+        : limit(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(count)), arena(count) {}
+    tbb::global_control limit;
+    tbb::task_arena arena;
+};
+
+Result<std::unique_ptr<Loop>> Loop::start(std::shared_ptr<const Scene> scene, twin::ScenarioOptions options,
+                                          Watcher& watcher, std::function<void(std::string)> failed) {
+    const int wanted = scene->spec.solver.thread_count;
+    const int count = wanted > 0 ? wanted : static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+    auto threads = std::make_unique<Threads>(count);
+    auto first = threads->arena.execute([&] { return twin::Scenario::open(std::move(scene), std::move(options)); });
+    if (!first) return first.error();
+    return std::unique_ptr<Loop>(new Loop(std::move(threads), std::move(*first), watcher, std::move(failed)));
+}
+
+Loop::Loop(std::unique_ptr<Threads> threads, std::unique_ptr<twin::Scenario> first, Watcher& watcher,
+           std::function<void(std::string)> failed)
+    : threads_(std::move(threads)),
+      scenarios_(std::move(first), watcher),
+      failed_(std::move(failed)),
+      thread_([this] { run(); }) {}
+
+Loop::~Loop() {
+    {
+        const std::lock_guard lock(mutex_);
+        done_ = true;
+    }
+    wake_.notify_one();
+    thread_.join();
+}
+
+void Loop::post(Task task) {
+    {
+        const std::lock_guard lock(mutex_);
+        tasks_.push_back(std::move(task));
+    }
+    wake_.notify_one();
+}
+
+void Loop::run() {
+    pthread_setname_np(pthread_self(), "loop");  // as tools that watch threads show it
+    try {
+        threads_->arena.execute([this] { work_until_done(); });
+    } catch (const std::exception& error) {
+        failed_(error.what());
+    }
+}
+
+void Loop::work_until_done() {
+    std::deque<Task> now_due;
+    std::unique_lock lock(mutex_);
+    while (!done_) {
+        now_due.swap(tasks_);
+        lock.unlock();
+        for (Task& task : now_due) task(scenarios_);
+        now_due.clear();
+        const auto next = scenarios_.work(Clock::now());
+        lock.lock();
+        const auto called = [this] { return done_ || !tasks_.empty(); };
+        if (!next) {
+            wake_.wait(lock, called);
+        } else if (*next > Clock::now()) {
+            wake_.wait_until(lock, *next, called);
+        }
+    }
+}
+
+}  // namespace talus::serve

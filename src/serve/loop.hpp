@@ -1,0 +1,52 @@
+#pragma once
+
+#include <condition_variable>
+#include <deque>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <thread>
+
+#include "core/result.hpp"
+#include "serve/scenarios.hpp"
+
+namespace talus::serve {
+
+/// The one thread that touches the scenarios. Others post tasks, which run between two steps, in order; so nothing in
+/// the simulation needs a lock. Sleeps while nothing is due.
+class Loop {
+  public:
+    using Task = std::function<void(Scenarios&)>;
+
+    /// Opens the scene as scenario A, paused at time 0. Threads as `solver.thread_count` says. `watcher` is told from
+    /// the loop's thread, `failed` is called there once if memory runs out or the like; nothing runs after that.
+    /// Errors: as twin::Scenario::open.
+    [[nodiscard]] static Result<std::unique_ptr<Loop>> start(std::shared_ptr<const Scene> scene,
+                                                             twin::ScenarioOptions options, Watcher& watcher,
+                                                             std::function<void(std::string)> failed);
+    /// Ends after the step or task that runs; tasks that wait are dropped.
+    ~Loop();
+    Loop(const Loop&) = delete;
+    Loop& operator=(const Loop&) = delete;
+
+    void post(Task task);
+
+  private:
+    struct Threads;
+    Loop(std::unique_ptr<Threads> threads, std::unique_ptr<twin::Scenario> first, Watcher& watcher,
+         std::function<void(std::string)> failed);
+    void run();
+    void work_until_done();
+
+    std::unique_ptr<Threads> threads_;
+    Scenarios scenarios_;
+    std::function<void(std::string)> failed_;
+    std::mutex mutex_;
+    std::condition_variable wake_;
+    std::deque<Task> tasks_;
+    bool done_ = false;
+    std::thread thread_;
+};
+
+}  // namespace talus::serve

@@ -1,0 +1,48 @@
+#pragma once
+
+#include <functional>
+#include <map>
+#include <memory>
+#include <string>
+
+#include <nlohmann/json.hpp>
+
+namespace talus::serve {
+
+/// What a token entitles to. Ordered: each may do what those before it may.
+enum class Role { nobody, viewer, controller };
+
+/// "viewer", "controller", "nobody".
+[[nodiscard]] const char* role_name(Role role);
+
+using Arguments = std::map<std::string, std::string, std::less<>>;
+
+/// An HTTP request that has passed the checks of host, origin and token.
+struct Request {
+    std::string method;
+    std::string path;      ///< decoded, without the query
+    Arguments query;       ///< decoded
+    Arguments parameters;  ///< what stands for {name} in the route's pattern
+    std::string body;
+    std::string person;  ///< header Talus-Person: the id that a page got on its WebSocket; empty: a program
+    Role role = Role::nobody;
+};
+
+using Bytes = std::shared_ptr<const std::string>;
+
+struct Response {
+    int status = 200;
+    std::string type = "application/json";
+    Bytes body;
+    std::string file_name;  ///< what a browser is to save the body as; empty: it is shown
+    std::string allow;      ///< methods, for status 405
+};
+
+/// Answers a request: once, from any thread.
+using Respond = std::function<void(Response)>;
+
+[[nodiscard]] Response json_response(int status, const nlohmann::json& content);
+/// `{"error": sentence}`
+[[nodiscard]] Response error_response(int status, const std::string& sentence);
+
+}  // namespace talus::serve

@@ -1,0 +1,184 @@
+#include "serve/people.hpp"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "serve/json_text.hpp"
+
+namespace talus::serve {
+namespace {
+
+constexpr std::size_t longest_name = 40;
+
+// Okabe and Ito (2008), Color Universal Design: told apart by colour-blind readers too.
+constexpr std::array<const char*, 7> colours = {"#e69f00", "#56b4e9", "#009e73", "#f0e442",
+                                                "#0072b2", "#d55e00", "#cc79a7"};
+
+}  // namespace
+
+People::Member* People::member(const std::string& id) {
+    const auto found = std::find_if(members_.begin(), members_.end(), [&](const Member& m) { return m.id == id; });
+    return found == members_.end() ? nullptr : &*found;
+}
+
+const Person* People::find(const std::string& id) const {
+    const auto found =
+        std::find_if(members_.begin(), members_.end(), [&](const Member& m) { return m.id == id && !m.away; });
+    return found == members_.end() ? nullptr : &*found;
+}
+
+std::size_t People::count() const {
+    return static_cast<std::size_t>(
+        std::count_if(members_.begin(), members_.end(), [](const Member& m) { return !m.away; }));
+}
+
+const char* People::free_colour() const {
+    std::array<int, colours.size()> used{};
+    for (const Member& m : members_) {
+        for (std::size_t i = 0; i < colours.size(); ++i) used[i] += m.colour == colours[i] ? 1 : 0;
+    }
+    return colours[static_cast<std::size_t>(std::min_element(used.begin(), used.end()) - used.begin())];
+}
+
+const Person& People::join(Role role, const std::string& name, const std::string& former, Time) {
+    Member* known = member(former);
+    if (known != nullptr && known->away && known->role == role) {
+        known->away = false;
+    } else {
+        ++joined_;
+        Member fresh;
+        fresh.id = fmt::format("p{}", joined_);
+        fresh.name = fmt::format("{} {}", role == Role::controller ? "Controller" : "Viewer", joined_);
+        fresh.colour = free_colour();
+        fresh.role = role;
+        members_.push_back(fresh);
+        known = &members_.back();
+    }
+    rename(known->id, name);
+    if (role == Role::controller && holder_.empty()) holder_ = known->id;
+    return *known;
+}
+
+void People::leave(const std::string& id, Time now) {
+    Member* who = member(id);
+    if (who == nullptr) return;
+    who->away = true;
+    who->left = now;
+    who->mark.reset();
+    if (plea_ && plea_->id == id) plea_.reset();
+    if (holder_ == id && plea_) pass_control();
+}
+
+void People::rename(const std::string& id, const std::string& name) {
+    Member* who = member(id);
+    const std::string tidy = tidy_name(name, longest_name);
+    if (who != nullptr && !tidy.empty()) who->name = tidy;
+}
+
+void People::set_mark(const std::string& id, std::optional<std::array<double, 3>> mark) {
+    if (Member* who = member(id)) who->mark = mark;
+}
+
+/// To whom asks, else to the controller who has been here longest, else to nobody.
+void People::pass_control() {
+    const std::string former = holder_;
+    holder_.clear();
+    if (plea_) {
+        holder_ = plea_->id;
+    } else {
+        for (const Member& m : members_) {
+            if (m.role == Role::controller && !m.away && m.id != former) {
+                holder_ = m.id;
+                break;
+            }
+        }
+    }
+    plea_.reset();
+}
+
+Status People::control(const std::string& what, const std::string& id, Time now) {
+    const Person* who = find(id);
+    if (who == nullptr) return Error{fmt::format("person = \"{}\" is not in this session", id)};
+    if (who->role != Role::controller)
+        return Error{who->name + " came with the link for viewers and cannot have control"};
+    if (what == "request") {
+        if (holder_ == id) return {};
+        if (holder_.empty()) {
+            holder_ = id;
+            return {};
+        }
+        if (plea_ && plea_->id != id) return Error{find(plea_->id)->name + " has already asked for control"};
+        if (!plea_) plea_ = Plea{id, now};
+        return {};
+    }
+    if (holder_ != id) return Error{who->name + " does not have control"};
+    if (what == "release") {
+        const bool asked = plea_.has_value();
+        if (asked) {
+            pass_control();
+        } else {
+            holder_.clear();
+        }
+        return {};
+    }
+    if (!plea_) return Error{"nobody has asked for control"};
+    if (what == "grant") {
+        pass_control();
+    } else if (what == "decline") {
+        plea_.reset();
+    } else {
+        return Error{fmt::format("do = \"{}\"; it is request, release, grant or decline", what)};
+    }
+    return {};
+}
+
+Status People::may_act(const std::string& id) const {
+    if (!id.empty() && find(id) == nullptr) return Error{fmt::format("person = \"{}\" is not in this session", id)};
+    if (holder_ == id) return {};
+    if (holder_.empty()) return Error{"nobody has control; ask for it"};
+    const Person* holder = find(holder_);
+    return Error{fmt::format("{} has control; ask for it", holder ? holder->name : "somebody who was here just now")};
+}
+
+bool People::tick(Time now) {
+    bool changed = false;
+    if (plea_ && now - plea_->since >= answer_time) {
+        pass_control();
+        changed = true;
+    }
+    for (auto it = members_.begin(); it != members_.end();) {
+        if (it->away && now - it->left >= return_time) {
+            if (holder_ == it->id) {
+                pass_control();
+                changed = true;
+            }
+            it = members_.erase(it);
+        } else {
+            ++it;
+        }
+    }
+    return changed;
+}
+
+bool People::waiting() const {
+    return plea_.has_value() || std::any_of(members_.begin(), members_.end(), [](const Member& m) { return m.away; });
+}
+
+nlohmann::json People::to_json() const {
+    using nlohmann::json;
+    json people = json::array();
+    for (const Member& m : members_) {
+        if (m.away) continue;
+        people.push_back({{"id", m.id},
+                          {"name", m.name},
+                          {"role", role_name(m.role)},
+                          {"colour", m.colour},
+                          {"mark", m.mark ? json(*m.mark) : json()}});
+    }
+    json request;
+    if (plea_) request = {{"id", plea_->id}, {"name", find(plea_->id)->name}};
+    return {{"people", people}, {"controller", find(holder_) ? json(holder_) : json()}, {"request", request}};
+}
+
+}  // namespace talus::serve

@@ -1,0 +1,73 @@
+#pragma once
+
+#include <array>
+#include <chrono>
+#include <list>
+#include <optional>
+#include <string>
+
+#include <nlohmann/json.hpp>
+
+#include "core/result.hpp"
+#include "serve/message.hpp"
+
+namespace talus::serve {
+
+struct Person {
+    std::string id, name, colour;
+    Role role = Role::viewer;
+    std::optional<std::array<double, 3>> mark;  ///< what the person points at, local position, m
+    bool away = false;                          ///< the connection has gone; comes back or is forgotten
+};
+
+/// Who is in the session, and which controller has control. Knows no connections; time is told.
+class People {
+  public:
+    using Time = std::chrono::steady_clock::time_point;
+    /// How long the holder of control may leave a request unanswered.
+    static constexpr std::chrono::seconds answer_time{10};
+    /// How long somebody whose connection broke keeps place and control, unless another asks.
+    static constexpr std::chrono::seconds return_time{3};
+
+    /// `former`: the id that a connection had before it broke; empty or unknown: somebody new. The first controller
+    /// has control.
+    const Person& join(Role role, const std::string& name, const std::string& former, Time now);
+    void leave(const std::string& id, Time now);
+    void rename(const std::string& id, const std::string& name);
+    void set_mark(const std::string& id, std::optional<std::array<double, 3>> mark);
+
+    /// `what`: request, release, grant or decline. Errors: no such person or not a controller, not the holder, nothing
+    /// asked, somebody else asks.
+    [[nodiscard]] Status control(const std::string& what, const std::string& id, Time now);
+    /// Whether `id` (empty: a program without a WebSocket) may change something now. The error says who has control.
+    [[nodiscard]] Status may_act(const std::string& id) const;
+
+    /// Applies what the passing of time decides. True: something has changed.
+    bool tick(Time now);
+    /// Whether there is something that time will decide.
+    [[nodiscard]] bool waiting() const;
+
+    [[nodiscard]] const Person* find(const std::string& id) const;
+    [[nodiscard]] std::size_t count() const;
+    /// Keys people, controller and request, as in the protocol's message `people`.
+    [[nodiscard]] nlohmann::json to_json() const;
+
+  private:
+    struct Member : Person {
+        Time left{};
+    };
+    struct Plea {
+        std::string id;
+        Time since;
+    };
+    [[nodiscard]] Member* member(const std::string& id);
+    [[nodiscard]] const char* free_colour() const;
+    void pass_control();
+
+    std::list<Member> members_;  // in the order of joining; a list: references last
+    std::string holder_;         // id; empty: nobody
+    std::optional<Plea> plea_;
+    std::uint64_t joined_ = 0;
+};
+
+}  // namespace talus::serve

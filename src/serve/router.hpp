@@ -1,0 +1,39 @@
+#pragma once
+
+#include <functional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "serve/message.hpp"
+
+namespace talus::serve {
+
+using Handler = std::function<void(const Request&, const Respond&)>;
+
+struct Route {
+    std::string method;
+    std::string pattern;        ///< "/api/scenarios/{s}/state"
+    Role needs = Role::viewer;  ///< nobody: no token asked
+    Handler handler;            ///< called on the server's thread; must not wait
+};
+
+/// The table of what can be asked.
+class Router {
+  public:
+    void add(Route route) { routes_.push_back(std::move(route)); }
+    [[nodiscard]] const std::vector<Route>& routes() const { return routes_; }
+
+    struct Match {
+        const Route* route = nullptr;
+        Arguments parameters;
+        std::string allow;  ///< where there is no route: the methods that the path has; empty: no such path
+    };
+    /// HEAD finds what GET finds.
+    [[nodiscard]] Match find(std::string_view method, std::string_view path) const;
+
+  private:
+    std::vector<Route> routes_;
+};
+
+}  // namespace talus::serve

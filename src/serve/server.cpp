@@ -1,0 +1,176 @@
+#include "serve/server.hpp"
+
+#include <algorithm>
+#include <boost/asio/executor_work_guard.hpp>
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/ip/tcp.hpp>
+#include <boost/asio/post.hpp>
+#include <boost/asio/steady_timer.hpp>
+#include <chrono>
+#include <optional>
+#include <pthread.h>
+#include <sys/resource.h>
+#include <thread>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "serve/api.hpp"
+#include "serve/connection.hpp"
+
+namespace talus::serve {
+namespace {
+
+using asio::ip::tcp;
+
+constexpr rlim_t wanted_files = 8192;
+constexpr std::size_t spare_files = 64;  // for everything but connections
+
+/// Lets this process have as many open connections as the system allows; how many that are.
+std::size_t raise_connection_limit() {
+    rlimit files{};
+    if (getrlimit(RLIMIT_NOFILE, &files) != 0) return 256;
+    if (files.rlim_cur < wanted_files) {
+        files.rlim_cur = files.rlim_max == RLIM_INFINITY ? wanted_files : std::min(files.rlim_max, wanted_files);
+        setrlimit(RLIMIT_NOFILE, &files);
+        getrlimit(RLIMIT_NOFILE, &files);
+    }
+    const auto most = static_cast<std::size_t>(std::min(files.rlim_cur, wanted_files));
+    return most > 2 * spare_files ? most - spare_files : most / 2;
+}
+
+std::string bracketed(const asio::ip::address& address) {
+    return address.is_v6() ? "[" + address.to_string() + "]" : address.to_string();
+}
+
+/// An address that a browser on this machine can open.
+std::string host_for_links(const asio::ip::address& address) {
+    return address.is_unspecified() ? "127.0.0.1" : bracketed(address);
+}
+
+}  // namespace
+
+struct Server::Parts {
+    Parts() : acceptor(io), retry(io), ticker(io), guard(asio::make_work_guard(io)) {}
+    ~Parts();
+
+    [[nodiscard]] Status bind(const std::string& host, std::uint16_t port);
+    void accept();
+    [[nodiscard]] Thread thread_of_session();
+
+    ServerOptions options;
+    asio::io_context io{1};
+    tcp::acceptor acceptor;
+    asio::steady_timer retry, ticker;
+    asio::executor_work_guard<asio::io_context::executor_type> guard;
+    std::optional<Session> session;
+    std::optional<Exports> exports;
+    std::optional<Desk> desk;
+    std::size_t connection_limit = 0;
+    tcp::endpoint bound;
+    std::thread thread;
+};
+
+Server::Parts::~Parts() {
+    io.stop();
+    if (thread.joinable()) thread.join();
+    // The simulation's thread ends while everything that it tells is still there; connections end with `io`.
+    if (session) session->close();
+}
+
+Status Server::Parts::bind(const std::string& host, std::uint16_t port) {
+    boost::system::error_code error;
+    const auto address = asio::ip::make_address(host == "localhost" ? "127.0.0.1" : host, error);
+    if (error) return Error{fmt::format("--host {}: not an address; for example 127.0.0.1, 0.0.0.0 or ::1", host)};
+    const tcp::endpoint endpoint(address, port);
+    acceptor.open(endpoint.protocol(), error);
+    if (!error) acceptor.set_option(tcp::acceptor::reuse_address(true), error);
+    if (!error) acceptor.bind(endpoint, error);
+    if (!error) acceptor.listen(asio::socket_base::max_listen_connections, error);
+    if (error == asio::error::address_in_use) {
+        return Error{
+            fmt::format("port {} is in use; choose another with --port, or --port 0 for any that is free", port)};
+    }
+    if (error == asio::error::access_denied) {
+        return Error{
+            fmt::format("port {} needs more rights than this program has; choose one above 1023 with --port", port)};
+    }
+    if (error) return Error{fmt::format("cannot listen on {} port {}: {}", host, port, error.message())};
+    bound = acceptor.local_endpoint(error);
+    return {};
+}
+
+void Server::Parts::accept() {
+    acceptor.async_accept([this](boost::system::error_code error, tcp::socket socket) {
+        if (error == asio::error::operation_aborted) return;
+        if (error) {
+            // Out of files or memory: others must end first.
+            retry.expires_after(std::chrono::milliseconds(100));
+            retry.async_wait([this](boost::system::error_code) { accept(); });
+            return;
+        }
+        if (desk->connections < connection_limit) serve_http(std::move(socket), *desk);
+        accept();
+    });
+}
+
+Thread Server::Parts::thread_of_session() {
+    Thread made;
+    made.post = [this](std::function<void()> task) { asio::post(io, std::move(task)); };
+    made.tick_after = [this](std::chrono::milliseconds wait) {
+        ticker.expires_after(wait);
+        ticker.async_wait([this](boost::system::error_code error) {
+            if (!error) session->tick();
+        });
+    };
+    return made;
+}
+
+Server::Server(std::unique_ptr<Parts> parts) : parts_(std::move(parts)) {}
+Server::~Server() = default;
+
+Result<std::unique_ptr<Server>> Server::listen(ServerOptions options) {
+    if (Status good = check_tokens(options.tokens); !good) return good.error();
+    auto parts = std::make_unique<Parts>();
+    if (Status bound = parts->bind(options.host, options.port); !bound) return bound.error();
+    parts->options = std::move(options);
+    return std::unique_ptr<Server>(new Server(std::move(parts)));
+}
+
+Status Server::serve(std::shared_ptr<const Scene> scene) {
+    Parts& parts = *parts_;
+    const ServerOptions& options = parts.options;
+    parts.session.emplace(parts.thread_of_session(), std::move(scene), options.tokens);
+    const auto on_failure = options.on_failure ? options.on_failure : [](const std::string&) {};
+    if (Status opened = parts.session->open(options.scenario, on_failure); !opened) return opened;
+    parts.exports.emplace(*parts.session, options.export_folder);
+    parts.connection_limit = raise_connection_limit();
+    parts.desk.emplace(
+        Desk{Access(options.tokens, bracketed(parts.bound.address()), parts.bound.port(), options.allowed_hosts),
+             make_api(*parts.session, *parts.exports), *parts.session, Site(), 0, parts.connection_limit / 2});
+    if (options.run) {
+        parts.session->loop().post([](Scenarios& all) { (void)all.act(0, {{"action", "run"}}, ""); });
+    }
+    parts.accept();
+    parts.thread = std::thread([&parts] {
+        pthread_setname_np(pthread_self(), "server");
+        parts.io.run();
+    });
+    return {};
+}
+
+std::uint16_t Server::port() const {
+    return parts_->bound.port();
+}
+
+std::string Server::link(Role role) const {
+    const Tokens& tokens = parts_->options.tokens;
+    return fmt::format("http://{}:{}/#token={}", host_for_links(parts_->bound.address()), port(),
+                       role == Role::controller ? tokens.controller : tokens.viewer);
+}
+
+const std::vector<Route>& Server::routes() const {
+    return parts_->desk->router.routes();
+}
+
+}  // namespace talus::serve

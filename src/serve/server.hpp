@@ -1,0 +1,52 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "core/result.hpp"
+#include "scene/scene.hpp"
+#include "serve/access.hpp"
+#include "serve/router.hpp"
+#include "twin/scenario.hpp"
+
+namespace talus::serve {
+
+struct ServerOptions {
+    std::string host = "127.0.0.1";          ///< address to listen on, IPv4 or IPv6
+    std::uint16_t port = 8123;               ///< 0: any that is free
+    std::vector<std::string> allowed_hosts;  ///< further names that browsers may know this server by
+    Tokens tokens;
+    std::filesystem::path export_folder;  ///< an existing folder for result files
+    twin::ScenarioOptions scenario;
+    bool run = false;                             ///< begin at once
+    std::function<void(std::string)> on_failure;  ///< the simulation cannot go on: out of memory; from any thread
+};
+
+/// A session that people and programs reach over HTTP and WebSocket, as docs/protocol.md has it. Runs on threads of its
+/// own until it is destroyed.
+class Server {
+  public:
+    /// Takes the port. Errors: bad address, port in use, bad tokens.
+    [[nodiscard]] static Result<std::unique_ptr<Server>> listen(ServerOptions options);
+    /// Opens the scene and begins to answer; once. Errors: the scene cannot be run.
+    [[nodiscard]] Status serve(std::shared_ptr<const Scene> scene);
+    ~Server();
+    Server(const Server&) = delete;
+    Server& operator=(const Server&) = delete;
+
+    [[nodiscard]] std::uint16_t port() const;
+    /// The address with a token, for a browser.
+    [[nodiscard]] std::string link(Role role) const;
+    [[nodiscard]] const std::vector<Route>& routes() const;
+
+  private:
+    struct Parts;
+    explicit Server(std::unique_ptr<Parts> parts);
+    std::unique_ptr<Parts> parts_;
+};
+
+}  // namespace talus::serve

@@ -1,0 +1,110 @@
+#pragma once
+
+#include <array>
+#include <chrono>
+#include <functional>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "serve/access.hpp"
+#include "serve/loop.hpp"
+#include "serve/people.hpp"
+#include "serve/worker.hpp"
+
+namespace talus::serve {
+
+/// A connection that looks: a WebSocket. What is sent to it must not wait.
+class Viewer {
+  public:
+    virtual ~Viewer() = default;
+    virtual void send(Bytes text) = 0;
+    /// Replaces a frame of the same scenario that has not been sent.
+    virtual void offer(int scenario, Bytes frame) = 0;
+    /// Frames per second and scenario, at most.
+    virtual void set_rate(double rate_hz) = 0;
+};
+
+/// How the session gets at the server's thread.
+struct Thread {
+    std::function<void(std::function<void()>)> post;            ///< runs something on it, soon
+    std::function<void(std::chrono::milliseconds)> tick_after;  ///< calls Session::tick once, after a while
+};
+
+/// What all connections share: the scenarios, the people, and who looks at what. Everything but the functions of
+/// Watcher is for the server's thread.
+class Session final : public Watcher {
+  public:
+    Session(Thread thread, std::shared_ptr<const Scene> scene, Tokens tokens);
+    ~Session() override;
+
+    /// Opens the scene; once, before anything else. Errors: as Loop::start.
+    [[nodiscard]] Status open(twin::ScenarioOptions options, std::function<void(std::string)> failed);
+    void close() { loop_.reset(); }
+
+    /// Sends the newcomer all there is to know. Until `leave`, `viewer` is told what happens.
+    void join(Viewer& viewer, Role role, const std::string& name, const std::string& former);
+    void leave(Viewer& viewer);
+    /// What a viewer has sent. False: it is not in the protocol, and the connection is to end.
+    [[nodiscard]] bool receive(Viewer& viewer, std::string_view text);
+    void tick();
+
+    [[nodiscard]] Loop& loop() { return *loop_; }
+    [[nodiscard]] People& people() { return people_; }
+    /// For work of fractions of a second that neither thread should do.
+    [[nodiscard]] Worker& worker() { return worker_; }
+    [[nodiscard]] const std::shared_ptr<const Scene>& scene() const { return scene_; }
+    /// Tells everybody, soon.
+    void people_changed();
+    /// As `GET /api/session`.
+    [[nodiscard]] nlohmann::json describe(Role role) const;
+
+    // Watcher, from the loop's thread.
+    void frames(FrameSet set) override;
+    void state(int scenario, nlohmann::json state) override;
+    void setup(int scenario, nlohmann::json setup) override;
+    void done(int scenario, const std::string& by, const std::string& sentence) override;
+    void scenarios(std::vector<std::string> names) override;
+
+  private:
+    /// What a viewer wants to see.
+    struct View {
+        std::string person;
+        std::array<bool, Scenarios::most> looks{};
+        double rate_hz = 0;
+        unsigned cap = 0;
+    };
+    [[nodiscard]] bool set_view(Viewer& viewer, View& view, const nlohmann::json& message);
+    void update_audience();
+    void deliver_frames();
+    void offer_newest(Viewer& viewer, const View& view, int scenario);
+    void broadcast(const nlohmann::json& message);
+    void arm_tick();
+    void tell_people(Clock::time_point now);
+    [[nodiscard]] Clock::duration people_interval() const;
+
+    Thread thread_;
+    std::shared_ptr<const Scene> scene_;
+    Tokens tokens_;
+    People people_;
+    std::map<Viewer*, View> viewers_;
+    std::vector<std::string> names_{"A"};
+    std::array<Bytes, Scenarios::most> states_, setups_;  // as messages; for those who join
+    std::vector<Audience> audience_;
+    std::array<FrameSet, Scenarios::most> newest_;
+    bool people_untold_ = false, ticking_ = false;
+    Clock::time_point people_told_{};
+
+    std::mutex frames_mutex_;
+    std::array<std::optional<FrameSet>, Scenarios::most> arrived_;  // from the loop; guarded by the mutex
+    bool delivery_posted_ = false;                                  // likewise
+
+    Worker worker_;
+    std::unique_ptr<Loop> loop_;  // last: its thread ends before anything that it tells goes
+};
+
+}  // namespace talus::serve

@@ -1,0 +1,18 @@
+#pragma once
+
+#include <string_view>
+
+#include "core/result.hpp"
+#include "serve/message.hpp"
+
+namespace talus::serve {
+
+struct Target {
+    std::string path;  ///< decoded
+    Arguments query;   ///< decoded; of a key that is there twice, the last
+};
+
+/// Takes the target of a request apart. Errors: not a path, a bad percent sequence, control characters.
+[[nodiscard]] Result<Target> parse_target(std::string_view text);
+
+}  // namespace talus::serve

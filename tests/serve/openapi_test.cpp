@@ -1,0 +1,182 @@
+#include <algorithm>
+#include <map>
+#include <set>
+#include <thread>
+
+#include "serve/schema.hpp"
+#include "serve/serve_fixture.hpp"
+
+namespace talus::test {
+namespace {
+
+using nlohmann::json;
+
+class OpenApi : public Serve {
+  protected:
+    void SetUp() override {
+        Serve::SetUp();
+        document = HttpClient(port()).get("/api/openapi.json").json();
+    }
+
+    /// Whether the answer is as the description has it for its status.
+    void expect_described(const std::string& method, const std::string& pattern, const Answer& answer) {
+        SCOPED_TRACE(method + " " + pattern + " " + std::to_string(answer.status));
+        std::string lower = method;
+        std::transform(lower.begin(), lower.end(), lower.begin(), [](unsigned char c) { return std::tolower(c); });
+        const json& responses = document["paths"][pattern][lower]["responses"];
+        const std::string status = std::to_string(answer.status);
+        ASSERT_TRUE(responses.contains(status)) << answer.body.substr(0, 300);
+        json response = responses[status];
+        if (response.contains("$ref"))
+            response = document.at(json::json_pointer(response["$ref"].get<std::string>().substr(1)));
+        const json& content = response["content"];
+        const std::string type = answer.headers.at("content-type");
+        ASSERT_TRUE(content.contains(type) || content.contains("*/*")) << type;
+        if (!content.contains(type) || !content[type].contains("schema")) return;
+        for (const std::string& line : differences(answer.json(), content[type]["schema"], document))
+            ADD_FAILURE() << line;
+    }
+
+    json document;
+};
+
+std::string filled(std::string pattern, const std::string& scenario, const std::string& name) {
+    for (const auto& [key, value] : {std::pair<std::string, std::string>{"{s}", scenario}, {"{name}", name}}) {
+        if (const auto at = pattern.find(key); at != std::string::npos) pattern.replace(at, key.size(), value);
+    }
+    return pattern;
+}
+
+TEST_F(OpenApi, describes_every_route_and_no_other) {
+    std::set<std::string> described, served;
+    for (const auto& [path, item] : document["paths"].items()) {
+        for (const char* method : {"GET", "POST", "PUT", "DELETE", "PATCH"}) {
+            std::string lower = method;
+            std::transform(lower.begin(), lower.end(), lower.begin(), [](unsigned char c) { return std::tolower(c); });
+            if (item.contains(lower)) described.insert(method + (" " + path));
+        }
+    }
+    for (const serve::Route& route : server_->routes()) {
+        served.insert(route.method + " " + route.pattern);
+        if (route.needs == serve::Role::nobody) {
+            EXPECT_EQ(document["paths"][route.pattern]["get"]["security"], json::array()) << route.pattern;
+        }
+    }
+    EXPECT_EQ(described, served);
+    EXPECT_GE(served.size(), 19U);
+}
+
+TEST_F(OpenApi, every_route_answers_as_described) {
+    HttpClient hand = as_controller(), nobody(port());
+    // Some of everything, so that no list is empty.
+    const std::string actions = "/api/scenarios/A/actions";
+    const json some[] = {{{"action", "put_barrier"},
+                          {"name", "Dam"},
+                          {"line", {{824185, 825080}, {824185, 825120}}},
+                          {"height_m", 2},
+                          {"thickness_m", 1}},
+                         {{"action", "put_building"},
+                          {"name", "Barn"},
+                          {"footprint", {{824120, 825090}, {824130, 825090}, {824130, 825100}}},
+                          {"height_m", 4}},
+                         {{"action", "put_release"},
+                          {"name", "Second"},
+                          {"polygon", {{824230, 825090}, {824240, 825090}, {824240, 825100}}},
+                          {"thickness_m", 0.5}},
+                         {{"action", "set_parameter"}, {"key", "material.friction_coefficient"}, {"value", 0.2}},
+                         {{"action", "set_speed"}, {"factor", nullptr}},
+                         {{"action", "run"}}};
+    for (const json& action : some) {
+        const Answer answer = hand.post(actions, action);
+        EXPECT_EQ(answer.status, 200) << answer.body;
+        expect_described("POST", actions.substr(0, 15) + "{s}/actions", answer);
+    }
+    for (int i = 0; i < 100 && hand.get("/api/scenarios/A/state").json()["time_s"] < 4; ++i) {
+        std::this_thread::sleep_for(std::chrono::milliseconds(50));
+    }
+    expect_described("GET", "/api/scenarios/{s}/state", hand.get("/api/scenarios/A/state"));
+    EXPECT_EQ(hand.post(actions, {{"action", "pause"}}).status, 200);
+    expect_described("POST", "/api/scenarios", hand.post("/api/scenarios", {{"copy_of", "A"}}));
+
+    const std::map<std::string, std::string> queries = {{"/api/scenarios/{s}/probe", "?x_m=824195&y_m=825100"},
+                                                        {"/api/scenarios/{s}/frame", "?time_s=0.5"},
+                                                        {"/api/terrain", "?max_cells=500"}};
+    const std::map<std::string, std::string> names = {{"/api/scenarios/{s}/layers/{name}", "peak_depth"},
+                                                      {"/api/scenarios/{s}/exports/{name}", "front.csv"}};
+    const std::map<std::string, json> bodies = {{"/api/scenarios/{s}/actions", {{"action", "step"}}},
+                                                {"/api/control", {{"do", "request"}}},
+                                                {"/api/scenarios", {{"copy_of", "A"}}}};
+    const std::map<std::string, int> refused = {{"/api/control", 409}, {"/api/scenarios", 409}};
+    for (const serve::Route& route : server_->routes()) {
+        SCOPED_TRACE(route.method + " " + route.pattern);
+        const std::string name = names.count(route.pattern) ? names.at(route.pattern) : "nothing";
+        const std::string query = queries.count(route.pattern) ? queries.at(route.pattern) : "";
+        const std::string body = bodies.count(route.pattern) ? bodies.at(route.pattern).dump() : "";
+        const std::string target = filled(route.pattern, route.method == "DELETE" ? "B" : "A", name) + query;
+        const Answer answer = hand.ask(route.method, target, body);
+        EXPECT_EQ(answer.status, refused.count(route.pattern) ? refused.at(route.pattern) : 200)
+            << answer.body.substr(0, 300);
+        expect_described(route.method, route.pattern, answer);
+        if (route.needs != serve::Role::nobody) {
+            expect_described(route.method, route.pattern, nobody.ask(route.method, target, body));
+        }
+        if (route.pattern.find("{s}") != std::string::npos) {
+            const Answer none = hand.ask(route.method, filled(route.pattern, "C", name) + query, body);
+            EXPECT_EQ(none.status, 404);
+            expect_described(route.method, route.pattern, none);
+        }
+    }
+}
+
+TEST_F(OpenApi, wrong_values_are_refused_as_described) {
+    HttpClient hand = as_controller();
+    for (const char* query : {"", "?x_m=1", "?x_m=1&y_m=x", "?x_m=nan&y_m=1", "?x_m=1e99&y_m=1"}) {
+        const Answer answer = hand.get(std::string("/api/scenarios/A/probe") + query);
+        EXPECT_EQ(answer.status, 400) << query;
+        expect_described("GET", "/api/scenarios/{s}/probe", answer);
+    }
+    EXPECT_EQ(hand.get("/api/scenarios/A/frame?time_s=-1").status, 400);
+    EXPECT_EQ(hand.get("/api/terrain?max_cells=1").status, 400);
+    EXPECT_EQ(hand.get("/api/terrain?max_cells=99999999999").status, 400);
+    EXPECT_EQ(hand.get("/api/scenarios/A/layers/nothing").status, 404);
+    EXPECT_EQ(hand.get("/api/scenarios/A/exports/nothing").status, 404);
+}
+
+TEST_F(OpenApi, terrain_is_thinned_to_what_was_asked) {
+    const auto cells = [](const Answer& answer) {
+        std::uint32_t size[2] = {};
+        std::memcpy(size, answer.body.data() + 32, sizeof size);
+        return size[0] * size[1];
+    };
+    HttpClient eye = as_viewer();
+    const Answer whole = eye.get("/api/terrain"), thin = eye.get("/api/terrain?max_cells=700");
+    ASSERT_EQ(whole.body.substr(0, 4), "TLSG");
+    EXPECT_EQ(cells(whole), 60U * 40U);
+    EXPECT_LE(cells(thin), 700U);
+    EXPECT_GE(cells(thin), 500U);
+    EXPECT_EQ(eye.get("/api/terrain?max_cells=700").body, thin.body);
+}
+
+TEST_F(OpenApi, exports_are_of_the_run_so_far) {
+    HttpClient eye = as_viewer();
+    const auto bytes_of = [&](const std::string& name) {
+        const json listed = eye.get("/api/scenarios/A/exports").json();
+        for (const json& file : listed["files"]) {
+            if (file["name"] == name) return file["bytes"];
+        }
+        return json("not listed");
+    };
+    act({{"action", "step"}});
+    EXPECT_TRUE(bytes_of("timeseries.csv").is_null());
+    const Answer first = eye.get("/api/scenarios/A/exports/timeseries.csv");
+    ASSERT_EQ(first.status, 200);
+    EXPECT_EQ(first.headers.at("content-disposition"), "attachment; filename=\"timeseries.csv\"");
+    EXPECT_EQ(bytes_of("timeseries.csv"), first.body.size());
+    for (int i = 0; i < 30; ++i) act({{"action", "step"}});
+    EXPECT_TRUE(bytes_of("timeseries.csv").is_null());
+    EXPECT_EQ(eye.get("/api/scenarios/A/exports/report.html").status, 200);
+    EXPECT_EQ(eye.get("/api/scenarios/A/exports/peak_depth.tif").status, 200);
+}
+
+}  // namespace
+}  // namespace talus::test

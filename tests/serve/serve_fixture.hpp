@@ -1,0 +1,58 @@
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include "cli/small_scene.hpp"
+#include "serve/client.hpp"
+#include "serve/server.hpp"
+
+namespace talus::test {
+
+/// A server of a small scene in this process, paused at time 0.
+class Serve : public ::testing::Test {
+  protected:
+    static constexpr const char* controller = "controller-token-of-tests";
+    static constexpr const char* viewer = "viewer-token-of-the-tests";
+
+    /// Does not end by itself; simulated time passes as wall time does.
+    void SetUp() override { start(); }
+
+    void start(const std::vector<std::string>& overrides = {}) {
+        server_.reset();
+        std::vector<std::string> all{"solver.end_time_s=1000"};
+        all.insert(all.end(), overrides.begin(), overrides.end());
+        auto scene = load_scene(scene_.scene_file(), all);
+        ASSERT_TRUE(scene) << scene.error().message;
+        serve::ServerOptions options;
+        options.port = 0;
+        options.tokens = {controller, viewer};
+        options.export_folder = scene_.folder();
+        options.allowed_hosts = {"twin.example.org"};
+        auto server = serve::Server::listen(std::move(options));
+        ASSERT_TRUE(server) << server.error().message;
+        const Status serving = (*server)->serve(std::make_shared<const Scene>(std::move(*scene)));
+        ASSERT_TRUE(serving) << serving.error().message;
+        server_ = std::move(*server);
+    }
+
+    [[nodiscard]] std::uint16_t port() const { return server_->port(); }
+    [[nodiscard]] HttpClient as_controller() const { return HttpClient(port(), controller); }
+    [[nodiscard]] HttpClient as_viewer() const { return HttpClient(port(), viewer); }
+    [[nodiscard]] WebSocket join(const char* token, const std::string& name = "Ada", int receive_buffer = 0) const {
+        return WebSocket(port(), fmt::format("token={}&name={}", token, name), receive_buffer);
+    }
+    /// Controls the session as a program, which is possible while nobody holds control.
+    Answer act(const nlohmann::json& action, const std::string& person = "") {
+        HttpClient client = as_controller();
+        return client.post("/api/scenarios/A/actions", action, person);
+    }
+
+    SmallScene scene_;
+    std::unique_ptr<serve::Server> server_;
+};
+
+}  // namespace talus::test
