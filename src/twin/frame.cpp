@@ -45,14 +45,20 @@ class Header {
         std::memcpy(bytes_.data() + at, &value, sizeof value);
         return *this;
     }
-    [[nodiscard]] std::string take_with(const void* body, std::size_t size) {
+    /// `strategy` as zlib has it.
+    [[nodiscard]] std::string take_with(const void* body, std::size_t size, int strategy) {
         add(static_cast<std::uint32_t>(size));
         const std::size_t at = bytes_.size();
-        uLongf length = compressBound(size);
-        bytes_.resize(at + length);
-        compress2(reinterpret_cast<Bytef*>(bytes_.data() + at), &length, static_cast<const Bytef*>(body), size,
-                  Z_BEST_SPEED);
-        bytes_.resize(at + length);
+        z_stream stream{};
+        deflateInit2(&stream, Z_BEST_SPEED, Z_DEFLATED, MAX_WBITS, MAX_MEM_LEVEL, strategy);
+        bytes_.resize(at + deflateBound(&stream, size));
+        stream.next_in = static_cast<Bytef*>(const_cast<void*>(body));  // zlib does not write to it
+        stream.avail_in = static_cast<uInt>(size);
+        stream.next_out = reinterpret_cast<Bytef*>(bytes_.data() + at);
+        stream.avail_out = static_cast<uInt>(bytes_.size() - at);
+        deflate(&stream, Z_FINISH);
+        bytes_.resize(at + stream.total_out);
+        deflateEnd(&stream);
         return std::move(bytes_);
     }
 
@@ -154,7 +160,8 @@ std::string encode(const Frame& frame, int scenario_index, unsigned further_flag
     header.add(frame.time).add(frame.step).add(frame.slots).add(frame.stride);
     header.add(frame.zero).add(frame.unit).add(frame.speed_unit).add(frame.window);
     header.add(frame.depth_unit).add(frame.depth_speed_unit);
-    return header.take_with(frame.body.data(), frame.body.size());
+    // Planes hold runs and no words: to look for runs alone takes two thirds of the time and 7 % more bytes.
+    return header.take_with(frame.body.data(), frame.body.size(), Z_RLE);
 }
 
 DebrisAt debris_at(const Frame& frame, std::uint32_t column, std::uint32_t row) {
@@ -177,7 +184,7 @@ std::string encode_grid(const Grid<float>& grid) {
     header.add(std::array<char, 4>{'T', 'L', 'S', 'G'}).add(std::array<std::uint8_t, 4>{1, 0, 0, 0});
     header.add(grid.geometry.x_min).add(grid.geometry.y_min).add(grid.geometry.cell);
     header.add(static_cast<std::uint32_t>(grid.geometry.columns)).add(static_cast<std::uint32_t>(grid.geometry.rows));
-    return header.take_with(grid.values.data(), grid.values.size() * sizeof(float));
+    return header.take_with(grid.values.data(), grid.values.size() * sizeof(float), Z_DEFAULT_STRATEGY);
 }
 
 }  // namespace talus::twin
