@@ -122,6 +122,25 @@ std::string Distribution::text() const {
     return fmt::format("one of {}", fmt::join(entries, ", "));
 }
 
+std::string Distribution::written() const {
+    switch (kind) {
+        case DistributionKind::uniform:
+            return fmt::format("{}:{}", low, high);
+        case DistributionKind::log_uniform:
+            return fmt::format("log:{}:{}", low, high);
+        case DistributionKind::triangular:
+            return fmt::format("triangular:{}:{}:{}", low, middle, high);
+        case DistributionKind::normal:
+            if (std::isfinite(low) && std::isfinite(high)) {
+                return fmt::format("normal:{}:{}:{}:{}", middle, deviation, low, high);
+            }
+            return fmt::format("normal:{}:{}", middle, deviation);
+        case DistributionKind::list:
+            break;
+    }
+    return fmt::format("{}", fmt::join(entries, ","));
+}
+
 std::string Distribution::problem() const {
     if (kind == DistributionKind::list) {
         if (entries.empty()) return "a list needs at least one value";

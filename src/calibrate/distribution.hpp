@@ -28,6 +28,8 @@ struct Distribution {
     [[nodiscard]] const std::string& entry(double share) const;
     /// "uniform from 0.2 to 0.5", as a person reads it.
     [[nodiscard]] std::string text() const;
+    /// As parse_distribution reads it, exactly.
+    [[nodiscard]] std::string written() const;
     /// What is wrong with the numbers: "low must be below high"; empty if nothing is.
     [[nodiscard]] std::string problem() const;
 };

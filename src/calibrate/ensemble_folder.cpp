@@ -41,7 +41,8 @@ Json ensemble_definition(const PlannedRuns& runs, const SceneSource& source, con
     Json inputs = Json::array();
     for (const InputFile& input : base.inputs) inputs.push_back({{"role", input.role}, {"hash", input.hash}});
     Json factors = Json::array();
-    for (const Factor& f : plan.factors) factors.push_back({{"key", f.key}, {"distribution", f.distribution.text()}});
+    for (const Factor& f : plan.factors)
+        factors.push_back({{"key", f.key}, {"distribution", f.distribution.written()}});
     return {{"program", "talus"},
             {"kind", "ensemble"},
             {"program_version", TALUS_VERSION},
@@ -73,6 +74,24 @@ Result<Json> read_definition(const fs::path& folder) {
         return Error{fmt::format("{}: is no ensemble of talus (no ensemble.json of its own)", folder.string())};
     }
     return json;
+}
+
+Result<EnsemblePlan> plan_of(const Json& definition) {
+    EnsemblePlan plan;
+    try {
+        const auto design = design_of(definition.at("design").get<std::string>());
+        plan.design = design.value_or(DesignKind::latin_hypercube);
+        plan.runs = definition.at("runs").get<std::size_t>();
+        plan.levels = definition.at("levels").get<std::size_t>();
+        plan.seed = definition.at("seed").get<std::uint64_t>();
+        for (const Json& f : definition.at("factors")) {
+            const auto text = f.at("key").get<std::string>() + "=" + f.at("distribution").get<std::string>();
+            if (Status s = add_factor(plan, text); !s) return s.error();
+        }
+    } catch (const Json::exception& error) {
+        return Error{fmt::format("ensemble.json: is not as talus writes it: {}", error.what())};
+    }
+    return plan;
 }
 
 Result<EnsembleFolder> EnsembleFolder::open(const fs::path& path, const Json& definition) {
@@ -126,6 +145,26 @@ EnsembleFolder::~EnsembleFolder() {
 
 fs::path EnsembleFolder::run_file(std::size_t run) const {
     return path_ / "runs" / fmt::format("{:06}.run", run);
+}
+
+Status take_runs(const fs::path& from, const EnsembleFolder& to, std::size_t count) {
+    for (std::size_t run = 0; run < count; ++run) {
+        const fs::path target = to.run_file(run), source = from / "runs" / target.filename();
+        std::error_code error;
+        if (!fs::exists(source, error) || fs::equivalent(source, target, error)) continue;
+        if (fs::exists(target, error)) {
+            const Result<RunRecord> here = read_run_record(target), there = read_run_record(source);
+            if (!here) return here.error();
+            if (!there) return there.error();
+            if (here->hash == there->hash && here->fault == there->fault) continue;
+            return Error{
+                fmt::format("run {}: {} and {} hold different results", run, source.string(), target.string())};
+        }
+        fs::create_hard_link(source, target, error);
+        if (error) fs::copy_file(source, target, error);
+        if (error) return Error{fmt::format("{}: cannot be made: {}", target.string(), error.message())};
+    }
+    return {};
 }
 
 }  // namespace talus

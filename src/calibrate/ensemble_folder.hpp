@@ -16,6 +16,9 @@ namespace talus {
 [[nodiscard]] nlohmann::ordered_json ensemble_definition(const PlannedRuns& runs, const SceneSource& source,
                                                          const Scene& base, const std::string& scene_name);
 
+/// The plan that a definition was made from, with the usual thresholds. Errors: not as ensemble_definition writes it.
+[[nodiscard]] Result<EnsemblePlan> plan_of(const nlohmann::ordered_json& definition);
+
 /// A folder with ensemble.json and a file per run that is done, held by one process at a time.
 class EnsembleFolder {
   public:
@@ -42,6 +45,10 @@ class EnsembleFolder {
     std::filesystem::path path_;
     int lock_ = -1;
 };
+
+/// Puts the runs of `from` into `to` as well (as links where the file system has them). Errors: a run that both have
+/// with different results, a file that cannot be made.
+[[nodiscard]] Status take_runs(const std::filesystem::path& from, const EnsembleFolder& to, std::size_t count);
 
 /// ensemble.json of a folder. Errors: not there, not an ensemble's.
 [[nodiscard]] Result<nlohmann::ordered_json> read_definition(const std::filesystem::path& folder);

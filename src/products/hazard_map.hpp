@@ -18,6 +18,7 @@ struct HazardMap {
     Grid<float> HazardMaps::*grid = nullptr;  ///< nullptr: not one of a single run's maps
     std::vector<double> breaks;  ///< lower limits of the classes; below the first: not drawn. Empty: even classes
     report::Ramp ramp;
+    double full_scale = 0;  ///< classes reach at least up to here, so that maps of a kind have the same colours
 };
 
 /// All maps, in the order in which they are written.

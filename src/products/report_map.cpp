@@ -185,7 +185,7 @@ std::string building_title(const Building& building, const BuildingImpact& impac
 
 Classes classes_of(const HazardMap& layer, double most) {
     if (layer.breaks.empty()) return even_classes(most, layer.ramp);
-    return fixed_classes(layer.breaks, std::isnan(most) ? 0 : most, layer.ramp);
+    return fixed_classes(layer.breaks, std::max(layer.full_scale, std::isnan(most) ? 0 : most), layer.ramp);
 }
 
 }  // namespace
