@@ -97,6 +97,30 @@ std::string value_text(const FactorEffect& e, SensitivityKind kind, const std::s
     return fixed(e.correlation, 2);
 }
 
+/// The bars of one result and factor, `width` wide from `left`, with their value behind.
+std::string draw_effect(const Sensitivity& s, std::size_t factor, const std::string& unit, double left, double width,
+                        double y, double row) {
+    const FactorEffect& effect = s.effects[factor];
+    const ValueRange scale = scale_of(s);
+    const auto px = [&](double v) {
+        return left + (std::clamp(v, scale.low, scale.high) - scale.low) / (scale.high - scale.low) * width;
+    };
+    const std::vector<Bar> bars = bars_of(effect, s.kind);
+    const double height = (row - 12) / static_cast<double>(bars.size());
+    std::string svg;
+    for (std::size_t b = 0; b < bars.size(); ++b) {
+        const double from = y + 6 + height * static_cast<double>(b), middle = from + (height - 1) / 2;
+        svg += rectangle(px(0), px(bars[b].value), from, from + height - 1, bars[b].css_class);
+        if (!bars[b].whisker) continue;
+        svg += fmt::format(R"(<line class="whisker" x1="{0}" x2="{1}" y1="{2}" y2="{2}"/>)",
+                           coordinate(px(bars[b].low)), coordinate(px(bars[b].high)), coordinate(middle));
+    }
+    svg += fmt::format(R"(<line class="axis" x1="{0}" x2="{0}" y1="{1}" y2="{2}"/>)", coordinate(px(0)),
+                       coordinate(y + 3), coordinate(y + row - 3));
+    return svg + fmt::format(R"(<text class="tick" x="{}" y="{}">{}</text>)", coordinate(left + width + 8),
+                             coordinate(y + 19), value_text(effect, s.kind, unit));
+}
+
 std::string sensitivity_caption(SensitivityKind kind, std::size_t used) {
     switch (kind) {
         case SensitivityKind::variance:
@@ -180,48 +204,39 @@ std::string run_out_figure(const EnsembleResult& result, int number) {
 }
 
 std::string sensitivity_figure(const EnsembleResult& result, int number) {
-    constexpr double left = 330, width = 520, row = 26, group = 34;
+    constexpr double left = 270, row = 30, head = 30;
+    constexpr std::size_t most_columns = 4;  // factors side by side; more go below
     const auto& factors = result.runs->plan().factors;
     std::string svg;
-    double y = 8;
+    double y = 0;
     std::size_t used = 0;
     SensitivityKind kind = SensitivityKind::rank;
-    for (std::size_t m = 0; m < result.measures.size(); ++m) {
-        const Sensitivity& s = result.sensitivity[m];
-        if (s.effects.empty()) continue;
-        used = std::max(used, s.used);
-        kind = s.kind;
-        const ValueRange scale = scale_of(s);
-        const auto px = [&](double v) {
-            return left + (std::clamp(v, scale.low, scale.high) - scale.low) / (scale.high - scale.low) * width;
-        };
-        svg += fmt::format(R"(<text class="row-group" x="0" y="{}">{}</text>)", coordinate(y + 18),
-                           escape(result.measures[m].name));
-        svg += fmt::format(R"(<line class="row-rule" x1="0" x2="1000" y1="{0}" y2="{0}"/>)", coordinate(y + group - 8));
-        y += group;
-        const double top = y - 6;
-        for (std::size_t k = 0; k < factors.size(); ++k) {
-            const FactorEffect& e = s.effects[k];
-            const std::vector<Bar> bars = bars_of(e, s.kind);
-            const double height = 18.0 / static_cast<double>(bars.size());
-            svg += fmt::format(R"(<text class="row-name" x="{}" y="{}" text-anchor="end">{}</text>)",
-                               coordinate(left - 14), coordinate(y + 13), escape(shortened(factors[k].key, 44)));
-            for (std::size_t b = 0; b < bars.size(); ++b) {
-                const double from = y + height * static_cast<double>(b), middle = from + height / 2;
-                svg += rectangle(px(0), px(bars[b].value), from, from + height - 1, bars[b].css_class);
-                if (!bars[b].whisker) continue;
-                svg += fmt::format(R"(<line class="whisker" x1="{0}" x2="{1}" y1="{2}" y2="{2}"/>)",
-                                   coordinate(px(bars[b].low)), coordinate(px(bars[b].high)), coordinate(middle));
+    for (std::size_t first = 0; first < factors.size(); first += most_columns) {
+        const std::size_t columns = std::min(most_columns, factors.size() - first);
+        const double width = (1000 - left) / static_cast<double>(columns);
+        for (std::size_t c = 0; c < columns; ++c) {
+            svg += fmt::format(R"(<text class="column-name" x="{}" y="{}">{}</text>)",
+                               coordinate(left + width * (static_cast<double>(c) + 0.5)), coordinate(y + 16),
+                               escape(shortened(factors[first + c].key, static_cast<std::size_t>(width / 7.2))));
+        }
+        y += head;
+        for (std::size_t m = 0; m < result.measures.size(); ++m) {
+            const Sensitivity& s = result.sensitivity[m];
+            if (s.effects.empty()) continue;
+            used = std::max(used, s.used);
+            kind = s.kind;
+            svg += fmt::format(R"(<line class="row-rule" x1="0" x2="1000" y1="{0}" y2="{0}"/>)", coordinate(y));
+            svg += fmt::format(R"(<text class="row-name" x="0" y="{}">{}</text>)", coordinate(y + 19),
+                               escape(shortened(result.measures[m].name, 40)));
+            for (std::size_t c = 0; c < columns; ++c) {
+                const double from = left + width * static_cast<double>(c) + 12;
+                svg += draw_effect(s, first + c, result.measures[m].unit, from, width - 84, y, row);
             }
-            svg += fmt::format(R"(<text class="tick" x="{}" y="{}">{}</text>)", coordinate(left + width + 16),
-                               coordinate(y + 13), value_text(e, s.kind, result.measures[m].unit));
             y += row;
         }
-        svg += fmt::format(R"(<line class="axis" x1="{0}" x2="{0}" y1="{1}" y2="{2}"/>)", coordinate(px(0)),
-                           coordinate(top), coordinate(y - 4));
-        y += 8;
+        y += 14;
     }
-    if (svg.empty()) return "<p>There are too few complete runs to say what the results hang on.</p>";
+    if (used == 0) return "<p>There are too few complete runs to say what the results hang on.</p>";
     return "<figure>" + figure_svg(1000, y, "Sensitivity of every result to every factor", svg) +
            caption(number, "What each result hangs on.", sensitivity_caption(kind, used)) + "</figure>";
 }

@@ -96,7 +96,8 @@ std::string factor_table(const EnsembleResult& result) {
     for (const Factor& f : result.runs->plan().factors) {
         const auto [value, unit] = as_given(*result.scene, f.key);
         html += fmt::format("<tr><td><code>{}</code></td><td>{}</td><td class=\"n\">{}</td><td>{}</td></tr>\n",
-                            escape(f.key), escape(f.distribution.text()), escape(value), escape(unit));
+                            escape(f.key), escape(f.distribution.text()), escape(value),
+                            unit == "m3" ? "m³" : escape(unit));
     }
     return html;
 }
@@ -155,7 +156,9 @@ MapContent content_of(const EnsembleResult& result) {
     }
     const auto percentile_map = [&](std::size_t map, double level, const char* caption, int digits) {
         if (const EnsembleMap* m = find_map(result, EnsembleMap::Kind::percentile, map, level)) {
-            add(*m, fmt::format("{} {:.0f} %", words[map], level), caption, digits);
+            add(*m,
+                level == 50 ? fmt::format("{}, median", words[map]) : fmt::format("{}, {:.0f} %", words[map], level),
+                caption, digits);
         }
     };
     percentile_map(0, 50, "Peak depth that half of the runs do not exceed.", 2);
@@ -192,7 +195,8 @@ std::string building_table(const EnsembleResult& result) {
         html += fmt::format("<th>Over {} kPa</th>", plain(p));
     }
     html +=
-        "<th class=\"n\">Pressure, median<br><small>kPa</small></th><th class=\"n\">95 %<br><small>kPa</small></th>"
+        "<th class=\"n\">Pressure, median<br><small>kPa</small></th><th class=\"n\">Pressure, 95 "
+        "%<br><small>kPa</small></th>"
         "<th class=\"n\">Depth at walls, 95 %<br><small>m</small></th><th class=\"n\">First hit, "
         "median<br><small>s</small></th></tr></thead><tbody>\n";
     const auto odds = [](double share) {
@@ -241,7 +245,9 @@ std::string result_table(const EnsembleResult& result) {
         std::vector<double> values = result.values_of(m);
         html += fmt::format("<tr><td>{}</td><td class=\"n\">{}</td>", escape(measure.name), values.size());
         for (const double p : {5.0, 50.0, 95.0, 0.0, 100.0}) {
-            html += fmt::format("<td class=\"n\">{}</td>", significant(percentile(values, p), 4));
+            html +=
+                fmt::format("<td class=\"n\">{}</td>", measure.unit.empty() ? fixed(percentile(values, p), 0)
+                                                                            : significant(percentile(values, p), 3));
         }
         html += fmt::format("<td>{}</td><td class=\"n\">{}</td></tr>\n",
                             measure.unit == "m2"    ? "m²"

@@ -197,13 +197,13 @@ Result<PlannedRuns> PlannedRuns::make(const EnsemblePlan& plan, const SceneSourc
     const double cell = base.spec.outputs.map_cell.value_or(default_map_cell(base.terrain.cell(), spacing));
     if (!own_spacing) runs.fixed_.push_back(fmt::format("solver.particle_spacing_m={:.9g}", spacing));
     runs.fixed_.push_back(fmt::format("outputs.map_cell_m={:.17g}", cell));
-    runs.fixed_.emplace_back("outputs.particle_series_interval_s=0.0");
     return runs;
 }
 
 PlannedRun PlannedRuns::at(std::size_t run) const {
     PlannedRun planned;
     planned.overrides = fixed_;
+    planned.overrides.emplace_back("outputs.particle_series_interval_s=0");  // no run writes a folder of its own
     for (std::size_t k = 0; k < plan_.factors.size(); ++k) {
         const Factor& factor = plan_.factors[k];
         double share = points_[run][k];

@@ -72,6 +72,31 @@ std::string contour_label(const MapFrame& frame, const Contour& contour) {
     return svg;
 }
 
+/// A building's name below it, centred.
+struct Label {
+    int rank;  ///< its class: where two names would run into each other, the one hit harder stays
+    double x, y;
+    std::string text;
+
+    [[nodiscard]] double half_width() const { return 3.7 * static_cast<double>(text.size()); }
+    [[nodiscard]] bool meets(const Label& other) const {
+        return std::abs(x - other.x) < half_width() + other.half_width() && std::abs(y - other.y) < 14;
+    }
+};
+
+std::string draw_labels(std::vector<Label> labels) {
+    std::stable_sort(labels.begin(), labels.end(), [](const Label& a, const Label& b) { return a.rank > b.rank; });
+    std::vector<Label> drawn;
+    std::string svg;
+    for (const Label& label : labels) {
+        if (std::any_of(drawn.begin(), drawn.end(), [&](const Label& other) { return other.meets(label); })) continue;
+        svg += fmt::format(R"(<text class="building-name" x="{}" y="{}">{}</text>)", coordinate(label.x),
+                           coordinate(label.y), escape(label.text));
+        drawn.push_back(label);
+    }
+    return svg;
+}
+
 std::string draw_flow_path(const Scene& scene, const MapFrame& frame) {
     const FlowPath& path = scene.flow_path;
     if (path.empty()) return "";
@@ -137,7 +162,8 @@ std::string draw_contours(const Scene& scene, const MapFrame& frame, double& int
 }
 
 std::string draw_vectors(const Scene& scene, const BuildingMarks& marks, const MapFrame& frame) {
-    std::string svg, names;
+    std::string svg;
+    std::vector<Label> labels;
     for (std::size_t i = 0; i < scene.buildings.size(); ++i) {
         const Building& building = scene.buildings[i];
         std::string d;
@@ -156,9 +182,8 @@ std::string draw_vectors(const Scene& scene, const BuildingMarks& marks, const M
         svg += fmt::format(R"(<path class="building hit-{}" d="{}"><title>{}</title></path>)", hit, d,
                            i < marks.titles.size() ? marks.titles[i] : escape(building.name));
         if (hit > 0 && !building.name.empty()) {
-            names += fmt::format(R"(<text class="building-name" x="{}" y="{}">{}</text>)",
-                                 coordinate(frame.x((around.x_min + around.x_max) / 2)),
-                                 coordinate(frame.y(around.y_min) + 13), escape(shortened(building.name, 24)));
+            labels.push_back({hit, frame.x((around.x_min + around.x_max) / 2), frame.y(around.y_min) + 13,
+                              shortened(building.name, 24)});
         }
     }
     for (const Release& release : scene.releases) {
@@ -168,7 +193,7 @@ std::string draw_vectors(const Scene& scene, const BuildingMarks& marks, const M
             R"(<path class="release-case" d="{0}"/><path class="release" d="{0}"><title>{1}</title></path>)", d,
             escape(release.name));
     }
-    return svg + draw_flow_path(scene, frame) + draw_observations(scene, frame) + names;
+    return svg + draw_flow_path(scene, frame) + draw_observations(scene, frame) + draw_labels(std::move(labels));
 }
 
 std::string draw_frame(const Scene& scene, const MapFrame& frame) {
