@@ -29,6 +29,8 @@ json play(const SmallScene& inputs) {
                                           {"thickness_m", 1}},
                                          "Ann");
     EXPECT_TRUE(done) << done.error().message;
+    EXPECT_TRUE((*scenario)->apply(
+        {{"action", "set_parameter"}, {"key", "material.friction_coefficient"}, {"value", 0.3}}, "Ann"));
     for (int k = 0; k < 20; ++k) (*scenario)->advance();
     return (*scenario)->journal_json();
 }
@@ -39,7 +41,7 @@ TEST(Replay, FindsTheSameResultAgain) {
     const auto replayed = run_program({"replay", "session.json"}, {.folder = inputs.folder()});
     EXPECT_EQ(replayed.exit_code, 0) << replayed.error;
     EXPECT_EQ(replayed.error, "");
-    EXPECT_THAT(replayed.out, HasSubstr("the same result: 1 actions, step 30"));
+    EXPECT_THAT(replayed.out, HasSubstr("the same result: 2 actions, step 30"));
     const auto quiet =
         run_program({"replay", "session.json", "--quiet", "--threads", "1"}, {.folder = inputs.folder()});
     EXPECT_EQ(quiet.exit_code, 0) << quiet.error;
@@ -49,7 +51,7 @@ TEST(Replay, FindsTheSameResultAgain) {
 TEST(Replay, SaysWhenTheResultIsAnother) {
     const SmallScene inputs;
     json journal = play(inputs);
-    journal["actions"][0]["step"] = 11;
+    journal["actions"][1]["step"] = 11;
     write_text(inputs.input("session.json"), journal.dump());
     const auto replayed = run_program({"replay", "session.json"}, {.folder = inputs.folder()});
     EXPECT_EQ(replayed.exit_code, 3);

@@ -105,7 +105,7 @@ TEST(ImpactRecorder, first_hit_depth_and_dynamic_pressure_come_from_the_debris_t
 TEST(ImpactRecorder, buildings_come_behind_and_records_begin_anew) {
     Collision c(0.2);
     for (int k = 0; k < 10; ++k) c.step(0.05, 50000, 0, 10);
-    c.model.buildings.push_back({.name = "new"});
+    c.model.buildings.emplace_back().name = "new";
     c.recorder.follow(c.model, c.state);
     ASSERT_EQ(c.recorder.impacts().size(), 3U);
     EXPECT_EQ(c.recorder.impacts()[2].name, "new");

@@ -77,19 +77,19 @@ TEST(Change, takes_particles_away_and_keeps_the_balance) {
     Slide slide;
     slide.run(20);
     const std::uint32_t before = slide.simulation->state().count;
-    slide.simulation->change([&](Model&, State& state) { take_away(state, 100, 300); });
+    slide.simulation->change([&](Model&, State& state) { take_away(state, 100, 500); });
     const State& state = slide.simulation->state();
-    EXPECT_EQ(state.count, before - 200);
-    EXPECT_EQ(state.taken, 200U);
+    EXPECT_EQ(state.count, before - 400);
+    EXPECT_EQ(state.taken, 400U);
     EXPECT_EQ(state.seeded, state.count + state.left + state.taken);
-    EXPECT_EQ(with_ids_from(state, 100), before - 300);
+    EXPECT_EQ(with_ids_from(state, 100), before - 500);
     slide.run(20);
     // What was taken makes room for others, up to what there was.
     const State more = slide.more(40);
-    ASSERT_LE(more.count, 200U);
+    ASSERT_LE(more.count, 400U);
     slide.simulation->change([&](Model&, State& s) { append_particles(s, more, s.seeded); });
     slide.run(20);
-    EXPECT_EQ(slide.simulation->state().count, before - 200 + more.count);
+    EXPECT_EQ(slide.simulation->state().count, before - 400 + more.count);
 }
 
 TEST(Change, without_any_leaves_the_run_as_it_is) {

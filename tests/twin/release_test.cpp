@@ -142,6 +142,36 @@ TEST(Release, of_the_scene_can_be_thicker_before_it_starts) {
     EXPECT_GT(number(*scenario, "largest_speed_mps"), 1);
 }
 
+TEST(DrawnRelease, can_lie_on_debris_that_came_before) {
+    const auto scenario = open(channel_scene());
+    run_until(*scenario, 9);
+    const double x = number(*scenario, "front_chainage_m") - 8;
+    const std::string id = act(*scenario, drawn(x, 1)).created;
+    run_until(*scenario, scenario->time() + 1);
+    EXPECT_LT(number(*scenario, "largest_speed_mps"), 8) << "it must not be thrown apart";
+    act(*scenario, {{"action", "trigger_release"}, {"id", id}});
+    run_until(*scenario, scenario->time() + 2);
+    EXPECT_NE(scenario->phase(), Phase::fault) << scenario->message();
+    EXPECT_LT(number(*scenario, "largest_speed_mps"), 8);
+    expect_balance(*scenario);
+}
+
+TEST(DrawnRelease, makes_room_for_an_obstacle_while_it_is_held) {
+    const auto scenario = open(channel_scene());
+    const std::string id = act(*scenario, drawn(30, 1)).created;
+    const double held = number(*scenario, "volume_held_m3");
+    act(*scenario, {{"action", "put_building"},
+                    {"footprint", ring(west + 32, south + 29, west + 34, south + 31)},
+                    {"height_m", 5}});
+    EXPECT_EQ(number(*scenario, "volume_held_m3"), held);
+    run_until(*scenario, 0.3);
+    EXPECT_LT(number(*scenario, "max_compression"), 0.05);
+    act(*scenario, {{"action", "trigger_release"}, {"id", id}});
+    run_until(*scenario, 0.5);
+    EXPECT_NE(scenario->phase(), Phase::fault) << scenario->message();
+    EXPECT_LT(number(*scenario, "largest_speed_mps"), 5);
+}
+
 TEST(Release, refuses_what_cannot_fail) {
     Scene scene = channel_scene();
     scene.spec.solver.particle_limit = 600;
