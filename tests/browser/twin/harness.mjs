@@ -1,0 +1,136 @@
+// Starts a server of the twin and browsers that look at it, and keeps the score.
+import assert from "node:assert/strict";
+import { spawn } from "node:child_process";
+import { existsSync, mkdirSync, readFileSync } from "node:fs";
+import { join } from "node:path";
+import { createInterface } from "node:readline";
+
+/** command: how the server is started; it prints one line of JSON with controller_url and viewer_url. */
+export async function startServer(command) {
+  const process_ = spawn(command[0], command.slice(1), { stdio: ["ignore", "pipe", "pipe"] });
+  let told = "";
+  process_.stderr.on("data", (data) => (told += data));
+  const links = await new Promise((resolve, reject) => {
+    createInterface({ input: process_.stdout }).on("line", (line) => line.startsWith("{") && resolve(JSON.parse(line)));
+    process_.on("exit", (code) => reject(new Error(`the server ended with ${code}: ${told}`)));
+    setTimeout(() => reject(new Error(`the server printed no links: ${told}`)), 60_000).unref();
+  });
+  const token = new URL(links.controller_url).hash.slice(7);
+  const viewerToken = new URL(links.viewer_url).hash.slice(7);
+  const base = links.controller_url.split("#")[0];
+  return {
+    controller: links.controller_url, viewer: links.viewer_url, token, viewerToken, base, port: Number(new URL(base).port),
+    /** What the server says, past the page. */
+    async ask(path) {
+      const response = await fetch(`${base}api/${path}`, { headers: { Authorization: `Bearer ${token}` } });
+      assert.equal(response.status, 200, path);
+      return response.json();
+    },
+    async stop() {
+      if (process_.exitCode !== null) return;
+      const ended = new Promise((resolve) => process_.once("exit", resolve));
+      process_.kill("SIGTERM");
+      setTimeout(() => process_.kill("SIGKILL"), 5000).unref();
+      await ended;
+    },
+  };
+}
+
+export class Run {
+  passed = 0;
+  failed = 0;
+  problems = [];
+  requests = [];
+
+  constructor(browser, output, only) {
+    Object.assign(this, { browser, output, only });
+    mkdirSync(output, { recursive: true });
+  }
+  async check(name, body) {
+    if (this.only && !name.includes(this.only)) return;
+    const begun = Date.now();
+    try {
+      await body();
+      ++this.passed;
+      console.log(`ok      ${name} (${((Date.now() - begun) / 1000).toFixed(1)} s)`);
+    } catch (error) {
+      ++this.failed;
+      console.log(`FAILED  ${name}\n        ${String(error.message).split("\n").slice(0, 14).join("\n        ")}`);
+      await this.last?.screenshot({ path: join(this.output, `failed-${this.failed}.png`) }).catch(() => {});
+    }
+  }
+  async open(link, { width = 1280, height = 720, reduced = true, name } = {}) {
+    const context = await this.browser.newContext({ viewport: { width, height }, reducedMotion: reduced ? "reduce" : "no-preference", acceptDownloads: true });
+    const page = await context.newPage();
+    if (name) await page.addInitScript((n) => localStorage.setItem("talus-name", n), name);
+    page.on("console", (message) => {
+      if (["error", "warning"].includes(message.type()) && !/WebSocket connection|ERR_CONNECTION|GPU stall|GL Driver|Failed to load resource|does not answer|software WebGL/i.test(message.text())) {
+        this.problems.push(message.text());
+      }
+    });
+    page.on("pageerror", (error) => this.problems.push(String(error)));
+    page.on("request", (request) => {
+      if (!/^(data|blob):/.test(request.url())) this.requests.push(request.url());
+    });
+    page.setDefaultTimeout(15_000);
+    const begun = Date.now();
+    await page.goto(link);
+    await page.waitForFunction(() => window.talusStats?.frames > 0 && document.querySelector(".transport"));
+    page.firstPicture_ms = Date.now() - begun;
+    await page.waitForFunction(() => !document.querySelector(".connection:not([hidden])"));
+    this.last = page;
+    return page;
+  }
+  /** Colours in a part of the page, read from pixels on the screen: how many, the share of the commonest, mean of each channel. */
+  async colours(page, clip) {
+    const png = await page.screenshot(clip ? { clip } : {});
+    const found = await page.evaluate(readPixels, png.toString("base64"));
+    return { ...found, png };
+  }
+  async shot(page, name) {
+    await page.screenshot({ path: join(this.output, `${name}.png`) });
+  }
+}
+
+async function readPixels(data) {
+  const bytes = Uint8Array.from(atob(data), (c) => c.charCodeAt(0));
+  const bitmap = await createImageBitmap(new Blob([bytes], { type: "image/png" }));
+  const canvas = new OffscreenCanvas(bitmap.width, bitmap.height);
+  const context = canvas.getContext("2d");
+  context.drawImage(bitmap, 0, 0);
+  const pixels = context.getImageData(0, 0, canvas.width, canvas.height).data;
+  const counts = new Map();
+  for (let i = 0; i < pixels.length; i += 4) {
+    const key = (pixels[i] << 16) | (pixels[i + 1] << 8) | pixels[i + 2];
+    counts.set(key, (counts.get(key) ?? 0) + 1);
+  }
+  return { different: counts.size, commonest: Math.max(...counts.values()) / (pixels.length / 4) };
+}
+
+/** The middle of the view: without bars, legends and labels' edges. */
+export async function viewClip(page, scenario) {
+  const box = await page.locator(scenario ? `.pane[data-scenario=${scenario}]` : ".stage canvas").boundingBox();
+  return { x: box.x + 0.1 * box.width, y: box.y + 0.25 * box.height, width: 0.8 * box.width, height: 0.5 * box.height };
+}
+/** A click on the ground at a share of the canvas. */
+export async function clickGround(page, u, v, options = {}) {
+  const box = await page.locator(".stage canvas").boundingBox();
+  await page.mouse.click(box.x + u * box.width, box.y + v * box.height, options);
+}
+/** Waits until a question has the wanted answer; says the last answer if it never has. */
+export async function until(question, wanted, what, limit_ms = 10_000) {
+  const begun = Date.now();
+  let answer;
+  for (;;) {
+    answer = await question();
+    if (wanted(answer)) return answer;
+    if (Date.now() - begun > limit_ms) throw new Error(`${what}: still ${JSON.stringify(answer)?.slice(0, 300)}`);
+    await new Promise((resolve) => setTimeout(resolve, 100));
+  }
+}
+export const shownTime = async (page) => Number((await page.textContent(".clock")).replace("−", "-").split(" ")[0]);
+export async function saved(page, click) {
+  const [download] = await Promise.all([page.waitForEvent("download"), click()]);
+  return { name: download.suggestedFilename(), bytes: readFileSync(await download.path()) };
+}
+export { assert, existsSync };

@@ -1,0 +1,246 @@
+// What changes a scenario: time, parameters, releases, barriers, buildings, undo.
+import { assert, clickGround, shownTime, until, viewClip } from "./harness.mjs";
+
+export async function testLevers(run, server) {
+  const page = await run.open(server.controller, { name: "Ada" });
+  const state = () => server.ask("scenarios/A/state");
+  const setup = () => server.ask("scenarios/A/setup");
+
+  await run.check("opens: title, terrain on the canvas, token gone from the address", async () => {
+    assert.ok(page.firstPicture_ms < 8000, `first picture after ${page.firstPicture_ms} ms`);
+    console.log(`        first picture after ${page.firstPicture_ms} ms`);
+    assert.ok(!page.url().includes("token"), page.url());
+    assert.equal(await page.textContent(".topbar h1"), (await server.ask("scene")).title);
+    const seen = await run.colours(page, await viewClip(page));
+    assert.ok(seen.different > 1500, `only ${seen.different} colours`);
+    assert.ok(seen.commonest < 0.2, `${Math.round(100 * seen.commonest)} % of the view has one colour`);
+    await run.shot(page, "1-open");
+  });
+
+  await run.check("run: debris moves on the canvas, time goes on; pause holds both", async () => {
+    const clip = await viewClip(page);
+    const before = await run.colours(page, clip);
+    await page.click(".run");
+    await until(state, (s) => s.status === "running" && s.time_s > 2, "running", 30_000);
+    await until(() => shownTime(page), (t) => t > 2, "time on the page");
+    const moving = await run.colours(page, clip);
+    assert.ok(!moving.png.equals(before.png), "the canvas has not changed");
+    await page.click(".run");
+    await until(state, (s) => s.status === "paused", "paused");
+    await page.waitForTimeout(700);
+    const still = await run.colours(page, clip);
+    await page.waitForTimeout(500);
+    assert.ok((await run.colours(page, clip)).png.equals(still.png), "the canvas changes while paused");
+    assert.match(await page.textContent(".status"), /Paused/);
+    await run.shot(page, "2-running");
+  });
+
+  await run.check("one step, by click and by key", async () => {
+    const first = (await state()).step;
+    await page.click('[aria-label="Step"]');
+    await until(state, (s) => s.step === first + 1 && s.status === "paused", "one step");
+    await page.locator(".stage canvas").focus();
+    await page.keyboard.press(".");
+    await until(state, (s) => s.step === first + 2, "two steps");
+  });
+
+  await run.check("speed is chosen and told to the server", async () => {
+    await page.selectOption("select[aria-label^=Speed]", "0.25");
+    await until(state, (s) => s.speed_factor === 0.25, "slow motion");
+    await page.selectOption("select[aria-label^=Speed]", "");
+    await until(state, (s) => s.speed_factor === null, "as fast as it goes");
+  });
+
+  await run.check("restart goes back to time 0", async () => {
+    await page.click('[aria-label="Restart"]');
+    await until(state, (s) => s.time_s === 0, "time 0");
+    await until(() => shownTime(page), (t) => t === 0, "time on the page");
+  });
+
+  const friction = page.locator(".field", { hasText: "riction" }).first();
+  const key = "material.friction_coefficient";
+  await run.check("a parameter by number and by slider; out of range is told; reset, undo, redo by button and key", async () => {
+    const first = (await setup()).parameters[key];
+    const number = friction.locator("input[type=number]");
+    await number.fill("0.55");
+    await number.press("Enter");
+    await until(setup, (s) => s.parameters[key] === 0.55, "friction 0.55");
+    await number.fill("-3");
+    await number.press("Enter");
+    assert.match(await friction.locator(".field-note").textContent(), /-3.*allowed/i);
+    assert.equal((await setup()).parameters[key], 0.55);
+    await number.press("Escape");
+    const slider = friction.locator("input[type=range]");
+    await slider.focus();
+    await slider.press("ArrowRight");
+    const moved = await until(setup, (s) => s.parameters[key] > 0.55, "friction by slider");
+    assert.ok(Math.abs(moved.parameters[key] - 0.56) < 0.011);
+    await page.click(".levers button:has-text('Undo')");
+    await until(setup, (s) => s.parameters[key] === 0.55, "undo by button");
+    await page.locator(".stage canvas").focus();
+    await page.keyboard.press("Control+z");
+    await until(setup, (s) => s.parameters[key] === first, "undo by key");
+    await page.keyboard.press("Control+Shift+Z");
+    await until(setup, (s) => s.parameters[key] === 0.55, "redo by key");
+    assert.match(await page.locator(".levers button:has-text('Undo')").getAttribute("title"), /Undo: .+/);
+    await friction.locator("button[aria-label^=Reset]").click();
+    const usual = (await server.ask("scene")).parameters.find((p) => p.key === key).default;
+    await until(setup, (s) => s.parameters[key] === usual, "reset");
+  });
+
+  await run.check("every parameter has its help and its unit", async () => {
+    const scene = await server.ask("scene");
+    for (const parameter of scene.parameters) {
+      const field = page.locator(".field", { has: page.locator(`label:text-is(${JSON.stringify(parameter.label)})`) });
+      assert.equal(await field.locator("label").getAttribute("title"), parameter.help);
+      await field.locator(`button[aria-label="What is ${parameter.label}?"]`).click();
+      assert.ok((await field.locator(".help").textContent()).includes(parameter.help));
+      await field.locator(`button[aria-label="What is ${parameter.label}?"]`).click();
+    }
+  });
+
+  await run.check("a release is drawn with clicks: live volume, server's volume, a corner dragged, triggered, undone", async () => {
+    const known = new Set((await setup()).releases.map((r) => r.id));
+    await page.click("[data-draw=release]");
+    await page.locator(".draft:visible input[type=number]").first().fill("2");
+    await page.locator(".draft:visible input[type=number]").first().press("Enter");
+    for (const [u, v] of [[0.40, 0.42], [0.47, 0.41], [0.48, 0.47], [0.41, 0.48]]) await clickGround(page, u, v);
+    const live = await page.textContent(".draft:visible .measure");
+    assert.match(live, /m² × 2\.00 m = .*\sm³/);
+    const area = Number(live.split("m²")[0].replace(/\s/g, ""));
+    await page.keyboard.press("Enter");
+    const fresh = (await until(setup, (s) => s.releases.some((r) => !known.has(r.id)), "a new release")).releases.find((r) => !known.has(r.id));
+    assert.equal(fresh.thickness_m, 2);
+    assert.equal(fresh.status, "held");
+    const told = Number(live.split("=")[1].replace(/[^\d.]/g, ""));
+    assert.ok(Math.abs(told - fresh.volume_m3) < 0.1 * fresh.volume_m3, `page ${told}, server ${fresh.volume_m3} m3, area ${area}`);
+    const handles = page.locator(".handle:visible");
+    await until(() => handles.count(), (n) => n === 5, "handles");
+    await run.shot(page, "3-release");
+    const box = await handles.nth(2).boundingBox();
+    await page.mouse.move(box.x + 6, box.y + 6);
+    await page.mouse.down();
+    await page.mouse.move(box.x + 26, box.y + 16, { steps: 4 });
+    await page.mouse.up();
+    const wider = (await until(setup, (s) => s.releases.find((r) => r.id === fresh.id).volume_m3 > 1.05 * fresh.volume_m3, "a larger volume")).releases.find((r) => r.id === fresh.id);
+    assert.equal(wider.polygons[0].length, fresh.polygons[0].length);
+    const before = (await state()).particles;
+    await page.click(".editor button:has-text('Trigger')");
+    await until(setup, (s) => s.releases.find((r) => r.id === fresh.id).status === "released", "triggered");
+    await page.click(".run");
+    await until(state, (s) => s.particles > before && s.step > 3, "its debris", 20_000);
+    await page.click(".run");
+    await until(state, (s) => s.status !== "running", "paused");
+    await page.locator(".stage canvas").focus();
+    for (let k = 0; k < 3; ++k) {
+      const sentence = (await setup()).undo;
+      await page.keyboard.press("Control+z");
+      await until(setup, (s) => s.undo !== sentence, `undo of ${sentence}`);
+    }
+    assert.ok(!(await setup()).releases.some((r) => r.id === fresh.id), "the release is still there");
+  });
+
+  await run.check("a release is drawn by keyboard alone", async () => {
+    const known = (await setup()).releases.length;
+    await page.locator("[data-draw=release]").focus();
+    await page.keyboard.press("Enter");
+    await page.keyboard.press("v");
+    for (const [k, move] of ["ArrowUp", "ArrowRight", "ArrowDown", "ArrowRight"].entries()) {
+      await page.keyboard.press(`Shift+${move}`);
+      if (k < 3) await page.keyboard.press("Space");
+    }
+    await page.keyboard.press("Enter");
+    const made = (await until(setup, (s) => s.releases.length === known + 1, "a release")).releases.at(-1);
+    assert.ok(made.volume_m3 > 1);
+    await page.keyboard.press("Delete");
+    await until(setup, (s) => s.releases.length === known, "removed by Delete");
+  });
+
+  await run.check("an action that the server refuses is told beside the control", async () => {
+    const first = (await setup()).barriers.length;
+    await page.click("[data-draw=barrier]");
+    const height = page.locator(".draft:visible input[type=number]").first();
+    await height.fill("900");
+    await height.press("Enter");
+    await clickGround(page, 0.42, 0.62);
+    await clickGround(page, 0.52, 0.62);
+    await page.click(".draft:visible button:has-text('Finish')");
+    const toast = page.locator(".toast.error");
+    await toast.waitFor();
+    assert.match(await toast.textContent(), /height_m.*900/);
+    await toast.locator("button").click();
+    assert.equal(await page.locator(".toast.error").count(), 0);
+    assert.equal((await setup()).barriers.length, first);
+  });
+
+  await run.check("a barrier is drawn, made higher, moved by key, removed, brought back by undo", async () => {
+    await page.click("[data-draw=barrier]");
+    const height = page.locator(".draft:visible input[type=number]").first();
+    await height.fill("4");
+    await height.press("Enter");
+    const clip = await viewClip(page);
+    const without = await run.colours(page, clip);
+    await clickGround(page, 0.38, 0.62);
+    await clickGround(page, 0.46, 0.64);
+    await clickGround(page, 0.54, 0.62, { clickCount: 1 });
+    await page.keyboard.press("Backspace");
+    await clickGround(page, 0.54, 0.62);
+    await page.keyboard.press("Enter");
+    const barrier = (await until(setup, (s) => s.barriers.length === 1, "a barrier")).barriers[0];
+    assert.equal(barrier.line.length, 3);
+    assert.equal(barrier.height_m, 4);
+    await until(async () => !(await run.colours(page, clip)).png.equals(without.png), (different) => different, "the barrier in the view");
+    const field = page.locator(".editor input[type=number]").first();
+    await field.fill("6");
+    await field.press("Enter");
+    await until(setup, (s) => s.barriers[0].height_m === 6, "6 m high");
+    const handle = page.locator(".handle:visible").first();
+    await handle.focus();
+    await page.keyboard.press("ArrowUp");
+    await until(setup, (s) => Math.abs(s.barriers[0].line[0][1] - barrier.line[0][1] - 1) < 0.02, "moved north by 1 m");
+    await run.shot(page, "4-barrier");
+    await page.click(".editor button:has-text('Remove')");
+    await until(setup, (s) => s.barriers.length === 0, "removed");
+    await page.click(".levers button:has-text('Undo')");
+    await until(setup, (s) => s.barriers.length === 1 && s.barriers[0].height_m === 6, "back");
+  });
+
+  await run.check("a building is drawn, named, moved as a whole, removed", async () => {
+    const count = (await setup()).buildings.length;
+    await page.click("[data-draw=building]");
+    for (const [u, v] of [[0.60, 0.66], [0.65, 0.66], [0.65, 0.72], [0.60, 0.72]]) await clickGround(page, u, v);
+    await page.keyboard.press("Enter");
+    const made = (await until(setup, (s) => s.buildings.length === count + 1, "a building")).buildings.at(-1);
+    assert.equal(made.from_scene, false);
+    const name = page.locator(".editor input[aria-label=Name]");
+    await name.fill("Pump house");
+    await name.press("Enter");
+    await until(setup, (s) => s.buildings.at(-1).name === "Pump house", "its name");
+    const whole = await page.locator(".handle.whole:visible").boundingBox();
+    await page.mouse.move(whole.x + 6, whole.y + 6);
+    await page.mouse.down();
+    await page.mouse.move(whole.x + 36, whole.y + 6, { steps: 4 });
+    await page.mouse.up();
+    const moved = (await until(setup, (s) => Math.hypot(s.buildings.at(-1).footprint[0][0][0] - made.footprint[0][0][0], s.buildings.at(-1).footprint[0][0][1] - made.footprint[0][0][1]) > 2, "moved")).buildings.at(-1);
+    const side = (b) => Math.hypot(b.footprint[0][1][0] - b.footprint[0][0][0], b.footprint[0][1][1] - b.footprint[0][0][1]);
+    assert.ok(Math.abs(side(moved) - side(made)) < 0.05, "it keeps its shape");
+    await page.click(".editor button:has-text('Remove')");
+    await until(setup, (s) => s.buildings.length === count, "removed");
+  });
+
+  await run.check("a click in the view selects a house, and Escape lets it go", async () => {
+    const houses = (await setup()).buildings;
+    if (houses.length === 0) return;
+    await page.click("[data-tab=impact]");
+    await until(() => page.locator(".impacts tbody th button").count(), (n) => n > 0, "the table");
+    await page.locator(".impacts tbody th button").first().click();
+    await page.waitForTimeout(300);
+    await clickGround(page, 0.5, 0.5);
+    await until(() => page.locator(".editor input[aria-label=Name]").count(), (n) => n === 1, "the editor of a house");
+    await page.locator(".stage canvas").focus();
+    await page.keyboard.press("Escape");
+    assert.equal(await page.locator(".editor input[aria-label=Name]").count(), 0);
+    await page.keyboard.press("f");
+  });
+  return page;
+}

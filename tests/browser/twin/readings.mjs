@@ -1,0 +1,242 @@
+// What is read from a scenario: layers, camera, charts, probes, sections, impacts, recording, exports, comparison.
+import { join } from "node:path";
+import { assert, clickGround, saved, shownTime, until, viewClip } from "./harness.mjs";
+
+export async function testReadings(run, server) {
+  const page = await run.open(server.controller, { name: "Ben" });
+  const state = () => server.ask("scenarios/A/state");
+  const post = (body) => fetch(`${server.base}api/scenarios/A/actions`, { method: "POST", body: JSON.stringify(body),
+    headers: { Authorization: `Bearer ${server.token}`, "Content-Type": "application/json", "Talus-Person": page.person } });
+  page.person = (await server.ask("session")).people.at(-1).id;
+  assert.equal((await post({ action: "restart" })).status, 200);
+  await post({ action: "set_speed", factor: null });
+  await post({ action: "run" });
+  await until(state, (s) => s.time_s > 12 || s.status !== "running", "some seconds of a run", 120_000);
+  await post({ action: "pause" });
+  await until(() => shownTime(page), (t) => t > 1, "time on the page");
+  await page.waitForTimeout(1500);
+  const clip = await viewClip(page);
+
+  await run.check("each map layer looks like itself, with title and unit in its legend", async () => {
+    const seen = new Map();
+    const units = { depth: "m", peak_depth: "m", peak_speed: "m/s", peak_pressure: "kPa", arrival_time: "s", deposit_depth: "m" };
+    await page.locator("label:has-text('Particles') input").uncheck();
+    for (const [layer, unit] of Object.entries(units)) {
+      await page.selectOption("select[aria-label^='Map layer']", layer);
+      const legend = page.locator(".legend").last();
+      const title = await page.locator(`select[aria-label^='Map layer'] option[value=${layer}]`).textContent();
+      await until(() => legend.textContent(), (t) => t.startsWith(title), "legend");
+      assert.equal(await legend.locator(".legend-title span").textContent(), unit);
+      await page.waitForTimeout(700);
+      const { png } = await run.colours(page, clip);
+      seen.set(layer, png.toString("base64"));
+      if (layer === "peak_speed") await run.shot(page, "5-peak-speed");
+    }
+    // Depth now and deposit depth may be one picture when all is at rest.
+    assert.ok(new Set(seen.values()).size >= 5, `${new Set(seen.values()).size} different pictures of 6 layers`);
+    await page.selectOption("select[aria-label^='Map layer']", "none");
+    await page.waitForTimeout(400);
+    assert.ok(![...seen.values()].includes((await run.colours(page, clip)).png.toString("base64")), "no layer looks like one");
+  });
+
+  await run.check("debris as a surface by depth and by speed, and as particles", async () => {
+    const pictures = new Set();
+    for (const [particles, surface] of [[false, "off"], [false, "depth"], [false, "speed"], [true, "off"]]) {
+      await page.locator("label:has-text('Particles') input").setChecked(particles);
+      await page.selectOption("select[aria-label^='Debris as']", surface);
+      await page.waitForTimeout(600);
+      pictures.add((await run.colours(page, clip)).png.toString("base64"));
+      if (surface === "depth") await run.shot(page, "6-surface");
+    }
+    assert.equal(pictures.size, 4);
+    await page.locator("label:has-text('Contours') input").uncheck();
+    await page.waitForTimeout(600);
+    assert.ok(!pictures.has((await run.colours(page, clip)).png.toString("base64")), "contours make no difference");
+    await page.locator("label:has-text('Contours') input").check();
+  });
+
+  await run.check("camera: top, whole scene, arrow keys, fly, follow, saved view", async () => {
+    const picture = async () => (await page.waitForTimeout(500), (await run.colours(page, clip)).png.toString("base64"));
+    await page.click("[aria-label='Fit']");
+    const whole = await picture();
+    await page.click("[aria-label='Save this view']");
+    await page.click("[aria-label='Top view']");
+    const top = await picture();
+    assert.notEqual(top, whole);
+    assert.match(await page.locator(".needle").evaluate((e) => e.style.transform), /rotate\(-?0(\.0\d*)?rad\)|e-/);
+    await run.shot(page, "7-top");
+    await page.locator("select.saved").selectOption("1");
+    assert.equal(await picture(), whole, "the saved view");
+    await page.locator(".stage canvas").focus();
+    await page.keyboard.press("ArrowLeft");
+    const turned = await picture();
+    assert.notEqual(turned, whole);
+    await page.keyboard.press("2");
+    assert.equal(await page.getAttribute("[data-mode=fly]", "aria-pressed"), "true");
+    await page.keyboard.down("w");
+    await page.waitForTimeout(800);
+    await page.keyboard.up("w");
+    assert.notEqual(await picture(), turned);
+    await page.keyboard.press("3");
+    assert.equal(await page.getAttribute("[data-mode=follow]", "aria-pressed"), "true");
+    await page.keyboard.press("1");
+    await page.click("[aria-label='Fit']");
+  });
+
+  await run.check("readings are tabs for mouse and arrow keys; front and time charts have curves", async () => {
+    await page.click("[data-tab=front]");
+    const chart = page.locator(".tab-panel:visible .chart-plot").first();
+    await until(() => chart.getAttribute("aria-label"), (t) => /Front.* from .* m\/s/.test(t ?? ""), "front velocities");
+    assert.match(await chart.getAttribute("aria-label"), /Observed from .* m\/s/);
+    const seen = await run.colours(page, await chart.boundingBox());
+    assert.ok(seen.different > 40, `${seen.different} colours in the chart`);
+    await page.keyboard.press("ArrowRight");
+    assert.equal(await page.locator("[role=tab][aria-selected=true]").getAttribute("data-tab"), "time");
+    const labels = await until(() => page.locator(".tab-panel:visible .chart-plot:visible").evaluateAll((l) => l.map((e) => e.getAttribute("aria-label"))), (l) => l.length === 3 && l.every(Boolean), "three charts");
+    for (const words of [/Moving from .* m³/, /speed from .* m\/s/, /Kinetic from .* MJ/]) assert.ok(labels.some((l) => words.test(l)), `${words} in ${labels}`);
+    await run.shot(page, "8-time");
+  });
+
+  await run.check("probes by click: curves of depth, speed and pressure", async () => {
+    await page.click("[data-tab=points]");
+    await page.click("button:has-text('Put a probe')");
+    await clickGround(page, 0.5, 0.42);
+    await clickGround(page, 0.45, 0.5);
+    await page.click("button:has-text('Put a probe')");
+    assert.equal(await page.locator("li.probe").count(), 2);
+    const asked = await until(() => page.locator(".tab-panel:visible .chart-plot:visible").count(), (n) => n === 3, "three charts of the points");
+    assert.equal(asked, 3);
+    await until(() => page.locator("li.probe").first().textContent(), (t) => /peaks .*kPa/.test(t), "peaks");
+    assert.equal(await page.locator(".label.probe").count(), 2);
+    await run.shot(page, "9-probes");
+    await page.click("[aria-label='Remove probe 1']");
+    assert.equal(await page.locator("li.probe").count(), 1);
+  });
+
+  await run.check("a cross-section by two clicks: ground, debris now, peak", async () => {
+    await page.click("[data-tab=section]");
+    await page.click("button:has-text('Draw a section')");
+    await clickGround(page, 0.35, 0.4);
+    await clickGround(page, 0.65, 0.4);
+    const chart = page.locator(".tab-panel:visible .chart-plot").first();
+    await until(() => chart.getAttribute("aria-label"), (t) => /Ground from 0 to .* m/.test(t ?? ""), "ground");
+    assert.match(await page.locator(".tab-panel:visible .measure").textContent(), /m long/);
+    await run.shot(page, "10-section");
+    await page.locator(".tab-panel:visible button:has-text('Remove')").click();
+  });
+
+  await run.check("impacts: sorted by a click on the head, a row leads to its house; classes have their thresholds", async () => {
+    await page.click("[data-tab=impact]");
+    const scene = await server.ask("scene");
+    assert.equal(await page.locator(".classes li").count(), scene.intensity.classes.length);
+    assert.ok((await page.locator(".tab-panel:visible").textContent()).includes(scene.intensity.rule));
+    const names = () => page.locator(".impacts").last().locator("tbody th").allTextContents();
+    if ((await server.ask("scenarios/A/impacts")).buildings.length > 1) {
+      await page.locator(".impacts").last().locator("thead button").first().click();
+      const up = await names();
+      assert.deepEqual(up, [...up].sort((a, b) => (a < b ? -1 : 1)));
+      await page.locator(".impacts").last().locator("thead button").first().click();
+      assert.deepEqual(await names(), [...up].reverse());
+      const before = (await run.colours(page, clip)).png;
+      await page.locator(".impacts").last().locator("tbody th button").first().click();
+      await page.waitForTimeout(600);
+      assert.ok(!(await run.colours(page, clip)).png.equals(before), "the view has not moved");
+      await page.selectOption("select[aria-label='Colour of houses']", "pressure");
+      await run.shot(page, "11-impact");
+      await page.click("[aria-label='Fit']");
+    }
+  });
+
+  await run.check("mass balance adds up, and the numbers of the run have units", async () => {
+    await page.click("[data-tab=balance]");
+    const s = await state();
+    const text = await page.locator(".tab-panel:visible").textContent();
+    assert.ok(text.includes(`${s.volume_moving_m3.toFixed(1)} m³`), text);
+    assert.ok(text.includes(s.hash), "hash");
+    const card = await page.textContent(".run-card");
+    for (const words of [/Largest speed.*m\/s/, /Steps.*\/s/, /Real time.*×/, /onverged/]) assert.match(card, words);
+  });
+
+  await run.check("scrubbing shows earlier times, playback plays them, live returns", async () => {
+    await page.waitForTimeout(500);
+    const now = await run.colours(page, clip);
+    const last = (await state()).recording.last_s;
+    const slider = page.locator("input.timeline");
+    const box = await slider.boundingBox();
+    const end = (await state()).end_time_s;
+    await page.mouse.click(box.x + 7 + (box.width - 14) * (0.3 * last / end), box.y + box.height / 2);
+    await until(() => shownTime(page), (t) => Math.abs(t - 0.3 * last) < 0.1 * last + 0.3, "an earlier time");
+    await page.waitForTimeout(800);
+    assert.ok(!(await run.colours(page, clip)).png.equals(now.png), "the view is that of now");
+    assert.match(await page.textContent(".status"), /Recording/);
+    const from = await shownTime(page);
+    await slider.focus();
+    await page.keyboard.press("ArrowLeft");
+    await until(() => shownTime(page), (t) => t < from, "by key");
+    await page.click("[aria-label='Play the recording']");
+    await until(() => shownTime(page), (t) => t > from + 0.5, "playback");
+    await page.click("[aria-label='Pause the recording']");
+    await page.click(".live");
+    await until(() => shownTime(page), (t) => Math.abs(t - last) < 0.5, "live time");
+    await until(async () => (await run.colours(page, clip)).png.equals(now.png), (same) => same, "the live view", 6000);
+  });
+
+  await run.check("exports: a file, the journal, a picture, a video", async () => {
+    await page.click("button:has-text('Export')");
+    const csv = await saved(page, () => page.click("[aria-label='Save front.csv']"));
+    assert.equal(csv.name, "front.csv");
+    assert.ok(csv.bytes.length > 10);
+    const journal = await saved(page, () => page.click("dialog [aria-label^='Save journal']"));
+    assert.ok(journal.bytes.length > 10);
+    await run.shot(page, "12-export");
+    await page.keyboard.press("Escape");
+    assert.equal(await page.locator("dialog[open]").count(), 0);
+    const picture = await saved(page, () => page.click("[aria-label='Picture']"));
+    assert.match(picture.name, /\.png$/);
+    assert.equal(picture.bytes.subarray(1, 4).toString(), "PNG");
+    const { writeFileSync } = await import("node:fs");
+    writeFileSync(join(run.output, "picture.png"), picture.bytes);
+    assert.ok(picture.bytes.length > 30_000, `${picture.bytes.length} bytes: blank?`);
+    await page.click("[aria-label='Record a video']");
+    await page.waitForTimeout(2500);
+    const video = await saved(page, () => page.click("[aria-label='End the video and save it']"));
+    assert.match(video.name, /\.webm$/);
+    assert.equal(video.bytes.readUInt32BE(0), 0x1a45dfa3);
+    assert.ok(video.bytes.length > 5000, `${video.bytes.length} bytes`);
+  });
+
+  await run.check("two scenarios: own levers, one camera, difference map, and back to one", async () => {
+    await page.click("button:has-text('Compare')");
+    await page.locator(".pane[data-scenario=B]").waitFor();
+    await until(() => page.getAttribute("button[data-scenario=B]", "aria-pressed"), (v) => v === "true", "levers of B");
+    const friction = page.locator(".field", { hasText: "riction" }).first().locator("input[type=number]");
+    const a = (await server.ask("scenarios/A/setup")).parameters["material.friction_coefficient"];
+    await friction.fill("0.2");
+    await friction.press("Enter");
+    await until(() => server.ask("scenarios/B/setup"), (s) => s.parameters["material.friction_coefficient"] === 0.2, "friction of B");
+    assert.equal((await server.ask("scenarios/A/setup")).parameters["material.friction_coefficient"], a);
+    await page.click(".run");
+    await until(() => server.ask("scenarios/B/state"), (s) => s.time_s > 6, "B runs", 90_000);
+    await page.click(".run");
+    await until(() => server.ask("scenarios/B/state"), (s) => s.status !== "running", "B pauses");
+    await page.waitForTimeout(1500);
+    const left = await run.colours(page, await viewClip(page, "A"));
+    const right = await run.colours(page, await viewClip(page, "B"));
+    assert.ok(left.different > 800 && right.different > 800, `${left.different} and ${right.different} colours`);
+    assert.ok(!left.png.equals(right.png), "both views are alike");
+    await page.selectOption("select[aria-label^='Map layer']", "peak_depth");
+    await page.waitForTimeout(800);
+    const each = await run.colours(page, await viewClip(page, "B"));
+    await page.locator("label:has-text('B − A') input").check();
+    await until(() => page.locator(".legend").last().textContent(), (t) => t.includes("B − A"), "legend of the difference");
+    await page.waitForTimeout(800);
+    assert.ok(!(await run.colours(page, await viewClip(page, "B"))).png.equals(each.png), "the difference looks like the layer");
+    await run.shot(page, "13-compare");
+    await page.click("button[data-scenario=A]");
+    assert.equal(await friction.inputValue(), String(a));
+    await page.click("[aria-label='End scenario B']");
+    await until(() => page.locator(".pane").count(), (n) => n === 1, "one view");
+    await page.selectOption("select[aria-label^='Map layer']", "none");
+  });
+  await page.context().close();
+}

@@ -1,0 +1,140 @@
+// Several people in one session, breaks of the connection, sizes of the window, keyboard and names of controls.
+import { assert, shownTime, startServer, until, viewClip } from "./harness.mjs";
+
+export async function testSharing(run, server, command) {
+  const small = { width: 1024, height: 640 };
+  const ada = await run.open(server.controller, { ...small, name: "Ada" });
+  const state = () => server.ask("scenarios/A/state");
+
+  await run.check("a viewer sees the same time and cannot change anything, and is told why", async () => {
+    await until(async () => (await ada.textContent(".control")).trim(), (t) => t === "You have control", "control of the first", 12_000);
+    const eve = await run.open(server.viewer, { ...small, name: "Eve" });
+    await until(async () => Math.abs((await shownTime(eve)) - (await state()).time_s), (d) => d < 0.2, "the same time for the late comer");
+    assert.equal(await eve.isDisabled(".run"), true);
+    assert.match(await eve.textContent(".why"), /viewer's link/);
+    for (const control of await eve.locator(".levers input, .levers [data-draw], .levers button:has-text('Undo'), .levers button:has-text('Compare')").all()) {
+      if (await control.isVisible()) assert.equal(await control.isDisabled(), true, await control.evaluate((e) => e.outerHTML.slice(0, 120)));
+    }
+    assert.equal(await eve.locator(".control:visible").count(), 0);
+    const seen = await run.colours(eve, await viewClip(eve));
+    assert.ok(seen.different > 800);
+    await until(() => ada.locator(".chips .person").count(), (n) => n === 2, "two people");
+    await eve.click("button:has-text('Share')");
+    assert.equal(await eve.locator("dialog input[readonly]").count(), 1, "a viewer passes on the viewers' link alone");
+    assert.ok((await eve.inputValue("dialog input[readonly]")).endsWith(`#token=${server.viewerToken}`));
+    await eve.keyboard.press("Escape");
+    await ada.click(".run");
+    await until(() => eve.textContent(".status"), (t) => /Running/.test(t), "running for the viewer too", 15_000);
+    await ada.click(".run");
+    await until(() => eve.textContent(".status"), (t) => /Paused|rest|End/.test(t), "paused for the viewer too", 15_000);
+
+    const box = await ada.locator(".stage canvas").boundingBox();
+    await ada.mouse.move(box.x + 0.5 * box.width, box.y + 0.5 * box.height);
+    await ada.mouse.move(box.x + 0.52 * box.width, box.y + 0.55 * box.height, { steps: 3 });
+    await until(() => eve.locator(".person-mark:not([hidden])").allTextContents(), (names) => names.includes("Ada"), "Ada's mark");
+    await run.shot(eve, "14-viewer");
+    await eve.context().close();
+    await until(() => ada.locator(".chips .person").count(), (n) => n === 1, "one person again", 12_000);
+  });
+
+  await run.check("control is asked for, declined, granted, given back; names and links are shared", async () => {
+    const ben = await run.open(server.controller, { ...small, name: "Ben" });
+    assert.match(await ben.textContent(".why"), /Ada has control/);
+    await ben.click(".control");
+    const request = ada.locator(".request");
+    await request.waitFor();
+    assert.match(await request.textContent(), /Ben asks for control/);
+    await run.shot(ada, "15-request");
+    await request.locator("button:has-text('Decline')").click();
+    await until(() => ben.textContent(".control"), (t) => /Ask for control/.test(t), "declined");
+    await ben.click(".control");
+    await request.locator("button:has-text('Grant')").click();
+    await until(() => ben.textContent(".control"), (t) => /You have control/.test(t), "granted");
+    await until(() => ada.isDisabled(".run"), (d) => d, "Ada's levers are off");
+    assert.match(await ada.textContent(".why"), /Ben has control/);
+    await ben.click("button:has-text('Share')");
+    assert.equal(await ben.locator("dialog input[readonly]").count(), 2);
+    const name = ben.locator("dialog input[aria-label='Your name']");
+    await name.fill("Benedict");
+    await name.press("Enter");
+    await until(() => ada.textContent(".why"), (t) => /Benedict has control/.test(t), "the new name");
+    await run.shot(ben, "16-share");
+    await ben.keyboard.press("Escape");
+    await ben.click(".control");
+    await until(() => ada.textContent(".control"), (t) => /Take control/.test(t), "given back");
+    await ada.click(".control");
+    await until(() => ada.textContent(".control"), (t) => /You have control/.test(t), "taken");
+    await ben.context().close();
+  });
+
+  for (const [width, height] of [[1280, 720], [1024, 768]]) {
+    await run.check(`works at ${width} x ${height}: nothing is cut off, readings can be reached`, async () => {
+      await ada.setViewportSize({ width, height });
+      await ada.waitForTimeout(500);
+      const outside = await ada.evaluate(() => [...document.querySelectorAll("button, select, input, .legend, .clock")].filter((e) => {
+        const r = e.getBoundingClientRect();
+        if (r.width === 0 || !e.checkVisibility({ visibilityProperty: true }) || e.closest(".levers, .tab-panels, .unseen")) return false;
+        return r.left < -1 || r.right > innerWidth + 1 || r.top < -1 || r.bottom > innerHeight + 1;
+      }).map((e) => e.outerHTML.slice(0, 90)));
+      assert.deepEqual(outside, []);
+      const overlaps = await ada.evaluate(() => {
+        const boxes = [...document.querySelectorAll(".bar, .legend, .map-marks, .topbar > *, .transport > *")].filter((e) => e.checkVisibility({ visibilityProperty: true }))
+          .map((e) => [e.className, e.getBoundingClientRect()]).filter(([, r]) => r.width > 0);
+        const pairs = [];
+        boxes.forEach(([n, a], i) => boxes.slice(i + 1).forEach(([m, b]) => {
+          if (a.left < b.right - 1 && b.left < a.right - 1 && a.top < b.bottom - 1 && b.top < a.bottom - 1) pairs.push(`${n} / ${m}`);
+        }));
+        return pairs;
+      });
+      assert.deepEqual(overlaps, []);
+      const drawer = ada.locator(".drawer-switch");
+      if (await drawer.isVisible()) await drawer.click();
+      await ada.waitForTimeout(400);
+      await ada.click("[data-tab=balance]");
+      assert.ok(await ada.locator("caption:has-text('Mass balance')").isVisible());
+      await run.shot(ada, `17-size-${width}`);
+      if (await drawer.isVisible()) await drawer.click();
+    });
+  }
+
+  await run.check("every control has a name, and the focus is seen", async () => {
+    const nameless = await ada.evaluate(() => [...document.querySelectorAll("button, input, select, [role=tab]")].filter((e) => {
+      if (!e.checkVisibility({ visibilityProperty: true })) return false;
+      const label = e.getAttribute("aria-label") || e.getAttribute("title") || e.textContent.trim() || [...(e.labels ?? [])].map((l) => l.textContent).join("");
+      return label.trim() === "";
+    }).map((e) => e.outerHTML.slice(0, 100)));
+    assert.deepEqual(nameless, []);
+    await ada.locator(".run").focus();
+    await ada.keyboard.press("Tab");
+    const outline = await ada.evaluate(() => {
+      const s = getComputedStyle(document.activeElement);
+      return `${s.outlineStyle} ${s.outlineWidth}`;
+    });
+    assert.match(outline, /solid 2/);
+    await ada.locator(".stage canvas").focus();
+    await ada.keyboard.press("?");
+    assert.equal(await ada.locator("dialog[open]").count(), 1);
+    assert.match(await ada.locator("dialog").textContent(), /Ctrl \+ Shift \+ Z/);
+    await run.shot(ada, "18-help");
+    await ada.keyboard.press("Escape");
+    assert.equal(await ada.locator("dialog[open]").count(), 0);
+  });
+
+  let next = server;
+  await run.check("after a break the page comes back by itself and shows the present state", async () => {
+    await server.stop();
+    await until(() => ada.textContent(".connection"), (t) => /Connection lost|Reconnecting/.test(t), "the break is told");
+    assert.equal(await ada.isDisabled(".run"), true);
+    const port = command.indexOf("--port");
+    const again = port < 0 ? [...command, "--port", String(server.port)] : command.map((part, i) => (i === port + 1 ? String(server.port) : part));
+    if (again.includes("serve")) again.push("--token", server.token, "--token", server.viewerToken);
+    next = await startServer(again);
+    await until(() => ada.locator(".connection:visible").count(), (n) => n === 0, "the connection", 25_000);
+    await until(async () => Math.abs((await shownTime(ada)) - (await next.ask("scenarios/A/state")).time_s), (d) => d < 0.2, "the present time");
+    await until(() => ada.isDisabled(".run"), (d) => !d, "control again");
+    await ada.click("[aria-label='Step']");
+    await until(() => next.ask("scenarios/A/state"), (s) => s.step >= 1, "a step");
+  });
+  await ada.context().close();
+  return next;
+}

@@ -1,0 +1,92 @@
+// Front velocity against chainage, and what changes over time.
+import type { ScenarioName } from "../protocol/frame";
+import type { Column, Series } from "../protocol/messages";
+import { watchAll } from "../state/cell";
+import type { Twin } from "../state/twin";
+import { h } from "../ui/dom";
+import { Chart, joined, type Curve } from "./chart";
+
+const colours: Record<ScenarioName, string> = { A: "#0b5fa5", B: "#d1640f" };
+const observationColour = "#a3262a";
+
+/** Few enough points to plot at once: every so many of a long column. */
+function thinned(column: Column, most = 600): number[] {
+  const every = Math.max(1, Math.ceil(column.length / most));
+  const picked = [];
+  for (let k = 0; k < column.length; k += every) picked.push(k);
+  if (column.length > 0 && picked[picked.length - 1] !== column.length - 1) picked.push(column.length - 1);
+  return picked;
+}
+
+export function frontCharts(twin: Twin): HTMLElement {
+  const velocity = new Chart({ title: "Front velocity along the flow path", x: { label: "Chainage", unit: "m" }, y: { label: "Front velocity", unit: "m/s" }, curves: [],
+    height: 230, empty: "The front has not moved yet. Run the simulation: velocities appear as it passes each chainage." });
+  const arrival = new Chart({ title: "Arrival of the front", x: { label: "Chainage", unit: "m" }, y: { label: "Time", unit: "s" }, curves: [], height: 170,
+    empty: "No arrivals yet." });
+  const observed = twin.scene.observations;
+  watchAll([twin.scenarios, twin.cells.A.series, twin.cells.B.series], () => {
+    const tables = [];
+    const curves: Curve[] = [];
+    const times = [];
+    const timeCurves: Curve[] = [];
+    for (const name of twin.scenarios.value) {
+      const front = twin.cells[name].series.value?.front;
+      if (!front || front.chainage_m.length === 0) continue;
+      const suffix = twin.scenarios.value.length > 1 ? ` ${name}` : "";
+      tables.push({ x: front.chainage_m, y: front.front_velocity_mps }, { x: front.chainage_m, y: front.particle_speed_mps });
+      curves.push({ label: `Front${suffix}`, unit: "m/s", colour: colours[name], points: true },
+        { label: `Debris at front${suffix}`, unit: "m/s", colour: colours[name], dashed: true });
+      times.push({ x: front.chainage_m, y: front.arrival_time_s });
+      timeCurves.push({ label: `Arrival${suffix}`, unit: "s", colour: colours[name] });
+    }
+    if (observed.length > 0) {
+      tables.push({ x: observed.map((o) => o.chainage_m), y: observed.map((o) => o.front_velocity_mps) });
+      curves.push({ label: "Observed", unit: "m/s", colour: observationColour, marksOnly: true });
+    }
+    velocity.update(tables.length > 0 ? joined(tables) : [[]], curves);
+    arrival.update(times.length > 0 ? joined(times) : [[]], timeCurves);
+  });
+  const list = h("ul", { class: "observations" }, ...observed.map((o) =>
+    h("li", {}, `${o.name}: ${o.front_velocity_mps} m/s at ${o.chainage_m} m (${o.source})`)));
+  const note = twin.scene.flow_path ? null : h("p", { class: "hint" }, "This scene has no flow path: there is no chainage to plot against.");
+  return h("div", {}, note, velocity.element, observed.length > 0 ? h("div", { class: "hint" }, "Observations", list) : null, arrival.element);
+}
+
+interface Plotted { column: string; label: string; colour: string }
+const volumes: Plotted[] = [
+  { column: "volume_moving_m3", label: "Moving", colour: "#3b83b5" },
+  { column: "volume_deposited_m3", label: "Deposited", colour: "#8a6d3b" },
+  { column: "volume_held_m3", label: "Held", colour: "#8b949c" },
+  { column: "volume_left_m3", label: "Left the terrain", colour: "#a3262a" },
+];
+
+export function timeCharts(twin: Twin): HTMLElement {
+  const time = { label: "Time", unit: "s" };
+  const volume = new Chart({ title: "Volumes", x: time, y: { label: "Volume", unit: "m3" }, curves: [], empty: "No time series yet: run the simulation." });
+  const speed = new Chart({ title: "Speed", x: time, y: { label: "Speed", unit: "m/s" }, curves: [], empty: "No speeds yet." });
+  const energy = new Chart({ title: "Energy", x: time, y: { label: "Energy", unit: "MJ" }, curves: [], empty: "No energies yet." });
+  const all = [volume, speed, energy];
+  watchAll([twin.scenarios, twin.edited, twin.cells.A.series, twin.cells.B.series], () => {
+    const series: Series | null = twin.now.series.value;
+    const table = series?.time;
+    const times = table?.["time_s"] ?? [];
+    const picked = thinned(times);
+    const pick = (column: Column | undefined, factor = 1): (number | null)[] =>
+      picked.map((k) => {
+        const v = column?.[k];
+        return v === null || v === undefined ? null : v * factor;
+      });
+    const xs = pick(times) as number[];
+    const put = (chart: Chart, list: Plotted[], unit: string, factor = 1): void => {
+      const there = list.filter((p) => table?.[p.column]);
+      chart.update(xs.length > 0 ? [xs, ...there.map((p) => pick(table?.[p.column], factor))] : [[]], there.map((p) => ({ ...p, unit })));
+    };
+    put(volume, volumes, "m3");
+    put(speed, [{ column: "largest_speed_mps", label: "Largest speed", colour: "#0b5fa5" }], "m/s");
+    put(energy, [{ column: "kinetic_energy_J", label: "Kinetic", colour: "#d1640f" }, { column: "potential_energy_J", label: "Potential", colour: "#11795a" }], "MJ", 1e-6);
+  });
+  for (const chart of all) {
+    watchAll([twin.replay_s], () => chart.mark(twin.replay_s.value));
+  }
+  return h("div", {}, ...all.map((c) => c.element));
+}

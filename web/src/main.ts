@@ -1,0 +1,49 @@
+import "uplot/dist/uPlot.min.css";
+import "./style/base.css";
+import "./style/layout.css";
+import "./style/panels.css";
+import "./style/view.css";
+import { buildPage } from "./page";
+import { Api, Refused } from "./protocol/api";
+import { takeToken } from "./protocol/token";
+import { Relief } from "./scene/relief";
+import { Twin } from "./state/twin";
+import { h } from "./ui/dom";
+
+const meshCells = 400_000;
+
+async function begin(page: HTMLElement): Promise<void> {
+  const token = takeToken();
+  if (token === "") {
+    say(page, "This page needs the whole link", "Open the link that talus serve printed. It ends in #token=… and lets you in.");
+    return;
+  }
+  const api = new Api(token);
+  try {
+    const [scene, terrain] = await Promise.all([api.scene(), api.terrain(meshCells)]);
+    document.title = `${scene.title} · talus`;
+    const twin = new Twin(token, scene, new Relief(terrain, scene.origin), api);
+    page.classList.remove("starting");
+    buildPage(page, twin);
+    twin.live.start();
+  } catch (error) {
+    console.error(error);
+    if (error instanceof Refused && (error.status === 401 || error.status === 403)) {
+      say(page, "This link is not valid", `${error.message}. The server makes new links each time it starts: ask for the present one.`);
+    } else {
+      say(page, "The scene could not be opened", error instanceof Error ? error.message : String(error), true);
+    }
+  }
+}
+
+function say(page: HTMLElement, title: string, sentence: string, retry = false): void {
+  page.replaceChildren(h("div", { class: "boot", role: "alert" }, h("h1", {}, title), h("p", {}, sentence),
+    retry ? h("button", { type: "button", onclick: () => location.reload() }, "Try again") : null));
+}
+
+const page = document.getElementById("page");
+if (page) void begin(page);
+// A link that is opened in a tab where the page already is changes just the fragment.
+window.addEventListener("hashchange", () => {
+  if (location.hash.includes("token=")) location.reload();
+});

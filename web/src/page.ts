@@ -1,0 +1,125 @@
+// Puts the parts of the page together.
+import { Probes } from "./charts/probes";
+import { sectionPanel } from "./charts/section";
+import { frontCharts, timeCharts } from "./charts/series_charts";
+import { exportButtons } from "./panels/exports";
+import { impactColour, impactsPanel, largestPressure } from "./panels/impacts";
+import { help, keys } from "./panels/keys";
+import { legends, scaleAndCompass } from "./panels/legends";
+import { levers } from "./panels/levers";
+import { people } from "./panels/people";
+import { Picture } from "./panels/picture";
+import { balance, runCard } from "./panels/run_card";
+import { transport } from "./panels/transport";
+import { viewBar } from "./panels/view_bar";
+import { Drawing } from "./scene/drawing";
+import { marks } from "./scene/marks";
+import { placeOnPath } from "./scene/scenario_view";
+import { ShownLayers } from "./scene/shown_layers";
+import { Stage } from "./scene/stage";
+import { watchAll } from "./state/cell";
+import { Playback } from "./state/playback";
+import { Refresher } from "./state/refresher";
+import type { Twin } from "./state/twin";
+import { button, h } from "./ui/dom";
+import { tabs } from "./ui/tabs";
+import { Toasts } from "./ui/toast";
+
+export function buildPage(page: HTMLElement, twin: Twin): void {
+  const stage = new Stage(twin, twin.relief);
+  const drawing = new Drawing(twin, stage);
+  const layers = new ShownLayers(twin, stage);
+  const playback = new Playback(twin);
+  const bar = viewBar(twin, stage);
+  const picture = new Picture(twin, stage, layers);
+  const toasts = new Toasts();
+  twin.onNotice((sentence, kind) => toasts.show(sentence, kind));
+  showSetups(twin, stage);
+  followFront(twin, stage);
+
+  const probes = new Probes(twin);
+  const section = sectionPanel(twin, stage);
+  const readings = tabs("Readings", [
+    { name: "front", title: "Front", content: frontCharts(twin) },
+    { name: "time", title: "Time", content: timeCharts(twin) },
+    { name: "points", title: "Points", content: probes.element },
+    { name: "section", title: "Section", content: section.element },
+    { name: "impact", title: "Impact", content: impactsPanel(twin, stage) },
+    { name: "balance", title: "Balance", content: balance(twin) },
+  ]);
+  twin.probes.watch((list) => {
+    if (list.length > 0) readings.show("points");
+  });
+  twin.section.watch((line) => {
+    if (line) readings.show("section");
+  });
+  new Refresher(twin, () => {
+    if (readings.shown() === "points") void probes.refresh();
+    if (readings.shown() === "section") section.refresh();
+  });
+  const readOut = marks(twin, stage, layers);
+  keys(twin, stage, drawing, bar, playback);
+
+  const drawer = button("Readings", { icon: "panel", class: "drawer-switch", "aria-expanded": "false", onclick: () => {
+    const open = page.classList.toggle("readings-open");
+    drawer.setAttribute("aria-expanded", String(open));
+  } });
+  const badge = twin.scene.reconstruction ? h("span", { class: "badge", title: twin.scene.assumptions.join(" ") }, "Reconstruction, no survey") : null;
+  const key = legends(twin, stage, layers);
+  const scale = scaleAndCompass(twin, stage, readOut);
+  stage.covers = [bar.camera, bar.show, key, scale];
+  page.replaceChildren(
+    h("header", { class: "topbar" }, h("span", { class: "wordmark" }, "talus"), h("h1", {}, twin.scene.title), badge, h("span", { class: "spring" }),
+      people(twin), ...exportButtons(twin, picture), button("Help", { icon: "help", bare: true, title: "Help and shortcuts (?)", onclick: help }), drawer),
+    levers(twin, drawing),
+    h("main", { class: "middle" }, stage.element, bar.camera, bar.show, key, scale),
+    h("aside", { class: "readings", "aria-label": "Readings" }, runCard(twin), readings.element, readings.panel),
+    transport(twin, playback),
+    toasts.polite, toasts.urgent,
+  );
+}
+
+/** Setups and impacts go to the views; the view that the levers edit is marked. */
+function showSetups(twin: Twin, stage: Stage): void {
+  for (const name of ["A", "B"] as const) {
+    const put = (): void => {
+      const setup = twin.cells[name].setup.value;
+      const view = stage.views.get(name);
+      if (!setup || !view) return;
+      view.setSetup(setup);
+      stage.relabel(view);
+    };
+    watchAll([twin.cells[name].setup, twin.scenarios], put);
+    watchAll([twin.cells[name].setup, twin.cells[name].impacts, twin.selection, twin.houseColour, twin.scenarios], () => {
+      const impacts = twin.cells[name].impacts.value;
+      const most = largestPressure(impacts);
+      stage.views.get(name)?.colourSolids(impacts, (id) => impactColour(impacts?.buildings.find((b) => b.id === id), twin.houseColour.value, twin.scene, most),
+        twin.selection.value?.id ?? null);
+      stage.invalidate();
+    });
+  }
+  watchAll([twin.scenarios, twin.edited], () => {
+    for (const name of twin.scenarios.value) {
+      const pane = stage.pane(name);
+      pane?.querySelector(".pane-name")?.remove();
+      if (twin.scenarios.value.length > 1) pane?.append(h("div", { class: `pane-name${name === twin.edited.value ? " edited" : ""}` }, name));
+    }
+  });
+  watchAll([twin.names, twin.scenarios, twin.selection], () => {
+    for (const view of stage.views.values()) {
+      view.namesShown = twin.names.value;
+      view.selected = twin.hindrance === null ? (twin.selection.value?.id ?? null) : null;
+      stage.relabel(view);
+    }
+  });
+}
+
+function followFront(twin: Twin, stage: Stage): void {
+  stage.onPicture(() => {
+    if (stage.rig.mode !== "follow") return;
+    const chainage = twin.now.state.value?.front_chainage_m;
+    if (chainage === null || chainage === undefined) return;
+    const place = placeOnPath(twin.scene, chainage);
+    if (place) stage.rig.follow(twin.relief.local(place.at[0], place.at[1]));
+  });
+}

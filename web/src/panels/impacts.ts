@@ -1,0 +1,124 @@
+// What hit houses and barriers: a table to sort, whose rows lead to the place.
+import type { BarrierImpact, Impact, Impacts, SceneInfo } from "../protocol/messages";
+import { css, rampAt, ramps } from "../scene/colour";
+import type { Stage } from "../scene/stage";
+import { watchAll } from "../state/cell";
+import { fixed, unitText } from "../state/format";
+import type { HouseColour, Twin } from "../state/twin";
+import { h } from "../ui/dom";
+
+interface Column<Row> { key: string; title: string; unit: string; value(row: Row): number | string | null; digits?: number }
+
+const houseColumns: Column<Impact>[] = [
+  { key: "name", title: "Building", unit: "", value: (r) => r.name },
+  { key: "pressure", title: "Pressure", unit: "kPa", value: (r) => r.peak_pressure_kPa, digits: 1 },
+  { key: "force", title: "Force", unit: "kN", value: (r) => r.peak_force_kN, digits: 0 },
+  { key: "depth", title: "Depth", unit: "m", value: (r) => r.peak_depth_m, digits: 2 },
+  { key: "first", title: "Hit at", unit: "s", value: (r) => r.first_hit_s, digits: 1 },
+  { key: "class", title: "Class", unit: "", value: (r) => r.intensity },
+];
+const barrierColumns: Column<BarrierImpact>[] = [
+  { key: "name", title: "Barrier", unit: "", value: (r) => r.name },
+  { key: "pressure", title: "Pressure", unit: "kPa", value: (r) => r.peak_pressure_kPa, digits: 1 },
+  { key: "force", title: "Force", unit: "kN", value: (r) => r.peak_force_kN, digits: 0 },
+  { key: "held", title: "Held", unit: "m3", value: (r) => r.held_m3, digits: 0 },
+  { key: "over", title: "Over", unit: "m3", value: (r) => r.overtopped_m3, digits: 1 },
+  { key: "first", title: "Hit at", unit: "s", value: (r) => r.first_hit_s, digits: 1 },
+];
+
+/** Colour of a house by what hit it; null: nothing did. */
+export function impactColour(impact: Impact | undefined, by: HouseColour, scene: SceneInfo, most_kPa: number): string | null {
+  if (!impact?.hit) return null;
+  if (by === "intensity") return scene.intensity.classes.find((c) => c.name === impact.intensity)?.colour ?? null;
+  return css(rampAt(ramps.peak_pressure, (impact.peak_pressure_kPa ?? 0) / Math.max(most_kPa, 1e-6)));
+}
+export const largestPressure = (impacts: Impacts | null): number =>
+  (impacts?.buildings ?? []).reduce((most, b) => Math.max(most, b.peak_pressure_kPa ?? 0), 0);
+
+class SortedTable<Row extends Impact> {
+  readonly element = h("table", { class: "impacts" });
+  private sortKey: string;
+  private down = true;
+  private rows: Row[] = [];
+
+  constructor(private readonly columns: Column<Row>[], private readonly go: (row: Row) => void, private readonly mark: (row: Row) => string | null,
+    private readonly selected: () => string | null) {
+    this.sortKey = columns[1]?.key ?? "name";
+  }
+  show(rows: readonly Row[]): void {
+    this.rows = [...rows];
+    this.draw();
+  }
+  private draw(): void {
+    const column = this.columns.find((c) => c.key === this.sortKey);
+    const rows = [...this.rows].sort((a, b) => {
+      const [u, v] = [column?.value(a) ?? null, column?.value(b) ?? null];
+      if (u === v) return 0;
+      if (u === null) return 1;
+      if (v === null) return -1;
+      return (u < v ? -1 : 1) * (this.down ? -1 : 1);
+    });
+    const focused = document.activeElement instanceof HTMLElement && this.element.contains(document.activeElement) ? document.activeElement.dataset["focus"] : undefined;
+    this.element.replaceChildren(
+      h("thead", {}, h("tr", {}, ...this.columns.map((c) => h("th", { scope: "col", "aria-sort": c.key === this.sortKey ? (this.down ? "descending" : "ascending") : "none" },
+        h("button", { type: "button", "data-focus": `h-${c.key}`, onclick: () => {
+          this.down = c.key === this.sortKey ? !this.down : c.key !== "name";
+          this.sortKey = c.key;
+          this.draw();
+        } }, h("span", {}, c.title, c.key === this.sortKey ? (this.down ? " ▾" : " ▴") : ""), c.unit ? h("small", {}, unitText(c.unit)) : null))))),
+      h("tbody", {}, ...rows.map((row) => {
+        const colour = this.mark(row);
+        const dot = h("i", { class: "dot" });
+        if (colour) dot.style.background = colour;
+        return h("tr", { class: `${row.hit ? "" : "untouched"} ${row.id === this.selected() ? "chosen" : ""}`, onclick: () => this.go(row) },
+          ...this.columns.map((c, i) => {
+            const v = c.value(row);
+            const text = typeof v === "number" ? fixed(v, c.digits ?? 1) : (v ?? "–");
+            return i === 0 ? h("th", { scope: "row" }, dot, h("button", { type: "button", "data-focus": row.id, title: "Show in the view" }, text)) : h("td", { class: typeof v === "number" ? "" : "word" }, text);
+          }));
+      })));
+    if (focused) this.element.querySelector<HTMLElement>(`[data-focus="${CSS.escape(focused)}"]`)?.focus();
+  }
+}
+
+export function impactsPanel(twin: Twin, stage: Stage): HTMLElement {
+  const go = (shape: "building" | "barrier") => (row: Impact): void => {
+    twin.selection.value = { shape, id: row.id };
+    const at = stage.views.get(twin.edited.value)?.solidAt(row.id);
+    if (at) stage.rig.visit(at.toArray(), 70);
+  };
+  const selected = (): string | null => twin.selection.value?.id ?? null;
+  const houses = new SortedTable(houseColumns, go("building"),
+    (row) => impactColour(row, twin.houseColour.value, twin.scene, largestPressure(twin.now.impacts.value)), selected);
+  const barriers = new SortedTable(barrierColumns, go("barrier"), () => null, selected);
+  const colouring = h("select", { "aria-label": "Colour of houses", onchange: () => (twin.houseColour.value = colouring.value as HouseColour) },
+    h("option", { value: "intensity" }, "by intensity class"), h("option", { value: "pressure" }, "by peak pressure"));
+  const { intensity } = twin.scene;
+  const classes = h("ul", { class: "classes" }, ...intensity.classes.map((c) => {
+    const dot = h("i", { class: "dot" });
+    dot.style.background = c.colour;
+    const thresholds = Object.entries(c).filter(([key, v]) => key !== "name" && key !== "colour" && (typeof v === "number" || typeof v === "string"))
+      .map(([key, v]) => (typeof v === "number" ? thresholdText(key, v) : String(v))).join(", ");
+    return h("li", {}, dot, h("b", {}, c.name), thresholds === "" ? null : h("span", { class: "muted" }, ` ${thresholds}`));
+  }));
+  const none = h("p", { class: "hint" }, "Nothing has been hit yet. Rows fill as debris reaches houses and barriers.");
+  const barrierTitle = h("h3", {}, "Barriers");
+  watchAll([twin.edited, twin.cells.A.impacts, twin.cells.B.impacts, twin.selection, twin.houseColour], () => {
+    const impacts = twin.now.impacts.value;
+    houses.show(impacts?.buildings ?? []);
+    barriers.show(impacts?.barriers ?? []);
+    none.hidden = (impacts?.buildings ?? []).some((b) => b.hit) || (impacts?.barriers ?? []).some((b) => b.hit);
+    barriers.element.hidden = barrierTitle.hidden = (impacts?.barriers.length ?? 0) === 0;
+    houses.element.hidden = (impacts?.buildings.length ?? 0) === 0;
+    colouring.value = twin.houseColour.value;
+  });
+  return h("div", {}, none, barrierTitle, barriers.element, h("div", { class: "row" }, h("h3", { class: "grow" }, "Buildings"), h("label", { class: "check" }, "Colour", colouring)),
+    houses.element, h("h3", {}, "Intensity classes"), classes, h("p", { class: "hint" }, intensity.rule), h("p", { class: "hint" }, `Source: ${intensity.source}`));
+}
+
+/** "depth_m", 0.5 becomes "depth ≥ 0.5 m". */
+function thresholdText(key: string, value: number): string {
+  const [, words = key, unit = ""] = /^(.*?)(?:_(m|mps|kPa|m2ps|s))?$/.exec(key) ?? [];
+  const units: Record<string, string> = { mps: "m/s", m2ps: "m²/s" };
+  return `${words.replaceAll("_", " ")} ${value} ${units[unit] ?? unit}`.trim();
+}

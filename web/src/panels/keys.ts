@@ -1,0 +1,74 @@
+// The keyboard, and the page that tells about it.
+import type { Drawing } from "../scene/drawing";
+import type { Stage } from "../scene/stage";
+import { remove } from "../state/edits";
+import { itemOf } from "../state/shapes";
+import type { Twin } from "../state/twin";
+import { dialog, openDialog } from "../ui/dialog";
+import { h } from "../ui/dom";
+import { toggle } from "./transport";
+import type { ViewBar } from "./view_bar";
+
+const shortcuts: [string, [string, string][]][] = [
+  ["Time", [["Space", "Run or pause (when no control has the focus)"], [".", "One step"], ["R", "Play or pause the recording"], ["L", "Return to live"]]],
+  ["View (focus it with V)", [["Arrow keys", "Turn and tilt"], ["Shift + arrow keys", "Move"], ["+ and −", "Zoom"], ["1, 2, 3", "Orbit, fly, follow the front"],
+    ["W A S D, Q E", "Fly"], ["T", "Top view"], ["F", "Whole scene"], ["Alt + 1 … 9", "Saved view"]]],
+  ["Drawing", [["Space", "Point in the middle of the view"], ["Enter", "Finish"], ["Backspace", "Take the last point back"], ["Escape", "Cancel, or select nothing"],
+    ["Delete", "Remove what is selected"], ["Arrow keys on a corner", "Move it by 1 m"]]],
+  ["Everywhere", [["Ctrl + Z", "Undo"], ["Ctrl + Shift + Z", "Redo"], ["?", "This help"]]],
+];
+
+export function help(): void {
+  openDialog(dialog("Help", h("p", { class: "hint" },
+    "Run the simulation below. Levers on the left take effect in the next step, also while debris moves: draw a barrier across the path, raise the friction, trigger a release. Readings are on the right. The bar at the bottom goes back through the recording."),
+  ...shortcuts.map(([title, keys]) => h("section", { class: "shortcuts" }, h("h3", {}, title),
+    h("dl", {}, ...keys.flatMap(([key, what]) => [h("dt", {}, key), h("dd", {}, what)]))))));
+}
+
+export interface Timeline { live(): void; toggle(): void }
+
+export function keys(twin: Twin, stage: Stage, drawing: Drawing, bar: ViewBar, timeline: Timeline): void {
+  document.addEventListener("keydown", (event) => {
+    if (document.querySelector("dialog[open]")) return;
+    const target = event.target instanceof HTMLElement ? event.target : document.body;
+    const typing = target.matches("input:not([type=checkbox]):not([type=range]), textarea, select");
+    if ((event.ctrlKey || event.metaKey) && !event.altKey && event.key.toLowerCase() === "z" && !typing) {
+      event.preventDefault();
+      if (twin.hindrance === null) void twin.act({ action: event.shiftKey ? "redo" : "undo" });
+      return;
+    }
+    if (event.key === "Escape" && !typing) return drawing.cancel();
+    if (typing || event.ctrlKey || event.metaKey) return;
+    if (event.altKey) {
+      if (/^Digit[1-9]$/.test(event.code)) bar.recall(Number(event.code.slice(5)));
+      return;
+    }
+    const onControl = target.matches("button, summary, a, input");
+    const flying = stage.rig.mode === "fly" && target === stage.canvas && /^Key[WASDQE]$/.test(event.code);
+    if (flying || (onControl && (event.key === " " || event.key === "Enter"))) return;
+    switch (event.key) {
+      case " ":
+        if (twin.hindrance === null) void toggle(twin);
+        break;
+      case ".":
+        if (twin.hindrance === null) void twin.act({ action: "step" });
+        break;
+      case "r": timeline.toggle(); break;
+      case "l": timeline.live(); break;
+      case "v": stage.canvas.focus(); break;
+      case "1": bar.setMode("orbit"); break;
+      case "2": bar.setMode("fly"); break;
+      case "3": bar.setMode("follow"); break;
+      case "t": stage.rig.top(); break;
+      case "f": stage.rig.fit(); break;
+      case "?": help(); break;
+      case "Delete": {
+        const item = itemOf(twin.now.setup.value, twin.selection.value);
+        if (item && twin.hindrance === null) void remove(twin, item);
+        break;
+      }
+      default: return;
+    }
+    event.preventDefault();
+  });
+}

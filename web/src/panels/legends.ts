@@ -1,0 +1,80 @@
+// Legends with units, compass, scale bar, contour interval.
+import { css, divergingAt, rampAt, ramps, roundStep, type Rgb } from "../scene/colour";
+import { contourInterval } from "../scene/ground";
+import { layerInfo } from "../scene/layers";
+import type { ShownLayers } from "../scene/shown_layers";
+import type { Stage } from "../scene/stage";
+import { watchAll } from "../state/cell";
+import { quantity, tick, unitText } from "../state/format";
+import type { Twin } from "../state/twin";
+import { h } from "../ui/dom";
+
+export interface Legend { title: string; unit: string; low: number; high: number; at: (share: number) => Rgb }
+
+/** Legends of what is on display now, also for pictures of the view. */
+export function presentLegends(twin: Twin, stage: Stage, layers: ShownLayers): Legend[] {
+  const list: Legend[] = [];
+  if (twin.particles.value || twin.surface.value === "speed") {
+    list.push({ title: "Speed of debris", unit: "m/s", low: 0, high: stage.fastest_mps.value, at: (s) => rampAt(ramps.speed, s) });
+  }
+  if (twin.surface.value === "depth") {
+    list.push({ title: "Flow depth", unit: "m", low: 0, high: layers.surfaceTop, at: (s) => rampAt(ramps.depth, s) });
+  }
+  const name = twin.layer.value;
+  if (name !== "none") {
+    const info = layerInfo[name];
+    const [low, high] = layers.range.value;
+    list.push(layers.isDifference
+      ? { title: `${info.title}, B − A`, unit: info.unit, low, high, at: (s) => divergingAt(2 * s - 1) }
+      : { title: info.title, unit: info.unit, low, high, at: (s) => rampAt(info.ramp, s) });
+  }
+  return list;
+}
+
+function ticks(low: number, high: number): number[] {
+  const step = roundStep((high - low) / 4.5);
+  const list = [];
+  for (let v = Math.ceil(low / step - 1e-9) * step; v <= high + 1e-9 * step; v += step) list.push(Math.abs(v) < 1e-9 ? 0 : v);
+  return list;
+}
+
+export function legends(twin: Twin, stage: Stage, layers: ShownLayers): HTMLElement {
+  const holder = h("div", { class: "legends", role: "group", "aria-label": "Legends" });
+  watchAll([twin.particles, twin.surface, twin.layer, twin.difference, layers.range, stage.fastest_mps], () => {
+    holder.replaceChildren(...presentLegends(twin, stage, layers).map((legend) => {
+      const bar = h("div", { class: "legend-bar" });
+      const stops = Array.from({ length: 17 }, (_, i) => css(legend.at(i / 16)));
+      bar.style.background = `linear-gradient(to right, ${stops.join(", ")})`;
+      const scale = h("div", { class: "legend-ticks" });
+      for (const value of ticks(legend.low, legend.high)) {
+        const mark = h("span", {}, tick(value));
+        mark.style.left = `${(100 * (value - legend.low)) / (legend.high - legend.low)}%`;
+        scale.append(mark);
+      }
+      return h("div", { class: "legend", role: "img",
+        "aria-label": `${legend.title}: colours from ${quantity(legend.low, legend.unit)} to ${quantity(legend.high, legend.unit)}` },
+      h("div", { class: "legend-title" }, h("b", {}, legend.title), h("span", {}, unitText(legend.unit))), bar, scale);
+    }));
+  });
+  return holder;
+}
+
+export function scaleAndCompass(twin: Twin, stage: Stage, readOut: HTMLElement): HTMLElement {
+  const needle = h("div", { class: "needle" }, h("i", {}), h("b", {}, "N"));
+  const compass = h("button", { type: "button", class: "compass", "aria-label": "Compass: turn the view north up", title: "North; click for the top view",
+    onclick: () => stage.rig.top() }, needle);
+  const bar = h("div", { class: "scale-bar" });
+  const text = h("span", {});
+  stage.onCamera(() => {
+    const away = stage.rig.camera.position.clone().sub(stage.rig.controls.target);
+    const turn = Math.atan2(away.x, -away.y);
+    needle.style.transform = `rotate(${turn}rad)`;
+    const perPixel = stage.metresPerPixel;
+    const length = roundStep(perPixel * 60);
+    bar.style.width = `${Math.round(length / perPixel)}px`;
+    text.textContent = length >= 1000 ? `${tick(length / 1000)}\u202fkm` : `${tick(length)}\u202fm`;
+  });
+  return h("div", { class: "map-marks" }, compass,
+    h("div", { class: "scale", title: "Holds at the middle of the view" }, text, bar), readOut,
+    h("div", { class: "map-note" }, `Contours every ${tick(contourInterval(stage.relief))}\u202fm · ${twin.scene.crs}`));
+}

@@ -1,0 +1,88 @@
+// Who is here, who has control, links to pass on.
+import type { Person } from "../protocol/messages";
+import { linkWith } from "../protocol/token";
+import { watchAll } from "../state/cell";
+import type { Twin } from "../state/twin";
+import { dialog, openDialog } from "../ui/dialog";
+import { button, h } from "../ui/dom";
+
+const initials = (name: string): string => name.split(/\s+/).map((w) => w[0] ?? "").join("").slice(0, 2).toUpperCase() || "?";
+
+function chip(person: Person, twin: Twin): HTMLElement {
+  const holds = twin.controller.value === person.id;
+  const self = twin.you.value?.id === person.id;
+  const element = h("span", { class: `person${holds ? " holds" : ""}`, title: `${person.name}${self ? " (you)" : ""}: ${holds ? "has control" : person.role === "viewer" ? "viewer" : "can ask for control"}` }, initials(person.name));
+  element.style.background = person.colour;
+  return element;
+}
+
+export function people(twin: Twin): HTMLElement {
+  const chips = h("button", { type: "button", class: "chips quiet", onclick: () => share(twin) });
+  const control = button("Take control", { class: "control", onclick: () => void ask() });
+  const connection = h("div", { class: "connection", role: "status" });
+  const request = h("div", { class: "request", role: "alertdialog", "aria-label": "Request for control" });
+  const ask = async (): Promise<void> => {
+    const mine = twin.controller.value === twin.you.value?.id;
+    const alone = twin.controller.value === null;
+    if (await twin.attempt(() => twin.api.control(mine ? "release" : "request"))) {
+      if (!mine && !alone) twin.notice("Asked for control; without an answer it comes to you in 10 s.", "done");
+    }
+  };
+  watchAll([twin.people, twin.controller, twin.request, twin.you, twin.connection], () => {
+    const you = twin.you.value;
+    const list = twin.people.value;
+    chips.replaceChildren(...list.slice(0, 6).map((p) => chip(p, twin)), ...(list.length > 6 ? [h("span", { class: "more" }, `+${list.length - 6}`)] : []));
+    chips.setAttribute("aria-label", `${list.length} ${list.length === 1 ? "person" : "people"} here; open sharing`);
+    control.hidden = you === null || you.role === "viewer";
+    const mine = you !== null && twin.controller.value === you.id;
+    const waiting = twin.request.value?.id === you?.id;
+    control.replaceChildren(h("span", {}, mine ? "You have control" : waiting ? "Asked for control …" : twin.controller.value === null ? "Take control" : "Ask for control"));
+    control.title = mine ? "Give control back" : "";
+    control.classList.toggle("on", mine);
+    control.disabled = waiting;
+    const { state, retryIn_s } = twin.connection.value;
+    connection.hidden = state === "open";
+    const sentence = state === "lost" ? (retryIn_s > 0 ? `Connection lost. Trying again in ${retryIn_s} s.` : "Reconnecting …") : "Connecting …";
+    if (connection.textContent !== sentence) connection.replaceChildren(h("span", {}, sentence));
+    const asked = mine ? twin.request.value : null;
+    if (!asked) request.replaceChildren();
+    else if (request.dataset["who"] !== asked.id || request.childElementCount === 0) {
+      request.replaceChildren(h("span", {}, `${asked.name} asks for control.`),
+        button("Grant", { class: "primary small", onclick: () => void twin.attempt(() => twin.api.control("grant")) }),
+        button("Decline", { class: "small", onclick: () => void twin.attempt(() => twin.api.control("decline")) }));
+    }
+    request.dataset["who"] = asked?.id ?? "";
+    request.hidden = !asked;
+  });
+  return h("div", { class: "people" }, connection, request, control, chips,
+    button("Share", { icon: "share", onclick: () => share(twin) }));
+}
+
+function share(twin: Twin): void {
+  const name = h("input", { type: "text", maxlength: 40, value: twin.you.value?.name ?? "", "aria-label": "Your name", onchange: () => {
+    if (name.value.trim() !== "") twin.rename(name.value.trim());
+  } });
+  const list = h("ul", { class: "people-list" });
+  const end = watchAll([twin.people, twin.controller, twin.you], () => {
+    list.replaceChildren(...twin.people.value.map((p) => h("li", {}, chip(p, twin), h("span", { class: "grow" }, p.name, p.id === twin.you.value?.id ? " (you)" : ""),
+      h("span", { class: "muted" }, twin.controller.value === p.id ? "has control" : p.role === "viewer" ? "viewer" : "may ask for control"))));
+  });
+  const link = (title: string, note: string, token: string | undefined): HTMLElement | null => {
+    if (token === undefined) return null;
+    const text = linkWith(token);
+    const field = h("input", { type: "text", readonly: true, value: text, "aria-label": title, onfocus: () => field.select() });
+    return h("div", { class: "link" }, h("h3", {}, title), h("p", { class: "hint" }, note), h("div", { class: "row" }, field, button("Copy", { onclick: () => {
+      field.select();
+      navigator.clipboard.writeText(text).then(() => twin.notice(`${title} copied`, "done"), () => twin.notice("Copy the marked link with Ctrl+C.", "done"));
+    } })));
+  };
+  const links = twin.links.value;
+  const box = dialog("Share this session", h("label", { class: "row own-name" }, "Your name", name), list,
+    link("Link for viewers", "They see everything and change nothing.", links.viewer),
+    link("Link for controllers", "They can ask for control and then change the simulation.", links.controller),
+    links.viewer === undefined && links.controller === undefined ? h("p", { class: "hint" }, "The program printed the links when it started.") : null,
+    location.hostname === "127.0.0.1" || location.hostname === "localhost"
+      ? h("p", { class: "hint" }, "The program listens on this computer only: the links work in browsers here.") : null);
+  box.addEventListener("close", end);
+  openDialog(box);
+}

@@ -1,0 +1,72 @@
+// The numbers of the run that are always in sight, and the mass balance.
+import { watchAll } from "../state/cell";
+import { bytes, count, fixed, quantity } from "../state/format";
+import type { Twin } from "../state/twin";
+import { h } from "../ui/dom";
+
+const watched = (twin: Twin): Parameters<typeof watchAll>[0] => [twin.edited, twin.cells.A.state, twin.cells.B.state];
+
+export function runCard(twin: Twin): HTMLElement {
+  const cell = (label: string, help: string): { element: HTMLElement; value: HTMLElement } => {
+    const value = h("dd", {});
+    return { element: h("div", { title: help }, h("dt", {}, label), value), value };
+  };
+  const front = cell("Front velocity", "Velocity of the front along the flow path");
+  const fastest = cell("Largest speed", "Largest speed of a particle now");
+  const chainage = cell("Front at", "Chainage of the front");
+  const particles = cell("Particles", "Particles in the simulation");
+  const steps = cell("Steps", "Time steps computed per second");
+  const real = cell("Real time", "Simulated seconds per second");
+  const light = h("div", { class: "converged", role: "status" });
+  watchAll(watched(twin), () => {
+    const s = twin.now.state.value;
+    front.value.textContent = quantity(s?.front_velocity_mps, "m/s");
+    fastest.value.textContent = quantity(s?.largest_speed_mps, "m/s");
+    chainage.value.textContent = s?.front_chainage_m === null || !s ? "–" : `${fixed(s.front_chainage_m, 0)} m`;
+    particles.value.textContent = count(s?.particles);
+    steps.value.textContent = s ? `${fixed(s.steps_per_second, 0)} /s` : "–";
+    real.value.textContent = s ? `${fixed(s.real_time_factor, 2)} ×` : "–";
+    light.className = `converged ${s?.converged === false ? "bad" : "good"}`;
+    const text = s?.converged === false ? "Not converged" : "Converged";
+    if (light.textContent !== text) light.textContent = text;
+    light.title = s ? `Compression: mean ${fixed(100 * s.mean_compression, 2)} %, largest ${fixed(100 * s.max_compression, 1)} %` : "";
+  });
+  return h("section", { class: "run-card", "aria-label": "State of the run" },
+    h("dl", {}, front.element, fastest.element, chainage.element, particles.element, steps.element, real.element), light);
+}
+
+export function balance(twin: Twin): HTMLElement {
+  const parts = [["volume_held_m3", "Held, not yet released", "#c9cfd4"], ["volume_moving_m3", "Moving", "#3b83b5"], ["volume_deposited_m3", "Deposited", "#b49a6c"],
+    ["volume_left_m3", "Left the terrain", "#a3262a"]] as const;
+  const bar = h("div", { class: "balance-bar", "aria-hidden": "true" });
+  const body = h("tbody", {});
+  const table = h("table", { class: "plain" }, h("caption", {}, "Mass balance"), body);
+  const more = h("table", { class: "plain" }, h("caption", {}, "Run"), h("tbody", {}));
+  watchAll(watched(twin), () => {
+    const s = twin.now.state.value;
+    if (!s) return;
+    const total = parts.reduce((sum, [key]) => sum + s[key], 0) || 1;
+    bar.replaceChildren(...parts.map(([key, , colour]) => {
+      const piece = h("i", {});
+      piece.style.width = `${(100 * s[key]) / total}%`;
+      piece.style.background = colour;
+      return piece;
+    }));
+    const row = (label: string, value: string, colour?: string): HTMLElement => {
+      const dot = colour ? h("i", { class: "dot" }) : null;
+      if (dot && colour) dot.style.background = colour;
+      return h("tr", {}, h("th", { scope: "row" }, dot, label), h("td", {}, value));
+    };
+    const error = s.volume_released_m3 - s.volume_moving_m3 - s.volume_deposited_m3 - s.volume_left_m3;
+    body.replaceChildren(...parts.map(([key, label, colour]) => row(label, `${fixed(s[key], 1)} m³`, colour)), row("Released", `${fixed(s.volume_released_m3, 1)} m³`),
+      row("Released − (moving + deposited + left)", `${fixed(Math.abs(error) < 0.05 ? 0 : error, 1)} m³`));
+    more.tBodies[0]?.replaceChildren(row("Step", count(s.step)), row("Compression, mean", `${fixed(100 * s.mean_compression, 2)} %`),
+      row("Compression, largest", `${fixed(100 * s.max_compression, 2)} %`), row("Recording", `${s.recording.frames} frames, ${bytes(s.recording.bytes)}`),
+      row("State hash", s.hash ?? "while paused"));
+  });
+  const { scene } = twin;
+  const about = h("details", { class: "about" }, h("summary", {}, "About this scene"), h("p", {}, scene.description),
+    scene.assumptions.length > 0 ? h("div", {}, h("h3", {}, "Assumptions"), h("ul", {}, ...scene.assumptions.map((a) => h("li", {}, a)))) : null,
+    scene.sources.length > 0 ? h("div", {}, h("h3", {}, "Sources"), h("ul", {}, ...scene.sources.map((a) => h("li", {}, a)))) : null);
+  return h("div", {}, bar, table, more, about);
+}

@@ -1,0 +1,99 @@
+// Run, pause, step, restart, speed; the timeline with the recording, and the way back to live.
+import { watchAll } from "../state/cell";
+import { fixed } from "../state/format";
+import type { Playback } from "../state/playback";
+import type { Twin } from "../state/twin";
+import { button, h, icon, type IconName } from "../ui/dom";
+
+const speeds: [string, string][] = [
+  ["0.1", "0.1 × real time"], ["0.25", "0.25 ×"], ["0.5", "0.5 ×"], ["1", "1 × real time"], ["2", "2 ×"], ["4", "4 ×"], ["10", "10 ×"],
+  ["", "as fast as it goes"],
+];
+
+export function transport(twin: Twin, playback: Playback): HTMLElement {
+  const run = button("Run", { class: "primary run", icon: "run", onclick: () => void toggle(twin) });
+  const step = button("Step", { icon: "step", bare: true, title: "One step (period key)", onclick: () => void twin.act({ action: "step" }) });
+  const restart = button("Restart", { icon: "restart", bare: true, title: "Back to time 0 with the setup as it is now",
+    onclick: () => {
+      playback.live();
+      void twin.act({ action: "restart" });
+    } });
+  const speed = h("select", { "aria-label": "Speed of the simulation", onchange: () =>
+    void twin.act({ action: "set_speed", factor: speed.value === "" ? null : Number(speed.value) }) },
+    ...speeds.map(([value, text]) => h("option", { value }, text)));
+
+  const clock = h("output", { class: "clock", "aria-label": "Time shown, s" });
+  const status = h("span", { class: "status", role: "status" });
+  const slider = h("input", { type: "range", class: "timeline", min: "0", step: "0.05", "aria-label": "Time of the recording, s",
+    oninput: () => playback.seek(Number(slider.value)) });
+  const ends = h("div", { class: "timeline-ends" }, h("span", {}, "0 s"), h("span", {}));
+  const play = button("Play the recording", { icon: "run", bare: true, class: "bare play", onclick: () => playback.toggle() });
+  const live = button("Live", { class: "live", onclick: () => playback.live(), title: "Return to the running simulation (L)" });
+
+  const showTime = (): void => {
+    const state = twin.now.state.value;
+    if (!state) return;
+    const at = twin.replay_s.value ?? state.time_s;
+    clock.value = `${fixed(at, 2)} s`;
+    slider.max = String(state.end_time_s);
+    if (document.activeElement !== slider || twin.replay_s.value === null) slider.value = String(at);
+    slider.style.setProperty("--recorded", `${(100 * state.recording.last_s) / state.end_time_s}%`);
+    slider.style.setProperty("--shown", `${(100 * at) / state.end_time_s}%`);
+    slider.setAttribute("aria-valuetext", `${fixed(at, 2)} s of ${fixed(state.end_time_s, 0)} s${twin.replay_s.value === null ? ", live" : ", from the recording"}`);
+    ends.lastElementChild?.replaceChildren(`${fixed(state.end_time_s, 0)} s`);
+  };
+  const showState = (): void => {
+    const state = twin.now.state.value;
+    const running = state?.status === "running";
+    face(run, running ? "Pause" : "Run", running ? "pause" : "run");
+    const hindrance = twin.hindrance;
+    for (const control of [run, step, restart, speed]) {
+      control.disabled = hindrance !== null;
+      if (hindrance) control.setAttribute("data-why", hindrance);
+      else control.removeAttribute("data-why");
+    }
+    const over = state?.status === "ended" || state?.status === "at_rest";
+    run.disabled ||= over;
+    step.disabled ||= running || over;
+    const chosen = state?.speed_factor;
+    const value = chosen === null || chosen === undefined ? "" : String(chosen);
+    if (document.activeElement !== speed && state) {
+      if (![...speed.options].some((o) => o.value === value)) speed.prepend(h("option", { value }, `${value} ×`));
+      speed.value = value;
+    }
+    const words = { running: "Running", paused: "Paused", at_rest: "At rest", ended: "End reached", fault: "Stopped by a fault" };
+    status.textContent = state ? (twin.replay_s.value === null ? words[state.status] : "Recording") : "";
+    status.dataset["status"] = twin.replay_s.value === null ? (state?.status ?? "") : "replay";
+    if (state?.message) status.title = state.message;
+    live.classList.toggle("on", twin.replay_s.value === null);
+    live.setAttribute("aria-pressed", String(twin.replay_s.value === null));
+    face(play, twin.playing.value ? "Pause the recording" : "Play the recording", twin.playing.value ? "pause" : "run");
+    showTime();
+  };
+  for (const name of ["A", "B"] as const) twin.cells[name].state.watch(showState);
+  watchAll([twin.replay_s, twin.playing, twin.edited, twin.you, twin.controller, twin.connection, twin.people], showState);
+
+  return h("footer", { class: "transport", "aria-label": "Time" },
+    h("div", { class: "drive" }, run, step, restart, speed),
+    h("div", { class: "time" }, clock, status),
+    play,
+    h("div", { class: "line" }, slider, ends),
+    live);
+}
+
+export async function toggle(twin: Twin): Promise<void> {
+  const running = twin.now.state.value?.status === "running";
+  if (!running) twin.replay_s.value = null;
+  await twin.act({ action: running ? "pause" : "run" });
+}
+
+function face(control: HTMLButtonElement, text: string, name: IconName): void {
+  if (control.dataset["face"] === text) return;
+  control.dataset["face"] = text;
+  const bare = control.classList.contains("bare");
+  control.replaceChildren(icon(name), ...(bare ? [] : [h("span", {}, text)]));
+  if (bare) {
+    control.title = text;
+    control.setAttribute("aria-label", text);
+  }
+}

@@ -1,0 +1,86 @@
+// What is shown and from where: camera, debris, layers.
+import { layerNames, type LayerName } from "../protocol/messages";
+import { layerInfo } from "../scene/layers";
+import type { CameraMode, Viewpoint } from "../scene/rig";
+import type { Stage } from "../scene/stage";
+import { watchAll } from "../state/cell";
+import type { SurfaceColour, Twin } from "../state/twin";
+import { button, h, type IconName } from "../ui/dom";
+
+const savedKey = "talus-views";
+
+export interface ViewBar { camera: HTMLElement; show: HTMLElement; setMode(mode: CameraMode): void; recall(number: number): void }
+
+export function viewBar(twin: Twin, stage: Stage): ViewBar {
+  const modes: [CameraMode, string, IconName, string][] = [
+    ["orbit", "Orbit", "orbit", "Orbit: drag to turn, right drag to move, wheel to zoom (1)"],
+    ["fly", "Fly", "fly", "Fly: W A S D, Q and E to sink and rise, drag to look (2)"],
+    ["follow", "Follow the front", "follow", "Follow the front of the debris (3)"],
+  ];
+  const buttons = modes.map(([mode, label, icon, title]) =>
+    button(label, { icon, bare: true, title, "data-mode": mode, onclick: () => setMode(mode) }));
+  const setMode = (mode: CameraMode): void => {
+    stage.rig.setMode(mode);
+    modes.forEach(([name], i) => buttons[i].setAttribute("aria-pressed", String(name === mode)));
+    if (mode === "fly") stage.canvas.focus();
+  };
+
+  const views = (): Viewpoint[] => JSON.parse(localStorage.getItem(savedKey + twin.scene.title) ?? "[]") as Viewpoint[];
+  const saved = h("select", { "aria-label": "Saved views", class: "saved", onchange: () => {
+    recall(Number(saved.value));
+    saved.value = "";
+  } });
+  const listViews = (): void => {
+    const count = views().length;
+    saved.replaceChildren(h("option", { value: "" }, count === 0 ? "No views" : "Views"),
+      ...views().map((_, i) => h("option", { value: i + 1 }, `View ${i + 1}`)));
+    saved.disabled = count === 0;
+    saved.title = count === 0 ? "Save the present view first" : "Go to a saved view";
+  };
+  const recall = (number: number): void => {
+    const view = views()[number - 1];
+    if (view) {
+      setMode("orbit");
+      stage.rig.go(view, true);
+    }
+  };
+  const save = button("Save this view", { icon: "save", bare: true, onclick: () => {
+    localStorage.setItem(savedKey + twin.scene.title, JSON.stringify([...views(), stage.rig.viewpoint].slice(-9)));
+    listViews();
+    twin.notice(`Saved as view ${views().length}`, "done");
+  } });
+  listViews();
+
+  const particles = h("input", { type: "checkbox", onchange: () => (twin.particles.value = particles.checked) });
+  const surface = h("select", { "aria-label": "Debris as a surface", onchange: () => (twin.surface.value = surface.value as SurfaceColour) },
+    h("option", { value: "off" }, "no surface"), h("option", { value: "depth" }, "surface by depth"), h("option", { value: "speed" }, "surface by speed"));
+  const layer = h("select", { "aria-label": "Map layer on the ground", onchange: () => (twin.layer.value = layer.value as LayerName | "none") },
+    h("option", { value: "none" }, "no layer"), ...layerNames.map((name) => h("option", { value: name, title: layerInfo[name].help }, layerInfo[name].title)));
+  const opacity = h("input", { type: "range", min: "0.1", max: "1", step: "0.05", "aria-label": "Opacity of the layer", title: "Opacity of the layer",
+    oninput: () => (twin.layerOpacity.value = Number(opacity.value)) });
+  const difference = h("input", { type: "checkbox", onchange: () => (twin.difference.value = difference.checked) });
+  const differenceLabel = h("label", { class: "check", title: "Difference of the layer between the two scenarios" }, difference, "B − A");
+  const contours = h("input", { type: "checkbox", onchange: () => (twin.contours.value = contours.checked) });
+  const names = h("input", { type: "checkbox", onchange: () => (twin.names.value = names.checked) });
+  watchAll([twin.particles, twin.surface, twin.layer, twin.layerOpacity, twin.difference, twin.scenarios, twin.contours, twin.names], () => {
+    particles.checked = twin.particles.value;
+    surface.value = twin.surface.value;
+    layer.value = twin.layer.value;
+    opacity.value = String(twin.layerOpacity.value);
+    opacity.hidden = twin.layer.value === "none";
+    difference.checked = twin.difference.value;
+    differenceLabel.hidden = twin.scenarios.value.length < 2;
+    difference.disabled = twin.layer.value === "none";
+    contours.checked = twin.contours.value;
+    names.checked = twin.names.value;
+  });
+
+  const camera = h("div", { class: "bar camera", role: "toolbar", "aria-label": "Camera" }, ...buttons,
+    button("Top view", { icon: "top", bare: true, title: "Top view, north up (T)", onclick: () => stage.rig.top() }),
+    button("Fit", { icon: "fit", bare: true, title: "Whole scene (F)", onclick: () => stage.rig.fit() }), save, saved);
+  const show = h("div", { class: "bar show", role: "toolbar", "aria-label": "What is shown" },
+    h("label", { class: "check" }, particles, "Particles"), surface, layer, opacity, differenceLabel,
+    h("label", { class: "check" }, contours, "Contours"), h("label", { class: "check" }, names, "Names"));
+  setMode("orbit");
+  return { camera, show, setMode, recall };
+}

@@ -1,0 +1,69 @@
+// The HTTP half of docs/protocol.md.
+import { decodeFrame, type Frame, type ScenarioName } from "./frame";
+import { decodeGrid, type Grid } from "./grid";
+import type { Action, Done, ExportFile, Impacts, LayerName, ProbeSeries, Recording, SceneInfo, Series, Session } from "./messages";
+
+/** What the server answered to a request that it refused. */
+export class Refused extends Error {
+  constructor(readonly status: number, message: string) {
+    super(message);
+  }
+}
+
+export class Api {
+  /** Id of this page's person, once the WebSocket has said hello. */
+  person: string | null = null;
+
+  constructor(private readonly token: string) {}
+
+  private async ask(method: string, path: string, body?: object): Promise<Response> {
+    const headers: Record<string, string> = { Authorization: `Bearer ${this.token}` };
+    if (body !== undefined) headers["Content-Type"] = "application/json";
+    if (method !== "GET" && this.person !== null) headers["Talus-Person"] = this.person;
+    let response: Response;
+    try {
+      response = await fetch(`api/${path}`, { method, headers, ...(body === undefined ? {} : { body: JSON.stringify(body) }) });
+    } catch {
+      throw new Refused(0, "The server does not answer.");
+    }
+    if (!response.ok) {
+      let sentence = `The server answered ${response.status} to ${path}.`;
+      try {
+        const told = (await response.json()) as { error?: unknown };
+        if (typeof told.error === "string") sentence = told.error;
+      } catch {
+        // The answer was not JSON: the status has to do.
+      }
+      throw new Refused(response.status, sentence);
+    }
+    return response;
+  }
+  private async json<T>(path: string): Promise<T> {
+    return (await (await this.ask("GET", path)).json()) as T;
+  }
+  private async binary(path: string): Promise<ArrayBuffer> {
+    return (await this.ask("GET", path)).arrayBuffer();
+  }
+
+  session = (): Promise<Session> => this.json("session");
+  scene = (): Promise<SceneInfo> => this.json("scene");
+  terrain = async (maxCells: number): Promise<Grid> => decodeGrid(await this.binary(`terrain?max_cells=${maxCells}`));
+  series = (s: ScenarioName): Promise<Series> => this.json(`scenarios/${s}/series`);
+  impacts = (s: ScenarioName): Promise<Impacts> => this.json(`scenarios/${s}/impacts`);
+  recording = (s: ScenarioName): Promise<Recording> => this.json(`scenarios/${s}/recording`);
+  layer = async (s: ScenarioName, name: LayerName): Promise<Grid> => decodeGrid(await this.binary(`scenarios/${s}/layers/${name}`));
+  frame = async (s: ScenarioName, time_s: number): Promise<Frame> =>
+    decodeFrame(await this.binary(`scenarios/${s}/frame?time_s=${time_s.toFixed(4)}`));
+  probe = (s: ScenarioName, x: number, y: number): Promise<ProbeSeries> =>
+    this.json(`scenarios/${s}/probe?x_m=${x.toFixed(2)}&y_m=${y.toFixed(2)}`);
+  exports = async (s: ScenarioName): Promise<ExportFile[]> => (await this.json<{ files: ExportFile[] }>(`scenarios/${s}/exports`)).files;
+  exported = async (s: ScenarioName, name: string): Promise<Blob> => (await this.ask("GET", `scenarios/${s}/exports/${name}`)).blob();
+  journal = async (s: ScenarioName): Promise<Blob> => (await this.ask("GET", `scenarios/${s}/journal`)).blob();
+
+  act = async (s: ScenarioName, action: Action): Promise<Done> =>
+    (await (await this.ask("POST", `scenarios/${s}/actions`, action)).json()) as Done;
+  addScenario = async (): Promise<void> => void (await this.ask("POST", "scenarios", { copy_of: "A" }));
+  endScenario = async (): Promise<void> => void (await this.ask("DELETE", "scenarios/B"));
+  control = async (what: "request" | "release" | "grant" | "decline"): Promise<void> =>
+    void (await this.ask("POST", "control", { do: what, person: this.person }));
+}

@@ -1,0 +1,115 @@
+// Frames of docs/protocol.md.
+
+export type ScenarioName = "A" | "B";
+
+export const frameFlag = { running: 1, notConverged: 2, recorded: 4 } as const;
+
+/** Cells of the map grid that hold debris; rows run from south to north. */
+export interface DepthWindow {
+  column: number;
+  row: number;
+  columns: number;
+  rows: number;
+}
+
+export interface Frame {
+  scenario: ScenarioName;
+  flags: number;
+  time_s: number;
+  step: number;
+  /** Every stride-th particle id is here, beginning with 0. */
+  stride: number;
+  count: number;
+  /** x, y, z (units of `scale`, from `origin`, in the local frame) and speed (units of `speedUnit`), four per particle. */
+  particles: Uint16Array;
+  origin: [number, number, number];
+  scale: [number, number, number];
+  speedUnit_mps: number;
+  window: DepthWindow;
+  /** In units of depthUnit_m and mapSpeedUnit_mps, by rows of the window from the south. */
+  depth: Uint16Array;
+  mapSpeed: Uint8Array;
+  depthUnit_m: number;
+  mapSpeedUnit_mps: number;
+}
+
+/** Position that stands for "this particle is not there" in x, y and z. */
+export const absent = 65535;
+
+const headBytes = 88;
+const largestBody = 512 * 1024 * 1024;
+
+export class MalformedMessage extends Error {}
+
+/** Unpacks zlib data and fails unless it holds just `size` bytes. */
+export async function inflate(packed: Uint8Array, size: number): Promise<Uint8Array> {
+  if (size > largestBody) throw new MalformedMessage(`body of ${size} bytes; the limit is ${largestBody}`);
+  const out = new Uint8Array(size);
+  let filled = 0;
+  const stream = new Blob([packed as BlobPart]).stream().pipeThrough(new DecompressionStream("deflate"));
+  const reader = stream.getReader();
+  for (;;) {
+    const { done, value } = await reader.read();
+    if (done) break;
+    if (filled + value.length > size) throw new MalformedMessage(`body holds more than the announced ${size} bytes`);
+    out.set(value, filled);
+    filled += value.length;
+  }
+  if (filled !== size) throw new MalformedMessage(`body holds ${filled} bytes; ${size} were announced`);
+  return out;
+}
+
+export function tag(bytes: Uint8Array): string {
+  return String.fromCharCode(bytes[0] ?? 0, bytes[1] ?? 0, bytes[2] ?? 0, bytes[3] ?? 0);
+}
+
+/** Undoes the folding of differences: two byte planes of n values each, written to out[first + stride * i]. */
+function unfold(body: Uint8Array, at: number, n: number, out: Uint16Array, first: number, stride: number): void {
+  let value = 0;
+  for (let i = 0, o = first; i < n; ++i, o += stride) {
+    const folded = body[at + i]! | (body[at + n + i]! << 8);
+    value = (value + ((folded >> 1) ^ -(folded & 1))) & 0xffff;
+    out[o] = value;
+  }
+}
+
+export async function decodeFrame(data: ArrayBuffer): Promise<Frame> {
+  const bytes = new Uint8Array(data);
+  if (data.byteLength < headBytes || tag(bytes) !== "TLSF") throw new MalformedMessage("no frame");
+  const head = new DataView(data);
+  if (head.getUint8(4) !== 1) throw new MalformedMessage(`frame of version ${head.getUint8(4)}; this page reads version 1`);
+  const slots = head.getUint32(24, true);
+  const stride = head.getUint32(28, true);
+  if (stride === 0) throw new MalformedMessage("stride 0");
+  const [column, row, columns, rows] = [60, 64, 68, 72].map((at) => head.getUint32(at, true)) as [number, number, number, number];
+  const n = Math.ceil(slots / stride);
+  const m = columns * rows;
+  const size = head.getUint32(84, true);
+  if (size !== 7 * n + 3 * m) throw new MalformedMessage(`body of ${size} bytes for ${n} particles and ${m} cells`);
+  const body = await inflate(bytes.subarray(headBytes), size);
+
+  const particles = new Uint16Array(4 * n);
+  for (let axis = 0; axis < 3; ++axis) unfold(body, 2 * n * axis, n, particles, axis, 4);
+  for (let i = 0; i < n; ++i) particles[4 * i + 3] = body[6 * n + i]!;
+  const depth = new Uint16Array(m);
+  unfold(body, 7 * n, m, depth, 0, 1);
+  const three = (at: number): [number, number, number] =>
+    [head.getFloat32(at, true), head.getFloat32(at + 4, true), head.getFloat32(at + 8, true)];
+  return {
+    scenario: head.getUint8(5) === 0 ? "A" : "B",
+    flags: head.getUint16(6, true),
+    time_s: head.getFloat64(8, true),
+    step: Number(head.getBigUint64(16, true)),
+    stride,
+    count: n,
+    particles,
+    origin: three(32),
+    scale: three(44),
+    speedUnit_mps: head.getFloat32(56, true),
+    window: { column, row, columns, rows },
+    depth,
+    mapSpeed: body.slice(7 * n + 2 * m),
+    depthUnit_m: head.getFloat32(76, true),
+    mapSpeedUnit_mps: head.getFloat32(80, true),
+  };
+}

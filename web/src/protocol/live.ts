@@ -1,0 +1,107 @@
+// The WebSocket half of docs/protocol.md: connects, comes back after a break, decodes frames in order.
+import { decodeFrame, type Frame, type ScenarioName } from "./frame";
+import type { Place, ServerMessage } from "./messages";
+
+export type Connection = "connecting" | "open" | "lost" | "refused";
+export interface View { scenarios: ScenarioName[]; rate_hz: number; particle_cap: number }
+
+export interface LiveEvents {
+  message(message: ServerMessage): void;
+  frame(frame: Frame): void;
+  connection(connection: Connection, retryInSeconds: number): void;
+}
+
+const firstWait_s = 0.5;
+const longestWait_s = 8;
+
+export class Live {
+  private socket: WebSocket | null = null;
+  private wait_s = firstWait_s;
+  private everOpen = false;
+  private view: View | null = null;
+  /** Id given by the last hello: sent again after a break, so that the same person comes back. */
+  person: string | null = null;
+  private timer: number | undefined;
+  // Of each scenario only the newest frame that waits is kept: a page that cannot keep up shows fewer frames.
+  private readonly waiting = new Map<number, ArrayBuffer>();
+  private decoding = false;
+  /** Milliseconds that decoding the last frame took on this thread and beside it. */
+  decode_ms = 0;
+
+  constructor(private readonly token: string, private name: string, private readonly events: LiveEvents) {}
+
+  start(): void {
+    this.events.connection(this.everOpen ? "lost" : "connecting", 0);
+    const base = new URL("ws", location.href);
+    base.protocol = base.protocol === "https:" ? "wss:" : "ws:";
+    base.hash = "";
+    base.search = new URLSearchParams({ token: this.token, name: this.name, ...(this.person ? { person: this.person } : {}) }).toString();
+    const socket = new WebSocket(base);
+    socket.binaryType = "arraybuffer";
+    this.socket = socket;
+    socket.onopen = () => {
+      this.everOpen = true;
+      this.wait_s = firstWait_s;
+      this.events.connection("open", 0);
+      if (this.view) this.send({ type: "view", ...this.view });
+    };
+    socket.onmessage = (event: MessageEvent<unknown>) => {
+      if (typeof event.data === "string") this.events.message(JSON.parse(event.data) as ServerMessage);
+      else if (event.data instanceof ArrayBuffer) this.take(event.data);
+    };
+    socket.onclose = () => {
+      if (this.socket !== socket) return;
+      this.socket = null;
+      this.events.connection("lost", this.wait_s);
+      this.timer = window.setTimeout(() => this.start(), this.wait_s * 1000);
+      this.wait_s = Math.min(2 * this.wait_s, longestWait_s);
+    };
+  }
+  /** Tries again at once instead of waiting. */
+  retry(): void {
+    if (this.socket) return;
+    clearTimeout(this.timer);
+    this.start();
+  }
+  /** Drops the connection as a break in the network would; it comes back by itself. */
+  drop(): void {
+    this.socket?.close();
+  }
+  show(view: View): void {
+    this.view = view;
+    this.send({ type: "view", ...view });
+  }
+  mark(at: Place | null): void {
+    this.send({ type: "mark", at });
+  }
+  rename(name: string): void {
+    this.name = name;
+    this.send({ type: "name", name });
+  }
+
+  private send(message: object): void {
+    if (this.socket?.readyState === WebSocket.OPEN) this.socket.send(JSON.stringify(message));
+  }
+  private take(data: ArrayBuffer): void {
+    this.waiting.set(new Uint8Array(data)[5] ?? 0, data);
+    if (!this.decoding) void this.drain();
+  }
+  private async drain(): Promise<void> {
+    this.decoding = true;
+    for (;;) {
+      const next = this.waiting.entries().next();
+      if (next.done) break;
+      const [scenario, data] = next.value;
+      this.waiting.delete(scenario);
+      const begun = performance.now();
+      try {
+        const frame = await decodeFrame(data);
+        this.decode_ms = performance.now() - begun;
+        this.events.frame(frame);
+      } catch (error) {
+        console.error(error);
+      }
+    }
+    this.decoding = false;
+  }
+}

@@ -1,0 +1,157 @@
+// JSON of docs/protocol.md.
+import type { ScenarioName } from "./frame";
+
+export type Point = [number, number];
+export type Place = [number, number, number];
+export type Role = "viewer" | "controller";
+
+export interface Person { id: string; name: string; role: Role; colour: string; mark: Place | null }
+export interface You { id: string; name: string; role: Role; colour: string }
+export interface Session {
+  protocol: number;
+  program: string;
+  title: string;
+  scenarios: ScenarioName[];
+  people: Person[];
+  controller: string | null;
+  you?: { role: Role };
+  /** Tokens that this person may pass on. */
+  links?: { viewer?: string; controller?: string };
+}
+
+export interface Parameter {
+  key: string;
+  label: string;
+  unit: string;
+  default: number | null;
+  value: number | null;
+  range: { low: number | null; high: number | null; low_included: boolean; high_included: boolean };
+  help: string;
+}
+export interface Observation { name: string; chainage_m: number; front_velocity_mps: number; source: string }
+export interface FlowPath { points: Place[]; chainage_m: number[]; corridor_width_m: number; traced: boolean }
+export interface IntensityClass { name: string; colour: string; [threshold: string]: unknown }
+export interface SceneInfo {
+  title: string;
+  description: string;
+  reconstruction: boolean;
+  assumptions: string[];
+  sources: string[];
+  crs: string;
+  crs_name: string;
+  vertical_unit: string;
+  origin: Place;
+  extent_m: [number, number, number, number];
+  elevation_m: [number, number];
+  map: { x_min_m: number; y_min_m: number; cell_m: number; columns: number; rows: number };
+  particle_spacing_m: number;
+  end_time_s: number;
+  gravity_mps2: number;
+  flow_path: FlowPath | null;
+  observations: Observation[];
+  parameters: Parameter[];
+  intensity: { classes: IntensityClass[]; rule: string; source: string };
+}
+
+export type Status = "paused" | "running" | "at_rest" | "ended" | "fault";
+export interface State {
+  scenario: ScenarioName;
+  status: Status;
+  message: string;
+  time_s: number;
+  end_time_s: number;
+  step: number;
+  speed_factor: number | null;
+  real_time_factor: number;
+  steps_per_second: number;
+  particles: number;
+  volume_released_m3: number;
+  volume_held_m3: number;
+  volume_moving_m3: number;
+  volume_deposited_m3: number;
+  volume_left_m3: number;
+  front_chainage_m: number | null;
+  front_velocity_mps: number | null;
+  largest_speed_mps: number;
+  mean_compression: number;
+  max_compression: number;
+  converged: boolean;
+  recording: { first_s: number; last_s: number; frames: number; bytes: number };
+  hash?: string;
+}
+
+export interface Release {
+  id: string;
+  name: string;
+  polygons: Point[][];
+  thickness_m: number | null;
+  volume_m3: number;
+  from_scene: boolean;
+  status: "held" | "released";
+  start_time_s: number | null;
+}
+export interface Barrier { id: string; name: string; line: Point[]; height_m: number; thickness_m: number; crest_length_m: number }
+export interface Building {
+  id: string;
+  name: string;
+  footprint: Point[][];
+  height_m: number;
+  base_m: number;
+  roof_m: number;
+  from_scene: boolean;
+}
+export interface Setup {
+  scenario: ScenarioName;
+  revision: number;
+  parameters: Record<string, number | null>;
+  releases: Release[];
+  barriers: Barrier[];
+  buildings: Building[];
+  undo: string | null;
+  redo: string | null;
+}
+
+export interface Impact {
+  id: string;
+  name: string;
+  hit: boolean;
+  first_hit_s: number | null;
+  peak_force_kN: number | null;
+  peak_pressure_kPa: number | null;
+  peak_depth_m: number | null;
+  peak_dynamic_pressure_kPa: number | null;
+  intensity: string | null;
+}
+export interface BarrierImpact extends Impact { overtopped_m3: number; first_overtopped_s: number | null; held_m3: number }
+export interface Impacts { buildings: Impact[]; barriers: BarrierImpact[] }
+
+export type Column = (number | null)[];
+export interface Series {
+  time: Record<string, Column>;
+  front: { chainage_m: Column; arrival_time_s: Column; front_velocity_mps: Column; particle_speed_mps: Column };
+}
+export interface ProbeSeries { time_s: Column; depth_m: Column; speed_mps: Column; pressure_kPa: Column }
+export interface Recording { times_s: number[]; bytes: number }
+export interface ExportFile { name: string; bytes: number | null; what: string }
+
+export const layerNames = ["depth", "peak_depth", "peak_speed", "peak_pressure", "arrival_time", "deposit_depth"] as const;
+export type LayerName = (typeof layerNames)[number];
+
+export type Action =
+  | { action: "run" | "pause" | "step" | "restart" | "undo" | "redo" }
+  | { action: "set_speed"; factor: number | null }
+  | { action: "set_parameter"; key: string; value: number }
+  // With an id just what changes has to be given.
+  | { action: "put_release"; id?: string; name?: string; polygon?: Point[]; thickness_m?: number }
+  | { action: "put_barrier"; id?: string; name?: string; line?: Point[]; height_m?: number; thickness_m?: number }
+  | { action: "put_building"; id?: string; name?: string; footprint?: Point[]; height_m?: number }
+  | { action: "remove_release" | "trigger_release" | "remove_barrier" | "remove_building"; id: string };
+export interface Done { done: string; created: string | null }
+
+export type ServerMessage =
+  | { type: "hello"; protocol: number; you: You; session: Session }
+  | ({ type: "state" } & State)
+  | ({ type: "setup" } & Setup)
+  | { type: "people"; people: Person[]; controller: string | null; request: { id: string; name: string } | null }
+  | { type: "scenarios"; scenarios: ScenarioName[] }
+  | { type: "done"; scenario: ScenarioName; by: string; done: string };

@@ -1,0 +1,97 @@
+// Colour ramps with even steps of lightness (OKLab, Ottosson 2020), the same as those of the report. Because lightness
+// alone carries the order, they are read by colour-blind readers and in grey print as well.
+
+export type Rgb = [number, number, number];
+
+export interface Ramp {
+  lowHue: number;
+  lowChroma: number;
+  highHue: number;
+  highChroma: number;
+  lowLightness: number;
+  highLightness: number;
+}
+
+function toLinear(l: number, a: number, b: number): Rgb {
+  const p = (l + 0.3963377774 * a + 0.2158037573 * b) ** 3;
+  const q = (l - 0.1055613458 * a - 0.0638541728 * b) ** 3;
+  const r = (l - 0.0894841775 * a - 1.291485548 * b) ** 3;
+  return [
+    4.0767416621 * p - 3.3077115913 * q + 0.2309699292 * r,
+    -1.2684380046 * p + 2.6097574011 * q - 0.3413193965 * r,
+    -0.0041960863 * p - 0.7034186147 * q + 1.707614701 * r,
+  ];
+}
+
+const encoded = (v: number): number => {
+  const c = Math.min(1, Math.max(0, v));
+  return Math.round(255 * (c <= 0.0031308 ? 12.92 * c : 1.055 * c ** (1 / 2.4) - 0.055));
+};
+const decoded = (byte: number): number => {
+  const s = byte / 255;
+  return s <= 0.04045 ? s / 12.92 : ((s + 0.055) / 1.055) ** 2.4;
+};
+
+/** Colour at `share` (0 to 1) as sRGB bytes. Chroma is reduced where sRGB cannot show it; lightness is kept. */
+export function rampAt(ramp: Ramp, share: number): Rgb {
+  const s = Math.min(1, Math.max(0, share));
+  const l = ramp.lowLightness + (ramp.highLightness - ramp.lowLightness) * s;
+  const hue = ((ramp.lowHue + (ramp.highHue - ramp.lowHue) * s) * Math.PI) / 180;
+  let chroma = ramp.lowChroma + (ramp.highChroma - ramp.lowChroma) * s + 0.05 * Math.sin(Math.PI * s);
+  let colour = toLinear(l, chroma * Math.cos(hue), chroma * Math.sin(hue));
+  while (chroma > 0 && colour.some((v) => v < -1e-4 || v > 1 + 1e-4)) {
+    chroma -= 0.002;
+    colour = toLinear(l, chroma * Math.cos(hue), chroma * Math.sin(hue));
+  }
+  return colour.map(encoded) as Rgb;
+}
+
+/** Lightness in OKLab, 0 (black) to 1 (white). */
+export function lightness([r, g, b]: Rgb): number {
+  const [x, y, z] = [decoded(r), decoded(g), decoded(b)];
+  return (
+    0.2104542553 * Math.cbrt(0.4122214708 * x + 0.5363325363 * y + 0.0514459929 * z) +
+    0.793617785 * Math.cbrt(0.2119034982 * x + 0.6806995451 * y + 0.1073969566 * z) -
+    0.0040720468 * Math.cbrt(0.0883024619 * x + 0.2817188376 * y + 0.6299787005 * z)
+  );
+}
+
+export const hex = (colour: Rgb): string => `#${colour.map((v) => v.toString(16).padStart(2, "0")).join("")}`;
+export const css = (colour: Rgb): string => `rgb(${colour.join(" ")})`;
+
+const ramp = (lowHue: number, lowChroma: number, highHue: number, highChroma: number, lowLightness: number, highLightness: number): Ramp =>
+  ({ lowHue, lowChroma, highHue, highChroma, lowLightness, highLightness });
+
+export const ramps = {
+  /** Debris by speed: dark plum at rest to pale yellow when fast, so that it stands out from pale ground. */
+  speed: ramp(330, 0.05, 458, 0.12, 0.38, 0.93),
+  depth: ramp(205, 0.05, 268, 0.15, 0.9, 0.28),
+  peak_depth: ramp(205, 0.05, 268, 0.15, 0.9, 0.28),
+  peak_speed: ramp(104, 0.11, 8, 0.13, 0.93, 0.28),
+  peak_pressure: ramp(88, 0.08, -48, 0.14, 0.93, 0.26),
+  arrival_time: ramp(215, 0.06, 118, 0.1, 0.3, 0.92),
+  deposit_depth: ramp(92, 0.07, 42, 0.09, 0.92, 0.28),
+} as const;
+
+/** B - A: blue where B is less, orange where B is more, near white at none. */
+export function divergingAt(share: number): Rgb {
+  const s = Math.min(1, Math.max(-1, share));
+  return s < 0
+    ? rampAt(ramp(240, 0.005, 252, 0.14, 0.95, 0.36), -s)
+    : rampAt(ramp(70, 0.005, 45, 0.15, 0.95, 0.42), s);
+}
+
+/** 256 colours as RGBA bytes. */
+export function table(at: (share: number) => Rgb): Uint8Array<ArrayBuffer> {
+  const bytes = new Uint8Array(4 * 256);
+  for (let i = 0; i < 256; ++i) bytes.set([...at(i / 255), 255], 4 * i);
+  return bytes;
+}
+
+/** The round number (1, 2, 2.5 or 5 times a power of ten) at or above `value`. */
+export function roundStep(value: number): number {
+  if (!(value > 0) || !Number.isFinite(value)) return 1;
+  const power = 10 ** Math.floor(Math.log10(value));
+  for (const m of [1, 2, 2.5, 5]) if (value <= m * power * (1 + 1e-9)) return m * power;
+  return 10 * power;
+}

@@ -1,0 +1,215 @@
+// Tools that work on the ground: draw a shape by clicks, put a probe, draw a cross-section, select and reshape.
+import { Raycaster, Vector2 } from "three";
+import type { Line2 } from "three/examples/jsm/lines/Line2.js";
+import type { Point } from "../protocol/messages";
+import { Cell, watchAll } from "../state/cell";
+import { change, create } from "../state/edits";
+import { canReshape, crossesItself, fewestPoints, inside, itemOf, pointsOf } from "../state/shapes";
+import { probeColours, type Shape, type Twin } from "../state/twin";
+import { h } from "../ui/dom";
+import { Handles } from "./handles";
+import { disposeLine, pixelLine } from "./lines";
+import type { Hit, Stage } from "./stage";
+
+const drawColour = "#d98a00";
+
+export class Drawing {
+  /** Corners set so far of what is being drawn, or those of the selected shape while it is dragged. */
+  readonly draft = new Cell<readonly Point[]>([]);
+  private pointer: Point | null = null;
+  private line: Line2 | null = null;
+  private readonly handles: Handles;
+  private readonly crosshair = h("div", { class: "crosshair", hidden: true, "aria-hidden": "true" });
+
+  constructor(private readonly twin: Twin, private readonly stage: Stage) {
+    this.handles = new Handles(stage);
+    stage.element.append(this.crosshair);
+    this.listen();
+    twin.tool.watch((tool) => {
+      this.draft.value = [];
+      this.pointer = null;
+      stage.element.classList.toggle("drawing", tool.kind !== "none");
+      this.crosshair.hidden = tool.kind === "none" || document.activeElement !== stage.canvas;
+      if (tool.kind !== "none") twin.selection.value = null;
+      this.redraw();
+    });
+    const reselect = (): void => this.reselect();
+    watchAll([twin.selection, twin.edited, twin.cells.A.setup, twin.cells.B.setup, twin.controller, twin.you, twin.tool], reselect);
+  }
+
+  get shape(): Shape | "section" | null {
+    const tool = this.twin.tool.value;
+    return tool.kind === "draw" ? tool.shape : tool.kind === "section" ? "section" : null;
+  }
+  /** Ends drawing with the corners there are. */
+  finish(): void {
+    const { shape } = this;
+    const points = this.draft.value;
+    if (shape === null) return;
+    const fewest = shape === "section" ? 2 : fewestPoints[shape];
+    if (points.length < fewest) {
+      this.twin.notice(`A ${shape === "section" ? "cross-section" : shape} needs at least ${fewest} points; click on the ground to add them.`, "error");
+      return;
+    }
+    if (shape !== "section" && shape !== "barrier" && crossesItself(points)) {
+      this.twin.notice(`The outline of the ${shape} crosses itself; remove the last point with Backspace.`, "error");
+      return;
+    }
+    this.twin.tool.value = { kind: "none" };
+    if (shape === "section") this.twin.section.value = [...points];
+    else void create(this.twin, shape, points);
+  }
+  cancel(): void {
+    if (this.twin.tool.value.kind !== "none") this.twin.tool.value = { kind: "none" };
+    else this.twin.selection.value = null;
+  }
+  removeLast(): void {
+    this.draft.value = this.draft.value.slice(0, -1);
+    this.redraw();
+  }
+  addPoint(point: Point): void {
+    this.draft.value = [...this.draft.value, point];
+    this.redraw();
+    // A section is a straight line unless more is wanted: two points make it.
+    if (this.shape === "section" && this.draft.value.length === 2) this.finish();
+  }
+
+  private listen(): void {
+    const { canvas } = this.stage;
+    let down: { x: number; y: number } | null = null;
+    canvas.addEventListener("pointerdown", (event) => {
+      down = event.button === 0 ? { x: event.clientX, y: event.clientY } : null;
+    });
+    canvas.addEventListener("pointerup", (event) => {
+      const still = down && Math.hypot(event.clientX - down.x, event.clientY - down.y) < 5;
+      down = null;
+      if (still) this.click(event);
+    });
+    canvas.addEventListener("pointermove", (event) => {
+      if (this.shape === null || this.draft.value.length === 0) return;
+      const hit = this.stage.hit(event.clientX, event.clientY);
+      this.pointer = hit ? [hit.world[0], hit.world[1]] : null;
+      this.redraw();
+    });
+    canvas.addEventListener("dblclick", () => {
+      if (this.shape === null) return;
+      // The second click of the pair has put a point on the same spot.
+      const points = this.draft.value;
+      const [a, b] = points.slice(-2);
+      if (a && b && Math.hypot(a[0] - b[0], a[1] - b[1]) < 8 * this.stage.metresPerPixel) this.draft.value = points.slice(0, -1);
+      this.finish();
+    });
+    canvas.addEventListener("focus", () => (this.crosshair.hidden = this.twin.tool.value.kind === "none" || !canvas.matches(":focus-visible")));
+    canvas.addEventListener("blur", () => (this.crosshair.hidden = true));
+    canvas.addEventListener("keydown", (event) => {
+      if (this.twin.tool.value.kind === "none") return;
+      if (event.key === " ") {
+        // Without a pointer, a point is put in the middle of the view.
+        const box = canvas.getBoundingClientRect();
+        const wide = box.width / Math.max(1, this.stage.views.size);
+        const column = [...this.stage.views.keys()].indexOf(this.twin.edited.value);
+        this.crosshair.hidden = false;
+        this.put(this.stage.hit(box.left + (column + 0.5) * wide, box.top + box.height / 2));
+      } else if (event.key === "Enter") this.finish();
+      else if (event.key === "Backspace") this.removeLast();
+      else return;
+      event.preventDefault();
+      event.stopPropagation();
+    });
+  }
+  private click(event: PointerEvent): void {
+    const hit = this.stage.hit(event.clientX, event.clientY);
+    if (this.twin.tool.value.kind === "none") this.select(event, hit);
+    else this.put(hit);
+  }
+  private put(hit: Hit | null): void {
+    if (!hit) return;
+    const point: Point = [hit.world[0], hit.world[1]];
+    if (this.shape !== null) this.addPoint(point);
+    else if (this.twin.tool.value.kind === "probe") {
+      const used = this.twin.probes.value.length;
+      this.twin.probes.value = [...this.twin.probes.value, { at: point, colour: probeColours[used % probeColours.length], series: {} }].slice(-6);
+    }
+  }
+  /** A click without a tool selects the house, barrier or release under it. */
+  private select(event: PointerEvent, hit: Hit | null): void {
+    const box = this.stage.canvas.getBoundingClientRect();
+    const { views, rig } = this.stage;
+    const wide = box.width / Math.max(1, views.size);
+    const column = Math.floor((event.clientX - box.left) / wide);
+    const name = [...views.keys()][column];
+    const view = name && views.get(name);
+    if (!name || !view) return;
+    const ray = new Raycaster();
+    ray.setFromCamera(new Vector2(((event.clientX - box.left - column * wide) / wide) * 2 - 1, 1 - ((event.clientY - box.top) / box.height) * 2), rig.camera);
+    const id = view.solidUnder(ray);
+    const setup = this.twin.cells[name].setup.value;
+    let selection = null;
+    if (id !== null) selection = { shape: setup?.barriers.some((b) => b.id === id) ? ("barrier" as const) : ("building" as const), id };
+    else if (hit) {
+      const release = setup?.releases.find((r) => r.polygons.some((ring) => inside(ring, hit.world[0], hit.world[1])));
+      if (release) selection = { shape: "release" as const, id: release.id };
+    }
+    if (selection && this.twin.scenarios.value.length > 1) this.twin.edited.value = name;
+    this.twin.selection.value = selection;
+  }
+
+  private reselect(): void {
+    if (this.handles.busy) return;
+    const { twin } = this;
+    const item = itemOf(twin.now.setup.value, twin.selection.value);
+    if (this.shape === null) {
+      this.draft.value = [];
+      this.redraw();
+    }
+    if (!item || twin.hindrance !== null || !canReshape(item) || twin.tool.value.kind !== "none") {
+      this.handles.clear();
+      return;
+    }
+    const points = pointsOf(item);
+    // A scar traced from a survey has dozens of corners; those are moved as a whole.
+    const corners = points.length <= 40;
+    this.handles.show(item.name, corners ? points : [], twin.edited.value, corners, {
+      move: (moved) => {
+        this.draft.value = moved;
+        this.redraw(item.shape !== "barrier");
+      },
+      drop: (moved) => {
+        void change(twin, item, { points: moved }).then((fine) => {
+          if (!fine) this.reselect();
+        });
+      },
+    });
+  }
+
+  private redraw(closed = false): void {
+    if (this.line) disposeLine(this.line);
+    this.line = null;
+    const points = [...this.draft.value];
+    const { shape } = this;
+    if (shape !== null && this.pointer && points.length > 0) points.push(this.pointer);
+    const view = this.stage.views.get(this.twin.edited.value);
+    if (view && points.length > 1) {
+      const ring = closed || ((shape === "release" || shape === "building") && points.length > 2);
+      this.line = pixelLine(this.stage.relief.drape(points, 0.4, ring), { colour: drawColour, width_px: 2.5, onTop: true });
+      view.overlay.add(this.line);
+    }
+    this.dots();
+    this.stage.invalidate();
+  }
+  private dots(): void {
+    if (this.shape === null) {
+      if (!this.twin.selection.value) this.handles.clear();
+      return;
+    }
+    this.handles.show("the drawing", this.draft.value, this.twin.edited.value, false, {
+      move: (moved) => {
+        this.draft.value = moved;
+      },
+      drop: (moved) => {
+        this.draft.value = moved;
+        this.redraw();
+      },
+    });
+  }
+}

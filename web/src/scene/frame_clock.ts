@@ -1,0 +1,40 @@
+// Which two frames are shown and how far between them the display is: one frame interval behind the newest.
+import type { Frame } from "../protocol/frame";
+
+/** Farther apart in simulated time two frames are not joined: particles would cut corners. */
+const longestGap_s = 1.5;
+
+export class FrameClock {
+  previous: Frame | null = null;
+  next: Frame | null = null;
+  private arrived_ms = 0;
+  private interval_ms = 33;
+
+  /** True when the two frames follow each other and may be mixed. */
+  push(frame: Frame, now_ms: number): boolean {
+    const before = this.next;
+    const gap = before === null ? -1 : frame.time_s - before.time_s;
+    const joins = before !== null && gap > 0 && gap <= longestGap_s && frame.stride === before.stride;
+    if (joins) {
+      const waited = Math.min(400, Math.max(8, now_ms - this.arrived_ms));
+      this.interval_ms += 0.2 * (waited - this.interval_ms);
+    }
+    this.previous = joins ? before : frame;
+    this.next = frame;
+    this.arrived_ms = now_ms;
+    return joins;
+  }
+  /** 0: the previous frame, 1: the next one. */
+  fraction(now_ms: number): number {
+    if (this.previous === this.next) return 1;
+    return Math.min(1, Math.max(0, (now_ms - this.arrived_ms) / this.interval_ms));
+  }
+  /** Simulated time that is on display. */
+  time_s(now_ms: number): number | null {
+    if (this.previous === null || this.next === null) return null;
+    return this.previous.time_s + (this.next.time_s - this.previous.time_s) * this.fraction(now_ms);
+  }
+  moving(now_ms: number): boolean {
+    return this.fraction(now_ms) < 1;
+  }
+}

@@ -1,0 +1,176 @@
+// The ground: a mesh with side walls like a relief model, elevation colours, contour lines, draped layers, and the
+// debris as a surface that lifts the same mesh.
+import {
+  BufferAttribute, BufferGeometry, DataTexture, LinearFilter, Mesh, MeshLambertMaterial, RGBAFormat, SRGBColorSpace, Vector2, Vector4,
+  type IUniform, type Texture,
+} from "three";
+import { rampAt, roundStep, table, type Rgb } from "./colour";
+import type { Relief } from "./relief";
+import { groundFragment, groundNormal, groundVertex, sharedHead } from "./ground_shader";
+
+export function rampTexture(at: (share: number) => Rgb): DataTexture {
+  const texture = new DataTexture(table(at), 256, 1, RGBAFormat);
+  texture.colorSpace = SRGBColorSpace;
+  texture.minFilter = texture.magFilter = LinearFilter;
+  texture.needsUpdate = true;
+  return texture;
+}
+
+/** Muted, so that debris and layers carry the strong colours: moss to straw to pale stone. */
+function groundColour(share: number): Rgb {
+  const stops: [number, Rgb][] = [
+    [0, [190, 206, 178]], [0.25, [212, 216, 186]], [0.5, [229, 222, 197]], [0.75, [235, 227, 212]], [1, [246, 243, 238]],
+  ];
+  const k = Math.min(stops.length - 2, Math.floor(share * (stops.length - 1)));
+  const [s0, c0] = stops[k];
+  const [s1, c1] = stops[k + 1];
+  const t = (share - s0) / (s1 - s0);
+  return c0.map((v, i) => Math.round(v + (c1[i] - v) * t)) as Rgb;
+}
+
+export function groundGeometry(relief: Relief): BufferGeometry {
+  const { grid, origin } = relief;
+  const { columns, rows, cell, values } = grid;
+  const sky = relief.skyView();
+  const n = columns * rows;
+  const border = 2 * (columns + rows - 2);
+  const position = new Float32Array(3 * (n + 2 * border));
+  const normal = new Float32Array(3 * (n + 2 * border));
+  const shade = new Float32Array(n + 2 * border);
+  const height = (i: number, j: number): number => {
+    const z = values[Math.min(Math.max(j, 0), rows - 1) * columns + Math.min(Math.max(i, 0), columns - 1)];
+    return Number.isNaN(z) ? relief.lowest : z;
+  };
+  for (let j = 0, k = 0; j < rows; ++j) {
+    for (let i = 0; i < columns; ++i, ++k) {
+      position.set([grid.west + (i + 0.5) * cell - origin[0], grid.south + (j + 0.5) * cell - origin[1], height(i, j) - origin[2]], 3 * k);
+      const dx = (height(i + 1, j) - height(i - 1, j)) / (2 * cell);
+      const dy = (height(i, j + 1) - height(i, j - 1)) / (2 * cell);
+      const length = Math.hypot(dx, dy, 1);
+      normal.set([-dx / length, -dy / length, 1 / length], 3 * k);
+      shade[k] = sky[k];
+    }
+  }
+  const index: number[] = [];
+  for (let j = 0; j + 1 < rows; ++j) {
+    for (let i = 0; i + 1 < columns; ++i) {
+      const k = j * columns + i;
+      if ([k, k + 1, k + columns, k + columns + 1].some((c) => Number.isNaN(values[c]))) continue;
+      index.push(k, k + 1, k + columns + 1, k, k + columns + 1, k + columns);
+    }
+  }
+  // Side walls go down to a common floor.
+  const floor = relief.lowest - origin[2] - 0.06 * Math.max(relief.width, relief.height);
+  const ring: [number, number, number, number][] = [];
+  for (let i = 0; i + 1 < columns; ++i) ring.push([i, 0, 0, -1]);
+  for (let j = 0; j + 1 < rows; ++j) ring.push([columns - 1, j, 1, 0]);
+  for (let i = columns - 1; i > 0; --i) ring.push([i, rows - 1, 0, 1]);
+  for (let j = rows - 1; j > 0; --j) ring.push([0, j, -1, 0]);
+  ring.forEach(([i, j, nx, ny], r) => {
+    const from = 3 * (j * columns + i);
+    for (const low of [0, 1]) {
+      const k = n + 2 * r + low;
+      position.set([position[from], position[from + 1], low ? floor : position[from + 2]], 3 * k);
+      normal.set([nx, ny, 0], 3 * k);
+      shade[k] = -1;
+    }
+    const a = n + 2 * r;
+    const b = n + 2 * ((r + 1) % ring.length);
+    index.push(a, a + 1, b, b, a + 1, b + 1);
+  });
+  const geometry = new BufferGeometry();
+  geometry.setAttribute("position", new BufferAttribute(position, 3));
+  geometry.setAttribute("normal", new BufferAttribute(normal, 3));
+  geometry.setAttribute("shade", new BufferAttribute(shade, 1));
+  geometry.setIndex(new BufferAttribute(new Uint32Array(index), 1));
+  geometry.computeBoundingSphere();
+  return geometry;
+}
+
+/** A map drawn over the ground: local west, local south, 1 / width, 1 / height in metres. */
+export interface Draped {
+  texture: Texture;
+  placing: Vector4;
+}
+
+const groundRamp = rampTexture(groundColour);
+const nothing = new DataTexture(new Uint8Array(4), 1, 1, RGBAFormat);
+nothing.needsUpdate = true;
+
+/** Contour interval that gives some 30 lines over the relief, and every fifth is an index contour. */
+export function contourInterval(relief: Relief): number {
+  return roundStep((relief.highest - relief.lowest) / 40);
+}
+
+export class Ground {
+  readonly mesh: Mesh;
+  readonly uniforms: Record<string, IUniform> & {
+    uSurface: IUniform<number>; uContour: IUniform<number>; uLayerOpacity: IUniform<number>;
+  };
+
+  constructor(geometry: BufferGeometry, relief: Relief, depthUniforms: Record<string, IUniform>) {
+    const low = relief.lowest - relief.origin[2];
+    this.uniforms = {
+      ...depthUniforms,
+      uGroundRamp: { value: groundRamp },
+      uElevation: { value: new Vector2(low, Math.max(1, relief.highest - relief.lowest)) },
+      uOriginZ: { value: relief.origin[2] },
+      uContourInterval: { value: contourInterval(relief) },
+      uContour: { value: 1 },
+      uSurface: { value: 0 },
+      uSurfaceBySpeed: { value: 0 },
+      uSurfaceRamp: { value: nothing },
+      uSurfaceTop: { value: 1 },
+      uLayer: { value: nothing },
+      uLayerPlacing: { value: new Vector4() },
+      uLayerRamp: { value: nothing },
+      uLayerRange: { value: new Vector2(0, 1) },
+      uLayerOpacity: { value: 0 },
+      uDrawn: { value: nothing },
+      uDrawnPlacing: { value: new Vector4() },
+    };
+    const material = new MeshLambertMaterial();
+    material.onBeforeCompile = (shader) => {
+      Object.assign(shader.uniforms, this.uniforms);
+      shader.vertexShader = shader.vertexShader
+        .replace("#include <common>", `#include <common>\n${sharedHead}\nattribute float shade;\nvarying float vShade;\nvarying vec3 vLocal;\nvarying vec3 vGroundNormal;`)
+        .replace("#include <begin_vertex>", `#include <begin_vertex>\n${groundVertex}`);
+      shader.fragmentShader = shader.fragmentShader
+        .replace("#include <common>", `#include <common>\n${sharedHead}\n${groundFragment.head}`)
+        .replace("#include <color_fragment>", groundFragment.colour)
+        .replace("#include <normal_fragment_begin>", `#include <normal_fragment_begin>\n${groundNormal}`);
+    };
+    this.mesh = new Mesh(geometry, material);
+    this.mesh.receiveShadow = true;
+    this.mesh.frustumCulled = false;
+  }
+
+  set<T>(name: string, value: T): void {
+    const uniform = this.uniforms[name];
+    if (uniform) uniform.value = value;
+  }
+  drape(drawn: Draped): void {
+    this.set("uDrawn", drawn.texture);
+    this.set("uDrawnPlacing", drawn.placing);
+  }
+  /** range: values at the ends of the ramp; `opacity` 0 hides the layer. */
+  showLayer(layer: Draped | null, ramp: Texture | null, range: [number, number], opacity: number): void {
+    this.set("uLayer", layer?.texture ?? nothing);
+    if (layer) this.set("uLayerPlacing", layer.placing);
+    this.set("uLayerRamp", ramp ?? nothing);
+    this.set("uLayerRange", new Vector2(...range));
+    this.uniforms.uLayerOpacity.value = layer ? opacity : 0;
+  }
+  /** The debris as a surface, coloured by depth or speed up to `top`. */
+  showSurface(shown: boolean, bySpeed: boolean, ramp: Texture, top: number): void {
+    this.uniforms.uSurface.value = shown ? 1 : 0;
+    this.set("uSurfaceBySpeed", bySpeed ? 1 : 0);
+    this.set("uSurfaceRamp", ramp);
+    this.set("uSurfaceTop", top);
+  }
+  dispose(): void {
+    (this.mesh.material as MeshLambertMaterial).dispose();
+  }
+}
+
+export const rampTextureOf = (ramp: Parameters<typeof rampAt>[0]): DataTexture => rampTexture((share) => rampAt(ramp, share));

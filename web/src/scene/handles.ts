@@ -1,0 +1,110 @@
+// Corners that can be dragged, or moved with the arrow keys: buttons that lie over the view.
+import type { ScenarioName } from "../protocol/frame";
+import type { Point } from "../protocol/messages";
+import { middle } from "../state/shapes";
+import { h } from "../ui/dom";
+import type { Stage } from "./stage";
+
+export interface HandleEvents {
+  /** The points while a corner is dragged. */
+  move(points: Point[]): void;
+  /** The points when a corner was let go. */
+  drop(points: Point[]): void;
+}
+
+const nudge_m = 1;
+
+export class Handles {
+  private buttons: HTMLButtonElement[] = [];
+  private points: Point[] = [];
+  private scenario: ScenarioName = "A";
+  private dragging = false;
+
+  constructor(private readonly stage: Stage) {
+    stage.onPicture(() => this.place());
+  }
+  get busy(): boolean {
+    return this.dragging;
+  }
+
+  /** Shows corners, and one more handle in the middle that moves the whole. */
+  show(name: string, points: readonly Point[], scenario: ScenarioName, whole: boolean, events: HandleEvents): void {
+    if (this.dragging) return;
+    const focused = this.buttons.indexOf(document.activeElement as HTMLButtonElement);
+    this.clear();
+    this.points = points.map(([x, y]) => [x, y]);
+    this.scenario = scenario;
+    const pane = this.stage.pane(scenario);
+    const count = points.length + (whole ? 1 : 0);
+    for (let k = 0; k < count; ++k) {
+      const isWhole = k === points.length;
+      const button = h("button", { type: "button", class: isWhole ? "handle whole" : "handle",
+        "aria-label": `${isWhole ? "Whole of" : `Corner ${k + 1} of`} ${name}; arrow keys move it by ${nudge_m} m`,
+        title: isWhole ? "Drag to move the whole" : "Drag to move this corner" });
+      button.addEventListener("pointerdown", (event) => this.drag(event, button, k, events));
+      button.addEventListener("keydown", (event) => {
+        const step: Record<string, Point> = { ArrowUp: [0, nudge_m], ArrowDown: [0, -nudge_m], ArrowLeft: [-nudge_m, 0], ArrowRight: [nudge_m, 0] };
+        const by = step[event.key];
+        if (!by) return;
+        event.preventDefault();
+        event.stopPropagation();
+        this.shift(k, by);
+        events.move(this.points);
+        this.place();
+      });
+      button.addEventListener("keyup", (event) => {
+        if (event.key.startsWith("Arrow")) events.drop(this.points);
+      });
+      this.buttons.push(button);
+      pane?.append(button);
+    }
+    if (focused >= 0) this.buttons[focused]?.focus();
+    this.place();
+    this.stage.invalidate();
+  }
+  clear(): void {
+    for (const button of this.buttons) button.remove();
+    this.buttons = [];
+  }
+
+  private shift(k: number, by: Point): void {
+    const all = k === this.points.length;
+    this.points = this.points.map(([x, y], i) => (all || i === k ? [x + by[0], y + by[1]] : [x, y]));
+  }
+  private drag(event: PointerEvent, button: HTMLButtonElement, k: number, events: HandleEvents): void {
+    if (event.button !== 0) return;
+    event.preventDefault();
+    button.focus();
+    button.setPointerCapture(event.pointerId);
+    this.dragging = true;
+    const all = k === this.points.length;
+    const move = (moved: PointerEvent): void => {
+      const hit = this.stage.hit(moved.clientX, moved.clientY);
+      if (!hit || hit.scenario !== this.scenario) return;
+      const from = all ? middle(this.points) : this.points[k];
+      this.shift(k, [hit.world[0] - from[0], hit.world[1] - from[1]]);
+      events.move(this.points);
+      this.place();
+    };
+    const before = JSON.stringify(this.points);
+    const end = (): void => {
+      button.removeEventListener("pointermove", move);
+      this.dragging = false;
+      if (JSON.stringify(this.points) !== before) events.drop(this.points);
+    };
+    button.addEventListener("pointermove", move);
+    button.addEventListener("pointerup", end, { once: true });
+    button.addEventListener("pointercancel", end, { once: true });
+  }
+  private place(): void {
+    if (this.buttons.length === 0) return;
+    const pane = this.stage.pane(this.scenario)?.getBoundingClientRect();
+    if (!pane) return;
+    this.buttons.forEach((button, k) => {
+      const [x, y] = k === this.points.length ? middle(this.points) : this.points[k];
+      const at = this.stage.seenAt(this.stage.relief.local(x, y, 0.3), this.scenario);
+      button.hidden = at === null || at.x < pane.left || at.x > pane.right || at.y < pane.top || at.y > pane.bottom;
+      if (at) button.style.transform = `translate(${at.x - pane.left}px, ${at.y - pane.top}px) translate(-50%, -50%)`;
+    });
+  }
+}

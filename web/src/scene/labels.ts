@@ -1,0 +1,79 @@
+// Text at places of the scene, as HTML over the view. Of labels that would lie on one another the more important stays.
+import { Vector3, type PerspectiveCamera } from "three";
+import { h } from "../ui/dom";
+import type { Place } from "../protocol/messages";
+import type { Relief } from "./relief";
+
+export interface Label {
+  /** Local place. */
+  at: Place;
+  text: string;
+  kind: "chainage" | "observation" | "release" | "house" | "probe" | "person" | "barrier";
+  colour?: string;
+  priority: number;
+  /** Farther away than this the label is left out, m. */
+  farthest?: number;
+}
+
+export type Box = readonly [number, number, number, number];
+interface Shown extends Label { element: HTMLElement; width: number; height: number }
+
+export class Labels {
+  readonly layer = h("div", { class: "labels", "aria-hidden": "true" });
+  private shown: Shown[] = [];
+
+  constructor(private readonly relief: Relief) {}
+
+  set(labels: readonly Label[]): void {
+    this.layer.replaceChildren();
+    this.shown = [...labels].sort((a, b) => b.priority - a.priority).map((label) => {
+      const element = h("div", { class: `label ${label.kind}` }, h("span", {}, label.text));
+      if (label.colour) element.style.setProperty("--mark", label.colour);
+      this.layer.append(element);
+      return { ...label, element, width: 0, height: 0 };
+    });
+    for (const label of this.shown) {
+      label.width = label.element.offsetWidth;
+      label.height = label.element.offsetHeight;
+    }
+  }
+
+  /** reserved: boxes (left, top, right, bottom) of the view that are covered by something else. */
+  place(camera: PerspectiveCamera, width: number, height: number, reserved: readonly Box[]): void {
+    const taken: Box[] = [...reserved];
+    const seen = new Vector3();
+    for (const label of this.shown) {
+      seen.set(...label.at).project(camera);
+      const x = ((seen.x + 1) / 2) * width;
+      const y = ((1 - seen.y) / 2) * height;
+      // The anchor of a label is the middle of its lower edge.
+      const box: Box = [x - label.width / 2, y - label.height, x + label.width / 2, y];
+      const visible =
+        seen.z < 1 && box[0] > 2 && box[1] > 2 && box[2] < width - 2 && box[3] < height - 2 &&
+        !taken.some((t) => box[0] < t[2] + 3 && box[2] > t[0] - 3 && box[1] < t[3] + 2 && box[3] > t[1] - 2) &&
+        this.near(label, camera) && !this.hidden(label.at, camera);
+      label.element.classList.toggle("off", !visible);
+      if (!visible) continue;
+      taken.push(box);
+      label.element.style.transform = `translate(${Math.round(box[0])}px, ${Math.round(box[1])}px)`;
+    }
+  }
+  private near(label: Label, camera: PerspectiveCamera): boolean {
+    return label.farthest === undefined || camera.position.distanceTo(new Vector3(...label.at)) < label.farthest;
+  }
+  /** Whether the ground stands between camera and place. */
+  private hidden(at: Place, camera: PerspectiveCamera): boolean {
+    const from = camera.position;
+    const [ox, oy, oz] = this.relief.origin;
+    const steps = 40;
+    for (let k = 1; k < steps - 1; ++k) {
+      const t = k / steps;
+      const x = at[0] + (from.x - at[0]) * t;
+      const y = at[1] + (from.y - at[1]) * t;
+      const z = at[2] + (from.z - at[2]) * t;
+      if (!this.relief.contains(x + ox, y + oy)) break;
+      if (z + oz < this.relief.at(x + ox, y + oy) - 0.5) return true;
+    }
+    return false;
+  }
+}

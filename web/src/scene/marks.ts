@@ -1,0 +1,99 @@
+// Where other people point, probes, the section line, and the own mark that others see.
+import type { Line2 } from "three/examples/jsm/lines/Line2.js";
+import type { ScenarioName } from "../protocol/frame";
+import type { Place } from "../protocol/messages";
+import { watchAll } from "../state/cell";
+import { fixed, quantity } from "../state/format";
+import type { Twin } from "../state/twin";
+import { h } from "../ui/dom";
+import { layerInfo } from "./layers";
+import { disposeLine, pixelLine } from "./lines";
+import type { ShownLayers } from "./shown_layers";
+import type { Stage } from "./stage";
+
+const markEvery_ms = 120;
+
+export function marks(twin: Twin, stage: Stage, layers: ShownLayers): HTMLElement {
+  const readOut = h("div", { class: "read-out", "aria-hidden": "true" });
+  let sent_ms = 0;
+  let timer: number | undefined;
+  const lines = new Map<ScenarioName, Line2>();
+  const people = new Map<string, HTMLElement>();
+
+  const place = (): void => {
+    // Marks of people follow the camera on every picture; they are few.
+    for (const person of twin.people.value) {
+      if (person.id === twin.you.value?.id) continue;
+      const element = people.get(person.id);
+      if (!element) continue;
+      const at = person.mark ? stage.seenAt(person.mark, "A") : null;
+      const box = stage.element.getBoundingClientRect();
+      element.hidden = at === null || at.x < box.left || at.x > box.right || at.y < box.top || at.y > box.bottom;
+      if (at) element.style.transform = `translate(${Math.round(at.x - box.left)}px, ${Math.round(at.y - box.top)}px)`;
+    }
+  };
+  stage.onPicture(place);
+  watchAll([twin.people, twin.you], () => {
+    for (const [id, element] of people) {
+      if (!twin.people.value.some((p) => p.id === id)) {
+        element.remove();
+        people.delete(id);
+      }
+    }
+    for (const person of twin.people.value) {
+      if (person.id === twin.you.value?.id) continue;
+      let element = people.get(person.id);
+      if (!element) {
+        element = h("div", { class: "person-mark", hidden: true, "aria-hidden": "true" }, h("i", {}), h("span", {}));
+        people.set(person.id, element);
+        stage.element.append(element);
+      }
+      element.style.setProperty("--mark", person.colour);
+      element.lastElementChild?.replaceChildren(person.name);
+    }
+    place();
+  });
+
+  watchAll([twin.probes, twin.section, twin.scenarios], () => {
+    for (const line of lines.values()) disposeLine(line);
+    lines.clear();
+    for (const [name, view] of stage.views) {
+      view.extraLabels = twin.probes.value.map((probe, i) => ({ at: twin.relief.local(probe.at[0], probe.at[1], 0.2), text: String(i + 1), kind: "probe", colour: probe.colour, priority: 9 }));
+      if (twin.section.value) {
+        const line = pixelLine(twin.relief.drape(twin.section.value, 0.4), { colour: "#8a4a8f", width_px: 2.5, onTop: true });
+        lines.set(name, line);
+        view.overlay.add(line);
+      }
+      stage.relabel(view);
+    }
+  });
+
+  const { canvas } = stage;
+  canvas.addEventListener("pointermove", (event) => {
+    if (event.buttons !== 0) return;
+    const now = performance.now();
+    clearTimeout(timer);
+    const tell = (): void => {
+      sent_ms = performance.now();
+      const hit = stage.hit(event.clientX, event.clientY);
+      const local: Place | null = hit ? twin.relief.local(hit.world[0], hit.world[1]) : null;
+      twin.mark(local);
+      if (!hit) {
+        readOut.textContent = "";
+        return;
+      }
+      const name = twin.layer.value;
+      const value = name === "none" ? null : layers.valueAt(hit.scenario, hit.world[0], hit.world[1]);
+      readOut.textContent = `E ${fixed(hit.world[0], 1)}  N ${fixed(hit.world[1], 1)}  ground ${fixed(hit.world[2], 1)} m` +
+        (name !== "none" && value !== null ? `  ${layerInfo[name].title.toLowerCase()} ${quantity(value, layerInfo[name].unit)}` : "");
+    };
+    if (now - sent_ms > markEvery_ms) tell();
+    else timer = window.setTimeout(tell, markEvery_ms - (now - sent_ms));
+  });
+  canvas.addEventListener("pointerleave", () => {
+    clearTimeout(timer);
+    readOut.textContent = "";
+    twin.mark(null);
+  });
+  return readOut;
+}

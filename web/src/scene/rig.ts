@@ -1,0 +1,202 @@
+// The camera: orbit by mouse, touch and keys; fly; follow the front; top view; saved views. z is up.
+import { MOUSE, PerspectiveCamera, Spherical, Vector3 } from "three";
+import { OrbitControls } from "three/examples/jsm/controls/OrbitControls.js";
+import type { Place } from "../protocol/messages";
+import type { Relief } from "./relief";
+
+export type CameraMode = "orbit" | "fly" | "follow";
+export interface Viewpoint { position: Place; target: Place }
+
+const flyKeys = new Set(["KeyW", "KeyA", "KeyS", "KeyD", "KeyQ", "KeyE"]);
+
+export class Rig {
+  readonly camera = new PerspectiveCamera(38, 1, 0.5, 20000);
+  readonly controls: OrbitControls;
+  mode: CameraMode = "orbit";
+  private readonly held = new Set<string>();
+  private flight: { from: Viewpoint; to: Viewpoint; begun_ms: number; lasts_ms: number } | null = null;
+  private followed: Vector3 | null = null;
+  private last_ms = 0;
+
+  constructor(canvas: HTMLElement, private readonly relief: Relief, private readonly changed: () => void) {
+    this.camera.up.set(0, 0, 1);
+    this.controls = new OrbitControls(this.camera, canvas);
+    this.controls.enableDamping = !matchMedia("(prefers-reduced-motion: reduce)").matches;
+    this.controls.dampingFactor = 0.14;
+    this.controls.zoomToCursor = true;
+    this.controls.maxPolarAngle = 0.49 * Math.PI;
+    this.controls.minDistance = 4;
+    this.controls.maxDistance = 6 * Math.max(relief.width, relief.height);
+    this.controls.mouseButtons = { LEFT: MOUSE.ROTATE, MIDDLE: MOUSE.DOLLY, RIGHT: MOUSE.PAN };
+    this.controls.addEventListener("change", changed);
+    this.controls.addEventListener("start", () => (this.flight = null));
+    canvas.addEventListener("keydown", (event) => this.key(event));
+    canvas.addEventListener("keyup", (event) => void this.held.delete(event.code));
+    canvas.addEventListener("blur", () => this.held.clear());
+    const reach = 2.2 * (relief.width + relief.height);
+    this.camera.far = 12 * reach;
+    this.fit(false);
+  }
+
+  get viewpoint(): Viewpoint {
+    return { position: this.camera.position.toArray(), target: this.controls.target.toArray() };
+  }
+  /** The whole ground in view, seen from its lower side. */
+  fit(animated = true, towards = 0.15): void {
+    const [x, y] = this.relief.middle;
+    const target = new Vector3(...this.relief.local(x, y));
+    const size = Math.hypot(this.relief.width, this.relief.height);
+    const distance = (0.40 * size) / Math.tan((this.camera.fov * Math.PI) / 360) / Math.min(1.3, Math.max(0.75, this.camera.aspect));
+    const { down } = this;
+    const angle = Math.atan2(down[1], down[0]) + towards;
+    const offset = new Vector3().setFromSpherical(new Spherical(distance, 1, 0));
+    const position: Place = [
+      target.x + Math.cos(angle) * Math.hypot(offset.x, offset.z),
+      target.y + Math.sin(angle) * Math.hypot(offset.x, offset.z),
+      target.z + offset.y,
+    ];
+    this.go({ position, target: target.toArray() }, animated);
+  }
+  /** Direction in which the ground falls on the whole. */
+  private get down(): [number, number] {
+    const { relief } = this;
+    const { west, south } = relief.grid;
+    let [u, v] = [0, 0];
+    for (let j = 0; j < 12; ++j) {
+      for (let i = 0; i < 12; ++i) {
+        const a = (i + 0.5) / 12 - 0.5;
+        const b = (j + 0.5) / 12 - 0.5;
+        const z = relief.at(west + (a + 0.5) * relief.width, south + (b + 0.5) * relief.height);
+        u -= a * z;
+        v -= b * z;
+      }
+    }
+    return u === 0 && v === 0 ? [0, -1] : [u, v];
+  }
+  top(): void {
+    const [x, y] = this.relief.middle;
+    const target = this.relief.local(x, y);
+    const tan = Math.tan((this.camera.fov * Math.PI) / 360);
+    const distance = (0.54 * Math.max(this.relief.height, this.relief.width / this.camera.aspect)) / tan;
+    // Straight down has no "up": a hair to the south keeps north at the top.
+    this.go({ position: [target[0], target[1] - 0.001 * distance, target[2] + distance], target }, true);
+  }
+  /** Brings a local place near the middle, from the present direction. */
+  visit(place: Place, distance: number): void {
+    const away = this.camera.position.clone().sub(this.controls.target).setLength(distance);
+    this.go({ position: [place[0] + away.x, place[1] + away.y, place[2] + away.z], target: place }, true);
+  }
+  go(to: Viewpoint, animated: boolean): void {
+    if (!animated || matchMedia("(prefers-reduced-motion: reduce)").matches) {
+      this.flight = null;
+      this.camera.position.set(...to.position);
+      this.controls.target.set(...to.target);
+      this.controls.update();
+      this.changed();
+      return;
+    }
+    this.flight = { from: this.viewpoint, to, begun_ms: performance.now(), lasts_ms: 700 };
+    this.changed();
+  }
+  setMode(mode: CameraMode): void {
+    this.mode = mode;
+    this.followed = null;
+    this.held.clear();
+    this.changed();
+  }
+  /** Local place of the front, for "follow". */
+  follow(place: Place | null): void {
+    if (this.mode !== "follow" || place === null) return;
+    if (this.followed === null) {
+      this.visit(place, Math.min(160, this.camera.position.distanceTo(this.controls.target)));
+      this.followed = new Vector3(...place);
+    } else this.followed.set(...place);
+  }
+
+  private key(event: KeyboardEvent): void {
+    if (event.ctrlKey || event.metaKey || event.altKey) return;
+    if (this.mode === "fly" && flyKeys.has(event.code)) {
+      this.held.add(event.code);
+      event.preventDefault();
+      this.changed();
+      return;
+    }
+    const away = this.camera.position.clone().sub(this.controls.target);
+    const angle = 0.09;
+    if (event.key.startsWith("Arrow") && event.shiftKey) {
+      const step = 0.06 * away.length();
+      const ahead = new Vector3(-away.x, -away.y, 0).normalize();
+      const side = new Vector3(ahead.y, -ahead.x, 0);
+      const sign = event.key === "ArrowUp" || event.key === "ArrowRight" ? 1 : -1;
+      const move = (event.key === "ArrowUp" || event.key === "ArrowDown" ? ahead : side).multiplyScalar(sign * step);
+      this.camera.position.add(move);
+      this.controls.target.add(move);
+    } else if (event.key === "ArrowLeft" || event.key === "ArrowRight") {
+      away.applyAxisAngle(this.camera.up, event.key === "ArrowLeft" ? -angle : angle);
+      this.camera.position.copy(this.controls.target).add(away);
+    } else if (event.key === "ArrowUp" || event.key === "ArrowDown") {
+      const level = Math.hypot(away.x, away.y);
+      const tilt = Math.min(1.55, Math.max(0.05, Math.atan2(away.z, level) + (event.key === "ArrowUp" ? angle : -angle)));
+      const length = away.length();
+      const turn = Math.atan2(away.y, away.x);
+      away.set(Math.cos(turn) * Math.cos(tilt), Math.sin(turn) * Math.cos(tilt), Math.sin(tilt)).multiplyScalar(length);
+      this.camera.position.copy(this.controls.target).add(away);
+    } else if (event.key === "+" || event.key === "=" || event.key === "-") {
+      away.multiplyScalar(event.key === "-" ? 1.12 : 1 / 1.12);
+      this.camera.position.copy(this.controls.target).add(away);
+    } else return;
+    event.preventDefault();
+    this.flight = null;
+    this.controls.update();
+    this.changed();
+  }
+
+  /** Moves the camera to `now`; true while it goes on moving. */
+  update(now_ms: number): boolean {
+    const seconds = Math.min(0.1, (now_ms - this.last_ms) / 1000);
+    this.last_ms = now_ms;
+    let busy = false;
+    if (this.flight) {
+      const { from, to, begun_ms, lasts_ms } = this.flight;
+      const t = Math.min(1, (now_ms - begun_ms) / lasts_ms);
+      const eased = t * t * (3 - 2 * t);
+      this.camera.position.set(...from.position).lerp(new Vector3(...to.position), eased);
+      this.controls.target.set(...from.target).lerp(new Vector3(...to.target), eased);
+      if (t >= 1) this.flight = null;
+      busy = true;
+    } else if (this.followed) {
+      const gap = this.followed.clone().sub(this.controls.target);
+      if (gap.length() > 0.05) {
+        gap.multiplyScalar(1 - Math.exp(-2.2 * seconds));
+        this.controls.target.add(gap);
+        this.camera.position.add(gap);
+        busy = true;
+      }
+    }
+    if (this.held.size > 0) {
+      this.fly(seconds);
+      busy = true;
+    }
+    // True while damping still moves the camera.
+    return this.controls.update() || busy;
+  }
+  private fly(seconds: number): void {
+    const ahead = this.controls.target.clone().sub(this.camera.position);
+    const speed = Math.max(8, 0.6 * ahead.length()) * seconds;
+    ahead.normalize();
+    const side = new Vector3().crossVectors(ahead, this.camera.up).normalize();
+    const move = new Vector3();
+    if (this.held.has("KeyW")) move.add(ahead);
+    if (this.held.has("KeyS")) move.sub(ahead);
+    if (this.held.has("KeyD")) move.add(side);
+    if (this.held.has("KeyA")) move.sub(side);
+    if (this.held.has("KeyE")) move.add(this.camera.up);
+    if (this.held.has("KeyQ")) move.sub(this.camera.up);
+    move.setLength(speed);
+    this.camera.position.add(move);
+    this.controls.target.add(move);
+    const [ox, oy, oz] = this.relief.origin;
+    const floor = this.relief.at(this.camera.position.x + ox, this.camera.position.y + oy) - oz + 1.7;
+    if (this.camera.position.z < floor) this.camera.position.z = floor;
+  }
+}

@@ -1,0 +1,222 @@
+// Everything that is drawn of one scenario.
+import {
+  Box3, Color, Group, Scene, Vector3, type BufferGeometry, type Mesh, type MeshLambertMaterial, type PerspectiveCamera, type Raycaster, type Texture,
+} from "three";
+import type { Line2 } from "three/examples/jsm/lines/Line2.js";
+import type { Frame, ScenarioName } from "../protocol/frame";
+import type { Impacts, SceneInfo, Setup } from "../protocol/messages";
+import { Debris } from "./debris";
+import { DepthField } from "./depth_field";
+import { DrawnAreas, type Area } from "./drawn_areas";
+import { FrameClock } from "./frame_clock";
+import { Ground } from "./ground";
+import { Labels, type Label } from "./labels";
+import { disposeLine, pixelLine } from "./lines";
+import type { Relief } from "./relief";
+import { Sky, towardsSun } from "./sky";
+import { barrierSolid, disposeSolid, houseSolid, plainHouse } from "./solids";
+import { quantity } from "../state/format";
+
+export const releaseColour = "#a3262a";
+const barrierColour = "#5d7f92";
+const pathColour = "#08364d";
+
+export interface Shared {
+  scene: SceneInfo;
+  relief: Relief;
+  geometry: BufferGeometry;
+  speedRamp: Texture;
+}
+
+export class ScenarioView {
+  readonly three = new Scene();
+  readonly clock = new FrameClock();
+  readonly ground: Ground;
+  readonly debris: Debris;
+  readonly labels: Labels;
+  readonly sky: Sky;
+  /** Lines and handles of what is being drawn or edited, and marks of people and probes. */
+  readonly overlay = new Group();
+  extraLabels: Label[] = [];
+  namesShown = true;
+  /** Id of what is being edited: its handles take the place of its name. */
+  selected: string | null = null;
+  private readonly depths: DepthField;
+  private readonly solids = new Group();
+  private readonly outlines = new Group();
+  private readonly areas: DrawnAreas;
+  private setup: Setup | null = null;
+  private readonly sunInView = new Vector3();
+  shadowsDue = true;
+
+  constructor(readonly name: ScenarioName, private readonly shared: Shared) {
+    const { scene, relief } = shared;
+    this.sky = new Sky(this.three);
+    this.depths = new DepthField(scene);
+    this.ground = new Ground(shared.geometry, relief, this.depths.uniforms);
+    this.debris = new Debris(1.25 * scene.particle_spacing_m, shared.speedRamp);
+    this.labels = new Labels(relief);
+    this.areas = new DrawnAreas(relief);
+    this.three.add(this.ground.mesh, this.debris.points, this.solids, this.outlines, this.overlay);
+    this.drawPath();
+  }
+
+  private drawPath(): void {
+    const { scene, relief } = this.shared;
+    const path = scene.flow_path;
+    if (!path) return;
+    this.three.add(pixelLine(relief.drape(path.points.map(([x, y]) => [x, y]), 0.25), { colour: pathColour, width_px: 1.6, opacity: 0.75 }));
+    for (const { at, across } of this.chainageMarks()) {
+      const [x, y] = at;
+      const half = 2.5;
+      this.three.add(pixelLine(
+        relief.drape([[x - across[0] * half, y - across[1] * half], [x + across[0] * half, y + across[1] * half]], 0.3),
+        { colour: pathColour, width_px: 1.6, opacity: 0.75 },
+      ));
+    }
+  }
+  /** Round chainages, far enough apart to be read. */
+  private chainageMarks(): { chainage: number; at: [number, number]; across: [number, number] }[] {
+    const path = this.shared.scene.flow_path;
+    if (!path) return [];
+    const last = path.chainage_m[path.chainage_m.length - 1] ?? 0;
+    const step = last > 4000 ? 500 : last > 1500 ? 200 : last > 600 ? 100 : last > 300 ? 50 : 25;
+    const marks = [];
+    for (let chainage = 0; chainage <= last; chainage += step) {
+      const place = placeOnPath(this.shared.scene, chainage);
+      if (place) marks.push({ chainage, ...place });
+    }
+    return marks;
+  }
+
+  push(frame: Frame, now_ms: number): void {
+    const previous = this.clock.next;
+    const joins = this.clock.push(frame, now_ms);
+    this.debris.push(frame, previous ?? frame, joins);
+    this.depths.push(frame, joins);
+  }
+
+  setSetup(setup: Setup): void {
+    this.setup = setup;
+    const { relief } = this.shared;
+    for (const child of [...this.solids.children]) disposeSolid(child as Group);
+    for (const building of setup.buildings) this.solids.add(houseSolid(building, relief, plainHouse));
+    for (const barrier of setup.barriers) this.solids.add(barrierSolid(barrier, relief, barrierColour));
+    for (const child of [...this.outlines.children]) disposeLine(child as Line2);
+    const areas: Area[] = [];
+    for (const release of setup.releases) {
+      // The thicker the release, the fuller its tint.
+      const tint = 0.10 + 0.30 * Math.min(1, (release.thickness_m ?? 1) / 4);
+      areas.push({ rings: release.polygons, colour: releaseColour, opacity: tint, hatched: release.status === "held" });
+      for (const ring of release.polygons) {
+        this.outlines.add(pixelLine(relief.drape(ring, 0.25, true), { colour: releaseColour, width_px: 2, dashed: release.status === "held" }));
+      }
+    }
+    this.ground.drape(this.areas.paint(areas));
+    this.sky.aim(new Box3().setFromObject(this.solids));
+    this.shadowsDue = true;
+    this.refreshLabels();
+  }
+
+  /** Colours houses and barriers by what hit them; `colourOf` answers null for untouched ones. */
+  colourSolids(impacts: Impacts | null, colourOf: (id: string) => string | null, selected: string | null): void {
+    for (const group of this.solids.children) {
+      const id = group.userData["id"] as string;
+      const isBarrier = this.setup?.barriers.some((b) => b.id === id) ?? false;
+      const mesh = group.children[0] as Mesh;
+      const material = mesh.material as MeshLambertMaterial;
+      const colour = impacts === null || isBarrier ? null : colourOf(id);
+      material.color.set(colour ?? (isBarrier ? barrierColour : plainHouse));
+      material.emissive.set(id === selected ? new Color("#1d86ab") : new Color(0));
+      material.emissiveIntensity = 0.6;
+    }
+  }
+  solidAt(id: string): Vector3 | null {
+    const group = this.solids.children.find((g) => g.userData["id"] === id);
+    return group ? new Box3().setFromObject(group).getCenter(new Vector3()) : null;
+  }
+
+  /** Id of the nearest house or barrier that the ray meets before the ground does. */
+  solidUnder(ray: Raycaster): string | null {
+    const [first] = ray.intersectObjects(this.solids.children.map((group) => group.children[0]), false);
+    if (!first) return null;
+    const ground = this.shared.relief.meet(ray.ray.origin.toArray(), ray.ray.direction.toArray());
+    const [ox, oy, oz] = this.shared.relief.origin;
+    const far = ground ? ray.ray.origin.distanceTo(new Vector3(ground[0] - ox, ground[1] - oy, ground[2] - oz)) : Infinity;
+    return first.distance < far + 1 ? ((first.object.parent?.userData["id"] as string | undefined) ?? null) : null;
+  }
+
+  refreshLabels(): void {
+    const labels: Label[] = [...this.extraLabels];
+    const { scene, relief } = this.shared;
+    const size = relief.width + relief.height;
+    if (this.namesShown) {
+      for (const { chainage, at } of this.chainageMarks()) {
+        labels.push({ at: relief.local(at[0], at[1], 1), text: chainage === 0 ? "0 m" : `${chainage}`, kind: "chainage", priority: 2, farthest: 1.6 * size });
+      }
+      for (const observation of scene.observations) {
+        const place = placeOnPath(scene, observation.chainage_m);
+        if (place) {
+          labels.push({ at: relief.local(place.at[0], place.at[1], 4), text: `observed ${quantity(observation.front_velocity_mps, "m/s")}`,
+            kind: "observation", priority: 6 });
+        }
+      }
+      for (const release of this.setup?.releases ?? []) {
+        if (release.id === this.selected) continue;
+        const ring = release.polygons[0] ?? [];
+        if (ring.length === 0) continue;
+        const x = ring.reduce((sum, p) => sum + p[0], 0) / ring.length;
+        const y = ring.reduce((sum, p) => sum + p[1], 0) / ring.length;
+        labels.push({ at: relief.local(x, y, 3), text: `${release.name}, ${quantity(release.volume_m3, "m3")}`, kind: "release", priority: 8 });
+      }
+      for (const barrier of this.setup?.barriers ?? []) {
+        if (barrier.id === this.selected) continue;
+        const [x, y] = barrier.line[Math.floor(barrier.line.length / 2)] ?? [0, 0];
+        labels.push({ at: relief.local(x, y, barrier.height_m + 1), text: `${barrier.name}, ${quantity(barrier.height_m, "m")}`, kind: "barrier", priority: 7 });
+      }
+      for (const building of this.setup?.buildings ?? []) {
+        const ring = building.footprint[0] ?? [];
+        if (ring.length === 0) continue;
+        const x = ring.reduce((sum, p) => sum + p[0], 0) / ring.length;
+        const y = ring.reduce((sum, p) => sum + p[1], 0) / ring.length;
+        labels.push({ at: [x - relief.origin[0], y - relief.origin[1], building.roof_m - relief.origin[2] + 0.5], text: building.name, kind: "house",
+          priority: 1, farthest: 0.3 * size });
+      }
+    }
+    this.labels.set(labels);
+  }
+
+  /** Mixes the two frames for `now_ms`; true while something moves. */
+  update(now_ms: number, camera: PerspectiveCamera, pixels: number, fastest_mps: number): boolean {
+    const fraction = this.clock.fraction(now_ms);
+    this.debris.mix(fraction);
+    this.depths.mix(fraction);
+    this.sunInView.copy(towardsSun).transformDirection(camera.matrixWorldInverse);
+    this.debris.prepare(pixels, this.sunInView, fastest_mps);
+    return fraction < 1;
+  }
+  dispose(): void {
+    for (const child of [...this.solids.children]) disposeSolid(child as Group);
+    this.ground.dispose();
+    this.debris.dispose();
+    this.depths.dispose();
+    this.areas.dispose();
+    this.labels.layer.remove();
+  }
+}
+
+/** World place at a chainage and the unit vector across the path there. */
+export function placeOnPath(scene: SceneInfo, chainage: number): { at: [number, number]; across: [number, number] } | null {
+  const path = scene.flow_path;
+  if (!path || path.points.length < 2) return null;
+  let k = path.chainage_m.findIndex((c) => c >= chainage);
+  if (k < 0) return null;
+  k = Math.max(1, k);
+  const [x0, y0] = path.points[k - 1];
+  const [x1, y1] = path.points[k];
+  const c0 = path.chainage_m[k - 1];
+  const span = path.chainage_m[k] - c0;
+  const t = span > 0 ? (chainage - c0) / span : 0;
+  const length = Math.hypot(x1 - x0, y1 - y0) || 1;
+  return { at: [x0 + t * (x1 - x0), y0 + t * (y1 - y0)], across: [-(y1 - y0) / length, (x1 - x0) / length] };
+}

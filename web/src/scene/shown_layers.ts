@@ -1,0 +1,149 @@
+// Keeps the chosen map layer of every scenario on its ground, fresh while the run goes on.
+import type { Texture } from "three";
+import type { ScenarioName } from "../protocol/frame";
+import { gridAt, type Grid } from "../protocol/grid";
+import type { LayerName } from "../protocol/messages";
+import { Cell, watchAll } from "../state/cell";
+import type { Twin } from "../state/twin";
+import { divergingAt, rampAt, ramps, roundStep } from "./colour";
+import { rampTexture } from "./ground";
+import { differenceOf, drapedFrom, layerInfo, scaleEnd, shownValues } from "./layers";
+import type { Stage } from "./stage";
+
+const refresh_ms = 2000;
+
+export class ShownLayers {
+  /** Values at the ends of the legend. */
+  readonly range = new Cell<readonly [number, number]>([0, 1]);
+  readonly grids = new Map<ScenarioName, Grid>();
+  surfaceTop = 3;
+  private readonly rampTextures = new Map<string, Texture>();
+  private readonly held = new Map<ScenarioName, Texture>();
+  private busy = false;
+  private again = false;
+
+  constructor(private readonly twin: Twin, private readonly stage: Stage) {
+    watchAll([twin.layer, twin.difference, twin.scenarios], () => void this.load());
+    twin.layerOpacity.watch(() => this.put());
+    watchAll([twin.surface, twin.particles, twin.contours, twin.scenarios, stage.fastest_mps], () => this.putSurface());
+    setInterval(() => {
+      const running = twin.scenarios.value.some((s) => twin.cells[s].state.value?.status === "running");
+      if (running && twin.layer.value !== "none") void this.load();
+    }, refresh_ms);
+    // A step or the end of the run changes the maps once more.
+    for (const s of ["A", "B"] as const) {
+      let before = -1;
+      twin.cells[s].state.watch((state) => {
+        if (state && state.status !== "running" && state.step !== before) {
+          before = state.step;
+          if (twin.layer.value !== "none") void this.load();
+        }
+      });
+    }
+  }
+  get isDifference(): boolean {
+    return this.twin.difference.value && this.twin.scenarios.value.length > 1;
+  }
+  /** Value of the shown layer of a scenario at a world place; null: no layer or nothing there. */
+  valueAt(scenario: ScenarioName, x: number, y: number): number | null {
+    const grid = this.grids.get(scenario);
+    const value = grid ? gridAt(grid, x, y) : NaN;
+    return Number.isFinite(value) ? value : null;
+  }
+
+  private async load(): Promise<void> {
+    if (this.busy) {
+      this.again = true;
+      return;
+    }
+    this.busy = true;
+    do {
+      this.again = false;
+      const name = this.twin.layer.value;
+      if (name === "none") {
+        this.grids.clear();
+        this.put();
+        continue;
+      }
+      const names = this.twin.scenarios.value;
+      const fine = await this.twin.attempt(async () => {
+        const grids = await Promise.all(names.map((s) => this.twin.api.layer(s, name)));
+        names.forEach((s, i) => this.grids.set(s, grids[i]));
+        if (this.twin.layer.value === name) this.show(name);
+      });
+      if (!fine) break;
+    } while (this.again);
+    this.busy = false;
+  }
+  private show(name: LayerName): void {
+    const { twin } = this;
+    const a = this.grids.get("A");
+    if (!a) return;
+    const b = this.grids.get("B");
+    const all = new Map<ScenarioName, Float32Array>();
+    if (this.isDifference && b) {
+      const values = differenceOf(name, a, b);
+      const end = scaleEnd(values.map(Math.abs));
+      this.range.value = [-end, end];
+      // Both views show it: so it can be read beside either flow.
+      for (const s of twin.scenarios.value) all.set(s, values);
+    } else {
+      let end = 0;
+      for (const s of twin.scenarios.value) {
+        const grid = this.grids.get(s);
+        if (!grid) continue;
+        const values = shownValues(name, grid);
+        all.set(s, values);
+        end = Math.max(end, scaleEnd(values));
+      }
+      this.range.value = [0, end];
+    }
+    for (const [s, values] of all) {
+      const view = this.stage.views.get(s);
+      if (!view) continue;
+      this.held.get(s)?.dispose();
+      const draped = drapedFrom(this.grids.get(s) ?? a, values, twin.scene.origin);
+      this.held.set(s, draped.texture);
+      view.ground.showLayer(draped, this.rampFor(name), [...this.range.value] as [number, number], twin.layerOpacity.value);
+    }
+    this.stage.invalidate();
+  }
+  private put(): void {
+    for (const view of this.stage.views.values()) {
+      if (this.twin.layer.value === "none") view.ground.showLayer(null, null, [0, 1], 0);
+      else view.ground.uniforms.uLayerOpacity.value = this.grids.has(view.name) ? this.twin.layerOpacity.value : 0;
+    }
+    this.stage.invalidate();
+  }
+  private rampFor(name: LayerName | "speed" | "difference"): Texture {
+    const key = this.isDifference && name !== "speed" ? "difference" : name;
+    let texture = this.rampTextures.get(key);
+    if (!texture) {
+      texture = rampTexture(key === "difference" ? (s) => divergingAt(2 * s - 1)
+        : (s) => rampAt(key === "speed" ? ramps.speed : layerInfo[key as LayerName].ramp, s));
+      this.rampTextures.set(key, texture);
+    }
+    return texture;
+  }
+  private putSurface(): void {
+    const { twin, stage } = this;
+    const spacing = twin.scene.particle_spacing_m;
+    this.surfaceTop = roundStep(Math.max(1, 5 * spacing));
+    for (const view of stage.views.values()) {
+      view.debris.points.visible = twin.particles.value;
+      const bySpeed = twin.surface.value === "speed";
+      view.ground.showSurface(twin.surface.value !== "off", bySpeed, bySpeed ? this.rampFor("speed") : this.surfaceRamp(),
+        bySpeed ? stage.fastest_mps.value : this.surfaceTop);
+      view.ground.uniforms.uContour.value = twin.contours.value ? 1 : 0;
+    }
+    stage.invalidate();
+  }
+  private surfaceRamp(): Texture {
+    let texture = this.rampTextures.get("surface");
+    if (!texture) {
+      texture = rampTexture((s) => rampAt(ramps.depth, s));
+      this.rampTextures.set("surface", texture);
+    }
+    return texture;
+  }
+}

@@ -1,0 +1,225 @@
+// The canvas: one renderer, a view per scenario side by side, one camera for all, pictures only when something changed.
+import { Vector3, WebGLRenderer, type BufferGeometry } from "three";
+import type { Frame, ScenarioName } from "../protocol/frame";
+import type { Place } from "../protocol/messages";
+import type { Twin } from "../state/twin";
+import { h } from "../ui/dom";
+import { Cell } from "../state/cell";
+import { ramps, roundStep } from "./colour";
+import { groundGeometry, rampTextureOf } from "./ground";
+import type { Box } from "./labels";
+import type { Relief } from "./relief";
+import { Rig } from "./rig";
+import { ScenarioView } from "./scenario_view";
+
+/** What a test or a curious user can read about speed: window.talusStats. */
+export interface Stats {
+  frames: number;
+  /** Script time of the last display frame and of decoding the last message, ms. */
+  script_ms: number;
+  draw_ms: number;
+  decode_ms: number;
+  upload_ms: number;
+  particles: number;
+  shownTime_s: number;
+}
+declare global {
+  interface Window {
+    talusStats: Stats;
+  }
+}
+
+export interface Hit { scenario: ScenarioName; world: Place; x: number; y: number }
+
+export class Stage {
+  readonly element = h("div", { class: "stage" });
+  readonly canvas = h("canvas", { tabindex: "0", role: "application",
+    "aria-label": "Three-dimensional view. Arrow keys turn, Shift with arrow keys moves, plus and minus zoom." });
+  readonly rig: Rig;
+  readonly views = new Map<ScenarioName, ScenarioView>();
+  readonly stats: Stats = { frames: 0, script_ms: 0, draw_ms: 0, decode_ms: 0, upload_ms: 0, particles: 0, shownTime_s: 0 };
+  /** Speed at the upper end of the colours; it grows with what is seen, in round steps. */
+  readonly fastest_mps = new Cell(10);
+  /** Elements that lie over the view; labels keep clear of them. */
+  covers: readonly HTMLElement[] = [];
+  private readonly renderer: WebGLRenderer;
+  private readonly geometry: BufferGeometry;
+  private readonly panes = new Map<ScenarioName, HTMLElement>();
+  private readonly speedRamp = rampTextureOf(ramps.speed);
+  private readonly readers: (() => void)[] = [];
+  private readonly cameraReaders: (() => void)[] = [];
+  private due = true;
+  private cameraMoved = true;
+  private width = 1;
+  private height = 1;
+
+  constructor(readonly twin: Twin, readonly relief: Relief) {
+    this.renderer = new WebGLRenderer({ canvas: this.canvas, antialias: true, preserveDrawingBuffer: false, powerPreference: "high-performance" });
+    this.renderer.shadowMap.enabled = true;
+    this.renderer.shadowMap.autoUpdate = false;
+    this.renderer.autoClear = false;
+    this.geometry = groundGeometry(relief);
+    this.element.append(this.canvas);
+    this.rig = new Rig(this.canvas, relief, () => {
+      this.cameraMoved = true;
+      this.invalidate();
+    });
+    window.talusStats = this.stats;
+    new ResizeObserver(() => this.resize()).observe(this.element);
+    for (const name of ["A", "B"] as const) {
+      twin.cells[name].state.watch((state) => {
+        if (state && state.largest_speed_mps > this.fastest_mps.value) this.fastest_mps.value = roundStep(state.largest_speed_mps);
+      });
+    }
+    twin.scenarios.watch((names) => this.arrange(names));
+    twin.onFrame((frame) => this.push(frame));
+    requestAnimationFrame((now) => this.tick(now));
+  }
+
+  invalidate(): void {
+    this.due = true;
+  }
+  /** Called after every picture. */
+  onPicture(reader: () => void): void {
+    this.readers.push(reader);
+  }
+  onCamera(reader: () => void): void {
+    this.cameraReaders.push(reader);
+  }
+  pane(name: ScenarioName): HTMLElement | undefined {
+    return this.panes.get(name);
+  }
+
+  private arrange(names: readonly ScenarioName[]): void {
+    for (const [name, view] of this.views) {
+      if (names.includes(name)) continue;
+      view.dispose();
+      this.views.delete(name);
+      this.panes.get(name)?.remove();
+      this.panes.delete(name);
+    }
+    for (const name of names) {
+      if (this.views.has(name)) continue;
+      const view = new ScenarioView(name, { scene: this.twin.scene, relief: this.relief, geometry: this.geometry, speedRamp: this.speedRamp });
+      this.views.set(name, view);
+      const pane = h("div", { class: "pane", "data-scenario": name }, view.labels.layer);
+      this.panes.set(name, pane);
+      this.element.append(pane);
+    }
+    this.element.classList.toggle("two", names.length > 1);
+    this.resize();
+  }
+  private push(frame: Frame): void {
+    const begun = performance.now();
+    this.views.get(frame.scenario)?.push(frame, begun);
+    this.stats.upload_ms = performance.now() - begun;
+    this.stats.decode_ms = this.twin.live.decode_ms;
+    this.stats.particles = frame.count;
+    this.invalidate();
+  }
+  private resize(): void {
+    this.width = Math.max(1, this.element.clientWidth);
+    this.height = Math.max(1, this.element.clientHeight);
+    this.renderer.setPixelRatio(Math.min(2, devicePixelRatio));
+    this.renderer.setSize(this.width, this.height, false);
+    this.rig.camera.aspect = this.width / Math.max(1, this.views.size) / this.height;
+    this.rig.camera.updateProjectionMatrix();
+    this.cameraMoved = true;
+    this.invalidate();
+  }
+
+  private tick(now_ms: number): void {
+    requestAnimationFrame((next) => this.tick(next));
+    // Frames of the server are timed by the same clock.
+    const now = Math.max(now_ms, 0);
+    if (this.rig.update(now)) this.invalidate();
+    for (const view of this.views.values()) if (view.clock.moving(now)) this.due = true;
+    if (!this.due) return;
+    this.due = false;
+    this.draw(now);
+  }
+  draw(now: number): void {
+    const begun = performance.now();
+    const camera = this.rig.camera;
+    camera.updateMatrixWorld();
+    const wide = this.width / Math.max(1, this.views.size);
+    const pixels = (this.height * this.renderer.getPixelRatio()) / (2 * Math.tan((camera.fov * Math.PI) / 360));
+    this.renderer.setScissorTest(true);
+    let column = 0;
+    let more = false;
+    for (const view of this.views.values()) {
+      if (view.update(now, camera, pixels, this.fastest_mps.value)) more = true;
+      if (this.cameraMoved || view.labels.layer.dataset["stale"] !== "no") {
+        view.labels.place(camera, wide, this.height, this.covered(column * wide));
+        view.labels.layer.dataset["stale"] = "no";
+      }
+      this.renderer.setViewport(column * wide, 0, wide, this.height);
+      this.renderer.setScissor(column * wide, 0, wide, this.height);
+      if (view.shadowsDue) {
+        this.renderer.shadowMap.needsUpdate = true;
+        view.shadowsDue = false;
+      }
+      const drawn = performance.now();
+      this.renderer.clear();
+      this.renderer.render(view.three, camera);
+      this.stats.draw_ms = performance.now() - drawn;
+      ++column;
+      if (view.name === this.twin.edited.value) this.stats.shownTime_s = view.clock.time_s(now) ?? 0;
+    }
+    if (this.cameraMoved) {
+      this.cameraMoved = false;
+      for (const reader of this.cameraReaders) reader();
+    }
+    if (more) this.due = true;
+    for (const reader of this.readers) reader();
+    ++this.stats.frames;
+    this.stats.script_ms = performance.now() - begun;
+  }
+  /** What lies over a view whose left edge is at `left`, as boxes in that view. */
+  private covered(left: number): Box[] {
+    const own = this.canvas.getBoundingClientRect();
+    return this.covers.filter((e) => !e.hidden).flatMap((element) => [...(element.classList.contains("bar") ? [element] : element.children)]).map((element) => {
+      const box = element.getBoundingClientRect();
+      return [box.left - own.left - left, box.top - own.top, box.right - own.left - left, box.bottom - own.top];
+    });
+  }
+  relabel(view: ScenarioView): void {
+    view.refreshLabels();
+    view.labels.layer.dataset["stale"] = "yes";
+    this.invalidate();
+  }
+
+  /** What lies under a point of the page. */
+  hit(clientX: number, clientY: number): Hit | null {
+    const box = this.canvas.getBoundingClientRect();
+    const wide = box.width / Math.max(1, this.views.size);
+    const column = Math.floor((clientX - box.left) / wide);
+    const name = [...this.views.keys()][column];
+    if (name === undefined || clientY < box.top || clientY > box.bottom) return null;
+    const x = ((clientX - box.left - column * wide) / wide) * 2 - 1;
+    const y = 1 - ((clientY - box.top) / box.height) * 2;
+    const camera = this.rig.camera;
+    const direction = new Vector3(x, y, 0.5).unproject(camera).sub(camera.position).normalize();
+    const world = this.relief.meet(camera.position.toArray(), direction.toArray());
+    return world ? { scenario: name, world, x: clientX, y: clientY } : null;
+  }
+  /** Where a local place is seen, in pixels of the page; null behind the camera. */
+  seenAt(local: Place, scenario: ScenarioName): { x: number; y: number } | null {
+    const box = this.canvas.getBoundingClientRect();
+    const wide = box.width / Math.max(1, this.views.size);
+    const column = [...this.views.keys()].indexOf(scenario);
+    const seen = new Vector3(...local).project(this.rig.camera);
+    if (seen.z > 1 || column < 0) return null;
+    return { x: box.left + column * wide + ((seen.x + 1) / 2) * wide, y: box.top + ((1 - seen.y) / 2) * box.height };
+  }
+  /** Metres per pixel at the point that the camera looks at. */
+  get metresPerPixel(): number {
+    const { camera, controls } = this.rig;
+    return (2 * camera.position.distanceTo(controls.target) * Math.tan((camera.fov * Math.PI) / 360)) / this.height;
+  }
+  /** Draws now, so that the canvas can be read in the same task. */
+  drawNow(): HTMLCanvasElement {
+    this.draw(performance.now());
+    return this.canvas;
+  }
+}

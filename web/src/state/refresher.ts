@@ -1,0 +1,43 @@
+// Asks again for what the server does not push: series and impacts, while the run goes on and once after it stops.
+import type { ScenarioName } from "../protocol/frame";
+import type { Twin } from "./twin";
+
+const every_ms = 1000;
+
+export class Refresher {
+  private readonly stale = new Set<ScenarioName>(["A"]);
+  private busy = false;
+  /** `also` is called after every refresh, for panels with questions of their own. */
+  constructor(private readonly twin: Twin, private readonly also: () => void) {
+    for (const name of ["A", "B"] as const) {
+      let seen = "";
+      twin.cells[name].state.watch((state) => {
+        const key = state ? `${state.status} ${state.step}` : "";
+        if (key !== seen) this.stale.add(name);
+        seen = key;
+      });
+      twin.cells[name].setup.watch(() => this.stale.add(name));
+    }
+    setInterval(() => void this.refresh(), every_ms);
+    void this.refresh();
+  }
+  private async refresh(): Promise<void> {
+    const { twin } = this;
+    if (this.busy || this.stale.size === 0 || twin.connection.value.state !== "open" || document.hidden) return;
+    this.busy = true;
+    const names = [...this.stale].filter((n) => twin.scenarios.value.includes(n));
+    this.stale.clear();
+    try {
+      await Promise.all(names.map(async (name) => {
+        const [series, impacts] = await Promise.all([twin.api.series(name), twin.api.impacts(name)]);
+        twin.cells[name].series.value = series;
+        twin.cells[name].impacts.value = impacts;
+      }));
+      this.also();
+    } catch (error) {
+      // The next change asks again; a lost connection is told elsewhere.
+      console.warn(error);
+    }
+    this.busy = false;
+  }
+}

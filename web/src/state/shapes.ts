@@ -1,0 +1,94 @@
+// Plane geometry of what is drawn: areas, lengths, volumes.
+import type { Barrier, Building, Point, Release, Setup } from "../protocol/messages";
+import type { Relief } from "../scene/relief";
+import type { Selection, Shape } from "./twin";
+
+export function area(ring: readonly Point[]): number {
+  let twice = 0;
+  ring.forEach(([x, y], i) => {
+    const [u, v] = ring[(i + 1) % ring.length];
+    // Relative to the first corner: products of national coordinates would lose digits.
+    twice += (x - ring[0][0]) * (v - ring[0][1]) - (u - ring[0][0]) * (y - ring[0][1]);
+  });
+  return Math.abs(twice) / 2;
+}
+export function length(line: readonly Point[]): number {
+  let sum = 0;
+  for (let i = 1; i < line.length; ++i) sum += Math.hypot(line[i][0] - line[i - 1][0], line[i][1] - line[i - 1][1]);
+  return sum;
+}
+export function middle(ring: readonly Point[]): Point {
+  return [ring.reduce((s, p) => s + p[0], 0) / ring.length, ring.reduce((s, p) => s + p[1], 0) / ring.length];
+}
+export function inside(ring: readonly Point[], x: number, y: number): boolean {
+  let odd = false;
+  for (let i = 0, j = ring.length - 1; i < ring.length; j = i++) {
+    const [xi, yi] = ring[i];
+    const [xj, yj] = ring[j];
+    if (yi > y !== yj > y && x < ((xj - xi) * (y - yi)) / (yj - yi) + xi) odd = !odd;
+  }
+  return odd;
+}
+/** Whether the ring crosses itself. */
+export function crossesItself(ring: readonly Point[]): boolean {
+  const n = ring.length;
+  const side = (a: Point, b: Point, c: Point): number => (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
+  for (let i = 0; i < n; ++i) {
+    for (let j = i + 2; j < n; ++j) {
+      if (i === 0 && j === n - 1) continue;
+      const [a, b, c, d] = [ring[i], ring[(i + 1) % n], ring[j], ring[(j + 1) % n]];
+      if (side(a, b, c) * side(a, b, d) < 0 && side(c, d, a) * side(c, d, b) < 0) return true;
+    }
+  }
+  return false;
+}
+/** Thickness is normal to the slope, so a plan area holds 1 / cos(slope) more; sampled over the area. */
+export function releaseVolume(ring: readonly Point[], thickness_m: number, relief: Relief): number {
+  if (ring.length < 3) return 0;
+  const xs = ring.map((p) => p[0]);
+  const ys = ring.map((p) => p[1]);
+  const [west, east, south, north] = [Math.min(...xs), Math.max(...xs), Math.min(...ys), Math.max(...ys)];
+  const cell = relief.grid.cell;
+  let sum = 0;
+  let count = 0;
+  for (let j = 0; j < 20; ++j) {
+    for (let i = 0; i < 20; ++i) {
+      const x = west + ((i + 0.5) / 20) * (east - west);
+      const y = south + ((j + 0.5) / 20) * (north - south);
+      if (!inside(ring, x, y)) continue;
+      const dx = (relief.at(x + cell, y) - relief.at(x - cell, y)) / (2 * cell);
+      const dy = (relief.at(x, y + cell) - relief.at(x, y - cell)) / (2 * cell);
+      sum += Math.hypot(1, dx, dy);
+      ++count;
+    }
+  }
+  return area(ring) * thickness_m * (count > 0 ? sum / count : 1);
+}
+
+export const fewestPoints: Record<Shape, number> = { release: 3, barrier: 2, building: 3 };
+
+export type Item = ({ shape: "release" } & Release) | ({ shape: "barrier" } & Barrier) | ({ shape: "building" } & Building);
+
+export function itemOf(setup: Setup | null, selection: Selection | null): Item | null {
+  if (!setup || !selection) return null;
+  if (selection.shape === "release") {
+    const found = setup.releases.find((r) => r.id === selection.id);
+    return found ? { shape: "release", ...found } : null;
+  }
+  if (selection.shape === "barrier") {
+    const found = setup.barriers.find((b) => b.id === selection.id);
+    return found ? { shape: "barrier", ...found } : null;
+  }
+  const found = setup.buildings.find((b) => b.id === selection.id);
+  return found ? { shape: "building", ...found } : null;
+}
+/** Corners that can be moved; a ring's repeated last corner is left out. */
+export function pointsOf(item: Item): Point[] {
+  const points = item.shape === "release" ? (item.polygons[0] ?? []) : item.shape === "barrier" ? item.line : (item.footprint[0] ?? []);
+  const [first] = points;
+  const last = points[points.length - 1];
+  const closed = item.shape !== "barrier" && points.length > 1 && first[0] === last[0] && first[1] === last[1];
+  return closed ? points.slice(0, -1) : points;
+}
+/** A release of several parts cannot be sent back as one polygon. */
+export const canReshape = (item: Item): boolean => item.shape !== "release" || item.polygons.length === 1;

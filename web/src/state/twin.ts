@@ -1,0 +1,182 @@
+// What the page knows and what its parts agree on. Panels and views read cells; only this file talks to the server's actions.
+import { Api, Refused } from "../protocol/api";
+import type { Frame, ScenarioName } from "../protocol/frame";
+import { Live, type Connection } from "../protocol/live";
+import type { Action, Done, Impacts, LayerName, Person, Place, Point, ProbeSeries, SceneInfo, Series, ServerMessage, Session, Setup, State, You } from "../protocol/messages";
+import type { Relief } from "../scene/relief";
+import { Cell } from "./cell";
+
+export interface ScenarioCells {
+  state: Cell<State | null>;
+  setup: Cell<Setup | null>;
+  series: Cell<Series | null>;
+  impacts: Cell<Impacts | null>;
+}
+
+export type Shape = "release" | "barrier" | "building";
+export type Tool = { kind: "none" } | { kind: "draw"; shape: Shape } | { kind: "probe" } | { kind: "section" };
+export interface Selection { shape: Shape; id: string }
+export interface Probe { at: Point; colour: string; series: Partial<Record<ScenarioName, ProbeSeries>> }
+export type SurfaceColour = "off" | "depth" | "speed";
+export type HouseColour = "intensity" | "pressure";
+
+export const probeColours = ["#0072b2", "#d55e00", "#009e73", "#b8428c", "#c78500", "#6b4a94"];
+
+const nameKey = "talus-name";
+
+export class Twin {
+  readonly connection = new Cell<{ state: Connection; retryIn_s: number }>({ state: "connecting", retryIn_s: 0 });
+  readonly you = new Cell<You | null>(null);
+  readonly people = new Cell<Person[]>([]);
+  readonly controller = new Cell<string | null>(null);
+  readonly request = new Cell<{ id: string; name: string } | null>(null);
+  readonly links = new Cell<NonNullable<Session["links"]>>({});
+  readonly scenarios = new Cell<ScenarioName[]>(["A"]);
+  readonly edited = new Cell<ScenarioName>("A");
+  readonly cells: Record<ScenarioName, ScenarioCells> = { A: emptyCells(), B: emptyCells() };
+  /** Time of the recording that is on display; null: live. */
+  readonly replay_s = new Cell<number | null>(null);
+  readonly playing = new Cell(false);
+  readonly layer = new Cell<LayerName | "none">("none");
+  readonly difference = new Cell(false);
+  readonly layerOpacity = new Cell(0.85);
+  readonly particles = new Cell(true);
+  readonly surface = new Cell<SurfaceColour>("off");
+  readonly contours = new Cell(true);
+  readonly names = new Cell(true);
+  readonly houseColour = new Cell<HouseColour>("intensity");
+  readonly tool = new Cell<Tool>({ kind: "none" });
+  readonly selection = new Cell<Selection | null>(null);
+  /** Thickness, height and so on that the next drawn shape gets. */
+  readonly newShape = { release: { thickness_m: 1.5 }, barrier: { height_m: 3, thickness_m: 1 }, building: { height_m: 6 } };
+  readonly probes = new Cell<readonly Probe[]>([]);
+  readonly section = new Cell<readonly Point[] | null>(null);
+
+  readonly api: Api;
+  readonly live: Live;
+  private readonly frameReaders: ((frame: Frame) => void)[] = [];
+  private readonly tellers: ((sentence: string, kind: "error" | "done") => void)[] = [];
+
+  constructor(token: string, readonly scene: SceneInfo, readonly relief: Relief, api: Api) {
+    this.api = api;
+    this.live = new Live(token, localStorage.getItem(nameKey) ?? "", {
+      message: (message) => this.hear(message),
+      frame: (frame) => {
+        if (this.replay_s.value === null) for (const reader of this.frameReaders) reader(frame);
+      },
+      connection: (state, retryIn_s) => {
+        this.connection.value = { state, retryIn_s };
+        if (state !== "open") this.api.person = null;
+      },
+    });
+  }
+  onFrame(reader: (frame: Frame) => void): void {
+    this.frameReaders.push(reader);
+  }
+  /** Shows a frame of the recording as if it had come in. */
+  showFrame(frame: Frame): void {
+    for (const reader of this.frameReaders) reader(frame);
+  }
+  onNotice(teller: (sentence: string, kind: "error" | "done") => void): void {
+    this.tellers.push(teller);
+  }
+  notice(sentence: string, kind: "error" | "done"): void {
+    for (const tell of this.tellers) tell(sentence, kind);
+  }
+
+  askForFrames(): void {
+    this.live.show({ scenarios: this.scenarios.value, rate_hz: 30, particle_cap: 100000 });
+  }
+  get now(): ScenarioCells {
+    return this.cells[this.edited.value];
+  }
+  /** Why this person cannot change anything now; null: they can. */
+  get hindrance(): string | null {
+    if (this.connection.value.state !== "open") return "The connection is lost; it comes back by itself.";
+    const you = this.you.value;
+    if (you === null) return "Joining the session.";
+    if (you.role === "viewer") return "This is a viewer's link: you see everything and change nothing.";
+    if (this.controller.value === you.id) return null;
+    const holder = this.people.value.find((p) => p.id === this.controller.value);
+    return holder ? `${holder.name} has control. Ask for it to change anything.` : "Nobody has control. Take it to change anything.";
+  }
+
+  /** Asks for a change; a refusal is told to the user beside `anchor`, and answered by null. */
+  async act(action: Action, scenario: ScenarioName = this.edited.value): Promise<Done | null> {
+    try {
+      return await this.api.act(scenario, action);
+    } catch (error) {
+      this.refused(error);
+      return null;
+    }
+  }
+  async attempt(work: () => Promise<void>): Promise<boolean> {
+    try {
+      await work();
+      return true;
+    } catch (error) {
+      this.refused(error);
+      return false;
+    }
+  }
+  private refused(error: unknown): void {
+    if (error instanceof Refused) this.notice(error.message, "error");
+    else {
+      console.error(error);
+      this.notice("The page could not do that.", "error");
+    }
+  }
+  rename(name: string): void {
+    localStorage.setItem(nameKey, name);
+    this.live.rename(name);
+  }
+  mark(at: Place | null): void {
+    this.live.mark(at);
+  }
+
+  private hear(message: ServerMessage): void {
+    switch (message.type) {
+      case "hello":
+        this.you.value = message.you;
+        this.api.person = this.live.person = message.you.id;
+        this.controller.value = message.session.controller;
+        this.people.value = message.session.people;
+        this.setScenarios(message.session.scenarios);
+        this.askForFrames();
+        void this.attempt(async () => {
+          this.links.value = (await this.api.session()).links ?? {};
+        });
+        break;
+      case "state":
+        this.cells[message.scenario].state.value = message;
+        break;
+      case "setup":
+        this.cells[message.scenario].setup.value = message;
+        break;
+      case "people":
+        this.people.value = message.people;
+        this.controller.value = message.controller;
+        this.request.value = message.request;
+        break;
+      case "scenarios":
+        this.setScenarios(message.scenarios);
+        this.askForFrames();
+        break;
+      case "done":
+        this.notice(this.scenarios.value.length > 1 ? `${message.scenario}: ${message.done}` : message.done, "done");
+        break;
+    }
+  }
+  private setScenarios(scenarios: ScenarioName[]): void {
+    if (!scenarios.includes("B")) {
+      this.edited.value = "A";
+      this.difference.value = false;
+      Object.values(this.cells.B).forEach((cell: { value: unknown }) => (cell.value = null));
+    }
+    if (scenarios.join() !== this.scenarios.value.join()) this.scenarios.value = scenarios;
+  }
+}
+
+function emptyCells(): ScenarioCells {
+  return { state: new Cell<State | null>(null), setup: new Cell<Setup | null>(null), series: new Cell<Series | null>(null), impacts: new Cell<Impacts | null>(null) };
+}

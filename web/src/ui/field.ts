@@ -1,0 +1,102 @@
+// A number with its unit: a slider and a number field that hold the same value.
+import { unitText } from "../state/format";
+import { freshId, h } from "./dom";
+
+export interface NumberField {
+  element: HTMLElement;
+  input: HTMLInputElement;
+  /** Shows a value that came from elsewhere; does nothing while the user is at it. */
+  show(value: number | null): void;
+  enable(hindrance: string | null): void;
+  complain(sentence: string | null): void;
+}
+
+export interface NumberFieldOptions {
+  label: string;
+  unit: string;
+  low: number;
+  high: number;
+  /** Ends of the slider, where those of the range are too far apart to drag. */
+  sliderLow?: number;
+  sliderHigh?: number;
+  /** Value that is marked on the slider. */
+  usual?: number | null;
+  help?: string;
+  value: number | null;
+  slider?: boolean;
+  onset(value: number): void;
+}
+
+export function numberField(options: NumberFieldOptions): NumberField {
+  const id = freshId("field");
+  const low = options.sliderLow ?? options.low;
+  const high = options.sliderHigh ?? options.high;
+  const step = 10 ** Math.floor(Math.log10((high - low) / 100));
+  const digits = Math.max(0, -Math.floor(Math.log10(step)));
+  const input = h("input", { type: "number", id, step: "any", "aria-describedby": `${id}-note` });
+  const slider = options.slider === false ? null
+    : h("input", { type: "range", min: low, max: high, step, "aria-label": `${options.label}, slider`, tabindex: "0" });
+  const note = h("div", { class: "field-note", id: `${id}-note`, role: "alert" });
+  let shown: number | null = null;
+
+  const text = (value: number): string => String(Number(value.toPrecision(6)));
+  const complain = (sentence: string | null): void => {
+    note.textContent = sentence ?? "";
+    input.setAttribute("aria-invalid", String(sentence !== null));
+  };
+  const set = (value: number): void => {
+    if (!Number.isFinite(value) || value < options.low || value > options.high) {
+      complain(`${options.label} is ${Number.isFinite(value) ? text(value) : "no number"}; allowed is ${text(options.low)} to ${text(options.high)} ${unitText(options.unit)}`.trim());
+      return;
+    }
+    complain(null);
+    if (value === shown) return;
+    shown = value;
+    options.onset(value);
+  };
+  input.addEventListener("change", () => {
+    set(input.valueAsNumber);
+    if (slider && shown !== null) slider.value = String(shown);
+  });
+  input.addEventListener("keydown", (event) => {
+    if (event.key === "ArrowUp" || event.key === "ArrowDown") {
+      event.preventDefault();
+      const next = (input.valueAsNumber || 0) + (event.key === "ArrowUp" ? step : -step);
+      input.value = next.toFixed(digits);
+      input.dispatchEvent(new Event("change"));
+    }
+  });
+  slider?.addEventListener("input", () => (input.value = Number(slider.value).toFixed(digits)));
+  slider?.addEventListener("change", () => set(Number(slider.value)));
+
+  const element = h("div", { class: "field" },
+    h("label", { for: id, title: options.help ?? null }, options.label),
+    h("div", { class: "field-value" }, input, h("span", { class: "unit" }, unitText(options.unit))),
+    slider ? h("div", { class: "field-slider" }, slider) : null,
+    note);
+  if (slider && options.usual !== undefined && options.usual !== null && options.usual >= low && options.usual <= high) {
+    const mark = h("i", { class: "usual", title: `Default ${text(options.usual)} ${unitText(options.unit)}` });
+    mark.style.left = `calc(7px + (100% - 14px) * ${(options.usual - low) / (high - low)})`;
+    slider.parentElement?.append(mark);
+  }
+  const field: NumberField = {
+    element,
+    input,
+    show(value) {
+      const busy = document.activeElement === input || (slider !== null && slider.matches(":active"));
+      if (busy && shown !== null && value !== shown) return;
+      shown = value;
+      input.value = value === null ? "" : text(value);
+      if (slider && value !== null) slider.value = String(value);
+      complain(null);
+    },
+    enable(hindrance) {
+      input.disabled = hindrance !== null;
+      if (slider) slider.disabled = hindrance !== null;
+      element.title = hindrance ?? "";
+    },
+    complain,
+  };
+  field.show(options.value);
+  return field;
+}
