@@ -60,10 +60,15 @@ export function buildPage(page: HTMLElement, twin: Twin): void {
   const readOut = marks(twin, stage, layers);
   keys(twin, stage, drawing, bar, playback);
 
-  const drawer = button("Readings", { icon: "panel", class: "drawer-switch", "aria-expanded": "false", onclick: () => {
-    const open = page.classList.toggle("readings-open");
+  const drawer = button("Readings", { icon: "panel", bare: true, class: "bare drawer-switch", title: "Show or hide the readings", onclick: () => {
+    // On a narrow page the readings lie over the view when asked for; on a wide one they make room when sent away.
+    const open = page.classList.toggle(narrow.matches ? "readings-open" : "readings-closed") === narrow.matches;
     drawer.setAttribute("aria-expanded", String(open));
   } });
+  const narrow = matchMedia("(max-width: 1180px)");
+  const expanded = (): void => drawer.setAttribute("aria-expanded", String(page.classList.contains("readings-open") || (!narrow.matches && !page.classList.contains("readings-closed"))));
+  narrow.addEventListener("change", expanded);
+  expanded();
   const badge = twin.scene.reconstruction ? h("span", { class: "badge", title: twin.scene.assumptions.join(" ") }, "Reconstruction, no survey") : null;
   const key = legends(twin, stage, layers);
   const scale = scaleAndCompass(twin, stage, readOut);
