@@ -181,6 +181,7 @@ export class Stage {
   }
   /** What lies over a view whose left edge is at `left`, as boxes in that view. */
   private covered(left: number): Box[] {
+    if (!this.element.isConnected) return [];
     const own = this.canvas.getBoundingClientRect();
     return this.covers.filter((e) => !e.hidden).flatMap((element) => [...(element.classList.contains("bar") ? [element] : element.children)]).map((element) => {
       const box = element.getBoundingClientRect();
