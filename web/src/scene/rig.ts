@@ -46,7 +46,7 @@ export class Rig {
     const [x, y] = this.relief.middle;
     const target = new Vector3(...this.relief.local(x, y));
     const size = Math.hypot(this.relief.width, this.relief.height);
-    const distance = (0.40 * size) / Math.tan((this.camera.fov * Math.PI) / 360) / Math.min(1.3, Math.max(0.75, this.camera.aspect));
+    const distance = (0.40 * size) / Math.tan((this.camera.fov * Math.PI) / 360) / Math.min(1.3, Math.max(0.6, this.camera.aspect));
     const { down } = this;
     const angle = Math.atan2(down[1], down[0]) + towards;
     const offset = new Vector3().setFromSpherical(new Spherical(distance, 1, 0));
