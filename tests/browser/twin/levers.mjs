@@ -153,6 +153,7 @@ export async function testLevers(run, server) {
     await page.keyboard.press("Enter");
     const made = (await until(setup, (s) => s.releases.length === known + 1, "a release")).releases.at(-1);
     assert.ok(made.volume_m3 > 1);
+    await page.locator(".editor input[aria-label=Name]").waitFor();
     await page.keyboard.press("Delete");
     await until(setup, (s) => s.releases.length === known, "removed by Delete");
   });
