@@ -5,7 +5,7 @@
 set -euo pipefail
 
 packages=(g++ cmake ninja-build pkg-config git libgdal-dev gdal-bin libtbb-dev libhwy-dev libpng-dev libtomlplusplus-dev libcli11-dev
-          nlohmann-json3-dev libfmt-dev libgtest-dev libgmock-dev)
+          nlohmann-json3-dev libfmt-dev libgtest-dev libgmock-dev libopenmpi-dev openmpi-bin)
 if [[ ${1:-build} == test ]]; then
     packages+=(libbenchmark-dev clang-format clang-tidy python3 python3-gdal python3-numpy poppler-utils)
     # Browser and Node.js also come from elsewhere than the distribution's packages.
