@@ -26,7 +26,7 @@ struct EnsembleOptions {
     std::size_t shard = 0, shard_count = 1;             ///< this process computes runs shard, shard + shard_count, ...
     bool retry_failed = false;                          ///< runs that failed before are run again
     const std::atomic<bool>* stop_requested = nullptr;  ///< runs under way are dropped, those that are done stay
-    std::function<void(const EnsembleProgress&)> on_progress;  ///< from any of the runs' threads, one at a time
+    std::function<void(const EnsembleProgress&)> on_progress = {};  ///< from any of the runs' threads, one at a time
 };
 
 struct EnsembleOutcome {

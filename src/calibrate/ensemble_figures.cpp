@@ -230,7 +230,8 @@ std::string sensitivity_figure(const EnsembleResult& result, int number) {
                                escape(shortened(result.measures[m].name, 40)));
             for (std::size_t c = 0; c < columns; ++c) {
                 const double from = left + width * static_cast<double>(c) + 12;
-                svg += draw_effect(s, first + c, result.measures[m].unit, from, width - 84, y, row);
+                svg += draw_effect(s, first + c, result.measures[m].unit, from,
+                                   width - (s.kind == SensitivityKind::rank ? 70 : 108), y, row);
             }
             y += row;
         }

@@ -272,8 +272,8 @@ std::string draw_key(const Scene& scene, const BuildingMarks& marks, const MapFr
                 escape(marks.class_names.at(static_cast<std::size_t>(k))));
         }
     }
-    // Scale bar: two halves of a round length, and north of the grid.
-    const double half = round_step(frame.area.width() / 12), length = half * frame.scale;
+    // Scale bar: two halves of a round length, 70 to 140 units together, and north of the grid.
+    const double half = round_step(35 / frame.scale), length = half * frame.scale;
     y += 20;
     svg += fmt::format(
         R"svg(<g transform="translate({0} {1})"><rect class="scale-dark" x="0" y="18" width="{2}" height="6"/><rect class="scale-light" x="{2}" y="18" width="{2}" height="6"/><text class="legend-unit" x="0" y="12" text-anchor="start">0</text><text class="legend-unit" x="{2}" y="12" text-anchor="middle">{3}</text><text class="legend-unit" x="{4}" y="12" text-anchor="middle">{5} m</text></g>)svg",
