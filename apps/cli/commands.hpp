@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
@@ -76,6 +78,33 @@ struct BenchArguments {
     std::string json, svg;              ///< files to write; empty: none
 };
 int bench_command(const BenchArguments& arguments);
+
+struct EnsembleArguments {
+    std::string scene;                 ///< a scene file; empty: the built-in scene
+    std::string output;                ///< a folder; empty: talus_out/<scene name>_ensemble
+    std::string plan;                  ///< a plan file; empty: options alone
+    std::vector<std::string> factors;  ///< "section.key=distribution"
+    std::optional<std::string> design;
+    std::optional<std::size_t> runs, levels;
+    std::optional<std::uint64_t> seed;
+    std::string depths, speeds, pressures;  ///< thresholds "0.5,1"; empty: the plan's
+    std::vector<std::string> overrides;     ///< "section.key=value"
+    std::string data;                       ///< value of TALUS_DATA; empty: as in the environment
+    std::optional<int> threads;
+    std::string shard;  ///< "i/n"; empty: all runs
+    bool retry_failed = false, quiet = false, json = false;
+};
+int ensemble_command(const EnsembleArguments& arguments);
+
+struct MergeArguments {
+    std::vector<std::string> folders;
+    std::string output;  ///< empty: the only folder itself
+    std::string scene;   ///< where the scene lies now; empty: where it lay
+    std::string depths, speeds, pressures;
+    std::string data;
+    bool quiet = false, json = false;
+};
+int merge_command(const MergeArguments& arguments);
 
 /// The reference of scene files on stdout: for the terminal, or as Markdown.
 int reference_command(bool markdown);

@@ -100,6 +100,25 @@ Exit codes:
   130  ended at once by a second Ctrl-C
 )";
 
+constexpr const char* ensemble_help = R"(
+Runs the scene once per point of a design over the factors, several runs side by side, and counts: probability and
+percentile maps, run-out, odds of every building, sensitivity; with a report. A factor is any value of a scene:
+  --vary material.friction_coefficient=0.2:0.5        uniform between
+  --vary release.volume_m3=log:300:1200               log-uniform
+  --vary material.viscosity=normal:0.1:0.02           normal, cut to what the key allows; or normal:MEAN:DEV:LOW:HIGH
+  --vary release.volume_m3=triangular:400:600:900     low, mode, high
+  --vary solver.kernel=spiky,cubic_spline             one of a list
+or [[factor]] in a plan file (docs/ensembles.md). Designs:
+  latin_hypercube, monte_carlo, sobol   --runs points; percentiles and rank correlation
+  grid                                  every combination of --levels values per factor, or of a list's entries
+  saltelli                              first-order and total Sobol indices; factors + 2 runs per block
+  morris                                elementary effects; factors + 1 runs per trajectory
+Run 17 is the same on any machine: the same command again goes on where an earlier one stopped, mpirun -n N spreads runs
+over ranks, and --shard i/n with talus ensemble merge does so without MPI, with the same results.
+
+Exit codes: as talus run. A run that fails is listed with its fault, and the ensemble goes on; 3: no run was complete.
+)";
+
 constexpr const char* bench_help = R"(
 Steps standard scenes with a fixed number of iterations and everything that a run has: terrain, friction, viscosity,
 houses, maps, front and impact. Scenes:
@@ -139,6 +158,60 @@ void add_overrides(CLI::App& command, std::vector<std::string>& overrides) {
     command.add_option("--set", overrides, "set a value of the scene; may be given many times")
         ->type_name("SECTION.KEY=VALUE")
         ->allow_extra_args(false);
+}
+
+void add_thresholds(CLI::App& command, std::string& depths, std::string& speeds, std::string& pressures) {
+    command.add_option("--depth-m", depths, "peak depths to map the probability of; left out: 0.1,0.5,1")
+        ->type_name("M,M");
+    command.add_option("--speed-mps", speeds, "likewise peak speeds; left out: 5,10")->type_name("MPS,MPS");
+    command.add_option("--pressure-kPa", pressures, "likewise pressures, on buildings too; left out: 15,30")
+        ->type_name("KPA,KPA");
+}
+
+/// Declares the options of both commands; returns that of `talus ensemble merge`.
+CLI::App* add_ensemble(CLI::App& command, EnsembleArguments& ensemble, MergeArguments& merge) {
+    command.require_subcommand(0, 1);
+    command.add_option("scene", ensemble.scene, "scene file; left out: the built-in scene")->type_name("SCENE");
+    command.add_option("-o,--output", ensemble.output, "folder; left out: talus_out/<scene name>_ensemble")
+        ->type_name("DIR");
+    command.add_option("--plan", ensemble.plan, "plan file with factors, design and thresholds; options go before it")
+        ->type_name("FILE");
+    command.add_option("--vary", ensemble.factors, "a factor; may be given many times")
+        ->type_name("SECTION.KEY=DISTRIBUTION")
+        ->allow_extra_args(false);
+    command.add_option("--design", ensemble.design, "left out: latin_hypercube")->type_name("NAME");
+    command.add_option("--runs", ensemble.runs, "at most so many; left out: 64")->type_name("N");
+    command.add_option("--levels", ensemble.levels, "values per factor of a grid; left out: 5")->type_name("N");
+    command.add_option("--seed", ensemble.seed, "of the design; left out: 1")->type_name("N");
+    add_thresholds(command, ensemble.depths, ensemble.speeds, ensemble.pressures);
+    add_overrides(command, ensemble.overrides);
+    add_scene_inputs(command, ensemble.data);
+    command
+        .add_option("--threads", ensemble.threads, "runs side by side, a thread each; left out: all cores, 1 per rank")
+        ->type_name("N")
+        ->check(CLI::Range(1, 4096));
+    command.add_option("--shard", ensemble.shard, "only every n-th run, from the i-th; each shard in its own folder")
+        ->type_name("I/N");
+    command.add_flag("--retry-failed", ensemble.retry_failed, "run again what failed in an earlier call");
+    CLI::Option* quiet = command.add_flag("--quiet", ensemble.quiet, "print nothing but errors");
+    command.add_flag("--json", ensemble.json, "progress and result as one JSON object per line on stdout")
+        ->excludes(quiet);
+    command.footer(ensemble_help);
+
+    CLI::App* merge_app = command.add_subcommand("merge", "put shards together, or count again with other thresholds");
+    merge_app->add_option("folders", merge.folders, "folders of an ensemble or its shards")
+        ->required()
+        ->type_name("DIR");
+    merge_app->add_option("-o,--output", merge.output, "folder for all; left out: the only folder given")
+        ->type_name("DIR");
+    merge_app->add_option("--scene", merge.scene, "where the scene lies now; left out: where it lay")
+        ->type_name("SCENE");
+    add_thresholds(*merge_app, merge.depths, merge.speeds, merge.pressures);
+    add_scene_inputs(*merge_app, merge.data);
+    CLI::Option* merge_quiet = merge_app->add_flag("--quiet", merge.quiet, "print nothing but errors");
+    merge_app->add_flag("--json", merge.json, "the result as one JSON object on stdout")->excludes(merge_quiet);
+    merge_app->footer("");
+    return merge_app;
 }
 
 /// The command that the user got to before the error: the one whose --help is of use.
@@ -278,6 +351,12 @@ int talus_main(int argc, char** argv) {
         ->type_name("DIR");
     validate_app->footer(validate_help);
 
+    EnsembleArguments ensemble;
+    CLI::App* ensemble_app =
+        app.add_subcommand("ensemble", "run a scene many times with varied values: probability maps, sensitivity");
+    MergeArguments merge;
+    CLI::App* merge_app = add_ensemble(*ensemble_app, ensemble, merge);
+
     BenchArguments bench;
     std::string backend = "cpu";
     CLI::App* bench_app = app.add_subcommand("bench", "measure how fast talus steps standard scenes here");
@@ -334,6 +413,8 @@ int talus_main(int argc, char** argv) {
     if (*new_app) return new_command(create);
     if (*export_app) return export_builtin_command(builtin_folder, builtin_force);
     if (*validate_app) return validate_command(validate);
+    if (*merge_app) return merge_command(merge);
+    if (*ensemble_app) return ensemble_command(ensemble);
     if (*bench_app) return bench_command(bench);
     if (*reference_app) return reference_command(markdown);
     std::fputs(app.help().c_str(), stdout);

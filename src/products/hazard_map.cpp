@@ -103,6 +103,7 @@ double greatest(const Grid<float>& grid) {
 }
 
 std::string qgis_style(const HazardMap& map, double largest) {
+    largest = std::max(largest, map.full_scale);
     const report::Classes classes = map.breaks.empty() ? report::even_classes(largest, map.ramp)
                                                        : report::fixed_classes(map.breaks, largest, map.ramp);
     const std::size_t count = classes.breaks.size();

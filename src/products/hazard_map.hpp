@@ -10,14 +10,15 @@ namespace talus {
 
 /// A map among the products: where it comes from, what it is called, how it is coloured.
 struct HazardMap {
-    const char* file;         ///< without extension: "peak_depth"
-    const char* title;        ///< "Peak depth"
-    const char* description;  ///< of the band
-    const char* unit;         ///< of the band and of `breaks`
-    double factor;            ///< from SI to `unit`
-    Grid<float> HazardMaps::*grid;
+    std::string file;                         ///< without extension: "peak_depth"
+    std::string title;                        ///< "Peak depth"
+    std::string description;                  ///< of the band
+    std::string unit;                         ///< of the band and of `breaks`
+    double factor = 1;                        ///< from SI to `unit`
+    Grid<float> HazardMaps::*grid = nullptr;  ///< nullptr: not one of a single run's maps
     std::vector<double> breaks;  ///< lower limits of the classes; below the first: not drawn. Empty: even classes
     report::Ramp ramp;
+    double full_scale = 0;  ///< classes reach at least up to here, so that maps of a kind have the same colours
 };
 
 /// All maps, in the order in which they are written.

@@ -16,7 +16,7 @@ using namespace report;
 
 Result<std::string> render_report(const Scene& scene, const RunResult& result,
                                   const std::vector<Comparison>& comparisons) {
-    auto maps = render_maps(scene, result);
+    auto maps = render_maps(scene, map_content(scene, result));
     if (!maps) return maps.error();
     const SceneInfo& info = scene.spec.scene;
     const std::string title = escape(info.title.empty() ? scene.file.stem().string() : info.title);

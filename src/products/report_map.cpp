@@ -151,14 +151,14 @@ std::string limit(double value) {
     return coordinate(value);
 }
 
-std::string draw_classes(const HazardMap& layer, const Words& named, const Classes& classes, double most,
-                         const MapFrame& frame) {
+std::string draw_classes(const MapLayer& shown, const Classes& classes, double most, const MapFrame& frame) {
+    const HazardMap& layer = shown.style;
     const double x = frame.right() + 20;
     std::string svg = fmt::format(
         R"(<text class="legend-title" x="{0}" y="{1}">{2}</text><text class="legend-unit" x="{0}" y="{3}">{4}</text>)",
-        coordinate(x), coordinate(frame.top + 13), named.tab, coordinate(frame.top + 31),
-        std::isfinite(most) ? fmt::format("{}, at most {} {}", layer.unit, fixed(most, named.digits), layer.unit)
-                            : std::string(layer.unit));
+        coordinate(x), coordinate(frame.top + 13), escape(shown.tab), coordinate(frame.top + 31),
+        std::isfinite(most) ? fmt::format("{}, at most {} {}", layer.unit, fixed(most, shown.digits), layer.unit)
+                            : layer.unit);
     const std::size_t n = classes.breaks.size();
     for (std::size_t k = n; k-- > 0;) {
         const double y = frame.top + 44 + 18.0 * static_cast<double>(n - 1 - k);
@@ -176,9 +176,16 @@ std::string draw_classes(const HazardMap& layer, const Words& named, const Class
     return svg;
 }
 
+std::string building_title(const Building& building, const BuildingImpact& impact) {
+    std::string title = escape(building.name.empty() ? "Building" : building.name);
+    if (!impact.hit) return title + ": not reached";
+    return title + fmt::format(": {} kPa, first hit at {} s", significant(impact.peak_pressure / 1e3, 3),
+                               fixed(impact.first_hit_time, 1));
+}
+
 Classes classes_of(const HazardMap& layer, double most) {
     if (layer.breaks.empty()) return even_classes(most, layer.ramp);
-    return fixed_classes(layer.breaks, std::isnan(most) ? 0 : most, layer.ramp);
+    return fixed_classes(layer.breaks, std::max(layer.full_scale, std::isnan(most) ? 0 : most), layer.ramp);
 }
 
 }  // namespace
@@ -188,15 +195,15 @@ int impact_class(const BuildingImpact& impact) {
     return impact.peak_pressure < 15e3 ? 1 : impact.peak_pressure < 30e3 ? 2 : 3;
 }
 
-MapFrame map_frame(const Scene& scene, const RunResult& result) {
+MapFrame map_frame(const Scene& scene, const MapContent& content) {
     const Extent terrain = scene.terrain.elevation().geometry.extent();
     std::vector<Extent> parts;
-    if (const auto wet = wet_extent(result.observation.maps.peak_depth)) parts.push_back(*wet);
+    if (const auto wet = wet_extent(*content.reached)) parts.push_back(*wet);
     for (const Release& release : scene.releases) {
         if (!release.patches.empty() || release.thickness_raster) parts.push_back(release.extent());
     }
     if (!scene.flow_path.empty()) {
-        double last = result.observation.run_out.front_chainage;
+        double last = content.farthest_chainage;
         for (const ObservationSpec& o : scene.spec.observations)
             last = std::isnan(last) ? o.chainage : std::max(last, o.chainage);
         const double end = std::isnan(last) ? scene.flow_path.length() : std::min(scene.flow_path.length(), 1.2 * last);
@@ -205,8 +212,8 @@ MapFrame map_frame(const Scene& scene, const RunResult& result) {
             parts.push_back({p.x, p.y, p.x, p.y});
         }
     }
-    for (std::size_t i = 0; i < std::min(scene.buildings.size(), result.observation.buildings.size()); ++i) {
-        if (!result.observation.buildings[i].hit) continue;
+    for (std::size_t i = 0; i < std::min(scene.buildings.size(), content.buildings.classes.size()); ++i) {
+        if (content.buildings.classes[i] == 0) continue;
         for (const Polygon& polygon : scene.buildings[i].footprint) parts.push_back(extent_of(polygon));
     }
     Extent area = parts.empty() ? terrain : parts.front();
@@ -222,8 +229,29 @@ MapFrame map_frame(const Scene& scene, const RunResult& result) {
     return frame;
 }
 
-Result<MapFigures> render_maps(const Scene& scene, const RunResult& result) {
-    const MapFrame frame = map_frame(scene, result);
+MapContent map_content(const Scene& scene, const RunResult& result) {
+    const Observation& observation = result.observation;
+    MapContent content;
+    content.reached = &observation.maps.peak_depth;
+    content.farthest_chainage = observation.run_out.front_chainage;
+    content.cell = result.map_cell > 0 ? result.map_cell : observation.maps.peak_depth.geometry.cell;
+    content.buildings.title = "Buildings, filtered pressure";
+    content.buildings.class_names = {"not reached", "hit, below 15 kPa", "hit, 15 – 30 kPa", "hit, over 30 kPa"};
+    for (std::size_t i = 0; i < std::min(scene.buildings.size(), observation.buildings.size()); ++i) {
+        const BuildingImpact& impact = observation.buildings[i];
+        content.buildings.classes.push_back(impact_class(impact));
+        content.buildings.titles.push_back(building_title(scene.buildings[i], impact));
+    }
+    for (std::size_t k = 0; k < hazard_maps().size(); ++k) {
+        const HazardMap& map = hazard_maps()[k];
+        content.layers.push_back(
+            {map, &(observation.maps.*map.grid), words.at(k).tab, words.at(k).caption, words.at(k).digits});
+    }
+    return content;
+}
+
+Result<MapFigures> render_maps(const Scene& scene, const MapContent& content) {
+    const MapFrame frame = map_frame(scene, content);
     const Grid<float> ground = crop(scene.terrain.elevation(), frame.area, 900);
     const double pixels_per_metre = 1150 / std::max(frame.area.width(), frame.area.height());
     auto relief = png_uri(hillshade(ground, frame.area, pixels_per_metre));
@@ -233,9 +261,9 @@ Result<MapFigures> render_maps(const Scene& scene, const RunResult& result) {
     const std::string contour_lines = draw_contours(scene, frame, contour_interval);
     const double width = frame.right() + 20 + MapFrame::key_width;
     std::size_t most_classes = 0;
-    for (const HazardMap& layer : hazard_maps()) {
-        const double most = largest(result.observation.maps.*layer.grid) * layer.factor;
-        most_classes = std::max(most_classes, classes_of(layer, most).breaks.size());
+    for (const MapLayer& layer : content.layers) {
+        const double most = largest(*layer.grid) * layer.style.factor;
+        most_classes = std::max(most_classes, classes_of(layer.style, most).breaks.size());
     }
     const double key_top = frame.top + 44 + 18.0 * static_cast<double>(most_classes) + 14;
     const double height = std::max(frame.bottom() + 30, key_top + key_height(scene));
@@ -247,8 +275,8 @@ Result<MapFigures> render_maps(const Scene& scene, const RunResult& result) {
 <g id="map-over"><g clip-path="url(#map-clip)">{5}{6}</g>{7}</g>
 <g id="map-key" transform="translate(0 {8})">{9}</g></defs></svg>)svg",
         coordinate(frame.left), coordinate(frame.top), coordinate(frame.width()), coordinate(frame.height()), *relief,
-        contour_lines, draw_vectors(scene, result, frame), draw_frame(scene, frame), coordinate(key_top),
-        draw_key(scene, frame, contour_interval));
+        contour_lines, draw_vectors(scene, content.buildings, frame), draw_frame(scene, frame), coordinate(key_top),
+        draw_key(scene, content.buildings, frame, contour_interval));
 
     const Grid<float> coarse_ground = crop(scene.terrain.elevation(), frame.area, 260);
     const ReadOut ground_values = read_out_of(coarse_ground, 1);
@@ -264,10 +292,9 @@ Result<MapFigures> render_maps(const Scene& scene, const RunResult& result) {
                            {"ground", placed(coarse_ground, ground_values, *ground_uri)},
                            {"layers", nlohmann::json::array()}};
 
-    for (std::size_t k = 0; k < hazard_maps().size(); ++k) {
-        const HazardMap& layer = hazard_maps()[k];
-        const Words& text = words.at(k);
-        const Grid<float>& map = result.observation.maps.*layer.grid;
+    for (const MapLayer& shown : content.layers) {
+        const HazardMap& layer = shown.style;
+        const Grid<float>& map = *shown.grid;
         const double most = largest(map) * layer.factor;
         const Classes classes = classes_of(layer, most);
         std::string picture;
@@ -286,9 +313,9 @@ Result<MapFigures> render_maps(const Scene& scene, const RunResult& result) {
             if (!values_uri) return values_uri.error();
             nlohmann::json entry = placed(coarse, values, *values_uri);
             entry["id"] = layer.file;
-            entry["name"] = text.tab;
+            entry["name"] = shown.tab;
             entry["unit"] = layer.unit;
-            entry["digits"] = text.digits;
+            entry["digits"] = shown.digits;
             page["layers"].push_back(std::move(entry));
         }
         ++out.count;
@@ -296,9 +323,9 @@ Result<MapFigures> render_maps(const Scene& scene, const RunResult& result) {
         out.figures += fmt::format(
             R"(<figure class="map" data-layer="{0}" data-name="{1}"><svg class="figure" viewBox="0 0 {2} {3}" style="max-width:{10}px" role="img" aria-label="Map: {1}"><use href="#map-base"/>{4}<use href="#map-over"/>{5}<use href="#map-key"/></svg><figcaption>{6}<b>Figure {7}. {1}.</b> {8} Cells of {9} m, interpolated for display.</figcaption></figure>
 )",
-            layer.file, text.tab, coordinate(width), coordinate(height), picture,
-            draw_classes(layer, text, classes, most, frame), flag, out.count, text.caption,
-            plain(result.map_cell > 0 ? result.map_cell : map.geometry.cell), coordinate(1.04 * width));
+            layer.file, escape(shown.tab), coordinate(width), coordinate(height), picture,
+            draw_classes(shown, classes, most, frame), flag, out.count, escape(shown.caption), plain(content.cell),
+            coordinate(1.04 * width));
     }
     out.read_out = page.dump();
     // Inside a script element only "<" could end it; JSON may write it as an escape.

@@ -1,9 +1,13 @@
 #pragma once
 
+#include <array>
 #include <string>
+#include <vector>
 
 #include "core/geometry.hpp"
+#include "core/grid.hpp"
 #include "core/result.hpp"
+#include "products/hazard_map.hpp"
 #include "scene/run.hpp"
 #include "scene/scene.hpp"
 
@@ -25,9 +29,38 @@ struct MapFrame {
     [[nodiscard]] double y(double north) const { return top + (area.y_max - north) * scale; }
 };
 
+/// One map: its raster and what is said of it.
+struct MapLayer {
+    HazardMap style;
+    const Grid<float>* grid = nullptr;  ///< SI; NaN: nothing there
+    std::string tab;                    ///< "Peak depth"
+    std::string caption;                ///< a sentence
+    int digits = 2;                     ///< of values
+};
+
+/// How the maps' buildings are coloured: classes 0 (not at all) to 3.
+struct BuildingMarks {
+    std::string title;                       ///< over the classes in the key
+    std::array<std::string, 4> class_names;  ///< from 0 up
+    std::vector<int> classes;                ///< as in Scene::buildings
+    std::vector<std::string> titles;         ///< likewise; said under the pointer, escaped
+};
+
+/// What a report's maps show, whatever they are of.
+struct MapContent {
+    const Grid<float>* reached = nullptr;  ///< has a value wherever debris came
+    double farthest_chainage = 0;          ///< m, of any front; NaN: none
+    double cell = 0;                       ///< m
+    BuildingMarks buildings;
+    std::vector<MapLayer> layers;
+};
+
+/// The maps of a single run. `result` must outlive them.
+[[nodiscard]] MapContent map_content(const Scene& scene, const RunResult& result);
+
 /// The area of interest: where debris came, the releases, the flow path as far as it matters (to a fifth beyond the
 /// run-out and the last observation), the buildings hit, and a margin, kept within the terrain.
-[[nodiscard]] MapFrame map_frame(const Scene& scene, const RunResult& result);
+[[nodiscard]] MapFrame map_frame(const Scene& scene, const MapContent& content);
 
 struct MapFigures {
     std::string definitions;  ///< an unseen <svg> with what all maps share
@@ -37,7 +70,7 @@ struct MapFigures {
 };
 
 /// Errors: a picture could not be encoded.
-[[nodiscard]] Result<MapFigures> render_maps(const Scene& scene, const RunResult& result);
+[[nodiscard]] Result<MapFigures> render_maps(const Scene& scene, const MapContent& content);
 
 /// How hard a building was hit: 0 not at all, 1 below 15 kPa, 2 to 30 kPa, 3 above. The limits are those between
 /// slight, extensive and complete damage to buildings not of reinforced concrete (Kang & Kim 2014).
@@ -45,9 +78,10 @@ struct MapFigures {
 
 // The parts of the drawing that all maps share; SVG.
 [[nodiscard]] std::string draw_contours(const Scene& scene, const MapFrame& frame, double& interval);
-[[nodiscard]] std::string draw_vectors(const Scene& scene, const RunResult& result, const MapFrame& frame);
+[[nodiscard]] std::string draw_vectors(const Scene& scene, const BuildingMarks& marks, const MapFrame& frame);
 [[nodiscard]] std::string draw_frame(const Scene& scene, const MapFrame& frame);
-[[nodiscard]] std::string draw_key(const Scene& scene, const MapFrame& frame, double contour_interval);
+[[nodiscard]] std::string draw_key(const Scene& scene, const BuildingMarks& marks, const MapFrame& frame,
+                                   double contour_interval);
 
 /// Height of what draw_key draws, SVG units.
 [[nodiscard]] double key_height(const Scene& scene);

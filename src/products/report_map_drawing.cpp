@@ -72,11 +72,29 @@ std::string contour_label(const MapFrame& frame, const Contour& contour) {
     return svg;
 }
 
-std::string building_title(const Building& building, const BuildingImpact* impact) {
-    std::string title = escape(building.name.empty() ? "Building" : building.name);
-    if (impact == nullptr || !impact->hit) return title + ": not reached";
-    return title + fmt::format(": {} kPa, first hit at {} s", significant(impact->peak_pressure / 1e3, 3),
-                               fixed(impact->first_hit_time, 1));
+/// A building's name below it, centred.
+struct Label {
+    int rank;  ///< its class: where two names would run into each other, the one hit harder stays
+    double x, y;
+    std::string text;
+
+    [[nodiscard]] double half_width() const { return 3.7 * static_cast<double>(text.size()); }
+    [[nodiscard]] bool meets(const Label& other) const {
+        return std::abs(x - other.x) < half_width() + other.half_width() && std::abs(y - other.y) < 14;
+    }
+};
+
+std::string draw_labels(std::vector<Label> labels) {
+    std::stable_sort(labels.begin(), labels.end(), [](const Label& a, const Label& b) { return a.rank > b.rank; });
+    std::vector<Label> drawn;
+    std::string svg;
+    for (const Label& label : labels) {
+        if (std::any_of(drawn.begin(), drawn.end(), [&](const Label& other) { return other.meets(label); })) continue;
+        svg += fmt::format(R"(<text class="building-name" x="{}" y="{}">{}</text>)", coordinate(label.x),
+                           coordinate(label.y), escape(label.text));
+        drawn.push_back(label);
+    }
+    return svg;
 }
 
 std::string draw_flow_path(const Scene& scene, const MapFrame& frame) {
@@ -143,12 +161,11 @@ std::string draw_contours(const Scene& scene, const MapFrame& frame, double& int
         svg);
 }
 
-std::string draw_vectors(const Scene& scene, const RunResult& result, const MapFrame& frame) {
-    std::string svg, names;
+std::string draw_vectors(const Scene& scene, const BuildingMarks& marks, const MapFrame& frame) {
+    std::string svg;
+    std::vector<Label> labels;
     for (std::size_t i = 0; i < scene.buildings.size(); ++i) {
         const Building& building = scene.buildings[i];
-        const BuildingImpact* impact =
-            i < result.observation.buildings.size() ? &result.observation.buildings[i] : nullptr;
         std::string d;
         Extent around{1e300, 1e300, -1e300, -1e300};
         for (const Polygon& polygon : building.footprint) {
@@ -161,13 +178,12 @@ std::string draw_vectors(const Scene& scene, const RunResult& result, const MapF
             around.y_min > frame.area.y_max) {
             continue;
         }
-        const int hit = impact != nullptr ? impact_class(*impact) : 0;
+        const int hit = i < marks.classes.size() ? marks.classes[i] : 0;
         svg += fmt::format(R"(<path class="building hit-{}" d="{}"><title>{}</title></path>)", hit, d,
-                           building_title(building, impact));
+                           i < marks.titles.size() ? marks.titles[i] : escape(building.name));
         if (hit > 0 && !building.name.empty()) {
-            names += fmt::format(R"(<text class="building-name" x="{}" y="{}">{}</text>)",
-                                 coordinate(frame.x((around.x_min + around.x_max) / 2)),
-                                 coordinate(frame.y(around.y_min) + 13), escape(shortened(building.name, 24)));
+            labels.push_back({hit, frame.x((around.x_min + around.x_max) / 2), frame.y(around.y_min) + 13,
+                              shortened(building.name, 24)});
         }
     }
     for (const Release& release : scene.releases) {
@@ -177,7 +193,7 @@ std::string draw_vectors(const Scene& scene, const RunResult& result, const MapF
             R"(<path class="release-case" d="{0}"/><path class="release" d="{0}"><title>{1}</title></path>)", d,
             escape(release.name));
     }
-    return svg + draw_flow_path(scene, frame) + draw_observations(scene, frame) + names;
+    return svg + draw_flow_path(scene, frame) + draw_observations(scene, frame) + draw_labels(std::move(labels));
 }
 
 std::string draw_frame(const Scene& scene, const MapFrame& frame) {
@@ -224,7 +240,7 @@ double key_height(const Scene& scene) {
     return 20.0 * rows + 100;
 }
 
-std::string draw_key(const Scene& scene, const MapFrame& frame, double contour_interval) {
+std::string draw_key(const Scene& scene, const BuildingMarks& marks, const MapFrame& frame, double contour_interval) {
     const double x = frame.right() + 20;
     double y = 0;
     std::string svg;
@@ -248,16 +264,16 @@ std::string draw_key(const Scene& scene, const MapFrame& frame, double contour_i
     }
     if (!scene.buildings.empty()) {
         y += 4;
-        const char* classes[] = {"not reached", "hit, below 15 kPa", "hit, 15 – 30 kPa", "hit, over 30 kPa"};
-        svg += fmt::format(R"(<text class="legend-unit" x="{}" y="{}">Buildings, filtered pressure</text>)",
-                           coordinate(x), coordinate(y + 12));
+        svg += fmt::format(R"(<text class="legend-unit" x="{}" y="{}">{}</text>)", coordinate(x), coordinate(y + 12),
+                           escape(marks.title));
         y += 18;
         for (int k = 3; k >= 0; --k) {
-            row(fmt::format(R"(<rect class="building hit-{}" x="2" y="3" width="26" height="13"/>)", k), classes[k]);
+            row(fmt::format(R"(<rect class="building hit-{}" x="2" y="3" width="26" height="13"/>)", k),
+                escape(marks.class_names.at(static_cast<std::size_t>(k))));
         }
     }
-    // Scale bar: two halves of a round length, and north of the grid.
-    const double half = round_step(frame.area.width() / 12), length = half * frame.scale;
+    // Scale bar: two halves of a round length, 70 to 140 units together, and north of the grid.
+    const double half = round_step(35 / frame.scale), length = half * frame.scale;
     y += 20;
     svg += fmt::format(
         R"svg(<g transform="translate({0} {1})"><rect class="scale-dark" x="0" y="18" width="{2}" height="6"/><rect class="scale-light" x="{2}" y="18" width="{2}" height="6"/><text class="legend-unit" x="0" y="12" text-anchor="start">0</text><text class="legend-unit" x="{2}" y="12" text-anchor="middle">{3}</text><text class="legend-unit" x="{4}" y="12" text-anchor="middle">{5} m</text></g>)svg",

@@ -210,7 +210,7 @@ TEST(Report, RendersARunInWhichNothingMoved) {
 
 TEST(ReportMap, ShowsWhereDebrisCameTheReleaseAndTheBuildingsHit) {
     const Sample s;
-    const report::MapFrame frame = report::map_frame(s.scene, s.result);
+    const report::MapFrame frame = report::map_frame(s.scene, report::map_content(s.scene, s.result));
     const Extent terrain = s.scene.terrain.elevation().geometry.extent();
     EXPECT_GE(frame.area.x_min, terrain.x_min);
     EXPECT_LE(frame.area.y_max, terrain.y_max);
@@ -227,7 +227,7 @@ TEST(ReportMap, AWideTerrainIsCroppedToTheEvent) {
                      50.0F);
     for (std::size_t i = 0; i < wide.values.size(); ++i) wide.values[i] += static_cast<float>(i % 220);
     s.scene.terrain = Terrain(wide);
-    const report::MapFrame frame = report::map_frame(s.scene, s.result);
+    const report::MapFrame frame = report::map_frame(s.scene, report::map_content(s.scene, s.result));
     EXPECT_LT(frame.area.width(), 600);
     EXPECT_LT(frame.area.height(), 400);
 }

@@ -91,7 +91,7 @@ export function act(scenario, body) {
       const old = setup.buildings.find((b) => b.id === rest.id);
       const error = between("height_m", rest.height_m ?? old?.height_m, 0.1, 1000, "m");
       return error ? { error } : put(scenario, setup.buildings, "building", { ...(old ? {} : { from_scene: false }), ...rest,
-        footprint: rest.footprint && [rest.footprint] }, (b) => scenario.based(b));
+        footprint: rest.footprint && [[rest.footprint]] }, (b) => scenario.based(b));
     }
     case "remove_release":
     case "remove_barrier":

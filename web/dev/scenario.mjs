@@ -29,7 +29,7 @@ export class Scenario {
       parameters: Object.fromEntries(this.options.parameters.map((p) => [p.key, p.default])),
       releases: [this.measured(release)],
       barriers: [],
-      buildings: this.valley.houses.map((h, i) => this.based({ id: `building-${i + 1}`, name: h.name, footprint: [h.ring],
+      buildings: this.valley.houses.map((h, i) => this.based({ id: `building-${i + 1}`, name: h.name, footprint: [[h.ring]],
         height_m: h.height, from_scene: true })),
     };
   }
@@ -40,7 +40,7 @@ export class Scenario {
     return release;
   }
   based(building) {
-    const z = building.footprint[0].map(([x, y]) => this.ground.at(x, y));
+    const z = building.footprint[0][0].map(([x, y]) => this.ground.at(x, y));
     building.base_m = Math.min(...z);
     building.roof_m = Math.max(...z) + building.height_m;
     return building;
@@ -78,7 +78,7 @@ export class Scenario {
         if (test(g.xMin + (i + 0.5) * g.cell, g.yMin + (j + 0.5) * g.cell)) d.blocked[j * g.columns + i] = index;
       }
     };
-    for (const b of this.setup.buildings) mark(b.id, (x, y) => pointInRing(b.footprint[0], x, y));
+    for (const b of this.setup.buildings) mark(b.id, (x, y) => pointInRing(b.footprint[0][0], x, y));
     for (const b of this.setup.barriers) {
       mark(b.id, (x, y) => b.line.slice(1).some(([x1, y1], k) => {
         const [x0, y0] = b.line[k], l2 = (x1 - x0) ** 2 + (y1 - y0) ** 2;

@@ -1,13 +1,9 @@
-import "uplot/dist/uPlot.min.css";
 import "./style/base.css";
 import "./style/layout.css";
 import "./style/panels.css";
 import "./style/view.css";
-import { buildPage } from "./page";
 import { Api, Refused } from "./protocol/api";
 import { takeToken } from "./protocol/token";
-import { Relief } from "./scene/relief";
-import { Twin } from "./state/twin";
 import { h } from "./ui/dom";
 
 const meshCells = 400_000;
@@ -20,12 +16,11 @@ async function begin(page: HTMLElement): Promise<void> {
   }
   const api = new Api(token);
   try {
-    const [scene, terrain] = await Promise.all([api.scene(), api.terrain(meshCells)]);
+    // The scene is on its way while the browser reads the larger part of the script.
+    const [scene, terrain, { openPage }] = await Promise.all([api.scene(), api.terrain(meshCells), import("./page")]);
     document.title = `${scene.title} · talus`;
-    const twin = new Twin(token, scene, new Relief(terrain, scene.origin), api);
     page.classList.remove("starting");
-    buildPage(page, twin);
-    twin.live.start();
+    openPage(page, token, scene, terrain, api);
   } catch (error) {
     console.error(error);
     if (error instanceof Refused && (error.status === 401 || error.status === 403)) {

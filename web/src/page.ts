@@ -1,4 +1,5 @@
 // Puts the parts of the page together.
+import "uplot/dist/uPlot.min.css";
 import { Probes } from "./charts/probes";
 import { sectionPanel } from "./charts/section";
 import { frontCharts, timeCharts } from "./charts/series_charts";
@@ -12,20 +13,30 @@ import { Picture } from "./panels/picture";
 import { balance, runCard } from "./panels/run_card";
 import { transport } from "./panels/transport";
 import { viewBar } from "./panels/view_bar";
+import type { Api } from "./protocol/api";
+import type { Grid } from "./protocol/grid";
+import type { SceneInfo } from "./protocol/messages";
 import { Drawing } from "./scene/drawing";
 import { marks } from "./scene/marks";
+import { Relief } from "./scene/relief";
 import { placeOnPath } from "./scene/scenario_view";
 import { ShownLayers } from "./scene/shown_layers";
 import { Stage } from "./scene/stage";
 import { watchAll } from "./state/cell";
 import { Playback } from "./state/playback";
 import { Refresher } from "./state/refresher";
-import type { Twin } from "./state/twin";
+import { Twin } from "./state/twin";
 import { button, h } from "./ui/dom";
 import { tabs } from "./ui/tabs";
 import { Toasts } from "./ui/toast";
 
-export function buildPage(page: HTMLElement, twin: Twin): void {
+export function openPage(page: HTMLElement, token: string, info: SceneInfo, terrain: Grid, api: Api): void {
+  const twin = new Twin(token, info, new Relief(terrain, info.origin), api);
+  buildPage(page, twin);
+  twin.live.start();
+}
+
+function buildPage(page: HTMLElement, twin: Twin): void {
   const stage = new Stage(twin, twin.relief);
   const drawing = new Drawing(twin, stage);
   const layers = new ShownLayers(twin, stage);
@@ -60,10 +71,15 @@ export function buildPage(page: HTMLElement, twin: Twin): void {
   const readOut = marks(twin, stage, layers);
   keys(twin, stage, drawing, bar, playback);
 
-  const drawer = button("Readings", { icon: "panel", class: "drawer-switch", "aria-expanded": "false", onclick: () => {
-    const open = page.classList.toggle("readings-open");
+  const drawer = button("Readings", { icon: "panel", bare: true, class: "bare drawer-switch", title: "Show or hide the readings", onclick: () => {
+    // On a narrow page the readings lie over the view when asked for; on a wide one they make room when sent away.
+    const open = page.classList.toggle(narrow.matches ? "readings-open" : "readings-closed") === narrow.matches;
     drawer.setAttribute("aria-expanded", String(open));
   } });
+  const narrow = matchMedia("(max-width: 1180px)");
+  const expanded = (): void => drawer.setAttribute("aria-expanded", String(page.classList.contains("readings-open") || (!narrow.matches && !page.classList.contains("readings-closed"))));
+  narrow.addEventListener("change", expanded);
+  expanded();
   const badge = twin.scene.reconstruction ? h("span", { class: "badge", title: twin.scene.assumptions.join(" ") }, "Reconstruction, no survey") : null;
   const key = legends(twin, stage, layers);
   const scale = scaleAndCompass(twin, stage, readOut);

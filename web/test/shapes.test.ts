@@ -61,6 +61,19 @@ describe("relief", () => {
     expect(x - 824050).toBeCloseTo(0.1 * (150 - z), 1);
     expect(relief.meet([0, 0, 100], [0, 0, 1])).toBeNull();
   });
+  it("sees the same sky where only every second cell is looked at", () => {
+    const wave = (columns: number, rows: number): Float32Array => {
+      const values = new Float32Array(columns * rows);
+      for (let k = 0; k < values.length; ++k) values[k] = 6 * Math.sin((k % columns) / 8) + 4 * Math.cos(Math.floor(k / columns) / 11);
+      return values;
+    };
+    const large = new Relief({ west: 0, south: 0, cell: 1, columns: 301, rows: 200, values: wave(301, 200) }, [0, 0, 0]).skyView();
+    const small = new Relief({ west: 0, south: 0, cell: 1, columns: 301, rows: 160, values: wave(301, 160) }, [0, 0, 0]).skyView();
+    for (const [i, j] of [[40, 40], [41, 40], [40, 41], [41, 41], [200, 77], [99, 58]]) {
+      expect(Math.abs(large[j * 301 + i] - small[j * 301 + i])).toBeLessThan(0.03);
+    }
+    expect(large[large.length - 1]).toBeGreaterThan(0.3);
+  });
   it("a pit sees less sky than a plain", () => {
     const values = new Float32Array(400);
     for (let k = 0; k < 400; ++k) values[k] = Math.hypot((k % 20) - 10, Math.floor(k / 20) - 10);

@@ -34,7 +34,7 @@ export function frontCharts(twin: Twin): HTMLElement {
       if (!front || front.chainage_m.length === 0) continue;
       const suffix = twin.scenarios.value.length > 1 ? ` ${name}` : "";
       tables.push({ x: front.chainage_m, y: front.front_velocity_mps }, { x: front.chainage_m, y: front.particle_speed_mps });
-      curves.push({ label: `Front${suffix}`, unit: "m/s", colour: colours[name], points: true },
+      curves.push({ label: `Front${suffix}`, unit: "m/s", colour: colours[name], points: front.chainage_m.length < 40 },
         { label: `Debris at front${suffix}`, unit: "m/s", colour: colours[name], dashed: true });
       times.push({ x: front.chainage_m, y: front.arrival_time_s });
       timeCurves.push({ label: `Arrival${suffix}`, unit: "s", colour: colours[name] });

@@ -5,6 +5,7 @@ import { layerInfo } from "../scene/layers";
 import type { ShownLayers } from "../scene/shown_layers";
 import type { Stage } from "../scene/stage";
 import { watchAll } from "../state/cell";
+import { largestPressure } from "./impacts";
 import { quantity, tick, unitText } from "../state/format";
 import type { Twin } from "../state/twin";
 import { h } from "../ui/dom";
@@ -19,6 +20,10 @@ export function presentLegends(twin: Twin, stage: Stage, layers: ShownLayers): L
   }
   if (twin.surface.value === "depth") {
     list.push({ title: "Flow depth", unit: "m", low: 0, high: layers.surfaceTop, at: (s) => rampAt(ramps.depth, s) });
+  }
+  const most = Math.max(...twin.scenarios.value.map((s) => largestPressure(twin.cells[s].impacts.value)));
+  if (twin.houseColour.value === "pressure" && most > 0) {
+    list.push({ title: "Houses, peak pressure", unit: "kPa", low: 0, high: most, at: (s) => rampAt(ramps.peak_pressure, s) });
   }
   const name = twin.layer.value;
   if (name !== "none") {
@@ -40,8 +45,17 @@ function ticks(low: number, high: number): number[] {
 
 export function legends(twin: Twin, stage: Stage, layers: ShownLayers): HTMLElement {
   const holder = h("div", { class: "legends", role: "group", "aria-label": "Legends" });
-  watchAll([twin.particles, twin.surface, twin.layer, twin.difference, layers.range, stage.fastest_mps], () => {
-    holder.replaceChildren(...presentLegends(twin, stage, layers).map((legend) => {
+  const classes = h("div", { class: "legend classes-legend" }, h("div", { class: "legend-title" }, h("b", {}, "Houses, intensity")),
+    ...twin.scene.intensity.classes.map((c) => {
+      const dot = h("i", { class: "dot" });
+      dot.style.background = c.colour;
+      return h("span", {}, dot, c.name);
+    }));
+  classes.title = twin.scene.intensity.rule;
+  watchAll([twin.particles, twin.surface, twin.layer, twin.difference, layers.range, stage.fastest_mps, twin.houseColour, twin.cells.A.impacts, twin.cells.B.impacts], () => {
+    const anyHit = twin.scenarios.value.some((s) => twin.cells[s].impacts.value?.buildings.some((b) => b.hit));
+    classes.hidden = twin.houseColour.value !== "intensity" || !anyHit;
+    holder.replaceChildren(classes, ...presentLegends(twin, stage, layers).map((legend) => {
       const bar = h("div", { class: "legend-bar" });
       const stops = Array.from({ length: 17 }, (_, i) => css(legend.at(i / 16)));
       bar.style.background = `linear-gradient(to right, ${stops.join(", ")})`;

@@ -17,6 +17,7 @@ export function runCard(twin: Twin): HTMLElement {
   const particles = cell("Particles", "Particles in the simulation");
   const steps = cell("Steps", "Time steps computed per second");
   const real = cell("Real time", "Simulated seconds per second");
+  const message = h("p", { class: "run-message", role: "alert" });
   const light = h("div", { class: "converged", role: "status" });
   watchAll(watched(twin), () => {
     const s = twin.now.state.value;
@@ -26,13 +27,16 @@ export function runCard(twin: Twin): HTMLElement {
     particles.value.textContent = count(s?.particles);
     steps.value.textContent = s ? `${fixed(s.steps_per_second, 0)} /s` : "–";
     real.value.textContent = s ? `${fixed(s.real_time_factor, 2)} ×` : "–";
+    message.hidden = !s?.message;
+    if (message.textContent !== (s?.message ?? "")) message.textContent = s?.message ?? "";
+    message.classList.toggle("bad", s?.status === "fault");
     light.className = `converged ${s?.converged === false ? "bad" : "good"}`;
     const text = s?.converged === false ? "Not converged" : "Converged";
     if (light.textContent !== text) light.textContent = text;
     light.title = s ? `Compression: mean ${fixed(100 * s.mean_compression, 2)} %, largest ${fixed(100 * s.max_compression, 1)} %` : "";
   });
   return h("section", { class: "run-card", "aria-label": "State of the run" },
-    h("dl", {}, front.element, fastest.element, chainage.element, particles.element, steps.element, real.element), light);
+    h("dl", {}, front.element, fastest.element, chainage.element, particles.element, steps.element, real.element), light, message);
 }
 
 export function balance(twin: Twin): HTMLElement {

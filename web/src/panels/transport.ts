@@ -7,7 +7,7 @@ import { button, h, icon, type IconName } from "../ui/dom";
 
 const speeds: [string, string][] = [
   ["0.1", "0.1 × real time"], ["0.25", "0.25 ×"], ["0.5", "0.5 ×"], ["1", "1 × real time"], ["2", "2 ×"], ["4", "4 ×"], ["10", "10 ×"],
-  ["", "as fast as it goes"],
+  ["", "Fastest"],
 ];
 
 export function transport(twin: Twin, playback: Playback): HTMLElement {
@@ -18,7 +18,7 @@ export function transport(twin: Twin, playback: Playback): HTMLElement {
       playback.live();
       void twin.act({ action: "restart" });
     } });
-  const speed = h("select", { "aria-label": "Speed of the simulation", onchange: () =>
+  const speed = h("select", { "aria-label": "Speed of the simulation", title: "Speed of the simulation; “Fastest” is as fast as it goes", onchange: () =>
     void twin.act({ action: "set_speed", factor: speed.value === "" ? null : Number(speed.value) }) },
     ...speeds.map(([value, text]) => h("option", { value }, text)));
 

@@ -36,6 +36,9 @@ export interface Frame {
 /** Position that stands for "this particle is not there" in x, y and z. */
 export const absent = 65535;
 
+/** Script time that unfolding the last frame took, ms; unpacking is done by the browser on another thread. */
+export const lastDecode = { unfold_ms: 0 };
+
 const headBytes = 88;
 const largestBody = 512 * 1024 * 1024;
 
@@ -88,11 +91,13 @@ export async function decodeFrame(data: ArrayBuffer): Promise<Frame> {
   if (size !== 7 * n + 3 * m) throw new MalformedMessage(`body of ${size} bytes for ${n} particles and ${m} cells`);
   const body = await inflate(bytes.subarray(headBytes), size);
 
+  const begun = performance.now();
   const particles = new Uint16Array(4 * n);
   for (let axis = 0; axis < 3; ++axis) unfold(body, 2 * n * axis, n, particles, axis, 4);
   for (let i = 0; i < n; ++i) particles[4 * i + 3] = body[6 * n + i]!;
   const depth = new Uint16Array(m);
   unfold(body, 7 * n, m, depth, 0, 1);
+  lastDecode.unfold_ms = performance.now() - begun;
   const three = (at: number): [number, number, number] =>
     [head.getFloat32(at, true), head.getFloat32(at + 4, true), head.getFloat32(at + 8, true)];
   return {

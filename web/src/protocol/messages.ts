@@ -94,7 +94,8 @@ export interface Barrier { id: string; name: string; line: Point[]; height_m: nu
 export interface Building {
   id: string;
   name: string;
-  footprint: Point[][];
+  /** Polygons, each with its outer ring first. */
+  footprint: Point[][][];
   height_m: number;
   base_m: number;
   roof_m: number;

@@ -46,7 +46,7 @@ export class Rig {
     const [x, y] = this.relief.middle;
     const target = new Vector3(...this.relief.local(x, y));
     const size = Math.hypot(this.relief.width, this.relief.height);
-    const distance = (0.40 * size) / Math.tan((this.camera.fov * Math.PI) / 360) / Math.min(1.3, Math.max(0.75, this.camera.aspect));
+    const distance = (0.40 * size) / Math.tan((this.camera.fov * Math.PI) / 360) / Math.min(1.3, Math.max(0.6, this.camera.aspect));
     const { down } = this;
     const angle = Math.atan2(down[1], down[0]) + towards;
     const offset = new Vector3().setFromSpherical(new Spherical(distance, 1, 0));
@@ -99,10 +99,20 @@ export class Rig {
     this.changed();
   }
   setMode(mode: CameraMode): void {
+    if (mode === "fly" || this.mode === "fly") this.setPivot(mode === "fly");
     this.mode = mode;
     this.followed = null;
     this.held.clear();
     this.changed();
+  }
+  /** Flying, a drag turns the head: the point to turn about is close ahead. Otherwise it is on the ground. */
+  private setPivot(close: boolean): void {
+    const { camera, controls, relief } = this;
+    const ahead = controls.target.clone().sub(camera.position).normalize();
+    const met = relief.meet(camera.position.toArray(), ahead.toArray());
+    const distance = met ? camera.position.distanceTo(new Vector3(met[0] - relief.origin[0], met[1] - relief.origin[1], met[2] - relief.origin[2])) : 200;
+    controls.minDistance = close ? 0.5 : 4;
+    controls.target.copy(camera.position).addScaledVector(ahead, close ? 1 : Math.max(5, distance));
   }
   /** Local place of the front, for "follow". */
   follow(place: Place | null): void {
@@ -182,7 +192,10 @@ export class Rig {
   }
   private fly(seconds: number): void {
     const ahead = this.controls.target.clone().sub(this.camera.position);
-    const speed = Math.max(8, 0.6 * ahead.length()) * seconds;
+    const [ox, oy, oz] = this.relief.origin;
+    const { x, y, z } = this.camera.position;
+    // Faster high above the ground, slower among houses.
+    const speed = Math.max(8, 0.7 * (z + oz - this.relief.at(x + ox, y + oy))) * seconds;
     ahead.normalize();
     const side = new Vector3().crossVectors(ahead, this.camera.up).normalize();
     const move = new Vector3();
@@ -195,7 +208,6 @@ export class Rig {
     move.setLength(speed);
     this.camera.position.add(move);
     this.controls.target.add(move);
-    const [ox, oy, oz] = this.relief.origin;
     const floor = this.relief.at(this.camera.position.x + ox, this.camera.position.y + oy) - oz + 1.7;
     if (this.camera.position.z < floor) this.camera.position.z = floor;
   }

@@ -175,7 +175,7 @@ export class ScenarioView {
         labels.push({ at: relief.local(x, y, barrier.height_m + 1), text: `${barrier.name}, ${quantity(barrier.height_m, "m")}`, kind: "barrier", priority: 7 });
       }
       for (const building of this.setup?.buildings ?? []) {
-        const ring = building.footprint[0] ?? [];
+        const ring = building.footprint[0]?.[0] ?? [];
         if (ring.length === 0) continue;
         const x = ring.reduce((sum, p) => sum + p[0], 0) / ring.length;
         const y = ring.reduce((sum, p) => sum + p[1], 0) / ring.length;

@@ -1,7 +1,7 @@
 // Houses and barriers as solids with shadows.
 import {
   BufferGeometry, EdgesGeometry, ExtrudeGeometry, Float32BufferAttribute, Group, LineBasicMaterial, LineSegments, Mesh, MeshLambertMaterial,
-  Path, Shape,
+  Path, Shape, Vector2,
 } from "three";
 import type { Barrier, Building, Point } from "../protocol/messages";
 import type { Relief } from "./relief";
@@ -21,17 +21,15 @@ function solid(geometry: BufferGeometry, colour: string, id: string): Group {
 
 export function houseSolid(building: Building, relief: Relief, colour: string): Group {
   const [ox, oy, oz] = relief.origin;
-  const rings = building.footprint.map((ring) => ring.map(([x, y]) => ({ x: x - ox, y: y - oy })));
-  const shape = new Shape();
-  rings[0]?.forEach((p, i) => (i === 0 ? shape.moveTo(p.x, p.y) : shape.lineTo(p.x, p.y)));
-  for (const ring of rings.slice(1)) {
-    const hole = new Path();
-    ring.forEach((p, i) => (i === 0 ? hole.moveTo(p.x, p.y) : hole.lineTo(p.x, p.y)));
-    shape.holes.push(hole);
-  }
+  const shapes = building.footprint.map((polygon) => {
+    const [outer = [], ...holes] = polygon.map((ring) => ring.map(([x, y]) => new Vector2(x - ox, y - oy)));
+    const shape = new Shape(outer);
+    shape.holes = holes.map((ring) => new Path(ring));
+    return shape;
+  });
   // Walls go a little into the ground, so that no gap shows on a slope.
-  const base = Math.min(building.base_m, ...(building.footprint[0] ?? []).map(([x, y]) => relief.at(x, y))) - 0.5;
-  const geometry = new ExtrudeGeometry(shape, { depth: building.roof_m - base, bevelEnabled: false });
+  const base = Math.min(building.base_m, ...building.footprint.flatMap((polygon) => polygon[0] ?? []).map(([x, y]) => relief.at(x, y))) - 0.5;
+  const geometry = new ExtrudeGeometry(shapes, { depth: building.roof_m - base, bevelEnabled: false });
   geometry.translate(0, 0, base - oz);
   return solid(geometry, colour, building.id);
 }

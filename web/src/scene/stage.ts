@@ -1,6 +1,6 @@
 // The canvas: one renderer, a view per scenario side by side, one camera for all, pictures only when something changed.
 import { Vector3, WebGLRenderer, type BufferGeometry } from "three";
-import type { Frame, ScenarioName } from "../protocol/frame";
+import { lastDecode, type Frame, type ScenarioName } from "../protocol/frame";
 import type { Place } from "../protocol/messages";
 import type { Twin } from "../state/twin";
 import { h } from "../ui/dom";
@@ -18,7 +18,10 @@ export interface Stats {
   /** Script time of the last display frame and of decoding the last message, ms. */
   script_ms: number;
   draw_ms: number;
+  /** From a frame's arrival to its decoding, waiting for the unpacking included. */
   decode_ms: number;
+  /** Script's part of that. */
+  unfold_ms: number;
   upload_ms: number;
   particles: number;
   shownTime_s: number;
@@ -37,7 +40,7 @@ export class Stage {
     "aria-label": "Three-dimensional view. Arrow keys turn, Shift with arrow keys moves, plus and minus zoom." });
   readonly rig: Rig;
   readonly views = new Map<ScenarioName, ScenarioView>();
-  readonly stats: Stats = { frames: 0, script_ms: 0, draw_ms: 0, decode_ms: 0, upload_ms: 0, particles: 0, shownTime_s: 0 };
+  readonly stats: Stats = { frames: 0, script_ms: 0, draw_ms: 0, decode_ms: 0, unfold_ms: 0, upload_ms: 0, particles: 0, shownTime_s: 0 };
   /** Speed at the upper end of the colours; it grows with what is seen, in round steps. */
   readonly fastest_mps = new Cell(10);
   /** Elements that lie over the view; labels keep clear of them. */
@@ -114,6 +117,7 @@ export class Stage {
     this.views.get(frame.scenario)?.push(frame, begun);
     this.stats.upload_ms = performance.now() - begun;
     this.stats.decode_ms = this.twin.live.decode_ms;
+    this.stats.unfold_ms = lastDecode.unfold_ms;
     this.stats.particles = frame.count;
     this.invalidate();
   }
@@ -177,6 +181,7 @@ export class Stage {
   }
   /** What lies over a view whose left edge is at `left`, as boxes in that view. */
   private covered(left: number): Box[] {
+    if (!this.element.isConnected) return [];
     const own = this.canvas.getBoundingClientRect();
     return this.covers.filter((e) => !e.hidden).flatMap((element) => [...(element.classList.contains("bar") ? [element] : element.children)]).map((element) => {
       const box = element.getBoundingClientRect();

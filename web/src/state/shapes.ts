@@ -84,11 +84,12 @@ export function itemOf(setup: Setup | null, selection: Selection | null): Item |
 }
 /** Corners that can be moved; a ring's repeated last corner is left out. */
 export function pointsOf(item: Item): Point[] {
-  const points = item.shape === "release" ? (item.polygons[0] ?? []) : item.shape === "barrier" ? item.line : (item.footprint[0] ?? []);
+  const points = item.shape === "release" ? (item.polygons[0] ?? []) : item.shape === "barrier" ? item.line : (item.footprint[0]?.[0] ?? []);
   const [first] = points;
   const last = points[points.length - 1];
   const closed = item.shape !== "barrier" && points.length > 1 && first[0] === last[0] && first[1] === last[1];
   return closed ? points.slice(0, -1) : points;
 }
-/** A release of several parts cannot be sent back as one polygon. */
-export const canReshape = (item: Item): boolean => item.shape !== "release" || item.polygons.length === 1;
+/** What has several parts or holes cannot be sent back as one outline. */
+export const canReshape = (item: Item): boolean =>
+  item.shape === "release" ? item.polygons.length === 1 : item.shape === "barrier" || (item.footprint.length === 1 && item.footprint[0].length === 1);

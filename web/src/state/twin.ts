@@ -163,7 +163,8 @@ export class Twin {
         this.askForFrames();
         break;
       case "done":
-        this.notice(this.scenarios.value.length > 1 ? `${message.scenario}: ${message.done}` : message.done, "done");
+        this.notice((message.by === this.you.value?.name ? "" : `${message.by}: `) + message.done +
+          (this.scenarios.value.length > 1 ? ` (scenario ${message.scenario})` : ""), "done");
         break;
     }
   }

@@ -70,7 +70,7 @@ export function numberField(options: NumberFieldOptions): NumberField {
   slider?.addEventListener("change", () => set(Number(slider.value)));
 
   const element = h("div", { class: "field" },
-    h("label", { for: id, title: options.help ?? null }, options.label),
+    h("label", { for: id, title: options.help ?? null }, options.label.slice(0, 1).toUpperCase() + options.label.slice(1)),
     h("div", { class: "field-value" }, input, h("span", { class: "unit" }, unitText(options.unit))),
     slider ? h("div", { class: "field-slider" }, slider) : null,
     note);

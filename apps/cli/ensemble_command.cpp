@@ -1,0 +1,297 @@
+#include <algorithm>
+#include <charconv>
+#include <chrono>
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <thread>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "calibrate/ensemble.hpp"
+#include "calibrate/ensemble_products.hpp"
+#include "commands.hpp"
+#include "ensemble_text.hpp"
+#include "exit_code.hpp"
+#include "interrupt.hpp"
+#include "progress.hpp"
+#include "ranks.hpp"
+#include "scene/builtin.hpp"
+#include "scene/scene.hpp"
+#include "temporary_folder.hpp"
+
+namespace talus {
+namespace {
+
+namespace fs = std::filesystem;
+
+const std::string builtin_prefix = "built-in:";
+
+/// The scene of an ensemble, on disk and loaded.
+struct Source {
+    std::unique_ptr<TemporaryFolder> unpacked;  ///< of the built-in scene
+    SceneSource source;
+    std::string name;        ///< as the ensemble's definition has it
+    std::string short_name;  ///< of the default output folder
+    Scene scene;
+};
+
+void print(const std::string& text) {
+    (void)std::fputs(text.c_str(), stdout);
+    (void)std::fflush(stdout);
+}
+
+/// `scene` as given, empty or "built-in:sham_tseng" for the built-in one.
+Result<Source> open_scene(const std::string& scene, const std::vector<std::string>& overrides, InterruptWatch& watch) {
+    Source s;
+    s.source.overrides = overrides;
+    if (scene.empty() || scene.starts_with(builtin_prefix)) {
+        s.unpacked = std::make_unique<TemporaryFolder>();
+        if (s.unpacked->path().empty())
+            return Error{"cannot make a temporary folder for the built-in scene; set TMPDIR"};
+        watch.remove_at_once(s.unpacked->path());
+        const auto file = unpack_builtin_scene(s.unpacked->path());
+        if (!file) return file.error();
+        s.source.file = *file;
+        s.short_name = builtin_scene_name;
+        s.name = builtin_prefix + s.short_name;
+    } else {
+        s.source.file = scene;
+        s.name = fs::absolute(scene).lexically_normal().string();
+        const std::string stem = s.source.file.stem().string();
+        s.short_name = stem == "scene" ? fs::absolute(scene).parent_path().filename().string() : stem;
+    }
+    Result<Scene> loaded = load_scene(s.source.file, overrides);
+    if (!loaded) return loaded.error();
+    s.scene = *std::move(loaded);
+    return Result<Source>(std::move(s));
+}
+
+Status set_thresholds(Thresholds& thresholds, const std::string& depths, const std::string& speeds,
+                      const std::string& pressures) {
+    const auto set = [](std::vector<double>& values, const std::string& text, const char* option) -> Status {
+        if (text.empty()) return {};
+        Result<std::vector<double>> parsed = parse_thresholds(text, option);
+        if (!parsed) return parsed.error();
+        values = *std::move(parsed);
+        return {};
+    };
+    if (Status s = set(thresholds.depth, depths, "--depth-m"); !s) return s;
+    if (Status s = set(thresholds.speed, speeds, "--speed-mps"); !s) return s;
+    return set(thresholds.pressure, pressures, "--pressure-kPa");
+}
+
+/// The plan file, then the options over it.
+Result<EnsemblePlan> read_arguments(const EnsembleArguments& arguments) {
+    EnsemblePlan plan;
+    if (!arguments.plan.empty()) {
+        Result<EnsemblePlan> read = read_plan(arguments.plan);
+        if (!read) return read;
+        plan = *std::move(read);
+    }
+    for (const std::string& factor : arguments.factors) {
+        if (Status s = add_factor(plan, factor); !s) return s.error();
+    }
+    if (arguments.design) {
+        const auto design = design_of(*arguments.design);
+        if (!design)
+            return Error{fmt::format("--design {} is refused; it must be one of {}", *arguments.design,
+                                     fmt::join(design_names(), ", "))};
+        plan.design = *design;
+    }
+    plan.runs = arguments.runs.value_or(plan.runs);
+    plan.levels = arguments.levels.value_or(plan.levels);
+    plan.seed = arguments.seed.value_or(plan.seed);
+    if (Status s = set_thresholds(plan.thresholds, arguments.depths, arguments.speeds, arguments.pressures); !s)
+        return s.error();
+    return plan;
+}
+
+/// "2/8" -> shard 1 (counted from 0) of 8.
+Result<std::pair<std::size_t, std::size_t>> parse_shard(const std::string& text) {
+    if (text.empty()) return std::pair<std::size_t, std::size_t>{0, 1};
+    std::size_t shard = 0, count = 0;
+    const char* const end = text.data() + text.size();
+    const auto [slash, first] = std::from_chars(text.data(), end, shard);
+    if (first == std::errc() && slash != end && *slash == '/') {
+        const auto [last, second] = std::from_chars(slash + 1, end, count);
+        if (second == std::errc() && last == end && shard >= 1 && shard <= count) return std::pair{shard - 1, count};
+    }
+    return Error{fmt::format("--shard {} is refused; it must be i/n with i from 1 to n, such as 3/8", text)};
+}
+
+/// Tells a person or a program how far the ensemble is, not too often.
+class Teller {
+  public:
+    Teller(bool quiet, bool json) : style_(progress_style(quiet, json)), reporter_(style_) {}
+
+    void tell(const EnsembleProgress& progress) {
+        const auto now = std::chrono::steady_clock::now();
+        if (now < next_) return;
+        if (style_ == ProgressStyle::json) {
+            print(progress_json(progress) + "\n");
+        } else {
+            reporter_.say(progress_text(progress));
+        }
+        next_ = now + std::chrono::milliseconds(style_ == ProgressStyle::lines  ? 5000
+                                                : style_ == ProgressStyle::json ? 500
+                                                                                : 200);
+    }
+    void say(const std::string& what) { reporter_.say(what); }
+    void clear() { reporter_.clear(); }
+
+  private:
+    ProgressStyle style_;
+    ProgressReporter reporter_;
+    std::chrono::steady_clock::time_point next_ = std::chrono::steady_clock::now() + std::chrono::seconds(1);
+};
+
+/// Counts the runs of the folders and writes what they say into `folder`.
+int write_results(const Source& source, const PlannedRuns& runs, const std::vector<fs::path>& folders,
+                  const fs::path& folder, bool quiet, bool json, Teller& teller) {
+    teller.say("counting the runs, writing maps, tables and report");
+    Result<Reduction> reduction = reduce(folders, runs.count(), runs.plan().thresholds);
+    if (!reduction) return fail(exit_code::failure, reduction.error().message);
+    if (reduction->complete == 0) {
+        teller.clear();
+        const std::string fault = reduction->runs.empty() ? "none was run" : reduction->runs.front().fault;
+        return fail(exit_code::fault,
+                    fmt::format("no run of {} is complete, so there is nothing to count; the first: {}",
+                                folder.string(), fault));
+    }
+    const EnsembleResult result = summarise(source.scene, runs, *std::move(reduction));
+    const Status written = write_ensemble(result, folder);
+    teller.clear();
+    if (!written) return fail(exit_code::failure, written.error().message);
+    if (json) {
+        print(ensemble_json(result, folder) + "\n");
+    } else if (!quiet) {
+        print(ensemble_text(result, folder));
+    }
+    return exit_code::success;
+}
+
+/// Sets how many runs go side by side. A run on several threads is slower than as many runs on one each.
+void share_threads(const EnsembleArguments& arguments, const PlannedRuns& runs, int ranks, EnsembleOptions& options) {
+    const int cores = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
+    const int threads = arguments.threads.value_or(ranks > 1 ? 1 : cores);
+    const int share = static_cast<int>(std::max<std::size_t>(1, runs.count() / options.shard_count));
+    options.runs_at_once = std::min(threads, share);
+    options.threads_per_run = std::max(1, threads / options.runs_at_once);
+}
+
+}  // namespace
+
+int ensemble_command(const EnsembleArguments& arguments) {
+    if (!arguments.data.empty()) set_data_folder(arguments.data);
+    InterruptWatch watch;
+    if (Status s = Ranks::check(); !s) return fail(exit_code::bad_input, s.error().message);
+    const Ranks ranks;
+    // All ranks find the same faults in the input; one of them says so.
+    const auto refuse = [&](const Error& error) {
+        return ranks.first() ? fail(exit_code::bad_input, error.message) : exit_code::bad_input;
+    };
+    Result<EnsemblePlan> plan = read_arguments(arguments);
+    if (!plan) return refuse(plan.error());
+    const auto shard = parse_shard(arguments.shard);
+    if (!shard) return refuse(shard.error());
+    const Result<Source> source = open_scene(arguments.scene, arguments.overrides, watch);
+    if (!source) return refuse(source.error());
+    const Result<PlannedRuns> runs = PlannedRuns::make(*plan, source->source, source->scene);
+    if (!runs) return refuse(runs.error());
+    const auto definition = ensemble_definition(*runs, source->source, source->scene, source->name);
+
+    const fs::path path = arguments.output.empty() ? fs::path("talus_out") / (source->short_name + "_ensemble")
+                                                   : fs::path(arguments.output);
+    std::optional<EnsembleFolder> folder;
+    if (ranks.first()) {
+        Result<EnsembleFolder> opened = EnsembleFolder::open(path, definition);
+        if (opened) folder.emplace(*std::move(opened));
+        if (!ranks.hear_first(folder.has_value())) return fail(exit_code::bad_input, opened.error().message);
+    } else {
+        if (!ranks.hear_first(false)) return exit_code::bad_input;
+        folder.emplace(EnsembleFolder::join(path));
+    }
+
+    Teller teller(arguments.quiet || !ranks.first(), arguments.json && ranks.first());
+    EnsembleOptions options;
+    options.shard_count = shard->second * static_cast<std::size_t>(ranks.count());
+    options.shard = shard->first + shard->second * static_cast<std::size_t>(ranks.rank());
+    options.retry_failed = arguments.retry_failed;
+    options.stop_requested = &watch.stop_requested();
+    options.on_progress = [&](const EnsembleProgress& progress) { teller.tell(progress); };
+    share_threads(arguments, *runs, ranks.count(), options);
+
+    const Result<EnsembleOutcome> outcome = run_ensemble(*runs, source->source, *folder, options);
+    teller.clear();
+    if (!outcome) (void)fail(exit_code::failure, outcome.error().message);
+    const long broken = ranks.sum(outcome ? 0 : 1);
+    const long interrupted = ranks.sum(outcome && outcome->interrupted ? 1 : 0);
+    const long done = ranks.sum(outcome ? static_cast<long>(outcome->done + outcome->failed) : 0);
+    if (broken > 0) return exit_code::failure;
+    if (!ranks.first()) return interrupted > 0 ? exit_code::interrupted : exit_code::success;
+    if (interrupted > 0) {
+        return fail(exit_code::interrupted,
+                    fmt::format("interrupted with {} runs done in {}; the same command goes on from there", done,
+                                path.string()));
+    }
+    if (shard->second > 1) {
+        if (!arguments.quiet && !arguments.json)
+            print(fmt::format("shard {} is complete: {} runs in {}; talus ensemble merge puts shards together\n",
+                              arguments.shard, done, path.string()));
+        if (arguments.json) print(fmt::format("{{\"event\":\"shard\",\"runs_done\":{}}}\n", done));
+        return exit_code::success;
+    }
+    return write_results(*source, *runs, {path}, path, arguments.quiet, arguments.json, teller);
+}
+
+int merge_command(const MergeArguments& arguments) {
+    if (!arguments.data.empty()) set_data_folder(arguments.data);
+    InterruptWatch watch;
+    if (arguments.output.empty() && arguments.folders.size() > 1) {
+        return fail(exit_code::bad_input,
+                    "several folders are given; name the one to put them together in with --output");
+    }
+    const Result<nlohmann::ordered_json> definition = read_definition(arguments.folders.front());
+    if (!definition) return fail(exit_code::bad_input, definition.error().message);
+    for (const std::string& folder : arguments.folders) {
+        const auto other = read_definition(folder);
+        if (!other) return fail(exit_code::bad_input, other.error().message);
+        if (const std::string differs = difference(*other, *definition); !differs.empty()) {
+            return fail(exit_code::bad_input, fmt::format("{}: is part of another ensemble than {} ({})", folder,
+                                                          arguments.folders.front(), differs));
+        }
+    }
+    Result<EnsemblePlan> plan = plan_of(*definition);
+    if (!plan) return fail(exit_code::bad_input, plan.error().message);
+    if (Status s = set_thresholds(plan->thresholds, arguments.depths, arguments.speeds, arguments.pressures); !s) {
+        return fail(exit_code::bad_input, s.error().message);
+    }
+    const std::string scene = arguments.scene.empty() ? definition->value("scene", "") : arguments.scene;
+    const Result<Source> source = open_scene(scene, definition->value("overrides", std::vector<std::string>()), watch);
+    if (!source)
+        return fail(exit_code::bad_input,
+                    source.error().message + (arguments.scene.empty() ? "; --scene says where it lies now" : ""));
+    const Result<PlannedRuns> runs = PlannedRuns::make(*plan, source->source, source->scene);
+    if (!runs) return fail(exit_code::bad_input, runs.error().message);
+    const auto made = ensemble_definition(*runs, source->source, source->scene, source->name);
+    if (const std::string differs = difference(*definition, made); !differs.empty()) {
+        return fail(exit_code::bad_input,
+                    fmt::format("{}: is no longer the scene of this ensemble ({})", scene, differs));
+    }
+
+    const fs::path path = arguments.output.empty() ? arguments.folders.front() : arguments.output;
+    const Result<EnsembleFolder> folder = EnsembleFolder::open(path, *definition);
+    if (!folder) return fail(exit_code::bad_input, folder.error().message);
+    for (const std::string& from : arguments.folders) {
+        if (Status s = take_runs(from, *folder, runs->count()); !s)
+            return fail(exit_code::bad_input, s.error().message);
+    }
+    Teller teller(arguments.quiet, arguments.json);
+    return write_results(*source, *runs, {path}, path, arguments.quiet, arguments.json, teller);
+}
+
+}  // namespace talus

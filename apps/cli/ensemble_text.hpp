@@ -1,0 +1,23 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "calibrate/ensemble.hpp"
+#include "calibrate/ensemble_products.hpp"
+
+namespace talus {
+
+/// What an ensemble found, for a terminal.
+[[nodiscard]] std::string ensemble_text(const EnsembleResult& result, const std::filesystem::path& folder);
+
+/// The same as one JSON object in a line: {"event": "result", ...}.
+[[nodiscard]] std::string ensemble_json(const EnsembleResult& result, const std::filesystem::path& folder);
+
+/// "12 of 64 runs, 1 failed, 8.2 runs per minute, about 6:20 left".
+[[nodiscard]] std::string progress_text(const EnsembleProgress& progress);
+
+/// The same as one JSON object in a line: {"event": "progress", ...}.
+[[nodiscard]] std::string progress_json(const EnsembleProgress& progress);
+
+}  // namespace talus

@@ -1,0 +1,62 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "core/grid.hpp"
+#include "core/result.hpp"
+#include "observe/observation.hpp"
+#include "scene/run.hpp"
+#include "scene/scene.hpp"
+
+/// What an ensemble keeps of each run: a small file with a line of JSON (values, scalar results, buildings) and the
+/// peak maps as they are, so that anything can be counted later without running again.
+namespace talus {
+
+/// A scalar result of a run.
+struct Measure {
+    std::string key;   ///< "run_out_m", "observation[0].front_velocity_mps"
+    std::string name;  ///< "Run-out along the path"
+    std::string unit;  ///< "m"
+};
+
+/// The scalar results of every run of a scene, in a fixed order.
+[[nodiscard]] std::vector<Measure> measures_of(const Scene& scene);
+
+/// The values of measures_of; NaN where a run gives none.
+[[nodiscard]] std::vector<double> measure(const Scene& scene, const RunResult& result);
+
+struct RunRecord {
+    std::size_t run = 0;              ///< index in the plan
+    std::string fault;                ///< why there is no result; empty: complete
+    std::vector<std::string> values;  ///< of the factors
+    std::vector<double> results;      ///< as measures_of
+    std::vector<BuildingImpact> buildings;
+    double simulated_time = 0, wall_time = 0;  ///< s
+    std::uint32_t particles = 0;
+    std::string hash;       ///< of the state at the end
+    GridGeometry geometry;  ///< of the maps; no cells: debris reached nothing
+
+    [[nodiscard]] bool complete() const { return fault.empty(); }
+};
+
+/// The maps that a record holds, in the order of the file.
+inline constexpr std::array<Grid<float> HazardMaps::*, 5> recorded_maps = {
+    &HazardMaps::peak_depth, &HazardMaps::peak_speed, &HazardMaps::peak_pressure, &HazardMaps::arrival_time,
+    &HazardMaps::deposit_depth};
+
+/// Writes under another name first, so that a file that bears its name is whole. `maps` all have record.geometry.
+[[nodiscard]] Status write_run_record(const std::filesystem::path& file, const RunRecord& record,
+                                      const HazardMaps& maps);
+
+/// The record without its maps. Errors: missing, cut off, not such a file.
+[[nodiscard]] Result<RunRecord> read_run_record(const std::filesystem::path& file);
+
+/// Rows [first, last) of one map of the record (index into recorded_maps), NaN where debris never came.
+[[nodiscard]] Result<std::vector<float>> read_map_rows(const std::filesystem::path& file, const RunRecord& record,
+                                                       std::size_t map, int first, int last);
+
+}  // namespace talus

@@ -1,0 +1,21 @@
+#!/usr/bin/env bash
+# An ensemble over the ranks of mpirun is the same as in one process, byte for byte.
+#   ensemble_ranks.sh PROGRAM MPIRUN
+set -euo pipefail
+
+program=$1 mpirun=$2
+export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 OMPI_MCA_rmaps_base_oversubscribe=1
+folder=$(mktemp -d)
+trap 'rm -rf "$folder"' EXIT
+ensemble=(ensemble --vary material.friction_coefficient=0.2:0.5 --runs 4 --set solver.target_particle_count=200
+          --set solver.end_time_s=4 --quiet)
+"$program" "${ensemble[@]}" -o "$folder/one"
+"$mpirun" -n 3 "$program" "${ensemble[@]}" -o "$folder/three"
+for file in probability_depth_0.1m.tif peak_depth_p95.tif buildings.csv distributions.csv statistics.json; do
+    cmp "$folder/one/$file" "$folder/three/$file"
+done
+# All ranks stop at bad input, and one of them says why.
+status=0
+"$mpirun" -n 2 "$program" ensemble --vary material.viscosity=0.2:0.1 -o "$folder/bad" 2>"$folder/error" || status=$?
+((status == 2))
+(($(grep -c "talus: error:" "$folder/error") == 1))

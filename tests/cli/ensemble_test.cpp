@@ -1,0 +1,99 @@
+#include <filesystem>
+#include <signal.h>
+#include <string>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "cli/program.hpp"
+#include "cli/small_scene.hpp"
+
+namespace talus::test {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::HasSubstr;
+
+std::vector<std::string> command(const std::string& output, const std::vector<std::string>& more = {}) {
+    std::vector<std::string> arguments = {"ensemble", "slope.toml",
+                                          "--vary",   "material.friction_coefficient=0.1:0.5",
+                                          "--vary",   "release.thickness_m=0.2:0.5",
+                                          "--runs",   "4",
+                                          "-o",       output};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return arguments;
+}
+
+TEST(Ensemble, ShardsPutTogetherAreTheWholeByteForByte) {
+    const SmallScene scene;
+    const ProgramOptions here{.folder = scene.folder()};
+    const auto whole = run_program(command("whole"), here);
+    ASSERT_EQ(whole.exit_code, 0) << whole.error;
+    EXPECT_THAT(whole.out, HasSubstr("4 of 4 runs complete, 0 failed"));
+    EXPECT_THAT(whole.out, HasSubstr("whole/report.html"));
+    ASSERT_EQ(run_program(command("first", {"--shard", "1/2"}), here).exit_code, 0);
+    ASSERT_EQ(run_program(command("second", {"--shard", "2/2", "--threads", "1"}), here).exit_code, 0);
+    EXPECT_FALSE(fs::exists(scene.folder() / "first/report.html"));
+    const auto merged = run_program({"ensemble", "merge", "first", "second", "-o", "both"}, here);
+    ASSERT_EQ(merged.exit_code, 0) << merged.error;
+    for (const char* file : {"probability_depth_0.1m.tif", "peak_speed_p95.tif", "arrival_time_p50.tif",
+                             "buildings.csv", "distributions.csv", "sensitivity.csv", "statistics.json"}) {
+        EXPECT_EQ(read_text(scene.folder() / "whole" / file), read_text(scene.folder() / "both" / file)) << file;
+    }
+}
+
+TEST(Ensemble, CountsAgainWithOtherThresholds) {
+    const SmallScene scene;
+    const ProgramOptions here{.folder = scene.folder()};
+    ASSERT_EQ(run_program(command("result", {"--quiet"}), here).exit_code, 0);
+    const auto again = run_program({"ensemble", "merge", "result", "--depth-m", "0.25", "--json"}, here);
+    ASSERT_EQ(again.exit_code, 0) << again.error;
+    const auto event = nlohmann::json::parse(lines_of(again.out).back());
+    EXPECT_EQ(event.at("event"), "result");
+    EXPECT_EQ(event.at("complete"), 4);
+    EXPECT_EQ(event.at("thresholds").at("depth_m"), nlohmann::json({0.25}));
+    EXPECT_TRUE(fs::exists(scene.folder() / "result/probability_depth_0.25m.tif"));
+    EXPECT_FALSE(fs::exists(scene.folder() / "result/probability_depth_0.1m.tif"));  // counted no more
+}
+
+TEST(Ensemble, AnInterruptedOneGoesOn) {
+    const SmallScene scene;
+    scene.replace("end_time_s = 1", "end_time_s = 6");
+    scene.replace("particle_spacing_m = 0.8", "particle_spacing_m = 0.5");
+    ProgramOptions options{.folder = scene.folder()};
+    options.wait_for = "\"runs_done\":1";
+    options.while_running = [](int process) { kill(process, SIGINT); };
+    const auto first = run_program(command("result", {"--json", "--threads", "1"}), options);
+    ASSERT_EQ(first.exit_code, 130) << first.error;
+    EXPECT_THAT(first.error, HasSubstr("the same command goes on from there"));
+    EXPECT_FALSE(fs::exists(scene.folder() / "result/report.html"));
+    const auto rest = run_program(command("result", {"--quiet"}), {.folder = scene.folder()});
+    EXPECT_EQ(rest.exit_code, 0) << rest.error;
+    EXPECT_TRUE(fs::exists(scene.folder() / "result/report.html"));
+}
+
+TEST(Ensemble, BadInputIsOneLineAndLeavesNothing) {
+    const SmallScene scene;
+    const auto before = scene.files();
+    const auto expect = [&](const std::vector<std::string>& arguments, const std::string& part) {
+        const auto outcome = run_program(arguments, {.folder = scene.folder()});
+        EXPECT_EQ(outcome.exit_code, 2) << part;
+        EXPECT_EQ(lines_of(outcome.error).size(), 1u) << outcome.error;
+        EXPECT_THAT(outcome.error, HasSubstr(part));
+    };
+    expect({"ensemble", "slope.toml", "-o", "x"}, "there is nothing to vary");
+    expect({"ensemble", "nix.toml", "--vary", "material.viscosity=0:0.1", "-o", "x"}, "nix.toml");
+    expect(command("x", {"--vary", "material.viscosity=0.2:0.1"}), "the range is empty");
+    expect(command("x", {"--vary", "material.viscosity=0.2:2"}), "material.viscosity = 2 is refused");
+    expect(command("x", {"--depth-m", "1,half"}), "--depth-m = \"1,half\" is refused");
+    expect(command("x", {"--shard", "3/2"}), "i from 1 to n");
+    expect(command("x", {"--design", "best"}), "must be one of monte_carlo, latin_hypercube");
+    expect(command("x", {"--plan", "nix.toml"}), "nix.toml");
+    expect({"ensemble", "merge", "nix"}, "is no ensemble of talus");
+    EXPECT_EQ(scene.files(), before);
+}
+
+}  // namespace
+}  // namespace talus::test
