@@ -27,7 +27,7 @@ struct Journal {
     std::string scene_file;  ///< absolute, or "built-in:sham_tseng/scene.toml"
     std::vector<std::string> overrides;
     std::vector<InputFile> inputs;
-    nlohmann::json first_setup;  ///< write_setup
+    nlohmann::json first_setup = nlohmann::json::object();  ///< write_setup
     NextNumbers next;
     std::vector<JournalEntry> entries;
     std::uint64_t steps = 0;
