@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "bench/calibration.hpp"
+#include "bench/figure.hpp"
 #include "bench/measure.hpp"
 #include "bench/scenes.hpp"
 #include "bench/table.hpp"
@@ -90,7 +91,9 @@ Outcome measure_all(const Plan& plan, const fs::path& builtin_scene, const Inter
 
 int bench_command(const BenchArguments& arguments) {
     InterruptWatch watch;
-    if (Status s = check_output_file(arguments.json); !s) return fail(exit_code::bad_input, s.error().message);
+    for (const std::string& file : {arguments.json, arguments.svg}) {
+        if (Status s = check_output_file(file); !s) return fail(exit_code::bad_input, s.error().message);
+    }
     const Plan plan(arguments);
     const TemporaryFolder unpacked;
     if (unpacked.path().empty()) return fail(exit_code::failure, "cannot make a temporary folder; set TMPDIR");
@@ -110,8 +113,9 @@ int bench_command(const BenchArguments& arguments) {
     if (outcome.code != exit_code::success) return fail(outcome.code, outcome.problem);
     (void)std::fputs(bench::table_text(outcome.rows).c_str(), stdout);
     if (watch.stop_requested()) return exit_code::interrupted;
-    if (arguments.json.empty()) return exit_code::success;
-    const Status written = write_text_file(arguments.json, bench::table_json(outcome.rows));
+    Status written;
+    if (!arguments.json.empty()) written = write_text_file(arguments.json, bench::table_json(outcome.rows));
+    if (written && !arguments.svg.empty()) written = write_text_file(arguments.svg, bench::scaling_svg(outcome.rows));
     return written ? exit_code::success : fail(exit_code::failure, written.error().message);
 }
 

@@ -23,6 +23,15 @@ struct RunArguments {
 };
 int run_command(const RunArguments& arguments);
 
+struct ReplayArguments {
+    std::string journal;
+    std::string scene;  ///< in place of the journal's; empty: that one
+    std::optional<int> threads;
+    std::string data;
+    bool quiet = false;
+};
+int replay_command(const ReplayArguments& arguments);
+
 struct ServeArguments {
     std::string scene;  ///< a scene file; empty: the built-in scene
     std::string host = "127.0.0.1";
@@ -64,7 +73,7 @@ struct BenchArguments {
     bool full = false;                         ///< particles up to a million
     int iterations = 4, repeats = 7;
     std::optional<int> steps, warm_up;  ///< left out: by the number of particles
-    std::string json;                   ///< a file to write; empty: none
+    std::string json, svg;              ///< files to write; empty: none
 };
 int bench_command(const BenchArguments& arguments);
 

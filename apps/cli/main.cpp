@@ -30,6 +30,7 @@ Examples:
   talus scene new --dem dem.tif --release scar.geojson --thickness-m 1.5 -o my_scene
                                             a commented scene from your own terrain, ready to run
   talus scene check my_scene/scene.toml     what a scene reads and means, without running it
+  talus replay session.json                 runs a saved live session again and compares its result
   talus validate --quick                    computes cases whose results are known, and prints one table
   talus serve                               the built-in scene live in the browser: watch, steer and share it
   talus bench                               how fast talus is here: milliseconds per stage, particles per second
@@ -50,6 +51,19 @@ styles), front.csv, timeseries.csv, buildings.csv, results.gpkg, manifest.json a
 --convergence and --vary compare front velocity at every observation, arrival (first building hit; where none is, the
 front at 90 % of its way) and run-out with the scene as given: on the terminal, in convergence.csv and variants.csv, in
 the report, the manifest and --json. --convergence passes where nothing changes by more than 5 %.
+)";
+
+constexpr const char* replay_help = R"(
+A journal is what a live session can save (the page's menu, or GET /api/scenarios/A/journal): the scene, and everything
+that people did with the step before which they did it. The same actions at the same steps give the same result, to the
+last bit, on any number of threads.
+
+Exit codes:
+    0  the same result: the hash of the last step is that of the session
+    1  the machine failed: out of memory
+    2  bad input: the journal, its scene or a file it names
+    3  the result is another
+  130  interrupted by Ctrl-C
 )";
 
 constexpr const char* validate_help = R"(
@@ -196,6 +210,19 @@ int talus_main(int argc, char** argv) {
 
     run_app->footer([] { return run_help + scene_reference_text(); });
 
+    ReplayArguments replay;
+    CLI::App* replay_app =
+        app.add_subcommand("replay", "run the journal of a live session again and compare the result");
+    replay_app->add_option("journal", replay.journal, "journal of a session")->required()->type_name("JOURNAL");
+    replay_app->add_option("--scene", replay.scene, "scene file; left out: the one that the journal names")
+        ->type_name("SCENE");
+    replay_app->add_option("--threads", replay.threads, "number of threads; left out: as in the scene")
+        ->type_name("N")
+        ->check(CLI::Range(1, 4096));
+    add_scene_inputs(*replay_app, replay.data);
+    replay_app->add_flag("--quiet", replay.quiet, "print nothing but errors and what has changed");
+    replay_app->footer(replay_help);
+
     CLI::App* scene_app = app.add_subcommand("scene", "make, check and explain scene files");
     scene_app->require_subcommand(1);
 
@@ -286,6 +313,8 @@ int talus_main(int argc, char** argv) {
         ->type_name("N")
         ->check(CLI::Range(0, 100000));
     bench_app->add_option("--json", bench.json, "write the rows as a list of objects")->type_name("FILE");
+    bench_app->add_option("--svg", bench.svg, "draw particle-iterations per second against particles")
+        ->type_name("FILE");
     bench_app->footer(bench_help);
 
     app.footer(program_help);  // last: commands made after it would inherit it
@@ -299,6 +328,7 @@ int talus_main(int argc, char** argv) {
     }
 
     if (*run_app) return run_command(run);
+    if (*replay_app) return replay_command(replay);
     if (*serve_app) return serve_command(serve);
     if (*check_app) return check_command(check);
     if (*new_app) return new_command(create);

@@ -8,7 +8,6 @@
 
 #include <fmt/format.h>
 
-#include "builtin_names.hpp"
 #include "commands.hpp"
 #include "exit_code.hpp"
 #include "interrupt.hpp"

@@ -145,7 +145,7 @@ class Measurement {
     }
 
     struct Run {
-        double wall_time = 0, processor_time = 0, server_time = 0;  // s
+        double wall_time = 0, processor_time = 0, loop_time = 0, server_time = 0;  // s; the last three of processors
         double frame_rate = 0, frame_bytes = 0;
     };
     /// The whole run from time 0 to its end, beside so many viewers.
@@ -156,7 +156,8 @@ class Measurement {
         while (watch.wait_for("state")["step"] != 0) {
         }
         const std::uint64_t frames = looking.frames(), bytes = looking.bytes();
-        const double processor = program_.processor_time(), server = program_.processor_time("server");
+        const double processor = program_.processor_time(), loop = program_.processor_time("loop");
+        const double server = program_.processor_time("server");
         const auto begin = Clock::now();
         act({{"action", "run"}});
         std::string status;
@@ -169,6 +170,7 @@ class Measurement {
         Run result;
         result.wall_time = seconds_since(begin);
         result.processor_time = program_.processor_time() - processor;
+        result.loop_time = program_.processor_time("loop") - loop;
         result.server_time = program_.processor_time("server") - server;
         const auto got = static_cast<double>(looking.frames() - frames);
         if (viewers > 0) result.frame_rate = got / static_cast<double>(viewers) / result.wall_time;
@@ -189,12 +191,13 @@ class Measurement {
 void measure(int particles, int threads, int repeats) {
     Measurement measurement(particles, threads);
     measurement.run(0);  // caches and clocks warm up
-    std::vector<double> alone, with_one, loss, one_rate, cost, server, rate, bytes;
+    std::vector<double> alone, with_one, loss, loop_loss, one_rate, cost, server, rate, bytes;
     for (int i = 0; i < repeats; ++i) {
         const auto none = measurement.run(0), one = measurement.run(1), many = measurement.run(crowd);
         alone.push_back(none.wall_time);
         with_one.push_back(one.wall_time);
         loss.push_back(1 - none.wall_time / one.wall_time);
+        loop_loss.push_back(1 - none.loop_time / one.loop_time);
         one_rate.push_back(one.frame_rate);
         cost.push_back((many.processor_time - none.processor_time) / many.wall_time);
         server.push_back(many.server_time / many.wall_time);

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "builtin_scene_files.hpp"
+#include "params/fields.hpp"
 
 namespace talus {
 
@@ -21,6 +22,34 @@ Result<std::filesystem::path> unpack_builtin_scene(const std::filesystem::path& 
         if (!stream) return Error{fmt::format("{}: cannot write this file; is the disk full?", path.string())};
     }
     return folder / "scene.toml";
+}
+
+void name_builtin_files(Scene& scene, const std::filesystem::path& folder) {
+    const std::string prefix = (folder / "").string();
+    const auto named = [&](const std::string& path) {
+        if (!path.starts_with(prefix)) return path;
+        return fmt::format("built-in:{}/{}", builtin_scene_name, path.substr(prefix.size()));
+    };
+    scene.file = named(scene.file.string());
+    for (InputFile& input : scene.inputs) input.path = named(input.path);
+    for (const Section& section : scene_sections()) {
+        for (std::size_t index = 0; index < section.count(scene.spec); ++index) {
+            for (const Parameter& parameter : section.parameters) {
+                const ParameterValue value = parameter.get(scene.spec, index);
+                const auto* path = std::get_if<std::string>(&value);
+                if (parameter.kind == ParameterKind::path && path) parameter.set(scene.spec, index, named(*path));
+            }
+        }
+    }
+}
+
+Result<Scene> load_builtin_scene(const std::filesystem::path& folder, const std::vector<std::string>& overrides) {
+    const auto file = unpack_builtin_scene(folder);
+    if (!file) return file.error();
+    auto scene = load_scene(*file, overrides);
+    if (!scene) return scene.error();
+    name_builtin_files(*scene, folder);
+    return scene;
 }
 
 }  // namespace talus

@@ -1,9 +1,12 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
 #include <string_view>
+#include <vector>
 
 #include "core/result.hpp"
+#include "scene/scene.hpp"
 
 namespace talus {
 
@@ -13,5 +16,13 @@ inline constexpr std::string_view builtin_scene_name = "sham_tseng";
 /// Writes the files of the built-in scene into `folder`, which is made if absent, and returns its scene file.
 /// Files of the same name are replaced. Errors: the folder cannot be made, a file cannot be written.
 [[nodiscard]] Result<std::filesystem::path> unpack_builtin_scene(const std::filesystem::path& folder);
+
+/// Names all files of a scene that was loaded from `folder` "built-in:sham_tseng/...": paths into a temporary folder
+/// would mean nothing to the reader of a manifest or a journal.
+void name_builtin_files(Scene& scene, const std::filesystem::path& folder);
+
+/// The built-in scene, unpacked into `folder`, which is no longer needed then, with its files so named.
+[[nodiscard]] Result<Scene> load_builtin_scene(const std::filesystem::path& folder,
+                                               const std::vector<std::string>& overrides = {});
 
 }  // namespace talus

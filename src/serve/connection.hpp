@@ -5,6 +5,7 @@
 #include <boost/beast/core/tcp_stream.hpp>
 #include <boost/beast/http/message.hpp>
 #include <boost/beast/http/string_body.hpp>
+#include <chrono>
 
 #include "serve/access.hpp"
 #include "serve/router.hpp"
@@ -24,8 +25,9 @@ struct Desk {
     Router router;
     Session& session;
     Site site;
-    std::size_t connections = 0;   ///< open ones
-    std::size_t people_limit = 0;  ///< WebSockets at once, at most
+    std::chrono::milliseconds patience;  ///< with a connection that is silent, or takes its time for a header
+    std::size_t connections = 0;         ///< open ones
+    std::size_t people_limit = 0;        ///< WebSockets at once, at most
 };
 
 inline constexpr std::size_t largest_header = 16 * 1024, largest_body = 1024 * 1024, largest_message = 64 * 1024;

@@ -20,8 +20,6 @@ namespace {
 
 using std::chrono::seconds;
 
-constexpr seconds idle_time{60};                   // between requests, the next header included
-constexpr seconds body_time{30};                   // a body of at most a megabyte
 constexpr std::size_t slowest_reader = 16 * 1024;  // bytes per second
 constexpr seconds linger_time{2};
 constexpr std::size_t linger_bytes = 8 * 1024 * 1024;
@@ -73,7 +71,7 @@ void HttpConnection::read_header() {
     request_ = {};
     route_ = nullptr;
     close_ = false;
-    stream_.expires_after(idle_time);
+    stream_.expires_after(desk_.patience);
     http::async_read_header(
         stream_, buffer_, *parser_,
         [self = shared_from_this()](beast::error_code error, std::size_t) { self->on_header(error); });
@@ -172,7 +170,7 @@ std::optional<Response> HttpConnection::refusal() {
 }
 
 void HttpConnection::read_body() {
-    stream_.expires_after(body_time);
+    stream_.expires_after(desk_.patience);
     http::async_read(stream_, buffer_, *parser_, [self = shared_from_this()](beast::error_code error, std::size_t) {
         if (error) {
             self->on_error(error);
@@ -263,7 +261,7 @@ void HttpConnection::write(http::response<http::span_body<const char>> message) 
     message.content_length(body_->size());
     if (request_.method != "HEAD") message.body() = beast::span<const char>(body_->data(), body_->size());
     message_ = std::move(message);
-    stream_.expires_after(idle_time + seconds(body_->size() / slowest_reader));
+    stream_.expires_after(desk_.patience + seconds(body_->size() / slowest_reader));
     http::async_write(stream_, *message_,
                       [self = shared_from_this()](beast::error_code error, std::size_t) { self->on_written(error); });
 }

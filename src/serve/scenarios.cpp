@@ -188,14 +188,13 @@ Status Scenarios::remove(int index) {
 
 json Scenarios::state(int index) const {
     const Slot& slot = slots_[static_cast<std::size_t>(index)];
-    json state = slot.scenario->state_json();
+    const bool steps = running_ && slot.ready();
+    json state = slot.scenario->state_json(!steps);
     state["scenario"] = name_of(index);
     state["speed_factor"] = pace_.factor() ? json(*pace_.factor()) : json();
-    const bool steps = running_ && slot.ready();
     state["real_time_factor"] = steps ? slot.rate.real_time_factor() : 0.0;
     state["steps_per_second"] = steps ? slot.rate.steps_per_second() : 0.0;
     if (slot.ready()) state["status"] = running_ ? "running" : "paused";
-    if (steps) state.erase("hash");
     return state;
 }
 

@@ -58,14 +58,15 @@ struct Server::Parts {
     void accept();
     [[nodiscard]] Thread thread_of_session();
 
+    // Connections end with `io`, and so before what they use.
     ServerOptions options;
+    std::optional<Session> session;
+    std::optional<Exports> exports;
+    std::optional<Desk> desk;
     asio::io_context io{1};
     tcp::acceptor acceptor;
     asio::steady_timer retry, ticker;
     asio::executor_work_guard<asio::io_context::executor_type> guard;
-    std::optional<Session> session;
-    std::optional<Exports> exports;
-    std::optional<Desk> desk;
     std::size_t connection_limit = 0;
     tcp::endpoint bound;
     std::thread thread;
@@ -74,7 +75,7 @@ struct Server::Parts {
 Server::Parts::~Parts() {
     io.stop();
     if (thread.joinable()) thread.join();
-    // The simulation's thread ends while everything that it tells is still there; connections end with `io`.
+    // Its threads end while everything that they tell is still there.
     if (session) session->close();
 }
 
@@ -147,7 +148,8 @@ Status Server::serve(std::shared_ptr<const Scene> scene) {
     parts.connection_limit = raise_connection_limit();
     parts.desk.emplace(
         Desk{Access(options.tokens, bracketed(parts.bound.address()), parts.bound.port(), options.allowed_hosts),
-             make_api(*parts.session, *parts.exports), *parts.session, Site(), 0, parts.connection_limit / 2});
+             make_api(*parts.session, *parts.exports), *parts.session, Site(), options.patience, 0,
+             parts.connection_limit / 2});
     if (options.run) {
         parts.session->loop().post([](Scenarios& all) { (void)all.act(0, {{"action", "run"}}, ""); });
     }

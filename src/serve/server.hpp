@@ -1,5 +1,6 @@
 #pragma once
 
+#include <chrono>
 #include <cstdint>
 #include <filesystem>
 #include <functional>
@@ -22,6 +23,7 @@ struct ServerOptions {
     Tokens tokens;
     std::filesystem::path export_folder;  ///< an existing folder for result files
     twin::ScenarioOptions scenario;
+    std::chrono::milliseconds patience{60000};    ///< how long a connection may be silent, or take for a header
     bool run = false;                             ///< begin at once
     std::function<void(std::string)> on_failure;  ///< the simulation cannot go on: out of memory; from any thread
 };

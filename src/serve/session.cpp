@@ -41,7 +41,14 @@ bool read_mark(const json& at, std::optional<std::array<double, 3>>& mark) {
 Session::Session(Thread thread, std::shared_ptr<const Scene> scene, Tokens tokens)
     : thread_(std::move(thread)), scene_(std::move(scene)), tokens_(std::move(tokens)) {}
 
-Session::~Session() = default;
+Session::~Session() {
+    close();
+}
+
+void Session::close() {
+    loop_.reset();
+    worker_.reset();
+}
 
 Status Session::open(twin::ScenarioOptions options, std::function<void(std::string)> failed) {
     auto loop = Loop::start(scene_, std::move(options), *this, std::move(failed));

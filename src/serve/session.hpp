@@ -44,7 +44,8 @@ class Session final : public Watcher {
 
     /// Opens the scene; once, before anything else. Errors: as Loop::start.
     [[nodiscard]] Status open(twin::ScenarioOptions options, std::function<void(std::string)> failed);
-    void close() { loop_.reset(); }
+    /// Ends the threads; what they were asked is not answered.
+    void close();
 
     /// Sends the newcomer all there is to know. Until `leave`, `viewer` is told what happens.
     void join(Viewer& viewer, Role role, const std::string& name, const std::string& former);
@@ -56,7 +57,7 @@ class Session final : public Watcher {
     [[nodiscard]] Loop& loop() { return *loop_; }
     [[nodiscard]] People& people() { return people_; }
     /// For work of fractions of a second that neither thread should do.
-    [[nodiscard]] Worker& worker() { return worker_; }
+    [[nodiscard]] Worker& worker() { return *worker_; }
     [[nodiscard]] const std::shared_ptr<const Scene>& scene() const { return scene_; }
     /// Tells everybody, soon.
     void people_changed();
@@ -103,8 +104,8 @@ class Session final : public Watcher {
     std::array<std::optional<FrameSet>, Scenarios::most> arrived_;  // from the loop; guarded by the mutex
     bool delivery_posted_ = false;                                  // likewise
 
-    Worker worker_;
-    std::unique_ptr<Loop> loop_;  // last: its thread ends before anything that it tells goes
+    std::unique_ptr<Worker> worker_ = std::make_unique<Worker>();
+    std::unique_ptr<Loop> loop_;
 };
 
 }  // namespace talus::serve

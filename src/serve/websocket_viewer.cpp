@@ -77,7 +77,7 @@ class WebSocketViewer final : public Viewer, public std::enable_shared_from_this
 void WebSocketViewer::accept(HttpRequest request) {
     websocket::stream_base::timeout timeout{};
     timeout.handshake_timeout = seconds(10);
-    timeout.idle_timeout = seconds(30);
+    timeout.idle_timeout = desk_.patience / 2;  // half of that in silence, and it is asked whether it is still there
     timeout.keep_alive_pings = true;
     socket_.set_option(timeout);
     socket_.read_message_max(largest_message);

@@ -1,6 +1,9 @@
 #include "sim/relax.hpp"
 
+#include <cmath>
 #include <limits>
+#include <numeric>
+#include <utility>
 
 #include "sim/cpu/backend.hpp"
 #include "sim/step.hpp"
@@ -10,7 +13,7 @@ namespace {
 
 /// Runs rounds of a step without inertia until `done` says so: velocities are forgotten after each.
 template <class Done>
-void creep(const Model& model, State& state, int most_rounds, const Done& done) {
+void creep(const Model& model, State& state, int most_rounds, Done done) {
     cpu::Backend backend(model, state.count);
     StageTimes times;
     for (int round = 0; round < most_rounds; ++round) {
@@ -21,6 +24,23 @@ void creep(const Model& model, State& state, int most_rounds, const Done& done) 
         if (done(state)) break;
     }
 }
+
+/// Says after every tenth round whether pressures have stopped to grow.
+class LoadWatch {
+  public:
+    bool operator()(const State& state) {
+        if (++round_ % interval != 0) return false;
+        const double load = std::accumulate(state.multiplier.begin(), state.multiplier.begin() + state.count, 0.0);
+        const double before = std::exchange(load_, load);
+        return std::abs(load - before) < carried * std::abs(load);
+    }
+
+  private:
+    static constexpr int interval = 10;
+    static constexpr double carried = 0.01;
+    int round_ = 0;
+    double load_ = 0;
+};
 
 /// The model without anything that drives or holds debris back.
 Model without_forces(const Model& model) {
@@ -36,7 +56,7 @@ Model without_forces(const Model& model) {
 
 }  // namespace
 
-void relax(const Model& model, State& state) {
+void relax(const Model& model, State& state, const std::vector<float>& overburden) {
     constexpr double dense_enough = 0.005;
     constexpr int most_rounds = 400, loading_rounds = 200;
     Model still = without_forces(model);
@@ -49,8 +69,12 @@ void relax(const Model& model, State& state) {
     still.solver.internal_friction = model.solver.internal_friction;
     still.friction_coefficient = model.friction_coefficient;
     still.building_friction_coefficient = model.building_friction_coefficient;
-    state.time_step = model.solver.largest_time_step / 4;
-    creep(still, state, loading_rounds, [](const State&) { return false; });
+    state.time_step = state.previous_time_step = model.solver.largest_time_step / 4;
+    const double scale = -model.gravity * state.time_step * state.time_step;
+    for (std::uint32_t i = 0; i < state.count; ++i) {
+        state.multiplier[i] = static_cast<float>(scale * overburden[state.id[i]]);
+    }
+    creep(still, state, loading_rounds, LoadWatch());
     state.time = 0;
     state.step = 0;
 }

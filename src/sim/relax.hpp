@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <vector>
 
 #include "sim/model.hpp"
 #include "sim/state.hpp"
@@ -25,8 +26,9 @@ void put_out_of_solids(const Model& model, LocalPoint& p, const OnWall& on_wall)
 /// Brings the seeded lattice to rest: first pushed apart, without gravity, until it is nowhere denser than rest; then
 /// loaded by gravity until it carries its own weight, in steps so short that a slope steeper than its friction angle
 /// hardly moves meanwhile. Without the second part friction would find no pressure to work with in the first steps, and
-/// the mass would start with a jolt.
-void relax(const Model& model, State& state);
+/// the mass would start with a jolt. `overburden`, by id: thickness above a particle, m, whose weight along the normal
+/// is the first guess of its pressure.
+void relax(const Model& model, State& state, const std::vector<float>& overburden);
 
 /// Pushes what is denser than at rest apart, without gravity, friction or inertia, until it hardly is any more; held
 /// particles stay where they are. Positions change, time and velocities are lost.

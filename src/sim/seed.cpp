@@ -175,6 +175,7 @@ Result<State> seed_releases(Model& model, const std::vector<Release>& releases) 
     state.resize(count);
     std::iota(state.id.begin(), state.id.begin() + count, 0u);
     model.releases.clear();
+    std::vector<float> overburden(count);
     std::uint32_t next = 0;
     for (std::size_t r = 0; r < releases.size(); ++r) {
         const std::uint32_t first = next;
@@ -185,6 +186,8 @@ Result<State> seed_releases(Model& model, const std::vector<Release>& releases) 
             const double bottom = ground.height + spacing / 2 / ground.normal.z;
             for (int layer = 0; layer < column.particles && next < count; ++layer, ++next) {
                 state.position.set(next, {plan.x, plan.y, static_cast<float>(bottom + layer * spacing)});
+                const double above = (column.particles - layer - 0.5) * spacing;
+                overburden[next] = static_cast<float>(above * ground.normal.z * ground.normal.z);
             }
         }
         model.releases.push_back({releases[r].name, releases[r].start_time, first, next});
@@ -192,7 +195,7 @@ Result<State> seed_releases(Model& model, const std::vector<Release>& releases) 
     state.seeded = state.count = next;
     if (state.count == 0) return state;
     put_out_of_buildings(model, state);
-    relax(model, state);
+    relax(model, state, overburden);
     for (std::uint32_t i = 0; i < state.count; ++i) {
         for (const ReleaseGroup& release : model.releases) {
             const bool own = state.id[i] >= release.first_particle && state.id[i] < release.last_particle;

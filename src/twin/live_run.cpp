@@ -56,6 +56,11 @@ bool LiveRun::has_begun(const std::string& release_id) const {
     return group != nullptr && group->begun;
 }
 
+double LiveRun::start_time_of(const std::string& release_id) const {
+    const Group* group = find_id(groups_, release_id);
+    return model().releases[static_cast<std::size_t>(group - groups_.data())].start_time;
+}
+
 bool LiveRun::not_converged() const {
     return state().mean_compression > mean_compression_limit || state().max_compression > max_compression_limit;
 }
@@ -102,10 +107,10 @@ void LiveRun::take_step() {
     record();
     if (rest_.at_rest(state().time, total_momentum(model(), state()), still_waiting(model(), state()))) {
         stop(Phase::at_rest, rest_.reason());
-    } else if (state().count == 0) {
-        stop(Phase::at_rest, no_debris_reason);
     } else if (reached_end_time(scene_.spec.solver, state())) {
         stop(Phase::ended, end_time_reason(scene_.spec.solver));
+    } else if (state().count == 0) {
+        stop(Phase::at_rest, no_debris_reason);
     }
 }
 

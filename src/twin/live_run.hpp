@@ -41,6 +41,9 @@ class LiveRun {
     /// Whether a release's debris has been let go.
     [[nodiscard]] bool has_begun(const std::string& release_id) const;
 
+    /// s; infinity: it waits for its trigger.
+    [[nodiscard]] double start_time_of(const std::string& release_id) const;
+
     [[nodiscard]] Phase phase() const { return phase_; }
     [[nodiscard]] const std::string& message() const { return message_; }
     [[nodiscard]] const Model& model() const { return simulation_.model(); }

@@ -150,9 +150,9 @@ Result<LiveRun::Change> LiveRun::plan(const Setup& next) const {
     change.model = model();
     set_material(*change.model, next.material);
     if (!change.touched.empty()) {
-        change.model->buildings = change.buildings;
         change.model->solids = BuildingSolids(model().terrain, change.buildings, model().support_radius);
     }
+    change.model->buildings = std::move(change.buildings);
     if (Status s = plan_releases(next, change); !s) return s.error();
     return change;
 }

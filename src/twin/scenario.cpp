@@ -213,7 +213,10 @@ Status Scenario::write_products(const std::filesystem::path& folder) const {
     Scene scene = *p.scene;
     scene.spec.material = p.setup().material;
     scene.releases.clear();
-    for (const ReleaseSetup& release : p.setup().releases) scene.releases.push_back(*release.body);
+    for (const ReleaseSetup& release : p.setup().releases) {
+        scene.releases.push_back(*release.body);
+        scene.releases.back().start_time = p.run->start_time_of(release.id);
+    }
     scene.buildings.clear();
     for (const BuildingSetup& building : p.setup().buildings) scene.buildings.push_back(*building.body);
     for (const BarrierSetup& barrier : p.setup().barriers) scene.buildings.push_back(*barrier.body);

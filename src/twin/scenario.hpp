@@ -80,7 +80,8 @@ class Scenario {
     // Answers, as docs/protocol.md has them. They lack `scenario`, which only the loop knows; state_json() also lacks
     // speed_factor, real_time_factor, steps_per_second, and its "status" is phase_name(phase()).
     [[nodiscard]] nlohmann::json scene_json() const;
-    [[nodiscard]] nlohmann::json state_json() const;
+    /// `with_hash`: it takes milliseconds with many particles.
+    [[nodiscard]] nlohmann::json state_json(bool with_hash = true) const;
     [[nodiscard]] nlohmann::json setup_json() const;
     [[nodiscard]] nlohmann::json series_json() const;
     [[nodiscard]] nlohmann::json impacts_json() const;

@@ -129,7 +129,7 @@ json Scenario::scene_json() const {
             {"intensity", intensity_json()}};
 }
 
-json Scenario::state_json() const {
+json Scenario::state_json(bool with_hash) const {
     const LiveRun& run = *parts_->run;
     const State& state = run.state();
     const TimeSample now = run.observer().sample(run.model(), state);
@@ -138,29 +138,30 @@ json Scenario::state_json() const {
     constexpr double lately = 1;  // s
     const bool advances = !front.empty() && state.time - front.back().arrival_time <= lately;
     const std::vector<Frame>& frames = run.recording().frames();
-    return {{"status", phase_name(run.phase())},
-            {"message", run.message()},
-            {"time_s", state.time},
-            {"end_time_s", scene().spec.solver.end_time},
-            {"step", state.step},
-            {"particles", state.count},
-            {"volume_released_m3", now.volume_released},
-            {"volume_held_m3", now.volume_held},
-            {"volume_moving_m3", now.volume_moving},
-            {"volume_deposited_m3", now.volume_deposited},
-            {"volume_left_m3", now.volume_left},
-            {"front_chainage_m", number_or_null(now.front_chainage)},
-            {"front_velocity_mps", advances ? number_or_null(front.back().front_velocity) : json()},
-            {"largest_speed_mps", number_or_null(state.largest_speed)},
-            {"mean_compression", number_or_null(state.mean_compression)},
-            {"max_compression", number_or_null(state.max_compression)},
-            {"converged", !run.not_converged()},
-            {"recording",
-             {{"first_s", frames.empty() ? json() : json(frames.front().time)},
-              {"last_s", frames.empty() ? json() : json(frames.back().time)},
-              {"frames", frames.size()},
-              {"bytes", run.recording().bytes()}}},
-            {"hash", to_hex(hash())}};
+    json answer = {{"status", phase_name(run.phase())},
+                   {"message", run.message()},
+                   {"time_s", state.time},
+                   {"end_time_s", scene().spec.solver.end_time},
+                   {"step", state.step},
+                   {"particles", state.count},
+                   {"volume_released_m3", now.volume_released},
+                   {"volume_held_m3", now.volume_held},
+                   {"volume_moving_m3", now.volume_moving},
+                   {"volume_deposited_m3", now.volume_deposited},
+                   {"volume_left_m3", now.volume_left},
+                   {"front_chainage_m", number_or_null(now.front_chainage)},
+                   {"front_velocity_mps", advances ? number_or_null(front.back().front_velocity) : json()},
+                   {"largest_speed_mps", number_or_null(state.largest_speed)},
+                   {"mean_compression", number_or_null(state.mean_compression)},
+                   {"max_compression", number_or_null(state.max_compression)},
+                   {"converged", !run.not_converged()},
+                   {"recording",
+                    {{"first_s", frames.empty() ? json() : json(frames.front().time)},
+                     {"last_s", frames.empty() ? json() : json(frames.back().time)},
+                     {"frames", frames.size()},
+                     {"bytes", run.recording().bytes()}}}};
+    if (with_hash) answer["hash"] = to_hex(hash());
+    return answer;
 }
 
 json Scenario::setup_json() const {
@@ -186,7 +187,7 @@ json Scenario::setup_json() const {
                             {"volume_m3", body.volume},
                             {"from_scene", release.scene_index >= 0},
                             {"status", released ? "released" : "held"},
-                            {"start_time_s", number_or_null(body.start_time)}});
+                            {"start_time_s", number_or_null(p.run->start_time_of(release.id))}});
     }
     for (const BarrierSetup& barrier : setup.barriers) {
         barriers.push_back({{"id", barrier.id},

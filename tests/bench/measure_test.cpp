@@ -1,13 +1,16 @@
 #include "bench/measure.hpp"
 
 #include <atomic>
+#include <iterator>
 #include <numeric>
+#include <regex>
 #include <string>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include "bench/figure.hpp"
 #include "bench/table.hpp"
 
 namespace talus::bench {
@@ -144,6 +147,23 @@ TEST(Table, ShowsRatesAndShares) {
         EXPECT_THAT(text, HasSubstr(part));
     }
     EXPECT_THAT(table_text({}), HasSubstr("nothing"));
+}
+
+TEST(Figure, DrawsALinePerSceneMethodAndThreads) {
+    Row small = sample_row(), large = sample_row(), other = sample_row();
+    large.particles = 4 * small.particles;
+    large.step_seconds = 4 * small.step_seconds;  // the same rate
+    other.method = "stress";
+    const std::string svg = scaling_svg({small, large, other});
+    EXPECT_THAT(svg, HasSubstr("slab, pair, 2 threads</text>"));
+    EXPECT_THAT(svg, HasSubstr("slab, stress, 2 threads</text>"));
+    // One line of two points at one height, and three marks.
+    const std::regex level("series c0\" d=\"M[0-9.]+ ([0-9.]+)L[0-9.]+ ([0-9.]+)\"");
+    std::smatch found;
+    ASSERT_TRUE(std::regex_search(svg, found, level)) << svg;
+    EXPECT_EQ(found[1], found[2]);
+    const std::regex mark("class=\"mark c[0-9]\"");
+    EXPECT_EQ(std::distance(std::sregex_iterator(svg.begin(), svg.end(), mark), std::sregex_iterator()), 3);
 }
 
 TEST(Table, JsonHasWhatScriptsRead) {

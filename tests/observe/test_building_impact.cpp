@@ -102,5 +102,22 @@ TEST(ImpactRecorder, first_hit_depth_and_dynamic_pressure_come_from_the_debris_t
     EXPECT_EQ(c.recorder.impacts()[0].name, "untouched");
 }
 
+TEST(ImpactRecorder, buildings_come_behind_and_records_begin_anew) {
+    Collision c(0.2);
+    for (int k = 0; k < 10; ++k) c.step(0.05, 50000, 0, 10);
+    c.model.buildings.push_back({.name = "new"});
+    c.recorder.follow(c.model, c.state);
+    ASSERT_EQ(c.recorder.impacts().size(), 3U);
+    EXPECT_EQ(c.recorder.impacts()[2].name, "new");
+    EXPECT_NEAR(c.house().peak_force, 50000, 1);
+    c.recorder.forget(1);
+    EXPECT_FALSE(c.house().hit);
+    EXPECT_EQ(c.house().peak_force, 0);
+    EXPECT_EQ(c.house().name, "house");
+    for (int k = 0; k < 10; ++k) c.step(0.05, 20000, 0, 10);
+    EXPECT_NEAR(c.house().peak_force, 20000, 1) << "nothing is left of the events before";
+    EXPECT_NEAR(c.house().peak_pressure, 20000 / (10 * 0.16), 1);
+}
+
 }  // namespace
 }  // namespace talus

@@ -206,5 +206,49 @@ TEST(MapAccumulator, maps_end_at_the_terrain_and_exist_even_without_debris) {
     for (const float depth : result.peak_depth.values) EXPECT_TRUE(std::isnan(depth));
 }
 
+TEST(MapAccumulator, shows_debris_as_it_lies_now) {
+    const Model model = test::make_model(0.4);
+    State state = block(0.4, 0, 0, 40, 40, 5, {3, 0, 0});
+    MapAccumulator maps(model, state, 1, 0.1);
+    maps.add(state);
+    test::advance(state, 10);
+    maps.add(state);
+    const auto now = maps.present();
+    const GridGeometry& window = now.depth.geometry;
+    EXPECT_EQ(window.x_min, maps.geometry().x_min + now.first_column * window.cell);
+    EXPECT_EQ(window.y_min, maps.geometry().y_min + now.first_row * window.cell);
+    EXPECT_GE(window.x_min, 1000 + 30 - 10) << "not where it was before";
+    double volume = 0;
+    for (const float depth : now.depth.values) volume += depth;
+    EXPECT_NEAR(volume, state.count * model.particle_volume(), 1e-3);
+    const auto column = static_cast<int>(1038 - window.x_min), row = static_cast<int>(2008 - window.y_min);
+    EXPECT_NEAR(now.depth.at(column, row), 2, 0.1);
+    EXPECT_NEAR(now.speed.at(column, row), 3, 0.01);
+    const MapAccumulator nothing(model, state, 1, 0.1);
+    EXPECT_EQ(nothing.present().depth.values.size(), 0U);
+}
+
+TEST(MapAccumulator, peak_pressures_are_of_the_density_at_their_time) {
+    Model model = test::make_model(0.4);
+    State state = block(0.4, 0, 0, 40, 40, 5, {4, 0, 0});
+    MapAccumulator maps(model, state, 1, 0.1);
+    maps.add(state);
+    model.rest_density = 3000;
+    maps.follow(model, state);
+    const auto pressure_at = [&](double x) {
+        const Grid<float> map = maps.maps().peak_pressure;
+        return map.at(static_cast<int>(x - map.geometry.x_min), static_cast<int>(2008 - map.geometry.y_min));
+    };
+    EXPECT_NEAR(pressure_at(1008), 2000 * 16, 200);
+    maps.add(state);
+    EXPECT_NEAR(pressure_at(1008), 3000 * 16, 300);
+    model.rest_density = 1000;
+    maps.follow(model, state);
+    test::advance(state, 10);
+    maps.add(state);
+    EXPECT_NEAR(pressure_at(1008), 3000 * 16, 300) << "the densest before";
+    EXPECT_NEAR(pressure_at(1048), 1000 * 16, 100) << "reached later";
+}
+
 }  // namespace
 }  // namespace talus

@@ -247,6 +247,7 @@ inline RunResult sample_result(const Scene& scene) {
         const double share = std::min(1.0, t / stop);
         const auto c = static_cast<double>(std::upper_bound(arrival.begin(), arrival.end(), t) - arrival.begin() - 1);
         s.front_chainage = c;
+        s.volume_released = 600;
         s.volume_left = 0;
         s.volume_deposited =
             std::clamp(0.5 * 600 * (1 + 1.06 * std::tanh((t - stop + 4) / 5)), 0.0, 600.0) * (t > 2 ? 1 : 0);

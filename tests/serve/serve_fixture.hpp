@@ -21,7 +21,7 @@ class Serve : public ::testing::Test {
     /// Does not end by itself; simulated time passes as wall time does.
     void SetUp() override { start(); }
 
-    void start(const std::vector<std::string>& overrides = {}) {
+    void start(const std::vector<std::string>& overrides = {}, Milliseconds patience = Milliseconds(60000)) {
         server_.reset();
         std::vector<std::string> all{"solver.end_time_s=1000"};
         all.insert(all.end(), overrides.begin(), overrides.end());
@@ -31,6 +31,7 @@ class Serve : public ::testing::Test {
         options.port = 0;
         options.tokens = {controller, viewer};
         options.export_folder = scene_.folder();
+        options.patience = patience;
         options.allowed_hosts = {"twin.example.org"};
         auto server = serve::Server::listen(std::move(options));
         ASSERT_TRUE(server) << server.error().message;

@@ -52,7 +52,7 @@ TEST_F(Web, frames_come_at_the_wanted_rate_while_it_runs) {
     int frames = 0, states = 0;
     std::uint64_t last_step = 0;
     while (Clock::now() < end) {
-        const auto message = eye.receive(Milliseconds(500));
+        const auto message = eye.receive(Milliseconds(2000));
         ASSERT_TRUE(message);
         if (message->text) {
             states += json::parse(message->data)["type"] == "state" ? 1 : 0;

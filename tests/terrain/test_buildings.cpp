@@ -51,6 +51,19 @@ TEST(BuildingSolids, distances_and_normals_of_a_box_are_exact_on_every_side) {
     expect_sample(solids, {5, 5.5, -50}, 0, -0.5, {0, 1, 0});               // inside, below the ground
 }
 
+TEST(BuildingSolids, parts_can_have_a_roof_each) {
+    Building wall = building({{rectangle(0, 0, 4, 2), {}}, {rectangle(4, 0, 8, 2), {}}}, 5);
+    wall.part_roof_elevations = {3, 6};
+    const BuildingSolids solids(level_ground(), {wall}, 8);
+    expect_sample(solids, {1, 1, 4}, 0, 1, {0, 0, 1});
+    expect_sample(solids, {7, 1, 7}, 0, 1, {0, 0, 1});
+    expect_sample(solids, {3.5, 1, 5}, 0, 0.5, {-1, 0, 0});  // the higher part's wall above the lower one's roof
+    EXPECT_TRUE(solids.inside(Vec{4, 1, 2}));
+    expect_sample(solids, {3.9, 1, 2.5}, 0, -0.5, {0, 0, 1});  // not out through the joint
+    wall.part_roof_elevations[0] = std::nan("");
+    EXPECT_FALSE(BuildingSolids(level_ground(), {wall}, 8).inside(Vec{1, 1, 1}));
+}
+
 TEST(BuildingSolids, beyond_its_range_it_reports_nothing) {
     const BuildingSolids solids(level_ground(), {building({{rectangle(0, 0, 10, 6), {}}}, 5)}, 4);
     for (const Vec& p : {Vec{-4.01, 3, 1}, Vec{-3, 10, 1}, Vec{5, 3, 9.01}, Vec{1e9, 3, 1}, Vec{std::nan(""), 3, 1}}) {

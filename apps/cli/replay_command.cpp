@@ -1,0 +1,88 @@
+#include <cstdio>
+#include <fstream>
+#include <iterator>
+#include <memory>
+#include <optional>
+#include <string>
+#include <unistd.h>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "commands.hpp"
+#include "exit_code.hpp"
+#include "interrupt.hpp"
+#include "scene/builtin.hpp"
+#include "scene/scene.hpp"
+#include "temporary_folder.hpp"
+#include "twin/journal.hpp"
+
+namespace talus {
+namespace {
+
+constexpr std::string_view builtin_prefix = "built-in:";
+
+Result<std::string> read_file(const std::string& path) {
+    std::ifstream file(path, std::ios::binary);
+    if (!file) return Error{fmt::format("{}: cannot be opened", path)};
+    std::string text{std::istreambuf_iterator<char>(file), {}};
+    if (file.bad() || text.empty()) return Error{fmt::format("{}: cannot be read", path)};
+    return text;
+}
+
+/// The scene that a journal names, or the one that the user names instead.
+Result<Scene> load_scene_of(const ReplayArguments& arguments, const twin::Journal& journal) {
+    std::vector<std::string> overrides = journal.overrides;
+    if (arguments.threads) overrides.push_back(fmt::format("solver.thread_count={}", *arguments.threads));
+    const std::string file = arguments.scene.empty() ? journal.scene_file : arguments.scene;
+    if (!file.starts_with(builtin_prefix)) return load_scene(file, overrides);
+    const TemporaryFolder unpacked;
+    if (unpacked.path().empty()) return Error{"cannot make a temporary folder for the built-in scene; set TMPDIR"};
+    return load_builtin_scene(unpacked.path(), overrides);
+}
+
+}  // namespace
+
+int replay_command(const ReplayArguments& arguments) {
+    if (!arguments.data.empty()) set_data_folder(arguments.data);
+    InterruptWatch watch;
+    const auto text = read_file(arguments.journal);
+    if (!text) return fail(exit_code::bad_input, text.error().message);
+    const auto journal = twin::read_journal(*text);
+    if (!journal) return fail(exit_code::bad_input, arguments.journal + ": " + journal.error().message);
+    auto scene = load_scene_of(arguments, *journal);
+    if (!scene) {
+        return fail(exit_code::bad_input,
+                    scene.error().message + " (the scene of this journal; --scene names it where it is now)");
+    }
+    for (const std::string& sentence : twin::changed_inputs(*journal, *scene)) {
+        (void)std::fprintf(stderr, "talus: note: %s\n", sentence.c_str());
+    }
+
+    const bool shows = !arguments.quiet && isatty(STDERR_FILENO) != 0;
+    const auto replayed =
+        twin::replay(*journal, std::make_shared<const Scene>(*std::move(scene)), [&](std::uint64_t step) {
+            if (shows && step % 50 == 0) {
+                (void)std::fprintf(stderr, "\rstep %llu of %llu", static_cast<unsigned long long>(step),
+                                   static_cast<unsigned long long>(journal->steps));
+            }
+            return !watch.stop_requested();
+        });
+    if (shows) (void)std::fputs("\r\033[K", stderr);
+    if (!replayed) return fail(exit_code::bad_input, arguments.journal + ": " + replayed.error().message);
+    if (watch.stop_requested()) return fail(exit_code::interrupted, "interrupted before the end of the journal");
+    if (replayed->hash != journal->hash) {
+        return fail(
+            exit_code::fault,
+            fmt::format("{}: the result is another: hash {} after step {}, the session had {}; a scene, a program "
+                        "or an instruction set that differs is the usual reason (the session ran on {})",
+                        arguments.journal, replayed->hash, replayed->steps, journal->hash, journal->instruction_set));
+    }
+    if (!arguments.quiet) {
+        (void)std::printf("the same result: %zu actions, step %llu, t = %.4g s, hash %s\n", journal->entries.size(),
+                          static_cast<unsigned long long>(replayed->steps), replayed->time, replayed->hash.c_str());
+    }
+    return exit_code::success;
+}
+
+}  // namespace talus

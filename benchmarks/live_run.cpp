@@ -1,0 +1,119 @@
+// A live scenario: a step of it beside one of a plain run, and its frames.
+#include <cmath>
+#include <map>
+#include <memory>
+
+#include <benchmark/benchmark.h>
+
+#include "observe/observer.hpp"
+#include "scene/stop_rule.hpp"
+#include "sim/seed.hpp"
+#include "sim/simulation.hpp"
+#include "sizes.hpp"
+#include "twin/scenario.hpp"
+
+namespace talus::benchmarks {
+namespace {
+
+/// A plane of 20 degrees, 1600 m long, with 2400 m2 of it released, 2 m thick: it slides on and on.
+std::shared_ptr<const Scene> plane_scene(std::int64_t particles) {
+    Grid<float> grid(GridGeometry{0, 0, 4, 400, 100});
+    for (int row = 0; row < grid.geometry.rows; ++row) {
+        for (int column = 0; column < grid.geometry.columns; ++column) {
+            grid.at(column, row) = static_cast<float>(600 - 4 * column * std::tan(M_PI / 9));
+        }
+    }
+    Scene scene;
+    scene.file = "plane.toml";
+    scene.terrain = Terrain(std::move(grid));
+    Release release;
+    release.name = "slab";
+    release.patches.push_back({{{{40, 180}, {100, 180}, {100, 220}, {40, 220}}, {}}, 2});
+    release.volume = release_volume(scene.terrain, release);
+    scene.releases.push_back(std::move(release));
+    scene.flow_path = FlowPath({{20, 200}, {1580, 200}}, 60);
+    scene.spec.solver.target_particle_count = static_cast<int>(particles);
+    scene.spec.solver.stop_momentum_fraction = 0;
+    scene.spec.solver.end_time = 1e9;
+    scene.spec.material.friction_coefficient = 0.3;
+    return std::make_shared<const Scene>(std::move(scene));
+}
+
+constexpr int steps_before = 100;
+
+/// Moving debris, made once per number of particles.
+twin::Scenario& scenario_of(std::int64_t particles) {
+    static std::map<std::int64_t, std::unique_ptr<twin::Scenario>> made;
+    auto& scenario = made[particles];
+    if (!scenario) {
+        scenario = std::move(*twin::Scenario::open(plane_scene(particles)));
+        for (int step = 0; step < steps_before; ++step) scenario->advance();
+    }
+    return *scenario;
+}
+
+void live_step(benchmark::State& run) {
+    const auto scenario = std::move(*twin::Scenario::open(plane_scene(run.range(0))));
+    for (int step = 0; step < steps_before; ++step) scenario->advance();
+    for (auto _ : run) scenario->advance();
+}
+BENCHMARK(live_step)->Apply(sizes)->UseRealTime();
+
+/// The same step of the same debris in a plain run.
+void plain_step(benchmark::State& run) {
+    const auto scene = plane_scene(run.range(0));
+    const double spacing = choose_particle_spacing(scene->spec.solver, scene->releases[0].volume);
+    Model model = make_model(scene->spec.material, scene->spec.solver, scene->terrain, {}, spacing);
+    State state = *seed_releases(model, scene->releases);
+    Simulation simulation(std::move(model), std::move(state));
+    Observer observer(simulation.model(), simulation.state(), scene->flow_path, scene->spec.outputs,
+                      default_map_cell(scene->terrain.cell(), spacing));
+    const auto step = [&] {
+        (void)simulation.advance();
+        observer.after_step(simulation.model(), simulation.state(), 0);
+        benchmark::DoNotOptimize(total_momentum(simulation.model(), simulation.state()));
+    };
+    for (int k = 0; k < steps_before; ++k) step();
+    for (auto _ : run) step();
+}
+BENCHMARK(plain_step)->Apply(sizes)->UseRealTime();
+
+/// The present frame as it goes over the wire.
+void live_frame(benchmark::State& run) {
+    const twin::Scenario& scenario = scenario_of(run.range(0));
+    std::size_t bytes = 0;
+    for (auto _ : run) bytes = scenario.frame(0, 1, 0).size();
+    run.counters["bytes"] = static_cast<double>(bytes);
+    run.counters["bytes_per_particle"] = static_cast<double>(bytes) / static_cast<double>(run.range(0));
+}
+BENCHMARK(live_frame)->Apply(sizes)->UseRealTime();
+
+/// A wall of 60 m into moving debris, and away again.
+void live_barrier(benchmark::State& run) {
+    twin::Scenario& scenario = scenario_of(run.range(0));
+    for (auto _ : run) {
+        const auto done = scenario.apply(
+            {{"action", "put_barrier"}, {"line", {{90, 170}, {90, 230}}}, {"height_m", 4}, {"thickness_m", 2}},
+            "benchmark");
+        if (!done) return run.SkipWithError(done.error().message.c_str());
+        (void)scenario.apply({{"action", "undo"}}, "benchmark");
+    }
+}
+BENCHMARK(live_barrier)->Apply(sizes)->UseRealTime();
+
+/// A release of 240 m2, drawn and taken back.
+void live_release(benchmark::State& run) {
+    twin::Scenario& scenario = scenario_of(run.range(0));
+    for (auto _ : run) {
+        const auto done = scenario.apply({{"action", "put_release"},
+                                          {"polygon", {{400, 190}, {412, 190}, {412, 210}, {400, 210}}},
+                                          {"thickness_m", 2}},
+                                         "benchmark");
+        if (!done) return run.SkipWithError(done.error().message.c_str());
+        (void)scenario.apply({{"action", "undo"}}, "benchmark");
+    }
+}
+BENCHMARK(live_release)->Apply(sizes)->UseRealTime();
+
+}  // namespace
+}  // namespace talus::benchmarks

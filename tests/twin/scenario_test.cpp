@@ -1,0 +1,205 @@
+#include "twin/scenario.hpp"
+
+#include <gmock/gmock.h>
+
+#include "scene/run.hpp"
+#include "support/fixtures.hpp"
+#include "twin_fixtures.hpp"
+
+namespace talus::twin::test {
+namespace {
+
+using ::testing::HasSubstr;
+
+TEST(Scenario, without_actions_is_the_run_of_the_scene) {
+    Scene scene = channel_scene();
+    scene.spec.solver.end_time = 3;
+    const auto run = run_scene(scene, {});
+    ASSERT_TRUE(run);
+    const auto scenario = open(scene);
+    run_until(*scenario, 100);
+    EXPECT_EQ(scenario->phase(), Phase::ended);
+    EXPECT_EQ(scenario->message(), run->stop_reason);
+    EXPECT_EQ(scenario->step(), run->steps);
+    EXPECT_EQ(scenario->hash(), run->hash);
+    EXPECT_EQ(scenario->series_json()["time"]["time_s"].size(), run->observation.timeseries.size());
+}
+
+TEST(Scenario, comes_to_rest_as_the_run_does_and_goes_on_when_something_changes) {
+    Scene scene = channel_scene();
+    scene.spec.material.friction_coefficient = 0.7;  // steeper than the slope: it hardly moves
+    scene.spec.solver.stop_duration = 1;
+    const auto run = run_scene(scene, {});
+    const auto scenario = open(scene);
+    run_until(*scenario, 100);
+    ASSERT_EQ(scenario->phase(), Phase::at_rest) << scenario->message();
+    EXPECT_EQ(scenario->hash(), run->hash);
+    const std::uint64_t step = scenario->step();
+    scenario->advance();
+    EXPECT_EQ(scenario->step(), step);
+
+    act(*scenario, {{"action", "set_parameter"}, {"key", "material.friction_coefficient"}, {"value", 0.2}});
+    EXPECT_EQ(scenario->phase(), Phase::ready);
+    EXPECT_EQ(scenario->message(), "");
+    EXPECT_LT(number(*scenario, "largest_speed_mps"), 0.1);
+    run_until(*scenario, scenario->time() + 1);
+    EXPECT_GT(number(*scenario, "largest_speed_mps"), 1) << "debris at rest was not woken";
+}
+
+TEST(Scenario, a_parameter_holds_from_the_next_step_on) {
+    const auto changed = open(channel_scene()), unchanged = open(channel_scene());
+    run_until(*changed, 1);
+    run_until(*unchanged, 1);
+    EXPECT_EQ(changed->hash(), unchanged->hash());
+    const Done done =
+        act(*changed, {{"action", "set_parameter"}, {"key", "material.friction_coefficient"}, {"value", 0.6}});
+    EXPECT_EQ(done.sentence, "friction coefficient 0.25 -> 0.6");
+    EXPECT_EQ(changed->hash(), unchanged->hash());
+    changed->advance();
+    unchanged->advance();
+    EXPECT_NE(changed->hash(), unchanged->hash());
+    const json parameters = changed->setup_json()["parameters"];
+    EXPECT_EQ(parameters["material.friction_coefficient"], 0.6);
+    // Both follow the first as long as they are not set apart.
+    EXPECT_EQ(parameters["material.internal_friction_coefficient"], 0.6);
+    act(*changed, {{"action", "set_parameter"}, {"key", "material.internal_friction_coefficient"}, {"value", 0.3}});
+    EXPECT_EQ(changed->setup_json()["parameters"]["material.internal_friction_coefficient"], 0.3);
+    EXPECT_EQ(changed->setup_json()["parameters"]["material.building_friction_coefficient"], 0.6);
+    act(*changed, {{"action", "set_parameter"}, {"key", "material.internal_friction_coefficient"}, {"value", nullptr}});
+    EXPECT_EQ(changed->setup_json()["parameters"]["material.internal_friction_coefficient"], 0.6);
+    run_until(*changed, 4);
+    run_until(*unchanged, 4);
+    EXPECT_LT(number(*changed, "front_chainage_m"), number(*unchanged, "front_chainage_m") - 3);
+}
+
+TEST(Scenario, density_changes_pressures_from_then_on_and_not_those_before) {
+    Scene scene = channel_scene();
+    const auto light = open(scene), heavy = open(scene), late = open(scene);
+    const json denser = {{"action", "set_parameter"}, {"key", "material.rest_density_kgpm3"}, {"value", 4000}};
+    EXPECT_EQ(act(*heavy, denser).sentence, "rest density 2000 -> 4000 kg/m3");
+    for (const auto* s : {&light, &heavy, &late}) run_until(**s, 2);
+    EXPECT_EQ(light->hash(), heavy->hash()) << "density has no part in how debris moves";
+    act(*late, denser);
+    late->advance();
+    const Grid<float> thin = *light->layer("peak_pressure"), thick = *heavy->layer("peak_pressure"),
+                      then = *late->layer("peak_pressure");
+    int as_before = 0, twice = 0;
+    for (std::size_t k = 0; k < thin.values.size(); ++k) {
+        if (std::isnan(thin.values[k])) continue;
+        EXPECT_FLOAT_EQ(thick.values[k], 2 * thin.values[k]);
+        ASSERT_GE(then.values[k], thin.values[k] * 0.999F);
+        as_before += then.values[k] < 1.2F * thin.values[k];
+        twice += then.values[k] > 1.8F * thin.values[k];
+    }
+    EXPECT_GT(as_before, 0) << "where debris was faster before";
+    EXPECT_GT(twice, 0) << "where it is at its fastest";
+}
+
+TEST(Scenario, names_key_value_and_range_of_what_it_refuses) {
+    const auto scenario = open(channel_scene());
+    scenario->advance();
+    EXPECT_THAT(
+        refusal(*scenario, {{"action", "set_parameter"}, {"key", "material.friction_coefficient"}, {"value", 11}}),
+        HasSubstr("material.friction_coefficient: value = 11: must be a number 0 to 10"));
+    EXPECT_THAT(refusal(*scenario, {{"action", "set_parameter"}, {"key", "material.friction_coefficient"}}),
+                HasSubstr("value: missing"));
+    EXPECT_THAT(refusal(*scenario, {{"action", "set_parameter"}, {"key", "solver.end_time_s"}, {"value", 1}}),
+                HasSubstr("key = \"solver.end_time_s\": must be one of material.friction_coefficient"));
+    EXPECT_THAT(
+        refusal(*scenario, {{"action", "set_parameter"}, {"key", "material.viscosity"}, {"value", 0.1}, {"x", 1}}),
+        HasSubstr("\"x\" = 1: no such key"));
+    EXPECT_THAT(refusal(*scenario, {{"action", "dance"}}), HasSubstr("action = \"dance\": must be one of"));
+    EXPECT_THAT(refusal(*scenario, json::array()), HasSubstr("must be a JSON object"));
+    EXPECT_THAT(refusal(*scenario, {{"action", "undo"}}), HasSubstr("nothing to undo"));
+    EXPECT_THAT(refusal(*scenario, {{"action", "remove_barrier"}, {"id", "barrier-9"}}),
+                HasSubstr("id = \"barrier-9\": there is no such barrier"));
+}
+
+TEST(Scenario, undo_and_redo_go_through_the_setups) {
+    const auto scenario = open(channel_scene());
+    const json first = scenario->setup_json();
+    act(*scenario, {{"action", "set_parameter"}, {"key", "material.viscosity"}, {"value", 0.3}});
+    act(*scenario, {{"action", "put_barrier"},
+                    {"line", {{west + 60, south + 20}, {west + 60, south + 40}}},
+                    {"height_m", 2},
+                    {"thickness_m", 1}});
+    const json last = scenario->setup_json();
+    EXPECT_THAT(last["undo"].get<std::string>(), HasSubstr("barrier \"barrier 1\" placed: 20.0 m long, 2 m high"));
+    EXPECT_EQ(last["redo"], nullptr);
+    act(*scenario, {{"action", "undo"}});
+    EXPECT_EQ(scenario->setup_json()["barriers"].size(), 0U);
+    EXPECT_EQ(act(*scenario, {{"action", "undo"}}).sentence, "undo: viscosity 0.1 -> 0.3");
+    EXPECT_EQ(scenario->setup_json()["parameters"], first["parameters"]);
+    act(*scenario, {{"action", "redo"}});
+    act(*scenario, {{"action", "redo"}});
+    EXPECT_EQ(scenario->setup_json()["barriers"], last["barriers"]);
+    EXPECT_EQ(scenario->setup_json()["parameters"], last["parameters"]);
+    act(*scenario, {{"action", "undo"}});
+    act(*scenario, {{"action", "set_parameter"}, {"key", "material.viscosity"}, {"value", 0.2}});
+    EXPECT_THAT(refusal(*scenario, {{"action", "redo"}}), HasSubstr("nothing to redo"));
+}
+
+TEST(Scenario, restart_and_copy_begin_with_the_setup_as_it_is_now) {
+    const auto scenario = open(channel_scene());
+    run_until(*scenario, 1);
+    act(*scenario, {{"action", "set_parameter"}, {"key", "material.friction_coefficient"}, {"value", 0.1}});
+    const auto copy = scenario->copy();
+    ASSERT_TRUE(copy);
+    act(*scenario, {{"action", "restart"}});
+    for (const Scenario* s : {scenario.get(), copy->get()}) {
+        EXPECT_EQ(s->time(), 0);
+        EXPECT_EQ(s->step(), 0U);
+        EXPECT_EQ(s->journal_json()["actions"].size(), 0U);
+        EXPECT_EQ(s->setup_json()["parameters"]["material.friction_coefficient"], 0.1);
+    }
+    Scene direct = channel_scene();
+    direct.spec.material.friction_coefficient = 0.1;
+    const auto wanted = open(direct);
+    run_until(*scenario, 1);
+    run_until(**copy, 1);
+    run_until(*wanted, 1);
+    EXPECT_EQ(scenario->hash(), wanted->hash());
+    EXPECT_EQ((*copy)->hash(), wanted->hash());
+}
+
+TEST(Scenario, writes_the_products_of_the_run_so_far) {
+    Scene scene = channel_scene();
+    scene.crs.epsg = 2326;
+    add_building(scene, "shed", rectangle(west + 40, south + 28, west + 44, south + 32), 4);
+    const auto scenario = open(scene);
+    act(*scenario, {{"action", "put_barrier"},
+                    {"name", "dam"},
+                    {"line", {{west + 70, south + 20}, {west + 70, south + 40}}},
+                    {"height_m", 2},
+                    {"thickness_m", 1}});
+    run_until(*scenario, 5);
+    const json before = scenario->series_json();
+    talus::test::TemporaryFolder folder;
+    const Status written = scenario->write_products(folder.path());
+    ASSERT_TRUE(written) << written.error().message;
+    EXPECT_EQ(scenario->series_json(), before) << "to write must not change the run";
+    const std::string buildings = talus::test::read_text(folder.file("buildings.csv"));
+    EXPECT_THAT(buildings, HasSubstr("\nshed,yes,"));
+    EXPECT_THAT(buildings, HasSubstr("\ndam,no,"));
+    EXPECT_THAT(talus::test::read_text(folder.file("PARTIAL.txt")), HasSubstr("written while running"));
+    EXPECT_THAT(talus::test::read_text(folder.file("manifest.json")), HasSubstr("before step 0, by Ann"));
+}
+
+TEST(Scenario, classifies_buildings_by_depth_and_speed_at_their_walls) {
+    Scene scene = channel_scene();
+    add_building(scene, "in the way", rectangle(west + 30, south + 27, west + 34, south + 33), 6);
+    add_building(scene, "beside", rectangle(west + 30, south + 50, west + 34, south + 54), 6);
+    const auto scenario = open(scene);
+    run_until(*scenario, 5);
+    const json buildings = scenario->impacts_json()["buildings"];
+    ASSERT_EQ(buildings.size(), 2U);
+    EXPECT_EQ(buildings[0]["hit"], true);
+    EXPECT_GT(buildings[0]["peak_force_kN"], 1);
+    const bool high = buildings[0]["peak_depth_m"] > 1 && buildings[0]["peak_speed_mps"] > 1;
+    EXPECT_EQ(buildings[0]["intensity"], high ? "high" : "medium");
+    EXPECT_EQ(buildings[1]["intensity"], nullptr);
+    EXPECT_THAT(scenario->scene_json()["intensity"]["source"].get<std::string>(), HasSubstr("1997"));
+}
+
+}  // namespace
+}  // namespace talus::twin::test
