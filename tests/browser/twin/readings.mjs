@@ -74,8 +74,10 @@ export async function testReadings(run, server) {
     assert.notEqual(turned, whole, "turned by key");
     await page.keyboard.press("2");
     assert.equal(await page.getAttribute("[data-mode=fly]", "aria-pressed"), "true");
+    const frames = () => page.evaluate(() => window.talusStats.frames);
+    const first = await frames();
     await page.keyboard.down("w");
-    await page.waitForTimeout(800);
+    await until(frames, (n) => n > first + 2, "pictures while flying");
     await page.keyboard.up("w");
     assert.notEqual(await picture(), turned, "flying");
     await page.keyboard.press("3");
