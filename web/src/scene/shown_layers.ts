@@ -80,29 +80,29 @@ export class ShownLayers {
     const a = this.grids.get("A");
     if (!a) return;
     const b = this.grids.get("B");
-    const all = new Map<ScenarioName, Float32Array>();
+    const all = new Map<ScenarioName, Grid>();
     if (this.isDifference && b) {
-      const values = differenceOf(name, a, b);
-      const end = scaleEnd(values.map(Math.abs));
+      const difference = differenceOf(name, a, b);
+      const end = scaleEnd(difference.values.map(Math.abs));
       this.range.value = [-end, end];
       // Both views show it: so it can be read beside either flow.
-      for (const s of twin.scenarios.value) all.set(s, values);
+      for (const s of twin.scenarios.value) all.set(s, difference);
     } else {
       let end = 0;
       for (const s of twin.scenarios.value) {
         const grid = this.grids.get(s);
         if (!grid) continue;
         const values = shownValues(name, grid);
-        all.set(s, values);
+        all.set(s, { ...grid, values });
         end = Math.max(end, scaleEnd(values));
       }
       this.range.value = [0, end];
     }
-    for (const [s, values] of all) {
+    for (const [s, grid] of all) {
       const view = this.stage.views.get(s);
       if (!view) continue;
       this.held.get(s)?.dispose();
-      const draped = drapedFrom(this.grids.get(s) ?? a, values, twin.scene.origin);
+      const draped = drapedFrom(grid, twin.scene.origin);
       this.held.set(s, draped.texture);
       view.ground.showLayer(draped, this.rampFor(name), [...this.range.value] as [number, number], twin.layerOpacity.value);
     }
