@@ -48,7 +48,7 @@ export class Run {
     mkdirSync(output, { recursive: true });
   }
   async check(name, body) {
-    if (this.only && !name.includes(this.only)) return;
+    if (this.only && !new RegExp(this.only).test(name)) return;
     const begun = Date.now();
     try {
       await body();
