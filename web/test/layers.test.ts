@@ -41,7 +41,12 @@ describe("layers", () => {
     expect(scaleEnd(new Float32Array(5).fill(NaN))).toBe(1);
   });
   it("difference is B - A; what only one reached counts as 0 in the other, but not for times", () => {
-    expect([...differenceOf("peak_depth", grid(1, NaN, NaN, 2), grid(3, 2, NaN, NaN))]).toEqual([2, 2, NaN, -2]);
-    expect([...differenceOf("arrival_time", grid(10, NaN), grid(12, 2))]).toEqual([2, NaN]);
+    expect([...differenceOf("peak_depth", grid(1, NaN, NaN, 2), grid(3, 2, NaN, NaN)).values]).toEqual([2, 2, NaN, -2]);
+    const a: Grid = { west: 10, south: 20, cell: 2, columns: 2, rows: 1, values: Float32Array.of(1, 2) };
+    const b: Grid = { west: 12, south: 20, cell: 2, columns: 2, rows: 2, values: Float32Array.of(5, 6, 7, 8) };
+    const both = differenceOf("peak_depth", a, b);
+    expect(both).toMatchObject({ west: 10, south: 20, cell: 2, columns: 3, rows: 2 });
+    expect([...both.values]).toEqual([-1, 3, 6, NaN, 7, 8]);
+    expect([...differenceOf("arrival_time", grid(10, NaN), grid(12, 2)).values]).toEqual([2, NaN]);
   });
 });

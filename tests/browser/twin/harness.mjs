@@ -1,6 +1,7 @@
 // Starts a server of the twin and browsers that look at it, and keeps the score.
 import assert from "node:assert/strict";
 import { spawn } from "node:child_process";
+import { createHash } from "node:crypto";
 import { existsSync, mkdirSync, readFileSync } from "node:fs";
 import { join } from "node:path";
 import { createInterface } from "node:readline";
@@ -47,7 +48,7 @@ export class Run {
     mkdirSync(output, { recursive: true });
   }
   async check(name, body) {
-    if (this.only && !name.includes(this.only)) return;
+    if (this.only && !new RegExp(this.only).test(name)) return;
     const begun = Date.now();
     try {
       await body();
@@ -83,14 +84,18 @@ export class Run {
   }
   /** Colours in a part of the page, read from pixels on the screen: how many, the share of the commonest, mean of each channel. */
   async colours(page, clip) {
+    await page.evaluate(drawn);
     const png = await page.screenshot(clip ? { clip } : {});
     const found = await page.evaluate(readPixels, png.toString("base64"));
-    return { ...found, png };
+    return { ...found, png, hash: createHash("sha1").update(png).digest("hex") };
   }
   async shot(page, name) {
     await page.screenshot({ path: join(this.output, `${name}.png`) });
   }
 }
+
+/** Two display frames from now: what was asked for before is on the canvas, however slow the machine is. */
+const drawn = () => new Promise((resolve) => requestAnimationFrame(() => requestAnimationFrame(() => resolve())));
 
 async function readPixels(data) {
   const bytes = Uint8Array.from(atob(data), (c) => c.charCodeAt(0));

@@ -38,19 +38,36 @@ export function scaleEnd(values: Float32Array): number {
   return roundStep(some[Math.floor(0.995 * (some.length - 1))]);
 }
 
-/** B - A on the same grid: a cell that only one of them reached counts as 0 in the other. Times: only where both have one. */
-export function differenceOf(name: LayerName, a: Grid, b: Grid): Float32Array {
-  const va = shownValues(name, a);
-  const vb = shownValues(name, b);
-  return vb.map((v, k) => {
+/**
+ * B - A on the smallest grid that holds both: a server sends a layer only as far as debris came. A cell that only one of them
+ * reached counts as 0 in the other. Times: only where both have one.
+ */
+export function differenceOf(name: LayerName, a: Grid, b: Grid): Grid {
+  const { cell } = a;
+  const west = Math.min(a.west, b.west);
+  const south = Math.min(a.south, b.south);
+  const columns = Math.round((Math.max(a.west + a.columns * cell, b.west + b.columns * cell) - west) / cell);
+  const rows = Math.round((Math.max(a.south + a.rows * cell, b.south + b.rows * cell) - south) / cell);
+  const spread = (grid: Grid): Float32Array => {
+    const out = new Float32Array(columns * rows).fill(NaN);
+    const shown = shownValues(name, grid);
+    const left = Math.round((grid.west - west) / cell);
+    const low = Math.round((grid.south - south) / cell);
+    for (let j = 0; j < grid.rows; ++j) out.set(shown.subarray(j * grid.columns, (j + 1) * grid.columns), (low + j) * columns + left);
+    return out;
+  };
+  const va = spread(a);
+  const values = spread(b).map((v, k) => {
     const w = va[k];
     if (Number.isNaN(v) && Number.isNaN(w)) return NaN;
     if (name === "arrival_time") return v - w;
     return (Number.isNaN(v) ? 0 : v) - (Number.isNaN(w) ? 0 : w);
   });
+  return { west, south, cell, columns, rows, values };
 }
 
-export function drapedFrom(grid: Grid, values: Float32Array, origin: Place): Draped {
+export function drapedFrom(grid: Grid, origin: Place): Draped {
+  const { values } = grid;
   // Value times cover and cover: filtering the pair gives edges without a fringe of zeros.
   const pairs = new Float32Array(2 * values.length);
   for (let k = 0; k < values.length; ++k) {

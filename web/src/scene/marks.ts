@@ -85,7 +85,7 @@ export function marks(twin: Twin, stage: Stage, layers: ShownLayers): HTMLElemen
       const name = twin.layer.value;
       const value = name === "none" ? null : layers.valueAt(hit.scenario, hit.world[0], hit.world[1]);
       readOut.textContent = `E ${fixed(hit.world[0], 1)}  N ${fixed(hit.world[1], 1)}  ground ${fixed(hit.world[2], 1)} m` +
-        (name !== "none" && value !== null ? `  ${layerInfo[name].title.toLowerCase()} ${quantity(value, layerInfo[name].unit)}` : "");
+        (name !== "none" && value !== null ? `  ${layerInfo[name].title.toLowerCase()}${layers.isDifference ? " B − A" : ""} ${quantity(value, layerInfo[name].unit)}` : "");
     };
     if (now - sent_ms > markEvery_ms) tell();
     else timer = window.setTimeout(tell, markEvery_ms - (now - sent_ms));

@@ -17,6 +17,7 @@ export class ShownLayers {
   readonly range = new Cell<readonly [number, number]>([0, 1]);
   readonly grids = new Map<ScenarioName, Grid>();
   surfaceTop = 3;
+  private difference: Grid | null = null;
   private readonly rampTextures = new Map<string, Texture>();
   private readonly held = new Map<ScenarioName, Texture>();
   private busy = false;
@@ -44,9 +45,9 @@ export class ShownLayers {
   get isDifference(): boolean {
     return this.twin.difference.value && this.twin.scenarios.value.length > 1;
   }
-  /** Value of the shown layer of a scenario at a world place; null: no layer or nothing there. */
+  /** Value of the shown layer of a scenario, or of the difference, at a world place; null: no layer or nothing there. */
   valueAt(scenario: ScenarioName, x: number, y: number): number | null {
-    const grid = this.grids.get(scenario);
+    const grid = this.difference ?? this.grids.get(scenario);
     const value = grid ? gridAt(grid, x, y) : NaN;
     return Number.isFinite(value) ? value : null;
   }
@@ -80,29 +81,31 @@ export class ShownLayers {
     const a = this.grids.get("A");
     if (!a) return;
     const b = this.grids.get("B");
-    const all = new Map<ScenarioName, Float32Array>();
+    const all = new Map<ScenarioName, Grid>();
+    this.difference = null;
     if (this.isDifference && b) {
-      const values = differenceOf(name, a, b);
-      const end = scaleEnd(values.map(Math.abs));
+      const difference = differenceOf(name, a, b);
+      this.difference = difference;
+      const end = scaleEnd(difference.values.map(Math.abs));
       this.range.value = [-end, end];
       // Both views show it: so it can be read beside either flow.
-      for (const s of twin.scenarios.value) all.set(s, values);
+      for (const s of twin.scenarios.value) all.set(s, difference);
     } else {
       let end = 0;
       for (const s of twin.scenarios.value) {
         const grid = this.grids.get(s);
         if (!grid) continue;
         const values = shownValues(name, grid);
-        all.set(s, values);
+        all.set(s, { ...grid, values });
         end = Math.max(end, scaleEnd(values));
       }
       this.range.value = [0, end];
     }
-    for (const [s, values] of all) {
+    for (const [s, grid] of all) {
       const view = this.stage.views.get(s);
       if (!view) continue;
       this.held.get(s)?.dispose();
-      const draped = drapedFrom(this.grids.get(s) ?? a, values, twin.scene.origin);
+      const draped = drapedFrom(grid, twin.scene.origin);
       this.held.set(s, draped.texture);
       view.ground.showLayer(draped, this.rampFor(name), [...this.range.value] as [number, number], twin.layerOpacity.value);
     }
