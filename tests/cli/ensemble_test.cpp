@@ -89,7 +89,7 @@ TEST(Ensemble, BadInputIsOneLineAndLeavesNothing) {
     expect({"ensemble", "nix.toml", "--vary", "material.viscosity=0:0.1", "-o", "x"}, "nix.toml");
     expect(command("x", {"--vary", "material.viscosity=0.2:0.1"}), "the range is empty");
     expect(command("x", {"--vary", "material.viscosity=0.2:2"}), "material.viscosity = 2 is refused");
-    expect(command("x", {"--depth-m", "1,half"}), "--depth-m = \"1,half\" is refused");
+    expect(command("x", {"--speed-mps", "1,half"}), "--speed-mps = \"1,half\" is refused");
     expect(command("x", {"--shard", "3/2"}), "i from 1 to n");
     expect(command("x", {"--design", "best"}), "must be one of monte_carlo, latin_hypercube");
     expect(command("x", {"--plan", "nix.toml"}), "nix.toml");
