@@ -126,7 +126,9 @@ Result<std::pair<std::size_t, std::size_t>> parse_shard(const std::string& text)
 /// Tells a person or a program how far the ensemble is, not too often.
 class Teller {
   public:
-    Teller(bool quiet, bool json) : style_(progress_style(quiet, json)), reporter_(style_) {}
+    Teller(bool quiet, bool json) : style_(progress_style(quiet, json)), reporter_(style_) {
+        if (style_ == ProgressStyle::lines) next_ += std::chrono::seconds(1);  // the first estimates are poor
+    }
 
     void tell(const EnsembleProgress& progress) {
         const auto now = std::chrono::steady_clock::now();
@@ -146,7 +148,7 @@ class Teller {
   private:
     ProgressStyle style_;
     ProgressReporter reporter_;
-    std::chrono::steady_clock::time_point next_ = std::chrono::steady_clock::now() + std::chrono::seconds(1);
+    std::chrono::steady_clock::time_point next_ = std::chrono::steady_clock::now();
 };
 
 /// Counts the runs of the folders and writes what they say into `folder`.

@@ -23,9 +23,9 @@ using Json = nlohmann::ordered_json;
 
 constexpr int format_version = 1;  // of the files of runs
 
-/// What may differ without making another ensemble: where the scene lay, and who wrote it.
+/// What may differ without making another ensemble: where the scene lay, who wrote it, and what is counted.
 bool is_incidental(const std::string& key) {
-    return key == "scene" || key == "program_version";
+    return key == "scene" || key == "program_version" || key == "thresholds";
 }
 
 std::string shortened(const Json& value) {
@@ -55,7 +55,11 @@ Json ensemble_definition(const PlannedRuns& runs, const SceneSource& source, con
             {"seed", plan.seed},
             {"runs", runs.count()},
             {"levels", plan.levels},
-            {"factors", factors}};
+            {"factors", factors},
+            {"thresholds",
+             {{"depth_m", plan.thresholds.depth},
+              {"speed_mps", plan.thresholds.speed},
+              {"pressure_kPa", plan.thresholds.pressure}}}};
 }
 
 std::string difference(const Json& there, const Json& wanted) {
@@ -84,6 +88,10 @@ Result<EnsemblePlan> plan_of(const Json& definition) {
         plan.runs = definition.at("runs").get<std::size_t>();
         plan.levels = definition.at("levels").get<std::size_t>();
         plan.seed = definition.at("seed").get<std::uint64_t>();
+        const Json& thresholds = definition.at("thresholds");
+        plan.thresholds = {thresholds.at("depth_m").get<std::vector<double>>(),
+                           thresholds.at("speed_mps").get<std::vector<double>>(),
+                           thresholds.at("pressure_kPa").get<std::vector<double>>()};
         for (const Json& f : definition.at("factors")) {
             const auto text = f.at("key").get<std::string>() + "=" + f.at("distribution").get<std::string>();
             if (Status s = add_factor(plan, text); !s) return s.error();

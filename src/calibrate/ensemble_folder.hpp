@@ -12,11 +12,11 @@
 namespace talus {
 
 /// What makes an ensemble this one: inputs by checksum, overrides, design, seed, factors. Runs of two folders belong
-/// together where this is equal. Thresholds are not in it: they only count.
+/// together where `difference` finds none; thresholds are in it, but only count.
 [[nodiscard]] nlohmann::ordered_json ensemble_definition(const PlannedRuns& runs, const SceneSource& source,
                                                          const Scene& base, const std::string& scene_name);
 
-/// The plan that a definition was made from, with the usual thresholds. Errors: not as ensemble_definition writes it.
+/// The plan that a definition was made from. Errors: not as ensemble_definition writes it.
 [[nodiscard]] Result<EnsemblePlan> plan_of(const nlohmann::ordered_json& definition);
 
 /// A folder with ensemble.json and a file per run that is done, held by one process at a time.

@@ -10,6 +10,7 @@
 
 #include "calibrate/ensemble_figures.hpp"
 #include "calibrate/ensemble_products.hpp"
+#include "calibrate/predict.hpp"
 #include "ensemble_report_files.hpp"
 #include "params/fields.hpp"
 #include "products/report_map.hpp"
@@ -229,11 +230,14 @@ std::string building_table(const EnsembleResult& result) {
     return html;
 }
 
-/// What was measured in the field, for the results that have it.
+/// What was observed in the field, for the results that have it.
 std::string observed_text(const Scene& scene, const std::string& key) {
-    for (std::size_t i = 0; i < scene.spec.observations.size(); ++i) {
-        if (key == fmt::format("observation[{}].front_velocity_mps", i))
-            return plain(scene.spec.observations[i].front_velocity);
+    for (const ObservedValue& o : observed_values(scene)) {
+        if (o.key != key) continue;
+        const char* side = o.kind == ObservedValue::Kind::at_least ? "≥ "
+                           : o.kind == ObservedValue::Kind::below  ? "< "
+                                                                   : "";
+        return fmt::format("{}{} ± {}", side, significant(o.value, 3), significant(o.uncertainty, 2));
     }
     return "";
 }

@@ -11,7 +11,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "core/hash.hpp"
+#include "calibrate/predict.hpp"
 #include "products/text_file.hpp"
 
 namespace talus {
@@ -113,11 +113,7 @@ std::vector<Measure> measures_of(const Scene& scene) {
                                  {"largest_speed_mps", "Largest peak speed", "m/s"},
                                  {"duration_s", "Time until the run ended", "s"}};
     if (!scene.buildings.empty()) list.push_back({"buildings_hit", "Buildings hit", ""});
-    for (std::size_t i = 0; i < scene.spec.observations.size(); ++i) {
-        const std::string at = fmt::format(" at {:.6g} m", scene.spec.observations[i].chainage);
-        list.push_back({fmt::format("observation[{}].front_velocity_mps", i), "Front velocity" + at, "m/s"});
-        list.push_back({fmt::format("observation[{}].arrival_time_s", i), "Arrival" + at, "s"});
-    }
+    for (const ObservedValue& o : observed_values(scene)) list.push_back({o.key, o.name, o.unit});
     return list;
 }
 
@@ -132,11 +128,7 @@ std::vector<double> measure(const Scene& scene, const RunResult& result) {
         for (const BuildingImpact& b : o.buildings) hit += b.hit ? 1 : 0;
         values.push_back(hit);
     }
-    for (const ObservationSpec& observation : scene.spec.observations) {
-        const FrontSample front = front_at(o, observation.chainage);
-        values.push_back(front.front_velocity);
-        values.push_back(front.arrival_time);
-    }
+    for (const double predicted : predicted_values(scene, o)) values.push_back(predicted);
     return values;
 }
 

@@ -113,11 +113,76 @@ struct OutputSpec {
     double particle_series_interval = 0;  ///< s between ParaView frames; 0: none
 };
 
-/// `[[observation]]`: a field measurement to draw beside the result.
+/// `[[observation]]`: a front velocity measured in the field.
 struct ObservationSpec {
     std::string name;
     double chainage = 0;        ///< m along the flow path
     double front_velocity = 0;  ///< m/s
+    std::string source;
+    std::optional<double> uncertainty = {};  ///< m/s, one standard deviation; absent: a fifth of the velocity
+};
+
+/// `[[superelevation]]`: marks on both sides of a bend, from which the velocity follows.
+struct SuperelevationSpec {
+    std::string name;
+    double chainage = 0;                     ///< m
+    double bend_radius = 0;                  ///< m, of the path's centre line in plan
+    double width = 0;                        ///< m, of the flow between the marks in plan
+    double level_difference = 0;             ///< m, between the marks
+    double correction_factor = 1;            ///< k in v^2 = g R dh / (k b)
+    std::optional<double> uncertainty = {};  ///< m/s; absent: a quarter of the velocity
+    std::string source;
+};
+
+/// `[[arrival]]`: when debris first came to a chainage.
+struct ArrivalSpec {
+    std::string name;
+    double chainage = 0;                     ///< m
+    double time = 0;                         ///< s since the release
+    std::optional<double> uncertainty = {};  ///< s; absent: a fifth of the time
+    std::string source;
+};
+
+/// `[[run_up]]`: how high debris stood at a place, by its marks.
+struct RunUpSpec {
+    std::string name;
+    double x = 0, y = 0;     ///< m, in the terrain's reference system
+    double height = 0;       ///< m, of the mark above the ground at that place
+    double uncertainty = 1;  ///< m
+    std::string source;
+};
+
+/// `[[deposit_depth]]`: what was left at a place.
+struct DepositDepthSpec {
+    std::string name;
+    double x = 0, y = 0;       ///< m
+    double depth = 0;          ///< m, vertical; 0: nothing
+    double uncertainty = 0.5;  ///< m
+    std::string source;
+};
+
+/// `[[damage]]`: a building that was damaged or was not.
+struct DamageSpec {
+    std::string building;  ///< its name
+    bool damaged = true;
+    double pressure = 15e3;     ///< Pa, from which such a building is damaged
+    double uncertainty = 10e3;  ///< Pa, of that limit
+    std::string source;
+};
+
+/// `[[observed_run_out]]`: where the front stopped.
+struct ObservedRunOutSpec {
+    std::string name;
+    double chainage = 0;      ///< m
+    double uncertainty = 10;  ///< m
+    std::string source;
+};
+
+/// `[[deposit_outline]]`: the edge of the deposit.
+struct DepositOutlineSpec {
+    std::string name, file, layer;
+    double depth = 0.1;        ///< m, deposit thinner than this was not mapped
+    double uncertainty = 0.1;  ///< of the overlap, 0 to 1
     std::string source;
 };
 
@@ -131,6 +196,13 @@ struct SceneSpec {
     SolverSpec solver;
     OutputSpec outputs;
     std::vector<ObservationSpec> observations;
+    std::vector<SuperelevationSpec> superelevations;
+    std::vector<ArrivalSpec> arrivals;
+    std::vector<RunUpSpec> run_ups;
+    std::vector<DepositDepthSpec> deposit_depths;
+    std::vector<DamageSpec> damages;
+    std::vector<ObservedRunOutSpec> observed_run_outs;
+    std::vector<DepositOutlineSpec> deposit_outlines;
 };
 
 }  // namespace talus

@@ -15,16 +15,6 @@
 namespace talus {
 namespace {
 
-void note_observations(Scene& scene) {
-    for (std::size_t i = 0; i < scene.spec.observations.size(); ++i) {
-        const ObservationSpec& observation = scene.spec.observations[i];
-        if (scene.flow_path.empty() || observation.chainage <= scene.flow_path.length()) continue;
-        scene.notes.push_back(
-            fmt::format("observation[{}]: chainage {:.6g} m lies beyond the flow path's end at {:.1f} m", i,
-                        observation.chainage, scene.flow_path.length()));
-    }
-}
-
 /// What a step smooths beyond the whole difference between neighbours would drive them apart.
 Status check_viscosity(const ParsedScene& parsed, const Scene& scene) {
     const SolverSpec& solver = scene.spec.solver;
@@ -132,7 +122,7 @@ Result<Scene> assemble_scene(const ParsedScene& parsed) {
     if (Status s = check_viscosity(parsed, scene); !s) return s.error();
     if (Status s = load_buildings(parsed, scene); !s) return s.error();
     if (Status s = load_flow_path(parsed, scene); !s) return s.error();
-    note_observations(scene);
+    if (Status s = load_observations(parsed, scene); !s) return s.error();
     return Result<Scene>(std::move(scene));
 }
 

@@ -35,6 +35,7 @@ struct Scene {
     std::vector<Building> buildings;
     FlowPath flow_path;
     bool flow_path_traced = false;
+    std::vector<std::vector<Polygon>> deposit_outlines;  ///< as in SceneSpec::deposit_outlines
     std::vector<InputFile> inputs;
     std::vector<std::string> notes;  ///< what was done to the inputs: reprojections, defaults, traced path
 };

@@ -16,12 +16,14 @@ namespace {
 namespace fs = std::filesystem;
 using testing::HasSubstr;
 
-std::vector<std::string> command(const std::string& output, const std::vector<std::string>& more = {}) {
-    std::vector<std::string> arguments = {"ensemble", "slope.toml",
-                                          "--vary",   "material.friction_coefficient=0.1:0.5",
-                                          "--vary",   "release.thickness_m=0.2:0.5",
-                                          "--runs",   "4",
-                                          "-o",       output};
+std::vector<std::string> command(const std::string& output, const std::vector<std::string>& more = {},
+                                 const std::string& runs = "4") {
+    std::vector<std::string> arguments = {"ensemble",  "slope.toml",
+                                          "--vary",    "material.friction_coefficient=0.1:0.5",
+                                          "--vary",    "release.thickness_m=0.2:0.5",
+                                          "--depth-m", "0.2",
+                                          "--runs",    runs,
+                                          "-o",        output};
     arguments.insert(arguments.end(), more.begin(), more.end());
     return arguments;
 }
@@ -38,7 +40,7 @@ TEST(Ensemble, ShardsPutTogetherAreTheWholeByteForByte) {
     EXPECT_FALSE(fs::exists(scene.folder() / "first/report.html"));
     const auto merged = run_program({"ensemble", "merge", "first", "second", "-o", "both"}, here);
     ASSERT_EQ(merged.exit_code, 0) << merged.error;
-    for (const char* file : {"probability_depth_0.1m.tif", "peak_speed_p95.tif", "arrival_time_p50.tif",
+    for (const char* file : {"probability_depth_0.2m.tif", "peak_speed_p95.tif", "arrival_time_p50.tif",
                              "buildings.csv", "distributions.csv", "sensitivity.csv", "statistics.json"}) {
         EXPECT_EQ(read_text(scene.folder() / "whole" / file), read_text(scene.folder() / "both" / file)) << file;
     }
@@ -55,7 +57,7 @@ TEST(Ensemble, CountsAgainWithOtherThresholds) {
     EXPECT_EQ(event.at("complete"), 4);
     EXPECT_EQ(event.at("thresholds").at("depth_m"), nlohmann::json({0.25}));
     EXPECT_TRUE(fs::exists(scene.folder() / "result/probability_depth_0.25m.tif"));
-    EXPECT_FALSE(fs::exists(scene.folder() / "result/probability_depth_0.1m.tif"));  // counted no more
+    EXPECT_FALSE(fs::exists(scene.folder() / "result/probability_depth_0.2m.tif"));  // counted no more
 }
 
 TEST(Ensemble, AnInterruptedOneGoesOn) {
@@ -63,13 +65,13 @@ TEST(Ensemble, AnInterruptedOneGoesOn) {
     scene.replace("end_time_s = 1", "end_time_s = 6");
     scene.replace("particle_spacing_m = 0.8", "particle_spacing_m = 0.5");
     ProgramOptions options{.folder = scene.folder()};
-    options.wait_for = "\"runs_done\":1";
+    options.wait_for = "\"event\":\"progress\"";
     options.while_running = [](int process) { kill(process, SIGINT); };
-    const auto first = run_program(command("result", {"--json", "--threads", "1"}), options);
+    const auto first = run_program(command("result", {"--json", "--threads", "1"}, "12"), options);
     ASSERT_EQ(first.exit_code, 130) << first.error;
     EXPECT_THAT(first.error, HasSubstr("the same command goes on from there"));
     EXPECT_FALSE(fs::exists(scene.folder() / "result/report.html"));
-    const auto rest = run_program(command("result", {"--quiet"}), {.folder = scene.folder()});
+    const auto rest = run_program(command("result", {"--quiet"}, "12"), {.folder = scene.folder()});
     EXPECT_EQ(rest.exit_code, 0) << rest.error;
     EXPECT_TRUE(fs::exists(scene.folder() / "result/report.html"));
 }
@@ -87,7 +89,7 @@ TEST(Ensemble, BadInputIsOneLineAndLeavesNothing) {
     expect({"ensemble", "nix.toml", "--vary", "material.viscosity=0:0.1", "-o", "x"}, "nix.toml");
     expect(command("x", {"--vary", "material.viscosity=0.2:0.1"}), "the range is empty");
     expect(command("x", {"--vary", "material.viscosity=0.2:2"}), "material.viscosity = 2 is refused");
-    expect(command("x", {"--depth-m", "1,half"}), "--depth-m = \"1,half\" is refused");
+    expect(command("x", {"--speed-mps", "1,half"}), "--speed-mps = \"1,half\" is refused");
     expect(command("x", {"--shard", "3/2"}), "i from 1 to n");
     expect(command("x", {"--design", "best"}), "must be one of monte_carlo, latin_hypercube");
     expect(command("x", {"--plan", "nix.toml"}), "nix.toml");

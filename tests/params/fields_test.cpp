@@ -65,8 +65,36 @@ TEST(FieldTable, EveryMemberIsDeclared) {
         EXPECT_EQ(declared("outputs"), 8U);
     }
     {
-        [[maybe_unused]] const auto [a, b, c, d] = ObservationSpec{};
-        EXPECT_EQ(declared("observation"), 4U);
+        [[maybe_unused]] const auto [a, b, c, d, e] = ObservationSpec{};
+        EXPECT_EQ(declared("observation"), 5U);
+    }
+    {
+        [[maybe_unused]] const auto [a, b, c, d, e, f, g, h] = SuperelevationSpec{};
+        EXPECT_EQ(declared("superelevation"), 8U);
+    }
+    {
+        [[maybe_unused]] const auto [a, b, c, d, e] = ArrivalSpec{};
+        EXPECT_EQ(declared("arrival"), 5U);
+    }
+    {
+        [[maybe_unused]] const auto [a, b, c, d, e, f] = RunUpSpec{};
+        EXPECT_EQ(declared("run_up"), 6U);
+    }
+    {
+        [[maybe_unused]] const auto [a, b, c, d, e, f] = DepositDepthSpec{};
+        EXPECT_EQ(declared("deposit_depth"), 6U);
+    }
+    {
+        [[maybe_unused]] const auto [a, b, c, d, e] = DamageSpec{};
+        EXPECT_EQ(declared("damage"), 5U);
+    }
+    {
+        [[maybe_unused]] const auto [a, b, c, d] = ObservedRunOutSpec{};
+        EXPECT_EQ(declared("observed_run_out"), 4U);
+    }
+    {
+        [[maybe_unused]] const auto [a, b, c, d, e, f] = DepositOutlineSpec{};
+        EXPECT_EQ(declared("deposit_outline"), 6U);
     }
 }
 
@@ -133,8 +161,11 @@ TEST(FieldTable, EveryKeySetsItsOwnMemberAndNoOther) {
     for (const Section& section : scene_sections()) {
         for (const Parameter& p : section.parameters) {
             SceneSpec spec;
-            spec.releases.resize(2);
-            spec.observations.resize(2);
+            for (const Section& repeated : scene_sections()) {
+                if (!repeated.repeats) continue;
+                repeated.append(spec);
+                repeated.append(spec);
+            }
             const SceneSpec before = spec;
             const std::size_t index = section.repeats ? 1 : 0;
             const ParameterValue value = other_value(section, p);

@@ -1,0 +1,65 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "core/geometry.hpp"
+#include "observe/observation.hpp"
+#include "params/spec.hpp"
+#include "scene/run.hpp"
+#include "scene/scene.hpp"
+#include "terrain/terrain.hpp"
+
+/// What a run predicts for each kind of field observation, by one function each. NaN: the run gives no such value, as
+/// debris never came there.
+namespace talus {
+
+/// m/s, at which the front first came to a chainage.
+[[nodiscard]] double predict_front_velocity(const Observation& run, double chainage);
+
+/// s, when it did.
+[[nodiscard]] double predict_arrival_time(const Observation& run, double chainage);
+
+/// m, farthest chainage of the front.
+[[nodiscard]] double predict_run_out(const Observation& run);
+
+/// m above the ground at a place, to which debris stood there. Where it did not come there, how far below the place the
+/// highest debris within `search_radius` m stood, as a negative number: a run that nearly reaches a mark on a bank is
+/// better than one that stays in the bed.
+[[nodiscard]] double predict_run_up(const Observation& run, const Terrain& terrain, const PlanPoint& place,
+                                    double search_radius = 15);
+
+/// m, vertical deposit at a place; 0 where there is none.
+[[nodiscard]] double predict_deposit_depth(const Observation& run, const PlanPoint& place);
+
+/// Pa, filtered peak pressure on the building of that name; 0 if it was not hit, NaN if there is none.
+[[nodiscard]] double predict_building_pressure(const Observation& run, const std::string& building);
+
+/// Area that both the outline and deposit deeper than `depth` m cover, over the area that either does: 0 to 1, by map
+/// cells (Jaccard 1901).
+[[nodiscard]] double predict_outline_overlap(const Observation& run, const std::vector<Polygon>& outline, double depth);
+
+/// m/s, the velocity that superelevated marks stand for: v^2 = g R dh / (k b), the forced vortex with a correction
+/// factor (Prochaska et al. 2008, Engineering Geology 97). The channel's slope is left out.
+[[nodiscard]] double superelevation_velocity(const SuperelevationSpec& marks);
+
+/// A field observation as a number with its standard deviation.
+struct ObservedValue {
+    std::string key;   ///< "observation[0].front_velocity_mps", "damage[1].pressure_Pa"
+    std::string name;  ///< "Front velocity at 121 m"
+    std::string unit;
+    double value = 0, uncertainty = 0;  ///< of damage: the limit of pressure
+    /// Damage says only on which side of the value the prediction should lie.
+    enum class Kind { equal, at_least, below } kind = Kind::equal;
+};
+
+/// All observations of a scene, in the order of its sections.
+[[nodiscard]] std::vector<ObservedValue> observed_values(const Scene& scene);
+
+/// What a run of the scene predicts for them, in the same order.
+[[nodiscard]] std::vector<double> predicted_values(const Scene& scene, const Observation& run);
+
+/// (predicted - observed) / uncertainty; of damage 0 on the right side of the limit. NaN where nothing is predicted.
+[[nodiscard]] double deviation_of(const ObservedValue& observed, double predicted);
+
+}  // namespace talus

@@ -1,0 +1,94 @@
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "geo/vector.hpp"
+#include "scene/load.hpp"
+
+namespace talus {
+namespace {
+
+void note_observations(Scene& scene) {
+    for (std::size_t i = 0; i < scene.spec.observations.size(); ++i) {
+        const ObservationSpec& observation = scene.spec.observations[i];
+        if (scene.flow_path.empty() || observation.chainage <= scene.flow_path.length()) continue;
+        scene.notes.push_back(
+            fmt::format("observation[{}]: chainage {:.6g} m lies beyond the flow path's end at {:.1f} m", i,
+                        observation.chainage, scene.flow_path.length()));
+    }
+}
+
+/// A list of observations at chainages; `section` as in the scene file.
+template <class Spec>
+Status check_chainages(const ParsedScene& parsed, const Scene& scene, const std::vector<Spec>& list,
+                       const char* section) {
+    for (std::size_t i = 0; i < list.size(); ++i) {
+        if (!scene.flow_path.empty() && list[i].chainage <= scene.flow_path.length()) continue;
+        return Error{fmt::format("{} = {:.6g} lies beyond the flow path, which is {:.1f} m long",
+                                 parsed.at(fmt::format("{}[{}].chainage_m", section, i)), list[i].chainage,
+                                 scene.flow_path.length())};
+    }
+    return {};
+}
+
+/// A list of observations at places.
+template <class Spec>
+Status check_places(const ParsedScene& parsed, const Scene& scene, const std::vector<Spec>& list, const char* section) {
+    for (std::size_t i = 0; i < list.size(); ++i) {
+        const PlanPoint p{list[i].x, list[i].y};
+        if (!std::isnan(scene.terrain.elevation_at(p))) continue;
+        return Error{fmt::format("{}: {} is not on the terrain, {}", parsed.at(fmt::format("{}[{}].x_m", section, i)),
+                                 place_text(p), extent_text(covered_extent(scene.terrain)))};
+    }
+    return {};
+}
+
+Status check_damages(const ParsedScene& parsed, const Scene& scene) {
+    const std::vector<DamageSpec>& damages = scene.spec.damages;
+    for (std::size_t i = 0; i < damages.size(); ++i) {
+        std::vector<std::string> names;
+        for (const Building& building : scene.buildings) names.push_back(building.name);
+        if (std::find(names.begin(), names.end(), damages[i].building) != names.end()) continue;
+        const std::string nearest = nearest_word(damages[i].building, names);
+        return Error{fmt::format("{} = \"{}\" is no building of the scene; {}",
+                                 parsed.at(fmt::format("damage[{}].building", i)), one_line(damages[i].building, 80),
+                                 nearest.empty() ? "it has none" : "nearest name: " + nearest)};
+    }
+    return {};
+}
+
+Status load_outlines(const ParsedScene& parsed, Scene& scene) {
+    for (std::size_t i = 0; i < scene.spec.deposit_outlines.size(); ++i) {
+        const DepositOutlineSpec& spec = scene.spec.deposit_outlines[i];
+        const Result<PolygonLayer> layer = read_polygons(spec.file, spec.layer, scene.crs);
+        if (!layer) {
+            return Error{parsed.at(fmt::format("deposit_outline[{}].file", i)) + ": " + layer.error().message};
+        }
+        record_input(fmt::format("deposit outline {}", i + 1), spec.file, scene);
+        if (!layer->reprojection.empty()) {
+            scene.notes.push_back(fmt::format("deposit outline {}: {}", i + 1, layer->reprojection));
+        }
+        std::vector<Polygon>& outline = scene.deposit_outlines.emplace_back();
+        for (const PolygonFeature& feature : layer->features) {
+            outline.insert(outline.end(), feature.parts.begin(), feature.parts.end());
+        }
+    }
+    return {};
+}
+
+}  // namespace
+
+Status load_observations(const ParsedScene& parsed, Scene& scene) {
+    note_observations(scene);
+    const SceneSpec& spec = scene.spec;
+    if (Status s = check_chainages(parsed, scene, spec.superelevations, "superelevation"); !s) return s;
+    if (Status s = check_chainages(parsed, scene, spec.arrivals, "arrival"); !s) return s;
+    if (Status s = check_chainages(parsed, scene, spec.observed_run_outs, "observed_run_out"); !s) return s;
+    if (Status s = check_places(parsed, scene, spec.run_ups, "run_up"); !s) return s;
+    if (Status s = check_places(parsed, scene, spec.deposit_depths, "deposit_depth"); !s) return s;
+    if (Status s = check_damages(parsed, scene); !s) return s;
+    return load_outlines(parsed, scene);
+}
+
+}  // namespace talus
