@@ -51,7 +51,7 @@ std::string example_value(const Parameter& parameter) {
         case ParameterKind::text:
         case ParameterKind::path:
         case ParameterKind::choice:
-            return "\"\"";
+            return parameter.required ? "\"...\"" : "\"\"";
         case ParameterKind::text_list:
             return "[]";
         case ParameterKind::extent:
