@@ -211,8 +211,8 @@ int ensemble_command(const EnsembleArguments& arguments) {
     std::optional<EnsembleFolder> folder;
     if (ranks.first()) {
         Result<EnsembleFolder> opened = EnsembleFolder::open(path, definition);
-        if (opened) folder.emplace(*std::move(opened));
-        if (!ranks.hear_first(folder.has_value())) return fail(exit_code::bad_input, opened.error().message);
+        if (!ranks.hear_first(opened.ok())) return fail(exit_code::bad_input, opened.error().message);
+        folder.emplace(*std::move(opened));
     } else {
         if (!ranks.hear_first(false)) return exit_code::bad_input;
         folder.emplace(EnsembleFolder::join(path));

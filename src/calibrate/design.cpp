@@ -133,6 +133,7 @@ std::optional<DesignKind> design_of(std::string_view name) {
 const std::vector<std::string_view>& design_names() {
     static const std::vector<std::string_view> list = [] {
         std::vector<std::string_view> all;
+        all.reserve(names.size());
         for (const auto& entry : names) all.push_back(entry.second);
         return all;
     }();

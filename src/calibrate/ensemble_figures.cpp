@@ -268,8 +268,8 @@ std::string scatter_figure(const EnsembleResult& result, int number) {
         ValueRange x = range_of(xs);
         const double pad = 0.05 * (x.high - x.low);
         x = {x.low - pad, x.high + pad};
-        const double left = width * static_cast<double>(i % columns) + 66,
-                     top = 300 * static_cast<double>(i / columns) + 12;
+        const auto row = static_cast<int>(i / columns);
+        const double left = width * static_cast<double>(i % columns) + 66, top = 300.0 * row + 12;
         Plot plot(left, top, width - 84, 226, x, y);
         plot.axes(factors[shown[i]].key, i % columns == 0 ? "run-out, m" : "");
         svg += plot.svg();

@@ -162,10 +162,12 @@ Sensitivity sensitivity_of(DesignKind design, const Points& points, const std::v
     out.used = known.size();
     if (out.used < fewest || flat) return out;
     std::vector<double> of_result;
+    of_result.reserve(known.size());
     for (const std::size_t i : known) of_result.push_back(results[i]);
     const std::vector<double> result_ranks = ranks_of(of_result);
     for (std::size_t k = 0; k < factors; ++k) {
         std::vector<double> of_factor;
+        of_factor.reserve(known.size());
         for (const std::size_t i : known) of_factor.push_back(points[i][k]);
         FactorEffect effect;
         effect.correlation = correlation_of(ranks_of(of_factor), result_ranks);
