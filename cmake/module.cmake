@@ -29,7 +29,8 @@ function(talus_module name)
   endif()
 endfunction()
 
-# talus_test(NAME LABEL DEPENDS...): the program test_NAME from every .cpp in the current folder, its tests labelled.
+# talus_test(NAME LABEL DEPENDS...): the program test_NAME from every .cpp in the current folder, its tests labelled. With
+# `talus_test_processors` set in the folder, each of them has so many processors for itself.
 function(talus_test name label)
   file(GLOB sources CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/*.cpp)
   if(NOT sources)
@@ -40,5 +41,10 @@ function(talus_test name label)
   target_include_directories(test_${name} PRIVATE ${PROJECT_SOURCE_DIR}/tests)
   target_compile_definitions(test_${name} PRIVATE TALUS_SOURCE_DIR="${PROJECT_SOURCE_DIR}"
                              TALUS_PROGRAM="${CMAKE_BINARY_DIR}/bin/talus")
-  gtest_discover_tests(test_${name} TEST_PREFIX ${name}. PROPERTIES LABELS ${label} TIMEOUT 300 DISCOVERY_TIMEOUT 60)
+  set(processors 1)
+  if(talus_test_processors)
+    set(processors ${talus_test_processors})
+  endif()
+  gtest_discover_tests(test_${name} TEST_PREFIX ${name}. PROPERTIES LABELS ${label} TIMEOUT 300
+                       PROCESSORS ${processors} DISCOVERY_TIMEOUT 60)
 endfunction()
