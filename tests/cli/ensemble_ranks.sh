@@ -10,6 +10,8 @@ trap 'rm -rf "$folder"' EXIT
 ensemble=(ensemble --vary material.friction_coefficient=0.2:0.5 --runs 4 --set solver.target_particle_count=200
           --set solver.end_time_s=4 --quiet)
 "$program" "${ensemble[@]}" -o "$folder/one"
+# What Open MPI keeps until its ranks end is not a leak of ours; the program without it, above, is looked at.
+export ASAN_OPTIONS=${ASAN_OPTIONS:+$ASAN_OPTIONS:}detect_leaks=0
 "$mpirun" -n 3 "$program" "${ensemble[@]}" -o "$folder/three"
 for file in probability_depth_0.1m.tif peak_depth_p95.tif buildings.csv distributions.csv statistics.json; do
     cmp "$folder/one/$file" "$folder/three/$file"
