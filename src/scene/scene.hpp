@@ -8,6 +8,7 @@
 #include "core/result.hpp"
 #include "geo/raster.hpp"
 #include "params/spec.hpp"
+#include "terrain/bed.hpp"
 #include "terrain/buildings.hpp"
 #include "terrain/flow_path.hpp"
 #include "terrain/release.hpp"
@@ -32,6 +33,7 @@ struct Scene {
     double nodata_share = 0;
     Terrain terrain;
     std::vector<Release> releases;
+    Bed bed;
     std::vector<Building> buildings;
     FlowPath flow_path;
     bool flow_path_traced = false;

@@ -8,6 +8,7 @@
 #include "params/spec.hpp"
 #include "sim/physics/boundary_table.hpp"
 #include "sim/physics/kernel.hpp"
+#include "terrain/bed.hpp"
 #include "terrain/buildings.hpp"
 #include "terrain/terrain.hpp"
 
@@ -20,9 +21,11 @@ struct ReleaseGroup {
     std::uint32_t first_particle = 0, last_particle = 0;
 };
 
-/// Everything that stays constant during a run.
+/// Everything that stays constant during a step, and during a run unless somebody changes it or debris picks up its
+/// bed.
 struct Model {
     Terrain terrain;
+    Bed bed;
     std::vector<Building> buildings;
     BuildingSolids solids;
     std::vector<ReleaseGroup> releases;
