@@ -155,7 +155,7 @@ std::string key_results(const Scene& scene, const RunResult& result) {
     return html;
 }
 
-std::string run_quality(const Scene&, const RunResult& result) {
+std::string run_quality(const Scene& scene, const RunResult& result) {
     const Observation& o = result.observation;
     const char* status = result.status == RunStatus::complete      ? "complete"
                          : result.status == RunStatus::interrupted ? "partial: interrupted"

@@ -20,6 +20,17 @@ double moving_speed(const Model& model) {
     return 0.1 * std::sqrt(model.gravity * model.particle_spacing);
 }
 
+/// A share of a particle, 0 to below 1, that a cell is ahead of its law, evenly spread over neighbouring cells: so the
+/// whole particles that cells give add up to what the law says however little each of them loses (additive
+/// low-discrepancy sequence, Roberts 2018).
+double head_start(const GridGeometry& g, std::size_t cell) {
+    const auto columns = static_cast<std::size_t>(g.columns);
+    double whole = 0;
+    return std::modf(static_cast<double>(cell % columns) * 0.7548776662466927 +
+                         static_cast<double>(cell / columns) * 0.5698402909980532,
+                     &whole);
+}
+
 /// A square of the plan, as wide as new particles reach.
 std::uint64_t bin_of(int column, int row) {
     return std::uint64_t{static_cast<std::uint32_t>(row)} << 32U | static_cast<std::uint32_t>(column);
@@ -57,7 +68,7 @@ void Entrainment::find_shear_rates(const Model& model, const State& state) {
         const double sine = std::sqrt(std::max(0.0, 1 - cosine * cosine));
         const double shear_stress = model.rest_density * model.gravity * depth * cosine * sine;
         const double most = material.depth_per_shear * (shear_stress - material.critical_shear_stress);
-        const double left = most - bed.eroded[cell] - pending_[cell] / area;
+        const double left = most - bed.eroded[cell] - loose_[cell] / area;
         const double loose = std::clamp(left, 0.0, material.erosion_rate * state.time_step) * area;
         rate_[cell] = static_cast<float>(loose / count_[cell]);
         count_[cell] = 0;
@@ -69,11 +80,14 @@ std::size_t Entrainment::find(const Model& model, const State& state) {
     const Bed& bed = model.bed;
     sites_.clear();
     if (bed.empty()) return 0;
-    pending_.resize(bed.depth.size());
-    count_.resize(bed.depth.size());
-    rate_.resize(bed.depth.size());
+    if (loose_.empty()) {
+        loose_.resize(bed.depth.size());
+        count_.resize(bed.depth.size());
+        rate_.resize(bed.depth.size());
+    }
     find_shear_rates(model, state);
 
+    const GridGeometry& g = model.terrain.elevation().geometry;
     const double volume = model.particle_volume(), area = model.terrain.cell() * model.terrain.cell();
     const double slowest = moving_speed(model);
     for (std::uint32_t i = 0; i < state.awake && i < state.count; ++i) {
@@ -84,14 +98,14 @@ std::size_t Entrainment::find(const Model& model, const State& state) {
         const LocalPoint p = state.position.at(i);
         const std::size_t cell = model.terrain.cell_at(p.x, p.y);
         if (bed.material_at[cell] == 0) continue;
-        // The last particle of a cell goes where more than half of it is there: on average nothing is lost.
-        if (bed.eroded[cell] + volume / area / 2 > bed.depth[cell]) continue;
+        const double ahead = head_start(g, cell);
+        if ((bed.eroded[cell] - bed.depth[cell]) * area + volume > ahead * volume) continue;  // nothing is left
         const BedMaterial& material = bed.materials[bed.material_at[cell] - 1];
-        pending_[cell] += material.law == EntrainmentLaw::growth
-                              ? material.growth_rate * volume * std::sqrt(square) * state.time_step
-                              : rate_[cell];
-        if (pending_[cell] < volume || !is_clear(model, p)) continue;
-        pending_[cell] -= volume;
+        loose_[cell] += material.law == EntrainmentLaw::growth
+                            ? material.growth_rate * volume * std::sqrt(square) * state.time_step
+                            : rate_[cell];
+        if (loose_[cell] + ahead * volume < volume || !is_clear(model, p)) continue;
+        loose_[cell] -= volume;
         sites_.push_back({i, cell, p, {}});
     }
     return sites_.size();

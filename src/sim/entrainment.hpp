@@ -47,7 +47,7 @@ class Entrainment {
     void choose_foot(const Model& model, const State& state, std::size_t index);
     void make_room(const Model& model, State& state, std::size_t index) const;
 
-    std::vector<double> pending_;       // m3 that have come loose and are no particle yet, by cell
+    std::vector<double> loose_;         // m3 that have come loose, less those that became particles, by cell
     std::vector<std::uint32_t> count_;  // particles over a cell, of beds that go by shear; 0 between steps
     std::vector<float> rate_;           // m3 per particle in this step, likewise
     std::vector<std::size_t> touched_;  // cells with a count

@@ -1,5 +1,6 @@
 #include "sim/entrainment.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <numeric>
 
@@ -113,35 +114,36 @@ TEST(Entrainment, keeps_momentum_and_everybody_elses_speed) {
 TEST(Entrainment, makes_room_without_a_pop) {
     const Terrain level = terrain_of(30, 30, 1, [](double, double) { return 10; });
     Model model = make_model({}, {}, level, {}, spacing);
-    Result<State> seeded = seed_releases(model, {block(level, rectangle(8, 8, 22, 22), 2)});
+    Result<State> seeded = seed_releases(model, {block(level, rectangle(5, 5, 25, 25), 2)});
     // Debris that seems to move picks up its bed for a moment, and lies still again.
-    lay(model, growing(1), 1);
+    lay(model, growing(0.02), 1);
     State state = *seeded;
     state.resize(2 * state.count);
     state.awake = state.count;
     state.time_step = 1.0 / 60;
-    for (std::uint32_t i = 0; i < state.count; ++i) state.velocity.x[i] = 3;
+    std::fill(state.velocity.x.begin(), state.velocity.x.end(), 3.0F);
     Entrainment entrainment;
-    for (int k = 0; k < 20; ++k) {
+    for (int k = 0; k < 8; ++k) {
         if (entrainment.find(model, state) > 0) entrainment.apply(model, state);
     }
     ASSERT_GT(state.entrained, 20U);
-    for (std::uint32_t i = 0; i < state.count; ++i) state.velocity.set(i, {});
-    State plain = *seeded;
+    std::fill(state.velocity.x.begin(), state.velocity.x.end(), 0.0F);
+    state.resize(state.count);
     model.bed = {};
-    const auto fastest = [](Simulation& simulation) {
-        double speed = 0;
-        for (int k = 0; k < 30; ++k) {
-            EXPECT_FALSE(simulation.advance());
-            speed = std::max(speed, simulation.state().largest_speed);
+    Simulation simulation(model, std::move(state));
+    // The block falls apart at its sides; in its middle nothing may happen.
+    double fastest = 0, worst = 0;
+    for (int k = 0; k < 15; ++k) {
+        ASSERT_FALSE(simulation.advance());
+        const State& now = simulation.state();
+        worst = std::max(worst, now.max_compression);
+        for (std::uint32_t i = 0; i < now.count; ++i) {
+            const LocalPoint p = now.position.at(i), v = now.velocity.at(i);
+            if (std::abs(p.x) < 6 && std::abs(p.y) < 6) fastest = std::max<double>(fastest, length(v));
         }
-        return speed;
-    };
-    State compact = state_of({});
-    compact = state;
-    compact.resize(state.count);
-    Simulation with(model, compact), without(model, plain);
-    EXPECT_LT(fastest(with), fastest(without) + 0.5) << "m/s; a particle that is squeezed in leaves at 7 m/s";
+    }
+    EXPECT_LT(fastest, 0.3) << "m/s";
+    EXPECT_LT(worst, 0.05) << "squeezed in without room, particles are compressed by 13 %";
 }
 
 TEST(Entrainment, ends_where_the_bed_does) {
@@ -153,7 +155,14 @@ TEST(Entrainment, ends_where_the_bed_does) {
     float deepest = 0;
     for (const float eroded : bed.eroded) deepest = std::max(deepest, eroded);
     EXPECT_GT(deepest, 0);
-    EXPECT_LE(deepest, depth + particle_depth / 2);
+    EXPECT_LE(deepest, depth + particle_depth);
+    // On average over the cells that were swept there is no more than there was.
+    double sum = 0, swept = 0;
+    for (const float eroded : bed.eroded) {
+        sum += eroded;
+        swept += eroded > 0;
+    }
+    EXPECT_LE(sum / swept, depth + 0.1 * particle_depth);
 }
 
 TEST(Entrainment, by_shear_needs_the_critical_stress) {
