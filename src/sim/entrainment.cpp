@@ -12,8 +12,12 @@ namespace talus {
 namespace {
 
 constexpr float reach_in_spacings = 4;  ///< how far from its place a new particle moves others; by a hundredth of one
-constexpr float sites_apart = 2.5F;     ///< spacings between places of one step, at least
-constexpr float foot_offset = 0.6F;     ///< spacings from the particle that ground comes loose below
+constexpr float sites_apart = 3.5F;     ///< spacings between places of one step, at least
+constexpr float foot_offset = 1.2F;     ///< spacings from the particle that ground comes loose below, at most
+
+/// Particles are no continuum: with a quarter more room than the volume of the new one, the worst of them are
+/// compressed half as much; with half more, room is left over and what lies above falls into it.
+constexpr double room_factor = 1.25;
 
 /// Slower debris picks up nothing: a tenth of the speed of a fall through a particle's own size.
 double moving_speed(const Model& model) {
@@ -106,7 +110,7 @@ std::size_t Entrainment::find(const Model& model, const State& state) {
                             : rate_[cell];
         if (loose_[cell] + ahead * volume < volume || !is_clear(model, p)) continue;
         loose_[cell] -= volume;
-        sites_.push_back({i, cell, p, {}});
+        sites_.push_back({i, cell, {p.x, p.y, model.terrain.sample(p.x, p.y).height}, {}});
     }
     return sites_.size();
 }
@@ -159,9 +163,10 @@ void Entrainment::choose_foot(const Model& model, const State& state, std::size_
     const auto spacing = static_cast<float>(model.particle_spacing), touching = spacing / 2;
     const LocalPoint above = site.foot;
     float best = -1;
-    for (int k = 0; k <= 8; ++k) {
-        const float angle = static_cast<float>(k) * std::numbers::pi_v<float> / 4;
-        const float offset = k == 8 ? 0 : foot_offset * spacing;
+    constexpr int around = 8, rings = 3;
+    for (int k = 0; k <= rings * around; ++k) {
+        const float angle = static_cast<float>(k % around) * 2 * std::numbers::pi_v<float> / around;
+        const float offset = foot_offset * spacing * static_cast<float>((k + around - 1) / around) / rings;
         const float x = above.x + offset * std::cos(angle), y = above.y + offset * std::sin(angle);
         if (!model.terrain.covers(x, y)) continue;
         const GroundSample<float> ground = model.terrain.sample(x, y);
@@ -188,7 +193,8 @@ std::span<const Entrainment::Neighbour> Entrainment::neighbours_of(std::size_t s
 void Entrainment::make_room(const Model& model, State& state, std::size_t index) const {
     const Site& site = sites_[index];
     const auto spacing = static_cast<float>(model.particle_spacing), reach = reach_in_spacings * spacing;
-    const auto room = static_cast<float>(3 * model.particle_volume() / (2 * std::numbers::pi));  // radius cubed
+    const auto room =
+        static_cast<float>(room_factor * 3 * model.particle_volume() / (2 * std::numbers::pi));  // radius cubed
     for (const Neighbour& neighbour : neighbours_of(index)) {
         const std::uint32_t i = neighbour.particle;
         LocalPoint p = state.position.at(i);

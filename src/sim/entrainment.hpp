@@ -21,7 +21,7 @@ namespace talus {
 /// All of it goes by the order of the state alone: results do not depend on the number of threads.
 class Entrainment {
   public:
-    /// Where particles come loose in the step of state.time_step that was just taken, two and a half spacings apart;
+    /// Where particles come loose in the step of state.time_step that was just taken, three and a half spacings apart;
     /// what has no room waits. Returns how many there are.
     std::size_t find(const Model& model, const State& state);
 
@@ -32,7 +32,7 @@ class Entrainment {
     struct Site {
         std::uint32_t particle;  ///< sorted index of the one that ground comes loose below
         std::size_t cell;
-        LocalPoint foot;    ///< on the ground; of find() the particle itself
+        LocalPoint foot;    ///< on the ground; of find() right below the particle
         LocalPoint normal;  ///< of the ground
     };
     struct Neighbour {
