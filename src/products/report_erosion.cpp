@@ -9,7 +9,7 @@ namespace {
 std::string law_text(const BedSpec& bed) {
     if (bed.law == EntrainmentLaw::growth) {
         return fmt::format("debris grows by {} % of its volume per metre that it moves (McDougall &amp; Hungr 2005)",
-                           significant(100 * *bed.growth_rate, 3));
+                           plain(100 * *bed.growth_rate));
     }
     return fmt::format(
         "the bed sinks at {} m/s where the shear stress on it is above {} Pa, at most by {} m per kPa above that "
