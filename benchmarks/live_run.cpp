@@ -82,7 +82,7 @@ BENCHMARK(plain_step)->Apply(sizes)->UseRealTime();
 void live_frame(benchmark::State& run) {
     const twin::Scenario& scenario = scenario_of(run.range(0));
     std::size_t bytes = 0;
-    for (auto _ : run) bytes = scenario.frame(0, 1, 0).size();
+    for (auto _ : run) bytes = twin::encode(*scenario.frame(1, 0), 0).size();
     run.counters["bytes"] = static_cast<double>(bytes);
     run.counters["bytes_per_particle"] = static_cast<double>(bytes) / static_cast<double>(run.range(0));
 }

@@ -25,6 +25,7 @@ struct TerrainSpec {
     int band = 1;
     std::optional<Extent> extent;  ///< the part to use, in the terrain's CRS; absent: all of it
     std::string obtain;            ///< where the file is to be had, said when it is missing
+    std::string orthophoto;        ///< a picture of the ground from above, for the eye alone; empty: none
 };
 
 /// `[[release]]`: exactly one of thickness, thickness_attribute, thickness_raster, volume.

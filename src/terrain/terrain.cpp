@@ -20,19 +20,20 @@ float rise(float before, float here, float after) {
 
 }  // namespace
 
-Terrain::Terrain(Grid<float> elevation) : elevation_(std::move(elevation)) {
-    const GridGeometry& g = elevation_.geometry;
-    assert(g.columns >= 2 && g.rows >= 2 && g.cell > 0 && elevation_.values.size() == g.size());
+Terrain::Terrain(Grid<float> elevation) : elevation_(std::make_shared<const Grid<float>>(std::move(elevation))) {
+    const GridGeometry& g = elevation_->geometry;
+    const std::vector<float>& heights = elevation_->values;
+    assert(g.columns >= 2 && g.rows >= 2 && g.cell > 0 && heights.size() == g.size());
 
     float lowest = std::numeric_limits<float>::infinity();
-    for (const float z : elevation_.values) {
+    for (const float z : heights) {
         if (z < lowest) lowest = z;  // false for NaN
     }
     const Extent extent = g.extent();
     frame_.origin = {(extent.x_min + extent.x_max) / 2, (extent.y_min + extent.y_max) / 2,
                      std::isfinite(lowest) ? lowest : 0.0};
 
-    const auto local = [&](std::size_t i) { return static_cast<float>(elevation_.values[i] - frame_.origin.z); };
+    const auto local = [&](std::size_t i) { return static_cast<float>(heights[i] - frame_.origin.z); };
     stride_ = g.columns;
     last_column_ = g.columns - 1;
     last_row_ = g.rows - 1;
@@ -42,16 +43,17 @@ Terrain::Terrain(Grid<float> elevation) : elevation_(std::move(elevation)) {
     inverse_cell_ = static_cast<float>(1 / g.cell);
 
     const auto stride = static_cast<std::size_t>(stride_);
-    nodes_.resize(elevation_.values.size());
+    const auto nodes = std::make_shared<Quad[]>(heights.size());
     constexpr float none = std::numeric_limits<float>::quiet_NaN();
     for (int row = 0; row < g.rows; ++row) {
         for (int column = 0; column < g.columns; ++column) {
             const std::size_t i = g.index(column, row);
             const float west = column > 0 ? local(i - 1) : none, east = column < last_column_ ? local(i + 1) : none;
             const float south = row > 0 ? local(i - stride) : none, north = row < last_row_ ? local(i + stride) : none;
-            nodes_[i] = {local(i), rise(west, local(i), east), rise(south, local(i), north), 0};
+            nodes[i] = {local(i), rise(west, local(i), east), rise(south, local(i), north), 0};
         }
     }
+    nodes_ = nodes;
 }
 
 double Terrain::elevation_at(const PlanPoint& p) const {

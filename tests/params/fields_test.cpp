@@ -37,8 +37,8 @@ TEST(FieldTable, EveryMemberIsDeclared) {
         EXPECT_EQ(declared("scene"), 5U);
     }
     {
-        [[maybe_unused]] const auto [a, b, c, d] = TerrainSpec{};
-        EXPECT_EQ(declared("terrain"), 4U);
+        [[maybe_unused]] const auto [a, b, c, d, e] = TerrainSpec{};
+        EXPECT_EQ(declared("terrain"), 5U);
     }
     {
         [[maybe_unused]] const auto [a, b, c, d, e, f, g, h] = ReleaseSpec{};

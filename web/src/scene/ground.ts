@@ -126,6 +126,9 @@ export class Ground {
       uLayerRamp: { value: nothing },
       uLayerRange: { value: new Vector2(0, 1) },
       uLayerOpacity: { value: 0 },
+      uPhoto: { value: nothing },
+      uPhotoPlacing: { value: new Vector4() },
+      uPhotoShown: { value: 0 },
       uDrawn: { value: nothing },
       uDrawnPlacing: { value: new Vector4() },
     };
@@ -152,6 +155,12 @@ export class Ground {
   drape(drawn: Draped): void {
     this.set("uDrawn", drawn.texture);
     this.set("uDrawnPlacing", drawn.placing);
+  }
+  /** A picture in place of the colours of elevation; null: none. */
+  showPhoto(photo: Draped | null): void {
+    this.set("uPhoto", photo?.texture ?? nothing);
+    if (photo) this.set("uPhotoPlacing", photo.placing);
+    this.set("uPhotoShown", photo ? 1 : 0);
   }
   /** range: values at the ends of the ramp; `opacity` 0 hides the layer. */
   showLayer(layer: Draped | null, ramp: Texture | null, range: [number, number], opacity: number): void {
