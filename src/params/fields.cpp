@@ -27,10 +27,11 @@ Section declare_terrain() {
     s.optional_key("extent_m", "m", &TerrainSpec::extent, anything(), "the whole raster",
                    "The part of the terrain to use, in its own coordinates.");
     s.text("obtain", &TerrainSpec::obtain, "nothing is said", "Where the file is to be had, told to whoever lacks it.");
-    s.path("orthophoto", &TerrainSpec::orthophoto, "none",
-           "Picture of the ground from above, as GDAL reads it (GeoTIFF, or JPEG or PNG with a world file), that the live "
-           "twin drapes over the terrain; without a reference system of its own it is taken to have the terrain's. "
-           "Results do not depend on it.");
+    s.path(
+        "orthophoto", &TerrainSpec::orthophoto, "none",
+        "Picture of the ground from above, as GDAL reads it (GeoTIFF, or JPEG or PNG with a world file), that the live "
+        "twin drapes over the terrain; without a reference system of its own it is taken to have the terrain's. "
+        "Results do not depend on it.");
     return s.take();
 }
 

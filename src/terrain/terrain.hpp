@@ -63,8 +63,7 @@ class Terrain {
                       by_y * in_x.value_rise * in_y.slope;
             rise_y += here * in_y.value_rise + by_y * in_x.value * in_y.slope_rise;
         };
-        const auto south = quad_pairs_at(nodes_.get(), c.index),
-                   north = quad_pairs_at(nodes_.get() + stride_, c.index);
+        const auto south = quad_pairs_at(nodes_.get(), c.index), north = quad_pairs_at(nodes_.get() + stride_, c.index);
         add_corner(along_x.first, along_y.first, south.low);
         add_corner(along_x.last, along_y.first, south.high);
         add_corner(along_x.first, along_y.last, north.low);

@@ -168,7 +168,7 @@ TEST_F(OpenApi, maps_and_impacts_are_also_of_an_earlier_time) {
     act({{"action", "set_speed"}, {"factor", nullptr}});
     act({{"action", "run"}});
     HttpClient eye = as_viewer();
-    for (int i = 0; i < 200 && eye.get("/api/scenarios/A/state").json()["time_s"] < 4; ++i) {
+    for (int i = 0; i < 200 && eye.get("/api/scenarios/A/state").json()["time_s"] < 12; ++i) {
         std::this_thread::sleep_for(std::chrono::milliseconds(50));
     }
     act({{"action", "pause"}});
