@@ -89,6 +89,10 @@ struct Exports::Snapshot {
 Exports::Exports(Session& session, fs::path folder) : session_(session), folder_(std::move(folder)) {}
 Exports::~Exports() = default;
 
+void Exports::close() {
+    writer_.reset();
+}
+
 bool Exports::is_current(int index, const twin::Scenario& scenario) const {
     const SnapshotPtr& taken = taken_[static_cast<std::size_t>(index)];
     return taken && taken->step == scenario.step() && taken->revision == scenario.revision() &&
@@ -103,7 +107,7 @@ void Exports::list(const std::string& scenario, const Respond& respond) {
             return;
         }
         const bool current = is_current(*index, all.at(*index));
-        writer_.post([taken = current ? taken_[static_cast<std::size_t>(*index)] : nullptr, respond] {
+        writer_->post([taken = current ? taken_[static_cast<std::size_t>(*index)] : nullptr, respond] {
             json files = json::array();
             const bool written = taken && !taken->products;
             for (const ExportFile& file : export_files) {
@@ -140,9 +144,9 @@ void Exports::file(const std::string& scenario, const std::string& name, const R
             fresh->folder = folder_ / fmt::format("{}{}", Scenarios::name_of(*index), ++count_);
             fresh->products = run.products();
             std::swap(taken, fresh);
-            writer_.post([former = std::move(fresh)] {});  // its files go with it
+            writer_->post([former = std::move(fresh)] {});  // its files go with it
         }
-        writer_.post([taken, wanted, respond] {
+        writer_->post([taken, wanted, respond] {
             const Status written = taken->write();
             respond(written ? read_file(taken->folder / wanted->name, *wanted)
                             : error_response(500, written.error().message));

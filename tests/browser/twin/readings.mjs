@@ -113,6 +113,23 @@ export async function testReadings(run, server) {
     await page.click("[aria-label='Fit']");
   });
 
+  await run.check("on slow graphics what moves has fewer pixels, and what stands still has all of them", async () => {
+    const ratio = () => page.evaluate(() => window.talusStats.pixelRatio);
+    const full = await page.evaluate(() => Math.min(2, devicePixelRatio));
+    await until(ratio, (r) => r === full, "all pixels at rest");
+    const slow = await page.context().newCDPSession(page);
+    await slow.send("Emulation.setCPUThrottlingRate", { rate: 15 });
+    await page.locator(".stage canvas").focus();
+    await page.keyboard.press("2");
+    await page.keyboard.down("s");
+    await until(ratio, (r) => r < full, "fewer pixels", 30_000);
+    await page.keyboard.up("s");
+    await slow.send("Emulation.setCPUThrottlingRate", { rate: 1 });
+    await until(ratio, (r) => r === full, "all pixels again");
+    await page.keyboard.press("1");
+    await page.click("[aria-label='Fit']");
+  });
+
   await run.check("readings are tabs for mouse and arrow keys; front and time charts have curves", async () => {
     await page.click("[data-tab=front]");
     const chart = page.locator(".tab-panel:visible .chart-plot").first();

@@ -146,6 +146,7 @@ export class Stage {
     requestAnimationFrame((next) => this.tick(next));
     // Frames of the server are timed by the same clock.
     const now = Math.max(now_ms, 0);
+    this.resolution.tick(now);
     if (this.rig.update(now)) this.invalidate();
     for (const view of this.views.values()) if (view.clock.moving(now)) this.due = true;
     if (!this.due) {
