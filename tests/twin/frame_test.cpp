@@ -29,7 +29,7 @@ struct Decoded {
 
 template <class T>
 T at(const std::string& bytes, std::size_t offset) {
-    T value;
+    T value{};
     std::memcpy(&value, bytes.data() + offset, sizeof value);
     return value;
 }
