@@ -78,11 +78,19 @@ void plain_step(benchmark::State& run) {
 }
 BENCHMARK(plain_step)->Apply(sizes)->UseRealTime();
 
-/// The present frame as it goes over the wire.
+/// The present frame, as the steps wait for it.
+void live_frame_made(benchmark::State& run) {
+    const twin::Scenario& scenario = scenario_of(run.range(0));
+    for (auto _ : run) benchmark::DoNotOptimize(scenario.frame(1, 0));
+}
+BENCHMARK(live_frame_made)->Apply(sizes)->UseRealTime();
+
+/// The same as it goes over the wire: compressed, by another thread.
 void live_frame(benchmark::State& run) {
     const twin::Scenario& scenario = scenario_of(run.range(0));
+    const twin::FramePtr frame = scenario.frame(1, 0);
     std::size_t bytes = 0;
-    for (auto _ : run) bytes = scenario.frame(0, 1, 0).size();
+    for (auto _ : run) bytes = twin::encode(*frame, 0).size();
     run.counters["bytes"] = static_cast<double>(bytes);
     run.counters["bytes_per_particle"] = static_cast<double>(bytes) / static_cast<double>(run.range(0));
 }

@@ -46,6 +46,7 @@ struct BuildingImpact {
     double peak_depth = 0;             ///< m, highest debris at the walls above the ground
     double peak_dynamic_pressure = 0;  ///< Pa, rest_density * speed^2 of debris within a cell of the walls
     double peak_speed = 0;             ///< m/s, depth-averaged, of debris within a cell of the walls
+    double removed_time = never;       ///< s, when it was taken away between two steps; NaN: it stands
 };
 
 /// A row of the time series. Volumes add up exactly: released + entrained = held + moving + deposited + left.

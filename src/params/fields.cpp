@@ -31,6 +31,11 @@ Section declare_terrain() {
            "Raster of depths in metres that raise the ground, such as deposit_depth.tif of an earlier surge.");
     s.path("erosion", &TerrainSpec::erosion, "nothing was eroded",
            "Raster of depths in metres that lower the ground, such as erosion_depth.tif of an earlier surge.");
+    s.path(
+        "orthophoto", &TerrainSpec::orthophoto, "none",
+        "Picture of the ground from above, as GDAL reads it (GeoTIFF, or JPEG or PNG with a world file), that the live "
+        "twin drapes over the terrain; without a reference system of its own it is taken to have the terrain's. "
+        "Results do not depend on it.");
     return s.take();
 }
 

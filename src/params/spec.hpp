@@ -27,6 +27,7 @@ struct TerrainSpec {
     std::string obtain;            ///< where the file is to be had, said when it is missing
     std::string deposit;           ///< raster of depths that lie on the terrain, m: an earlier surge's
     std::string erosion;           ///< raster of depths that the terrain has lost, m
+    std::string orthophoto;        ///< a picture of the ground from above, for the eye alone; empty: none
 };
 
 /// How fast debris picks up what it moves over. Both laws work per cell of the terrain.

@@ -178,6 +178,7 @@ std::string draw_classes(const MapLayer& shown, const Classes& classes, double m
 
 std::string building_title(const Building& building, const BuildingImpact& impact) {
     std::string title = escape(building.name.empty() ? "Building" : building.name);
+    if (!std::isnan(impact.removed_time)) title += fmt::format(" (until {} s)", fixed(impact.removed_time, 1));
     if (!impact.hit) return title + ": not reached";
     return title + fmt::format(": {} kPa, first hit at {} s", significant(impact.peak_pressure / 1e3, 3),
                                fixed(impact.first_hit_time, 1));
@@ -241,6 +242,7 @@ MapContent map_content(const Scene& scene, const RunResult& result) {
         const BuildingImpact& impact = observation.buildings[i];
         content.buildings.classes.push_back(impact_class(impact));
         content.buildings.titles.push_back(building_title(scene.buildings[i], impact));
+        content.buildings.removed.push_back(!std::isnan(impact.removed_time));
     }
     for (std::size_t k = 0; k < hazard_maps().size(); ++k) {
         const HazardMap& map = hazard_maps()[k];

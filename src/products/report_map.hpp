@@ -44,6 +44,7 @@ struct BuildingMarks {
     std::array<std::string, 4> class_names;  ///< from 0 up
     std::vector<int> classes;                ///< as in Scene::buildings
     std::vector<std::string> titles;         ///< likewise; said under the pointer, escaped
+    std::vector<bool> removed;               ///< likewise, if any; taken away while the run went on
 };
 
 /// What a report's maps show, whatever they are of.

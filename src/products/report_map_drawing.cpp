@@ -179,7 +179,9 @@ std::string draw_vectors(const Scene& scene, const BuildingMarks& marks, const M
             continue;
         }
         const int hit = i < marks.classes.size() ? marks.classes[i] : 0;
-        svg += fmt::format(R"(<path class="building hit-{}" d="{}"><title>{}</title></path>)", hit, d,
+        const bool removed = i < marks.removed.size() && marks.removed[i];
+        svg += fmt::format(R"(<path class="building hit-{}{}" d="{}"><title>{}</title></path>)", hit,
+                           removed ? " removed" : "", d,
                            i < marks.titles.size() ? marks.titles[i] : escape(building.name));
         if (hit > 0 && !building.name.empty()) {
             labels.push_back({hit, frame.x((around.x_min + around.x_max) / 2), frame.y(around.y_min) + 13,

@@ -210,6 +210,17 @@ std::string observation_table(const Scene& scene, const RunResult& result) {
     return html + "</tbody></table>";
 }
 
+namespace {
+
+/// Escaped; with what became of a building that was taken away.
+std::string displayed_name(const BuildingImpact& b) {
+    const std::string name = b.name.empty() ? "unnamed" : escape(b.name);
+    return std::isnan(b.removed_time) ? name
+                                      : fmt::format("{} <small>(until {} s)</small>", name, fixed(b.removed_time, 1));
+}
+
+}  // namespace
+
 std::string building_table(const Scene& scene, const RunResult& result) {
     const auto& impacts = result.observation.buildings;
     if (impacts.empty()) return "<p>The scene has no buildings.</p>";
@@ -219,7 +230,12 @@ std::string building_table(const Scene& scene, const RunResult& result) {
     }
     const auto assumed = std::count_if(scene.buildings.begin(), scene.buildings.end(),
                                        [](const Building& b) { return b.height_assumed; });
-    std::string html;
+    std::string html, removed;
+    for (const BuildingImpact& b : impacts) {
+        if (std::isnan(b.removed_time)) continue;
+        removed += fmt::format("{}{} at {} s", removed.empty() ? "" : ", ", b.name.empty() ? "unnamed" : escape(b.name),
+                               fixed(b.removed_time, 1));
+    }
     if (hit.empty()) {
         html = fmt::format("<p><b>No building was hit.</b> Debris reached none of the {} in the scene.</p>",
                            plural(impacts.size(), "building"));
@@ -241,9 +257,9 @@ std::string building_table(const Scene& scene, const RunResult& result) {
             html += fmt::format(
                 R"(<tr><td><i class="dot hit-{}"></i>{}</td><td class="n">{}</td><td class="n">{}</td><td class="n"><b>{}</b></td><td class="n">{}</td><td class="n">{}</td><td class="n">{}</td></tr>
 )",
-                impact_class(b), b.name.empty() ? "unnamed" : escape(b.name), fixed(b.first_hit_time, 1),
-                significant(b.peak_force / 1e3, 3), significant(b.peak_pressure / 1e3, 3),
-                significant(b.peak_dynamic_pressure / 1e3, 3), fixed(b.peak_depth, 2), height);
+                impact_class(b), displayed_name(b), fixed(b.first_hit_time, 1), significant(b.peak_force / 1e3, 3),
+                significant(b.peak_pressure / 1e3, 3), significant(b.peak_dynamic_pressure / 1e3, 3),
+                fixed(b.peak_depth, 2), height);
         }
         html += "</tbody></table>";
         if (hit.size() > shown) {
@@ -256,6 +272,10 @@ std::string building_table(const Scene& scene, const RunResult& result) {
             "that force over the wall area in contact. Colours: below 15, 15 to 30 and over 30 kPa, the limits between "
             "slight, extensive and complete damage to buildings not of reinforced concrete (Kang &amp; Kim 2014).</p>",
             plain(scene.spec.outputs.impact_filter_window));
+    }
+    if (!removed.empty()) {
+        html += fmt::format(
+            "<p class=\"note\">Taken away while the run went on: {}. What is told of them is until then.</p>", removed);
     }
     if (assumed > 0) {
         html += fmt::format("<p class=\"note\"><sup>a</sup> Height assumed, not in the data ({} of {}).</p>", assumed,

@@ -28,7 +28,7 @@ std::string run_out_table(const RunOut& r) {
 std::string building_table(const Scene& scene, const Observation& observation) {
     Csv csv(
         "name,hit,first_hit_time_s,peak_force_kN,peak_pressure_kPa,peak_dynamic_pressure_kPa,peak_depth_m,"
-        "filter_window_s,height_m,height_assumed");
+        "filter_window_s,height_m,height_assumed,removed_time_s");
     for (std::size_t i = 0; i < observation.buildings.size(); ++i) {
         const BuildingImpact& b = observation.buildings[i];
         csv.word(b.name).word(b.hit ? "yes" : "no").number(b.first_hit_time);
@@ -37,6 +37,7 @@ std::string building_table(const Scene& scene, const Observation& observation) {
         const Building* building = i < scene.buildings.size() ? &scene.buildings[i] : nullptr;
         csv.number(building != nullptr ? building->height : never);
         csv.word(building != nullptr && building->height_assumed ? "yes" : "no");
+        csv.number(b.removed_time);
         csv.end_row();
     }
     return csv.text();

@@ -14,10 +14,10 @@ Attribute yes_or_no(bool value) {
 
 /// The columns are those of buildings.csv.
 Status write_buildings(const Scene& scene, const Observation& observation, const std::string& file) {
-    const std::vector<Field> fields = {{"name", true},          {"hit", true},         {"first_hit_time_s"},
-                                       {"peak_force_kN"},       {"peak_pressure_kPa"}, {"peak_dynamic_pressure_kPa"},
-                                       {"peak_depth_m"},        {"filter_window_s"},   {"height_m"},
-                                       {"height_assumed", true}};
+    const std::vector<Field> fields = {{"name", true},           {"hit", true},         {"first_hit_time_s"},
+                                       {"peak_force_kN"},        {"peak_pressure_kPa"}, {"peak_dynamic_pressure_kPa"},
+                                       {"peak_depth_m"},         {"filter_window_s"},   {"height_m"},
+                                       {"height_assumed", true}, {"removed_time_s"}};
     std::vector<OutputFeature> features;
     for (std::size_t i = 0; i < scene.buildings.size() && i < observation.buildings.size(); ++i) {
         const Building& building = scene.buildings[i];
@@ -26,7 +26,7 @@ Status write_buildings(const Scene& scene, const Observation& observation, const
                             {},
                             {b.name, yes_or_no(b.hit), b.first_hit_time, b.peak_force / 1e3, b.peak_pressure / 1e3,
                              b.peak_dynamic_pressure / 1e3, b.peak_depth, scene.spec.outputs.impact_filter_window,
-                             building.height, yes_or_no(building.height_assumed)}});
+                             building.height, yes_or_no(building.height_assumed), b.removed_time}});
     }
     return write_geopackage_layer(file, "buildings", fields, features, scene.crs);
 }

@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "core/hash.hpp"
+#include "geo/orthophoto.hpp"
 #include "sim/physics/kernel.hpp"
 #include "sim/physics/viscosity.hpp"
 #include "sim/seed.hpp"
@@ -116,6 +117,12 @@ Status load_terrain(const ParsedScene& parsed, Scene& scene) {
     if (Status s = add_depths(parsed, "deposit", spec.deposit, 1, *raster, scene); !s) return s;
     if (Status s = add_depths(parsed, "erosion", spec.erosion, -1, *raster, scene); !s) return s;
     scene.terrain = Terrain(std::move(raster->grid));
+    if (!spec.orthophoto.empty()) {
+        const Extent extent = scene.terrain.elevation().geometry.extent();
+        if (Status s = check_orthophoto(spec.orthophoto, scene.crs, extent); !s) {
+            return Error{parsed.at("terrain.orthophoto") + ": " + s.error().message};
+        }
+    }
     return {};
 }
 

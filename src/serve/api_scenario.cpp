@@ -19,6 +19,28 @@ void ask(Session& session, const Request& request, const Respond& respond,
     });
 }
 
+/// What is left to do of an answer when the scenario has given what it takes.
+using Work = std::function<Response()>;
+
+/// Asks the scenario between two steps, and does the work on the worker's thread. An error is a 404.
+void take(Session& session, const Request& request, const Respond& respond,
+          std::function<Result<Work>(Scenarios&, int index)> question) {
+    session.loop().post(
+        [&session, respond, name = request.parameters.at("s"), question = std::move(question)](Scenarios& all) {
+            const auto index = all.find(name);
+            if (!index) {
+                respond(no_scenario(name));
+                return;
+            }
+            Result<Work> work = question(all, *index);
+            if (!work) {
+                respond(error_response(404, work.error().message));
+                return;
+            }
+            session.worker().post([respond, work = std::move(*work)] { respond(work()); });
+        });
+}
+
 using Question = std::function<json(Scenarios&, int index)>;
 
 void add_questions(Router& router, Session& session) {
@@ -26,7 +48,6 @@ void add_questions(Router& router, Session& session) {
         {"state", [](Scenarios& all, int index) { return all.state(index); }},
         {"setup", [](Scenarios& all, int index) { return all.setup(index); }},
         {"series", [](Scenarios& all, int index) { return all.at(index).series_json(); }},
-        {"impacts", [](Scenarios& all, int index) { return all.at(index).impacts_json(); }},
         {"journal", [](Scenarios& all, int index) { return all.at(index).journal_json(); }},
         {"recording", [](Scenarios& all, int index) { return all.at(index).recording_json(); }},
     };
@@ -45,12 +66,12 @@ void frame(Session& session, const Request& request, const Respond& respond) {
         respond(error_response(400, time.error().message));
         return;
     }
-    ask(session, request, respond, [time = *time](Scenarios& all, int index) {
-        if (!time) return binary_response(all.frame(index, 1));
-        std::string recorded = all.at(index).recorded_frame(index, *time);
-        if (recorded.empty())
-            return error_response(404, fmt::format("nothing is recorded at or before time_s = {}", *time));
-        return binary_response(std::move(recorded));
+    take(session, request, respond, [time = *time](Scenarios& all, int index) -> Result<Work> {
+        const twin::FramePtr frame = time ? all.at(index).recorded_frame(*time) : all.frame(index, 1);
+        if (!frame) return Error{fmt::format("nothing is recorded at or before time_s = {}", *time)};
+        return Work([frame, index, flags = time ? twin::frame_recorded : 0] {
+            return binary_response(twin::encode(*frame, index, flags));
+        });
     });
 }
 
@@ -64,27 +85,33 @@ void probe(Session& session, const Request& request, const Respond& respond) {
         respond(error_response(400, "the query needs x_m and y_m"));
         return;
     }
-    ask(session, request, respond, [point = PlanPoint{**x, **y}](Scenarios& all, int index) {
-        return json_response(200, all.at(index).probe_json(point));
+    take(session, request, respond, [point = PlanPoint{**x, **y}](Scenarios& all, int index) -> Result<Work> {
+        return Work([probe = all.at(index).probe(point)] { return json_response(200, probe()); });
     });
 }
 
-/// The grid is copied between two steps and compressed elsewhere.
 void layer(Session& session, const Request& request, const Respond& respond) {
-    session.loop().post([&session, respond, request](Scenarios& all) {
-        const auto index = all.find(request.parameters.at("s"));
-        if (!index) {
-            respond(no_scenario(request.parameters.at("s")));
-            return;
-        }
-        auto grid = all.at(*index).layer(request.parameters.at("name"));
-        if (!grid) {
-            respond(error_response(404, grid.error().message));
-            return;
-        }
-        session.worker().post(
-            [respond, grid = std::move(*grid)] { respond(binary_response(twin::encode_grid(grid))); });
-    });
+    const auto time = number_of(request, "time_s", 0, 1e9);
+    if (!time) {
+        respond(error_response(400, time.error().message));
+        return;
+    }
+    take(session, request, respond,
+         [time = *time, name = request.parameters.at("name")](Scenarios& all, int index) -> Result<Work> {
+             auto grid = all.at(index).layer(name, time);
+             if (!grid) return grid.error();
+             return Work([grid = std::move(*grid)] { return binary_response(twin::encode_grid(grid())); });
+         });
+}
+
+void impacts(Session& session, const Request& request, const Respond& respond) {
+    const auto time = number_of(request, "time_s", 0, 1e9);
+    if (!time) {
+        respond(error_response(400, time.error().message));
+        return;
+    }
+    ask(session, request, respond,
+        [time = *time](Scenarios& all, int index) { return json_response(200, all.at(index).impacts_json(time)); });
 }
 
 void action(Session& session, const Request& request, const Respond& respond) {
@@ -112,6 +139,7 @@ void add_scenario_routes(Router& router, Session& session, Exports& exports) {
             [&session, handler](const Request& request, const Respond& respond) { handler(session, request, respond); };
     };
     router.add({"GET", "/api/scenarios/{s}/frame", Role::viewer, with_session(frame)});
+    router.add({"GET", "/api/scenarios/{s}/impacts", Role::viewer, with_session(impacts)});
     router.add({"GET", "/api/scenarios/{s}/probe", Role::viewer, with_session(probe)});
     router.add({"GET", "/api/scenarios/{s}/layers/{name}", Role::viewer, with_session(layer)});
     router.add({"POST", "/api/scenarios/{s}/actions", Role::controller, with_session(action)});

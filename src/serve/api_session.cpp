@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "geo/orthophoto.hpp"
 #include "openapi_file.hpp"
 #include "serve/api.hpp"
 #include "serve/json_text.hpp"
@@ -15,6 +16,7 @@ namespace {
 using nlohmann::json;
 
 constexpr double fewest_cells = 100, most_cells = 16e6, usual_cells = 1e6;
+constexpr int photo_pixels = 4096;  // along the longer edge: what graphics cards take
 
 int reduced(int count, int factor) {
     return (count + factor - 1) / factor;
@@ -73,6 +75,30 @@ void add_terrain(Router& router, Session& session) {
                  respond(response);
              });
          }});
+}
+
+void add_orthophoto(Router& router, Session& session) {
+    // Only the worker's thread touches it.
+    const auto kept = std::make_shared<Response>();
+    router.add({"GET", "/api/orthophoto", Role::viewer, [&session, kept](const Request&, const Respond& respond) {
+                    if (session.scene()->spec.terrain.orthophoto.empty()) {
+                        respond(error_response(404, "the scene has no orthophoto (terrain.orthophoto)"));
+                        return;
+                    }
+                    session.worker().post([respond, kept, scene = session.scene()] {
+                        if (!kept->body) {
+                            auto photo = read_orthophoto(scene->spec.terrain.orthophoto, scene->crs,
+                                                         scene->terrain.elevation().geometry.extent(), photo_pixels);
+                            if (!photo) {
+                                respond(error_response(500, photo.error().message));
+                                return;
+                            }
+                            kept->type = photo->type;
+                            kept->body = std::make_shared<const std::string>(std::move(photo->bytes));
+                        }
+                        respond(*kept);
+                    });
+                }});
 }
 
 /// The scenario that `{"copy_of": "A"}` names. Error: it names none.
@@ -164,6 +190,7 @@ void add_session_routes(Router& router, Session& session) {
                         [respond](Scenarios& all) { respond(json_response(200, all.at(0).scene_json())); });
                 }});
     add_terrain(router, session);
+    add_orthophoto(router, session);
     const auto with_session = [&session](void (*handler)(Session&, const Request&, const Respond&)) -> Handler {
         return
             [&session, handler](const Request& request, const Respond& respond) { handler(session, request, respond); };

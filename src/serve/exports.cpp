@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "serve/api.hpp"
 #include "serve/json_text.hpp"
 
 namespace talus::serve {
@@ -59,43 +60,64 @@ Response read_file(const fs::path& path, const ExportFile& file) {
 
 }  // namespace
 
-bool Exports::is_current(int index, const twin::Scenario& scenario) const {
-    const Written& written = written_[static_cast<std::size_t>(index)];
-    return written.valid && written.step == scenario.step() && written.hash == scenario.hash();
+/// A run as it was when somebody asked for files, and where they are. Once made, only the writer's thread touches it.
+struct Exports::Snapshot {
+    std::uint64_t step = 0, revision = 0, hash = 0;
+    fs::path folder;
+    std::function<Status(const fs::path&)> products;  // none: they are written
+
+    Snapshot() = default;
+    Snapshot(const Snapshot&) = delete;
+    Snapshot& operator=(const Snapshot&) = delete;
+    ~Snapshot() {
+        std::error_code error;
+        fs::remove_all(folder, error);
+    }
+    /// Writes what is not written yet.
+    [[nodiscard]] Status write() {
+        if (!products) return {};
+        std::error_code error;
+        fs::remove_all(folder, error);  // of a former try
+        fs::create_directories(folder, error);
+        if (error) return Error{fmt::format("{}: {}", folder.string(), error.message())};
+        if (Status status = products(folder); !status) return status;
+        products = nullptr;
+        return {};
+    }
+};
+
+Exports::Exports(Session& session, fs::path folder) : session_(session), folder_(std::move(folder)) {}
+Exports::~Exports() = default;
+
+void Exports::close() {
+    writer_.reset();
 }
 
-Status Exports::write(int index, const twin::Scenario& scenario) {
-    Written& written = written_[static_cast<std::size_t>(index)];
-    std::error_code error;
-    if (!written.folder.empty()) fs::remove_all(written.folder, error);
-    written = Written();
-    // A new name each time: somebody may still read from the former one.
-    written.folder = folder_ / fmt::format("{}{}", Scenarios::name_of(index), ++count_);
-    fs::create_directories(written.folder, error);
-    if (error) return Error{fmt::format("{}: {}", written.folder.string(), error.message())};
-    if (Status status = scenario.write_products(written.folder); !status) return status;
-    written.step = scenario.step();
-    written.hash = scenario.hash();
-    written.valid = true;
-    return {};
+bool Exports::is_current(int index, const twin::Scenario& scenario) const {
+    const SnapshotPtr& taken = taken_[static_cast<std::size_t>(index)];
+    return taken && taken->step == scenario.step() && taken->revision == scenario.revision() &&
+           taken->hash == scenario.hash();
 }
 
 void Exports::list(const std::string& scenario, const Respond& respond) {
     session_.loop().post([this, scenario, respond](Scenarios& all) {
         const auto index = all.find(scenario);
         if (!index) {
-            respond(error_response(404, fmt::format("there is no scenario {}", tidy_name(scenario, 20))));
+            respond(no_scenario(scenario));
             return;
         }
-        json files = json::array();
         const bool current = is_current(*index, all.at(*index));
-        for (const ExportFile& file : export_files) {
-            std::error_code error;
-            const auto bytes = fs::file_size(written_[static_cast<std::size_t>(*index)].folder / file.name, error);
-            if (current && error) continue;  // this run has none
-            files.push_back({{"name", file.name}, {"bytes", current ? json(bytes) : json()}, {"what", file.what}});
-        }
-        respond(json_response(200, {{"files", files}}));
+        writer_->post([taken = current ? taken_[static_cast<std::size_t>(*index)] : nullptr, respond] {
+            json files = json::array();
+            const bool written = taken && !taken->products;
+            for (const ExportFile& file : export_files) {
+                std::error_code error;
+                const auto bytes = written ? fs::file_size(taken->folder / file.name, error) : 0;
+                if (error) continue;  // this run has none
+                files.push_back({{"name", file.name}, {"bytes", written ? json(bytes) : json()}, {"what", file.what}});
+            }
+            respond(json_response(200, {{"files", files}}));
+        });
     });
 }
 
@@ -108,16 +130,27 @@ void Exports::file(const std::string& scenario, const std::string& name, const R
     session_.loop().post([this, scenario, wanted, respond](Scenarios& all) {
         const auto index = all.find(scenario);
         if (!index) {
-            respond(error_response(404, fmt::format("there is no scenario {}", tidy_name(scenario, 20))));
+            respond(no_scenario(scenario));
             return;
         }
-        if (!is_current(*index, all.at(*index))) {
-            if (const Status written = write(*index, all.at(*index)); !written) {
-                respond(error_response(500, written.error().message));
-                return;
-            }
+        SnapshotPtr& taken = taken_[static_cast<std::size_t>(*index)];
+        const twin::Scenario& run = all.at(*index);
+        if (!is_current(*index, run)) {
+            auto fresh = std::make_shared<Snapshot>();
+            fresh->step = run.step();
+            fresh->revision = run.revision();
+            fresh->hash = run.hash();
+            // A new name each time: somebody may still read from the former one.
+            fresh->folder = folder_ / fmt::format("{}{}", Scenarios::name_of(*index), ++count_);
+            fresh->products = run.products();
+            std::swap(taken, fresh);
+            writer_->post([former = std::move(fresh)] {});  // its files go with it
         }
-        respond(read_file(written_[static_cast<std::size_t>(*index)].folder / wanted->name, *wanted));
+        writer_->post([taken, wanted, respond] {
+            const Status written = taken->write();
+            respond(written ? read_file(taken->folder / wanted->name, *wanted)
+                            : error_response(500, written.error().message));
+        });
     });
 }
 

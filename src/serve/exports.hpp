@@ -6,14 +6,21 @@
 #include <string>
 
 #include "serve/session.hpp"
+#include "serve/worker.hpp"
 
 namespace talus::serve {
 
-/// The result files of the runs so far, written when somebody asks for one and kept until the run has gone on.
+/// The result files of the runs so far, written when somebody asks for one and kept until the run has gone on. Steps go
+/// on meanwhile: a thread of its own writes what the run was when it was asked for.
 class Exports {
   public:
     /// `folder`: an existing one to write into; it is not removed.
-    Exports(Session& session, std::filesystem::path folder) : session_(session), folder_(std::move(folder)) {}
+    Exports(Session& session, std::filesystem::path folder);
+    ~Exports();
+    /// Ends its thread; what it was asked is not answered. The session must have been closed before.
+    void close();
+    Exports(const Exports&) = delete;
+    Exports& operator=(const Exports&) = delete;
 
     /// Answers `{"files": [...]}` for a scenario.
     void list(const std::string& scenario, const Respond& respond);
@@ -21,19 +28,15 @@ class Exports {
     void file(const std::string& scenario, const std::string& name, const Respond& respond);
 
   private:
-    /// What is written of a scenario: the state that it is of, and where. Only the loop's thread touches it.
-    struct Written {
-        bool valid = false;
-        std::uint64_t step = 0, hash = 0;
-        std::filesystem::path folder;
-    };
+    struct Snapshot;
+    using SnapshotPtr = std::shared_ptr<Snapshot>;
     [[nodiscard]] bool is_current(int index, const twin::Scenario& scenario) const;
-    [[nodiscard]] Status write(int index, const twin::Scenario& scenario);
 
     Session& session_;
     std::filesystem::path folder_;
-    std::array<Written, Scenarios::most> written_;
-    std::uint64_t count_ = 0;  // of folders, for their names
+    std::array<SnapshotPtr, Scenarios::most> taken_;  // the latest; only the loop's thread touches them
+    std::uint64_t count_ = 0;                         // of folders, for their names; likewise
+    std::unique_ptr<Worker> writer_ = std::make_unique<Worker>("exports");
 };
 
 }  // namespace talus::serve

@@ -189,10 +189,15 @@ void HttpConnection::handle() {
     } else {
         stream_.expires_never();
         request_.body = std::move(parser_->get().body());
-        // The answer may come from another thread, and after the client has gone.
-        route_->handler(request_, [self = shared_from_this()](Response response) {
-            asio::post(self->stream_.get_executor(),
-                       [self, response = std::move(response)]() mutable { self->respond(std::move(response)); });
+        // The answer may come from another thread, and after the client has gone. That thread lets go of the connection
+        // when it answers, so that it always ends on this one.
+        const auto held = std::make_shared<std::shared_ptr<HttpConnection>>(shared_from_this());
+        route_->handler(request_, [held](Response response) {
+            std::shared_ptr<HttpConnection> self = std::move(*held);
+            const auto executor = self->stream_.get_executor();
+            asio::post(executor, [self = std::move(self), response = std::move(response)]() mutable {
+                self->respond(std::move(response));
+            });
         });
     }
 }

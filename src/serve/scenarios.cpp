@@ -1,7 +1,6 @@
 #include "serve/scenarios.hpp"
 
 #include <algorithm>
-#include <cstring>
 #include <iterator>
 
 #include <fmt/format.h>
@@ -29,14 +28,6 @@ unsigned stride_for(unsigned cap, std::uint32_t slots) {
     unsigned stride = 1;
     while ((slots + stride - 1) / stride > cap) stride *= 2;
     return stride;
-}
-
-/// How many ids a frame stands for; docs/protocol.md has its header.
-std::uint32_t particle_ids(const std::string& frame) {
-    constexpr std::size_t offset = 24;
-    std::uint32_t count = 0;
-    if (frame.size() >= offset + sizeof count) std::memcpy(&count, frame.data() + offset, sizeof count);
-    return count;
 }
 
 }  // namespace
@@ -204,9 +195,9 @@ json Scenarios::setup(int index) const {
     return setup;
 }
 
-std::string Scenarios::frame(int index, unsigned stride) const {
+twin::FramePtr Scenarios::frame(int index, unsigned stride) const {
     const Slot& slot = slots_[static_cast<std::size_t>(index)];
-    return slot.scenario->frame(index, stride, running_ && slot.ready() ? twin::frame_running : 0);
+    return slot.scenario->frame(stride, running_ && slot.ready() ? twin::frame_running : 0);
 }
 
 void Scenarios::set_audience(const std::vector<Audience>& audience) {
@@ -243,14 +234,14 @@ void Scenarios::tell_frames(int index, Clock::time_point now) {
     Slot& slot = slots_[static_cast<std::size_t>(index)];
     FrameSet set;
     set.scenario = index;
-    std::vector<std::pair<unsigned, Bytes>> by_stride;
+    std::vector<std::pair<unsigned, twin::FramePtr>> by_stride;
     for (const unsigned cap : slot.audience.caps) {
         const unsigned stride = stride_for(std::max(cap, lowest_cap), slot.ids);
         auto made = std::find_if(by_stride.begin(), by_stride.end(), [&](const auto& f) { return f.first == stride; });
         if (made == by_stride.end()) {
-            by_stride.emplace_back(stride, std::make_shared<const std::string>(frame(index, stride)));
+            by_stride.emplace_back(stride, frame(index, stride));
             made = std::prev(by_stride.end());
-            slot.ids = particle_ids(*made->second);
+            slot.ids = made->second->slots;
         }
         set.frames.emplace_back(cap, made->second);
     }

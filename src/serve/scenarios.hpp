@@ -23,10 +23,10 @@ struct Audience {
     friend bool operator==(const Audience&, const Audience&) = default;
 };
 
-/// The newest frame of a scenario, encoded for each cap of its audience. Caps that lead to the same stride share bytes.
+/// The newest frame of a scenario for each cap of its audience. Caps that lead to the same stride share one.
 struct FrameSet {
     int scenario = 0;
-    std::vector<std::pair<unsigned, Bytes>> frames;
+    std::vector<std::pair<unsigned, twin::FramePtr>> frames;
 };
 
 /// Is told what happens to the scenarios; on the thread that owns them.
@@ -67,7 +67,7 @@ class Scenarios {
     [[nodiscard]] nlohmann::json state(int index) const;
     [[nodiscard]] nlohmann::json setup(int index) const;
     /// The present frame with every `stride`-th particle.
-    [[nodiscard]] std::string frame(int index, unsigned stride) const;
+    [[nodiscard]] twin::FramePtr frame(int index, unsigned stride) const;
 
     /// An entry per scenario; those without one have no audience.
     void set_audience(const std::vector<Audience>& audience);

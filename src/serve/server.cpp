@@ -75,8 +75,9 @@ struct Server::Parts {
 Server::Parts::~Parts() {
     io.stop();
     if (thread.joinable()) thread.join();
-    // Its threads end while everything that they tell is still there.
+    // Threads end while everything that they tell is still there.
     if (session) session->close();
+    if (exports) exports->close();
 }
 
 Status Server::Parts::bind(const std::string& host, std::uint16_t port) {

@@ -47,6 +47,7 @@ Session::~Session() {
 
 void Session::close() {
     loop_.reset();
+    packer_.reset();
     worker_.reset();
 }
 
@@ -165,7 +166,7 @@ void Session::update_audience() {
 }
 
 void Session::offer_newest(Viewer& viewer, const View& view, int scenario) {
-    for (const auto& [cap, frame] : newest_[static_cast<std::size_t>(scenario)].frames) {
+    for (const auto& [cap, frame] : newest_[static_cast<std::size_t>(scenario)]) {
         if (cap == view.cap) viewer.offer(scenario, frame);
     }
 }
@@ -174,20 +175,46 @@ void Session::frames(FrameSet set) {
     const std::lock_guard lock(frames_mutex_);
     const auto index = static_cast<std::size_t>(set.scenario);
     arrived_[index] = std::move(set);
+    if (std::exchange(packing_posted_, true)) return;
+    packer_->post([this] { pack_frames(); });
+}
+
+void Session::pack_frames() {
+    std::array<std::optional<FrameSet>, Scenarios::most> arrived;
+    {
+        const std::lock_guard lock(frames_mutex_);
+        arrived.swap(arrived_);
+        packing_posted_ = false;
+    }
+    std::array<std::optional<Packed>, Scenarios::most> packed;
+    for (int i = 0; i < Scenarios::most; ++i) {
+        if (!arrived[i]) continue;
+        packed[i].emplace();
+        std::map<twin::FramePtr, Bytes> once;
+        for (const auto& [cap, frame] : arrived[i]->frames) {
+            Bytes& bytes = once[frame];
+            if (!bytes) bytes = std::make_shared<const std::string>(twin::encode(*frame, i));
+            packed[i]->emplace_back(cap, bytes);
+        }
+    }
+    const std::lock_guard lock(frames_mutex_);
+    for (int i = 0; i < Scenarios::most; ++i) {
+        if (packed[i]) packed_[i] = std::move(packed[i]);
+    }
     if (std::exchange(delivery_posted_, true)) return;
     thread_.post([this] { deliver_frames(); });
 }
 
 void Session::deliver_frames() {
-    std::array<std::optional<FrameSet>, Scenarios::most> arrived;
+    std::array<std::optional<Packed>, Scenarios::most> packed;
     {
         const std::lock_guard lock(frames_mutex_);
-        arrived.swap(arrived_);
+        packed.swap(packed_);
         delivery_posted_ = false;
     }
     for (int i = 0; i < Scenarios::most; ++i) {
-        if (!arrived[i]) continue;
-        newest_[i] = std::move(*arrived[i]);
+        if (!packed[i]) continue;
+        newest_[i] = std::move(*packed[i]);
         for (const auto& [viewer, view] : viewers_) {
             if (view.looks[i]) offer_newest(*viewer, view, i);
         }

@@ -81,6 +81,7 @@ class Session final : public Watcher {
     };
     [[nodiscard]] bool set_view(Viewer& viewer, View& view, const nlohmann::json& message);
     void update_audience();
+    void pack_frames();
     void deliver_frames();
     void offer_newest(Viewer& viewer, const View& view, int scenario);
     void broadcast(const nlohmann::json& message);
@@ -96,15 +97,20 @@ class Session final : public Watcher {
     std::vector<std::string> names_{"A"};
     std::array<Bytes, Scenarios::most> states_, setups_;  // as messages; for those who join
     std::vector<Audience> audience_;
-    std::array<FrameSet, Scenarios::most> newest_;
+    /// Frames as they are sent, by cap.
+    using Packed = std::vector<std::pair<unsigned, Bytes>>;
+    std::array<Packed, Scenarios::most> newest_;
     bool people_untold_ = false, ticking_ = false;
     Clock::time_point people_told_{};
 
+    // On their way from the loop to the viewers; at either stage a newer one takes an older one's place.
     std::mutex frames_mutex_;
-    std::array<std::optional<FrameSet>, Scenarios::most> arrived_;  // from the loop; guarded by the mutex
-    bool delivery_posted_ = false;                                  // likewise
+    std::array<std::optional<FrameSet>, Scenarios::most> arrived_;  // guarded by the mutex, as the next three
+    std::array<std::optional<Packed>, Scenarios::most> packed_;
+    bool packing_posted_ = false, delivery_posted_ = false;
 
-    std::unique_ptr<Worker> worker_ = std::make_unique<Worker>();
+    std::unique_ptr<Worker> worker_ = std::make_unique<Worker>("worker");
+    std::unique_ptr<Worker> packer_ = std::make_unique<Worker>("packer");  // compresses frames
     std::unique_ptr<Loop> loop_;
 };
 

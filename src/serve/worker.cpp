@@ -5,7 +5,7 @@
 
 namespace talus::serve {
 
-Worker::Worker() : thread_([this] { run(); }) {}
+Worker::Worker(const char* name) : thread_([this, name] { run(name); }) {}
 
 Worker::~Worker() {
     {
@@ -24,8 +24,8 @@ void Worker::post(std::function<void()> task) {
     wake_.notify_one();
 }
 
-void Worker::run() {
-    pthread_setname_np(pthread_self(), "worker");
+void Worker::run(const char* name) {
+    pthread_setname_np(pthread_self(), name);
     std::unique_lock lock(mutex_);
     while (true) {
         wake_.wait(lock, [this] { return done_ || !tasks_.empty(); });

@@ -11,7 +11,8 @@ namespace talus::serve {
 /// A thread for work that must hold up neither the steps nor the connections. Tasks run one after the other, in order.
 class Worker {
   public:
-    Worker();
+    /// `name`: as tools that watch threads show it, 15 characters at most.
+    explicit Worker(const char* name);
     /// Ends after the task that runs; those that wait are dropped.
     ~Worker();
     Worker(const Worker&) = delete;
@@ -20,7 +21,7 @@ class Worker {
     void post(std::function<void()> task);
 
   private:
-    void run();
+    void run(const char* name);
 
     std::mutex mutex_;
     std::condition_variable wake_;

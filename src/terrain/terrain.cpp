@@ -21,12 +21,13 @@ float rise(float before, float here, float after) {
 
 }  // namespace
 
-Terrain::Terrain(Grid<float> elevation) : elevation_(std::move(elevation)) {
-    const GridGeometry& g = elevation_.geometry;
-    assert(g.columns >= 2 && g.rows >= 2 && g.cell > 0 && elevation_.values.size() == g.size());
+Terrain::Terrain(Grid<float> elevation) : elevation_(std::make_shared<Grid<float>>(std::move(elevation))) {
+    const GridGeometry& g = elevation_->geometry;
+    const std::vector<float>& heights = elevation_->values;
+    assert(g.columns >= 2 && g.rows >= 2 && g.cell > 0 && heights.size() == g.size());
 
     float lowest = std::numeric_limits<float>::infinity();
-    for (const float z : elevation_.values) {
+    for (const float z : heights) {
         if (z < lowest) lowest = z;  // false for NaN
     }
     const Extent extent = g.extent();
@@ -41,7 +42,7 @@ Terrain::Terrain(Grid<float> elevation) : elevation_(std::move(elevation)) {
     y_first_ = static_cast<float>(-0.5 * last_row_ * g.cell);
     inverse_cell_ = static_cast<float>(1 / g.cell);
 
-    nodes_.resize(elevation_.values.size());
+    nodes_ = std::make_shared<Quad[]>(heights.size());
     for (int row = 0; row < g.rows; ++row) {
         for (int column = 0; column < g.columns; ++column) nodes_[g.index(column, row)] = make_node(column, row);
     }
@@ -51,7 +52,7 @@ Quad Terrain::make_node(int column, int row) const {
     constexpr float none = std::numeric_limits<float>::quiet_NaN();
     const auto local = [&](int c, int r) {
         if (c < 0 || r < 0 || c > last_column_ || r > last_row_) return none;
-        return static_cast<float>(elevation_.at(c, r) - frame_.origin.z);
+        return static_cast<float>(elevation_->at(c, r) - frame_.origin.z);
     };
     const float here = local(column, row);
     return {here, rise(local(column - 1, row), here, local(column + 1, row)),
@@ -62,7 +63,7 @@ std::size_t Terrain::cell_at(float x, float y) const {
     const auto nearest = [this](float along, float first, int last) {
         return std::clamp(static_cast<int>((along - first) * inverse_cell_ + 0.5f), 0, last);
     };
-    return elevation_.geometry.index(nearest(x, x_first_, last_column_), nearest(y, y_first_, last_row_));
+    return elevation_->geometry.index(nearest(x, x_first_, last_column_), nearest(y, y_first_, last_row_));
 }
 
 double Terrain::slope_cosine_of(std::size_t cell) const {
@@ -71,12 +72,19 @@ double Terrain::slope_cosine_of(std::size_t cell) const {
 }
 
 void Terrain::set_elevation(std::size_t cell, float elevation) {
-    elevation_.values[cell] = elevation;
-    const auto columns = static_cast<std::size_t>(elevation_.geometry.columns);
+    if (elevation_.use_count() > 1 || nodes_.use_count() > 1) {
+        const std::size_t cells = elevation_->values.size();
+        elevation_ = std::make_shared<Grid<float>>(*elevation_);
+        const auto nodes = std::make_shared<Quad[]>(cells);
+        std::copy_n(nodes_.get(), cells, nodes.get());
+        nodes_ = nodes;
+    }
+    elevation_->values[cell] = elevation;
+    const auto columns = static_cast<std::size_t>(elevation_->geometry.columns);
     const int column = static_cast<int>(cell % columns), row = static_cast<int>(cell / columns);
     const auto renew = [&](int c, int r) {
         if (c >= 0 && r >= 0 && c <= last_column_ && r <= last_row_) {
-            nodes_[elevation_.geometry.index(c, r)] = make_node(c, r);
+            nodes_[elevation_->geometry.index(c, r)] = make_node(c, r);
         }
     };
     renew(column, row);

@@ -1,8 +1,8 @@
 #pragma once
 
 #include <cmath>
+#include <memory>
 #include <type_traits>
-#include <vector>
 
 #include "core/geometry.hpp"
 #include "core/grid.hpp"
@@ -23,6 +23,7 @@ struct GroundSample {
 /// central differences, limited as van Leer (1977) does, so that the ground does not swell beside a cliff.
 ///
 /// Debris can be on it where `covers` holds: inside the hull of the cell centres and away from nodata.
+/// Copies share the heights, which never change: to copy a terrain costs nothing, however large it is.
 /// A height's cell index and fraction come from the same floor(): taken from two roundings, a particle exactly on
 /// a cell edge would see the ground jump.
 class Terrain {
@@ -35,8 +36,8 @@ class Terrain {
 
     [[nodiscard]] const LocalFrame& frame() const { return frame_; }
     /// World elevations as given (NaN: no data).
-    [[nodiscard]] const Grid<float>& elevation() const { return elevation_; }
-    [[nodiscard]] double cell() const { return elevation_.geometry.cell; }
+    [[nodiscard]] const Grid<float>& elevation() const { return *elevation_; }
+    [[nodiscard]] double cell() const { return elevation_->geometry.cell; }
 
     /// Whether the ground is known at a local plan position.
     template <class Real>
@@ -62,8 +63,7 @@ class Terrain {
                       by_y * in_x.value_rise * in_y.slope;
             rise_y += here * in_y.value_rise + by_y * in_x.value * in_y.slope_rise;
         };
-        const auto south = quad_pairs_at(nodes_.data(), c.index),
-                   north = quad_pairs_at(nodes_.data() + stride_, c.index);
+        const auto south = quad_pairs_at(nodes_.get(), c.index), north = quad_pairs_at(nodes_.get() + stride_, c.index);
         add_corner(along_x.first, along_y.first, south.low);
         add_corner(along_x.last, along_y.first, south.high);
         add_corner(along_x.first, along_y.last, north.low);
@@ -131,11 +131,11 @@ class Terrain {
         return nodes_[i][0] + nodes_[i + 1][0] + nodes_[i + stride_][0] + nodes_[i + stride_ + 1][0];
     }
 
-    Grid<float> elevation_;
+    std::shared_ptr<const Grid<float>> elevation_ = std::make_shared<const Grid<float>>();
     LocalFrame frame_;
     /// A cell centre: local z (NaN: no data), and its rise over one cell eastwards and northwards, m. By fours, since
     /// what lies together is loaded at once.
-    std::vector<Quad> nodes_;
+    std::shared_ptr<const Quad[]> nodes_;
     int stride_ = 0;
     int last_column_ = 0, last_row_ = 0;
     float x_first_ = 0, y_first_ = 0;  // local position of the south-west cell's centre

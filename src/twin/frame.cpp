@@ -164,19 +164,38 @@ std::string encode(const Frame& frame, int scenario_index, unsigned further_flag
     return header.take_with(frame.body.data(), frame.body.size(), Z_RLE);
 }
 
+namespace {
+
+/// Calls `take(cell, debris)` for the first `count` cells of the window.
+template <class Take>
+void read_window(const Frame& frame, std::size_t count, const Take& take) {
+    const std::size_t n = (frame.slots + frame.stride - 1) / frame.stride;
+    const std::size_t m = std::size_t{frame.window[2]} * frame.window[3];
+    const std::uint8_t* low = frame.body.data() + 7 * n;
+    std::uint16_t depth = 0;
+    for (std::size_t k = 0; k < count; ++k) {
+        depth = static_cast<std::uint16_t>(depth + unfold(static_cast<std::uint16_t>(low[k] | low[m + k] << 8)));
+        take(k, DebrisAt{depth * static_cast<double>(frame.depth_unit),
+                         low[2 * m + k] * static_cast<double>(frame.depth_speed_unit)});
+    }
+}
+
+}  // namespace
+
 DebrisAt debris_at(const Frame& frame, std::uint32_t column, std::uint32_t row) {
     const auto [first_column, first_row, columns, rows] = frame.window;
     // Less than the first wraps to more than the window has.
     if (column - first_column >= columns || row - first_row >= rows) return {};
-    const std::size_t n = (frame.slots + frame.stride - 1) / frame.stride, m = std::size_t{columns} * rows;
     const std::size_t cell = std::size_t{row - first_row} * columns + (column - first_column);
-    const std::uint8_t* low = frame.body.data() + 7 * n;
-    std::uint16_t depth = 0;
-    for (std::size_t k = 0; k <= cell; ++k) {
-        depth = static_cast<std::uint16_t>(depth + unfold(static_cast<std::uint16_t>(low[k] | low[m + k] << 8)));
-    }
-    return {depth * static_cast<double>(frame.depth_unit),
-            low[2 * m + cell] * static_cast<double>(frame.depth_speed_unit)};
+    DebrisAt here;
+    read_window(frame, cell + 1, [&](std::size_t, const DebrisAt& debris) { here = debris; });
+    return here;
+}
+
+std::vector<DebrisAt> debris_in_window(const Frame& frame) {
+    std::vector<DebrisAt> cells(std::size_t{frame.window[2]} * frame.window[3]);
+    read_window(frame, cells.size(), [&](std::size_t k, const DebrisAt& debris) { cells[k] = debris; });
+    return cells;
 }
 
 std::string encode_grid(const Grid<float>& grid) {

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -27,6 +28,9 @@ struct Frame {
     [[nodiscard]] std::size_t bytes() const { return sizeof(Frame) + body.size(); }
 };
 
+/// Frames do not change once they are made: other threads may read them while the run goes on.
+using FramePtr = std::shared_ptr<const Frame>;
+
 /// `slots`: more than any id. Every `stride`-th id is in the frame.
 [[nodiscard]] Frame make_frame(const State& state, const MapAccumulator::Present& debris, std::uint32_t slots,
                                unsigned stride, unsigned flags);
@@ -39,5 +43,8 @@ struct DebrisAt {
     double depth = 0, speed = 0;
 };
 [[nodiscard]] DebrisAt debris_at(const Frame& frame, std::uint32_t column, std::uint32_t row);
+
+/// The same in all cells of the window, by rows.
+[[nodiscard]] std::vector<DebrisAt> debris_in_window(const Frame& frame);
 
 }  // namespace talus::twin

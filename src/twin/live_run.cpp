@@ -40,7 +40,7 @@ LiveRun::LiveRun(const Scene& scene, Setup setup, const ScenarioOptions& options
       rest_(scene.spec.solver),
       smallest_time_step_(scene.spec.solver.end_time) {
     for (const ReleaseSetup& release : setup_.releases) groups_.push_back({release.id, false});
-    for (const BuildingSetup& building : setup_.buildings) obstacles_.push_back({building.id, building.body, true});
+    for (const BuildingSetup& building : setup_.buildings) obstacles_.push_back({building.id, building.body});
     for (const BarrierSetup& barrier : setup_.barriers) obstacles_.push_back({barrier.id, barrier.body, true});
     const OutputSpec& outputs = scene.spec.outputs;
     const double map_cell =
@@ -66,15 +66,24 @@ bool LiveRun::not_converged() const {
     return state().mean_compression > mean_compression_limit || state().max_compression > max_compression_limit;
 }
 
-Frame LiveRun::frame(unsigned stride, unsigned flags) const {
-    Frame frame = make_frame(state(), observer_->maps().present(), slots_, stride,
-                             flags | (not_converged() ? frame_not_converged : 0));
-    frame.rest_density = model().rest_density;
+FramePtr LiveRun::frame(unsigned stride, unsigned flags) const {
+    auto frame = std::make_shared<Frame>(make_frame(state(), observer_->maps().present(), slots_, stride,
+                                                    flags | (not_converged() ? frame_not_converged : 0)));
+    frame->rest_density = model().rest_density;
     return frame;
 }
 
 void LiveRun::record() {
-    if (recording_.due(state().time)) recording_.add(frame(1, 0));
+    if (!recording_.due(state().time)) return;
+    recording_.add(frame(1, 0));
+    record_impacts();
+}
+
+void LiveRun::record_impacts() {
+    for (std::size_t k = 0; k < obstacles_.size(); ++k) {
+        const bool untouched = !observer_->impacts()[k].hit && !obstacles_[k].barrier;
+        if (obstacles_[k].stands && !untouched) impact_history_.add(k, state().time, record_now(k));
+    }
 }
 
 void LiveRun::stop(Phase phase, std::string why) {
@@ -116,14 +125,33 @@ void LiveRun::take_step() {
     }
 }
 
-const BuildingImpact* LiveRun::impact_on(const std::string& obstacle_id) const {
-    const Obstacle* obstacle = find_id(obstacles_, obstacle_id);
-    return obstacle == nullptr ? nullptr
-                               : &observer_->impacts()[static_cast<std::size_t>(obstacle - obstacles_.data())];
+ObstacleRecord LiveRun::record_now(std::size_t obstacle) const {
+    ObstacleRecord record{observer_->impacts()[obstacle]};
+    const auto watch = overtopping_.find(obstacles_[obstacle].id);
+    if (watch != overtopping_.end()) {
+        const Overtopping& over = *watch->second.overtopping;
+        record.overtopped = over.volume();
+        record.first_overtopped = over.first_time();
+        record.held = over.held_volume(state());
+    }
+    return record;
 }
 
-const Overtopping& LiveRun::overtopping_of(const std::string& barrier_id) const {
-    return *overtopping_.at(barrier_id).overtopping;
+ObstacleRecord LiveRun::record_of(const std::string& obstacle_id, std::optional<double> time) const {
+    const auto k = static_cast<std::size_t>(find_id(obstacles_, obstacle_id) - obstacles_.data());
+    if (!time) return record_now(k);
+    ObstacleRecord record = impact_history_.at(k, *time);
+    record.impact.name = observer_->impacts()[k].name;
+    return record;
+}
+
+std::vector<LiveRun::Removed> LiveRun::removed() const {
+    std::vector<Removed> removed;
+    for (const Obstacle& obstacle : obstacles_) {
+        if (obstacle.stands || obstacle.until_step <= obstacle.since_step) continue;
+        removed.push_back({obstacle.id, obstacle.body, obstacle.barrier, obstacle.last});
+    }
+    return removed;
 }
 
 void LiveRun::follow_barriers(const Setup& next) {
@@ -147,10 +175,11 @@ RunResult LiveRun::result() const {
     result.observation = arena_.execute([&] { return observer_->finish(model(), state()); });
     std::vector<BuildingImpact> standing;
     const auto take = [&](const auto& entries) {
-        for (const auto& entry : entries) standing.push_back(*impact_on(entry.id));
+        for (const auto& entry : entries) standing.push_back(record_of(entry.id).impact);
     };
     take(setup_.buildings);
     take(setup_.barriers);
+    for (const Removed& removed : this->removed()) standing.push_back(removed.record.impact);
     result.observation.buildings = std::move(standing);
     result.stage_times = simulation_.stage_times();
     result.instruction_set = simulation_.backend().instruction_set();

@@ -17,6 +17,7 @@
 #include "scene/scene.hpp"
 #include "scene/stop_rule.hpp"
 #include "sim/simulation.hpp"
+#include "twin/impact_history.hpp"
 #include "twin/overtopping.hpp"
 #include "twin/recording.hpp"
 #include "twin/scenario.hpp"
@@ -52,14 +53,22 @@ class LiveRun {
     [[nodiscard]] const Recording& recording() const { return recording_; }
     [[nodiscard]] bool not_converged() const;
     [[nodiscard]] std::string instruction_set() const { return std::string(simulation_.backend().instruction_set()); }
-    [[nodiscard]] Frame frame(unsigned stride, unsigned flags) const;
+    [[nodiscard]] FramePtr frame(unsigned stride, unsigned flags) const;
 
-    /// nullptr: no such obstacle.
-    [[nodiscard]] const BuildingImpact* impact_on(const std::string& obstacle_id) const;
-    [[nodiscard]] const Overtopping& overtopping_of(const std::string& barrier_id) const;
+    /// What an obstacle of the setup has met, until now or until a time of the recording.
+    [[nodiscard]] ObstacleRecord record_of(const std::string& obstacle_id, std::optional<double> time = {}) const;
+
+    /// An obstacle that stood for a step at least and was taken away.
+    struct Removed {
+        std::string id;
+        std::shared_ptr<const Building> body;
+        bool barrier = false;
+        ObstacleRecord record;  ///< until then, its removed_time set
+    };
+    [[nodiscard]] std::vector<Removed> removed() const;
 
     /// As run_scene would return it if the run ended here; buildings are those that stand, in the setup's order,
-    /// barriers last.
+    /// then barriers, then removed().
     [[nodiscard]] RunResult result() const;
 
   private:
@@ -70,7 +79,11 @@ class LiveRun {
     struct Obstacle {  ///< beside Model::buildings, which only grows
         std::string id;
         std::shared_ptr<const Building> body;  ///< also of one that was taken away
+        bool barrier = false;
+        std::uint64_t since_step = 0;  ///< when it came, or was moved, to where it is
         bool stands = true;
+        std::uint64_t until_step = 0;  ///< of one that was taken away, as the next
+        ObstacleRecord last{};         ///< as it was taken away
     };
     struct Change;
 
@@ -85,6 +98,8 @@ class LiveRun {
     void follow_barriers(const Setup& next);
     void take_step();
     void record();
+    void record_impacts();
+    [[nodiscard]] ObstacleRecord record_now(std::size_t obstacle) const;
     void stop(Phase phase, std::string why);
 
     const Scene& scene_;
@@ -104,6 +119,7 @@ class LiveRun {
     bool jumped_ = false;                       // particles were moved between steps
     std::uint32_t slots_ = 0;
     Recording recording_;
+    ImpactHistory impact_history_;
     RestDetector rest_;
     RateMeter rate_;
     Phase phase_ = Phase::ready;

@@ -34,6 +34,13 @@ bool overlaps_any(const Extent& a, const std::vector<Extent>& others) {
     return std::any_of(others.begin(), others.end(), [&](const Extent& other) { return overlap(a, other); });
 }
 
+/// Whether two lists of obstacles hold the very same ones in the same order.
+template <class Entries>
+bool same_bodies(const Entries& a, const Entries& b) {
+    return std::equal(a.begin(), a.end(), b.begin(), b.end(),
+                      [](const auto& p, const auto& q) { return p.id == q.id && p.body == q.body; });
+}
+
 /// A building that is there no more: it keeps its index and has no solid.
 Building without_solid(Building building) {
     building.roof_elevation = std::numeric_limits<double>::quiet_NaN();
@@ -52,9 +59,10 @@ std::array<double, 4> holding_back(const Model& model) {
 /// What a change of setup comes to.
 struct LiveRun::Change {
     std::vector<Obstacle> obstacles;
-    std::vector<Building> buildings;
-    std::vector<Extent> touched;       ///< world, of obstacles that came, went or were moved
-    std::vector<std::size_t> renewed;  ///< obstacles whose record begins anew
+    std::optional<std::vector<Building>> buildings;  ///< of the model, if any changes
+    std::optional<BuildingSolids> solids;            ///< likewise
+    std::vector<Extent> touched;                     ///< world, of obstacles that came, went or were moved
+    std::vector<std::size_t> renewed;                ///< obstacles whose record begins anew
 
     struct Seed {
         const ReleaseSetup* release;
@@ -62,41 +70,45 @@ struct LiveRun::Change {
     };
     std::vector<Seed> seeds;
     std::vector<bool> gone;  ///< by group: its debris is taken away
-    std::optional<Model> model;
 };
 
 void LiveRun::plan_obstacles(const Setup& next, Change& change) const {
     change.obstacles = obstacles_;
-    change.buildings = model().buildings;
+    if (same_bodies(setup_.buildings, next.buildings) && same_bodies(setup_.barriers, next.barriers)) return;
+    std::vector<Building>& buildings = change.buildings.emplace(model().buildings);
     for (std::size_t k = 0; k < obstacles_.size(); ++k) {
         Obstacle& obstacle = change.obstacles[k];
         const bool wanted =
             find_id(next.buildings, obstacle.id) != nullptr || find_id(next.barriers, obstacle.id) != nullptr;
         if (wanted || !obstacle.stands) continue;
         obstacle.stands = false;
-        change.buildings[k] = without_solid(change.buildings[k]);
+        obstacle.until_step = state().step;
+        obstacle.last = record_now(k);
+        obstacle.last.impact.removed_time = state().time;
+        buildings[k] = without_solid(buildings[k]);
         change.touched.push_back(extent_of(*obstacle.body));
     }
-    const auto put = [&](const auto& entry) {
+    const auto put = [&](const auto& entry, bool barrier) {
         Obstacle* obstacle = find_id(change.obstacles, entry.id);
         if (obstacle == nullptr) {
-            change.obstacles.push_back({entry.id, entry.body, true});
-            change.buildings.push_back(*entry.body);
+            change.obstacles.push_back({entry.id, entry.body, barrier, state().step});
+            buildings.push_back(*entry.body);
             change.touched.push_back(extent_of(*entry.body));
             return;
         }
         const auto k = static_cast<std::size_t>(obstacle - change.obstacles.data());
         const bool moved = !same_shape(obstacle->body, entry.body);
-        change.buildings[k].name = entry.body->name;
+        buildings[k].name = entry.body->name;
         if (obstacle->stands && !moved) return;
         if (obstacle->stands) change.touched.push_back(extent_of(*obstacle->body));
         change.touched.push_back(extent_of(*entry.body));
         if (moved) change.renewed.push_back(k);
-        *obstacle = {entry.id, entry.body, true};
-        change.buildings[k] = *entry.body;
+        *obstacle = {entry.id, entry.body, barrier, moved ? state().step : obstacle->since_step};
+        buildings[k] = *entry.body;
     };
-    for (const BuildingSetup& building : next.buildings) put(building);
-    for (const BarrierSetup& barrier : next.barriers) put(barrier);
+    for (const BuildingSetup& building : next.buildings) put(building, false);
+    for (const BarrierSetup& barrier : next.barriers) put(barrier, true);
+    if (!change.touched.empty()) change.solids.emplace(model().terrain, buildings, model().support_radius);
 }
 
 Status LiveRun::plan_releases(const Setup& next, Change& change) const {
@@ -120,7 +132,9 @@ Status LiveRun::plan_releases(const Setup& next, Change& change) const {
     }
     if (to_seed.empty()) return {};
 
-    Model alone = *change.model;
+    Model alone = model();
+    set_material(alone, next.material);
+    if (change.solids) alone.solids = *change.solids;
     double particles = state().count;
     for (std::uint32_t i = 0; i < state().count; ++i) {
         for (std::size_t g = 0; g < groups_.size(); ++g) {
@@ -147,12 +161,6 @@ Status LiveRun::plan_releases(const Setup& next, Change& change) const {
 Result<LiveRun::Change> LiveRun::plan(const Setup& next) const {
     Change change;
     plan_obstacles(next, change);
-    change.model = model();
-    set_material(*change.model, next.material);
-    if (!change.touched.empty()) {
-        change.model->solids = BuildingSolids(model().terrain, change.buildings, model().support_radius);
-    }
-    change.model->buildings = std::move(change.buildings);
     if (Status s = plan_releases(next, change); !s) return s.error();
     return change;
 }
@@ -221,8 +229,9 @@ void LiveRun::carry_out(Change& change, const Setup& next) {
     std::uint32_t first_new = 0;
     bool let_go = false;
     simulation_.change([&](Model& model, State& state) {
-        change.model->releases = model.releases;
-        model = std::move(*change.model);
+        set_material(model, next.material);
+        if (change.buildings) model.buildings = std::move(*change.buildings);
+        if (change.solids) model.solids = std::move(*change.solids);
         replace_releases(model, state, change);
         set_start_times(model, state, next, let_go);
         first_new = state.seeded;
@@ -237,7 +246,10 @@ void LiveRun::carry_out(Change& change, const Setup& next) {
     slots_ = std::max(slots_, state().seeded);
     obstacles_ = std::move(change.obstacles);
     observer_->follow(model(), state(), first_new);
-    for (const std::size_t k : change.renewed) observer_->forget_building(k);
+    for (const std::size_t k : change.renewed) {
+        observer_->forget_building(k);
+        impact_history_.forget(k);
+    }
     jumped_ = true;
     follow_barriers(next);
     if (let_go || !change.seeds.empty()) {

@@ -6,9 +6,9 @@
 
 namespace talus::twin {
 
-void Recording::add(Frame frame) {
-    next_ = (std::floor(frame.time / interval_ + 1e-6) + 1) * interval_;
-    bytes_ += frame.bytes();
+void Recording::add(FramePtr frame) {
+    next_ = (std::floor(frame->time / interval_ + 1e-6) + 1) * interval_;
+    bytes_ += frame->bytes();
     frames_.push_back(std::move(frame));
     while (bytes_ > room_ && frames_.size() > 2) thin_out();
 }
@@ -19,7 +19,7 @@ void Recording::thin_out() {
     std::size_t kept = 0;
     for (std::size_t k = 0; k < frames_.size(); ++k) {
         if (k < half && k % 2 == 1) {
-            bytes_ -= frames_[k].bytes();
+            bytes_ -= frames_[k]->bytes();
             continue;
         }
         if (kept != k) frames_[kept] = std::move(frames_[k]);
@@ -28,10 +28,18 @@ void Recording::thin_out() {
     frames_.resize(kept);
 }
 
-const Frame* Recording::at(double time) const {
-    const auto after = std::upper_bound(frames_.begin(), frames_.end(), time + 1e-9,
-                                        [](double t, const Frame& frame) { return t < frame.time; });
-    return after == frames_.begin() ? nullptr : &*(after - 1);
+std::vector<FramePtr>::const_iterator Recording::after(double time) const {
+    return std::upper_bound(frames_.begin(), frames_.end(), time + 1e-9,
+                            [](double t, const FramePtr& frame) { return t < frame->time; });
+}
+
+FramePtr Recording::at(double time) const {
+    const auto end = after(time);
+    return end == frames_.begin() ? nullptr : *(end - 1);
+}
+
+std::vector<FramePtr> Recording::until(double time) const {
+    return {frames_.begin(), after(time)};
 }
 
 }  // namespace talus::twin

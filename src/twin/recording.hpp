@@ -16,19 +16,22 @@ class Recording {
 
     [[nodiscard]] bool due(double time) const { return time >= next_ - 1e-9; }
     /// In the order of time.
-    void add(Frame frame);
+    void add(FramePtr frame);
 
     /// The frame at or before a time; nullptr: none.
-    [[nodiscard]] const Frame* at(double time) const;
-    [[nodiscard]] const std::vector<Frame>& frames() const { return frames_; }
+    [[nodiscard]] FramePtr at(double time) const;
+    /// Those until a time.
+    [[nodiscard]] std::vector<FramePtr> until(double time) const;
+    [[nodiscard]] const std::vector<FramePtr>& frames() const { return frames_; }
     [[nodiscard]] std::size_t bytes() const { return bytes_; }
 
   private:
     void thin_out();
+    [[nodiscard]] std::vector<FramePtr>::const_iterator after(double time) const;
 
     double interval_, next_ = 0;  // s
     std::size_t room_, bytes_ = 0;
-    std::vector<Frame> frames_;
+    std::vector<FramePtr> frames_;
 };
 
 }  // namespace talus::twin

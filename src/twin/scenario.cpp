@@ -1,16 +1,20 @@
 #include "twin/scenario.hpp"
 
+#include <algorithm>
+#include <array>
 #include <filesystem>
 #include <limits>
 #include <utility>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "core/hash.hpp"
 #include "products/products.hpp"
 #include "sim/seed.hpp"
 #include "twin/action.hpp"
 #include "twin/json_keys.hpp"
+#include "twin/past_maps.hpp"
 #include "twin/scenario_parts.hpp"
 #include "twin/setup_file.hpp"
 
@@ -20,6 +24,27 @@ namespace {
 using nlohmann::json;
 
 constexpr std::size_t most_undo = 200;
+
+/// What the tables of a plain run have no column for: debris over and behind barriers, and obstacles that are gone.
+std::vector<std::string> obstacle_notes(const LiveRun& run) {
+    std::vector<std::string> notes;
+    const auto over = [](const ObstacleRecord& record) {
+        std::string text = fmt::format("{:.1f} m3 held behind it", record.held);
+        text += record.overtopped > 0 ? fmt::format(", {:.1f} m3 went over it, the first at {:.2f} s",
+                                                    record.overtopped, record.first_overtopped)
+                                      : ", nothing went over it";
+        return text;
+    };
+    for (const BarrierSetup& barrier : run.setup().barriers) {
+        notes.push_back(fmt::format("barrier \"{}\": {}", barrier.body->name, over(run.record_of(barrier.id))));
+    }
+    for (const LiveRun::Removed& gone : run.removed()) {
+        notes.push_back(fmt::format("{} \"{}\": taken away at {:.2f} s{}", gone.barrier ? "barrier" : "building",
+                                    gone.body->name, gone.record.impact.removed_time,
+                                    gone.barrier ? "; until then " + over(gone.record) : ""));
+    }
+    return notes;
+}
 
 /// Whether a setup's releases wait again, as they do at time 0.
 Setup held_again(Setup setup) {
@@ -175,21 +200,26 @@ std::uint64_t Scenario::step() const {
 std::uint64_t Scenario::hash() const {
     return hash_state(parts_->run->state());
 }
+std::uint64_t Scenario::revision() const {
+    return parts_->revision;
+}
 const Scene& Scenario::scene() const {
     return *parts_->scene;
 }
 
-std::string Scenario::frame(int scenario_index, unsigned stride, unsigned flags) const {
-    return encode(parts_->run->frame(stride, flags), scenario_index);
+FramePtr Scenario::frame(unsigned stride, unsigned flags) const {
+    return parts_->run->frame(stride, flags);
 }
 
-std::string Scenario::recorded_frame(int scenario_index, double time) const {
-    const Frame* frame = parts_->run->recording().at(time);
-    return frame == nullptr ? std::string() : encode(*frame, scenario_index, frame_recorded);
+FramePtr Scenario::recorded_frame(double time) const {
+    return parts_->run->recording().at(time);
 }
 
-Result<Grid<float>> Scenario::layer(const std::string& name) const {
-    const MapAccumulator& maps = parts_->run->observer().maps();
+namespace {
+
+constexpr std::array layer_names{"depth", "peak_depth", "peak_speed", "peak_pressure", "arrival_time", "deposit_depth"};
+
+Grid<float> present_layer(const MapAccumulator& maps, const std::string& name) {
     if (name == "depth") {
         Grid<float> depth = maps.present().depth;
         for (float& value : depth.values) {
@@ -202,13 +232,27 @@ Result<Grid<float>> Scenario::layer(const std::string& name) const {
     if (name == "peak_speed") return std::move(peaks.peak_speed);
     if (name == "peak_pressure") return std::move(peaks.peak_pressure);
     if (name == "arrival_time") return std::move(peaks.arrival_time);
-    if (name == "deposit_depth") return std::move(peaks.deposit_depth);
-    return Error{fmt::format(
-        "layer = {}: must be one of depth, peak_depth, peak_speed, peak_pressure, arrival_time, deposit_depth",
-        shown(json(name)))};
+    return std::move(peaks.deposit_depth);
 }
 
-Status Scenario::write_products(const std::filesystem::path& folder) const {
+}  // namespace
+
+Result<std::function<Grid<float>()>> Scenario::layer(const std::string& name, std::optional<double> time) const {
+    if (std::find(layer_names.begin(), layer_names.end(), name) == layer_names.end()) {
+        return Error{fmt::format("layer = {}: must be one of {}", shown(json(name)), fmt::join(layer_names, ", "))};
+    }
+    const LiveRun& run = *parts_->run;
+    const MapAccumulator& maps = run.observer().maps();
+    if (!time) return std::function<Grid<float>()>([grid = present_layer(maps, name)] { return grid; });
+    std::vector<FramePtr> frames = run.recording().until(*time);
+    if (frames.empty()) return Error{fmt::format("nothing is recorded at or before time_s = {}", *time)};
+    MapFrame frame{maps.geometry(), maps.thinnest_depth(), {}};
+    if (name == "arrival_time") frame.arrival_now = maps.maps().arrival_time;
+    return std::function<Grid<float>()>(
+        [name, frames = std::move(frames), frame = std::move(frame)] { return past_layer(name, frames, frame); });
+}
+
+std::function<Status(const std::filesystem::path&)> Scenario::products() const {
     const Parts& p = *parts_;
     Scene scene = *p.scene;
     scene.spec.material = p.setup().material;
@@ -220,10 +264,14 @@ Status Scenario::write_products(const std::filesystem::path& folder) const {
     scene.buildings.clear();
     for (const BuildingSetup& building : p.setup().buildings) scene.buildings.push_back(*building.body);
     for (const BarrierSetup& barrier : p.setup().barriers) scene.buildings.push_back(*barrier.body);
+    for (const LiveRun::Removed& removed : p.run->removed()) scene.buildings.push_back(*removed.body);
+    for (std::string& note : obstacle_notes(*p.run)) scene.notes.push_back(std::move(note));
     for (const JournalEntry& entry : p.entries) {
         scene.notes.push_back(fmt::format("before step {}, by {}: {}", entry.step, entry.by, entry.action.dump()));
     }
-    return talus::write_products(scene, p.run->result(), folder);
+    return [scene = std::move(scene), result = p.run->result()](const std::filesystem::path& folder) {
+        return write_products(scene, result, folder);
+    };
 }
 
 }  // namespace talus::twin

@@ -3,7 +3,9 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -13,6 +15,7 @@
 #include "core/grid.hpp"
 #include "core/result.hpp"
 #include "scene/scene.hpp"
+#include "twin/frame.hpp"
 
 namespace talus::twin {
 
@@ -75,6 +78,7 @@ class Scenario {
     [[nodiscard]] double time() const;          ///< s
     [[nodiscard]] std::uint64_t step() const;
     [[nodiscard]] std::uint64_t hash() const;
+    [[nodiscard]] std::uint64_t revision() const;  ///< grows with every change of the setup
     [[nodiscard]] const Scene& scene() const;
 
     // Answers, as docs/protocol.md has them. They lack `scenario`, which only the loop knows; state_json() also lacks
@@ -84,21 +88,29 @@ class Scenario {
     [[nodiscard]] nlohmann::json state_json(bool with_hash = true) const;
     [[nodiscard]] nlohmann::json setup_json() const;
     [[nodiscard]] nlohmann::json series_json() const;
-    [[nodiscard]] nlohmann::json impacts_json() const;
+    /// Without a time, s: now; otherwise as of the recorded frame at or before it.
+    [[nodiscard]] nlohmann::json impacts_json(std::optional<double> time = {}) const;
     [[nodiscard]] nlohmann::json journal_json() const;
     [[nodiscard]] nlohmann::json recording_json() const;
-    [[nodiscard]] nlohmann::json probe_json(const PlanPoint& p) const;
 
-    /// The present frame, encoded. `stride` >= 1: every stride-th particle. `flags`: frame_running; the frame adds
+    /// The present frame. `stride` >= 1: every stride-th particle. `flags`: frame_running; the frame adds
     /// frame_not_converged itself.
-    [[nodiscard]] std::string frame(int scenario_index, unsigned stride, unsigned flags) const;
-    /// The recorded frame at or before a time, s, encoded; empty: none.
-    [[nodiscard]] std::string recorded_frame(int scenario_index, double time) const;
-    /// `depth` (now), `peak_depth`, `peak_speed`, `peak_pressure`, `arrival_time`, `deposit_depth`; NaN: nothing
-    /// there. SI units. Error: no such layer.
-    [[nodiscard]] Result<Grid<float>> layer(const std::string& name) const;
+    [[nodiscard]] FramePtr frame(unsigned stride, unsigned flags) const;
+    /// The recorded frame at or before a time, s; nullptr: none.
+    [[nodiscard]] FramePtr recorded_frame(double time) const;
+
+    // Work that takes a while. Each of these takes what it needs of the run as it is now, and gives back the work
+    // itself, which any thread can do while the run goes on.
+
+    /// What passed at a point, over the recording.
+    [[nodiscard]] std::function<nlohmann::json()> probe(const PlanPoint& p) const;
+    /// `depth`, `peak_depth`, `peak_speed`, `peak_pressure`, `arrival_time`, `deposit_depth`; NaN: nothing there. SI
+    /// units. As they are now, or were at the recorded frame at or before a time (see past_layer).
+    /// Errors: no such layer, nothing recorded by that time.
+    [[nodiscard]] Result<std::function<Grid<float>()>> layer(const std::string& name,
+                                                             std::optional<double> time = {}) const;
     /// Writes the run so far as `talus run` would, into an existing empty folder.
-    [[nodiscard]] Status write_products(const std::filesystem::path& folder) const;
+    [[nodiscard]] std::function<Status(const std::filesystem::path& folder)> products() const;
 
   private:
     struct Parts;

@@ -72,18 +72,25 @@ std::pair<float, float> elevation_range(const Terrain& terrain) {
     return {lowest, highest};
 }
 
-json impact_json(const std::string& id, const BuildingImpact& impact) {
+json impact_json(const std::string& id, const ObstacleRecord& record, bool barrier) {
+    const BuildingImpact& impact = record.impact;
     const char* intensity = intensity_class(impact);
-    return {{"id", id},
-            {"name", impact.name},
-            {"hit", impact.hit},
-            {"first_hit_s", number_or_null(impact.first_hit_time)},
-            {"peak_force_kN", impact.peak_force / 1e3},
-            {"peak_pressure_kPa", impact.peak_pressure / 1e3},
-            {"peak_depth_m", impact.peak_depth},
-            {"peak_speed_mps", impact.peak_speed},
-            {"peak_dynamic_pressure_kPa", impact.peak_dynamic_pressure / 1e3},
-            {"intensity", intensity != nullptr ? json(intensity) : json()}};
+    json row = {{"id", id},
+                {"name", impact.name},
+                {"hit", impact.hit},
+                {"first_hit_s", number_or_null(impact.first_hit_time)},
+                {"peak_force_kN", impact.peak_force / 1e3},
+                {"peak_pressure_kPa", impact.peak_pressure / 1e3},
+                {"peak_depth_m", impact.peak_depth},
+                {"peak_speed_mps", impact.peak_speed},
+                {"peak_dynamic_pressure_kPa", impact.peak_dynamic_pressure / 1e3},
+                {"intensity", intensity != nullptr ? json(intensity) : json()}};
+    if (barrier) {
+        row["overtopped_m3"] = record.overtopped;
+        row["first_overtopped_s"] = number_or_null(record.first_overtopped);
+        row["held_m3"] = record.held;
+    }
+    return row;
 }
 
 }  // namespace
@@ -120,6 +127,7 @@ json Scenario::scene_json() const {
               {"cell_m", map.cell},
               {"columns", map.columns},
               {"rows", map.rows}}},
+            {"orthophoto", !scene.spec.terrain.orthophoto.empty()},
             {"particle_spacing_m", model.particle_spacing},
             {"end_time_s", scene.spec.solver.end_time},
             {"gravity_mps2", model.gravity},
@@ -137,7 +145,7 @@ json Scenario::state_json(bool with_hash) const {
     // The front moves as long as it reaches new chainages.
     constexpr double lately = 1;  // s
     const bool advances = !front.empty() && state.time - front.back().arrival_time <= lately;
-    const std::vector<Frame>& frames = run.recording().frames();
+    const std::vector<FramePtr>& frames = run.recording().frames();
     json answer = {{"status", phase_name(run.phase())},
                    {"message", run.message()},
                    {"time_s", state.time},
@@ -157,8 +165,8 @@ json Scenario::state_json(bool with_hash) const {
                    {"max_compression", number_or_null(state.max_compression)},
                    {"converged", !run.not_converged()},
                    {"recording",
-                    {{"first_s", frames.empty() ? json() : json(frames.front().time)},
-                     {"last_s", frames.empty() ? json() : json(frames.back().time)},
+                    {{"first_s", frames.empty() ? json() : json(frames.front()->time)},
+                     {"last_s", frames.empty() ? json() : json(frames.back()->time)},
                      {"frames", frames.size()},
                      {"bytes", run.recording().bytes()}}}};
     if (with_hash) answer["hash"] = to_hex(hash());
@@ -253,21 +261,22 @@ json Scenario::series_json() const {
     return {{"time", time}, {"front", front}};
 }
 
-json Scenario::impacts_json() const {
+json Scenario::impacts_json(std::optional<double> time) const {
     const LiveRun& run = *parts_->run;
-    json buildings = json::array(), barriers = json::array();
+    json buildings = json::array(), barriers = json::array(), removed = json::array();
     for (const BuildingSetup& building : parts_->setup().buildings) {
-        buildings.push_back(impact_json(building.id, *run.impact_on(building.id)));
+        buildings.push_back(impact_json(building.id, run.record_of(building.id, time), false));
     }
     for (const BarrierSetup& barrier : parts_->setup().barriers) {
-        const Overtopping& over = run.overtopping_of(barrier.id);
-        json row = impact_json(barrier.id, *run.impact_on(barrier.id));
-        row["overtopped_m3"] = over.volume();
-        row["first_overtopped_s"] = number_or_null(over.first_time());
-        row["held_m3"] = over.held_volume(run.state());
-        barriers.push_back(std::move(row));
+        barriers.push_back(impact_json(barrier.id, run.record_of(barrier.id, time), true));
     }
-    return {{"buildings", buildings}, {"barriers", barriers}};
+    for (const LiveRun::Removed& gone : run.removed()) {
+        json row = impact_json(gone.id, gone.record, gone.barrier);
+        row["kind"] = gone.barrier ? "barrier" : "building";
+        row["removed_s"] = gone.record.impact.removed_time;
+        removed.push_back(std::move(row));
+    }
+    return {{"buildings", buildings}, {"barriers", barriers}, {"removed", removed}};
 }
 
 json Scenario::journal_json() const {
@@ -281,25 +290,35 @@ json Scenario::journal_json() const {
 json Scenario::recording_json() const {
     const Recording& recording = parts_->run->recording();
     json times = json::array();
-    for (const Frame& frame : recording.frames()) times.push_back(frame.time);
+    for (const FramePtr& frame : recording.frames()) times.push_back(frame->time);
     return {{"times_s", times}, {"bytes", recording.bytes()}};
 }
 
-json Scenario::probe_json(const PlanPoint& p) const {
-    const LiveRun& run = *parts_->run;
-    const GridGeometry& map = run.observer().maps().geometry();
+namespace {
+
+json read_probe(const std::vector<FramePtr>& frames, const GridGeometry& map, const PlanPoint& p) {
     json times = json::array(), depths = json::array(), speeds = json::array(), pressures = json::array();
     const double column = std::floor((p.x - map.x_min) / map.cell), row = std::floor((p.y - map.y_min) / map.cell);
     const bool on_map = column >= 0 && row >= 0 && column < map.columns && row < map.rows;
-    for (const Frame& frame : run.recording().frames()) {
+    for (const FramePtr& frame : frames) {
         const DebrisAt here =
-            on_map ? debris_at(frame, static_cast<std::uint32_t>(column), static_cast<std::uint32_t>(row)) : DebrisAt{};
-        times.push_back(frame.time);
+            on_map ? debris_at(*frame, static_cast<std::uint32_t>(column), static_cast<std::uint32_t>(row))
+                   : DebrisAt{};
+        times.push_back(frame->time);
         depths.push_back(here.depth);
         speeds.push_back(here.speed);
-        pressures.push_back(frame.rest_density * here.speed * here.speed / 1e3);
+        pressures.push_back(frame->rest_density * here.speed * here.speed / 1e3);
     }
     return {{"time_s", times}, {"depth_m", depths}, {"speed_mps", speeds}, {"pressure_kPa", pressures}};
+}
+
+}  // namespace
+
+std::function<json()> Scenario::probe(const PlanPoint& p) const {
+    const LiveRun& run = *parts_->run;
+    return [frames = run.recording().frames(), map = run.observer().maps().geometry(), p] {
+        return read_probe(frames, map, p);
+    };
 }
 
 }  // namespace talus::twin

@@ -4,7 +4,9 @@
 // Exit code 77: skipped, the browser or its driver is missing.
 import { resolve } from "node:path";
 import { existsSync, Run, startServer } from "./twin/harness.mjs";
+import { testBarrier } from "./twin/barrier.mjs";
 import { testLevers } from "./twin/levers.mjs";
+import { testPhoto } from "./twin/photo.mjs";
 import { testReadings } from "./twin/readings.mjs";
 import { testSharing } from "./twin/sharing.mjs";
 
@@ -27,14 +29,17 @@ const browser = await chromium.launch({ executablePath: browserPath, args: ["--h
   "--enable-unsafe-swiftshader", "--ignore-gpu-blocklist", "--disable-background-networking", "--disable-component-update", "--no-first-run"] });
 const run = new Run(browser, resolve(output), process.env.TALUS_ONLY);
 const server = await startServer(command);
-const parts = (process.env.TALUS_PARTS ?? "levers,readings,sharing").split(",");
+const parts = (process.env.TALUS_PARTS ?? "levers,readings,barrier,photo,sharing").split(",");
 let sharing = server;
 try {
   if (parts.includes("levers")) await (await testLevers(run, server)).context().close();
   if (parts.includes("readings")) await testReadings(run, server);
+  if (parts.includes("barrier")) await testBarrier(run, server);
+  if (parts.includes("photo")) await testPhoto(run, server, command);
   if (parts.includes("sharing")) sharing = await testSharing(run, server, command);
   await run.check("nothing but the server is asked for, and the console is silent", async () => {
-    const foreign = run.requests.filter((url) => !url.startsWith(`http://127.0.0.1:${server.port}/`) && !url.startsWith(`ws://127.0.0.1:${server.port}/`));
+    const own = run.ports.flatMap((port) => [`http://127.0.0.1:${port}/`, `ws://127.0.0.1:${port}/`]);
+    const foreign = run.requests.filter((url) => !own.some((base) => url.startsWith(base)));
     if (foreign.length > 0) throw new Error(`asked for ${[...new Set(foreign)].join(", ")}`);
     if (run.problems.length > 0) throw new Error([...new Set(run.problems)].join("\n"));
   });

@@ -37,8 +37,8 @@ TEST(FieldTable, EveryMemberIsDeclared) {
         EXPECT_EQ(declared("scene"), 5U);
     }
     {
-        [[maybe_unused]] const auto [a, b, c, d, e, f] = TerrainSpec{};
-        EXPECT_EQ(declared("terrain"), 6U);
+        [[maybe_unused]] const auto [a, b, c, d, e, f, g] = TerrainSpec{};
+        EXPECT_EQ(declared("terrain"), 7U);
     }
     {
         [[maybe_unused]] const auto [a, b, c, d, e, f, g, h] = ReleaseSpec{};

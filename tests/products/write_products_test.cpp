@@ -195,7 +195,7 @@ TEST_F(Products, BuildingTableUsesKilonewtonAndKilopascal) {
     ASSERT_EQ(rows.size(), 6U);
     EXPECT_THAT(rows[0], ElementsAre("name", "hit", "first_hit_time_s", "peak_force_kN", "peak_pressure_kPa",
                                      "peak_dynamic_pressure_kPa", "peak_depth_m", "filter_window_s", "height_m",
-                                     "height_assumed"));
+                                     "height_assumed", "removed_time_s"));
     EXPECT_EQ(rows[1][0], "House 38");
     EXPECT_EQ(rows[1][1], "yes");
     EXPECT_EQ(rows[1][3], "412");
@@ -203,6 +203,7 @@ TEST_F(Products, BuildingTableUsesKilonewtonAndKilopascal) {
     EXPECT_EQ(rows[1][5], "61");
     EXPECT_EQ(rows[1][7], "0.2");
     EXPECT_EQ(rows[2][9], "yes");
+    EXPECT_EQ(rows[1][10], "") << "it stands";
     EXPECT_EQ(rows[5][1], "no");
     EXPECT_EQ(rows[5][2], "") << "never hit: no time";
 }

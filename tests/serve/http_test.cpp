@@ -47,6 +47,20 @@ TEST_F(Http, reading_needs_a_token_and_changing_that_of_controllers) {
     EXPECT_EQ(nobody.get("/").status, 200);
 }
 
+TEST_F(Http, ends_while_files_are_written) {
+    for (int wait = 0; wait < 200; wait += 20) {
+        start();
+        act({{"action", "step"}});
+        Socket socket(port());
+        ASSERT_TRUE(
+            socket.send(fmt::format("GET /api/scenarios/A/exports/report.html HTTP/1.1\r\nHost: {}\r\n"
+                                    "Authorization: Bearer {}\r\n\r\n",
+                                    host(), viewer)));
+        std::this_thread::sleep_for(std::chrono::milliseconds(wait));
+        server_.reset();  // must neither crash nor wait for an answer that nobody gets
+    }
+}
+
 TEST_F(Http, a_link_tells_no_more_than_it_entitles_to) {
     const auto eye = as_viewer().get("/api/session").json(), hand = as_controller().get("/api/session").json();
     EXPECT_EQ(eye["you"]["role"], "viewer");

@@ -5,6 +5,7 @@
 
 #include "serve/schema.hpp"
 #include "serve/serve_fixture.hpp"
+#include "support/photo.hpp"
 
 namespace talus::test {
 namespace {
@@ -106,7 +107,8 @@ TEST_F(OpenApi, every_route_answers_as_described) {
     const std::map<std::string, json> bodies = {{"/api/scenarios/{s}/actions", {{"action", "step"}}},
                                                 {"/api/control", {{"do", "request"}}},
                                                 {"/api/scenarios", {{"copy_of", "A"}}}};
-    const std::map<std::string, int> refused = {{"/api/control", 409}, {"/api/scenarios", 409}};
+    const std::map<std::string, int> refused = {
+        {"/api/control", 409}, {"/api/scenarios", 409}, {"/api/orthophoto", 404}};
     for (const serve::Route& route : server_->routes()) {
         SCOPED_TRACE(route.method + " " + route.pattern);
         const std::string name = names.count(route.pattern) ? names.at(route.pattern) : "nothing";
@@ -139,6 +141,11 @@ TEST_F(OpenApi, wrong_values_are_refused_as_described) {
     EXPECT_EQ(hand.get("/api/terrain?max_cells=1").status, 400);
     EXPECT_EQ(hand.get("/api/terrain?max_cells=99999999999").status, 400);
     EXPECT_EQ(hand.get("/api/scenarios/A/layers/nothing").status, 404);
+    for (const char* path : {"layers/peak_depth", "impacts", "frame"}) {
+        const Answer answer = hand.get("/api/scenarios/A/" + std::string(path) + "?time_s=soon");
+        EXPECT_EQ(answer.status, 400) << path;
+        EXPECT_NE(answer.body.find("time_s = soon"), std::string::npos) << answer.body;
+    }
     EXPECT_EQ(hand.get("/api/scenarios/A/exports/nothing").status, 404);
 }
 
@@ -155,6 +162,49 @@ TEST_F(OpenApi, terrain_is_thinned_to_what_was_asked) {
     EXPECT_LE(cells(thin), 700U);
     EXPECT_GE(cells(thin), 500U);
     EXPECT_EQ(eye.get("/api/terrain?max_cells=700").body, thin.body);
+}
+
+TEST_F(OpenApi, maps_and_impacts_are_also_of_an_earlier_time) {
+    act({{"action", "set_speed"}, {"factor", nullptr}});
+    act({{"action", "run"}});
+    HttpClient eye = as_viewer();
+    for (int i = 0; i < 200 && eye.get("/api/scenarios/A/state").json()["time_s"] < 12; ++i) {
+        std::this_thread::sleep_for(std::chrono::milliseconds(50));
+    }
+    act({{"action", "pause"}});
+    const auto cells_of = [&](const std::string& query) {
+        const Answer answer = eye.get("/api/scenarios/A/layers/peak_depth" + query);
+        EXPECT_EQ(answer.status, 200);
+        std::uint32_t size[2] = {};
+        std::memcpy(size, answer.body.data() + 32, sizeof size);
+        return size[0] * size[1];
+    };
+    EXPECT_LT(cells_of("?time_s=0.3"), cells_of("?time_s=3"));
+    EXPECT_LE(cells_of("?time_s=3"), cells_of(""));
+    const Answer then = eye.get("/api/scenarios/A/impacts?time_s=0.2"), now = eye.get("/api/scenarios/A/impacts");
+    expect_described("GET", "/api/scenarios/{s}/impacts", then);
+    EXPECT_EQ(then.json()["buildings"][0]["hit"], false);
+    EXPECT_EQ(now.json()["buildings"][0]["hit"], true);
+}
+
+TEST_F(OpenApi, the_scene_s_orthophoto_is_served_cut_to_the_terrain) {
+    PhotoOptions options;
+    options.x_min = 824000;
+    options.y_max = 825200;
+    options.pixel = 3;
+    options.columns = 100;
+    options.rows = 70;
+    const std::string file = write_photo(scene_.input("photo.tif"), options);
+    EXPECT_EQ(as_viewer().get("/api/scene").json()["orthophoto"], false);
+    start({"terrain.orthophoto=" + file});
+    EXPECT_EQ(as_viewer().get("/api/scene").json()["orthophoto"], true);
+    const Answer photo = as_viewer().get("/api/orthophoto");
+    ASSERT_EQ(photo.status, 200) << photo.body;
+    expect_described("GET", "/api/orthophoto", photo);
+    const auto pixel = ReadPhoto(photo.body).at(0.25, 0.25);
+    EXPECT_GT(pixel[0], 200);
+    EXPECT_LT(pixel[1], 50);
+    EXPECT_EQ(HttpClient(port()).get("/api/orthophoto").status, 401);
 }
 
 TEST_F(OpenApi, exports_are_of_the_run_so_far) {

@@ -29,7 +29,7 @@ struct Decoded {
 
 template <class T>
 T at(const std::string& bytes, std::size_t offset) {
-    T value;
+    T value{};
     std::memcpy(&value, bytes.data() + offset, sizeof value);
     return value;
 }
@@ -143,7 +143,7 @@ TEST(Frame, without_particles_is_one_too) {
 TEST(Frame, of_a_scenario_holds_depths_that_add_up_to_its_debris) {
     const auto scenario = open(channel_scene());
     run_until(*scenario, 2);
-    const Decoded d = decode(scenario->frame(0, 1, frame_running));
+    const Decoded d = decode(encode(*scenario->frame(1, frame_running), 0));
     EXPECT_EQ(d.time, scenario->time());
     const json map = scenario->scene_json()["map"];
     const double cell = map["cell_m"];
@@ -175,10 +175,10 @@ TEST(Recording, is_of_even_times_and_can_be_looked_up) {
         EXPECT_GE(recording["times_s"][k].get<double>(), 0.1 * k - 1e-8);
         EXPECT_LT(recording["times_s"][k].get<double>(), 0.1 * k + 1.0 / 60);
     }
-    const Decoded d = decode(scenario->recorded_frame(0, 1.05));
+    const Decoded d = decode(encode(*scenario->recorded_frame(1.05), 0, frame_recorded));
     EXPECT_EQ(d.time, recording["times_s"][10]);
     EXPECT_EQ(d.flags & 4, 4);
-    EXPECT_EQ(scenario->recorded_frame(0, -1), "");
+    EXPECT_EQ(scenario->recorded_frame(-1), nullptr);
 }
 
 TEST(Recording, thins_out_its_older_half_when_full) {
@@ -187,25 +187,27 @@ TEST(Recording, thins_out_its_older_half_when_full) {
         Frame frame;
         frame.time = 0.1 * k;
         ASSERT_TRUE(recording.due(frame.time));
-        recording.add(frame);
+        recording.add(std::make_shared<const Frame>(frame));
         ASSERT_FALSE(recording.due(frame.time + 0.05));
         ASSERT_LE(recording.bytes(), 20 * sizeof(Frame));
         ASSERT_EQ(recording.bytes(), recording.frames().size() * sizeof(Frame));
     }
-    EXPECT_EQ(recording.frames().front().time, 0);
+    EXPECT_EQ(recording.frames().front()->time, 0);
     EXPECT_GE(recording.frames().size(), 10U);
     const std::size_t last = recording.frames().size() - 1;
     for (std::size_t k = last; k > last - 4; --k) {
-        EXPECT_NEAR(recording.frames()[k].time - recording.frames()[k - 1].time, 0.1, 1e-9) << "of late";
+        EXPECT_NEAR(recording.frames()[k]->time - recording.frames()[k - 1]->time, 0.1, 1e-9) << "of late";
     }
-    EXPECT_EQ(recording.at(1e9), &recording.frames().back());
+    EXPECT_EQ(recording.at(1e9), recording.frames().back());
+    EXPECT_EQ(recording.until(1e9), recording.frames());
+    EXPECT_EQ(recording.until(-1).size(), 0U);
 }
 
 TEST(Probe, reads_depth_speed_and_pressure_from_the_recording) {
     const auto scenario = open(channel_scene());
     const PlanPoint p{west + 30.5, south + 30.5};
     run_until(*scenario, 4);
-    const json probe = scenario->probe_json(p);
+    const json probe = scenario->probe(p)();
     ASSERT_EQ(probe["time_s"].size(), scenario->recording_json()["times_s"].size());
     EXPECT_EQ(probe["depth_m"][0], 0);
     double deepest = 0, fastest = 0;
@@ -216,13 +218,13 @@ TEST(Probe, reads_depth_speed_and_pressure_from_the_recording) {
         EXPECT_NEAR(probe["pressure_kPa"][k].get<double>(), 2 * speed * speed, 1e-9);
     }
     // The peaks see every step, the recording every sixth or so.
-    const Grid<float> depth = *scenario->layer("peak_depth"), speed = *scenario->layer("peak_speed");
+    const Grid<float> depth = (*scenario->layer("peak_depth"))(), speed = (*scenario->layer("peak_speed"))();
     const auto column = static_cast<int>((p.x - depth.geometry.x_min) / depth.geometry.cell),
                row = static_cast<int>((p.y - depth.geometry.y_min) / depth.geometry.cell);
     EXPECT_GT(deepest, 0.1);
     EXPECT_NEAR(deepest, depth.at(column, row), 0.15 * deepest);
     EXPECT_NEAR(fastest, speed.at(column, row), 0.2 * fastest);
-    EXPECT_EQ(scenario->probe_json({0, 0})["depth_m"][5], 0);
+    EXPECT_EQ(scenario->probe({0, 0})()["depth_m"][5], 0);
 }
 
 TEST(Grid, message_is_as_the_protocol_says) {

@@ -1,5 +1,7 @@
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 
+#include "support/fixtures.hpp"
 #include "twin/barrier.hpp"
 #include "twin_fixtures.hpp"
 
@@ -74,7 +76,7 @@ TEST(Barrier, lower_than_the_flow_is_overtopped_by_what_lies_beyond_it) {
     EXPECT_LT(over, number(*scenario, "volume_released_m3"));
     EXPECT_GE(impact["first_overtopped_s"], impact["first_hit_s"]);
     // Nothing can get there but over it.
-    const Grid<float> deposit = *scenario->layer("deposit_depth");
+    const Grid<float> deposit = layer(*scenario, "deposit_depth");
     double beyond = 0;
     for (int row = 0; row < deposit.geometry.rows; ++row) {
         for (int column = 0; column < deposit.geometry.columns; ++column) {
@@ -133,6 +135,68 @@ TEST(Barrier, moved_begins_its_record_anew_and_removed_lets_go_what_it_held) {
     act(*scenario, {{"action", "remove_barrier"}, {"id", id}});
     EXPECT_EQ(scenario->impacts_json()["barriers"].size(), 0U);
     scenario->advance();
+}
+
+TEST(Obstacle, taken_away_stays_in_tables_and_report_with_the_time_of_it) {
+    Scene scene = channel_scene();
+    scene.crs.epsg = 2326;
+    add_building(scene, "house", rectangle(west + 20, south + 27, west + 24, south + 33), 6);
+    const auto scenario = open(scene);
+    const std::string never_there = act(*scenario, barrier(90, 2)).created;
+    act(*scenario, {{"action", "remove_barrier"}, {"id", never_there}});
+    const std::string dam = act(*scenario, barrier(40, 0.8)).created;
+    run_until(*scenario, 6);
+    const json then = barrier_impact(*scenario);
+    ASSERT_EQ(then["hit"], true);
+    act(*scenario, {{"action", "remove_barrier"}, {"id", dam}});
+    act(*scenario, {{"action", "remove_building"}, {"id", "building-1"}});
+    const double time = scenario->time();
+    run_until(*scenario, 7);
+
+    const json removed = scenario->impacts_json()["removed"];
+    ASSERT_EQ(removed.size(), 2U) << "what came and went between two steps was never there: " << removed;
+    EXPECT_EQ(removed[0]["kind"], "building");
+    EXPECT_EQ(removed[0]["hit"], true);
+    EXPECT_EQ(removed[1]["kind"], "barrier");
+    EXPECT_EQ(removed[1]["removed_s"], time);
+    for (const char* key : {"peak_force_kN", "overtopped_m3", "held_m3"}) EXPECT_EQ(removed[1][key], then[key]) << key;
+
+    talus::test::TemporaryFolder folder;
+    ASSERT_TRUE(scenario->products()(folder.path()));
+    const std::string table = talus::test::read_text(folder.file("buildings.csv"));
+    EXPECT_THAT(table, HasSubstr("\nhouse,yes,"));
+    EXPECT_THAT(table, HasSubstr("\nbarrier 2,yes,"));
+    EXPECT_THAT(table, HasSubstr(fmt::format(",{:.4g}", time).substr(0, 4)));
+    const std::string report = talus::test::read_text(folder.file("report.html"));
+    EXPECT_THAT(report, HasSubstr("Taken away while the run went on: house at 6.0 s, barrier 2 at 6.0 s"));
+    EXPECT_THAT(report, HasSubstr("m3 went over it"));
+
+    // Back again it stands, and is told as what stands.
+    act(*scenario, {{"action", "undo"}});
+    act(*scenario, {{"action", "undo"}});
+    EXPECT_EQ(scenario->impacts_json()["removed"].size(), 0U);
+    EXPECT_EQ(barrier_impact(*scenario)["hit"], true);
+}
+
+TEST(Obstacle, impacts_of_an_earlier_time_are_those_that_were_told_then) {
+    Scene scene = channel_scene();
+    add_building(scene, "house", rectangle(west + 60, south + 27, west + 66, south + 33), 6);
+    const auto scenario = open(scene);
+    act(*scenario, barrier(45, 0.8));
+    std::vector<std::pair<double, json>> told;
+    for (double time = 0.5; time < 9; time += 1.5) {
+        run_until(*scenario, time);
+        const std::size_t frames = scenario->recording_json()["times_s"].size();
+        while (scenario->recording_json()["times_s"].size() == frames) scenario->advance();
+        told.emplace_back(scenario->time(), scenario->impacts_json());
+    }
+    ASSERT_EQ(told.front().second["barriers"][0]["hit"], false);
+    ASSERT_GT(told.back().second["barriers"][0]["overtopped_m3"], 1);
+    ASSERT_EQ(told.back().second["buildings"][0]["hit"], true);
+    for (const auto& [time, impacts] : told) {
+        EXPECT_EQ(scenario->impacts_json(time), impacts) << time;
+        EXPECT_EQ(scenario->impacts_json(time + 0.05), impacts) << "until the next frame";
+    }
 }
 
 TEST(Barrier, refuses_lines_that_make_no_wall) {

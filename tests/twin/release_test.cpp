@@ -60,7 +60,7 @@ TEST(DrawnRelease, follows_its_outline_while_held_without_using_up_ids) {
     const double volume = release_of(*scenario, id)["volume_m3"];
     const auto slots = [&] {
         std::uint32_t n = 0;
-        std::memcpy(&n, scenario->frame(0, 1, 0).data() + 24, sizeof n);
+        std::memcpy(&n, encode(*scenario->frame(1, 0), 0).data() + 24, sizeof n);
         return n;
     };
     const std::uint32_t before = slots();
@@ -102,7 +102,7 @@ TEST(Release, removed_while_it_moves_is_taken_away_and_the_rest_goes_on) {
     act(*scenario, {{"action", "trigger_release"}, {"id", id}});
     run_until(*scenario, 1);
     const double all = number(*scenario, "volume_released_m3");
-    const std::string frame = scenario->frame(0, 1, 0);
+    const std::string frame = encode(*scenario->frame(1, 0), 0);
     act(*scenario, {{"action", "remove_release"}, {"id", "release-1"}});
     expect_balance(*scenario);
     EXPECT_LT(number(*scenario, "volume_released_m3"), 0.5 * all);

@@ -99,6 +99,11 @@ inline void expect_balance(const Scenario& scenario) {
     EXPECT_NEAR(s["volume_released_m3"].get<double>() + s["volume_entrained_m3"].get<double>(), sum, 1e-9 * sum);
 }
 
+/// A layer as it is now.
+inline Grid<float> layer(const Scenario& scenario, const char* name) {
+    return (*scenario.layer(name))();
+}
+
 /// A number of the state.
 inline double number(const Scenario& scenario, const char* key) {
     return scenario.state_json().at(key).get<double>();

@@ -21,7 +21,7 @@ export function describe(valley, particles, endTime) {
     assumptions: ["The flow is invented."], sources: [], crs: valley.crs, crs_name: valley.crsName, vertical_unit: "m", origin,
     extent_m: [g.xMin, g.yMin, g.xMax, g.yMax], elevation_m: [low, high],
     map: { x_min_m: g.xMin, y_min_m: g.yMin, cell_m: g.cell, columns: g.columns, rows: g.rows },
-    particle_spacing_m: 0.4, end_time_s: endTime, gravity_mps2: 9.81, flow_path: path, observations: valley.observations, parameters,
+    orthophoto: false, particle_spacing_m: 0.4, end_time_s: endTime, gravity_mps2: 9.81, flow_path: path, observations: valley.observations, parameters,
     intensity: {
       classes: [{ name: "low", colour: "#f3d34a", depth_m: 0 }, { name: "medium", colour: "#e5792b", depth_m: 0.5 },
         { name: "high", colour: "#8e1430", depth_m: 1 }],
@@ -43,7 +43,7 @@ export function impacts(s) {
       intensity: h === undefined ? null : h.depth >= 1 ? "high" : h.depth >= 0.5 ? "medium" : "low" };
   };
   return { buildings: s.setup.buildings.map(row), barriers: s.setup.barriers.map((b) => ({ ...row(b), overtopped_m3: 0,
-    first_overtopped_s: null, held_m3: s.hits.get(b.id)?.held ?? 0 })) };
+    first_overtopped_s: null, held_m3: s.hits.get(b.id)?.held ?? 0 })), removed: [] };
 }
 
 export function probe(s, x, y) {

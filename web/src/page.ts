@@ -133,7 +133,7 @@ function showSetups(twin: Twin, stage: Stage): void {
 function followFront(twin: Twin, stage: Stage): void {
   stage.onPicture(() => {
     if (stage.rig.mode !== "follow") return;
-    const chainage = twin.now.state.value?.front_chainage_m;
+    const chainage = twin.shownState()?.front_chainage_m;
     if (chainage === null || chainage === undefined) return;
     const place = placeOnPath(twin.scene, chainage);
     if (place) stage.rig.follow(twin.relief.local(place.at[0], place.at[1]));

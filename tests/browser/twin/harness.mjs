@@ -42,6 +42,8 @@ export class Run {
   failed = 0;
   problems = [];
   requests = [];
+  /** Of the servers that pages were opened at. */
+  ports = [];
 
   constructor(browser, output, only) {
     Object.assign(this, { browser, output, only });
@@ -74,6 +76,7 @@ export class Run {
       if (!/^(data|blob):/.test(request.url())) this.requests.push(request.url());
     });
     page.setDefaultTimeout(15_000);
+    this.ports.push(new URL(link).port);
     const begun = Date.now();
     await page.goto(link);
     await page.waitForFunction(() => window.talusStats?.frames > 0 && document.querySelector(".transport"));
@@ -88,6 +91,11 @@ export class Run {
     const png = await page.screenshot(clip ? { clip } : {});
     const found = await page.evaluate(readPixels, png.toString("base64"));
     return { ...found, png, hash: createHash("sha1").update(png).digest("hex") };
+  }
+  /** Share of a part of the page that is clearly more red than green and blue. */
+  async reddish(page, clip) {
+    const png = await page.screenshot({ clip });
+    return (await page.evaluate(readPixels, png.toString("base64"))).reddish;
   }
   async shot(page, name) {
     await page.screenshot({ path: join(this.output, `${name}.png`) });
@@ -105,11 +113,13 @@ async function readPixels(data) {
   context.drawImage(bitmap, 0, 0);
   const pixels = context.getImageData(0, 0, canvas.width, canvas.height).data;
   const counts = new Map();
+  let reddish = 0;
   for (let i = 0; i < pixels.length; i += 4) {
     const key = (pixels[i] << 16) | (pixels[i + 1] << 8) | pixels[i + 2];
     counts.set(key, (counts.get(key) ?? 0) + 1);
+    reddish += pixels[i] > 1.5 * pixels[i + 1] && pixels[i] > 1.5 * pixels[i + 2];
   }
-  return { different: counts.size, commonest: Math.max(...counts.values()) / (pixels.length / 4) };
+  return { reddish: reddish / (pixels.length / 4), different: counts.size, commonest: Math.max(...counts.values()) / (pixels.length / 4) };
 }
 
 /** The middle of the view: without bars, legends and labels' edges. */

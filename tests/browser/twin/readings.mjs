@@ -2,6 +2,33 @@
 import { join } from "node:path";
 import { assert, clickGround, saved, shownTime, until, viewClip } from "./harness.mjs";
 
+/** While one looks back, charts, mass balance, map layers and impacts are those of the time on display. */
+async function readPast(page, server, last) {
+  const time = await shownTime(page);
+  const series = await server.ask("scenarios/A/series");
+  const rows = series.time.time_s.filter((t) => t <= time).length;
+  const reached = Math.max(...series.front.chainage_m.filter((_, k) => series.front.arrival_time_s[k] <= time));
+  assert.ok(rows < series.time.time_s.length && reached < Math.max(...series.front.chainage_m));
+  await page.click("[data-tab=front]");
+  const arrival = page.locator(".tab-panel:visible .chart-plot:visible").nth(1);
+  await until(() => arrival.getAttribute("aria-label"), (t) => Number(/Arrival from .* to ([\d.]+)/.exec(t ?? "")?.[1]) <= time + 0.01, "arrivals until then");
+  await page.click("[data-tab=balance]");
+  const moving = series.time.volume_moving_m3[rows - 1].toFixed(1);
+  await until(() => page.textContent(".tab-panel:visible"), (t) => t.includes(`Mass balance at ${time.toFixed(2)} s`) && t.includes(`${moving} m³`), `${moving} m3 moving`);
+  await page.click("[data-tab=impact]");
+  const impacts = await server.ask(`scenarios/A/impacts?time_s=${time}`);
+  await until(() => page.textContent(".tab-panel:visible"), (t) => t.includes(`As of ${time.toFixed(1)} s.`), "impacts of then");
+  const untouched = await page.locator(".impacts").last().locator("tbody tr.untouched").count();
+  assert.equal(untouched, impacts.buildings.filter((b) => !b.hit).length);
+  const legend = page.locator(".legend").last();
+  for (const [layer, words] of [["peak_depth", "Peak depth until"], ["depth", "Depth at"], ["arrival_time", "Arrival time until"]]) {
+    await page.selectOption("select[aria-label^='Map layer']", layer);
+    await until(() => legend.textContent(), (t) => t.startsWith(`${words} ${time.toFixed(1)} s`), `legend of ${layer}`);
+  }
+  await page.selectOption("select[aria-label^='Map layer']", "none");
+  assert.ok(time < last);
+}
+
 export async function testReadings(run, server) {
   const page = await run.open(server.controller, { name: "Ben" });
   const state = () => server.ask("scenarios/A/state");
@@ -82,6 +109,23 @@ export async function testReadings(run, server) {
     assert.notEqual(await picture(), turned, "flying");
     await page.keyboard.press("3");
     assert.equal(await page.getAttribute("[data-mode=follow]", "aria-pressed"), "true");
+    await page.keyboard.press("1");
+    await page.click("[aria-label='Fit']");
+  });
+
+  await run.check("on slow graphics what moves has fewer pixels, and what stands still has all of them", async () => {
+    const ratio = () => page.evaluate(() => window.talusStats.pixelRatio);
+    const full = await page.evaluate(() => Math.min(2, devicePixelRatio));
+    await until(ratio, (r) => r === full, "all pixels at rest");
+    const slow = await page.context().newCDPSession(page);
+    await slow.send("Emulation.setCPUThrottlingRate", { rate: 15 });
+    await page.locator(".stage canvas").focus();
+    await page.keyboard.press("2");
+    await page.keyboard.down("s");
+    await until(ratio, (r) => r < full, "fewer pixels", 30_000);
+    await page.keyboard.up("s");
+    await slow.send("Emulation.setCPUThrottlingRate", { rate: 1 });
+    await until(ratio, (r) => r === full, "all pixels again");
     await page.keyboard.press("1");
     await page.click("[aria-label='Fit']");
   });
@@ -176,6 +220,7 @@ export async function testReadings(run, server) {
     await slider.focus();
     await page.keyboard.press("ArrowLeft");
     await until(() => shownTime(page), (t) => t < from, "by key");
+    await readPast(page, server, last);
     await page.click("[aria-label='Play the recording']");
     await until(() => shownTime(page), (t) => t > from + 0.5, "playback");
     await page.click("[aria-label='Pause the recording']");

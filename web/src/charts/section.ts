@@ -4,7 +4,7 @@ import { gridAt, type Grid } from "../protocol/grid";
 import type { Point, SceneInfo } from "../protocol/messages";
 import type { Stage } from "../scene/stage";
 import { watchAll } from "../state/cell";
-import { quantity } from "../state/format";
+import { fixed, quantity } from "../state/format";
 import { length } from "../state/shapes";
 import type { Twin } from "../state/twin";
 import { button, h } from "../ui/dom";
@@ -60,6 +60,7 @@ export function sectionPanel(twin: Twin, stage: Stage): { element: HTMLElement; 
   const clear = button("Remove", { class: "small quiet", onclick: () => (twin.section.value = null) });
   const note = h("output", { class: "measure" });
   let peak: Grid | null = null;
+  let asked = 0;
   let shown_ms = 0;
 
   const plot = (): void => {
@@ -84,21 +85,24 @@ export function sectionPanel(twin: Twin, stage: Stage): { element: HTMLElement; 
     // Heights are plotted above the lowest point of the ground, so that the axis starts at zero.
     heights.update([xs, ground.map((z) => z - lowest), ground.map((z, i) => (now[i] > 0.01 ? z - lowest + now[i] : null)), ground.map((z, i) => (most[i] > 0.01 ? z - lowest + most[i] : null))], [
       { label: "Ground", unit: "m", colour: "#6a5b41", fill: "#e9e4da" },
-      { label: "Debris now", unit: "m", colour: "#0b5fa5" },
+      { label: twin.replay_s.value === null ? "Debris now" : "Debris then", unit: "m", colour: "#0b5fa5" },
       { label: "Peak", unit: "m", colour: "#d1640f", dashed: true },
     ]);
     depths.update([xs, now, most], [
-      { label: "Now", unit: "m", colour: "#0b5fa5", fill: "#0b5fa522" },
+      { label: twin.replay_s.value === null ? "Now" : "Then", unit: "m", colour: "#0b5fa5", fill: "#0b5fa522" },
       { label: "Peak", unit: "m", colour: "#d1640f", dashed: true },
     ]);
     const width = (line.length > 1 ? length(line) : 0) / (stations.length - 1);
     const flowArea = now.reduce((sum, d) => sum + d * width, 0);
-    note.value = `${quantity(length(line), "m")} long · heights above ${quantity(lowest, "m", 4)} · debris ${quantity(flowArea, "m2")} now`;
+    note.value = `${quantity(length(line), "m")} long · heights above ${quantity(lowest, "m", 4)} · debris ${quantity(flowArea, "m2")} ${twin.replay_s.value === null ? "now" : `at ${fixed(twin.replay_s.value, 2)} s`}`;
   };
   const refresh = (): void => {
     if (!twin.section.value) return;
     void twin.attempt(async () => {
-      peak = await twin.api.layer(twin.edited.value, "peak_depth");
+      const own = ++asked;
+      const grid = await twin.api.layer(twin.edited.value, "peak_depth", twin.replay_s.value);
+      if (own !== asked) return;  // a later answer is on its way
+      peak = grid;
       plot();
     });
   };
@@ -107,6 +111,7 @@ export function sectionPanel(twin: Twin, stage: Stage): { element: HTMLElement; 
     plot();
     refresh();
   });
+  watchAll([twin.replay_s], refresh);
   watchAll([twin.tool], () => draw.setAttribute("aria-pressed", String(twin.tool.value.kind === "section")));
   twin.onFrame((frame) => {
     const now = performance.now();

@@ -2,6 +2,7 @@
 import type { ScenarioName } from "../protocol/frame";
 import type { Column, Series } from "../protocol/messages";
 import { watchAll } from "../state/cell";
+import { seriesUntil } from "../state/past";
 import type { Twin } from "../state/twin";
 import { h } from "../ui/dom";
 import { Chart, joined, type Curve } from "./chart";
@@ -24,13 +25,13 @@ export function frontCharts(twin: Twin): HTMLElement {
   const arrival = new Chart({ title: "Arrival of the front", x: { label: "Chainage", unit: "m" }, y: { label: "Time", unit: "s" }, curves: [], height: 170,
     empty: "No arrivals yet." });
   const observed = twin.scene.observations;
-  watchAll([twin.scenarios, twin.cells.A.series, twin.cells.B.series], () => {
+  watchAll([twin.scenarios, twin.cells.A.series, twin.cells.B.series, twin.replay_s], () => {
     const tables = [];
     const curves: Curve[] = [];
     const times = [];
     const timeCurves: Curve[] = [];
     for (const name of twin.scenarios.value) {
-      const front = twin.cells[name].series.value?.front;
+      const front = seriesUntil(twin.cells[name].series.value, twin.replay_s.value)?.front;
       if (!front || front.chainage_m.length === 0) continue;
       const suffix = twin.scenarios.value.length > 1 ? ` ${name}` : "";
       tables.push({ x: front.chainage_m, y: front.front_velocity_mps }, { x: front.chainage_m, y: front.particle_speed_mps });
@@ -66,8 +67,8 @@ export function timeCharts(twin: Twin): HTMLElement {
   const speed = new Chart({ title: "Speed", x: time, y: { label: "Speed", unit: "m/s" }, curves: [], empty: "No speeds yet." });
   const energy = new Chart({ title: "Energy", x: time, y: { label: "Energy", unit: "MJ" }, curves: [], empty: "No energies yet." });
   const all = [volume, speed, energy];
-  watchAll([twin.scenarios, twin.edited, twin.cells.A.series, twin.cells.B.series], () => {
-    const series: Series | null = twin.now.series.value;
+  watchAll([twin.scenarios, twin.edited, twin.cells.A.series, twin.cells.B.series, twin.replay_s], () => {
+    const series: Series | null = seriesUntil(twin.now.series.value, twin.replay_s.value);
     const table = series?.time;
     const times = table?.["time_s"] ?? [];
     const picked = thinned(times);
@@ -85,8 +86,5 @@ export function timeCharts(twin: Twin): HTMLElement {
     put(speed, [{ column: "largest_speed_mps", label: "Largest speed", colour: "#0b5fa5" }], "m/s");
     put(energy, [{ column: "kinetic_energy_J", label: "Kinetic", colour: "#d1640f" }, { column: "potential_energy_J", label: "Potential", colour: "#11795a" }], "MJ", 1e-6);
   });
-  for (const chart of all) {
-    watchAll([twin.replay_s], () => chart.mark(twin.replay_s.value));
-  }
   return h("div", {}, ...all.map((c) => c.element));
 }

@@ -3,7 +3,7 @@ import type { BarrierImpact, Impact, Impacts, SceneInfo } from "../protocol/mess
 import { css, rampAt, ramps } from "../scene/colour";
 import type { Stage } from "../scene/stage";
 import { watchAll } from "../state/cell";
-import { fixed, unitText } from "../state/format";
+import { fixed, quantity, unitText } from "../state/format";
 import type { HouseColour, Twin } from "../state/twin";
 import { h } from "../ui/dom";
 
@@ -103,17 +103,27 @@ export function impactsPanel(twin: Twin, stage: Stage): HTMLElement {
   }));
   const none = h("p", { class: "hint" }, "Nothing has been hit yet. Rows fill as debris reaches houses and barriers.");
   const barrierTitle = h("h3", {}, "Barriers");
-  watchAll([twin.edited, twin.cells.A.impacts, twin.cells.B.impacts, twin.selection, twin.houseColour], () => {
+  const goneTitle = h("h3", {}, "Taken away");
+  const gone = h("ul", { class: "removed" });
+  const then = h("p", { class: "hint" });
+  watchAll([twin.edited, twin.cells.A.impacts, twin.cells.B.impacts, twin.selection, twin.houseColour, twin.replay_s], () => {
     const impacts = twin.now.impacts.value;
     houses.show(impacts?.buildings ?? []);
     barriers.show(impacts?.barriers ?? []);
+    const removed = impacts?.removed ?? [];
+    gone.replaceChildren(...removed.map((r) => h("li", {}, h("b", {}, r.name), ` until ${fixed(r.removed_s, 1)} s: `,
+      r.hit ? `${quantity(r.peak_pressure_kPa, "kPa")}, ${quantity(r.peak_force_kN, "kN")}` : "not hit",
+      r.overtopped_m3 === undefined ? "" : `, ${quantity(r.overtopped_m3, "m3")} went over it, ${quantity(r.held_m3, "m3")} held`)));
+    goneTitle.hidden = gone.hidden = removed.length === 0;
+    then.hidden = twin.replay_s.value === null;
+    then.textContent = `As of ${fixed(twin.replay_s.value, 1)} s.`;
     none.hidden = (impacts?.buildings ?? []).some((b) => b.hit) || (impacts?.barriers ?? []).some((b) => b.hit);
     barriers.element.hidden = barrierTitle.hidden = (impacts?.barriers.length ?? 0) === 0;
     houses.element.hidden = (impacts?.buildings.length ?? 0) === 0;
     colouring.value = twin.houseColour.value;
   });
-  return h("div", {}, none, barrierTitle, barriers.element, h("div", { class: "row" }, h("h3", { class: "grow" }, "Buildings"), h("label", { class: "check" }, "Colour", colouring)),
-    houses.element, h("h3", {}, "Intensity classes"), classes, h("p", { class: "hint" }, intensity.rule), h("p", { class: "hint" }, `Source: ${intensity.source}`));
+  return h("div", {}, then, none, barrierTitle, barriers.element, h("div", { class: "row" }, h("h3", { class: "grow" }, "Buildings"), h("label", { class: "check" }, "Colour", colouring)),
+    houses.element, goneTitle, gone, h("h3", {}, "Intensity classes"), classes, h("p", { class: "hint" }, intensity.rule), h("p", { class: "hint" }, `Source: ${intensity.source}`));
 }
 
 /** "depth_m", 0.5 becomes "depth ≥ 0.5 m". */

@@ -6,11 +6,13 @@ import type { ShownLayers } from "../scene/shown_layers";
 import type { Stage } from "../scene/stage";
 import { watchAll } from "../state/cell";
 import { largestPressure } from "./impacts";
-import { quantity, tick, unitText } from "../state/format";
+import { fixed, quantity, tick, unitText } from "../state/format";
 import type { Twin } from "../state/twin";
 import { h } from "../ui/dom";
 
-export interface Legend { title: string; unit: string; low: number; high: number; at: (share: number) => Rgb }
+export interface Legend { title: string; unit: string; low: number; high: number; at: (share: number) => Rgb; note?: string }
+
+const pastNote = "Rebuilt from the recording: a peak between two recorded frames is missed, so values can be a little low.";
 
 /** Legends of what is on display now, also for pictures of the view. */
 export function presentLegends(twin: Twin, stage: Stage, layers: ShownLayers): Legend[] {
@@ -29,9 +31,11 @@ export function presentLegends(twin: Twin, stage: Stage, layers: ShownLayers): L
   if (name !== "none") {
     const info = layerInfo[name];
     const [low, high] = layers.range.value;
-    list.push(layers.isDifference
-      ? { title: `${info.title}, B − A`, unit: info.unit, low, high, at: (s) => divergingAt(2 * s - 1) }
-      : { title: info.title, unit: info.unit, low, high, at: (s) => rampAt(info.ramp, s) });
+    const time = layers.shown_s.value;
+    const title = (name === "depth" && time !== null ? "Depth" : info.title) + (layers.isDifference ? ", B − A" : "") +
+      (time === null ? "" : name === "depth" || name === "deposit_depth" ? ` at ${fixed(time, 1)} s` : ` until ${fixed(time, 1)} s`);
+    list.push(layers.isDifference ? { title, unit: info.unit, low, high, at: (s) => divergingAt(2 * s - 1) }
+      : { title, unit: info.unit, low, high, at: (s) => rampAt(info.ramp, s), ...(time !== null && name.startsWith("peak_") ? { note: pastNote } : {}) });
   }
   return list;
 }
@@ -52,7 +56,7 @@ export function legends(twin: Twin, stage: Stage, layers: ShownLayers): HTMLElem
       return h("span", {}, dot, c.name);
     }));
   classes.title = twin.scene.intensity.rule;
-  watchAll([twin.particles, twin.surface, twin.layer, twin.difference, layers.range, stage.fastest_mps, twin.houseColour, twin.cells.A.impacts, twin.cells.B.impacts], () => {
+  watchAll([twin.particles, twin.surface, twin.layer, twin.difference, layers.range, layers.shown_s, stage.fastest_mps, twin.houseColour, twin.cells.A.impacts, twin.cells.B.impacts], () => {
     const anyHit = twin.scenarios.value.some((s) => twin.cells[s].impacts.value?.buildings.some((b) => b.hit));
     classes.hidden = twin.houseColour.value !== "intensity" || !anyHit;
     holder.replaceChildren(classes, ...presentLegends(twin, stage, layers).map((legend) => {
@@ -65,7 +69,7 @@ export function legends(twin: Twin, stage: Stage, layers: ShownLayers): HTMLElem
         mark.style.left = `${(100 * (value - legend.low)) / (legend.high - legend.low)}%`;
         scale.append(mark);
       }
-      return h("div", { class: "legend", role: "img",
+      return h("div", { class: "legend", role: "img", ...(legend.note ? { title: legend.note } : {}),
         "aria-label": `${legend.title}: colours from ${quantity(legend.low, legend.unit)} to ${quantity(legend.high, legend.unit)}` },
       h("div", { class: "legend-title" }, h("b", {}, legend.title), h("span", {}, unitText(legend.unit))), bar, scale);
     }));

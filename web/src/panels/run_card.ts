@@ -4,7 +4,8 @@ import { bytes, count, fixed, quantity } from "../state/format";
 import type { Twin } from "../state/twin";
 import { h } from "../ui/dom";
 
-const watched = (twin: Twin): Parameters<typeof watchAll>[0] => [twin.edited, twin.cells.A.state, twin.cells.B.state];
+const watched = (twin: Twin): Parameters<typeof watchAll>[0] =>
+  [twin.edited, twin.cells.A.state, twin.cells.B.state, twin.cells.A.series, twin.cells.B.series, twin.replay_s, twin.replayConverged];
 
 export function runCard(twin: Twin): HTMLElement {
   const cell = (label: string, help: string): { element: HTMLElement; value: HTMLElement } => {
@@ -20,18 +21,20 @@ export function runCard(twin: Twin): HTMLElement {
   const message = h("p", { class: "run-message", role: "alert" });
   const light = h("div", { class: "converged", role: "status" });
   watchAll(watched(twin), () => {
-    const s = twin.now.state.value;
+    const s = twin.shownState();
+    const live = twin.replay_s.value === null;
     front.value.textContent = quantity(s?.front_velocity_mps, "m/s");
     fastest.value.textContent = quantity(s?.largest_speed_mps, "m/s");
     chainage.value.textContent = s?.front_chainage_m === null || !s ? "–" : `${fixed(s.front_chainage_m, 0)} m`;
     particles.value.textContent = count(s?.particles);
-    steps.value.textContent = s ? `${fixed(s.steps_per_second, 0)} /s` : "–";
-    real.value.textContent = s ? `${fixed(s.real_time_factor, 2)} ×` : "–";
+    steps.value.textContent = s && live ? `${fixed(s.steps_per_second, 0)} /s` : "–";
+    real.value.textContent = s && live ? `${fixed(s.real_time_factor, 2)} ×` : "–";
     message.hidden = !s?.message;
     if (message.textContent !== (s?.message ?? "")) message.textContent = s?.message ?? "";
     message.classList.toggle("bad", s?.status === "fault");
-    light.className = `converged ${s?.converged === false ? "bad" : "good"}`;
-    const text = s?.converged === false ? "Not converged" : "Converged";
+    const converged = live ? s?.converged !== false : twin.replayConverged.value;
+    light.className = `converged ${converged ? "good" : "bad"}`;
+    const text = `${converged ? "Converged" : "Not converged"}${live || twin.replay_s.value === null ? "" : ` at ${fixed(twin.replay_s.value, 1)} s`}`;
     if (light.textContent !== text) light.textContent = text;
     light.title = s ? `Compression: mean ${fixed(100 * s.mean_compression, 2)} %, largest ${fixed(100 * s.max_compression, 1)} %` : "";
   });
@@ -44,11 +47,15 @@ export function balance(twin: Twin): HTMLElement {
     ["volume_left_m3", "Left the terrain", "#a3262a"]] as const;
   const bar = h("div", { class: "balance-bar", "aria-hidden": "true" });
   const body = h("tbody", {});
-  const table = h("table", { class: "plain" }, h("caption", {}, "Mass balance"), body);
+  const table = h("table", { class: "plain" }, body);
   const more = h("table", { class: "plain" }, h("caption", {}, "Run"), h("tbody", {}));
+  const caption = h("caption", {}, "Mass balance");
+  table.prepend(caption);
   watchAll(watched(twin), () => {
-    const s = twin.now.state.value;
+    const s = twin.shownState();
     if (!s) return;
+    const live = twin.replay_s.value === null;
+    caption.textContent = live ? "Mass balance" : `Mass balance at ${fixed(s.time_s, 2)} s`;
     const total = parts.reduce((sum, [key]) => sum + s[key], 0) || 1;
     bar.replaceChildren(...parts.map(([key, , colour]) => {
       const piece = h("i", {});
@@ -62,12 +69,12 @@ export function balance(twin: Twin): HTMLElement {
       return h("tr", {}, h("th", { scope: "row" }, dot, label), h("td", {}, value));
     };
     const error = s.volume_released_m3 + s.volume_entrained_m3 - s.volume_held_m3 - s.volume_moving_m3 - s.volume_deposited_m3 - s.volume_left_m3;
-    body.replaceChildren(...parts.map(([key, label, colour]) => row(label, `${fixed(s[key], 1)} m³`, colour)), row("Released", `${fixed(s.volume_released_m3, 1)} m³`),
+    body.replaceChildren(...parts.map(([key, label, colour]) => row(label, `${fixed(s[key], 1)} m³`, colour)), row("All releases", `${fixed(s.volume_released_m3, 1)} m³`),
       ...(s.volume_entrained_m3 > 0 ? [row("Picked up from the bed", `${fixed(s.volume_entrained_m3, 1)} m³`)] : []),
-      row("Missing in the balance", `${fixed(Math.abs(error) < 0.05 ? 0 : error, 1)} m³`));
-    more.tBodies[0]?.replaceChildren(row("Step", count(s.step)), row("Compression, mean", `${fixed(100 * s.mean_compression, 2)} %`),
+      row("Unaccounted for", `${fixed(Math.abs(error) < 0.05 ? 0 : error, 1)} m³`));
+    more.tBodies[0]?.replaceChildren(row("Step", live ? count(s.step) : "–"), row("Compression, mean", `${fixed(100 * s.mean_compression, 2)} %`),
       row("Compression, largest", `${fixed(100 * s.max_compression, 2)} %`), row("Recording", `${s.recording.frames} frames, ${bytes(s.recording.bytes)}`),
-      row("State hash", s.hash ?? "while paused"));
+      row("State hash", live ? (s.hash ?? "while paused") : "–"));
   });
   const { scene } = twin;
   const about = h("details", { class: "about" }, h("summary", {}, "About this scene"), h("p", {}, scene.description),

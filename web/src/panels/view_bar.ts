@@ -61,8 +61,12 @@ export function viewBar(twin: Twin, stage: Stage): ViewBar {
   const difference = h("input", { type: "checkbox", onchange: () => (twin.difference.value = difference.checked) });
   const differenceLabel = h("label", { class: "check", title: "Difference of the layer between the two scenarios" }, difference, "B − A");
   const contours = h("input", { type: "checkbox", onchange: () => (twin.contours.value = contours.checked) });
+  const photo = h("input", { type: "checkbox", onchange: () => (twin.photo.value = photo.checked) });
+  const photoLabel = h("label", { class: "check", title: "The scene's orthophoto, draped over the terrain" }, photo, "Photo");
+  photoLabel.hidden = !twin.scene.orthophoto;
   const names = h("input", { type: "checkbox", onchange: () => (twin.names.value = names.checked) });
-  watchAll([twin.particles, twin.surface, twin.layer, twin.layerOpacity, twin.difference, twin.scenarios, twin.contours, twin.names], () => {
+  watchAll([twin.particles, twin.surface, twin.layer, twin.layerOpacity, twin.difference, twin.scenarios, twin.contours, twin.names, twin.photo], () => {
+    photo.checked = twin.photo.value;
     particles.checked = twin.particles.value;
     surface.value = twin.surface.value;
     layer.value = twin.layer.value;
@@ -80,7 +84,7 @@ export function viewBar(twin: Twin, stage: Stage): ViewBar {
     button("Fit", { icon: "fit", bare: true, title: "Whole scene (F)", onclick: () => stage.rig.fit() }), save, saved);
   const show = h("div", { class: "bar show", role: "toolbar", "aria-label": "What is shown" },
     h("label", { class: "check" }, particles, "Particles"), surface, layer, opacity, differenceLabel,
-    h("label", { class: "check" }, contours, "Contours"), h("label", { class: "check" }, names, "Names"));
+    photoLabel, h("label", { class: "check" }, contours, "Contours"), h("label", { class: "check" }, names, "Names"));
   setMode("orbit");
   return { camera, show, setMode, recall };
 }

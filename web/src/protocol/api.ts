@@ -10,6 +10,8 @@ export class Refused extends Error {
   }
 }
 
+const at = (time_s: number | null): string => (time_s === null ? "" : `?time_s=${time_s.toFixed(4)}`);
+
 export class Api {
   /** Id of this page's person, once the WebSocket has said hello. */
   person: string | null = null;
@@ -49,9 +51,12 @@ export class Api {
   scene = (): Promise<SceneInfo> => this.json("scene");
   terrain = async (maxCells: number): Promise<Grid> => decodeGrid(await this.binary(`terrain?max_cells=${maxCells}`));
   series = (s: ScenarioName): Promise<Series> => this.json(`scenarios/${s}/series`);
-  impacts = (s: ScenarioName): Promise<Impacts> => this.json(`scenarios/${s}/impacts`);
+  /** Of now, or as of a time of the recording. */
+  impacts = (s: ScenarioName, time_s: number | null = null): Promise<Impacts> => this.json(`scenarios/${s}/impacts${at(time_s)}`);
   recording = (s: ScenarioName): Promise<Recording> => this.json(`scenarios/${s}/recording`);
-  layer = async (s: ScenarioName, name: LayerName): Promise<Grid> => decodeGrid(await this.binary(`scenarios/${s}/layers/${name}`));
+  layer = async (s: ScenarioName, name: LayerName, time_s: number | null = null): Promise<Grid> =>
+    decodeGrid(await this.binary(`scenarios/${s}/layers/${name}${at(time_s)}`));
+  orthophoto = async (): Promise<Blob> => (await this.ask("GET", "orthophoto")).blob();
   frame = async (s: ScenarioName, time_s: number): Promise<Frame> =>
     decodeFrame(await this.binary(`scenarios/${s}/frame?time_s=${time_s.toFixed(4)}`));
   probe = (s: ScenarioName, x: number, y: number): Promise<ProbeSeries> =>

@@ -49,6 +49,8 @@ export interface SceneInfo {
   gravity_mps2: number;
   flow_path: FlowPath | null;
   observations: Observation[];
+  /** Whether there is a picture of the ground to drape. */
+  orthophoto: boolean;
   parameters: Parameter[];
   intensity: { classes: IntensityClass[]; rule: string; source: string };
 }
@@ -125,7 +127,9 @@ export interface Impact {
   intensity: string | null;
 }
 export interface BarrierImpact extends Impact { overtopped_m3: number; first_overtopped_s: number | null; held_m3: number }
-export interface Impacts { buildings: Impact[]; barriers: BarrierImpact[] }
+/** An obstacle that was taken away while the run went on, and what it had met until then. */
+export interface RemovedImpact extends Impact { kind: "building" | "barrier"; removed_s: number; overtopped_m3?: number; held_m3?: number }
+export interface Impacts { buildings: Impact[]; barriers: BarrierImpact[]; removed: RemovedImpact[] }
 
 export type Column = (number | null)[];
 export interface Series {

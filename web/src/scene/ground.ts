@@ -43,20 +43,28 @@ export function groundGeometry(relief: Relief): BufferGeometry {
   };
   for (let j = 0, k = 0; j < rows; ++j) {
     for (let i = 0; i < columns; ++i, ++k) {
-      position.set([grid.west + (i + 0.5) * cell - origin[0], grid.south + (j + 0.5) * cell - origin[1], height(i, j) - origin[2]], 3 * k);
+      position[3 * k] = grid.west + (i + 0.5) * cell - origin[0];
+      position[3 * k + 1] = grid.south + (j + 0.5) * cell - origin[1];
+      position[3 * k + 2] = height(i, j) - origin[2];
       const dx = (height(i + 1, j) - height(i - 1, j)) / (2 * cell);
       const dy = (height(i, j + 1) - height(i, j - 1)) / (2 * cell);
       const length = Math.hypot(dx, dy, 1);
-      normal.set([-dx / length, -dy / length, 1 / length], 3 * k);
+      normal[3 * k] = -dx / length;
+      normal[3 * k + 1] = -dy / length;
+      normal[3 * k + 2] = 1 / length;
       shade[k] = sky[k];
     }
   }
-  const index: number[] = [];
+  const index = new Uint32Array(6 * (columns - 1) * (rows - 1) + 6 * border);
+  let corners = 0;
+  const triangles = (...of: [number, number, number, number, number, number]): void => {
+    for (let c = 0; c < 6; ++c) index[corners++] = of[c];
+  };
   for (let j = 0; j + 1 < rows; ++j) {
     for (let i = 0; i + 1 < columns; ++i) {
       const k = j * columns + i;
-      if ([k, k + 1, k + columns, k + columns + 1].some((c) => Number.isNaN(values[c]))) continue;
-      index.push(k, k + 1, k + columns + 1, k, k + columns + 1, k + columns);
+      if (Number.isNaN(values[k] + values[k + 1] + values[k + columns] + values[k + columns + 1])) continue;
+      triangles(k, k + 1, k + columns + 1, k, k + columns + 1, k + columns);
     }
   }
   // Side walls go down to a common floor.
@@ -76,13 +84,13 @@ export function groundGeometry(relief: Relief): BufferGeometry {
     }
     const a = n + 2 * r;
     const b = n + 2 * ((r + 1) % ring.length);
-    index.push(a, a + 1, b, b, a + 1, b + 1);
+    triangles(a, a + 1, b, b, a + 1, b + 1);
   });
   const geometry = new BufferGeometry();
   geometry.setAttribute("position", new BufferAttribute(position, 3));
   geometry.setAttribute("normal", new BufferAttribute(normal, 3));
   geometry.setAttribute("shade", new BufferAttribute(shade, 1));
-  geometry.setIndex(new BufferAttribute(new Uint32Array(index), 1));
+  geometry.setIndex(new BufferAttribute(index.subarray(0, corners), 1));
   geometry.computeBoundingSphere();
   return geometry;
 }
@@ -126,6 +134,9 @@ export class Ground {
       uLayerRamp: { value: nothing },
       uLayerRange: { value: new Vector2(0, 1) },
       uLayerOpacity: { value: 0 },
+      uPhoto: { value: nothing },
+      uPhotoPlacing: { value: new Vector4() },
+      uPhotoShown: { value: 0 },
       uDrawn: { value: nothing },
       uDrawnPlacing: { value: new Vector4() },
     };
@@ -152,6 +163,12 @@ export class Ground {
   drape(drawn: Draped): void {
     this.set("uDrawn", drawn.texture);
     this.set("uDrawnPlacing", drawn.placing);
+  }
+  /** A picture in place of the colours of elevation; null: none. */
+  showPhoto(photo: Draped | null): void {
+    this.set("uPhoto", photo?.texture ?? nothing);
+    if (photo) this.set("uPhotoPlacing", photo.placing);
+    this.set("uPhotoShown", photo ? 1 : 0);
   }
   /** range: values at the ends of the ramp; `opacity` 0 hides the layer. */
   showLayer(layer: Draped | null, ramp: Texture | null, range: [number, number], opacity: number): void {

@@ -23,10 +23,10 @@ export const groundVertex = /* glsl */ `
 `;
 
 const head = /* glsl */ `
-  uniform sampler2D uGroundRamp, uSurfaceRamp, uLayer, uLayerRamp, uDrawn;
+  uniform sampler2D uGroundRamp, uSurfaceRamp, uLayer, uLayerRamp, uDrawn, uPhoto;
   uniform vec2 uElevation, uLayerRange;
-  uniform vec4 uLayerPlacing, uDrawnPlacing;
-  uniform float uOriginZ, uContourInterval, uContour, uSurfaceBySpeed, uSurfaceTop, uLayerOpacity;
+  uniform vec4 uLayerPlacing, uDrawnPlacing, uPhotoPlacing;
+  uniform float uPhotoShown, uOriginZ, uContourInterval, uContour, uSurfaceBySpeed, uSurfaceTop, uLayerOpacity;
   varying float vShade;
   varying vec3 vLocal;
   varying vec3 vGroundNormal;
@@ -51,6 +51,11 @@ const colour = /* glsl */ `
     ground = mix(ground, vec3(0.56, 0.515, 0.46), 0.7 * smoothstep(0.16, 0.5, steep));
     float open = 0.34 + 0.66 * smoothstep(0.38, 0.94, vShade);
     ground *= open;
+    if (uPhotoShown > 0.5) {
+      // A photograph has its own shade: the relief's only deepens it a little.
+      vec4 photo = texture2D(uPhoto, (vLocal.xy - uPhotoPlacing.xy) * uPhotoPlacing.zw);
+      ground = mix(ground, photo.rgb * (0.7 + 0.3 * open), photo.a);
+    }
     vec4 drawn = vec4(0.0);
     vec2 drawnAt = (vLocal.xy - uDrawnPlacing.xy) * uDrawnPlacing.zw;
     if (uDrawnPlacing.z > 0.0 && all(greaterThan(drawnAt, vec2(0.0))) && all(lessThan(drawnAt, vec2(1.0)))) drawn = texture2D(uDrawn, drawnAt);

@@ -6,7 +6,8 @@ import type { LayerName } from "../protocol/messages";
 import { Cell, watchAll } from "../state/cell";
 import type { Twin } from "../state/twin";
 import { divergingAt, rampAt, ramps, roundStep } from "./colour";
-import { rampTexture } from "./ground";
+import { rampTexture, type Draped } from "./ground";
+import { photoTexture } from "./photo";
 import { differenceOf, drapedFrom, layerInfo, scaleEnd, shownValues } from "./layers";
 import type { Stage } from "./stage";
 
@@ -16,20 +17,25 @@ export class ShownLayers {
   /** Values at the ends of the legend. */
   readonly range = new Cell<readonly [number, number]>([0, 1]);
   readonly grids = new Map<ScenarioName, Grid>();
+  /** Time of the recording that the layers on display are of; null: now. */
+  readonly shown_s = new Cell<number | null>(null);
   surfaceTop = 3;
+  private ofNow: { key: string; grids: readonly Grid[] } | null = null;
   private difference: Grid | null = null;
   private readonly rampTextures = new Map<string, Texture>();
   private readonly held = new Map<ScenarioName, Texture>();
+  private photo: Draped | null = null;
   private busy = false;
   private again = false;
 
   constructor(private readonly twin: Twin, private readonly stage: Stage) {
-    watchAll([twin.layer, twin.difference, twin.scenarios], () => void this.load());
+    watchAll([twin.layer, twin.difference, twin.scenarios, twin.replay_s], () => void this.load());
     twin.layerOpacity.watch(() => this.put());
     watchAll([twin.surface, twin.particles, twin.contours, twin.scenarios, stage.fastest_mps], () => this.putSurface());
+    watchAll([twin.photo, twin.scenarios], () => void this.putPhoto());
     setInterval(() => {
       const running = twin.scenarios.value.some((s) => twin.cells[s].state.value?.status === "running");
-      if (running && twin.layer.value !== "none") void this.load();
+      if (running && twin.layer.value !== "none" && twin.replay_s.value === null) void this.load();
     }, refresh_ms);
     // A step or the end of the run changes the maps once more.
     for (const s of ["A", "B"] as const) {
@@ -67,16 +73,28 @@ export class ShownLayers {
         continue;
       }
       const names = this.twin.scenarios.value;
+      const time = this.twin.replay_s.value;
       const fine = await this.twin.attempt(async () => {
-        const grids = await Promise.all(names.map((s) => this.twin.api.layer(s, name)));
+        const [grids, present] = await Promise.all([Promise.all(names.map((s) => this.twin.api.layer(s, name, time))), this.presentFor(name, names, time)]);
         names.forEach((s, i) => this.grids.set(s, grids[i]));
-        if (this.twin.layer.value === name) this.show(name);
+        this.shown_s.value = time;
+        if (this.twin.layer.value === name) this.show(name, present);
       });
       if (!fine) break;
     } while (this.again);
     this.busy = false;
   }
-  private show(name: LayerName): void {
+  /** While one looks back, colours stay those of now: maps of different times can be compared. */
+  private async presentFor(name: LayerName, names: readonly ScenarioName[], time: number | null): Promise<readonly Grid[] | null> {
+    if (time === null) {
+      this.ofNow = null;
+      return null;
+    }
+    const key = `${name} ${names.join()}`;
+    if (this.ofNow?.key !== key) this.ofNow = { key, grids: await Promise.all(names.map((s) => this.twin.api.layer(s, name))) };
+    return this.ofNow.grids;
+  }
+  private show(name: LayerName, present: readonly Grid[] | null): void {
     const { twin } = this;
     const a = this.grids.get("A");
     if (!a) return;
@@ -86,7 +104,8 @@ export class ShownLayers {
     if (this.isDifference && b) {
       const difference = differenceOf(name, a, b);
       this.difference = difference;
-      const end = scaleEnd(difference.values.map(Math.abs));
+      const ends = present && present.length > 1 ? differenceOf(name, present[0], present[1]) : difference;
+      const end = scaleEnd(ends.values.map(Math.abs));
       this.range.value = [-end, end];
       // Both views show it: so it can be read beside either flow.
       for (const s of twin.scenarios.value) all.set(s, difference);
@@ -99,6 +118,7 @@ export class ShownLayers {
         all.set(s, { ...grid, values });
         end = Math.max(end, scaleEnd(values));
       }
+      if (present) end = Math.max(...present.map((grid) => scaleEnd(shownValues(name, grid))));
       this.range.value = [0, end];
     }
     for (const [s, grid] of all) {
@@ -139,6 +159,17 @@ export class ShownLayers {
         bySpeed ? stage.fastest_mps.value : this.surfaceTop);
       view.ground.uniforms.uContour.value = twin.contours.value ? 1 : 0;
     }
+    stage.invalidate();
+  }
+  private async putPhoto(): Promise<void> {
+    const { twin, stage } = this;
+    if (twin.photo.value && !this.photo) {
+      const fine = await twin.attempt(async () => {
+        this.photo ??= await photoTexture(await twin.api.orthophoto(), twin.scene);
+      });
+      if (!fine) twin.photo.value = false;
+    }
+    for (const view of stage.views.values()) view.ground.showPhoto(twin.photo.value ? this.photo : null);
     stage.invalidate();
   }
   private surfaceRamp(): Texture {

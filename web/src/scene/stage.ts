@@ -9,6 +9,7 @@ import { ramps, roundStep } from "./colour";
 import { groundGeometry, rampTextureOf } from "./ground";
 import type { Box } from "./labels";
 import type { Relief } from "./relief";
+import { Resolution } from "./resolution";
 import { Rig } from "./rig";
 import { ScenarioView } from "./scenario_view";
 
@@ -25,6 +26,8 @@ export interface Stats {
   upload_ms: number;
   particles: number;
   shownTime_s: number;
+  /** Pixels of the canvas per pixel of the page: lower while slow graphics draw what moves. */
+  pixelRatio: number;
 }
 declare global {
   interface Window {
@@ -40,7 +43,7 @@ export class Stage {
     "aria-label": "Three-dimensional view. Arrow keys turn, Shift with arrow keys moves, plus and minus zoom." });
   readonly rig: Rig;
   readonly views = new Map<ScenarioName, ScenarioView>();
-  readonly stats: Stats = { frames: 0, script_ms: 0, draw_ms: 0, decode_ms: 0, unfold_ms: 0, upload_ms: 0, particles: 0, shownTime_s: 0 };
+  readonly stats: Stats = { frames: 0, script_ms: 0, draw_ms: 0, decode_ms: 0, unfold_ms: 0, upload_ms: 0, particles: 0, shownTime_s: 0, pixelRatio: 1 };
   /** Speed at the upper end of the colours; it grows with what is seen, in round steps. */
   readonly fastest_mps = new Cell(10);
   /** Elements that lie over the view; labels keep clear of them. */
@@ -53,6 +56,7 @@ export class Stage {
   private readonly cameraReaders: (() => void)[] = [];
   private due = true;
   private cameraMoved = true;
+  private readonly resolution = new Resolution();
   private width = 1;
   private height = 1;
 
@@ -124,7 +128,7 @@ export class Stage {
   private resize(): void {
     this.width = Math.max(1, this.element.clientWidth);
     this.height = Math.max(1, this.element.clientHeight);
-    this.renderer.setPixelRatio(Math.min(2, devicePixelRatio));
+    this.setSharpness(1);
     this.renderer.setSize(this.width, this.height, false);
     this.rig.camera.aspect = this.width / Math.max(1, this.views.size) / this.height;
     this.rig.camera.updateProjectionMatrix();
@@ -132,14 +136,29 @@ export class Stage {
     this.invalidate();
   }
 
+  /** `share` of the screen's pixels; what is on the canvas is gone if that changes it. */
+  private setSharpness(share: number): void {
+    const ratio = share * Math.min(2, devicePixelRatio);
+    if (ratio !== this.renderer.getPixelRatio()) this.renderer.setPixelRatio(ratio);
+    this.stats.pixelRatio = ratio;
+  }
   private tick(now_ms: number): void {
     requestAnimationFrame((next) => this.tick(next));
     // Frames of the server are timed by the same clock.
     const now = Math.max(now_ms, 0);
+    this.resolution.tick(now);
     if (this.rig.update(now)) this.invalidate();
     for (const view of this.views.values()) if (view.clock.moving(now)) this.due = true;
-    if (!this.due) return;
+    if (!this.due) {
+      // What has been drawn in a hurry is drawn once more in full.
+      if (this.stats.pixelRatio >= Math.min(2, devicePixelRatio) || !this.resolution.standsStill(now)) return;
+      this.setSharpness(1);
+      this.draw(now);
+      return;
+    }
     this.due = false;
+    this.resolution.drew(now);
+    this.setSharpness(this.resolution.share);
     this.draw(now);
   }
   draw(now: number): void {
@@ -224,6 +243,7 @@ export class Stage {
   }
   /** Draws now, so that the canvas can be read in the same task. */
   drawNow(): HTMLCanvasElement {
+    this.setSharpness(1);
     this.draw(performance.now());
     return this.canvas;
   }

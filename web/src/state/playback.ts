@@ -3,6 +3,8 @@ import type { ScenarioName } from "../protocol/frame";
 import type { Twin } from "./twin";
 
 const playbackRate_hz = 12;
+/** Flag of a frame. */
+const notConverged = 2;
 
 export class Playback {
   private wanted: number | null = null;
@@ -64,8 +66,14 @@ export class Playback {
       const time = this.wanted;
       this.wanted = null;
       const fine = await this.twin.attempt(async () => {
-        const frames = await Promise.all(this.twin.scenarios.value.map((name: ScenarioName) => this.twin.api.frame(name, time)));
-        if (this.twin.replay_s.value !== null) for (const frame of frames) this.twin.showFrame(frame);
+        const { api, cells } = this.twin;
+        await Promise.all(this.twin.scenarios.value.map(async (name: ScenarioName) => {
+          const [frame, impacts] = await Promise.all([api.frame(name, time), api.impacts(name, time)]);
+          if (this.twin.replay_s.value === null) return;
+          this.twin.showFrame(frame);
+          cells[name].impacts.value = impacts;
+          if (name === this.twin.edited.value) this.twin.replayConverged.value = (frame.flags & notConverged) === 0;
+        }));
       });
       if (!fine) this.stop();
     }

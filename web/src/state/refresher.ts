@@ -18,6 +18,12 @@ export class Refresher {
       });
       twin.cells[name].setup.watch(() => this.stale.add(name));
     }
+    // Live again: impacts are those of the time that was on display.
+    twin.replay_s.watch((time) => {
+      if (time !== null) return;
+      for (const name of twin.scenarios.value) this.stale.add(name);
+      void this.refresh();
+    });
     setInterval(() => void this.refresh(), every_ms);
     void this.refresh();
   }
@@ -31,7 +37,7 @@ export class Refresher {
       await Promise.all(names.map(async (name) => {
         const [series, impacts] = await Promise.all([twin.api.series(name), twin.api.impacts(name)]);
         twin.cells[name].series.value = series;
-        twin.cells[name].impacts.value = impacts;
+        if (twin.replay_s.value === null) twin.cells[name].impacts.value = impacts;
       }));
       this.also();
     } catch (error) {

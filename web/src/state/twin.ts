@@ -5,6 +5,7 @@ import { Live, type Connection } from "../protocol/live";
 import type { Action, Done, Impacts, LayerName, Person, Place, Point, ProbeSeries, SceneInfo, Series, ServerMessage, Session, Setup, State, You } from "../protocol/messages";
 import type { Relief } from "../scene/relief";
 import { Cell } from "./cell";
+import { stateAt } from "./past";
 
 export interface ScenarioCells {
   state: Cell<State | null>;
@@ -36,6 +37,8 @@ export class Twin {
   readonly cells: Record<ScenarioName, ScenarioCells> = { A: emptyCells(), B: emptyCells() };
   /** Time of the recording that is on display; null: live. */
   readonly replay_s = new Cell<number | null>(null);
+  /** Whether the frame of the recording that is on display was not converged. */
+  readonly replayConverged = new Cell(true);
   readonly playing = new Cell(false);
   readonly layer = new Cell<LayerName | "none">("none");
   readonly difference = new Cell(false);
@@ -44,6 +47,7 @@ export class Twin {
   readonly surface = new Cell<SurfaceColour>("off");
   readonly contours = new Cell(true);
   readonly names = new Cell(true);
+  readonly photo = new Cell(false);
   readonly houseColour = new Cell<HouseColour>("intensity");
   readonly tool = new Cell<Tool>({ kind: "none" });
   readonly selection = new Cell<Selection | null>(null);
@@ -86,6 +90,11 @@ export class Twin {
 
   askForFrames(): void {
     this.live.show({ scenarios: this.scenarios.value, rate_hz: 30, particle_cap: 100000 });
+  }
+  /** The state at the time that is on display. */
+  shownState(scenario: ScenarioName = this.edited.value): State | null {
+    const { state, series } = this.cells[scenario];
+    return state.value && stateAt(state.value, series.value, this.replay_s.value);
   }
   get now(): ScenarioCells {
     return this.cells[this.edited.value];

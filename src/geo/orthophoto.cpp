@@ -1,0 +1,214 @@
+#include "geo/orthophoto.hpp"
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <cmath>
+#include <memory>
+#include <vector>
+
+#include <cpl_string.h>
+#include <cpl_vsi.h>
+#include <fmt/format.h>
+#include <gdal_utils.h>
+
+#include "geo/gdal.hpp"
+#include "geo/spatial_reference.hpp"
+
+namespace talus {
+namespace {
+
+struct FreeTranslateOptions {
+    void operator()(GDALTranslateOptions* options) const { GDALTranslateOptionsFree(options); }
+};
+struct FreeWarpOptions {
+    void operator()(GDALWarpAppOptions* options) const { GDALWarpAppOptionsFree(options); }
+};
+
+CPLStringList list_of(const std::vector<std::string>& words) {
+    CPLStringList list;
+    for (const std::string& word : words) list.AddString(word.c_str());
+    return list;
+}
+
+/// As `gdal_translate` and `gdalwarp` with these arguments do it; nothing on failure.
+GDALDatasetUniquePtr translated(GDALDataset& data, const std::string& target, const std::vector<std::string>& words) {
+    CPLStringList list = list_of(words);
+    const std::unique_ptr<GDALTranslateOptions, FreeTranslateOptions> options(
+        GDALTranslateOptionsNew(list.List(), nullptr));
+    if (!options) return nullptr;
+    return GDALDatasetUniquePtr(
+        GDALDataset::FromHandle(GDALTranslate(target.c_str(), GDALDataset::ToHandle(&data), options.get(), nullptr)));
+}
+
+GDALDatasetUniquePtr warped(GDALDataset& data, const std::vector<std::string>& words) {
+    CPLStringList list = list_of(words);
+    const std::unique_ptr<GDALWarpAppOptions, FreeWarpOptions> options(GDALWarpAppOptionsNew(list.List(), nullptr));
+    if (!options) return nullptr;
+    GDALDatasetH source = GDALDataset::ToHandle(&data);
+    return GDALDatasetUniquePtr(GDALDataset::FromHandle(GDALWarp("", nullptr, 1, &source, options.get(), nullptr)));
+}
+
+std::string wkt_of(const OGRSpatialReference& reference) {
+    char* text = nullptr;
+    reference.exportToWkt(&text);
+    std::string wkt = text != nullptr ? text : "";
+    CPLFree(text);
+    return wkt;
+}
+
+/// A picture, as a view of its file with bands red, green, blue and perhaps alpha, placed in a CRS.
+struct Picture {
+    GDALDatasetUniquePtr file, view;
+    std::string name;        // of the view, in memory
+    std::string target_crs;  // the terrain's, as WKT
+    double pixel = 0;        // m, on the ground
+    Picture() = default;
+    Picture(Picture&&) = default;
+    Picture& operator=(Picture&&) = delete;
+    ~Picture() {
+        view.reset();
+        if (!name.empty()) VSIUnlink(name.c_str());
+    }
+};
+
+/// A name in memory that nobody else uses.
+std::string memory_name(const char* ending) {
+    static std::atomic<unsigned> count{0};
+    return fmt::format("/vsimem/talus_orthophoto_{}.{}", count++, ending);
+}
+
+/// What makes red, green and blue of the file's bands.
+Result<std::vector<std::string>> band_choice(const std::string& file, GDALDataset& data) {
+    const int bands = data.GetRasterCount();
+    for (int band = 1; band <= std::min(bands, 4); ++band) {
+        if (data.GetRasterBand(band)->GetRasterDataType() == GDT_Byte) continue;
+        return Error{fmt::format("{}: a picture of 8 bits per band is needed: gdal_translate -ot Byte -scale {} {}",
+                                 file, shell_quoted(file), mended_name(file, "_8bit", ".tif"))};
+    }
+    const bool palette = data.GetRasterBand(1)->GetColorInterpretation() == GCI_PaletteIndex;
+    if (palette) return std::vector<std::string>{"-expand", "rgba"};
+    const auto is_alpha = [&](int band) {
+        return band <= bands && data.GetRasterBand(band)->GetColorInterpretation() == GCI_AlphaBand;
+    };
+    if (bands >= 3) {
+        std::vector<std::string> words{"-b", "1", "-b", "2", "-b", "3"};
+        if (is_alpha(4)) words.insert(words.end(), {"-b", "4"});  // else the fourth is infrared or the like
+        return words;
+    }
+    std::vector<std::string> words{"-b", "1", "-b", "1", "-b", "1"};
+    if (is_alpha(2)) words.insert(words.end(), {"-b", "2"});
+    return words;
+}
+
+Result<Picture> open_picture(const std::string& file, const Crs& crs, const Extent& extent) {
+    auto opened = open_dataset(file, GDAL_OF_RASTER, "picture");
+    if (!opened) return opened.error();
+    GdalMessages messages;
+    Picture picture;
+    picture.file = std::move(*opened);
+    GDALDataset& data = *picture.file;
+    if (data.GetRasterCount() == 0) return Error{fmt::format("{}: holds no raster band", file)};
+    std::array<double, 6> place{};
+    if (data.GetGeoTransform(place.data()) != CE_None) {
+        return Error{
+            fmt::format("{}: states no position; put a world file beside it, or: gdal_translate -a_ullr WEST "
+                        "NORTH EAST SOUTH {} {}",
+                        file, shell_quoted(file), mended_name(file, "_placed", ".tif"))};
+    }
+    const OGRSpatialReference target = to_spatial_reference(crs);
+    OGRSpatialReference own;
+    if (const OGRSpatialReference* stated = data.GetSpatialRef()) own = *stated;
+    picture.target_crs = wkt_of(target);
+
+    auto words = band_choice(file, data);
+    if (!words) return words.error();
+    words->insert(words->end(), {"-of", "VRT"});
+    if (own.IsEmpty() && !target.IsEmpty()) words->insert(words->end(), {"-a_srs", picture.target_crs});
+    picture.name = memory_name("vrt");
+    picture.view = translated(data, picture.name, *words);
+    if (!picture.view) return Error{fmt::format("{}: {}", file, messages.failure_or("cannot be read as a picture"))};
+
+    // Where it lies, and how fine it is, in the terrain's system.
+    std::vector<std::string> ask{"-of", "VRT"};
+    if (!target.IsEmpty()) ask.insert(ask.end(), {"-t_srs", picture.target_crs});
+    const GDALDatasetUniquePtr placed = warped(*picture.view, ask);
+    if (!placed || placed->GetGeoTransform(place.data()) != CE_None) {
+        return Error{fmt::format("{}: {}", file, messages.failure_or("cannot be brought into the terrain's system"))};
+    }
+    picture.pixel = std::min(std::abs(place[1]), std::abs(place[5]));
+    const double east = place[0] + place[1] * placed->GetRasterXSize();
+    const double south = place[3] + place[5] * placed->GetRasterYSize();
+    if (place[0] >= extent.x_max || east <= extent.x_min || south >= extent.y_max || place[3] <= extent.y_min) {
+        return Error{
+            fmt::format("{}: lies beside the terrain: x {:.1f} to {:.1f}, y {:.1f} to {:.1f}; the terrain has x "
+                        "{:.1f} to {:.1f}, y {:.1f} to {:.1f}",
+                        file, place[0], east, south, place[3], extent.x_min, extent.x_max, extent.y_min, extent.y_max)};
+    }
+    return Result<Picture>(std::move(picture));
+}
+
+/// The file that `data` makes with a driver; empty: the driver is missing or fails.
+std::string encoded(GDALDataset& data, const char* driver_name, const std::vector<std::string>& settings) {
+    GDALDriver* driver = GetGDALDriverManager()->GetDriverByName(driver_name);
+    if (driver == nullptr) return {};
+    const std::string name = memory_name("image");
+    CPLStringList list = list_of(settings);
+    const bool made =
+        GDALDatasetUniquePtr(driver->CreateCopy(name.c_str(), &data, 0, list.List(), nullptr, nullptr)) != nullptr;
+    std::string bytes;
+    vsi_l_offset size = 0;
+    if (const GByte* content = made ? VSIGetMemFileBuffer(name.c_str(), &size, 0) : nullptr) {
+        bytes.assign(reinterpret_cast<const char*>(content), static_cast<std::size_t>(size));
+    }
+    VSIUnlink(name.c_str());
+    VSIUnlink((name + ".aux.xml").c_str());
+    return bytes;
+}
+
+}  // namespace
+
+Status check_orthophoto(const std::string& file, const Crs& crs, const Extent& extent) {
+    const auto picture = open_picture(file, crs, extent);
+    return picture ? Status() : picture.error();
+}
+
+Result<Orthophoto> read_orthophoto(const std::string& file, const Crs& crs, const Extent& extent, int most_pixels) {
+    auto picture = open_picture(file, crs, extent);
+    if (!picture) return picture.error();
+    const GdalMessages messages;
+    const double width = extent.x_max - extent.x_min, height = extent.y_max - extent.y_min;
+    const double pixel = std::max(picture->pixel, std::max(width, height) / most_pixels);
+    Orthophoto photo;
+    photo.columns = std::clamp(static_cast<int>(std::lround(width / pixel)), 1, most_pixels);
+    photo.rows = std::clamp(static_cast<int>(std::lround(height / pixel)), 1, most_pixels);
+    const auto number = [](double value) { return fmt::format("{:.12g}", value); };
+    std::vector<std::string> words{"-of",
+                                   "MEM",
+                                   "-te",
+                                   number(extent.x_min),
+                                   number(extent.y_min),
+                                   number(extent.x_max),
+                                   number(extent.y_max),
+                                   "-ts",
+                                   std::to_string(photo.columns),
+                                   std::to_string(photo.rows),
+                                   "-r",
+                                   "bilinear",
+                                   "-dstalpha"};
+    if (!picture->target_crs.empty()) words.insert(words.end(), {"-t_srs", picture->target_crs});
+    const GDALDatasetUniquePtr cut = warped(*picture->view, words);
+    if (!cut || messages.has_failure()) {
+        return Error{fmt::format("{}: {}", file, messages.failure_or("its pixels cannot be read"))};
+    }
+    photo.type = "image/webp";
+    photo.bytes = encoded(*cut, "WEBP", {"QUALITY=80"});
+    if (photo.bytes.empty()) {
+        photo.type = "image/png";
+        photo.bytes = encoded(*cut, "PNG", {});
+    }
+    if (photo.bytes.empty()) return Error{fmt::format("{}: {}", file, messages.failure_or("cannot be encoded"))};
+    return photo;
+}
+
+}  // namespace talus

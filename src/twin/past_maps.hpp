@@ -1,0 +1,22 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "core/grid.hpp"
+#include "twin/frame.hpp"
+
+namespace talus::twin {
+
+/// What a map of the present is to one of the past: the cells, and the depth that counts as debris.
+struct MapFrame {
+    GridGeometry geometry;    ///< of the whole map
+    double thinnest = 0;      ///< m, see MapAccumulator::thinnest_depth
+    Grid<float> arrival_now;  ///< s, of the present; NaN: never
+};
+
+/// A layer of Scenario::layer as it was when the last of `frames` was recorded. Arrival times are exact. Peaks are the
+/// greatest of the recorded frames: what was higher between two of them is missed, and so they are lower bounds.
+[[nodiscard]] Grid<float> past_layer(const std::string& name, const std::vector<FramePtr>& frames, const MapFrame& map);
+
+}  // namespace talus::twin
