@@ -10,6 +10,7 @@
 #include "params/spec.hpp"
 #include "terrain/buildings.hpp"
 #include "terrain/flow_path.hpp"
+#include "terrain/ground_cover.hpp"
 #include "terrain/release.hpp"
 #include "terrain/terrain.hpp"
 
@@ -31,6 +32,7 @@ struct Scene {
     std::string vertical_unit;
     double nodata_share = 0;
     Terrain terrain;
+    GroundCover cover;  ///< of the zones
     std::vector<Release> releases;
     std::vector<Building> buildings;
     FlowPath flow_path;
