@@ -112,6 +112,9 @@ std::string summary_text(const Scene& scene, const RunResult& result, const std:
     text += line("volume", fmt::format("{:.1f} m3 released: {:.1f} deposited, {:.1f} moving, {:.1f} left the terrain",
                                        seen.volume_released, end.volume_deposited, end.volume_moving + end.volume_held,
                                        end.volume_left));
+    if (!scene.bed.empty()) {
+        text += line("picked up", fmt::format("{:.1f} m3 from the bed", seen.erosion.volume));
+    }
     if (!seen.buildings.empty()) text += line("buildings hit", buildings_text(seen));
     text += line("compression", compression_text(seen));
     if (!within_compression_limits(seen)) text += line("NOT CONVERGED", remedy(scene.spec.solver));
@@ -157,6 +160,7 @@ std::string summary_json(const Scene& scene, const RunResult& result, const std:
         {"particle_spacing_m", result.particle_spacing},
         {"thread_count", result.thread_count},
         {"volume_released_m3", seen.volume_released},
+        {"volume_entrained_m3", seen.erosion.volume},
         {"volume_moving_m3", end.volume_moving},
         {"volume_deposited_m3", end.volume_deposited},
         {"volume_held_m3", end.volume_held},

@@ -17,7 +17,7 @@ using Line = std::vector<std::string>;
 // As long as a number can be read in the table.
 constexpr std::array<std::string_view, stage_count> short_stage_names = {
     "predict", "neighbours", "warm start", "density", "contacts", "overlaps",
-    "bounds",  "velocities", "viscosity",  "remove",  "observe"};
+    "bounds",  "velocities", "viscosity",  "remove",  "entrain",  "observe"};
 
 /// Columns as wide as their widest entry, the first `left` of them with their text on the left.
 std::string aligned(const std::vector<Line>& lines, std::size_t left) {

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
 
 #include <fmt/format.h>
 
@@ -12,18 +11,6 @@ namespace {
 constexpr double gravity = 9.81;                                     // m/s2
 constexpr double velocity_share = 0.2, superelevation_share = 0.25;  // usual uncertainty over the value
 constexpr double time_share = 0.2;
-
-/// The cell of a grid that a place lies in.
-std::optional<std::size_t> cell_at(const GridGeometry& g, const PlanPoint& p) {
-    const double u = std::floor((p.x - g.x_min) / g.cell), v = std::floor((p.y - g.y_min) / g.cell);
-    if (!(u >= 0 && v >= 0 && u < g.columns && v < g.rows)) return std::nullopt;
-    return g.index(static_cast<int>(u), static_cast<int>(v));
-}
-
-double value_at(const Grid<float>& grid, const PlanPoint& p) {
-    const auto cell = cell_at(grid.geometry, p);
-    return cell ? static_cast<double>(grid.values[*cell]) : never;
-}
 
 std::string label(const std::string& name, const std::string& otherwise) {
     return name.empty() ? otherwise : otherwise + " (" + name + ")";

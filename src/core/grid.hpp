@@ -1,7 +1,9 @@
 #pragma once
 
 #include <cassert>
+#include <cmath>
 #include <cstddef>
+#include <limits>
 #include <utility>
 #include <vector>
 
@@ -42,5 +44,15 @@ struct Grid {
     [[nodiscard]] T& at(int column, int row) { return values[geometry.index(column, row)]; }
     [[nodiscard]] const T& at(int column, int row) const { return values[geometry.index(column, row)]; }
 };
+
+/// The value of the cell that holds a world plan position, NaN outside the raster.
+[[nodiscard]] inline float value_at(const Grid<float>& grid, const PlanPoint& p) {
+    const GridGeometry& g = grid.geometry;
+    const double column = std::floor((p.x - g.x_min) / g.cell), row = std::floor((p.y - g.y_min) / g.cell);
+    if (!(column >= 0 && row >= 0 && column < g.columns && row < g.rows)) {
+        return std::numeric_limits<float>::quiet_NaN();
+    }
+    return grid.at(static_cast<int>(column), static_cast<int>(row));
+}
 
 }  // namespace talus

@@ -80,6 +80,7 @@ void ImpactRecorder::update_peaks(std::size_t building, const State& state) {
 
 void ImpactRecorder::after_step(const Model& model, const State& state, const MapAccumulator& maps) {
     touched_.clear();
+    if (last_touch_.size() < state.seeded) last_touch_.resize(state.seeded + state.seeded / 2);
     for (const BuildingContact& contact : state.building_contacts) add_contact(model, state, contact, maps);
     // Between touches the filtered force only falls: nothing to do for the other buildings.
     for (const std::size_t building : touched_) {

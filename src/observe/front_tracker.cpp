@@ -17,7 +17,7 @@ constexpr std::size_t group = 64;  ///< particles looked at together, most often
 }  // namespace
 
 std::uint32_t front_particle_count(const State& state) {
-    const std::uint32_t released = state.seeded - state.taken;
+    const std::uint32_t released = state.released() + state.entrained;
     const auto share = static_cast<std::uint32_t>(std::ceil(0.001 * released));
     return std::max(1U, std::min(released, std::max(5U, share)));
 }
@@ -129,6 +129,8 @@ double FrontTracker::speed_behind(double front, const State& state) {
 
 void FrontTracker::after_step(const Model& model, const State& state) {
     if (flow_path_.empty()) return;
+    front_count_ = front_particle_count(state);
+    if (candidates_.size() < state.count) candidates_.resize(state.count + state.count / 2);
     const double before = current_;
     const std::uint32_t held = find_front(model, state);
     const bool release_started = held != held_;

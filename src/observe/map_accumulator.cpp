@@ -206,8 +206,13 @@ void MapAccumulator::take(Patch& patch) {
     patch.rows = patch.east = 0;
 }
 
+void MapAccumulator::make_room(std::uint32_t particles) {
+    const std::size_t wanted = std::min(tile_at_.size(), 4 * static_cast<std::size_t>(particles));
+    if (active_.size() < wanted) active_.resize(std::min(tile_at_.size(), wanted + wanted / 2));
+}
+
 void MapAccumulator::follow(const Model& model, const State& state) {
-    active_.resize(std::max(active_.size(), std::min(tile_at_.size(), 4 * static_cast<std::size_t>(state.count))));
+    make_room(state.count);
     if (model.rest_density == rest_density_) return;
     if (!density_changed_) {
         for (const auto& tile : tiles_) {
@@ -251,6 +256,7 @@ void MapAccumulator::update_peaks(Tile& tile, double time) const {
 void MapAccumulator::add(const State& state) {
     ++adds_;
     active_count_ = 0;
+    make_room(state.count);
     cpu::parallel_ranges(state.count, grain, [&](std::size_t first, std::size_t last) { spread(state, first, last); });
     cpu::parallel_ranges(active_count_, 16, [&](std::size_t first, std::size_t last) {
         for (std::size_t k = first; k < last; ++k) update_peaks(*active_[k], state.time);

@@ -91,6 +91,7 @@ class MapAccumulator {
     /// Adds particles [first, last) to their tiles.
     void spread(const State& state, std::size_t first, std::size_t last);
     /// Moves the sums of a patch into the tiles that it lies over.
+    void make_room(std::uint32_t particles);
     void take(Patch& patch);
     /// Made if it is not there yet.
     Tile& tile_at(unsigned tile_column, unsigned tile_row);

@@ -48,10 +48,11 @@ struct BuildingImpact {
     double peak_speed = 0;             ///< m/s, depth-averaged, of debris within a cell of the walls
 };
 
-/// A row of the time series. Volumes add up exactly: released = held + moving + deposited + left.
+/// A row of the time series. Volumes add up exactly: released + entrained = held + moving + deposited + left.
 struct TimeSample {
     double time = 0;
     double volume_released = 0;     ///< m3, until then, without what was taken away again
+    double volume_entrained = 0;    ///< m3, picked up from the bed
     double front_chainage = never;  ///< m, of the moving front now; NaN: none on the path
     double volume_held = 0;         ///< m3, in releases that have not started
     double volume_moving = 0;
@@ -65,8 +66,18 @@ struct TimeSample {
     double steps_per_second = 0;  ///< of wall time
 };
 
+/// What debris picked up from the bed.
+struct Erosion {
+    Grid<float> depth;  ///< m, vertical, on the terrain's cells around what was eroded; NaN: nothing was. Empty: no bed
+    double volume = 0;  ///< m3
+    /// Along the flow path; empty where there is none, or no bed.
+    std::vector<double> chainage;  ///< m
+    std::vector<double> upstream;  ///< m3, picked up so far downstream as that
+};
+
 struct Observation {
     HazardMaps maps;
+    Erosion erosion;
     std::vector<FrontSample> front;  ///< by chainage
     RunOut run_out;
     std::vector<BuildingImpact> buildings;  ///< as in Model::buildings

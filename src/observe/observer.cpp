@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "observe/building_impact.hpp"
+#include "observe/erosion.hpp"
 #include "observe/front_tracker.hpp"
 #include "observe/map_accumulator.hpp"
 #include "observe/run_out.hpp"
@@ -49,7 +50,8 @@ TimeSample make_sample(const Model& model, const State& state, double deposited_
     const Totals totals = sum_up(state, deposited_speed);
     TimeSample sample;
     sample.time = state.time;
-    sample.volume_released = (state.seeded - state.taken) * model.particle_volume();
+    sample.volume_released = state.released() * model.particle_volume();
+    sample.volume_entrained = state.entrained * model.particle_volume();
     sample.front_chainage = front_chainage;
     sample.volume_held = totals.held * model.particle_volume();
     sample.volume_moving = totals.moving * model.particle_volume();
@@ -206,7 +208,8 @@ Observation Observer::finish(const Model& model, const State& state) const {
     observation.buildings = p.impact.impacts();
     observation.timeseries = p.timeseries;
     if (p.timeseries.back().time != state.time) observation.timeseries.push_back(sample(model, state));
-    observation.volume_released = (state.seeded - state.taken) * model.particle_volume();
+    observation.erosion = measure_erosion(model, p.front.flow_path(), p.outputs.chainage_interval);
+    observation.volume_released = state.released() * model.particle_volume();
     observation.worst_mean_compression = p.worst_mean_compression;
     observation.worst_max_compression = p.worst_max_compression;
     observation.worst_mean_time = p.worst_mean_time;

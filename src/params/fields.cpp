@@ -27,6 +27,10 @@ Section declare_terrain() {
     s.optional_key("extent_m", "m", &TerrainSpec::extent, anything(), "the whole raster",
                    "The part of the terrain to use, in its own coordinates.");
     s.text("obtain", &TerrainSpec::obtain, "nothing is said", "Where the file is to be had, told to whoever lacks it.");
+    s.path("deposit", &TerrainSpec::deposit, "nothing lies on the ground",
+           "Raster of depths in metres that raise the ground, such as deposit_depth.tif of an earlier surge.");
+    s.path("erosion", &TerrainSpec::erosion, "nothing was eroded",
+           "Raster of depths in metres that lower the ground, such as erosion_depth.tif of an earlier surge.");
     return s.take();
 }
 
@@ -51,6 +55,37 @@ Section declare_release() {
           "When the body starts to move; until then it is held in place.");
     s.optional_key("pore_pressure_ratio", "", &ReleaseSpec::pore_pressure_ratio, between(0, 1), "that of the material",
                    "Pore-pressure ratio r_u of this body when it starts.");
+    return s.take();
+}
+
+Section declare_bed() {
+    Declaration<BedSpec> s("bed",
+                           "Loose material on the ground that debris picks up where it moves over it. Exactly one of "
+                           "depth_m, depth_attribute and depth_raster says how much there is.",
+                           &SceneSpec::beds);
+    s.text("name", &BedSpec::name, "\"bed N\"", "Name in reports and messages.");
+    s.path("file", &BedSpec::file, "it lies everywhere", "Polygons of the bed: GeoJSON, GeoPackage, Shapefile.");
+    s.text("layer", &BedSpec::layer, "the only layer", "Layer of the file.");
+    s.optional_key("depth_m", "m", &BedSpec::depth, above_to(0, 100), "one of the other two is given",
+                   "Uniform depth of the bed, vertical; debris picks up no more.");
+    s.text("depth_attribute", &BedSpec::depth_attribute, "one of the other two is given",
+           "Attribute of the polygons that holds their depth in metres.");
+    s.path("depth_raster", &BedSpec::depth_raster, "one of the other two is given",
+           "Raster of depth in metres, in the terrain's reference system.");
+    s.choice("law", &BedSpec::law, {"growth", "shear"},
+             "How debris picks it up: growth adds a share of its volume per metre that it moves (McDougall & Hungr "
+             "2005); shear goes by the shear stress on the bed (Frank et al. 2015).");
+    s.optional_key("growth_rate_per_m", "1/m", &BedSpec::growth_rate, above_to(0, 1),
+                   "law = \"growth\" needs it, and law = \"shear\" does not have it",
+                   "Share of its volume that debris picks up per metre: ln(volume after / volume before) over the "
+                   "length of the bed.");
+    s.key("critical_shear_stress_pa", "Pa", &BedSpec::critical_shear_stress, at_least(0),
+          "With law = \"shear\": less shear stress, rest density x gravity x depth x sine of the slope, picks up "
+          "nothing.");
+    s.key("erosion_rate_mps", "m/s", &BedSpec::erosion_rate, above_to(0, 10),
+          "With law = \"shear\": how fast the bed is lowered.");
+    s.key("erosion_depth_m_per_pa", "m/Pa", &BedSpec::erosion_depth_per_shear, above_to(0, 1),
+          "With law = \"shear\": how deep at most, per shear stress above the critical one.");
     return s.take();
 }
 
@@ -151,9 +186,9 @@ Section declare_outputs() {
 
 const std::vector<Section>& scene_sections() {
     static const std::vector<Section> sections = [] {
-        std::vector<Section> all = {declare_scene(),     declare_terrain(),   declare_release(),
-                                    declare_buildings(), declare_flow_path(), declare_material(),
-                                    declare_zone(),      declare_solver(),    declare_outputs()};
+        std::vector<Section> all = {declare_scene(),     declare_terrain(),   declare_release(),  declare_bed(),
+                                    declare_buildings(), declare_flow_path(), declare_material(), declare_zone(),
+                                    declare_solver(),    declare_outputs()};
         for (Section& section : declare_observations()) all.push_back(std::move(section));
         return all;
     }();

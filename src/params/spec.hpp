@@ -25,6 +25,15 @@ struct TerrainSpec {
     int band = 1;
     std::optional<Extent> extent;  ///< the part to use, in the terrain's CRS; absent: all of it
     std::string obtain;            ///< where the file is to be had, said when it is missing
+    std::string deposit;           ///< raster of depths that lie on the terrain, m: an earlier surge's
+    std::string erosion;           ///< raster of depths that the terrain has lost, m
+};
+
+/// How fast debris picks up what it moves over. Both laws work per cell of the terrain.
+enum class EntrainmentLaw {
+    growth,  ///< by `growth_rate` of its volume per metre that it moves (McDougall & Hungr 2005)
+    shear,   ///< at `erosion_rate`, down to a depth that goes with the shear stress above a critical one (Frank et al.
+             ///< 2015)
 };
 
 /// `[[release]]`: exactly one of thickness, thickness_attribute, thickness_raster, volume.
@@ -38,6 +47,19 @@ struct ReleaseSpec {
     std::optional<double> volume;               ///< m3, spread as a uniform thickness
     double start_time = 0;                      ///< s
     std::optional<double> pore_pressure_ratio;  ///< r_u; absent: that of the material
+};
+
+/// `[[bed]]`: loose material that debris picks up; exactly one of depth, depth_attribute, depth_raster.
+struct BedSpec {
+    std::string name;
+    std::string file, layer;      ///< polygons; no file: everywhere
+    std::optional<double> depth;  ///< m, vertical
+    std::string depth_attribute, depth_raster;
+    EntrainmentLaw law = EntrainmentLaw::growth;
+    std::optional<double> growth_rate;      ///< 1/m; needed by the law of growth
+    double critical_shear_stress = 1000;    ///< Pa
+    double erosion_rate = 0.025;            ///< m/s
+    double erosion_depth_per_shear = 1e-4;  ///< m/Pa
 };
 
 /// `[buildings]`: no file means no buildings.
@@ -221,6 +243,7 @@ struct SceneSpec {
     SceneInfo scene;
     TerrainSpec terrain;
     std::vector<ReleaseSpec> releases;
+    std::vector<BedSpec> beds;
     BuildingsSpec buildings;
     FlowPathSpec flow_path;
     MaterialSpec material;

@@ -88,6 +88,18 @@ const std::vector<HazardMap>& hazard_maps() {
     return maps;
 }
 
+const HazardMap& erosion_map() {
+    static const HazardMap map = {"erosion_depth",
+                                  "Erosion depth",
+                                  "depth that debris picked up from the bed, vertical",
+                                  "m",
+                                  1,
+                                  nullptr,
+                                  {0, 0.05, 0.1, 0.25, 0.5, 1, 2, 3, 5},
+                                  {25, 0.07, 52, 0.13, 0.92, 0.30}};
+    return map;
+}
+
 Grid<float> in_unit(const Grid<float>& si, double factor) {
     Grid<float> result = si;
     for (float& value : result.values) value = static_cast<float>(value * factor);

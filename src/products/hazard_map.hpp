@@ -24,6 +24,9 @@ struct HazardMap {
 /// All maps, in the order in which they are written.
 [[nodiscard]] const std::vector<HazardMap>& hazard_maps();
 
+/// What debris took from the ground: not among the maps of every run, and on the terrain's own cells.
+[[nodiscard]] const HazardMap& erosion_map();
+
 /// The map in its own unit.
 [[nodiscard]] Grid<float> in_unit(const Grid<float>& si, double factor);
 

@@ -102,7 +102,7 @@ Json results(const RunResult& result) {
         const std::string suffix = std::string(map.unit) == "m/s" ? "mps" : map.unit;
         greatest_values[std::string(map.file) + "_" + suffix] = greatest(o.maps.*map.grid) * map.factor;
     }
-    Json volumes = {{"released_m3", o.volume_released}};
+    Json volumes = {{"released_m3", o.volume_released}, {"entrained_m3", o.erosion.volume}};
     if (!o.timeseries.empty()) {
         const TimeSample& last = o.timeseries.back();
         volumes["held_m3"] = last.volume_held;

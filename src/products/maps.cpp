@@ -4,16 +4,26 @@
 #include "products/writers.hpp"
 
 namespace talus {
+namespace {
+
+Status write_map(const HazardMap& map, const Grid<float>& si, const std::string& caveat, const Crs& crs,
+                 const std::filesystem::path& folder) {
+    const Grid<float> grid = in_unit(si, map.factor);
+    const RasterBand band{&grid, map.description + caveat, map.unit};
+    const std::string stem = (folder / map.file).string();
+    if (Status s = write_cog(stem + ".tif", band, crs); !s) return s;
+    return write_text_file(stem + ".qml", qgis_style(map, greatest(grid)));
+}
+
+}  // namespace
 
 Status write_maps(const Scene& scene, const RunResult& result, const std::filesystem::path& folder) {
+    const std::string said = caveat(scene, result);
     for (const HazardMap& map : hazard_maps()) {
-        const Grid<float> grid = in_unit(result.observation.maps.*map.grid, map.factor);
-        const RasterBand band{&grid, map.description + caveat(scene, result), map.unit};
-        const std::string stem = (folder / map.file).string();
-        if (Status s = write_cog(stem + ".tif", band, scene.crs); !s) return s;
-        if (Status s = write_text_file(stem + ".qml", qgis_style(map, greatest(grid))); !s) return s;
+        if (Status s = write_map(map, result.observation.maps.*map.grid, said, scene.crs, folder); !s) return s;
     }
-    return {};
+    const Grid<float>& erosion = result.observation.erosion.depth;
+    return erosion.values.empty() ? Status() : write_map(erosion_map(), erosion, said, scene.crs, folder);
 }
 
 }  // namespace talus

@@ -188,6 +188,29 @@ std::string front_figure(const Scene& scene, const RunResult& result) {
                       velocity.svg() + ground.svg() + arrival.svg());
 }
 
+std::string erosion_figure(const RunResult& result) {
+    const Erosion& erosion = result.observation.erosion;
+    if (erosion.chainage.empty() || !(erosion.volume > 0)) return "<p>Nothing was picked up.</p>";
+    // To a little beyond where the volume grows last.
+    const auto last = std::find_if(erosion.upstream.begin(), erosion.upstream.end(),
+                                   [&](double v) { return v >= erosion.upstream.back(); });
+    const double end = std::min(erosion.chainage.back(),
+                                1.1 * erosion.chainage[static_cast<std::size_t>(last - erosion.upstream.begin())] + 1);
+    ValueRange volumes{0, 1};
+    std::vector<double> volume(erosion.upstream.size());
+    for (std::size_t k = 0; k < volume.size(); ++k) {
+        volume[k] = erosion.chainage[k] <= end ? result.observation.volume_released + erosion.upstream[k] : nan;
+        volumes.include(volume[k]);
+    }
+    volumes.high *= 1.08;
+    Plot plot(66, 34, 916, 240, {0, end}, volumes);
+    plot.axes("chainage along the flow path, m", "volume, m³");
+    plot.horizontal(result.observation.volume_released, "limit blue");
+    plot.line(erosion.chainage, volume, "series blue");
+    plot.keys({{"series blue", "released, and picked up upstream of here"}, {"limit", "released"}});
+    return figure_svg(1000, 325, "Volume against chainage", plot.svg());
+}
+
 std::string time_figure(const RunResult& result) {
     const auto& rows = result.observation.timeseries;
     if (rows.size() < 2) return "<p>The run ended before there was anything to draw over time.</p>";
@@ -232,7 +255,8 @@ std::string time_figure(const RunResult& result) {
     energy.line(t, kinetic, "series orange");
     energy.keys({{"series black", "sum"}, {"series green", "potential"}, {"series orange", "kinetic"}});
 
-    Plot volume(second, 34, width, height, time, {0, 1.05 * std::max(1e-9, result.observation.volume_released)});
+    const double most_volume = result.observation.volume_released + result.observation.erosion.volume;
+    Plot volume(second, 34, width, height, time, {0, 1.05 * std::max(1e-9, most_volume)});
     volume.axes("time, s", "volume, m³");
     volume.band(t, zero, deposited, "area deposited");
     volume.band(t, deposited, moving, "area moving");

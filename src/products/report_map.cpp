@@ -247,6 +247,12 @@ MapContent map_content(const Scene& scene, const RunResult& result) {
         content.layers.push_back(
             {map, &(observation.maps.*map.grid), words.at(k).tab, words.at(k).caption, words.at(k).digits});
     }
+    if (!observation.erosion.depth.values.empty()) {
+        content.layers.push_back({erosion_map(), &observation.erosion.depth, "Erosion",
+                                  "What debris picked up from the bed, measured vertically, on the cells of the "
+                                  "terrain, which sank by it.",
+                                  2});
+    }
     return content;
 }
 
@@ -324,8 +330,8 @@ Result<MapFigures> render_maps(const Scene& scene, const MapContent& content) {
             R"(<figure class="map" data-layer="{0}" data-name="{1}"><svg class="figure" viewBox="0 0 {2} {3}" style="max-width:{10}px" role="img" aria-label="Map: {1}"><use href="#map-base"/>{4}<use href="#map-over"/>{5}<use href="#map-key"/></svg><figcaption>{6}<b>Figure {7}. {1}.</b> {8} Cells of {9} m, interpolated for display.</figcaption></figure>
 )",
             layer.file, escape(shown.tab), coordinate(width), coordinate(height), picture,
-            draw_classes(shown, classes, most, frame), flag, out.count, escape(shown.caption), plain(content.cell),
-            coordinate(1.04 * width));
+            draw_classes(shown, classes, most, frame), flag, out.count, escape(shown.caption),
+            plain(map.values.empty() ? content.cell : map.geometry.cell), coordinate(1.04 * width));
     }
     out.read_out = page.dump();
     // Inside a script element only "<" could end it; JSON may write it as an escape.

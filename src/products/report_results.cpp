@@ -57,7 +57,7 @@ std::string row(std::string_view name, const std::string& value) {
 }
 
 struct MassBalance {
-    double held = 0, moving = 0, deposited = 0, left = 0, residual = 0;
+    double entrained = 0, held = 0, moving = 0, deposited = 0, left = 0, residual = 0;
     bool closes = false;
 };
 
@@ -65,12 +65,13 @@ MassBalance mass_balance(const Observation& observation) {
     MassBalance m;
     if (!observation.timeseries.empty()) {
         const TimeSample& s = observation.timeseries.back();
+        m.entrained = s.volume_entrained;
         m.held = s.volume_held;
         m.moving = s.volume_moving;
         m.deposited = s.volume_deposited;
         m.left = s.volume_left;
     }
-    m.residual = observation.volume_released - m.held - m.moving - m.deposited - m.left;
+    m.residual = observation.volume_released + m.entrained - m.held - m.moving - m.deposited - m.left;
     m.closes = std::abs(m.residual) <= 1e-9 * std::max(1.0, observation.volume_released);
     return m;
 }
@@ -123,6 +124,11 @@ std::string key_results(const Scene& scene, const RunResult& result) {
     const MassBalance mass = mass_balance(o);
     std::string html = card("Released volume", fixed(o.volume_released, o.volume_released < 100 ? 1 : 0), "m³",
                             plural(scene.releases.size(), "release"));
+    if (!scene.bed.empty()) {
+        html += card("Picked up from the bed", fixed(mass.entrained, mass.entrained < 100 ? 1 : 0), "m³",
+                     fmt::format("{} × the released volume, deepest {} m", fixed(mass.entrained / o.volume_released, 2),
+                                 fixed(greatest(o.erosion.depth), 2)));
+    }
     const bool ran = std::isfinite(o.run_out.horizontal_distance);
     const std::string drop = fmt::format("drop {} m", fixed(o.run_out.drop, 1));
     html += card("Run-out distance", fixed(o.run_out.horizontal_distance, 0), ran ? "m" : "",
@@ -149,7 +155,7 @@ std::string key_results(const Scene& scene, const RunResult& result) {
     return html;
 }
 
-std::string run_quality(const Scene&, const RunResult& result) {
+std::string run_quality(const Scene& scene, const RunResult& result) {
     const Observation& o = result.observation;
     const char* status = result.status == RunStatus::complete      ? "complete"
                          : result.status == RunStatus::interrupted ? "partial: interrupted"
@@ -178,7 +184,8 @@ std::string run_quality(const Scene&, const RunResult& result) {
     const MassBalance mass = mass_balance(o);
     html += row(
         "Mass balance",
-        fmt::format("released {} = held {} + moving {} + deposited {} + left {} m³{}", fixed(o.volume_released, 2),
+        fmt::format("released {}{} = held {} + moving {} + deposited {} + left {} m³{}", fixed(o.volume_released, 2),
+                    scene.bed.empty() ? "" : fmt::format(" + picked up {}", fixed(mass.entrained, 2)),
                     fixed(mass.held, 2), fixed(mass.moving, 2), fixed(mass.deposited, 2), fixed(mass.left, 2),
                     mass.closes ? "" : fmt::format("; <b class=\"bad\">{} m³ missing</b>", fixed(mass.residual, 3))));
     return html;

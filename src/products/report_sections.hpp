@@ -24,6 +24,10 @@ namespace talus::report {
 
 /// Front velocity, ground profile and arrival time against chainage, one below the other.
 [[nodiscard]] std::string front_figure(const Scene& scene, const RunResult& result);
+/// Released volume and what was picked up upstream, against chainage.
+[[nodiscard]] std::string erosion_figure(const RunResult& result);
+/// A <section> on what debris picked up; empty for a scene without a bed.
+[[nodiscard]] std::string erosion_section(const Scene& scene, const RunResult& result, int figure);
 /// Energy, volumes, largest speed and compression over time.
 [[nodiscard]] std::string time_figure(const RunResult& result);
 

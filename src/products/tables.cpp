@@ -44,16 +44,23 @@ std::string building_table(const Scene& scene, const Observation& observation) {
 
 std::string time_table(const Observation& observation) {
     Csv csv(
-        "time_s,front_chainage_m,volume_held_m3,volume_moving_m3,volume_deposited_m3,volume_left_m3,"
+        "time_s,front_chainage_m,volume_entrained_m3,volume_held_m3,volume_moving_m3,volume_deposited_m3,volume_left_"
+        "m3,"
         "volume_balance_m3,kinetic_energy_J,potential_energy_J,largest_speed_mps,mean_compression,max_compression,"
         "time_step_s,steps_per_second");
     for (const TimeSample& s : observation.timeseries) {
-        const double balance =
-            s.volume_released - (s.volume_held + s.volume_moving + s.volume_deposited + s.volume_left);
-        csv.row({s.time, s.front_chainage, s.volume_held, s.volume_moving, s.volume_deposited, s.volume_left, balance,
-                 s.kinetic_energy, s.potential_energy, s.largest_speed, s.mean_compression, s.max_compression,
-                 s.time_step, s.steps_per_second});
+        const double balance = s.volume_released + s.volume_entrained -
+                               (s.volume_held + s.volume_moving + s.volume_deposited + s.volume_left);
+        csv.row({s.time, s.front_chainage, s.volume_entrained, s.volume_held, s.volume_moving, s.volume_deposited,
+                 s.volume_left, balance, s.kinetic_energy, s.potential_energy, s.largest_speed, s.mean_compression,
+                 s.max_compression, s.time_step, s.steps_per_second});
     }
+    return csv.text();
+}
+
+std::string erosion_table(const Erosion& erosion) {
+    Csv csv("chainage_m,volume_entrained_upstream_m3");
+    for (std::size_t k = 0; k < erosion.chainage.size(); ++k) csv.row({erosion.chainage[k], erosion.upstream[k]});
     return csv.text();
 }
 
@@ -64,6 +71,9 @@ Status write_tables(const Scene& scene, const RunResult& result, const std::file
     if (Status s = write_text_file(folder / "front.csv", front_table(observation)); !s) return s;
     if (Status s = write_text_file(folder / "run_out.csv", run_out_table(observation.run_out)); !s) return s;
     if (Status s = write_text_file(folder / "buildings.csv", building_table(scene, observation)); !s) return s;
+    if (!observation.erosion.chainage.empty()) {
+        if (Status s = write_text_file(folder / "erosion.csv", erosion_table(observation.erosion)); !s) return s;
+    }
     return write_text_file(folder / "timeseries.csv", time_table(observation));
 }
 

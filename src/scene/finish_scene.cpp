@@ -1,6 +1,7 @@
 #include <cstdlib>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "scene/parse.hpp"
 
@@ -137,9 +138,39 @@ Status check_material(const ParsedScene& scene) {
     return {};
 }
 
+Status check_bed(const ParsedScene& scene, std::size_t index) {
+    const BedSpec& bed = scene.spec.beds[index];
+    const std::string path = fmt::format("bed[{}]", index);
+    std::vector<std::string> given;
+    if (bed.depth) given.emplace_back("depth_m");
+    if (!bed.depth_attribute.empty()) given.emplace_back("depth_attribute");
+    if (!bed.depth_raster.empty()) given.emplace_back("depth_raster");
+    if (given.size() != 1) {
+        return Error{
+            fmt::format("{}: exactly one of depth_m, depth_attribute, depth_raster must be given; {}",
+                        scene.at(given.empty() ? path + ".name" : path + "." + given.back()),
+                        given.empty() ? "there is none" : fmt::format("given are {}", fmt::join(given, ", ")))};
+    }
+    if (!bed.depth_attribute.empty() && bed.file.empty()) {
+        return Error{fmt::format("{} = \"{}\" needs the polygons that have it; give {}.file",
+                                 scene.at(path + ".depth_attribute"), one_line(bed.depth_attribute, 80), path)};
+    }
+    const bool grows = bed.law == EntrainmentLaw::growth;
+    if (grows != bed.growth_rate.has_value()) {
+        return Error{fmt::format("{}: {}", scene.at(path + (grows ? ".law" : ".growth_rate_per_m")),
+                                 grows ? "law = \"growth\" needs growth_rate_per_m: ln(volume after / volume before) "
+                                         "over the length of the bed, above 0 to 1 (1/m)"
+                                       : "growth_rate_per_m is not for law = \"shear\"")};
+    }
+    return {};
+}
+
 }  // namespace
 
 Status finish_scene(ParsedScene& scene) {
+    for (std::size_t i = 0; i < scene.spec.beds.size(); ++i) {
+        if (Status s = check_bed(scene, i); !s) return s.error();
+    }
     for (std::size_t i = 0; i < scene.spec.releases.size(); ++i) {
         if (Status s = check_release(scene, i); !s) return s.error();
     }

@@ -57,6 +57,37 @@ void hash_file(InputFile& input) {
     input.hash = to_hex(hash.value());
 }
 
+/// Adds `sign` times the depths of a raster, the mean over each cell, to the ground. No data counts as none.
+Status add_depths(const ParsedScene& parsed, const std::string& key, const std::string& file, double sign,
+                  Raster& ground, Scene& scene) {
+    if (file.empty()) return {};
+    const Result<Raster> depths = read_value_raster(file, ground.crs);
+    if (!depths) return Error{parsed.at("terrain." + key) + ": " + depths.error().message};
+    record_input("terrain " + key, file, scene);
+    const GridGeometry& g = ground.grid.geometry;
+    const int parts = std::clamp(static_cast<int>(std::ceil(g.cell / depths->grid.geometry.cell - 1e-6)), 1, 64);
+    double volume = 0;
+    for (int row = 0; row < g.rows; ++row) {
+        for (int column = 0; column < g.columns; ++column) {
+            double sum = 0;
+            for (int k = 0; k < parts * parts; ++k) {
+                const double east = (k % parts + 0.5) / parts, north = (k / parts + 0.5) / parts;
+                const float depth =
+                    value_at(depths->grid, {g.x_min + (column + east) * g.cell, g.y_min + (row + north) * g.cell});
+                if (depth > 0) sum += depth;
+            }
+            const double depth = sum / (parts * parts);
+            ground.grid.at(column, row) += static_cast<float>(sign * depth);
+            volume += depth * g.cell * g.cell;
+        }
+    }
+    if (!(volume > 0)) {
+        return Error{fmt::format("{}: {}: has no depth above 0 on the terrain", parsed.at("terrain." + key), file)};
+    }
+    scene.notes.push_back(fmt::format("terrain: {} by {:.6g} m3 of {}", sign > 0 ? "raised" : "lowered", volume, key));
+    return {};
+}
+
 }  // namespace
 
 Status load_terrain(const ParsedScene& parsed, Scene& scene) {
@@ -82,6 +113,8 @@ Status load_terrain(const ParsedScene& parsed, Scene& scene) {
             fmt::format("terrain: {:.2g} % of it has no data; debris that gets there has left the terrain",
                         100 * scene.nodata_share));
     }
+    if (Status s = add_depths(parsed, "deposit", spec.deposit, 1, *raster, scene); !s) return s;
+    if (Status s = add_depths(parsed, "erosion", spec.erosion, -1, *raster, scene); !s) return s;
     scene.terrain = Terrain(std::move(raster->grid));
     return {};
 }
@@ -120,6 +153,7 @@ Result<Scene> assemble_scene(const ParsedScene& parsed) {
     if (Status s = load_terrain(parsed, scene); !s) return s.error();
     if (Status s = load_zones(parsed, scene); !s) return s.error();
     if (Status s = load_releases(parsed, scene); !s) return s.error();
+    if (Status s = load_bed(parsed, scene); !s) return s.error();
     if (Status s = check_viscosity(parsed, scene); !s) return s.error();
     if (Status s = load_buildings(parsed, scene); !s) return s.error();
     if (Status s = load_flow_path(parsed, scene); !s) return s.error();

@@ -21,6 +21,9 @@ namespace talus {
 /// Fills scene.releases. The terrain is loaded.
 [[nodiscard]] Status load_releases(const ParsedScene& parsed, Scene& scene);
 
+/// Fills scene.bed; the terrain is loaded. Where polygons of several beds overlap the last one lies there.
+[[nodiscard]] Status load_bed(const ParsedScene& parsed, Scene& scene);
+
 /// Fills scene.buildings. The terrain and the releases are loaded.
 [[nodiscard]] Status load_buildings(const ParsedScene& parsed, Scene& scene);
 

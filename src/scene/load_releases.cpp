@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "geo/vector.hpp"
+#include "scene/attributes.hpp"
 #include "scene/load.hpp"
 #include "scene/polygons.hpp"
 
@@ -13,47 +14,10 @@ namespace {
 
 constexpr double thickest = 1000;  // m, as release.thickness_m allows
 
-std::string attribute_names(const PolygonLayer& layer) {
-    std::string names;
-    for (const auto& [name, value] : layer.features.front().attributes) names += (names.empty() ? "" : ", ") + name;
-    return names.empty() ? "none" : names;
-}
-
-/// The attribute as a number, also from a text column that holds one.
-std::optional<double> number_of(const Attribute& attribute) {
-    if (const auto* number = std::get_if<double>(&attribute)) return *number;
-    const auto* text = std::get_if<std::string>(&attribute);
-    if (!text || text->empty()) return std::nullopt;
-    std::size_t used = 0;
-    try {
-        const double number = std::stod(*text, &used);
-        return used == text->size() ? std::optional(number) : std::nullopt;
-    } catch (const std::exception&) {
-        return std::nullopt;
-    }
-}
-
-std::string attribute_text(const Attribute& attribute) {
-    if (const auto* number = std::get_if<double>(&attribute)) return fmt::format("{}", *number);
-    if (const auto* text = std::get_if<std::string>(&attribute)) return "\"" + *text + "\"";
-    return "empty";
-}
-
 Result<double> feature_thickness(const ReleaseSpec& spec, const PolygonLayer& layer, std::size_t feature) {
     if (spec.thickness) return *spec.thickness;
     if (spec.thickness_attribute.empty()) return 1.0;  // a raster replaces it, a target volume scales it
-    const auto& attributes = layer.features[feature].attributes;
-    const auto found = attributes.find(spec.thickness_attribute);
-    if (found == attributes.end()) {
-        return Error{fmt::format("{}: has no attribute \"{}\"; its attributes: {}", spec.file, spec.thickness_attribute,
-                                 attribute_names(layer))};
-    }
-    const std::optional<double> thickness = number_of(found->second);
-    if (!thickness || !(*thickness > 0) || *thickness > thickest) {
-        return Error{fmt::format("{}: feature {} has {} = {}; it must be a thickness above 0 to {:.0f} (m)", spec.file,
-                                 feature + 1, spec.thickness_attribute, attribute_text(found->second), thickest)};
-    }
-    return *thickness;
+    return read_length(spec.file, layer, feature, {spec.thickness_attribute, "thickness", thickest});
 }
 
 /// Every point of the polygon must lie on known ground.

@@ -8,6 +8,7 @@
 #include "core/result.hpp"
 #include "geo/raster.hpp"
 #include "params/spec.hpp"
+#include "terrain/bed.hpp"
 #include "terrain/buildings.hpp"
 #include "terrain/flow_path.hpp"
 #include "terrain/ground_cover.hpp"
@@ -34,6 +35,7 @@ struct Scene {
     Terrain terrain;
     GroundCover cover;  ///< of the zones
     std::vector<Release> releases;
+    Bed bed;
     std::vector<Building> buildings;
     FlowPath flow_path;
     bool flow_path_traced = false;

@@ -9,6 +9,7 @@
 #include "params/spec.hpp"
 #include "sim/physics/boundary_table.hpp"
 #include "sim/physics/kernel.hpp"
+#include "terrain/bed.hpp"
 #include "terrain/buildings.hpp"
 #include "terrain/ground_cover.hpp"
 #include "terrain/terrain.hpp"
@@ -31,9 +32,11 @@ struct InertialFriction {
     double grain_size = 0;  ///< m, diameter x sqrt(grain density / bulk density)
 };
 
-/// Everything that stays constant during a run.
+/// Everything that stays constant during a step, and during a run unless somebody changes it or debris picks up its
+/// bed.
 struct Model {
     Terrain terrain;
+    Bed bed;
     std::vector<Building> buildings;
     BuildingSolids solids;
     std::vector<ReleaseGroup> releases;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cstdio>
 #include <limits>
 #include <vector>
 
@@ -33,18 +34,42 @@ void Simulation::take_energy_and_speed() {
 std::optional<std::string> Simulation::advance() {
     state_.time_step = cpu::choose_time_step(model_, state_);
     step(*backend_, model_, state_, times_);
-    return find_fault(model_, state_, highest_energy_head_);
+    if (auto fault = find_fault(model_, state_, highest_energy_head_)) return fault;
+    return entrain();
+}
+
+std::optional<std::string> Simulation::entrain() {
+    if (model_.bed.empty()) return std::nullopt;
+    const StageTimer timer(times_, Stage::entrain);
+    const std::size_t loose = entrainment_.find(model_, state_);
+    if (loose == 0) return std::nullopt;
+    const std::size_t count = state_.count + loose, limit = static_cast<std::size_t>(model_.solver.particle_limit);
+    if (count > limit) {
+        std::array<char, 200> text{};
+        std::snprintf(text.data(), text.size(),
+                      "at t = %.4g s debris has picked up its bed until it has more than solver.particle_limit = %zu "
+                      "particles: raise it, or solver.particle_spacing_m",
+                      state_.time, limit);
+        return text.data();
+    }
+    // With room to spare: growing takes everything anew.
+    if (count > capacity_) make_room(static_cast<std::uint32_t>(std::min(limit, count + count / 2)));
+    entrainment_.apply(model_, state_);
+    return std::nullopt;
+}
+
+void Simulation::make_room(std::uint32_t count) {
+    // The backend changes its arrays with those of the state: both must have the same room.
+    capacity_ = count;
+    state_.resize(capacity_);
+    state_.building_contacts.reserve((face_count - 1) * capacity_);
+    backend_.emplace(model_, capacity_);
 }
 
 void Simulation::change(const std::function<void(Model&, State&)>& edit) {
     edit(model_, state_);
     state_.building_contacts.clear();
-    if (state_.count > capacity_) {
-        // The backend changes its arrays with those of the state: both must have the same room.
-        capacity_ = state_.count;
-        state_.resize(capacity_);
-        backend_.emplace(model_, capacity_);
-    }
+    if (state_.count > capacity_) make_room(state_.count);
     take_energy_and_speed();
 }
 

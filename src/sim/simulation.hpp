@@ -6,6 +6,7 @@
 #include <string>
 
 #include "sim/cpu/backend.hpp"
+#include "sim/entrainment.hpp"
 #include "sim/model.hpp"
 #include "sim/stage_times.hpp"
 #include "sim/state.hpp"
@@ -32,11 +33,14 @@ class Simulation {
 
   private:
     void take_energy_and_speed();
+    void make_room(std::uint32_t count);
+    [[nodiscard]] std::optional<std::string> entrain();
 
     Model model_;
     State state_;
     std::uint32_t capacity_ = 0;           // particles that the backend has room for
     std::optional<cpu::Backend> backend_;  // anew when there are more
+    Entrainment entrainment_;
     StageTimes times_;
     double highest_energy_head_;
 };

@@ -18,12 +18,13 @@ enum class Stage {
     update_velocities,
     apply_viscosity,
     remove_left,
+    entrain,
     observe,
 };
-inline constexpr int stage_count = 11;
+inline constexpr int stage_count = 12;
 inline constexpr std::array<std::string_view, stage_count> stage_names = {
     "predict_positions",  "find_neighbours",   "warm_start",      "solve_density", "solve_contacts", "undo_overlaps",
-    "enforce_boundaries", "update_velocities", "apply_viscosity", "remove_left",   "observe"};
+    "enforce_boundaries", "update_velocities", "apply_viscosity", "remove_left",   "entrain",        "observe"};
 
 /// Wall seconds spent per stage since the start.
 struct StageTimes {

@@ -61,11 +61,14 @@ struct State {
     double previous_time_step = 0;  ///< s, the step that multipliers and stresses belong to
     std::uint64_t step = 0;
 
-    std::uint32_t count = 0;        ///< particles present, including those of releases that have not started
-    std::uint32_t awake = 0;        ///< the first of them, which a step works on; the others are at rest
-    std::uint32_t seeded = 0;       ///< particles that were ever there
-    std::uint32_t left = 0;         ///< particles that left the terrain; seeded = count + left + taken, always
-    std::uint32_t taken = 0;        ///< particles that were taken away between two steps (take_away())
+    std::uint32_t count = 0;      ///< particles present, including those of releases that have not started
+    std::uint32_t awake = 0;      ///< the first of them, which a step works on; the others are at rest
+    std::uint32_t seeded = 0;     ///< particles that were ever there
+    std::uint32_t entrained = 0;  ///< of them, those that debris picked up from the bed
+    std::uint32_t left = 0;       ///< particles that left the terrain; seeded = count + left + taken, always
+    std::uint32_t taken = 0;      ///< particles that were taken away between two steps (take_away())
+    /// Of all that were ever there, those that releases brought and that nobody took away again.
+    [[nodiscard]] std::uint32_t released() const { return seeded - entrained - taken; }
     VectorArray position;           ///< local, m
     VectorArray velocity;           ///< m/s
     std::vector<float> multiplier;  ///< lambda of the density constraint in the last step, <= 0, m2 (scales with dt^2)

@@ -6,12 +6,9 @@
 namespace talus {
 namespace {
 
-/// The value of the cell that holds the position; 0 outside the raster, where there is no data and where it is <= 0.
+/// 0 outside the raster, where there is no data and where it is <= 0.
 double raster_thickness(const Grid<float>& raster, const PlanPoint& p) {
-    const GridGeometry& g = raster.geometry;
-    const double column = std::floor((p.x - g.x_min) / g.cell), row = std::floor((p.y - g.y_min) / g.cell);
-    if (!(column >= 0 && row >= 0 && column < g.columns && row < g.rows)) return 0;
-    const float value = raster.at(static_cast<int>(column), static_cast<int>(row));
+    const float value = value_at(raster, p);
     return value > 0 ? value : 0;  // the comparison also turns NaN into 0
 }
 

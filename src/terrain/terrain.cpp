@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <cmath>
 #include <limits>
 
 namespace talus {
@@ -32,7 +33,6 @@ Terrain::Terrain(Grid<float> elevation) : elevation_(std::move(elevation)) {
     frame_.origin = {(extent.x_min + extent.x_max) / 2, (extent.y_min + extent.y_max) / 2,
                      std::isfinite(lowest) ? lowest : 0.0};
 
-    const auto local = [&](std::size_t i) { return static_cast<float>(elevation_.values[i] - frame_.origin.z); };
     stride_ = g.columns;
     last_column_ = g.columns - 1;
     last_row_ = g.rows - 1;
@@ -41,16 +41,48 @@ Terrain::Terrain(Grid<float> elevation) : elevation_(std::move(elevation)) {
     y_first_ = static_cast<float>(-0.5 * last_row_ * g.cell);
     inverse_cell_ = static_cast<float>(1 / g.cell);
 
-    const auto stride = static_cast<std::size_t>(stride_);
     nodes_.resize(elevation_.values.size());
-    constexpr float none = std::numeric_limits<float>::quiet_NaN();
     for (int row = 0; row < g.rows; ++row) {
-        for (int column = 0; column < g.columns; ++column) {
-            const std::size_t i = g.index(column, row);
-            const float west = column > 0 ? local(i - 1) : none, east = column < last_column_ ? local(i + 1) : none;
-            const float south = row > 0 ? local(i - stride) : none, north = row < last_row_ ? local(i + stride) : none;
-            nodes_[i] = {local(i), rise(west, local(i), east), rise(south, local(i), north), 0};
+        for (int column = 0; column < g.columns; ++column) nodes_[g.index(column, row)] = make_node(column, row);
+    }
+}
+
+Quad Terrain::make_node(int column, int row) const {
+    constexpr float none = std::numeric_limits<float>::quiet_NaN();
+    const auto local = [&](int c, int r) {
+        if (c < 0 || r < 0 || c > last_column_ || r > last_row_) return none;
+        return static_cast<float>(elevation_.at(c, r) - frame_.origin.z);
+    };
+    const float here = local(column, row);
+    return {here, rise(local(column - 1, row), here, local(column + 1, row)),
+            rise(local(column, row - 1), here, local(column, row + 1)), 0};
+}
+
+std::size_t Terrain::cell_at(float x, float y) const {
+    const auto nearest = [this](float along, float first, int last) {
+        return std::clamp(static_cast<int>((along - first) * inverse_cell_ + 0.5f), 0, last);
+    };
+    return elevation_.geometry.index(nearest(x, x_first_, last_column_), nearest(y, y_first_, last_row_));
+}
+
+double Terrain::slope_cosine_of(std::size_t cell) const {
+    const double east = nodes_[cell][1] * inverse_cell_, north = nodes_[cell][2] * inverse_cell_;
+    return 1 / std::sqrt(1 + east * east + north * north);
+}
+
+void Terrain::set_elevation(std::size_t cell, float elevation) {
+    elevation_.values[cell] = elevation;
+    const auto columns = static_cast<std::size_t>(elevation_.geometry.columns);
+    const int column = static_cast<int>(cell % columns), row = static_cast<int>(cell / columns);
+    const auto renew = [&](int c, int r) {
+        if (c >= 0 && r >= 0 && c <= last_column_ && r <= last_row_) {
+            nodes_[elevation_.geometry.index(c, r)] = make_node(c, r);
         }
+    };
+    renew(column, row);
+    for (const int side : {-1, 1}) {
+        renew(column + side, row);
+        renew(column, row + side);
     }
 }
 

@@ -80,6 +80,13 @@ class Terrain {
     /// Unit normal's z component (cosine of the slope) at a world plan position; NaN where not covered.
     [[nodiscard]] double slope_cosine_at(const PlanPoint& p) const;
 
+    /// Index of the cell that a local plan position lies in, of a position that is covered.
+    [[nodiscard]] std::size_t cell_at(float x, float y) const;
+    /// Cosine of the slope at the centre of a cell that has data.
+    [[nodiscard]] double slope_cosine_of(std::size_t cell) const;
+    /// Sets the world elevation of a cell, which has data, anew; the surface changes up to two cells around.
+    void set_elevation(std::size_t cell, float elevation);
+
   private:
     template <class Index, class Real>
     struct Cell {
@@ -117,6 +124,8 @@ class Terrain {
         End<Real> first, last;
         Real beyond{};
     };
+
+    [[nodiscard]] Quad make_node(int column, int row) const;
 
     float corner_sum(std::size_t i) const {
         return nodes_[i][0] + nodes_[i + 1][0] + nodes_[i + stride_][0] + nodes_[i + stride_ + 1][0];

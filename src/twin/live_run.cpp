@@ -21,6 +21,7 @@ Result<std::unique_ptr<LiveRun>> LiveRun::start(const Scene& scene, const Setup&
     return arena.execute([&]() -> Result<std::unique_ptr<LiveRun>> {
         Model model = make_model(setup.material, scene.spec.solver, scene.terrain, std::move(buildings), spacing);
         model.cover = scene.cover;
+        model.bed = scene.bed;
         Result<State> state = seed_releases(model, releases);
         if (!state) return state.error();
         return std::unique_ptr<LiveRun>(
@@ -96,6 +97,7 @@ void LiveRun::take_step() {
         groups_[g].begun = groups_[g].begun || model().releases[g].start_time <= state().time;
     }
     const auto fault = simulation_.advance();
+    slots_ = std::max(slots_, state().seeded);  // debris picks up its bed
     smallest_time_step_ = std::min(smallest_time_step_, state().time_step);
     largest_time_step_ = std::max(largest_time_step_, state().time_step);
     if (fault) return stop(Phase::fault, *fault);
@@ -154,7 +156,7 @@ RunResult LiveRun::result() const {
     result.stage_times = simulation_.stage_times();
     result.instruction_set = simulation_.backend().instruction_set();
     result.hash = hash_state(state());
-    result.particles = state().seeded - state().taken;
+    result.particles = state().released();
     result.steps = state().step;
     result.simulated_time = state().time;
     result.wall_time = wall_time_;

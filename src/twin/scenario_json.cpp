@@ -145,6 +145,7 @@ json Scenario::state_json(bool with_hash) const {
                    {"step", state.step},
                    {"particles", state.count},
                    {"volume_released_m3", now.volume_released},
+                   {"volume_entrained_m3", now.volume_entrained},
                    {"volume_held_m3", now.volume_held},
                    {"volume_moving_m3", now.volume_moving},
                    {"volume_deposited_m3", now.volume_deposited},
@@ -229,6 +230,7 @@ json Scenario::series_json() const {
     column("time_s", &TimeSample::time);
     column("front_chainage_m", &TimeSample::front_chainage);
     column("volume_released_m3", &TimeSample::volume_released);
+    column("volume_entrained_m3", &TimeSample::volume_entrained);
     column("volume_held_m3", &TimeSample::volume_held);
     column("volume_moving_m3", &TimeSample::volume_moving);
     column("volume_deposited_m3", &TimeSample::volume_deposited);

@@ -37,12 +37,16 @@ TEST(FieldTable, EveryMemberIsDeclared) {
         EXPECT_EQ(declared("scene"), 5U);
     }
     {
-        [[maybe_unused]] const auto [a, b, c, d] = TerrainSpec{};
-        EXPECT_EQ(declared("terrain"), 4U);
+        [[maybe_unused]] const auto [a, b, c, d, e, f] = TerrainSpec{};
+        EXPECT_EQ(declared("terrain"), 6U);
     }
     {
         [[maybe_unused]] const auto [a, b, c, d, e, f, g, h, i] = ReleaseSpec{};
         EXPECT_EQ(declared("release"), 9U);
+    }
+    {
+        [[maybe_unused]] const auto [a, b, c, d, e, f, g, h, i, j, k] = BedSpec{};
+        EXPECT_EQ(declared("bed"), 11U);
     }
     {
         [[maybe_unused]] const auto [a, b, c, d, e] = BuildingsSpec{};

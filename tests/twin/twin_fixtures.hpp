@@ -91,12 +91,12 @@ inline std::string refusal(Scenario& scenario, const json& action) {
     return done ? "" : done.error().message;
 }
 
-/// released = held + moving + deposited + left.
+/// released + picked up = held + moving + deposited + left.
 inline void expect_balance(const Scenario& scenario) {
     const json s = scenario.state_json();
     const double sum = s["volume_held_m3"].get<double>() + s["volume_moving_m3"].get<double>() +
                        s["volume_deposited_m3"].get<double>() + s["volume_left_m3"].get<double>();
-    EXPECT_NEAR(s["volume_released_m3"].get<double>(), sum, 1e-9 * sum);
+    EXPECT_NEAR(s["volume_released_m3"].get<double>() + s["volume_entrained_m3"].get<double>(), sum, 1e-9 * sum);
 }
 
 /// A number of the state.

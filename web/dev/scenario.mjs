@@ -50,7 +50,7 @@ export class Scenario {
     this.steps = 0;
     this.debris = new Debris(this.ground);
     this.recorded = [];
-    this.series = { time_s: [], front_chainage_m: [], volume_held_m3: [], volume_moving_m3: [], volume_deposited_m3: [],
+    this.series = { time_s: [], front_chainage_m: [], volume_entrained_m3: [], volume_held_m3: [], volume_moving_m3: [], volume_deposited_m3: [],
       volume_left_m3: [], kinetic_energy_J: [], potential_energy_J: [], largest_speed_mps: [], mean_compression: [] };
     this.front = { chainage_m: [], arrival_time_s: [], front_velocity_mps: [], particle_speed_mps: [] };
     this.hits = new Map();
@@ -150,6 +150,7 @@ export class Scenario {
     const t = this.series;
     t.time_s.push(this.time);
     t.front_chainage_m.push(f);
+    t.volume_entrained_m3.push(0);
     t.volume_held_m3.push(held);
     t.volume_moving_m3.push(moving);
     t.volume_deposited_m3.push(deposited);
@@ -216,7 +217,7 @@ export class Scenario {
     return { scenario: this.letter, status: this.status, message: "", time_s: this.time, end_time_s: this.options.endTime,
       step: this.steps, speed_factor: this.speedFactor, real_time_factor: this.status === "running" ? (this.speedFactor ?? 4) : 0,
       steps_per_second: this.status === "running" ? 40 * (this.speedFactor ?? 4) : 0, particles: this.debris.n,
-      volume_released_m3: s.released, volume_held_m3: s.held, volume_moving_m3: s.moving, volume_deposited_m3: s.deposited,
+      volume_released_m3: s.released, volume_entrained_m3: 0, volume_held_m3: s.held, volume_moving_m3: s.moving, volume_deposited_m3: s.deposited,
       volume_left_m3: 0, front_chainage_m: s.front, front_velocity_mps: this.front.front_velocity_mps.at(-1) ?? null,
       largest_speed_mps: s.fastest, mean_compression: 0.004, max_compression: 0.06,
       converged: this.setup.parameters["material.viscosity"] < 5,

@@ -6,6 +6,7 @@
 namespace talus::validate {
 
 [[nodiscard]] Kind sliding_slab_kind();
+[[nodiscard]] Kind growing_slab_kind();
 [[nodiscard]] Kind granular_column_kind();
 [[nodiscard]] Kind standing_heap_kind();
 [[nodiscard]] Kind dam_break_kind();

@@ -66,6 +66,7 @@ export interface State {
   steps_per_second: number;
   particles: number;
   volume_released_m3: number;
+  volume_entrained_m3: number;
   volume_held_m3: number;
   volume_moving_m3: number;
   volume_deposited_m3: number;

@@ -1,0 +1,236 @@
+#include "sim/entrainment.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "sim/relax.hpp"
+
+namespace talus {
+namespace {
+
+constexpr float reach_in_spacings = 4;  ///< how far from its place a new particle moves others; by a hundredth of one
+constexpr float sites_apart = 3.5F;     ///< spacings between places of one step, at least
+constexpr float foot_offset = 1.2F;     ///< spacings from the particle that ground comes loose below, at most
+
+/// Particles are no continuum: with a quarter more room than the volume of the new one, the worst of them are
+/// compressed half as much; with half more, room is left over and what lies above falls into it.
+constexpr double room_factor = 1.25;
+
+/// Slower debris picks up nothing: a tenth of the speed of a fall through a particle's own size.
+double moving_speed(const Model& model) {
+    return 0.1 * std::sqrt(model.gravity * model.particle_spacing);
+}
+
+/// A share of a particle, 0 to below 1, that a cell is ahead of its law, evenly spread over neighbouring cells: so the
+/// whole particles that cells give add up to what the law says however little each of them loses (additive
+/// low-discrepancy sequence, Roberts 2018).
+double head_start(const GridGeometry& g, std::size_t cell) {
+    const auto columns = static_cast<std::size_t>(g.columns);
+    double whole = 0;
+    return std::modf(static_cast<double>(cell % columns) * 0.7548776662466927 +
+                         static_cast<double>(cell / columns) * 0.5698402909980532,
+                     &whole);
+}
+
+/// A square of the plan, as wide as new particles reach.
+std::uint64_t bin_of(int column, int row) {
+    return std::uint64_t{static_cast<std::uint32_t>(row)} << 32U | static_cast<std::uint32_t>(column);
+}
+
+/// Which bins have a site in or beside them; a bin may also be there because it shares its bit with such a one.
+class BinSet {
+  public:
+    void add(std::uint64_t bin) { words_[word(bin)] |= bit(bin); }
+    [[nodiscard]] bool may_have(std::uint64_t bin) const { return (words_[word(bin)] & bit(bin)) != 0; }
+
+  private:
+    static std::uint64_t mixed(std::uint64_t bin) { return (bin * 0x9E3779B97F4A7C15U) >> 48U; }
+    static std::size_t word(std::uint64_t bin) { return mixed(bin) / 64; }
+    static std::uint64_t bit(std::uint64_t bin) { return std::uint64_t{1} << mixed(bin) % 64; }
+    std::array<std::uint64_t, 1024> words_{};
+};
+
+}  // namespace
+
+void Entrainment::find_shear_rates(const Model& model, const State& state) {
+    const Bed& bed = model.bed;
+    for (std::uint32_t i = 0; i < state.count; ++i) {
+        if (state.held[i] != 0) continue;
+        const std::size_t cell = model.terrain.cell_at(state.position.x[i], state.position.y[i]);
+        if (bed.material_at[cell] == 0) continue;
+        if (bed.materials[bed.material_at[cell] - 1].law != EntrainmentLaw::shear) continue;
+        if (count_[cell]++ == 0) touched_.push_back(cell);
+    }
+    const double area = model.terrain.cell() * model.terrain.cell();
+    for (const std::size_t cell : touched_) {
+        const BedMaterial& material = bed.materials[bed.material_at[cell] - 1];
+        const double depth = count_[cell] * model.particle_volume() / area;
+        const double cosine = model.terrain.slope_cosine_of(cell);
+        const double sine = std::sqrt(std::max(0.0, 1 - cosine * cosine));
+        const double shear_stress = model.rest_density * model.gravity * depth * cosine * sine;
+        const double most = material.depth_per_shear * (shear_stress - material.critical_shear_stress);
+        const double left = most - bed.eroded[cell] - loose_[cell] / area;
+        const double loose = std::clamp(left, 0.0, material.erosion_rate * state.time_step) * area;
+        rate_[cell] = static_cast<float>(loose / count_[cell]);
+        count_[cell] = 0;
+    }
+    touched_.clear();
+}
+
+std::size_t Entrainment::find(const Model& model, const State& state) {
+    const Bed& bed = model.bed;
+    sites_.clear();
+    if (bed.empty()) return 0;
+    if (loose_.empty()) {
+        loose_.resize(bed.depth.size());
+        count_.resize(bed.depth.size());
+        rate_.resize(bed.depth.size());
+    }
+    find_shear_rates(model, state);
+
+    const GridGeometry& g = model.terrain.elevation().geometry;
+    const double volume = model.particle_volume(), area = model.terrain.cell() * model.terrain.cell();
+    const double slowest = moving_speed(model);
+    for (std::uint32_t i = 0; i < state.awake && i < state.count; ++i) {
+        if (state.held[i] != 0) continue;
+        const LocalPoint v = state.velocity.at(i);
+        const double square = dot(v, v);
+        if (!(square > slowest * slowest)) continue;
+        const LocalPoint p = state.position.at(i);
+        const std::size_t cell = model.terrain.cell_at(p.x, p.y);
+        if (bed.material_at[cell] == 0) continue;
+        const double ahead = head_start(g, cell);
+        if ((bed.eroded[cell] - bed.depth[cell]) * area + volume > ahead * volume) continue;  // nothing is left
+        const BedMaterial& material = bed.materials[bed.material_at[cell] - 1];
+        loose_[cell] += material.law == EntrainmentLaw::growth
+                            ? material.growth_rate * volume * std::sqrt(square) * state.time_step
+                            : rate_[cell];
+        if (loose_[cell] + ahead * volume < volume || !is_clear(model, p)) continue;
+        loose_[cell] -= volume;
+        sites_.push_back({i, cell, {p.x, p.y, model.terrain.sample(p.x, p.y).height}, {}});
+    }
+    return sites_.size();
+}
+
+bool Entrainment::is_clear(const Model& model, const LocalPoint& p) const {
+    const auto apart = static_cast<float>(sites_apart * model.particle_spacing);
+    for (const Site& site : sites_) {
+        const float x = site.foot.x - p.x, y = site.foot.y - p.y;
+        if (x * x + y * y < apart * apart) return false;
+    }
+    if (!model.solids.near(p.x, p.y)) return true;
+    const SolidSample<float> wall = model.solids.nearest(p);
+    return wall.building < 0 || wall.distance > static_cast<float>(model.particle_spacing);
+}
+
+void Entrainment::find_neighbours(const Model& model, const State& state) {
+    const auto reach = static_cast<float>((reach_in_spacings + foot_offset) * model.particle_spacing);
+    const auto bin = [reach](float along) { return static_cast<int>(std::floor(along / reach)); };
+    BinSet bins;
+    by_bin_.clear();
+    for (std::uint32_t s = 0; s < sites_.size(); ++s) {
+        const int column = bin(sites_[s].foot.x), row = bin(sites_[s].foot.y);
+        by_bin_.emplace_back(bin_of(column, row), s);
+        for (int r = row - 1; r <= row + 1; ++r) {
+            for (int c = column - 1; c <= column + 1; ++c) bins.add(bin_of(c, r));
+        }
+    }
+    std::sort(by_bin_.begin(), by_bin_.end());
+    neighbours_.clear();
+    for (std::uint32_t i = 0; i < state.count; ++i) {
+        const LocalPoint p = state.position.at(i);
+        const int column = bin(p.x), row = bin(p.y);
+        if (!bins.may_have(bin_of(column, row)) || state.held[i] != 0) continue;
+        for (int r = row - 1; r <= row + 1; ++r) {
+            for (int c = column - 1; c <= column + 1; ++c) {
+                const std::pair<std::uint64_t, std::uint32_t> first{bin_of(c, r), 0};
+                for (auto k = std::lower_bound(by_bin_.begin(), by_bin_.end(), first);
+                     k != by_bin_.end() && k->first == first.first; ++k) {
+                    const LocalPoint away = p - sites_[k->second].foot;
+                    if (dot(away, away) < reach * reach) neighbours_.push_back({k->second, i});
+                }
+            }
+        }
+    }
+    std::sort(neighbours_.begin(), neighbours_.end());
+}
+
+void Entrainment::choose_foot(const Model& model, const State& state, std::size_t index) {
+    Site& site = sites_[index];
+    const auto spacing = static_cast<float>(model.particle_spacing), touching = spacing / 2;
+    const LocalPoint above = site.foot;
+    float best = -1;
+    constexpr int around = 8, rings = 3;
+    for (int k = 0; k <= rings * around; ++k) {
+        const float angle = static_cast<float>(k % around) * 2 * std::numbers::pi_v<float> / around;
+        const float offset = foot_offset * spacing * static_cast<float>((k + around - 1) / around) / rings;
+        const float x = above.x + offset * std::cos(angle), y = above.y + offset * std::sin(angle);
+        if (!model.terrain.covers(x, y)) continue;
+        const GroundSample<float> ground = model.terrain.sample(x, y);
+        const LocalPoint foot{x, y, ground.height}, place = foot + ground.normal * touching;
+        float nearest = std::numeric_limits<float>::max();
+        for (const Neighbour& neighbour : neighbours_of(index)) {
+            const LocalPoint away = state.position.at(neighbour.particle) - place;
+            nearest = std::min(nearest, dot(away, away));
+        }
+        if (nearest <= best) continue;
+        best = nearest;
+        site.foot = foot;
+        site.normal = ground.normal;
+    }
+}
+
+std::span<const Entrainment::Neighbour> Entrainment::neighbours_of(std::size_t site) const {
+    const auto s = static_cast<std::uint32_t>(site);
+    const auto first = std::lower_bound(neighbours_.begin(), neighbours_.end(), Neighbour{s, 0});
+    const auto last = std::lower_bound(first, neighbours_.end(), Neighbour{s + 1, 0});
+    return {first, last};
+}
+
+void Entrainment::make_room(const Model& model, State& state, std::size_t index) const {
+    const Site& site = sites_[index];
+    const auto spacing = static_cast<float>(model.particle_spacing), reach = reach_in_spacings * spacing;
+    const auto room =
+        static_cast<float>(room_factor * 3 * model.particle_volume() / (2 * std::numbers::pi));  // radius cubed
+    for (const Neighbour& neighbour : neighbours_of(index)) {
+        const std::uint32_t i = neighbour.particle;
+        LocalPoint p = state.position.at(i);
+        const LocalPoint away = p - site.foot;
+        const float distance = length(away);
+        if (!(distance > 0) || distance > reach) continue;
+        p += away * (std::cbrt(distance * distance * distance + room) / distance - 1);
+        if (!model.terrain.covers(p.x, p.y)) continue;
+        put_out_of_solids(model, p, [](const LocalPoint&) {});
+        state.position.set(i, p);
+        if (distance > 2 * spacing) continue;
+        state.resting[i] = 0;
+        state.calm_time[i] = 0;
+    }
+}
+
+void Entrainment::apply(Model& model, State& state) {
+    if (sites_.empty()) return;
+    const double area = model.terrain.cell() * model.terrain.cell(), depth = model.particle_volume() / area;
+    find_neighbours(model, state);
+    for (std::size_t s = 0; s < sites_.size(); ++s) {
+        Site& site = sites_[s];
+        model.bed.eroded[site.cell] += static_cast<float>(depth);
+        model.terrain.set_elevation(site.cell, static_cast<float>(model.terrain.elevation().values[site.cell] - depth));
+        choose_foot(model, state, s);
+        make_room(model, state, s);
+        const std::uint32_t i = state.count++;
+        state.position.set(i, site.foot + site.normal * static_cast<float>(model.contact_distance()));
+        state.velocity.set(i, {});
+        state.stress.set(i, {});
+        state.multiplier[i] = state.multiplier[site.particle];
+        state.id[i] = state.seeded++;
+        state.held[i] = state.resting[i] = 0;
+        state.calm_time[i] = 0;
+        ++state.entrained;
+    }
+}
+
+}  // namespace talus

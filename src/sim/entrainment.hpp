@@ -1,0 +1,59 @@
+#pragma once
+
+#include <compare>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "core/geometry.hpp"
+#include "sim/model.hpp"
+#include "sim/state.hpp"
+
+namespace talus {
+
+/// Debris picks up its bed: ground becomes particles, one at a time, where the bed's law says that a particle's volume
+/// has come loose. The terrain sinks by exactly that volume in the cell; the particle begins at rest, so that debris
+/// keeps its momentum and loses speed. Its place is made by moving what lies around outwards as an incompressible body
+/// around a growing half sphere on the ground would move: nothing is pressed, nothing gains speed.
+///
+/// All of it goes by the order of the state alone: results do not depend on the number of threads.
+class Entrainment {
+  public:
+    /// Where particles come loose in the step of state.time_step that was just taken, three and a half spacings apart;
+    /// what has no room waits. Returns how many there are.
+    std::size_t find(const Model& model, const State& state);
+
+    /// Turns ground into particles where find() found. The arrays of `state` have room for them.
+    void apply(Model& model, State& state);
+
+  private:
+    struct Site {
+        std::uint32_t particle;  ///< sorted index of the one that ground comes loose below
+        std::size_t cell;
+        LocalPoint foot;    ///< on the ground; of find() right below the particle
+        LocalPoint normal;  ///< of the ground
+    };
+    struct Neighbour {
+        std::uint32_t site, particle;
+        friend auto operator<=>(const Neighbour&, const Neighbour&) = default;
+    };
+
+    void find_shear_rates(const Model& model, const State& state);
+    [[nodiscard]] bool is_clear(const Model& model, const LocalPoint& p) const;
+    void find_neighbours(const Model& model, const State& state);
+    [[nodiscard]] std::span<const Neighbour> neighbours_of(std::size_t site) const;
+    void choose_foot(const Model& model, const State& state, std::size_t index);
+    void make_room(const Model& model, State& state, std::size_t index) const;
+
+    std::vector<double> loose_;         // m3 that have come loose, less those that became particles, by cell
+    std::vector<std::uint32_t> count_;  // particles over a cell, of beds that go by shear; 0 between steps
+    std::vector<float> rate_;           // m3 per particle in this step, likewise
+    std::vector<std::size_t> touched_;  // cells with a count
+    std::vector<Site> sites_;
+    std::vector<std::pair<std::uint64_t, std::uint32_t>> by_bin_;  // sites
+    std::vector<Neighbour> neighbours_;                            // by site
+};
+
+}  // namespace talus

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "params/spec.hpp"
+
+namespace talus {
+
+/// Loose material of one kind that lies on the ground.
+struct BedMaterial {
+    std::string name;
+    EntrainmentLaw law = EntrainmentLaw::growth;
+    double growth_rate = 0;            ///< 1/m
+    double critical_shear_stress = 0;  ///< Pa
+    double erosion_rate = 0;           ///< m/s, vertical
+    double depth_per_shear = 0;        ///< m/Pa
+};
+
+/// What debris can pick up from the ground: the upper part of the terrain, a value per cell of its grid.
+struct Bed {
+    std::vector<BedMaterial> materials;
+    std::vector<std::uint8_t> material_at;  ///< 1 + index into `materials`; 0: none
+    std::vector<float> depth;               ///< m, vertical, before anything was picked up
+    std::vector<float> eroded;              ///< m, of it, until now
+
+    [[nodiscard]] bool empty() const { return materials.empty(); }
+    /// The most materials that there can be.
+    static constexpr std::size_t most_materials = 255;
+};
+
+}  // namespace talus

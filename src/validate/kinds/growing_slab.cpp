@@ -1,0 +1,140 @@
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include <fmt/format.h>
+
+#include "sim/seed.hpp"
+#include "validate/kinds/kinds.hpp"
+#include "validate/set_up.hpp"
+
+namespace talus::validate {
+namespace {
+
+constexpr Quantity quantities[] = {
+    {"volume", "1", true, Quantity::Site::none, "of the debris over that at the start, at the end"},
+    {"speed", "m/s", true, Quantity::Site::none, "down the slope, mean over all debris, at the end"},
+    {"missing", "1", false, Quantity::Site::none,
+     "volume that the ground lost, less that by which the debris grew, over the latter"},
+    {"jolt", "m/s", false, Quantity::Site::none,
+     "most that the mean speed fell below the law's in any step, at the same time"},
+};
+
+struct GrowthSpec {
+    double slope = 0, friction = 0, growth_rate = 0;         // rad, 1, 1/m
+    std::vector<double> spacings;                            // m
+    double length = 0, thickness = 0, width = 0, depth = 0;  // m; depth: of the bed
+    double end = 0;                                          // s
+};
+
+/// With M' = E P and P' = M a, whatever the debris' shape: M = M0 cosh(k t), P = M' / E, k = sqrt(E a).
+struct GrowthLaw {
+    double acceleration, growth_rate;
+    [[nodiscard]] double rate() const { return std::sqrt(acceleration * growth_rate); }
+    [[nodiscard]] double volume(double time) const { return std::cosh(rate() * time); }
+    [[nodiscard]] double speed(double time) const {
+        return std::sqrt(acceleration / growth_rate) * std::tanh(rate() * time);
+    }
+};
+
+void lay_bed(Model& model, const GrowthSpec& spec) {
+    const std::size_t cells = model.terrain.elevation().values.size();
+    BedMaterial material;
+    material.growth_rate = spec.growth_rate;
+    model.bed.materials = {material};
+    model.bed.material_at.assign(cells, 1);
+    model.bed.depth.assign(cells, static_cast<float>(spec.depth));
+    model.bed.eroded.assign(cells, 0);
+}
+
+void compute_one(const GrowthSpec& spec, double spacing, const Setting& setting, const Watch& watch, Outcome& outcome) {
+    const std::string name = fmt::format("spacing {:.3g} m", spacing);
+    watch.say(name);
+    MaterialSpec material = setting.material;
+    material.friction_coefficient = spec.friction;
+    material.building_friction_coefficient = 0;
+    const double acceleration = Model{}.gravity * (std::sin(spec.slope) - spec.friction * std::cos(spec.slope));
+    const GrowthLaw law{acceleration, spec.growth_rate};
+    const double furthest = 0.5 * acceleration * spec.end * spec.end;
+    const Incline incline(spec.slope, 2 * (spec.length + furthest) + 10, spec.width + 4);
+    Model model = make_model(material, setting.solver, incline.terrain(),
+                             make_slice(incline.terrain(), spec.width, 3 * spec.thickness), spacing);
+    lay_bed(model, spec);
+    const auto columns = static_cast<int>(std::lround(spec.length / spacing));
+    const auto across = static_cast<int>(std::lround(spec.width / spacing));
+    const auto points = fill_lattice(incline, spacing, -columns * spacing / 2, columns, -spec.width / 2, across,
+                                     [&](double, double) { return spec.thickness; });
+    Trial trial(std::move(model), state_at_rest(points), watch);
+    const State& state = trial.state();
+    const LocalPoint down = incline.down(1);
+    const auto speed = [&] {
+        double sum = 0;
+        for (std::uint32_t i = 0; i < state.count; ++i) sum += dot(state.velocity.at(i), down);
+        return sum / state.count;
+    };
+    Series computed{name, Series::Style::line, {}, {}}, grown = computed;
+    double jolt = 0;
+    if (!trial.advance_to(spec.end, [&] {
+            computed.x.push_back(state.time);
+            computed.y.push_back(speed());
+            grown.x.push_back(state.time);
+            grown.y.push_back(static_cast<double>(state.count) / static_cast<double>(points.size()));
+            jolt = std::max(jolt, law.speed(state.time) - computed.y.back());
+        })) {
+        outcome.notes.push_back(name + ": " + trial.problem());
+        return;
+    }
+    const double area = incline.terrain().cell() * incline.terrain().cell();
+    double lost = 0;
+    for (const float eroded : trial.model().bed.eroded) lost += eroded * area;
+    const double gained = state.entrained * trial.model().particle_volume();
+    outcome.measurements.push_back({"volume", name, grown.y.back(), law.volume(state.time)});
+    outcome.measurements.push_back({"speed", name, computed.y.back(), law.speed(state.time)});
+    outcome.measurements.push_back({"missing", name, gained > 0 ? lost / gained - 1 : not_computed, {}});
+    outcome.measurements.push_back({"jolt", name, jolt, {}});
+    outcome.charts[0].series.push_back(std::move(computed));
+    outcome.charts[1].series.push_back(std::move(grown));
+}
+
+Result<Outcome> compute(const GrowthSpec& spec, const Setting& setting, const Watch& watch) {
+    Outcome outcome;
+    outcome.charts.push_back({"speed", "Mean speed of a slab that picks up its bed", "time, s", "m/s", {}});
+    outcome.charts.push_back({"volume", "Its volume over that at the start", "time, s", "1", {}});
+    const double acceleration = Model{}.gravity * (std::sin(spec.slope) - spec.friction * std::cos(spec.slope));
+    const GrowthLaw law{acceleration, spec.growth_rate};
+    Series speed{"law", Series::Style::dashed, {}, {}}, volume = speed;
+    for (int k = 0; k <= 100; ++k) {
+        const double t = spec.end * k / 100;
+        speed.x.push_back(t);
+        speed.y.push_back(law.speed(t));
+        volume.x.push_back(t);
+        volume.y.push_back(law.volume(t));
+    }
+    outcome.charts[0].series.push_back(speed);
+    outcome.charts[1].series.push_back(volume);
+    for (const double spacing : spec.spacings) compute_one(spec, spacing, setting, watch, outcome);
+    return outcome;
+}
+
+Computation prepare(Parameters& parameters, const Setting& setting) {
+    constexpr Range positive{.low = 0, .low_included = false};
+    GrowthSpec spec;
+    spec.slope = parameters.number("slope_deg", {.low = 1, .high = 89}, 30) * std::numbers::pi / 180;
+    spec.friction = parameters.number("friction_coefficient", {.low = 0, .high = 10}, 0.4);
+    spec.growth_rate = parameters.number("growth_rate_per_m", {.low = 0, .high = 1, .low_included = false}, 0.01);
+    spec.spacings = parameters.numbers("spacings_m", positive, {0.3});
+    spec.length = parameters.number("length_m", positive, 6);
+    spec.thickness = parameters.number("thickness_m", positive, 0.9);
+    spec.width = parameters.number("width_m", positive, 1.8);
+    spec.depth = parameters.number("bed_depth_m", positive, 1);
+    spec.end = parameters.number("end_s", positive, 8);
+    return [spec, setting](const Watch& watch) { return compute(spec, setting, watch); };
+}
+
+}  // namespace
+
+Kind growing_slab_kind() {
+    return {"growing_slab", "a slab on an incline that picks up its bed", quantities, prepare};
+}
+
+}  // namespace talus::validate

@@ -1,0 +1,211 @@
+#include "sim/entrainment.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include <gtest/gtest.h>
+#include <tbb/global_control.h>
+
+#include "sim/sim_fixtures.hpp"
+
+namespace talus::testing {
+namespace {
+
+constexpr double spacing = 0.5;
+
+BedMaterial growing(double rate) {
+    BedMaterial material;
+    material.name = "gravel";
+    material.growth_rate = rate;
+    return material;
+}
+
+BedMaterial sheared(double critical) {
+    BedMaterial material;
+    material.law = EntrainmentLaw::shear;
+    material.critical_shear_stress = critical;
+    material.erosion_rate = 0.1;
+    material.depth_per_shear = 1e-5;
+    return material;
+}
+
+/// Lays material on the whole ground.
+void lay(Model& model, const BedMaterial& material, float depth) {
+    const std::size_t cells = model.terrain.elevation().values.size();
+    model.bed = {{material},
+                 std::vector<std::uint8_t>(cells, 1),
+                 std::vector<float>(cells, depth),
+                 std::vector<float>(cells, 0)};
+}
+
+/// A block on a plane of 25 degrees, steeper than its friction angle.
+Simulation slide(const BedMaterial& material, float depth) {
+    const Terrain terrain = inclined_plane(25);
+    MaterialSpec moving;
+    moving.friction_coefficient = 0.2;
+    Model model = make_model(moving, {}, terrain, {}, spacing);
+    Result<State> state = seed_releases(model, {block(terrain, rectangle(8, 15, 14, 25), 1.5)});
+    lay(model, material, depth);
+    return {std::move(model), *std::move(state)};
+}
+
+double eroded_volume(const Model& model) {
+    const double area = model.terrain.cell() * model.terrain.cell();
+    return area * std::accumulate(model.bed.eroded.begin(), model.bed.eroded.end(), 0.0);
+}
+
+LocalPoint momentum(const State& state) {
+    LocalPoint sum;
+    for (std::uint32_t i = 0; i < state.count; ++i) sum += state.velocity.at(i);
+    return sum;
+}
+
+TEST(Entrainment, grows_by_the_law_and_takes_it_from_the_ground) {
+    Simulation simulation = slide(growing(0.02), 1);
+    const State& state = simulation.state();
+    const Model& model = simulation.model();
+    const std::uint32_t released = state.count;
+    double expected = 0;
+    for (int k = 0; k < 120; ++k) {
+        ASSERT_FALSE(simulation.advance());
+        for (std::uint32_t i = 0; i < state.count; ++i) {
+            expected += 0.02 * length(state.velocity.at(i)) * state.time_step;
+        }
+    }
+    ASSERT_GT(state.entrained, 50U);
+    EXPECT_EQ(state.count + state.left, released + state.entrained);
+    EXPECT_EQ(state.released(), released);
+    EXPECT_NEAR(state.entrained, expected, 0.1 * expected) << "but for what has come loose and is no particle yet";
+    const double gained = state.entrained * model.particle_volume();
+    EXPECT_NEAR(eroded_volume(model), gained, 1e-4 * gained);
+    const Terrain untouched = inclined_plane(25);
+    double sunk = 0;
+    for (std::size_t cell = 0; cell < model.bed.eroded.size(); ++cell) {
+        sunk += untouched.elevation().values[cell] - model.terrain.elevation().values[cell];
+    }
+    EXPECT_NEAR(sunk, gained, 0.01 * gained) << "cells of 1 m2; elevations are float";
+}
+
+TEST(Entrainment, keeps_momentum_and_everybody_elses_speed) {
+    Simulation simulation = slide(growing(0.05), 1);
+    for (int k = 0; k < 60; ++k) ASSERT_FALSE(simulation.advance());
+    Model model = simulation.model();
+    State state = simulation.state();
+    state.resize(2 * state.count);
+    Entrainment entrainment;
+    std::size_t found = 0;
+    for (int k = 0; k < 200 && found == 0; ++k) found = entrainment.find(model, state);
+    ASSERT_GT(found, 0U);
+    const LocalPoint before = momentum(state);
+    const std::uint32_t count = state.count;
+    entrainment.apply(model, state);
+    EXPECT_EQ(state.count, count + found);
+    const LocalPoint after = momentum(state);
+    EXPECT_EQ(after.x, before.x);
+    EXPECT_EQ(after.z, before.z);
+    for (std::uint32_t i = count; i < state.count; ++i) {
+        EXPECT_EQ(length(state.velocity.at(i)), 0);
+        const LocalPoint p = state.position.at(i);
+        EXPECT_NEAR(p.z, model.terrain.sample(p.x, p.y).height + spacing / 2, 0.2 * spacing) << "it lies on the ground";
+    }
+}
+
+TEST(Entrainment, makes_room_without_a_pop) {
+    const Terrain level = terrain_of(30, 30, 1, [](double, double) { return 10; });
+    Model model = make_model({}, {}, level, {}, spacing);
+    Result<State> seeded = seed_releases(model, {block(level, rectangle(5, 5, 25, 25), 2)});
+    // Debris that seems to move picks up its bed for a moment, and lies still again.
+    lay(model, growing(0.02), 1);
+    State state = *seeded;
+    state.resize(2 * state.count);
+    state.awake = state.count;
+    state.time_step = 1.0 / 60;
+    std::fill(state.velocity.x.begin(), state.velocity.x.end(), 3.0F);
+    Entrainment entrainment;
+    for (int k = 0; k < 8; ++k) {
+        if (entrainment.find(model, state) > 0) entrainment.apply(model, state);
+    }
+    ASSERT_GT(state.entrained, 20U);
+    std::fill(state.velocity.x.begin(), state.velocity.x.end(), 0.0F);
+    state.resize(state.count);
+    model.bed = {};
+    Simulation simulation(model, std::move(state));
+    // The block falls apart at its sides; in its middle nothing may happen.
+    double fastest = 0, worst = 0;
+    for (int k = 0; k < 15; ++k) {
+        ASSERT_FALSE(simulation.advance());
+        const State& now = simulation.state();
+        worst = std::max(worst, now.max_compression);
+        for (std::uint32_t i = 0; i < now.count; ++i) {
+            const LocalPoint p = now.position.at(i), v = now.velocity.at(i);
+            if (std::abs(p.x) < 6 && std::abs(p.y) < 6) fastest = std::max<double>(fastest, length(v));
+        }
+    }
+    EXPECT_LT(fastest, 0.3) << "m/s";
+    EXPECT_LT(worst, 0.05) << "squeezed in without room, particles are compressed by 13 %";
+}
+
+TEST(Entrainment, ends_where_the_bed_does) {
+    constexpr float depth = 0.2F;
+    Simulation simulation = slide(growing(0.5), depth);
+    for (int k = 0; k < 150; ++k) ASSERT_FALSE(simulation.advance());
+    const Bed& bed = simulation.model().bed;
+    const double particle_depth = simulation.model().particle_volume();  // over a cell of 1 m2
+    float deepest = 0;
+    for (const float eroded : bed.eroded) deepest = std::max(deepest, eroded);
+    EXPECT_GT(deepest, 0);
+    EXPECT_LE(deepest, depth + particle_depth);
+    // On average over the cells that were swept there is no more than there was.
+    double sum = 0, swept = 0;
+    for (const float eroded : bed.eroded) {
+        sum += eroded;
+        swept += eroded > 0;
+    }
+    EXPECT_LE(sum / swept, depth + 0.1 * particle_depth);
+}
+
+TEST(Entrainment, by_shear_needs_the_critical_stress) {
+    // 1.5 m of debris at 25 degrees: 2000 x 9.8 x 1.5 x sin 25 = 12.4 kPa, and more where it piles up.
+    Simulation strong = slide(sheared(50e3), 1), weak = slide(sheared(5e3), 1);
+    for (int k = 0; k < 60; ++k) {
+        ASSERT_FALSE(strong.advance());
+        ASSERT_FALSE(weak.advance());
+    }
+    EXPECT_EQ(strong.state().entrained, 0U);
+    EXPECT_GT(weak.state().entrained, 5U);
+    // No deeper than the law allows for the greatest stress there can have been.
+    const double most = 1e-5 * (30e3 - 5e3) + weak.model().particle_volume();
+    for (const float eroded : weak.model().bed.eroded) EXPECT_LE(eroded, most);
+}
+
+TEST(Entrainment, does_not_depend_on_the_number_of_threads) {
+    const auto run = [](std::size_t threads) {
+        const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
+        Simulation simulation = slide(growing(0.03), 1);
+        for (int k = 0; k < 80; ++k) EXPECT_FALSE(simulation.advance());
+        EXPECT_GT(simulation.state().entrained, 20U);
+        return hash_state(simulation.state());
+    };
+    EXPECT_EQ(run(1), run(2));
+}
+
+TEST(Entrainment, stops_the_run_at_the_particle_limit) {
+    Simulation simulation = slide(growing(0.2), 1);
+    simulation.change(
+        [](Model& model, State& state) { model.solver.particle_limit = static_cast<int>(state.count) + 10; });
+    std::optional<std::string> fault;
+    for (int k = 0; k < 150 && !fault; ++k) fault = simulation.advance();
+    ASSERT_TRUE(fault);
+    EXPECT_NE(fault->find("solver.particle_limit"), std::string::npos) << *fault;
+}
+
+TEST(Entrainment, without_a_bed_finds_nothing) {
+    Simulation simulation = slide(growing(0.2), 1);
+    simulation.change([](Model& model, State&) { model.bed = {}; });
+    for (int k = 0; k < 60; ++k) ASSERT_FALSE(simulation.advance());
+    EXPECT_EQ(simulation.state().entrained, 0U);
+}
+
+}  // namespace
+}  // namespace talus::testing
