@@ -113,7 +113,8 @@ void contacts_one_by_one(benchmark::State& run) {
         for (std::uint32_t i = 0; i < state.count; ++i) {
             ContactMemories<float> memories;
             benchmark::DoNotOptimize(resolve_contacts(debris.model(), boundary[i], LocalPoint{},
-                                                      state.velocity.at(i) * dt, state.multiplier[i], memories));
+                                                      state.velocity.at(i) * dt, state.multiplier[i],
+                                                      uniform_grip<float>(debris.model()), memories));
         }
     }
     per_particle(run, debris);

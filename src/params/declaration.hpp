@@ -169,6 +169,10 @@ class Declaration {
     std::function<Struct&(SceneSpec&, std::size_t)> part_;
 };
 
+/// What moves, and ground that differs.
+[[nodiscard]] Section declare_material();
+[[nodiscard]] Section declare_zone();
+
 /// The sections of what was observed in the field.
 [[nodiscard]] std::vector<Section> declare_observations();
 

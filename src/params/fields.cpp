@@ -58,6 +58,8 @@ Section declare_release() {
                    "Volume to release, spread as a uniform thickness over the polygons.");
     s.key("start_time_s", "s", &ReleaseSpec::start_time, at_least(0),
           "When the body starts to move; until then it is held in place.");
+    s.optional_key("pore_pressure_ratio", "", &ReleaseSpec::pore_pressure_ratio, between(0, 1), "that of the material",
+                   "Pore-pressure ratio r_u of this body when it starts.");
     return s.take();
 }
 
@@ -113,27 +115,6 @@ Section declare_flow_path() {
     s.text("layer", &FlowPathSpec::layer, "the only layer", "Layer of the file.");
     s.key("corridor_width_m", "m", &FlowPathSpec::corridor_width, above(0),
           "Debris farther than half of this from the line does not count as front.");
-    return s.take();
-}
-
-Section declare_material() {
-    Declaration<MaterialSpec> s("material", "What moves.", &SceneSpec::material);
-    s.key("rest_density_kgpm3", "kg/m3", &MaterialSpec::rest_density, above_to(0, 30000),
-          "Bulk density of the debris.");
-    s.key("friction_coefficient", "", &MaterialSpec::friction_coefficient, between(0, 10),
-          "Coulomb friction on the ground (tangent of the friction angle), and on buildings and inside unless set "
-          "apart.");
-    s.optional_key("building_friction_coefficient", "", &MaterialSpec::building_friction_coefficient, between(0, 10),
-                   "equal to friction_coefficient", "Coulomb friction on the walls and roofs of buildings.");
-    s.optional_key("internal_friction_coefficient", "", &MaterialSpec::internal_friction_coefficient, between(0, 10),
-                   "equal to friction_coefficient", "Coulomb friction of debris on debris.");
-    s.key(
-        "viscosity", "", &MaterialSpec::viscosity, from_to_below(0, 1),
-        "Share of the velocity difference to its neighbours that debris loses per 1/60 s, whatever the time step. The "
-        "same share is another material at another particle spacing; kinematic_viscosity_m2ps is not.");
-    s.optional_key("kinematic_viscosity_m2ps", "m2/s", &MaterialSpec::kinematic_viscosity, at_least(0),
-                   "what viscosity amounts to at this particle spacing",
-                   "Viscosity of the debris, in place of viscosity.");
     return s.take();
 }
 
@@ -210,9 +191,9 @@ Section declare_outputs() {
 
 const std::vector<Section>& scene_sections() {
     static const std::vector<Section> sections = [] {
-        std::vector<Section> all = {declare_scene(),    declare_terrain(),   declare_release(),
-                                    declare_bed(),      declare_buildings(), declare_flow_path(),
-                                    declare_material(), declare_solver(),    declare_outputs()};
+        std::vector<Section> all = {declare_scene(),     declare_terrain(),   declare_release(),  declare_bed(),
+                                    declare_buildings(), declare_flow_path(), declare_material(), declare_zone(),
+                                    declare_solver(),    declare_outputs()};
         for (Section& section : declare_observations()) all.push_back(std::move(section));
         return all;
     }();

@@ -45,8 +45,9 @@ struct ReleaseSpec {
     std::optional<double> thickness;  ///< normal to the slope, m
     std::string thickness_attribute;
     std::string thickness_raster;
-    std::optional<double> volume;  ///< m3, spread as a uniform thickness
-    double start_time = 0;         ///< s
+    std::optional<double> volume;               ///< m3, spread as a uniform thickness
+    double start_time = 0;                      ///< s
+    std::optional<double> pore_pressure_ratio;  ///< r_u; absent: that of the material
 };
 
 /// `[[bed]]`: loose material that debris picks up; exactly one of depth, depth_attribute, depth_raster.
@@ -86,6 +87,36 @@ struct MaterialSpec {
     std::optional<double> internal_friction_coefficient;  ///< absent: equal to friction_coefficient
     double viscosity = 0.1;                               ///< XSPH smoothing per 1/60 s, 0 to below 1
     std::optional<double> kinematic_viscosity;            ///< m2/s, in place of `viscosity`
+    bool viscosity_on_ground = false;                     ///< viscosity also acts between debris and ground
+    std::optional<double> turbulent_friction;             ///< xi, m/s2; absent: no such drag
+    double cohesion = 0;                                  ///< Pa, shear strength without pressure
+    double pore_pressure_ratio = 0;                       ///< r_u, at the start of the debris
+    std::optional<double> pore_pressure_decay_time;       ///< s; absent: it stays
+    std::optional<double> inertial_friction_coefficient;  ///< internal, of fast shear; absent: the rate is no matter
+    double inertial_number = 0.279;                       ///< of half the way there
+    double grain_diameter = 0.01;                         ///< m
+    double grain_density = 2650;                          ///< kg/m3
+};
+
+/// What the cells of a zone's raster hold.
+enum class ZoneRaster {
+    zone_number,  ///< the zone is where it has `raster_value`
+    friction_coefficient,
+    turbulent_friction,
+};
+
+/// `[[zone]]`: ground that differs; exactly one of file, polygon, raster. Later zones go before earlier ones.
+struct ZoneSpec {
+    std::string name;
+    std::string file, layer;
+    std::string polygon;  ///< "x y, x y, x y" in the terrain's reference system
+    std::string raster;
+    ZoneRaster raster_holds = ZoneRaster::zone_number;
+    std::optional<double> raster_value;
+    std::optional<double> friction_coefficient, turbulent_friction, cohesion;  ///< absent: as elsewhere; 1, m/s2, Pa
+    double stem_density = 0;                                                   ///< per m2; 0: no stems
+    double stem_diameter = 0.3;                                                ///< m
+    double stem_drag_coefficient = 1;
 };
 
 enum class KernelChoice {
@@ -217,6 +248,7 @@ struct SceneSpec {
     BuildingsSpec buildings;
     FlowPathSpec flow_path;
     MaterialSpec material;
+    std::vector<ZoneSpec> zones;
     SolverSpec solver;
     OutputSpec outputs;
     std::vector<ObservationSpec> observations;

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 #include <string>
 
@@ -46,6 +47,103 @@ std::string bytes_text(std::uint64_t bytes) {
 
 }  // namespace
 
+namespace {
+
+/// What resists beside friction and viscosity, where anything does.
+std::string resistance_rows(const Scene& scene) {
+    const MaterialSpec& material = scene.spec.material;
+    std::string html;
+    if (material.viscosity_on_ground) html += row("Viscosity on the ground", "the debris sticks to it");
+    if (material.turbulent_friction) {
+        html += row("Turbulent friction", fmt::format("ξ = {} m/s²", plain(*material.turbulent_friction)));
+    }
+    if (material.cohesion > 0) html += row("Cohesion", fmt::format("{} Pa", plain(material.cohesion)));
+    for (const ReleaseSpec& release : scene.spec.releases) {
+        const double ratio = release.pore_pressure_ratio.value_or(material.pore_pressure_ratio);
+        if (ratio <= 0) continue;
+        const std::string decay = material.pore_pressure_decay_time
+                                      ? fmt::format(", falls to 1/e in {} s", plain(*material.pore_pressure_decay_time))
+                                      : ", stays";
+        html += row(fmt::format("Pore pressure, {}", escape(release.name)),
+                    fmt::format("r<sub>u</sub> = {}{}", plain(ratio), decay));
+    }
+    if (material.inertial_friction_coefficient) {
+        html += row(
+            "Friction inside, fast shear",
+            fmt::format("f = {}, half way at I = {}, grains of {} m", plain(*material.inertial_friction_coefficient),
+                        plain(material.inertial_number), plain(material.grain_diameter)));
+    }
+    for (const ZoneSpec& zone : scene.spec.zones) {
+        std::string says;
+        const auto add = [&](const std::string& text) { says += (says.empty() ? "" : ", ") + text; };
+        if (zone.friction_coefficient) add(fmt::format("f = {}", plain(*zone.friction_coefficient)));
+        if (zone.turbulent_friction) add(fmt::format("ξ = {} m/s²", plain(*zone.turbulent_friction)));
+        if (zone.cohesion) add(fmt::format("cohesion {} Pa", plain(*zone.cohesion)));
+        if (zone.raster_holds != ZoneRaster::zone_number) add("coefficients of its raster");
+        if (zone.stem_density > 0) {
+            add(fmt::format("{} stems of {} m per m²", plain(zone.stem_density), plain(zone.stem_diameter)));
+        }
+        html += row(fmt::format("Zone {}", escape(zone.name)), says);
+    }
+    return html;
+}
+
+bool has_pore_pressure(const SceneSpec& spec) {
+    return spec.material.pore_pressure_ratio > 0 ||
+           std::any_of(spec.releases.begin(), spec.releases.end(),
+                       [](const ReleaseSpec& r) { return r.pore_pressure_ratio.value_or(0) > 0; });
+}
+
+/// The laws that this scene uses beside friction and viscosity, a paragraph each.
+std::string resistance_laws(const Scene& scene) {
+    const MaterialSpec& material = scene.spec.material;
+    bool turbulent = material.turbulent_friction.has_value(), stems = false;
+    for (const ZoneSpec& zone : scene.spec.zones) {
+        turbulent = turbulent || zone.turbulent_friction || zone.raster_holds == ZoneRaster::turbulent_friction;
+        stems = stems || zone.stem_density > 0;
+    }
+    std::string html;
+    if (turbulent) {
+        html +=
+            "<p><b>Turbulent friction.</b> Flow of thickness h and speed v is slowed by g v² / (ξ h) in all of its "
+            "depth, beside Coulomb friction on the ground (Voellmy 1955).</p>\n";
+    }
+    if (material.cohesion > 0) {
+        html +=
+            "<p><b>Cohesion.</b> On the ground and inside, debris resists shear by its cohesion even where nothing "
+            "presses on it; what friction bears comes on top.</p>\n";
+    }
+    if (has_pore_pressure(scene.spec)) {
+        html +=
+            "<p><b>Pore pressure.</b> Water bears the share r<sub>u</sub> of the normal stress, so that friction on "
+            "ground, buildings and inside is 1 - r<sub>u</sub> of that of dry debris.</p>\n";
+    }
+    if (material.inertial_friction_coefficient) {
+        html +=
+            "<p><b>Inertial friction.</b> Friction inside grows with the inertial number of the shear (mu(I) law, "
+            "Jop, Forterre &amp; Pouliquen 2006).</p>\n";
+    }
+    if (material.viscosity_on_ground) {
+        html +=
+            "<p><b>Viscosity on the ground.</b> The debris sticks to the ground as a viscous fluid does (Morris, Fox "
+            "&amp; Zhu 1997).</p>\n";
+    }
+    if (stems) {
+        html +=
+            "<p><b>Forest.</b> Stems slow debris as cylinders across the flow, by C<sub>D</sub> n D v² / 2 for n stems "
+            "of diameter D per area (Petryk &amp; Bosmajian 1975). They neither break nor hold debris back as a "
+            "heap.</p>\n";
+    }
+    if (!scene.spec.zones.empty()) {
+        html +=
+            "<p><b>Zones.</b> The ground resists in its own way in the zones listed with the parameters; a cell of "
+            "the terrain belongs to a zone when its centre does.</p>\n";
+    }
+    return html;
+}
+
+}  // namespace
+
 std::string chosen_values(const Scene& scene, const RunResult& result) {
     const SolverSpec& solver = scene.spec.solver;
     const MaterialSpec& material = scene.spec.material;
@@ -72,6 +170,7 @@ std::string chosen_values(const Scene& scene, const RunResult& result) {
     html += row("Viscosity, as smoothing", fmt::format("μ = {} per 1/60 s", smoothing));
     html += row("Viscosity, kinematic",
                 fmt::format("{} m²/s at this support radius", significant(result.kinematic_viscosity, 3)));
+    html += resistance_rows(scene);
     html += row("Cell of the maps", fmt::format("{} m", plain(result.map_cell)));
     return html;
 }
@@ -106,6 +205,7 @@ std::string parameter_table(const Scene& scene) {
 
 std::string method(const Scene& scene) {
     const bool pairwise = scene.spec.solver.internal_friction == InternalFriction::pair;
+    const bool wet = has_pore_pressure(scene.spec);
     return fill(
         report_files::method_html,
         {{"internal_friction",
@@ -121,7 +221,9 @@ std::string method(const Scene& scene) {
                 "The "
                 "run-out of the slow tail is overestimated and the deposit too thin; the fast front is hardly affected."
               : "<b>Deposits stand.</b> The stress that persists holds a heap below its friction angle without creep; "
-                "the front of a deposit cannot be thinner than one particle and ends some particle spacings short."}});
+                "the front of a deposit cannot be thinner than one particle and ends some particle spacings short."},
+         {"water", wet ? "Pore pressure is a number that the scene states, not computed" : "The material is dry"},
+         {"resistance_laws", resistance_laws(scene)}});
 }
 
 std::string assumptions(const Scene& scene) {

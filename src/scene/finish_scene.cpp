@@ -81,6 +81,63 @@ Status check_release(const ParsedScene& scene, std::size_t index) {
     return {};
 }
 
+/// Which of the zone's keys are given, of those that say where it is.
+Status check_zone(const ParsedScene& scene, std::size_t index) {
+    const ZoneSpec& zone = scene.spec.zones[index];
+    const std::string path = fmt::format("zone[{}].", index);
+    const std::pair<const char*, bool> places[] = {
+        {"file", !zone.file.empty()}, {"polygon", !zone.polygon.empty()}, {"raster", !zone.raster.empty()}};
+    std::string given;
+    int count = 0;
+    for (const auto& [key, is_given] : places) {
+        if (!is_given) continue;
+        given += (count++ > 0 ? ", " : "") + std::string(key);
+    }
+    if (count != 1) {
+        return Error{fmt::format("{}: exactly one of file, polygon, raster must be given; {}",
+                                 scene.at(path + (count > 0 ? given.substr(given.rfind(' ') + 1) : "file")),
+                                 count == 0 ? "there is none" : "given are " + given)};
+    }
+    if (zone.raster_value && zone.raster_holds != ZoneRaster::zone_number) {
+        return Error{
+            fmt::format("{}: is given, but zone[{}].raster_holds says that the cells hold a coefficient; leave "
+                        "one of them out",
+                        scene.at(path + "raster_value"), index)};
+    }
+    const bool says_something = zone.friction_coefficient || zone.turbulent_friction || zone.cohesion ||
+                                zone.stem_density > 0 || zone.raster_holds != ZoneRaster::zone_number;
+    if (says_something) return {};
+    return Error{
+        fmt::format("{}: the zone says nothing; give friction_coefficient, turbulent_friction_mps2, "
+                    "cohesion_Pa, stem_density_pm2 or raster_holds",
+                    scene.at(path + given))};
+}
+
+/// What the material asks for must go together.
+Status check_material(const ParsedScene& scene) {
+    const MaterialSpec& material = scene.spec.material;
+    const double internal = material.internal_friction_coefficient.value_or(material.friction_coefficient);
+    if (material.inertial_friction_coefficient && *material.inertial_friction_coefficient < internal) {
+        return Error{fmt::format("{} = {} is refused; it must be at least the internal friction of slow shear, {}",
+                                 scene.at("material.inertial_friction_coefficient"),
+                                 *material.inertial_friction_coefficient, internal)};
+    }
+    if (scene.spec.solver.internal_friction == InternalFriction::stress) return {};
+    const auto refuse = [&](const std::string& key) {
+        return Error{fmt::format("{}: needs solver.internal_friction = \"stress\"; friction by pairs has no such law",
+                                 scene.at(key))};
+    };
+    if (material.cohesion > 0) return refuse("material.cohesion_Pa");
+    if (material.pore_pressure_ratio > 0) return refuse("material.pore_pressure_ratio");
+    if (material.inertial_friction_coefficient) return refuse("material.inertial_friction_coefficient");
+    for (std::size_t i = 0; i < scene.spec.releases.size(); ++i) {
+        if (scene.spec.releases[i].pore_pressure_ratio.value_or(0) > 0) {
+            return refuse(fmt::format("release[{}].pore_pressure_ratio", i));
+        }
+    }
+    return {};
+}
+
 Status check_bed(const ParsedScene& scene, std::size_t index) {
     const BedSpec& bed = scene.spec.beds[index];
     const std::string path = fmt::format("bed[{}]", index);
@@ -117,6 +174,10 @@ Status finish_scene(ParsedScene& scene) {
     for (std::size_t i = 0; i < scene.spec.releases.size(); ++i) {
         if (Status s = check_release(scene, i); !s) return s.error();
     }
+    for (std::size_t i = 0; i < scene.spec.zones.size(); ++i) {
+        if (Status s = check_zone(scene, i); !s) return s.error();
+    }
+    if (Status s = check_material(scene); !s) return s.error();
     const SolverSpec& solver = scene.spec.solver;
     if (solver.smallest_time_step > solver.largest_time_step) {
         const bool small_given = scene.places.count("solver.smallest_time_step_s") > 0;

@@ -158,6 +158,7 @@ Result<Scene> assemble_scene(const ParsedScene& parsed) {
     if (scene.spec.scene.title.empty()) scene.spec.scene.title = title_from(parsed.file);
     record_input("scene", parsed.file.string(), scene);
     if (Status s = load_terrain(parsed, scene); !s) return s.error();
+    if (Status s = load_zones(parsed, scene); !s) return s.error();
     if (Status s = load_releases(parsed, scene); !s) return s.error();
     if (Status s = load_bed(parsed, scene); !s) return s.error();
     if (Status s = check_viscosity(parsed, scene); !s) return s.error();

@@ -15,6 +15,9 @@ namespace talus {
 /// Fills scene.terrain and what its file says of it.
 [[nodiscard]] Status load_terrain(const ParsedScene& parsed, Scene& scene);
 
+/// Fills scene.cover. The terrain is loaded.
+[[nodiscard]] Status load_zones(const ParsedScene& parsed, Scene& scene);
+
 /// Fills scene.releases. The terrain is loaded.
 [[nodiscard]] Status load_releases(const ParsedScene& parsed, Scene& scene);
 

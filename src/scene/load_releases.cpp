@@ -107,6 +107,7 @@ Result<Release> load_release(const ParsedScene& parsed, std::size_t index, Scene
     Release release;
     release.name = spec.name;
     release.start_time = spec.start_time;
+    release.pore_pressure_ratio = spec.pore_pressure_ratio;
     for (std::size_t feature = 0; feature < layer->features.size(); ++feature) {
         const Result<double> thickness = feature_thickness(spec, *layer, feature);
         if (!thickness) return refused("thickness_attribute", thickness.error());

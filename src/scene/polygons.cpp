@@ -75,6 +75,24 @@ void for_each_inside(const Polygon& polygon, double step, const std::function<vo
     }
 }
 
+void for_each_cell_inside(const Polygon& polygon, const GridGeometry& grid,
+                          const std::function<void(int column, int row)>& visit) {
+    const Extent extent = extent_of(polygon);
+    const auto clamped = [](double cell, int count) { return static_cast<int>(std::clamp(cell, 0.0, double(count))); };
+    const int last_row = clamped(std::ceil((extent.y_max - grid.y_min) / grid.cell), grid.rows);
+    std::vector<double> crossings;
+    for (int row = clamped(std::floor((extent.y_min - grid.y_min) / grid.cell), grid.rows); row < last_row; ++row) {
+        find_crossings(polygon, grid.centre(0, row).y, crossings);
+        for (std::size_t i = 0; i + 1 < crossings.size(); i += 2) {
+            const auto first_beyond = [&](double x) {
+                return clamped(std::ceil((x - grid.x_min) / grid.cell - 0.5), grid.columns);
+            };
+            const int end = first_beyond(crossings[i + 1]);
+            for (int column = first_beyond(crossings[i]); column < end; ++column) visit(column, row);
+        }
+    }
+}
+
 void for_each_on_rings(const Polygon& polygon, double step, const std::function<void(const PlanPoint&)>& visit) {
     const auto walk = [&](const Ring& ring) {
         for (std::size_t i = 0; i < ring.size(); ++i) {

@@ -3,6 +3,7 @@
 #include <functional>
 
 #include "core/geometry.hpp"
+#include "core/grid.hpp"
 
 namespace talus {
 
@@ -21,6 +22,10 @@ struct Overlap {
 
 /// Calls `visit` at points inside the polygon, `step` apart (coarser beyond 2000 lines); at least at one.
 void for_each_inside(const Polygon& polygon, double step, const std::function<void(const PlanPoint&)>& visit);
+
+/// Calls `visit(column, row)` for every cell of the grid whose centre lies inside the polygon.
+void for_each_cell_inside(const Polygon& polygon, const GridGeometry& grid,
+                          const std::function<void(int column, int row)>& visit);
 
 /// Calls `visit` along all rings, corners included, at most `step` apart.
 void for_each_on_rings(const Polygon& polygon, double step, const std::function<void(const PlanPoint&)>& visit);

@@ -109,6 +109,7 @@ Result<RunResult> run_in_arena(const Scene& scene, const RunOptions& options, in
     const SceneSpec& spec = scene.spec;
     const double spacing = choose_particle_spacing(spec.solver, volume);
     Model model = make_model(spec.material, spec.solver, scene.terrain, scene.buildings, spacing);
+    model.cover = scene.cover;
     model.bed = scene.bed;
     Result<State> seeded = seed_releases(model, scene.releases);
     if (!seeded) return Error{scene.file.string() + ": " + seeded.error().message};

@@ -11,6 +11,7 @@
 #include "terrain/bed.hpp"
 #include "terrain/buildings.hpp"
 #include "terrain/flow_path.hpp"
+#include "terrain/ground_cover.hpp"
 #include "terrain/release.hpp"
 #include "terrain/terrain.hpp"
 
@@ -32,6 +33,7 @@ struct Scene {
     std::string vertical_unit;
     double nodata_share = 0;
     Terrain terrain;
+    GroundCover cover;  ///< of the zones
     std::vector<Release> releases;
     Bed bed;
     std::vector<Building> buildings;

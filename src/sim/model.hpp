@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -10,6 +11,7 @@
 #include "sim/physics/kernel.hpp"
 #include "terrain/bed.hpp"
 #include "terrain/buildings.hpp"
+#include "terrain/ground_cover.hpp"
 #include "terrain/terrain.hpp"
 
 namespace talus {
@@ -19,6 +21,15 @@ struct ReleaseGroup {
     std::string name;
     double start_time = 0;  ///< s
     std::uint32_t first_particle = 0, last_particle = 0;
+    std::optional<double> pore_pressure_ratio = {};  ///< r_u at its start; absent: that of the material
+};
+
+/// Internal friction that grows with the shear rate, the mu(I) law.
+struct InertialFriction {
+    bool on = false;
+    double rise = 0;        ///< mu_2 - mu_s
+    double half = 0;        ///< I_0
+    double grain_size = 0;  ///< m, diameter x sqrt(grain density / bulk density)
 };
 
 /// Everything that stays constant during a step, and during a run unless somebody changes it or debris picks up its
@@ -38,7 +49,14 @@ struct Model {
     double internal_friction_coefficient = 0;
     double viscosity = 0;            ///< XSPH smoothing per 1/60 s
     double kinematic_viscosity = 0;  ///< m2/s, the same thing at this support radius
-    double gravity = 9.80665;        ///< m/s2
+    bool viscosity_on_ground = false;
+    double turbulent_friction = 0;        ///< xi, m/s2; 0: no such drag
+    double cohesion = 0;                  ///< Pa, on the ground and inside
+    double pore_pressure_ratio = 0;       ///< r_u, at the start of a release
+    double pore_pressure_decay_time = 0;  ///< s; 0: it stays
+    InertialFriction inertial_friction;   ///< inside
+    GroundCover cover;                    ///< where the ground resists in its own way
+    double gravity = 9.80665;             ///< m/s2
 
     SolverSpec solver;
 

@@ -50,6 +50,9 @@ Model without_forces(const Model& model) {
     still.solver.depenetration_speed = 1e3;  // without inertia nothing can fly apart
     still.gravity = 0;
     still.friction_coefficient = still.building_friction_coefficient = still.internal_friction_coefficient = 0;
+    still.turbulent_friction = still.cohesion = 0;
+    still.inertial_friction = {};
+    still.cover = {};
     still.solver.internal_friction = InternalFriction::pair;
     return still;
 }
@@ -69,6 +72,8 @@ void relax(const Model& model, State& state, const std::vector<float>& overburde
     still.solver.internal_friction = model.solver.internal_friction;
     still.friction_coefficient = model.friction_coefficient;
     still.building_friction_coefficient = model.building_friction_coefficient;
+    still.cohesion = model.cohesion;
+    still.cover = model.cover;
     state.time_step = state.previous_time_step = model.solver.largest_time_step / 4;
     const double scale = -model.gravity * state.time_step * state.time_step;
     for (std::uint32_t i = 0; i < state.count; ++i) {

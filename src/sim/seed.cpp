@@ -126,6 +126,18 @@ void set_material(Model& model, const MaterialSpec& material) {
                           ? smoothing_viscosity(*material.kinematic_viscosity, model.kernel.second_moment)
                           : material.viscosity;
     model.kinematic_viscosity = kinematic_viscosity(model.viscosity, model.kernel.second_moment);
+    model.viscosity_on_ground = material.viscosity_on_ground;
+    model.turbulent_friction = material.turbulent_friction.value_or(0);
+    model.cohesion = material.cohesion;
+    model.pore_pressure_ratio = material.pore_pressure_ratio;
+    model.pore_pressure_decay_time = material.pore_pressure_decay_time.value_or(0);
+    model.inertial_friction = {};
+    if (material.inertial_friction_coefficient) {
+        model.inertial_friction = {
+            true, std::max(0.0, *material.inertial_friction_coefficient - model.internal_friction_coefficient),
+            material.inertial_number,
+            material.grain_diameter * std::sqrt(material.grain_density / material.rest_density)};
+    }
 }
 
 Model make_model(const MaterialSpec& material, const SolverSpec& solver, Terrain terrain,
@@ -190,7 +202,8 @@ Result<State> seed_releases(Model& model, const std::vector<Release>& releases) 
                 overburden[next] = static_cast<float>(above * ground.normal.z * ground.normal.z);
             }
         }
-        model.releases.push_back({releases[r].name, releases[r].start_time, first, next});
+        model.releases.push_back(
+            {releases[r].name, releases[r].start_time, first, next, releases[r].pore_pressure_ratio});
     }
     state.seeded = state.count = next;
     if (state.count == 0) return state;

@@ -23,6 +23,7 @@ struct Release {
     std::vector<ReleasePatch> patches;            ///< not overlapping
     std::optional<Grid<float>> thickness_raster;  ///< if present, replaces the patches' thickness (NaN, <= 0: none)
     double volume = 0;                            ///< m3, as integrated by release_volume
+    std::optional<double> pore_pressure_ratio;    ///< absent: that of the material
 
     /// Thickness normal to the slope at a world plan position; 0 outside the patches.
     [[nodiscard]] double thickness_at(const PlanPoint& p) const;

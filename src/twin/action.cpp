@@ -110,6 +110,10 @@ Status ActionReader::set_parameter() {
     if (!*value && (!may_follow || !action_.contains("value"))) {
         return Error{fmt::format("{}: value: missing; must be {}", **key, allowed_text(parameter))};
     }
+    const bool by_stress = context_.scene.spec.solver.internal_friction == InternalFriction::stress;
+    if (!by_stress && (parameter.key == "cohesion_Pa" || parameter.key == "pore_pressure_ratio")) {
+        return Error{fmt::format("{}: needs solver.internal_friction = \"stress\"", **key)};
+    }
     const double before = value_in_force(edit_.setup.material, parameter, context_.viscosity);
     SceneSpec spec;
     spec.material = edit_.setup.material;
@@ -117,7 +121,8 @@ Status ActionReader::set_parameter() {
     edit_.setup.material = spec.material;
     if (parameter.key == "viscosity") edit_.setup.material.kinematic_viscosity.reset();
     const double after = value_in_force(edit_.setup.material, parameter, context_.viscosity);
-    edit_.sentence = fmt::format("{} {:.6g} -> {:.6g}{}{}", label_of(parameter), before, after,
+    const auto shown_value = [](double number) { return std::isnan(number) ? "none" : fmt::format("{:.6g}", number); };
+    edit_.sentence = fmt::format("{} {} -> {}{}{}", label_of(parameter), shown_value(before), shown_value(after),
                                  parameter.unit.empty() ? "" : " ", parameter.unit);
     return {};
 }

@@ -20,6 +20,7 @@ Result<std::unique_ptr<LiveRun>> LiveRun::start(const Scene& scene, const Setup&
     tbb::task_arena arena(threads);
     return arena.execute([&]() -> Result<std::unique_ptr<LiveRun>> {
         Model model = make_model(setup.material, scene.spec.solver, scene.terrain, std::move(buildings), spacing);
+        model.cover = scene.cover;
         model.bed = scene.bed;
         Result<State> state = seed_releases(model, releases);
         if (!state) return state.error();

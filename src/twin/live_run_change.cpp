@@ -49,9 +49,13 @@ Building without_solid(Building building) {
 }
 
 /// What holds debris back: when any of it changes, debris at rest may move again.
-std::array<double, 4> holding_back(const Model& model) {
-    return {model.friction_coefficient, model.building_friction_coefficient, model.internal_friction_coefficient,
-            model.viscosity};
+std::array<double, 6> holding_back(const Model& model) {
+    return {model.friction_coefficient,
+            model.building_friction_coefficient,
+            model.internal_friction_coefficient,
+            model.viscosity,
+            model.cohesion,
+            model.pore_pressure_ratio};
 }
 
 }  // namespace
@@ -205,7 +209,8 @@ void LiveRun::replace_releases(Model& model, State& state, Change& change) {
         const std::uint32_t first = state.seeded;
         append_particles(state, seed.state, first);
         groups.push_back({seed.release->id, false});
-        ranges.push_back({seed.release->body->name, seed.release->body->start_time, first, state.seeded});
+        ranges.push_back({seed.release->body->name, seed.release->body->start_time, first, state.seeded,
+                          seed.release->body->pore_pressure_ratio});
     }
     groups_ = std::move(groups);
     model.releases = std::move(ranges);

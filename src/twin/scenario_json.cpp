@@ -37,10 +37,10 @@ json levers_json(const Scene& scene, const Model& model, const MaterialSpec& now
         list.push_back({{"key", "material." + lever->key},
                         {"label", label_of(*lever)},
                         {"unit", lever->unit},
-                        {"default", value_in_force(scene.spec.material, *lever, scene_viscosity)},
+                        {"default", number_or_null(value_in_force(scene.spec.material, *lever, scene_viscosity))},
                         {"range", range_json(lever->range)},
                         {"help", lever->help},
-                        {"value", value_in_force(now, *lever, model.viscosity)}});
+                        {"value", number_or_null(value_in_force(now, *lever, model.viscosity))}});
     }
     return list;
 }
@@ -178,7 +178,8 @@ json Scenario::setup_json() const {
     const Setup& setup = p.setup();
     json parameters = json::object(), releases = json::array(), barriers = json::array(), buildings = json::array();
     for (const Parameter* lever : levers()) {
-        parameters["material." + lever->key] = value_in_force(setup.material, *lever, p.run->model().viscosity);
+        parameters["material." + lever->key] =
+            number_or_null(value_in_force(setup.material, *lever, p.run->model().viscosity));
     }
     for (const ReleaseSetup& release : setup.releases) {
         json polygons = json::array();

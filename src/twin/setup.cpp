@@ -1,6 +1,7 @@
 #include "twin/setup.hpp"
 
 #include <algorithm>
+#include <limits>
 
 #include <fmt/format.h>
 
@@ -61,8 +62,9 @@ bool same_shape(const std::shared_ptr<const Building>& a, const std::shared_ptr<
 const std::vector<const Parameter*>& levers() {
     static const std::vector<const Parameter*> found = [] {
         std::vector<const Parameter*> list;
-        for (const char* key : {"friction_coefficient", "building_friction_coefficient",
-                                "internal_friction_coefficient", "viscosity", "rest_density_kgpm3"}) {
+        for (const char* key :
+             {"friction_coefficient", "building_friction_coefficient", "internal_friction_coefficient", "viscosity",
+              "turbulent_friction_mps2", "cohesion_Pa", "pore_pressure_ratio", "rest_density_kgpm3"}) {
             list.push_back(find_section("material")->find(key));
         }
         return list;
@@ -85,7 +87,8 @@ double value_in_force(const MaterialSpec& material, const Parameter& lever, doub
     if (lever.key == "viscosity" && material.kinematic_viscosity) return viscosity;
     const ParameterValue value = lever.get(spec, 0);
     if (const double* number = std::get_if<double>(&value)) return *number;
-    return material.friction_coefficient;  // both that may be left out follow it
+    if (lever.key == "turbulent_friction_mps2") return std::numeric_limits<double>::quiet_NaN();
+    return material.friction_coefficient;  // both others that may be left out follow it
 }
 
 }  // namespace talus::twin

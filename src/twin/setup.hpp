@@ -71,7 +71,8 @@ template <class Entry>
 /// "friction coefficient", from "friction_coefficient"; without the unit that the key ends with.
 [[nodiscard]] std::string label_of(const Parameter& parameter);
 
-/// The value that holds, in the unit of the key: one that is not set apart is that of what it follows.
+/// The value that holds, in the unit of the key: one that is not set apart is that of what it follows; NaN where it
+/// follows nothing.
 /// `viscosity`: as make_model takes it, where the scene gives it as kinematic viscosity.
 [[nodiscard]] double value_in_force(const MaterialSpec& material, const Parameter& lever, double viscosity);
 

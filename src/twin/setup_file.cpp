@@ -90,7 +90,9 @@ Status SetupReader::read_material(const json& file, MaterialSpec& material) cons
     spec.material = scene_.spec.material;
     for (const auto& [key, value] : file.items()) {
         const Parameter* parameter = find_section("material")->find(key);
-        if (parameter == nullptr) return Error{fmt::format("material.{}: no such key", key)};
+        if (parameter == nullptr || parameter->kind != ParameterKind::number) {
+            return Error{fmt::format("material.{}: no such key", key)};
+        }
         auto number = read_number(file, key, parameter->range, parameter->unit);
         if (!number) return number.error();
         if (!*number && parameter->absent.empty()) return Error{fmt::format("material.{}: must be a number", key)};

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace talus::validate {
 
@@ -124,6 +125,26 @@ double momentum_jump(double froude) {
         ((x - 1) * (x * x - 1) < 2 * froude * froude * x ? low : high) = x;
     }
     return (low + high) / 2;
+}
+
+double SheetFlow::voellmy(double friction, double turbulent_friction) const {
+    const double driving = std::sin(slope) - friction * std::cos(slope);
+    return std::sqrt(std::max(0.0, turbulent_friction * thickness * driving));
+}
+
+double SheetFlow::bingham(double height, double yield, double viscosity) const {
+    const double drive = gravity * std::sin(slope);
+    const double sheared = std::max(0.0, thickness - yield / drive), z = std::min(height, sheared);
+    return drive / viscosity * (sheared * z - z * z / 2);
+}
+
+double SheetFlow::bagnold(double height, double slow_friction, double fast_friction, double half_number, double grain,
+                          double solid_share) const {
+    const double tangent = std::tan(slope);
+    if (!(tangent > slow_friction) || !(tangent < fast_friction)) return std::numeric_limits<double>::quiet_NaN();
+    const double number = half_number * (tangent - slow_friction) / (fast_friction - tangent);
+    return 2.0 / 3 * number / grain * std::sqrt(solid_share * gravity * std::cos(slope)) *
+           (std::pow(thickness, 1.5) - std::pow(thickness - std::min(height, thickness), 1.5));
 }
 
 }  // namespace talus::validate

@@ -70,4 +70,21 @@ class SpreadingCap {
 /// balance of the jump, (x - 1)(x^2 - 1) = 2 Fr^2 x.
 [[nodiscard]] double momentum_jump(double froude);
 
+/// A sheet of even thickness that flows steadily down a plane: velocity by the height above the ground.
+struct SheetFlow {
+    double slope, thickness, gravity;
+
+    /// With Coulomb friction and turbulent drag g v^2 / (xi h) (Voellmy 1955), the same at every height; 0 where
+    /// friction holds it.
+    [[nodiscard]] double voellmy(double friction, double turbulent_friction) const;
+    /// Of a Bingham fluid that sticks to the ground: sheared below the height at which the shear stress falls to the
+    /// yield stress, a plug above. `yield`: stress over density, m2/s2; `viscosity`: kinematic, m2/s.
+    [[nodiscard]] double bingham(double height, double yield, double viscosity) const;
+    /// Of grains with the mu(I) law on a rough bed (Bagnold's profile in the form of GDR MiDi 2004): constant inertial
+    /// number I with mu(I) = tan(slope). `grain`: m; `solid_share`: volume of grains in that of the debris. NaN where
+    /// no I does: too gentle (it stands) or too steep (it never gets steady).
+    [[nodiscard]] double bagnold(double height, double slow_friction, double fast_friction, double half_number,
+                                 double grain, double solid_share) const;
+};
+
 }  // namespace talus::validate

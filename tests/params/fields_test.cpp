@@ -41,8 +41,8 @@ TEST(FieldTable, EveryMemberIsDeclared) {
         EXPECT_EQ(declared("terrain"), 7U);
     }
     {
-        [[maybe_unused]] const auto [a, b, c, d, e, f, g, h] = ReleaseSpec{};
-        EXPECT_EQ(declared("release"), 8U);
+        [[maybe_unused]] const auto [a, b, c, d, e, f, g, h, i] = ReleaseSpec{};
+        EXPECT_EQ(declared("release"), 9U);
     }
     {
         [[maybe_unused]] const auto [a, b, c, d, e, f, g, h, i, j, k] = BedSpec{};
@@ -57,8 +57,12 @@ TEST(FieldTable, EveryMemberIsDeclared) {
         EXPECT_EQ(declared("flow_path"), 3U);
     }
     {
-        [[maybe_unused]] const auto [a, b, c, d, e, f] = MaterialSpec{};
-        EXPECT_EQ(declared("material"), 6U);
+        [[maybe_unused]] const auto [a, b, c, d, e, f, g, h, i, j, k, l, m, n, o] = MaterialSpec{};
+        EXPECT_EQ(declared("material"), 15U);
+    }
+    {
+        [[maybe_unused]] const auto [a, b, c, d, e, f, g, h, i, j, k, l, m] = ZoneSpec{};
+        EXPECT_EQ(declared("zone"), 13U);
     }
     {
         [[maybe_unused]] const auto [a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, q, r, s, t] = SolverSpec{};
@@ -104,7 +108,8 @@ TEST(FieldTable, EveryMemberIsDeclared) {
 
 TEST(FieldTable, KeysOfMeasuresEndInTheirUnit) {
     const std::vector<std::pair<std::string, std::string>> suffixes = {
-        {"m", "_m"}, {"s", "_s"}, {"m/s", "_mps"}, {"kg/m3", "_kgpm3"}, {"m3", "_m3"}};
+        {"m", "_m"},   {"s", "_s"},   {"m/s", "_mps"},  {"kg/m3", "_kgpm3"},
+        {"m3", "_m3"}, {"Pa", "_Pa"}, {"m/s2", "_mps2"}};
     for (const Section& section : scene_sections()) {
         for (const Parameter& p : section.parameters) {
             for (const auto& [unit, suffix] : suffixes) {

@@ -1,5 +1,6 @@
 #include <cmath>
 #include <cstdlib>
+#include <limits>
 #include <numeric>
 #include <string>
 
@@ -88,8 +89,31 @@ TEST(ParticleCorrections, conserve_momentum_with_pair_friction) {
     expect_momentum_kept(InternalFriction::pair);
 }
 
+/// Forest on rough ground in the south, as elsewhere in the north.
+GroundCover half_and_half(const Terrain& terrain) {
+    constexpr float none = std::numeric_limits<float>::quiet_NaN();
+    Grid<CoverCell> cells(terrain.elevation().geometry, {none, none, none, 0});
+    for (int row = 0; row < cells.geometry.rows / 2; ++row) {
+        for (int column = 0; column < cells.geometry.columns; ++column)
+            cells.at(column, row) = {0.6F, 0.01F, 500, 0.05F};
+    }
+    return GroundCover(cells);
+}
+
+MaterialSpec everything() {
+    MaterialSpec material;
+    material.turbulent_friction = 300;
+    material.cohesion = 200;
+    material.pore_pressure_ratio = 0.4;
+    material.pore_pressure_decay_time = 0.5;
+    material.inertial_friction_coefficient = 0.7;
+    material.viscosity_on_ground = true;
+    return material;
+}
+
 /// Runs the fast backend and the reference side by side over debris that falls onto a slope beside a building.
-void expect_agreement(InternalFriction friction, KernelChoice kernel, int steps, double tolerance) {
+void expect_agreement(InternalFriction friction, KernelChoice kernel, int steps, double tolerance,
+                      const MaterialSpec& material = {}, bool zones = false) {
     SolverSpec solver;
     solver.internal_friction = friction;
     solver.kernel = kernel;
@@ -97,8 +121,14 @@ void expect_agreement(InternalFriction friction, KernelChoice kernel, int steps,
     house.footprint = {testing::rectangle(20.6, 18, 24, 22)};
     house.height = 3;
     const Terrain terrain = testing::inclined_plane(25, 40, 40);
-    Simulation simulation = testing::simulate(
-        {}, solver, terrain, {testing::block(terrain, testing::rectangle(17.5, 18.5, 20.5, 21.5), 1.2)}, 0.4, {house});
+    std::vector<Building> buildings{house};
+    place_buildings(terrain, buildings);
+    Model model = make_model(material, solver, terrain, buildings, 0.4);
+    if (zones) model.cover = half_and_half(terrain);
+    Result<State> seeded =
+        seed_releases(model, {testing::block(terrain, testing::rectangle(17.5, 18.5, 20.5, 21.5), 1.2)});
+    ASSERT_TRUE(seeded);
+    Simulation simulation(std::move(model), *std::move(seeded));
     reference::State exact(simulation.state());
     reference::Backend backend;
     StageTimes times;
@@ -138,8 +168,12 @@ TEST_P(InstructionSet, agrees_with_the_reference_for_the_other_kernels) {
     expect_agreement(InternalFriction::stress, KernelChoice::spiky, 4, 2e-4);
 }
 
+TEST_P(InstructionSet, agrees_with_the_reference_for_every_resistance) {
+    expect_agreement(InternalFriction::stress, KernelChoice::wendland_c2, 12, 2e-4, everything(), true);
+}
+
 TEST_P(InstructionSet, gives_the_same_bits_as_the_baseline) {
-    const auto hash_after = [](const char* set, InternalFriction friction) {
+    const auto hash_after = [](const char* set, InternalFriction friction, const MaterialSpec& material = {}) {
         setenv("TALUS_SIMD", set, 1);
         SolverSpec solver;
         solver.internal_friction = friction;
@@ -149,7 +183,7 @@ TEST_P(InstructionSet, gives_the_same_bits_as_the_baseline) {
         house.footprint = {testing::rectangle(20.6, 18, 24, 22)};
         house.height = 3;
         Simulation simulation =
-            testing::simulate({}, solver, terrain,
+            testing::simulate(material, solver, terrain,
                               {testing::block(terrain, testing::rectangle(17.5, 18.5, 20.5, 21.5), 1.2)}, 0.3, {house});
         for (int i = 0; i < 30; ++i) simulation.advance();
         return hash_state(simulation.state());
@@ -157,6 +191,10 @@ TEST_P(InstructionSet, gives_the_same_bits_as_the_baseline) {
     for (const InternalFriction friction : {InternalFriction::stress, InternalFriction::pair}) {
         EXPECT_EQ(hash_after(GetParam(), friction), hash_after("SCALAR", friction));
     }
+    EXPECT_EQ(hash_after(GetParam(), InternalFriction::stress, everything()),
+              hash_after("SCALAR", InternalFriction::stress, everything()));
+    EXPECT_NE(hash_after(GetParam(), InternalFriction::stress, everything()),
+              hash_after(GetParam(), InternalFriction::stress));
 }
 
 INSTANTIATE_TEST_SUITE_P(CpuBackend, InstructionSet, ::testing::Values("SSE2", "SSE4", "AVX2", "AVX3"),

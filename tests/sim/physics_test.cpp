@@ -159,7 +159,7 @@ TEST(Boundaries, walls_rub_with_their_own_friction_where_it_is_set_apart) {
         const Model model = make_model(material, {}, terrain, buildings, 0.4);
         ContactMemories<double> contacts;
         const Vec3<double> end = resolve_contacts<double>(model, sample_boundary<double>(model, {1.79, 0, 5}), {},
-                                                          {0.03, 0.05, 0}, 0, contacts);
+                                                          {0.03, 0.05, 0}, 0, uniform_grip<double>(model), contacts);
         EXPECT_NEAR(contacts[1].normal, 0.02, 1e-6);
         EXPECT_NEAR(end.x, 0.01, 1e-6);
         return end.y;

@@ -26,6 +26,25 @@ TEST(ColumnLaws, HaveTheValuesOfTheirPapers) {
     EXPECT_NEAR(column_height_planar(0.5), 0.5, 1e-12);
 }
 
+TEST(SheetFlow, HasTheVelocitiesOfItsLaws) {
+    const SheetFlow sheet{30 * degrees, 2, gravity};
+    EXPECT_NEAR(sheet.voellmy(0.2, 500), std::sqrt(1000 * (0.5 - 0.2 * 0.8660254)), 1e-6);
+    EXPECT_EQ(sheet.voellmy(0.6, 500), 0);
+    // A yield stress of half the weight's pull: the upper half is a plug.
+    const double yield = gravity * 0.5, viscosity = 0.3;
+    EXPECT_NEAR(sheet.bingham(0.5, yield, viscosity), gravity * 0.5 / 0.3 * (0.5 - 0.125), 1e-9);
+    EXPECT_NEAR(sheet.bingham(1, yield, viscosity), gravity * 0.5 / 0.3 * 0.5, 1e-9);
+    EXPECT_NEAR(sheet.bingham(2, yield, viscosity), sheet.bingham(1, yield, viscosity), 1e-12);
+    EXPECT_EQ(sheet.bingham(2, 3 * gravity, viscosity), 0);
+    // mu(I) = tan 30 half way between 0.4 and 0.7547: I = I_0.
+    const double fast = 2 * std::tan(30 * degrees) - 0.4;
+    EXPECT_NEAR(sheet.bagnold(2, 0.4, fast, 0.3, 0.05, 0.6),
+                2.0 / 3 * 6 * std::sqrt(0.6 * gravity * std::cos(30 * degrees)) * std::pow(2, 1.5), 1e-9);
+    EXPECT_EQ(sheet.bagnold(0, 0.4, fast, 0.3, 0.05, 0.6), 0);
+    EXPECT_TRUE(std::isnan(sheet.bagnold(1, 0.6, 0.9, 0.3, 0.05, 0.6))) << "it stands";
+    EXPECT_TRUE(std::isnan(sheet.bagnold(1, 0.2, 0.5, 0.3, 0.05, 0.6))) << "it never gets steady";
+}
+
 TEST(DamBreak, IsRittersWithoutSlopeAndFriction) {
     const DamBreak dam(0, 0, 2, gravity);
     const double c = std::sqrt(gravity * 2);

@@ -67,6 +67,7 @@ void Backend::run(StageFunction stage, const Model& model, State& state) {
 
 void Backend::predict_positions(const Model& model, State& state) {
     release_held(model, state);
+    if (slows_by_speed(model)) run(particle_stages_.drag, model, state, everything(state));
     run(particle_stages_.predict, model, state, everything(state));
 }
 
@@ -86,6 +87,7 @@ void Backend::find_neighbours(const Model& model, State& state) {
     state.awake = found.awake;
     search_.write(neighbours_);
     run(particle_stages_.begin, model, state, everything(state));
+    if (resists_by_particle(model)) run(particle_stages_.resist, model, state);
 }
 
 void Backend::reorder(State& state, std::span<const std::uint32_t> order) {

@@ -22,6 +22,22 @@ HWY_INLINE L mobility(const State& state, std::size_t i) {
     return flags(state.held, i, 0, 1) * flags(state.resting, i, 0, 1);
 }
 
+/// Drag by speed, with the pressures of the last step.
+TALUS_STAGE void drag(const StageData& data, std::size_t first, std::size_t last) {
+    const Model& model = data.model;
+    State& state = data.state;
+    const double before = state.previous_time_step;
+    const L dt(state.time_step), pressure_scale(before > 0 ? -1 / (before * before) : 0);
+    for_each_lanes(first, last, [&](std::size_t i) {
+        const V3 velocity = load(state.velocity, i), p = load(state.position, i);
+        const GroundSample<L> below = model.terrain.sample(p.x, p.y);
+        const L distance = (p.z - below.height) * below.normal.z;
+        const V3 slower = slowed_by_drag(model, ground_resistance(model, p), below, distance,
+                                         load(state.multiplier, i) * pressure_scale, velocity, dt);
+        store(select(mobility(state, i) > L(0), slower, velocity), state.velocity, i);
+    });
+}
+
 TALUS_STAGE void predict(const StageData& data, std::size_t first, std::size_t last) {
     const Model& model = data.model;
     State& state = data.state;
@@ -56,20 +72,44 @@ TALUS_STAGE void begin(const StageData& data, std::size_t first, std::size_t las
     });
 }
 
+TALUS_STAGE void resist(const StageData& data, std::size_t first, std::size_t last) {
+    const Model& model = data.model;
+    State& state = data.state;
+    Work& work = data.work;
+    const L strength(strength_per_pascal(model, state.time_step));
+    for_each_lanes(first, last, [&](std::size_t i) {
+        L share(1);
+        for (int lane = 0; lane < lane_count; ++lane) {
+            const std::uint32_t id = state.id[i + static_cast<std::size_t>(lane)];
+            share.set(lane, static_cast<float>(effective_share(model, id, state.time)));
+        }
+        const GroundResistance<L> ground = ground_resistance(model, load(state.position, i));
+        store(share, work.effective_share, i);
+        store(ground.friction_coefficient * share, work.ground_friction, i);
+        store(ground.cohesion * strength, work.ground_strength, i);
+    });
+}
+
 /// Contact with ground and buildings, and the basal part of eq. (4).
 TALUS_STAGE void contacts(const StageData& data, std::size_t first, std::size_t last) {
     const Model& model = data.model;
     State& state = data.state;
     Work& work = data.work;
+    const bool by_particle = resists_by_particle(model);
 
     for_each_lanes(first, last, [&](std::size_t i) {
         const L mobile = load(work.mobile, i), multiplier = load(state.multiplier, i);
         const V3 displacement = load(work.corrected, i), normal = load(work.ground_normal, i);
         ContactMemory<L> contact{load(work.contact_normal, i), load(work.contact_friction, i)};
         const L distance = load(work.ground_distance, i) + dot(displacement, normal);
+        L friction(model.friction_coefficient), strength(0);
+        if (by_particle) {
+            friction = load(work.ground_friction, i);
+            strength = load(work.ground_strength, i) * basal_share(model, distance);
+        }
         V3 after = displacement + resolve_face(model, distance, normal, displacement,
-                                               boundary_push(load(work.ground_slope, i), multiplier),
-                                               model.friction_coefficient, contact);
+                                               boundary_push(load(work.ground_slope, i), multiplier), friction,
+                                               strength, contact);
         store(contact.normal, work.contact_normal, i);
         store(contact.friction, work.contact_friction, i);
         for (std::size_t lane = 0; lane < lane_count; ++lane) {
@@ -195,7 +235,13 @@ TALUS_STAGE void apply_viscosity(const StageData& data, std::size_t first, std::
             const L weight = Kernel::value(scale.quotient(length(p - vector_of(other.low)))) * L(scale.value_scale);
             change += (vector_of(other.high) - own) * weight;
         }
-        store(own + change * (smoothing * load(work.mobile, i)), state.velocity, i);
+        const L mobile = load(work.mobile, i);
+        V3 after = own + change * (smoothing * mobile);
+        if (model.viscosity_on_ground) {
+            const GroundSample<L> below = model.terrain.sample(p.x, p.y);
+            after = slowed_by_ground(model, below, (p.z - below.height) * below.normal.z, after, smoothing * mobile);
+        }
+        store(after, state.velocity, i);
     });
 }
 
@@ -244,8 +290,10 @@ TALUS_STAGE void settle(const StageData& data, std::size_t first, std::size_t la
 }
 
 ParticleStages make_stages(KernelChoice kernel) {
-    ParticleStages stages{predict,
+    ParticleStages stages{drag,
+                          predict,
                           begin,
+                          resist,
                           contacts,
                           undo_overlaps,
                           enforce_boundaries,

@@ -108,6 +108,9 @@ TALUS_STAGE void solve(const StageData& data, std::size_t first, std::size_t las
     NeighbourLists& neighbours = data.neighbours;
     const L factor(jacobi_factor(model.solver.under_relaxation, model.kernel));
     const L internal_friction(model.internal_friction_coefficient);
+    const L cohesion(model.cohesion * state.time_step * state.time_step / model.rest_density);
+    const bool by_particle = resists_by_particle(model), cohesive = model.cohesion > 0;
+    const InertialFriction& inertial = model.inertial_friction;
     for_each_lanes(first, last, [&](std::size_t i) {
         const LaneLists lists(neighbours, i);
         const V3 moved = vector_of(load_high(work.motion, i));
@@ -120,8 +123,16 @@ TALUS_STAGE void solve(const StageData& data, std::size_t first, std::size_t las
         const L before = load(state.multiplier, i);
         const L after = next_multiplier(before, density - larger(L(0), start), load(work.gradient_square, i), factor);
         const Stress stress_before = load(state.stress, i);
-        const Stress stress =
-            next_stress(stress_before, deformation, internal_friction, after, load(work.pair_square, i), factor);
+        const Stress shear = deformation.shear();
+        L friction = internal_friction, pressure = -after;
+        if (by_particle) pressure = pressure * load(work.effective_share, i);
+        if (inertial.on) {
+            friction = inertial_friction(friction, L(inertial.rise), L(inertial.half), L(inertial.grain_size), shear,
+                                         pressure);
+        }
+        const L limit =
+            cohesive ? strength_limit_square(friction, pressure, cohesion) : friction_limit_square(friction, pressure);
+        const Stress stress = next_stress(stress_before, shear, limit, load(work.pair_square, i), factor);
         const L mobile = load(work.mobile, i);
         const Mask moves = mobile > L(0);
         store(select(moves, after, before), state.multiplier, i);

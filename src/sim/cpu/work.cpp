@@ -9,9 +9,9 @@ Work::Work(std::size_t capacity) : has_walls(capacity + array_padding), walls(ca
         array->resize(capacity);
     }
     for (std::vector<Oct>* array : {&motion, &stress}) array->resize(capacity + array_padding);
-    for (std::vector<float>* array :
-         {&mobile, &ground_distance, &ground_slope, &constraint_start, &surface_share, &gradient_square, &pair_square,
-          &compression, &tolerated_compression, &contact_normal}) {
+    for (std::vector<float>* array : {&mobile, &ground_distance, &ground_slope, &constraint_start, &surface_share,
+                                      &gradient_square, &pair_square, &compression, &tolerated_compression,
+                                      &contact_normal, &ground_friction, &ground_strength, &effective_share}) {
         array->resize(capacity + array_padding);
     }
 }
@@ -38,12 +38,13 @@ float sample_walls(const Model& model, Work& work, std::size_t i, const Vec3<flo
 Vec3<float> resolve_wall_contacts(const Model& model, Work& work, std::size_t i, float multiplier,
                                   Vec3<float> displacement) {
     Work::Walls& walls = work.walls[i];
+    const float effective = resists_by_particle(model) ? work.effective_share[i] : 1;
+    const float friction = static_cast<float>(model.building_friction_coefficient) * effective;
     for (std::size_t f = 0; f < walls.faces.size(); ++f) {
         const BoundaryFace<float>& wall = walls.faces[f];
         if (wall.building < 0) break;
-        displacement +=
-            resolve_face(model, wall.distance + dot(displacement, wall.normal), wall.normal, displacement,
-                         boundary_push(wall.slope, multiplier), model.building_friction_coefficient, walls.contacts[f]);
+        displacement += resolve_face(model, wall.distance + dot(displacement, wall.normal), wall.normal, displacement,
+                                     boundary_push(wall.slope, multiplier), friction, 0.0f, walls.contacts[f]);
     }
     return displacement;
 }

@@ -37,6 +37,11 @@ struct Work {
     std::vector<float> compression;            ///< max(0, G)
     std::vector<float> tolerated_compression;  ///< of what the step started with; pair friction only
 
+    // How a particle is held, where that is not the same for all (see resists_by_particle).
+    std::vector<float> ground_friction;  ///< coefficient, lowered by pore pressure
+    std::vector<float> ground_strength;  ///< m, where it touches (see Grip)
+    std::vector<float> effective_share;  ///< 1 - r_u
+
     // Contact with the ground in this step (see ContactMemory).
     std::vector<float> contact_normal;
     VectorArray contact_friction;

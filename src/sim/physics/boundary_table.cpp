@@ -79,6 +79,23 @@ BoundaryTable::BoundaryTable(const Kernel& kernel, double particle_spacing)
         tabulate(layers / at(particle_spacing / 2).density);
     });
     tabulate_by_slope();
+    tabulate_sticking(particle_spacing / 4);
+}
+
+void BoundaryTable::tabulate_sticking(double least_distance) {
+    const double step = 1 / (2 * inverse_step_);
+    std::vector<double> values(node_count);
+    // The first moment of what lies beyond d is the integral of the share from d on.
+    double moment = 0;
+    for (int i = node_count - 1; i >= 0; --i) {
+        const double d = i * step;
+        if (i < node_count - 1) moment += step * (at(d).density + at(d + step).density) / 2;
+        values[static_cast<std::size_t>(i)] = at(d).density + moment / std::max(d, least_distance);
+    }
+    for (std::size_t i = 0; i < values.size(); ++i) {
+        const double next = i + 1 < values.size() ? values[i + 1] : values[i];
+        sticking_.push_back({float(values[i]), float(next - values[i]), 0, 0});
+    }
 }
 
 void BoundaryTable::tabulate_by_slope() {

@@ -43,13 +43,27 @@ class BoundaryTable {
         return Real(node.x) + (u - from_index<Real>(i)) * Real(node.y);
     }
 
+    /// Sum of V W (1 + z / d) over ground at depths z, for a particle at the distance d: how much it loses of its
+    /// velocity to ground where the flow goes on with its velocity turned around. At most what it is at a quarter of a
+    /// spacing.
+    template <class Real>
+    [[nodiscard]] Real sticking_at(Real distance) const {
+        const Real last = Real(static_cast<int>(sticking_.size()) - 1);
+        const Real u = larger(Real(0), smaller(last, distance * Real(2 * inverse_step_)));
+        const auto i = truncated(u);
+        const auto node = quads_at(sticking_.data(), i);
+        return Real(node.x) + (u - from_index<Real>(i)) * Real(node.y);
+    }
+
   private:
     void tabulate_by_slope();
+    void tabulate_sticking(double least_distance);
 
     double support_radius_ = 0, inverse_step_ = 0;
     std::vector<Quad> nodes_;  // density, its rise to the next node, slope, its rise
     double inverse_slope_step_ = 0;
     std::vector<Quad> by_slope_;  // density at evenly spaced slopes from 0 to that on the plane; its rise
+    std::vector<Quad> sticking_;  // at distances from 0 to r, twice as many as nodes there; its rise
 };
 
 }  // namespace talus

@@ -5,6 +5,7 @@
 #include "core/geometry.hpp"
 #include "sim/physics/boundary.hpp"
 #include "sim/physics/friction.hpp"
+#include "sim/physics/resistance.hpp"
 
 namespace talus {
 
@@ -21,17 +22,19 @@ struct ContactMemory {
 /// or move away. It may stop the motion into the face and no more: an overlap that the step started with, or that a
 /// bend in the ground brought about, must not turn into velocity (undo_overlap() sees to it). Friction: limited by the
 /// whole normal correction of the step, hard contact and `density_push` (what the face's share of the density
-/// constraint has pushed) together. Returns the change of displacement; updates `memory`.
+/// constraint has pushed) together, and by `strength`, m, which needs none. Returns the change of displacement; updates
+/// `memory`.
 template <class Real>
 Vec3<Real> resolve_contact(Real overlap, const Vec3<Real>& normal, const Vec3<Real>& displacement, Real density_push,
-                           Real friction_coefficient, ContactMemory<Real>& memory) {
+                           Real friction_coefficient, Real strength, ContactMemory<Real>& memory) {
     const Real push = smaller(overlap, -dot(displacement, normal));
     const Real accumulated = larger(Real(0), memory.normal + push);
     Vec3<Real> change = normal * (accumulated - memory.normal);
     memory.normal = accumulated;
     const Vec3<Real> moved = displacement + change;
     const Vec3<Real> tangential = moved - normal * dot(moved, normal);
-    change += friction_change(tangential, friction_coefficient * (accumulated + density_push), memory.friction);
+    change +=
+        friction_change(tangential, friction_coefficient * (accumulated + density_push) + strength, memory.friction);
     return change;
 }
 
@@ -44,14 +47,26 @@ using ContactMemories = std::array<ContactMemory<Real>, face_count>;
 /// to leave.
 template <class Real>
 Vec3<Real> resolve_face(const Model& model, Real distance, const Vec3<Real>& normal, const Vec3<Real>& displacement,
-                        Real density_push, double friction_coefficient, ContactMemory<Real>& memory) {
+                        Real density_push, Real friction_coefficient, Real strength, ContactMemory<Real>& memory) {
     const ContactMemory<Real> before = memory;
     const auto known = distance == distance;
     const Vec3<Real> change = resolve_contact(Real(model.contact_distance()) - distance, normal, displacement,
-                                              density_push, Real(friction_coefficient), memory);
+                                              density_push, friction_coefficient, strength, memory);
     memory.normal = select(known, memory.normal, before.normal);
     memory.friction = select(known, memory.friction, before.friction);
     return select(known, change, Vec3<Real>{});
+}
+
+/// How ground and walls hold a particle.
+template <class Real>
+struct Grip {
+    Real ground_friction{}, wall_friction{};  ///< coefficients
+    Real ground_strength{};                   ///< m, of a particle that touches: see strength_per_pascal()
+};
+
+template <class Real>
+Grip<Real> uniform_grip(const Model& model) {
+    return {Real(model.friction_coefficient), Real(model.building_friction_coefficient), Real(0)};
 }
 
 /// Resolves the contacts with ground and walls of a particle displaced by `displacement`; `boundary` as sampled when it
@@ -59,14 +74,15 @@ Vec3<Real> resolve_face(const Model& model, Real distance, const Vec3<Real>& nor
 /// Returns the new displacement.
 template <class Real>
 Vec3<Real> resolve_contacts(const Model& model, const Boundary<Real>& boundary, const Vec3<Real>& sampled_at,
-                            Vec3<Real> displacement, Real multiplier, ContactMemories<Real>& memories) {
+                            Vec3<Real> displacement, Real multiplier, const Grip<Real>& grip,
+                            ContactMemories<Real>& memories) {
     for (std::size_t f = 0; f < face_count; ++f) {
         const BoundaryFace<Real>& face = boundary.faces[f];
         if (f > 0 && face.building < 0) break;
         const Real distance = face.distance + dot(displacement - sampled_at, face.normal);
-        const double friction = f > 0 ? model.building_friction_coefficient : model.friction_coefficient;
+        const Real strength = f > 0 ? Real(0) : grip.ground_strength * basal_share(model, distance);
         displacement += resolve_face(model, distance, face.normal, displacement, boundary_push(face.slope, multiplier),
-                                     friction, memories[f]);
+                                     f > 0 ? grip.wall_friction : grip.ground_friction, strength, memories[f]);
     }
     return displacement;
 }

@@ -49,23 +49,47 @@ struct DisplacementGradient {
     }
 };
 
-/// Drucker & Prager (1952) without cohesion: sqrt(J2) <= internal friction coefficient * pressure, by radial return.
+/// Square of the norm that Drucker & Prager (1952) allow without cohesion: sqrt(J2) <= tan(phi) * pressure.
 template <class Real>
-Deviator<Real> limit_to_friction(const Deviator<Real>& trial, Real internal_friction_coefficient, Real pressure) {
-    const Real limit_square = 2 * internal_friction_coefficient * internal_friction_coefficient * pressure * pressure;
+Real friction_limit_square(Real internal_friction_coefficient, Real pressure) {
+    return 2 * internal_friction_coefficient * internal_friction_coefficient * pressure * pressure;
+}
+
+/// The same with cohesion, in the units of lambda: sqrt(J2) <= cohesion + tan(phi) * pressure. Without friction it is
+/// the yield limit of von Mises, which makes a Bingham fluid of viscous debris.
+template <class Real>
+Real strength_limit_square(Real internal_friction_coefficient, Real pressure, Real cohesion) {
+    const Real strength = internal_friction_coefficient * pressure + cohesion;
+    return 2 * strength * strength;
+}
+
+/// Radial return.
+template <class Real>
+Deviator<Real> limited(const Deviator<Real>& trial, Real limit_square) {
     const Real square = square_norm(trial);
     using std::sqrt;
     return trial * select(square > limit_square, sqrt(limit_square / square), Real(1));
 }
 
-/// The stress that resists the shear of a step, in the units of lambda: every iteration adds to it until debris no
-/// longer shears, or friction yields. `gain` relative to the density constraint's factor.
+/// The mu(I) law: mu_s + (mu_2 - mu_s) / (I_0 / I + 1), I = shear rate * d / sqrt(p / grain density) (Jop, Forterre &
+/// Pouliquen 2006, "A constitutive law for dense granular flows", eq. 2). `shear` is the strain of a step and
+/// `pressure` in the units of lambda, from which the step's length cancels; `grain_size` as of InertialFriction.
 template <class Real>
-Deviator<Real> next_stress(const Deviator<Real>& before, const DisplacementGradient<Real>& deformation,
-                           Real internal_friction_coefficient, Real multiplier, Real pair_square, Real jacobi_factor) {
+Real inertial_friction(Real slow, Real rise, Real half, Real grain_size, const Deviator<Real>& shear, Real pressure) {
+    using std::sqrt;
+    const Real fast = sqrt(2 * square_norm(shear)) * grain_size;
+    const Real number_times_root = half * sqrt(pressure);
+    return slow + select(fast > Real(0), rise * fast / (fast + number_times_root), Real(0));
+}
+
+/// The stress that resists the shear of a step, in the units of lambda: every iteration adds to it until debris no
+/// longer shears, or it yields. `gain` relative to the density constraint's factor.
+template <class Real>
+Deviator<Real> next_stress(const Deviator<Real>& before, const Deviator<Real>& shear, Real limit_square,
+                           Real pair_square, Real jacobi_factor) {
     constexpr double gain = 0.5;  // shear has two components where compression has one
     const Real share = select(pair_square > Real(0), Real(gain) * jacobi_factor / pair_square, Real(0));
-    return limit_to_friction(before + deformation.shear() * share, internal_friction_coefficient, -multiplier);
+    return limited(before + shear * share, limit_square);
 }
 
 }  // namespace talus

@@ -2,6 +2,9 @@
 
 #include <algorithm>
 
+#include "core/geometry.hpp"
+#include "sim/model.hpp"
+
 namespace talus {
 
 /// XSPH smoothing (Schechter & Bridson 2012): v_i += a sum_j V W_ij (v_j - v_i). The source of the method prints a
@@ -15,6 +18,18 @@ inline constexpr double viscosity_reference_step = 1.0 / 60;
 /// radius loses a small part per step, which adds up to the same in any number of steps.
 inline double step_smoothing(double viscosity, double time_step) {
     return std::min(1.0, viscosity * time_step / viscosity_reference_step);
+}
+
+/// The same smoothing against ground that viscous debris sticks to: ground below moves as if the flow went on there
+/// with its velocity turned around, so that it stands still on the surface (Morris, Fox & Zhu 1997, "Modeling low
+/// Reynolds number incompressible flows using SPH", section 3.4). Implicit: it never reverses the motion. Tangential:
+/// what presses into the ground is the contact's affair.
+template <class Real>
+Vec3<Real> slowed_by_ground(const Model& model, const GroundSample<Real>& below, Real distance,
+                            const Vec3<Real>& velocity, Real smoothing) {
+    const Real loss = smoothing * model.boundary.sticking_at(distance);
+    const Vec3<Real> along = velocity - below.normal * dot(velocity, below.normal);
+    return velocity - along * (loss / (Real(1) + loss));
 }
 
 /// The kinematic viscosity, m2/s, that the smoothing amounts to for shear that varies slowly over a support radius:

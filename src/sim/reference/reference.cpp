@@ -78,6 +78,18 @@ void Backend::predict_positions(const Model& model, State& state) {
             if (own && state.time >= release.start_time) p.held = false;
         }
         p.displacement = {};
+        if (!p.held && slows_by_speed(model)) {
+            const GroundSample<double> below = model.terrain.sample(p.position.x, p.position.y);
+            const double distance = (p.position.z - below.height) * below.normal.z, dt = state.previous_time_step;
+            const double pressure = dt > 0 ? -p.multiplier / (dt * dt) : 0;
+            p.velocity = slowed_by_drag(model, ground_resistance(model, p.position), below, distance, pressure,
+                                        p.velocity, state.time_step);
+        }
+        p.effective_share = effective_share(model, id, state.time);
+        const GroundResistance<double> ground = ground_resistance(model, p.position);
+        p.grip = {ground.friction_coefficient * p.effective_share,
+                  model.building_friction_coefficient * p.effective_share,
+                  ground.cohesion * strength_per_pascal(model, state.time_step)};
         if (!p.held) {
             p.velocity.z -= model.gravity * state.time_step;
             p.displacement = p.velocity * state.time_step;
@@ -166,8 +178,14 @@ void solve_stress(const Model& model, State& state) {
             p.constraint.start - sums.divergence + boundary_change(p.boundary.gradient, p.displacement);
         const double multiplier = next_multiplier(p.multiplier, density - std::max(0.0, p.constraint.start),
                                                   p.constraint.gradient_square, factor);
-        const Deviator<double> stress = next_stress(p.stress, sums.deformation, model.internal_friction_coefficient,
-                                                    multiplier, p.constraint.pair_square, factor);
+        const Deviator<double> shear = sums.deformation.shear();
+        const double pressure = -multiplier * p.effective_share;
+        const InertialFriction& inertial = model.inertial_friction;
+        const double friction = inertial_friction(model.internal_friction_coefficient, inertial.rise, inertial.half,
+                                                  inertial.grain_size, shear, pressure);
+        const double cohesion = model.cohesion * state.time_step * state.time_step / model.rest_density;
+        const Deviator<double> stress = next_stress(
+            p.stress, shear, strength_limit_square(friction, pressure, cohesion), p.constraint.pair_square, factor);
         p.multiplier_change = multiplier - p.multiplier;
         p.stress_change = stress - p.stress;
         p.multiplier = multiplier;
@@ -244,7 +262,8 @@ void Backend::solve_density(const Model& model, State& state) {
 void Backend::solve_contacts(const Model& model, State& state) {
     for (Particle& p : state.particles) {
         if (p.held) continue;
-        p.displacement = resolve_contacts(model, p.boundary, p.sampled_at, p.displacement, p.multiplier, p.contacts);
+        p.displacement =
+            resolve_contacts(model, p.boundary, p.sampled_at, p.displacement, p.multiplier, p.grip, p.contacts);
     }
 }
 
@@ -300,7 +319,14 @@ void Backend::apply_viscosity(const Model& model, State& state) {
                 changes[i] += (state.particles[j].velocity - state.particles[i].velocity) * (smoothing * pair.value);
             });
     }
-    for (std::size_t i = 0; i < changes.size(); ++i) state.particles[i].velocity += changes[i];
+    for (std::size_t i = 0; i < changes.size(); ++i) {
+        Particle& p = state.particles[i];
+        p.velocity += changes[i];
+        if (p.held || !model.viscosity_on_ground) continue;
+        const GroundSample<double> below = model.terrain.sample(p.position.x, p.position.y);
+        p.velocity =
+            slowed_by_ground(model, below, (p.position.z - below.height) * below.normal.z, p.velocity, smoothing);
+    }
 }
 
 }  // namespace talus::reference

@@ -23,6 +23,8 @@ struct Particle {
     Vector linearised_at, sampled_at, shift;
     Boundary<double> boundary;
     ContactMemories<double> contacts;
+    Grip<double> grip;
+    double effective_share = 1;
     bool held = false;
 
     [[nodiscard]] Vector predicted() const { return position + displacement; }

@@ -16,6 +16,8 @@ namespace talus::validate {
 [[nodiscard]] Kind free_fall_kind();
 [[nodiscard]] Kind run_up_kind();
 [[nodiscard]] Kind shear_decay_kind();
+[[nodiscard]] Kind sheet_flow_kind();
+[[nodiscard]] Kind debris_flume_kind();
 [[nodiscard]] Kind energy_line_kind();
 [[nodiscard]] Kind scene_kind();
 

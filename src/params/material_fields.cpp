@@ -1,0 +1,91 @@
+#include "params/declaration.hpp"
+
+namespace talus {
+namespace {
+
+/// What holds debris back beside Coulomb friction and viscosity.
+void declare_resistance(Declaration<MaterialSpec>& s) {
+    s.key("viscosity_on_ground", "", &MaterialSpec::viscosity_on_ground, anything(),
+          "Whether viscosity acts between debris and ground as well, which a viscous fluid sticks to.");
+    s.optional_key("turbulent_friction_mps2", "m/s2", &MaterialSpec::turbulent_friction, above(0), "no such drag",
+                   "Voellmy's xi: flow of thickness h is slowed by g v2 / (xi h) beside Coulomb friction.");
+    s.key(
+        "cohesion_Pa", "Pa", &MaterialSpec::cohesion, at_least(0),
+        "Shear strength that needs no pressure, on the ground and inside: the yield stress of a mud where friction is "
+        "0.");
+    s.key(
+        "pore_pressure_ratio", "", &MaterialSpec::pore_pressure_ratio, between(0, 1),
+        "r_u, pore pressure over the total normal stress when debris starts: friction on ground, buildings and inside "
+        "is 1 - r_u of what it is in dry debris.");
+    s.optional_key("pore_pressure_decay_time_s", "s", &MaterialSpec::pore_pressure_decay_time, above(0),
+                   "pore pressure stays", "Time since a body's start in which its pore-pressure ratio falls to 1/e.");
+    s.optional_key("inertial_friction_coefficient", "", &MaterialSpec::inertial_friction_coefficient, between(0, 10),
+                   "friction does not depend on the shear rate",
+                   "Internal friction that is neared as shear gets fast (mu(I) law); at slow shear it is "
+                   "internal_friction_coefficient.");
+    s.key("inertial_number", "", &MaterialSpec::inertial_number, above(0),
+          "Inertial number at which internal friction has risen half way to inertial_friction_coefficient.");
+    s.key("grain_diameter_m", "m", &MaterialSpec::grain_diameter, above_to(0, 100),
+          "Grain diameter in the inertial number.");
+    s.key("grain_density_kgpm3", "kg/m3", &MaterialSpec::grain_density, above_to(0, 30000),
+          "Density of the grains in the inertial number.");
+}
+
+}  // namespace
+
+Section declare_material() {
+    Declaration<MaterialSpec> s("material", "What moves.", &SceneSpec::material);
+    s.key("rest_density_kgpm3", "kg/m3", &MaterialSpec::rest_density, above_to(0, 30000),
+          "Bulk density of the debris.");
+    s.key("friction_coefficient", "", &MaterialSpec::friction_coefficient, between(0, 10),
+          "Coulomb friction on the ground (tangent of the friction angle), and on buildings and inside unless set "
+          "apart.");
+    s.optional_key("building_friction_coefficient", "", &MaterialSpec::building_friction_coefficient, between(0, 10),
+                   "equal to friction_coefficient", "Coulomb friction on the walls and roofs of buildings.");
+    s.optional_key("internal_friction_coefficient", "", &MaterialSpec::internal_friction_coefficient, between(0, 10),
+                   "equal to friction_coefficient", "Coulomb friction of debris on debris.");
+    s.key(
+        "viscosity", "", &MaterialSpec::viscosity, from_to_below(0, 1),
+        "Share of the velocity difference to its neighbours that debris loses per 1/60 s, whatever the time step. The "
+        "same share is another material at another particle spacing; kinematic_viscosity_m2ps is not.");
+    s.optional_key("kinematic_viscosity_m2ps", "m2/s", &MaterialSpec::kinematic_viscosity, at_least(0),
+                   "what viscosity amounts to at this particle spacing",
+                   "Viscosity of the debris, in place of viscosity.");
+    declare_resistance(s);
+    return s.take();
+}
+
+Section declare_zone() {
+    Declaration<ZoneSpec> s("zone",
+                            "Ground that resists in its own way. Exactly one of file, polygon and raster says where; a "
+                            "cell of the terrain belongs to it when its centre does. What a zone does not say is as "
+                            "elsewhere; later zones go before earlier ones.",
+                            &SceneSpec::zones);
+    s.text("name", &ZoneSpec::name, "\"zone N\"", "Name in reports and messages.");
+    s.path("file", &ZoneSpec::file, "one of the other two is given",
+           "Polygons of the zone: GeoJSON, GeoPackage, Shapefile.");
+    s.text("layer", &ZoneSpec::layer, "the only layer", "Layer of the file.");
+    s.text("polygon", &ZoneSpec::polygon, "one of the other two is given",
+           "Corners of the zone in the terrain's reference system, \"x y, x y, x y\".");
+    s.path("raster", &ZoneSpec::raster, "one of the other two is given",
+           "Raster of the zone in the terrain's reference system, such as land cover.");
+    s.choice(
+        "raster_holds", &ZoneSpec::raster_holds, {"zone_number", "friction_coefficient", "turbulent_friction_mps2"},
+        "What the raster's cells hold: a number by which the zone is told from others, or that coefficient itself.");
+    s.optional_key("raster_value", "", &ZoneSpec::raster_value, anything(), "every cell that has data",
+                   "The zone_number of the zone.");
+    s.optional_key("friction_coefficient", "", &ZoneSpec::friction_coefficient, between(0, 10), "as elsewhere",
+                   "Coulomb friction on this ground.");
+    s.optional_key("turbulent_friction_mps2", "m/s2", &ZoneSpec::turbulent_friction, above(0), "as elsewhere",
+                   "Voellmy's xi on this ground; lower is rougher.");
+    s.optional_key("cohesion_Pa", "Pa", &ZoneSpec::cohesion, at_least(0), "as elsewhere",
+                   "Shear strength without pressure between debris and this ground.");
+    s.key("stem_density_pm2", "1/m2", &ZoneSpec::stem_density, at_least(0),
+          "Stems of a forest per square metre that stand the flow; each drags on it as a cylinder.");
+    s.key("stem_diameter_m", "m", &ZoneSpec::stem_diameter, above_to(0, 100), "Diameter of a stem.");
+    s.key("stem_drag_coefficient", "", &ZoneSpec::stem_drag_coefficient, at_least(0),
+          "Drag coefficient of a stem across the flow.");
+    return s.take();
+}
+
+}  // namespace talus

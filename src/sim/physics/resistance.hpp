@@ -1,0 +1,99 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/geometry.hpp"
+#include "sim/model.hpp"
+
+/// What holds debris back beside Coulomb friction and viscosity: drag by speed, cohesion, pore pressure, zones.
+namespace talus {
+
+/// Whether anything slows debris by its speed.
+inline bool slows_by_speed(const Model& model) {
+    return model.turbulent_friction > 0 || model.cover.drags();
+}
+
+/// Whether there is pore pressure anywhere.
+inline bool has_pore_pressure(const Model& model) {
+    bool any = model.pore_pressure_ratio > 0;
+    for (const ReleaseGroup& release : model.releases) any = any || release.pore_pressure_ratio.value_or(0) > 0;
+    return any;
+}
+
+/// Whether resistance is more than the model's three friction coefficients, and must be found for every particle.
+inline bool resists_by_particle(const Model& model) {
+    return !model.cover.empty() || model.cohesion > 0 || has_pore_pressure(model);
+}
+
+/// The share of the normal stress that the grains of a particle's release bear, 1 - r_u(t) (Hutchinson 1986, "A
+/// sliding-consolidation model for flow slides", whose excess pressure falls as the first mode of consolidation does,
+/// exponentially). `id`: of the particle.
+inline double effective_share(const Model& model, std::size_t id, double time) {
+    double ratio = model.pore_pressure_ratio, since = time;
+    for (const ReleaseGroup& release : model.releases) {
+        if (id < release.first_particle || id >= release.last_particle) continue;
+        ratio = release.pore_pressure_ratio.value_or(ratio);
+        since = std::max(0.0, time - release.start_time);
+    }
+    if (model.pore_pressure_decay_time > 0) ratio *= std::exp(-since / model.pore_pressure_decay_time);
+    return 1 - ratio;
+}
+
+/// How the ground below a particle resists.
+template <class Real>
+struct GroundResistance {
+    Real friction_coefficient{};        ///< of dry debris
+    Real cohesion{};                    ///< Pa
+    Real inverse_turbulent_friction{};  ///< 1 / xi, s2/m
+    Real stem_drag{};                   ///< deceleration over v^2, 1/m
+};
+
+template <class Real>
+GroundResistance<Real> ground_resistance(const Model& model, const Vec3<Real>& p) {
+    GroundResistance<Real> result{Real(model.friction_coefficient), Real(model.cohesion),
+                                  Real(model.turbulent_friction > 0 ? 1 / model.turbulent_friction : 0), Real(0)};
+    if (model.cover.empty()) return result;
+    const auto cell = model.cover.at(p.x, p.y);
+    const auto known = [](const Real& here, const Real& elsewhere) { return select(here == here, here, elsewhere); };
+    return {known(Real(cell.x), result.friction_coefficient), known(Real(cell.z), result.cohesion),
+            known(Real(cell.y), result.inverse_turbulent_friction), Real(cell.w)};
+}
+
+/// A shear strength, Pa, as a correction, m, of a particle that stands for a spacing squared of the ground.
+inline double strength_per_pascal(const Model& model, double time_step) {
+    return time_step * time_step / (model.rest_density * model.particle_spacing);
+}
+
+/// The share of a particle in the layer that touches the ground: 1 where it touches, 0 a spacing higher.
+template <class Real>
+Real basal_share(const Model& model, Real distance) {
+    const Real above = (distance - Real(model.contact_distance())) * Real(1 / model.particle_spacing);
+    return larger(Real(0), smaller(Real(1), Real(1) - above));
+}
+
+/// A velocity after a step of drag by speed, tangential to the ground:
+///
+/// - Voellmy (1955), "Ueber die Zerstoerungskraft von Lawinen": the shear stress rho g v^2 / xi on the ground below
+///   flow of thickness h, taken from all of its depth alike, as a deceleration g v^2 / (xi h). The law is one of the
+///   whole column; taken from the lowest layer alone, debris would shear off above it wherever friction inside is less
+///   than the slope. Thickness: what lies below, and what weighs on the particle, p / (rho g cos). Debris that bears no
+///   pressure is in the air and feels none of it.
+/// - Stems as cylinders across the flow (Petryk & Bosmajian 1975, "Analysis of flow through vegetation", eq. 4): a
+///   deceleration C_D n D / 2 v^2 for n stems of diameter D per area.
+///
+/// The exact solution of dv/dt = -k v^2 over a step, so it never reverses the motion. `pressure`: over density, m2/s2.
+template <class Real>
+Vec3<Real> slowed_by_drag(const Model& model, const GroundResistance<Real>& ground, const GroundSample<Real>& below,
+                          Real distance, Real pressure, const Vec3<Real>& velocity, Real time_step) {
+    const Real weight = Real(model.gravity) * below.normal.z;
+    const Real thickness = larger(Real(model.particle_spacing), distance + pressure / weight);
+    const Real turbulent =
+        select(pressure > Real(0), ground.inverse_turbulent_friction * Real(model.gravity) / thickness, Real(0));
+    const Vec3<Real> along = velocity - below.normal * dot(velocity, below.normal);
+    const Real loss = (turbulent + ground.stem_drag) * length(along) * time_step;
+    const Vec3<Real> slower = velocity - along * (loss / (Real(1) + loss));
+    return select(distance == distance, slower, velocity);
+}
+
+}  // namespace talus

@@ -1,0 +1,180 @@
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include <fmt/format.h>
+
+#include "sim/seed.hpp"
+#include "validate/kinds/kinds.hpp"
+#include "validate/laws.hpp"
+#include "validate/measure.hpp"
+#include "validate/set_up.hpp"
+
+namespace talus::validate {
+namespace {
+
+constexpr double to_radians = std::numbers::pi / 180;
+
+constexpr Quantity quantities[] = {
+    {"mean_velocity", "m/s", true, Quantity::Site::none, "down the slope, over the thickness"},
+    {"surface_velocity", "m/s", true, Quantity::Site::none, "down the slope, of the uppermost layer"},
+    {"profile_l2", "1", false, Quantity::Site::none, "relative L2 error of the velocity by height"},
+    {"profile_max", "1", false, Quantity::Site::none, "its largest error over the surface velocity"},
+};
+
+struct SheetSpec {
+    std::string law;
+    std::vector<double> slopes, start_shares;  // rad; 1, of the law's velocity at the start
+    double spacing = 0, length = 0;            // m
+    int layers = 0, width = 0;                 // spacings
+    double start = 0, end = 0;                 // s, the window of measurement
+};
+
+struct Measured {
+    std::vector<double> height, velocity, law;  // m, m/s, by layer
+    double mean = not_computed, law_mean = not_computed;
+    std::string problem;
+};
+
+/// The law's velocity at a height above the ground.
+double law_velocity(const SheetSpec& spec, const SheetFlow& sheet, const Model& model, const MaterialSpec& material,
+                    double height) {
+    if (spec.law == "voellmy") {
+        return sheet.voellmy(model.friction_coefficient, material.turbulent_friction.value_or(0));
+    }
+    if (spec.law == "bingham") {
+        return sheet.bingham(height, model.cohesion / model.rest_density, model.kinematic_viscosity);
+    }
+    return sheet.bagnold(height, model.internal_friction_coefficient,
+                         model.internal_friction_coefficient + model.inertial_friction.rise, material.inertial_number,
+                         material.grain_diameter, material.rest_density / material.grain_density);
+}
+
+/// Velocity and number of what is in every layer, added up over the window of measurement.
+struct Layers {
+    std::vector<double> velocity, count, height;
+
+    explicit Layers(int layers)
+        : velocity(static_cast<std::size_t>(layers)), count(velocity.size()), height(velocity.size()) {}
+
+    /// Of the middle quarter of the sheet, wherever that is now: its ends spread.
+    void add(const State& state, const Incline& incline, const LocalPoint& down, double length, double spacing) {
+        double middle = 0;
+        for (std::uint32_t i = 0; i < state.count; ++i) middle += incline.along(state.position.at(i));
+        middle /= state.count;
+        for (std::uint32_t i = 0; i < state.count; ++i) {
+            const LocalPoint p = state.position.at(i);
+            if (std::abs(incline.along(p) - middle) > length / 8) continue;
+            const double z = incline.normal(p);
+            const auto layer =
+                static_cast<std::size_t>(std::clamp(z / spacing, 0.0, static_cast<double>(velocity.size()) - 0.5));
+            velocity[layer] += dot(state.velocity.at(i), down);
+            height[layer] += z;
+            count[layer] += 1;
+        }
+    }
+};
+
+Measured measure(const SheetSpec& spec, double slope, double start_share, const Setting& setting, const Watch& watch) {
+    const double thickness = spec.layers * spec.spacing, width = spec.width * spec.spacing;
+    const SheetFlow sheet{slope, thickness, Model{}.gravity};
+    MaterialSpec material = setting.material;
+    material.building_friction_coefficient = 0;
+    const auto make = [&](const Incline& incline) {
+        return make_model(material, setting.solver, incline.terrain(),
+                          make_slice(incline.terrain(), width, 2 * thickness), spec.spacing);
+    };
+    const Model numbers = make(Incline(slope, 4, width + 4));
+    const auto law = [&](double height) { return law_velocity(spec, sheet, numbers, setting.material, height); };
+    Measured measured;
+    if (!(law(thickness) > 0)) {
+        measured.problem = "the law has no steady flow on this slope";
+        return measured;
+    }
+    const double travel = 2 * law(thickness) * std::max(1.0, start_share) * spec.end;
+    const Incline incline(slope, 2 * (spec.length + travel), width + 4);
+    const auto columns = static_cast<int>(std::lround(spec.length / spec.spacing));
+    const auto even = [&](double, double) { return thickness; };
+    const auto points =
+        fill_lattice(incline, spec.spacing, -columns * spec.spacing / 2, columns, -width / 2, spec.width, even);
+    Model model = make(incline);
+    State start = state_under_weight(model, points, incline, [&](double along, double) {
+        return std::abs(along) < spec.length / 2 ? thickness : 0;
+    });
+    const LocalPoint down = incline.down(1);
+    for (std::uint32_t i = 0; i < start.count; ++i) {
+        start.velocity.set(i, incline.down(start_share * law(incline.normal(start.position.at(i)))));
+    }
+    Trial trial(std::move(model), std::move(start), watch);
+    Layers layers(spec.layers);
+    const bool trusted = trial.advance_to(spec.start) && trial.advance_to(spec.end, [&] {
+        layers.add(trial.state(), incline, down, spec.length, spec.spacing);
+    });
+    measured.problem = trial.problem();
+    if (!trusted) return measured;
+    double sum = 0, law_sum = 0, count = 0;
+    for (std::size_t k = 0; k < layers.count.size(); ++k) {
+        if (layers.count[k] == 0) continue;
+        measured.height.push_back(layers.height[k] / layers.count[k]);
+        measured.velocity.push_back(layers.velocity[k] / layers.count[k]);
+        measured.law.push_back(law(measured.height.back()));
+        sum += layers.velocity[k];
+        law_sum += measured.law.back() * layers.count[k];
+        count += layers.count[k];
+    }
+    measured.mean = sum / count;
+    measured.law_mean = law_sum / count;
+    return measured;
+}
+
+Result<Outcome> compute(const SheetSpec& spec, const Setting& setting, const Watch& watch) {
+    Outcome outcome;
+    Chart chart{"profile", "Velocity by height above the ground", "velocity (m/s)", "height (m)", {}};
+    for (const double slope : spec.slopes) {
+        for (const double share : spec.start_shares) {
+            const std::string name =
+                fmt::format("slope {:.3g} degrees, from {:g} of the law's velocity", slope / to_radians, share);
+            watch.say(name);
+            const Measured m = measure(spec, slope, share, setting, watch);
+            if (!m.problem.empty()) outcome.notes.push_back(name + ": " + m.problem);
+            const bool computed = !m.velocity.empty();
+            const ErrorNorms norms = computed ? error_norms(m.velocity, m.law) : ErrorNorms{not_computed, not_computed};
+            outcome.measurements.push_back({"mean_velocity", name, m.mean, m.law_mean});
+            outcome.measurements.push_back({"surface_velocity", name, computed ? m.velocity.back() : not_computed,
+                                            computed ? m.law.back() : not_computed});
+            outcome.measurements.push_back({"profile_l2", name, norms.relative_l2, std::nullopt});
+            outcome.measurements.push_back({"profile_max", name, norms.relative_max, std::nullopt});
+            if (share == spec.start_shares.front()) {
+                chart.series.push_back(
+                    {fmt::format("law, {:.3g} degrees", slope / to_radians), Series::Style::dashed, m.law, m.height});
+            }
+            chart.series.push_back({name, Series::Style::marks, m.velocity, m.height});
+        }
+    }
+    outcome.charts.push_back(chart);
+    return outcome;
+}
+
+Computation prepare(Parameters& parameters, const Setting& setting) {
+    constexpr Range positive{.low = 0, .low_included = false};
+    SheetSpec spec;
+    spec.law = parameters.choice("law", {"voellmy", "bingham", "bagnold"}, "voellmy");
+    spec.slopes = parameters.numbers("slopes_deg", {.low = 0, .high = 60, .low_included = false}, {20});
+    for (double& slope : spec.slopes) slope *= to_radians;
+    spec.start_shares = parameters.numbers("start_shares", {.low = 0, .high = 10}, {1});
+    spec.spacing = parameters.number("particle_spacing_m", positive, 0.1);
+    spec.length = parameters.number("length_m", positive, 20);
+    spec.layers = parameters.whole_number("layers", {.low = 2, .high = 1000}, 10);
+    spec.width = parameters.whole_number("width_spacings", {.low = 2, .high = 1000}, 5);
+    spec.start = parameters.number("start_s", {.low = 0}, 2);
+    spec.end = parameters.number("end_s", positive, 3);
+    return [spec, setting](const Watch& watch) { return compute(spec, setting, watch); };
+}
+
+}  // namespace
+
+Kind sheet_flow_kind() {
+    return {"sheet_flow", "a sheet that flows steadily down a plane", quantities, prepare};
+}
+
+}  // namespace talus::validate

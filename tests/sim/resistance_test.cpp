@@ -1,0 +1,181 @@
+#include "sim/physics/resistance.hpp"
+
+#include <cmath>
+#include <limits>
+
+#include <gtest/gtest.h>
+
+#include "sim/physics/stress.hpp"
+#include "sim/physics/viscosity.hpp"
+#include "sim_fixtures.hpp"
+
+namespace talus {
+namespace {
+
+using testing::block;
+using testing::inclined_plane;
+using testing::rectangle;
+using testing::simulate;
+
+constexpr float none = std::numeric_limits<float>::quiet_NaN();
+
+Model model_of(const MaterialSpec& material, double spacing = 0.1) {
+    return make_model(material, {}, inclined_plane(0, 10, 10), {}, spacing);
+}
+
+GroundSample<double> level() {
+    return {0, {0, 0, 1}};
+}
+
+TEST(VoellmyDrag, is_that_of_the_flow_below_and_above_the_particle) {
+    MaterialSpec material;
+    material.turbulent_friction = 200;
+    const Model model = model_of(material);
+    const auto ground = ground_resistance(model, Vec3<double>{});
+    // 0.4 m above the ground and under the weight of 0.6 m more.
+    const double dt = 1e-4, pressure = model.gravity * 0.6;
+    const auto slower = slowed_by_drag(model, ground, level(), 0.4, pressure, {3, 4, -1}, dt);
+    const double deceleration = model.gravity * 25 / (200 * 1.0);
+    EXPECT_NEAR((5 - std::hypot(slower.x, slower.y)) / dt, deceleration, 1e-3 * deceleration);
+    EXPECT_NEAR(slower.x / slower.y, 0.75, 1e-9) << "against the motion";
+    EXPECT_EQ(slower.z, -1) << "along the ground only";
+}
+
+TEST(VoellmyDrag, never_reverses_the_motion_and_leaves_what_flies_alone) {
+    MaterialSpec material;
+    material.turbulent_friction = 1;
+    const Model model = model_of(material);
+    const auto ground = ground_resistance(model, Vec3<double>{});
+    const auto slower = slowed_by_drag(model, ground, level(), 0.05, 1.0, {1e4, 0, 0}, 10.0);
+    EXPECT_GT(slower.x, 0);
+    EXPECT_LT(slower.x, 1e-2);
+    EXPECT_EQ(slowed_by_drag(model, ground, level(), 0.05, 0.0, {5, 0, 0}, 0.1).x, 5) << "no pressure: in the air";
+    const double unknown = std::numeric_limits<double>::quiet_NaN();
+    EXPECT_EQ(slowed_by_drag(model, ground, level(), unknown, 1.0, {5, 0, 0}, 0.1).x, 5);
+}
+
+TEST(ForestDrag, is_that_of_cylinders_across_the_flow) {
+    Model model = model_of({});
+    Grid<CoverCell> cells(model.terrain.elevation().geometry, {none, none, none, 0});
+    cells.at(5, 5).stem_drag = 0.5F * 1.2F * 0.08F * 0.3F;  // C_D n D / 2
+    model.cover = GroundCover(cells);
+    ASSERT_TRUE(slows_by_speed(model));
+    const double dt = 1e-4;
+    const auto among =
+        slowed_by_drag(model, ground_resistance(model, Vec3<double>{0.5, 0.5, 0}), level(), 0.4, 1.0, {6, 0, 0}, dt);
+    EXPECT_NEAR((6 - among.x) / dt, 0.5 * 1.2 * 0.08 * 0.3 * 36, 1e-3);
+    const auto beside =
+        slowed_by_drag(model, ground_resistance(model, Vec3<double>{1.5, 0.5, 0}), level(), 0.4, 1.0, {6, 0, 0}, dt);
+    EXPECT_EQ(beside.x, 6);
+}
+
+TEST(PorePressure, is_that_of_the_release_and_decays_from_its_start) {
+    MaterialSpec material;
+    material.pore_pressure_ratio = 0.5;
+    material.pore_pressure_decay_time = 4;
+    Model model = model_of(material);
+    model.releases = {{"early", 0, 0, 10, {}}, {"late", 2, 10, 20, 0.8}};
+    EXPECT_DOUBLE_EQ(effective_share(model, 3, 0), 0.5);
+    EXPECT_DOUBLE_EQ(effective_share(model, 3, 4), 1 - 0.5 * std::exp(-1));
+    EXPECT_DOUBLE_EQ(effective_share(model, 12, 1), 1 - 0.8) << "not before it starts";
+    EXPECT_DOUBLE_EQ(effective_share(model, 12, 6), 1 - 0.8 * std::exp(-1));
+    model.pore_pressure_decay_time = 0;
+    EXPECT_DOUBLE_EQ(effective_share(model, 12, 100), 1 - 0.8);
+    model.pore_pressure_ratio = 0;
+    EXPECT_TRUE(has_pore_pressure(model)) << "of one release";
+    model.releases[1].pore_pressure_ratio = 0;
+    EXPECT_FALSE(resists_by_particle(model));
+}
+
+/// How far the middle of a block 1 m thick has slid after a second.
+double slid(const MaterialSpec& material, double degrees) {
+    const Terrain terrain = inclined_plane(degrees, 60, 30);
+    Simulation simulation = simulate(material, {}, terrain, {block(terrain, rectangle(10, 10, 20, 20), 1)}, 0.25);
+    const auto middle = [&] {
+        double sum = 0;
+        for (std::uint32_t i = 0; i < simulation.state().count; ++i) sum += simulation.state().position.x[i];
+        return sum / simulation.state().count;
+    };
+    const double before = middle();
+    while (simulation.state().time < 1) EXPECT_FALSE(simulation.advance());
+    return (middle() - before) / std::cos(degrees * M_PI / 180);
+}
+
+TEST(PorePressure, sets_debris_going_that_dry_friction_would_hold) {
+    MaterialSpec material;
+    material.friction_coefficient = 0.6;
+    EXPECT_LT(slid(material, 20), 0.1) << "its edges fall over";
+    material.pore_pressure_ratio = 0.7;  // 0.18 of friction is left; tan 20 is 0.36
+    const double acceleration = 9.80665 * (std::sin(M_PI / 9) - 0.18 * std::cos(M_PI / 9));
+    EXPECT_NEAR(slid(material, 20), acceleration / 2, 0.15 * acceleration / 2);
+}
+
+TEST(Cohesion, holds_a_slab_up_to_its_strength) {
+    // A sheet 1 m thick pulls with rho g h sin(20) = 6.7 kPa.
+    MaterialSpec material;
+    material.friction_coefficient = 0;
+    material.cohesion = 9000;
+    EXPECT_LT(slid(material, 20), 0.1);
+    material.cohesion = 3000;
+    const double acceleration = 9.80665 * std::sin(M_PI / 9) - 3000.0 / 2000 / 1;
+    EXPECT_NEAR(slid(material, 20), acceleration / 2, 0.15 * acceleration / 2);
+}
+
+TEST(InertialFriction, rises_from_slow_to_fast_shear) {
+    // Simple shear of rate 5 /s under a pressure of 0.5 m2/s2 (over density), in a step of 0.01 s.
+    const double dt = 0.01, grain = 0.02, pressure = 0.5;
+    const Deviator<double> shear{0, 0, 0, 5 * dt / 2, 0};
+    const double number = 5 * grain / std::sqrt(pressure);
+    EXPECT_NEAR(inertial_friction(0.4, 0.3, 0.25, grain, shear, pressure * dt * dt), 0.4 + 0.3 / (0.25 / number + 1),
+                1e-12);
+    EXPECT_EQ(inertial_friction(0.4, 0.3, 0.25, grain, {}, pressure), 0.4);
+    EXPECT_NEAR(inertial_friction(0.4, 0.3, 0.25, grain, shear, 0.0), 0.7, 1e-12) << "without pressure: fast";
+}
+
+TEST(ViscosityOnGround, stops_a_linear_profile_on_the_surface) {
+    MaterialSpec material;
+    material.viscosity_on_ground = true;
+    const Model model = model_of(material);
+    // Far from the ground there is none of it; at the ground the whole half-space takes part.
+    EXPECT_EQ(model.boundary.sticking_at(model.support_radius), 0);
+    EXPECT_GT(model.boundary.sticking_at(0.5 * model.particle_spacing), model.boundary.at(0.05).density);
+    const auto slower = slowed_by_ground(model, level(), 0.05, {1, 0, -2}, 1e9);
+    EXPECT_GE(slower.x, 0);
+    EXPECT_LT(slower.x, 1e-6);
+    EXPECT_EQ(slower.z, -2);
+}
+
+TEST(RoughZone, stops_debris_that_runs_elsewhere) {
+    const Terrain terrain = inclined_plane(20, 60, 40);
+    MaterialSpec material;
+    material.friction_coefficient = 0.1;
+    material.internal_friction_coefficient = 0.6;
+    Model model = make_model(material, {}, terrain, {}, 0.25);
+    Grid<CoverCell> cells(terrain.elevation().geometry, {none, none, none, 0});
+    for (int row = 0; row < 20; ++row) {
+        for (int column = 0; column < 60; ++column) cells.at(column, row).friction_coefficient = 0.8F;
+    }
+    model.cover = GroundCover(cells);
+    auto seeded = seed_releases(
+        model, {block(terrain, rectangle(10, 6, 16, 14), 0.75), block(terrain, rectangle(10, 26, 16, 34), 0.75)});
+    ASSERT_TRUE(seeded);
+    Simulation simulation(std::move(model), *std::move(seeded));
+    while (simulation.state().time < 2) ASSERT_FALSE(simulation.advance());
+    double rough = 0, smooth = 1e9;
+    int in_rough = 0;
+    for (std::uint32_t i = 0; i < simulation.state().count; ++i) {
+        const float speed = length(simulation.state().velocity.at(i));
+        if (simulation.state().position.y[i] < 0) {
+            rough += speed;
+            ++in_rough;
+        } else {
+            smooth = std::min<double>(smooth, speed);
+        }
+    }
+    ASSERT_GT(in_rough, 100);
+    EXPECT_LT(rough / in_rough, 0.1);
+    EXPECT_GT(smooth, 2);
+}
+
+}  // namespace
+}  // namespace talus
