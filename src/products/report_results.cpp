@@ -122,7 +122,9 @@ std::string key_results(const Scene& scene, const RunResult& result) {
                                         [](const auto& a, const auto& b) { return a.peak_pressure < b.peak_pressure; });
     const MassBalance mass = mass_balance(o);
     std::string html = card("Released volume", fixed(o.volume_released, o.volume_released < 100 ? 1 : 0), "m³",
-                            plural(scene.releases.size(), "release"));
+                            scene.inflows.empty() ? plural(scene.releases.size(), "release")
+                                                  : plural(scene.releases.size(), "release") + ", " +
+                                                        plural(scene.inflows.size(), "inflow"));
     const bool ran = std::isfinite(o.run_out.horizontal_distance);
     const std::string drop = fmt::format("drop {} m", fixed(o.run_out.drop, 1));
     html += card("Run-out distance", fixed(o.run_out.horizontal_distance, 0), ran ? "m" : "",

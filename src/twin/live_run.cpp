@@ -22,6 +22,8 @@ Result<std::unique_ptr<LiveRun>> LiveRun::start(const Scene& scene, const Setup&
         Model model = make_model(setup.material, scene.spec.solver, scene.terrain, std::move(buildings), spacing);
         Result<State> state = seed_releases(model, releases);
         if (!state) return state.error();
+        const InflowFeeder feeder(model, scene.inflows);
+        if (Status s = check_particles(model, state->count, feeder); !s) return s.error();
         return std::unique_ptr<LiveRun>(
             new LiveRun(scene, setup, options, std::move(model), *std::move(state), threads));
     });
@@ -34,7 +36,8 @@ LiveRun::LiveRun(const Scene& scene, Setup setup, const ScenarioOptions& options
                                                           static_cast<std::size_t>(threads))),
       arena_(threads),
       threads_(threads),
-      simulation_(std::move(model), std::move(state)),
+      feeder_(model, scene.inflows),
+      simulation_(std::move(model), std::move(state), feeder_.to_come()),
       recording_(options.frame_interval, options.recording_bytes),
       rest_(scene.spec.solver),
       smallest_time_step_(scene.spec.solver.end_time) {
@@ -45,9 +48,9 @@ LiveRun::LiveRun(const Scene& scene, Setup setup, const ScenarioOptions& options
     const double map_cell =
         outputs.map_cell.value_or(default_map_cell(scene.terrain.cell(), this->model().particle_spacing));
     observer_ = std::make_unique<Observer>(this->model(), this->state(), scene.flow_path, outputs, map_cell);
+    observer_->expect(this->state().seeded + feeder_.to_come());
     slots_ = this->state().seeded;
-    follow_barriers(setup_);
-    if (this->state().count == 0) stop(Phase::at_rest, "there is no debris");
+    if (this->state().count == 0 && feeder_.to_come() == 0) stop(Phase::at_rest, "there is no debris");
     record();
 }
 
@@ -84,7 +87,7 @@ void LiveRun::stop(Phase phase, std::string why) {
 void LiveRun::advance() {
     if (phase_ != Phase::ready) return;
     if (reached_end_time(scene_.spec.solver, state())) return stop(Phase::ended, end_time_reason(scene_.spec.solver));
-    if (state().count == 0) return stop(Phase::at_rest, no_debris_reason);
+    if (state().count == 0 && feeder_.to_come() == 0) return stop(Phase::at_rest, no_debris_reason);
     const auto start = std::chrono::steady_clock::now();
     arena_.execute([&] { take_step(); });
     wall_time_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
@@ -94,6 +97,8 @@ void LiveRun::take_step() {
     for (std::size_t g = 0; g < groups_.size(); ++g) {
         groups_[g].begun = groups_[g].begun || model().releases[g].start_time <= state().time;
     }
+    let_in(simulation_, *observer_, feeder_);
+    slots_ = std::max(slots_, state().seeded);
     const auto fault = simulation_.advance();
     smallest_time_step_ = std::min(smallest_time_step_, state().time_step);
     largest_time_step_ = std::max(largest_time_step_, state().time_step);
@@ -101,15 +106,14 @@ void LiveRun::take_step() {
     {
         const StageTimer timer(simulation_.stage_times(), Stage::observe);
         observer_->after_step(model(), state(), rate_.update(state().step));
-        for (auto& [id, watch] : overtopping_) watch.overtopping->after_step(state(), jumped_);
-        jumped_ = false;
     }
+    take_failed_down();
     record();
-    if (rest_.at_rest(state().time, total_momentum(model(), state()), still_waiting(model(), state()))) {
+    if (rest_.at_rest(state().time, total_momentum(model(), state()), still_waiting(model(), state()) || feeder_.to_come() > 0)) {
         stop(Phase::at_rest, rest_.reason());
     } else if (reached_end_time(scene_.spec.solver, state())) {
         stop(Phase::ended, end_time_reason(scene_.spec.solver));
-    } else if (state().count == 0) {
+    } else if (state().count == 0 && feeder_.to_come() == 0) {
         stop(Phase::at_rest, no_debris_reason);
     }
 }
@@ -120,18 +124,20 @@ const BuildingImpact* LiveRun::impact_on(const std::string& obstacle_id) const {
                                : &observer_->impacts()[static_cast<std::size_t>(obstacle - obstacles_.data())];
 }
 
-const Overtopping& LiveRun::overtopping_of(const std::string& barrier_id) const {
-    return *overtopping_.at(barrier_id).overtopping;
+double LiveRun::held_volume(const std::string& barrier_id) const {
+    const Obstacle* obstacle = find_id(obstacles_, barrier_id);
+    const Overtopping* crossings =
+        observer_->overtopping(static_cast<std::size_t>(obstacle - obstacles_.data()));
+    return crossings != nullptr ? crossings->filling(state()).volume : impact_on(barrier_id)->held_volume;
 }
 
-void LiveRun::follow_barriers(const Setup& next) {
-    std::erase_if(overtopping_, [&](const auto& entry) { return find_id(next.barriers, entry.first) == nullptr; });
-    for (const BarrierSetup& barrier : next.barriers) {
-        Watch& watch = overtopping_[barrier.id];
-        if (watch.body && same_shape(watch.body, barrier.body)) continue;
-        watch = {barrier.body, std::make_unique<Overtopping>(model(), barrier.line, barrier.height)};
-        watch.overtopping->after_step(state());
+void LiveRun::take_failed_down() {
+    if (!talus::take_failed_down(simulation_, *observer_)) return;
+    for (const std::size_t k : observer_->failed_buildings()) {
+        obstacles_[k].stands = false;
+        obstacles_[k].failed = true;
     }
+    rest_.stir(state().time);
 }
 
 RunResult LiveRun::result() const {
@@ -145,7 +151,10 @@ RunResult LiveRun::result() const {
     result.observation = arena_.execute([&] { return observer_->finish(model(), state()); });
     std::vector<BuildingImpact> standing;
     const auto take = [&](const auto& entries) {
-        for (const auto& entry : entries) standing.push_back(*impact_on(entry.id));
+        for (const auto& entry : entries) {
+            const auto k = static_cast<std::size_t>(find_id(obstacles_, entry.id) - obstacles_.data());
+            standing.push_back(std::move(result.observation.buildings[k]));
+        }
     };
     take(setup_.buildings);
     take(setup_.barriers);

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstdint>
-#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -16,8 +15,8 @@
 #include "scene/run.hpp"
 #include "scene/scene.hpp"
 #include "scene/stop_rule.hpp"
+#include "sim/inflow.hpp"
 #include "sim/simulation.hpp"
-#include "twin/overtopping.hpp"
 #include "twin/recording.hpp"
 #include "twin/scenario.hpp"
 #include "twin/setup.hpp"
@@ -56,7 +55,8 @@ class LiveRun {
 
     /// nullptr: no such obstacle.
     [[nodiscard]] const BuildingImpact* impact_on(const std::string& obstacle_id) const;
-    [[nodiscard]] const Overtopping& overtopping_of(const std::string& barrier_id) const;
+    /// Debris upstream of a barrier now, m3; at its failure where it failed.
+    [[nodiscard]] double held_volume(const std::string& barrier_id) const;
 
     /// As run_scene would return it if the run ended here; buildings are those that stand, in the setup's order,
     /// barriers last.
@@ -71,6 +71,7 @@ class LiveRun {
         std::string id;
         std::shared_ptr<const Building> body;  ///< also of one that was taken away
         bool stands = true;
+        bool failed = false;  ///< under debris; a setup that still has it as it was does not put it up again
     };
     struct Change;
 
@@ -82,7 +83,7 @@ class LiveRun {
     void carry_out(Change& change, const Setup& next);
     void replace_releases(Model& model, State& state, Change& change);
     void set_start_times(Model& model, const State& state, const Setup& next, bool& let_go);
-    void follow_barriers(const Setup& next);
+    void take_failed_down();
     void take_step();
     void record();
     void stop(Phase phase, std::string why);
@@ -92,16 +93,11 @@ class LiveRun {
     std::unique_ptr<tbb::global_control> thread_limit_;
     mutable tbb::task_arena arena_;
     int threads_;
+    InflowFeeder feeder_;
     Simulation simulation_;
     std::unique_ptr<Observer> observer_;
     std::vector<Group> groups_;
     std::vector<Obstacle> obstacles_;
-    struct Watch {
-        std::shared_ptr<const Building> body;
-        std::unique_ptr<Overtopping> overtopping;
-    };
-    std::map<std::string, Watch> overtopping_;  // by barrier id
-    bool jumped_ = false;                       // particles were moved between steps
     std::uint32_t slots_ = 0;
     Recording recording_;
     RestDetector rest_;

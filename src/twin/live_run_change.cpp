@@ -16,29 +16,12 @@ namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-Extent extent_of(const Building& building) {
-    Extent extent = talus::extent_of(building.footprint.front());
-    for (const Polygon& part : building.footprint) {
-        const Extent e = talus::extent_of(part);
-        extent.include({e.x_min, e.y_min});
-        extent.include({e.x_max, e.y_max});
-    }
-    return extent;
-}
-
 bool overlap(const Extent& a, const Extent& b) {
     return a.x_min <= b.x_max && b.x_min <= a.x_max && a.y_min <= b.y_max && b.y_min <= a.y_max;
 }
 
 bool overlaps_any(const Extent& a, const std::vector<Extent>& others) {
     return std::any_of(others.begin(), others.end(), [&](const Extent& other) { return overlap(a, other); });
-}
-
-/// A building that is there no more: it keeps its index and has no solid.
-Building without_solid(Building building) {
-    building.roof_elevation = std::numeric_limits<double>::quiet_NaN();
-    building.part_roof_elevations.clear();
-    return building;
 }
 
 /// What holds debris back: when any of it changes, debris at rest may move again.
@@ -88,7 +71,7 @@ void LiveRun::plan_obstacles(const Setup& next, Change& change) const {
         const auto k = static_cast<std::size_t>(obstacle - change.obstacles.data());
         const bool moved = !same_shape(obstacle->body, entry.body);
         change.buildings[k].name = entry.body->name;
-        if (obstacle->stands && !moved) return;
+        if ((obstacle->stands || obstacle->failed) && !moved) return;
         if (obstacle->stands) change.touched.push_back(extent_of(*obstacle->body));
         change.touched.push_back(extent_of(*entry.body));
         if (moved) change.renewed.push_back(k);
@@ -237,9 +220,7 @@ void LiveRun::carry_out(Change& change, const Setup& next) {
     slots_ = std::max(slots_, state().seeded);
     obstacles_ = std::move(change.obstacles);
     observer_->follow(model(), state(), first_new);
-    for (const std::size_t k : change.renewed) observer_->forget_building(k);
-    jumped_ = true;
-    follow_barriers(next);
+    for (const std::size_t k : change.renewed) observer_->forget_building(model(), state(), k);
     if (let_go || !change.seeds.empty()) {
         rest_.begin_anew(state().time);
     } else {

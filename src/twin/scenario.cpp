@@ -59,9 +59,7 @@ Scenario::~Scenario() = default;
 
 Scenario::Parts::Parts(std::shared_ptr<const Scene> its_scene, ScenarioOptions its_options)
     : scene(std::move(its_scene)), options(std::move(its_options)) {
-    double volume = 0;
-    for (const Release& release : scene->releases) volume += release.volume;
-    particle_spacing = choose_particle_spacing(scene->spec.solver, volume);
+    particle_spacing = choose_particle_spacing(scene->spec.solver, total_volume(*scene));
 }
 
 Result<std::unique_ptr<Scenario>> Scenario::open(std::shared_ptr<const Scene> scene, ScenarioOptions options) {

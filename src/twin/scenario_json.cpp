@@ -5,10 +5,11 @@
 #include <fmt/format.h>
 
 #include "core/hash.hpp"
-#include "twin/barrier.hpp"
+#include "terrain/barrier.hpp"
 #include "twin/intensity.hpp"
 #include "twin/json_keys.hpp"
 #include "twin/scenario_parts.hpp"
+#include "twin/setup_file.hpp"
 
 namespace talus::twin {
 namespace {
@@ -83,6 +84,8 @@ json impact_json(const std::string& id, const BuildingImpact& impact) {
             {"peak_depth_m", impact.peak_depth},
             {"peak_speed_mps", impact.peak_speed},
             {"peak_dynamic_pressure_kPa", impact.peak_dynamic_pressure / 1e3},
+            {"impulse_kNs", impact.impulse / 1e3},
+            {"failed_s", number_or_null(impact.failure_time)},
             {"intensity", intensity != nullptr ? json(intensity) : json()}};
 }
 
@@ -192,10 +195,15 @@ json Scenario::setup_json() const {
     for (const BarrierSetup& barrier : setup.barriers) {
         barriers.push_back({{"id", barrier.id},
                             {"name", barrier.body->name},
-                            {"line", to_json(barrier.line)},
-                            {"height_m", barrier.height},
-                            {"thickness_m", barrier.thickness},
-                            {"crest_length_m", length_of(barrier.line)}});
+                            {"line", to_json(barrier.shape().line)},
+                            {"height_m", barrier.body->height},
+                            {"crest_elevation_m", optional_json(barrier.shape().crest_elevation)},
+                            {"thickness_m", barrier.shape().thickness},
+                            {"openings", openings_json(barrier.shape())},
+                            {"resistance_Npm", number_or_null(barrier.body->resistance.force_per_metre)},
+                            {"resistance_Pa", number_or_null(barrier.body->resistance.pressure)},
+                            {"crest_length_m", length_of(barrier.shape().line)},
+                            {"from_scene", barrier.from_scene}});
     }
     for (const BuildingSetup& building : setup.buildings) {
         const Building& body = *building.body;
@@ -258,11 +266,13 @@ json Scenario::impacts_json() const {
         buildings.push_back(impact_json(building.id, *run.impact_on(building.id)));
     }
     for (const BarrierSetup& barrier : parts_->setup().barriers) {
-        const Overtopping& over = run.overtopping_of(barrier.id);
-        json row = impact_json(barrier.id, *run.impact_on(barrier.id));
-        row["overtopped_m3"] = over.volume();
-        row["first_overtopped_s"] = number_or_null(over.first_time());
-        row["held_m3"] = over.held_volume(run.state());
+        const BuildingImpact& impact = *run.impact_on(barrier.id);
+        json row = impact_json(barrier.id, impact);
+        row["overtopped_m3"] = impact.overtopped_volume;
+        row["first_overtopped_s"] = number_or_null(impact.first_overtopping_time);
+        row["passed_m3"] = impact.passed_volume;
+        row["held_m3"] = run.held_volume(barrier.id);
+        row["peak_filling_height_m"] = impact.peak_filling_height;
         barriers.push_back(std::move(row));
     }
     return {{"buildings", buildings}, {"barriers", barriers}};

@@ -14,6 +14,8 @@ namespace talus::validate {
 [[nodiscard]] Kind lake_at_rest_kind();
 [[nodiscard]] Kind free_fall_kind();
 [[nodiscard]] Kind run_up_kind();
+[[nodiscard]] Kind wall_impact_kind();
+[[nodiscard]] Kind inflow_plane_kind();
 [[nodiscard]] Kind shear_decay_kind();
 [[nodiscard]] Kind energy_line_kind();
 [[nodiscard]] Kind scene_kind();
