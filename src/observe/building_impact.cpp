@@ -10,6 +10,7 @@ namespace talus {
 ImpactRecorder::ImpactRecorder(const Model& model, const State& state, double filter_window)
     : window_(filter_window), particle_area_(model.particle_spacing * model.particle_spacing) {
     follow(model, state);
+    jumped_ = false;
 }
 
 void ImpactRecorder::follow(const Model& model, const State& state) {

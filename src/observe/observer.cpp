@@ -176,12 +176,14 @@ void Observer::let_in(const State& state, std::uint32_t first_new_id) {
     } else {
         p.let_in.emplace_back(first_new_id, state.seeded);
     }
+    p.maps.make_room(state.count);
     p.front.follow(state);
     p.impact.let_in(state);
 }
 
 void Observer::expect(std::uint32_t particles) {
     parts_->start.reserve(particles);
+    parts_->maps.make_room(particles);
     parts_->front.expect(particles);
     parts_->impact.expect(particles);
 }

@@ -59,7 +59,7 @@ std::string kind_text(const Parameter& parameter) {
         case ParameterKind::extent:
             return "[x_min, y_min, x_max, y_max] with x_min < x_max and y_min < y_max";
         case ParameterKind::points:
-            return "a list of places [[x, y], [x, y], ...]";
+            return "a list of places, a pair of numbers each";
     }
     return "";
 }

@@ -26,7 +26,12 @@ std::uint32_t InflowFeeder::to_come() const {
 }
 
 bool InflowFeeder::due(double time) const {
-    return std::any_of(sources_.begin(), sources_.end(), [&](const Source& source) { return source.due(time); });
+    return std::any_of(sources_.begin(), sources_.end(),
+                       [&](const Source& source) { return source.due(time) || source.leads(); });
+}
+
+bool InflowFeeder::Source::leads() const {
+    return std::any_of(led.begin(), led.end(), [](const Row& row) { return row.first != row.last; });
 }
 
 bool InflowFeeder::Source::due(double time) const {
@@ -49,10 +54,60 @@ void InflowFeeder::feed(const Model& model, State& state) {
     const std::size_t room = state.id.size() - std::min(state.id.size(), array_padding);
     if (room < state.count + to_come()) state.resize(state.count + to_come());
     for (Source& source : sources_) {
+        source.lead(model, state);
         while (source.due(state.time)) {
             source.last_time = source.next_time(state.time);
             source.add_row(model, state, state.time - source.last_time);
             ++source.rows;
+        }
+    }
+}
+
+void InflowFeeder::Source::lead(const Model& model, State& state) {
+    if (!leads()) return;
+    const double early = inflow.volume_until(state.time - state.time_step), now = inflow.volume_until(state.time);
+    if (state.time >= end() || !(now > early)) {  // between surges nothing drives what came in
+        led = {};
+        return;
+    }
+    const WorldPoint& origin = model.terrain.frame().origin;
+    const double dx = inflow.to.x - inflow.from.x, dy = inflow.to.y - inflow.from.y, width = std::hypot(dx, dy);
+    const Vec3<double> level{dy / width, -dx / width, 0};
+    const Vec3<double> from{inflow.from.x - origin.x, inflow.from.y - origin.y, 0};
+    const double velocity =
+        (inflow.way_until(state.time) - inflow.way_until(state.time - state.time_step)) / state.time_step;
+    for (std::uint64_t back = 1; back <= std::min(rows, led_rows); ++back) {
+        const std::uint64_t number = rows - back;
+        Row& row = led[number % led_rows];
+        const double way = way_of(number, state.time);
+        if (row.first == row.last) continue;
+        if (way > static_cast<double>(led_rows) * spacing) {
+            row = {};
+            continue;
+        }
+        for (std::uint32_t i = 0; i < state.count; ++i) {
+            if (state.id[i] < row.first || state.id[i] >= row.last) continue;
+            const LocalPoint p = state.position.at(i), v = state.velocity.at(i);
+            const Vec3<double> place{p.x, p.y, p.z};
+            const double beyond = dot(place - from, level);
+            const Vec3<double> at_line = place - level * beyond;
+            const GroundSample<double> below = model.terrain.sample(at_line.x, at_line.y);
+            Vec3<double> along = level - below.normal * dot(level, below.normal);
+            along = along * (1 / length(along));
+            const Vec3<double> plan = at_line + along * way;
+            const GroundSample<double> here = model.terrain.sample(place.x, place.y);
+            const GroundSample<double> there = model.terrain.sample(plan.x, plan.y);
+            // As high above the ground, normal to it, as the solver left it.
+            const Vec3<double> target = Vec3<double>{plan.x, plan.y, there.height} +
+                                        there.normal * ((place.z - here.height) * here.normal.z);
+            const LocalPoint led_to{static_cast<float>(target.x), static_cast<float>(target.y),
+                                    static_cast<float>(target.z)};
+            if (!model.solids.empty() && model.solids.inside(led_to)) continue;
+            const double lacks = velocity - (v.x * along.x + v.y * along.y + v.z * along.z);
+            state.position.set(i, led_to);
+            state.velocity.set(i, {static_cast<float>(v.x + lacks * along.x), static_cast<float>(v.y + lacks * along.y),
+                                   static_cast<float>(v.z + lacks * along.z)});
+            state.resting[i] = 0;
         }
     }
 }
@@ -62,6 +117,7 @@ void InflowFeeder::Source::add_row(const Model& model, State& state, double sinc
     const double in = inflow.volume_until(last_time) / particle_volume;
     const std::uint32_t reached = last_time >= end() ? total : static_cast<std::uint32_t>(std::lround(in));
     const std::uint32_t count = std::min(reached, total) - std::min(fed, reached);
+    led[rows % led_rows] = {state.seeded, state.seeded + count};
     if (count == 0) return;
     const WorldPoint& origin = model.terrain.frame().origin;
     const double dx = inflow.to.x - inflow.from.x, dy = inflow.to.y - inflow.from.y, width = std::hypot(dx, dy);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -14,26 +15,39 @@ namespace talus {
 /// stacked in columns on a lattice of rest density, moving at the inflow velocity along the ground, and under the
 /// pressure of what lies above them. Nothing is let in denser than at rest, so nothing pops apart.
 ///
-/// The line is no wall: where debris is slower than its waves, and on level ground, it can spread upstream of it.
+/// Over the first three spacings beyond the line rows are led: between steps their way and velocity along the inflow
+/// become those of the hydrograph, across it they are as the solver leaves them. Without that, the newest row would be
+/// pushed back by those before it, having nothing behind it, and the next one would come too close.
 class InflowFeeder {
   public:
     InflowFeeder(const Model& model, const std::vector<Inflow>& inflows);
 
     /// Particles that all inflows together have yet to bring.
     [[nodiscard]] std::uint32_t to_come() const;
-    /// Whether any row is due at a time, s.
+    /// Whether there is anything to do at a time, s: a row is due, or rows are led.
     [[nodiscard]] bool due(double time) const;
-    /// Lets in what is due at the state's time, within Simulation::change(). Allocates nothing if the state's arrays
+    /// Leads what came in lately and lets in what is due at the state's time, within Simulation::change(). Allocates nothing if the state's arrays
     /// have room.
     void feed(const Model& model, State& state);
 
   private:
+    static constexpr std::uint64_t led_rows = 3;
+    struct Row {
+        std::uint32_t first = 0, last = 0;  ///< ids
+    };
     struct Source {
         Inflow inflow;
         double spacing = 0, particle_volume = 0;
         std::uint32_t total = 0, fed = 0;
         std::uint64_t rows = 0;  ///< that have been let in
         double last_time = 0;    ///< s, of the last row
+        std::array<Row, led_rows> led{};  ///< row k in place k % led_rows; empty: none, or no longer led
+
+        [[nodiscard]] double way_of(std::uint64_t row, double time) const {
+            return inflow.way_until(time) - static_cast<double>(row + 1) * spacing;
+        }
+        [[nodiscard]] bool leads() const;
+        void lead(const Model& model, State& state);
 
         [[nodiscard]] double end() const { return inflow.hydrograph.back().time; }
         [[nodiscard]] bool due(double time) const;

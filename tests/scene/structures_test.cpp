@@ -1,5 +1,6 @@
 #include <cmath>
 #include <stdexcept>
+#include <utility>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -32,7 +33,8 @@ class Structures : public SceneFolder {
         return std::move(*scene);
     }
     [[nodiscard]] RunResult run(const std::vector<std::string>& overrides = {}) const {
-        std::vector<std::string> all{"solver.target_particle_count=1500", "solver.end_time_s=12"};
+        std::vector<std::string> all{"solver.target_particle_count=1500", "solver.end_time_s=12",
+                                     "material.friction_coefficient=0.25"};
         all.insert(all.end(), overrides.begin(), overrides.end());
         auto result = run_scene(loaded(all), {});
         if (!result) throw std::runtime_error(result.error().message);
@@ -54,6 +56,44 @@ TEST_F(Structures, BarriersComeBehindTheBuildings) {
     EXPECT_TRUE(std::isinf(scene.buildings[1].resistance.pressure));
     ASSERT_EQ(scene.buildings[1].barrier->openings.size(), 1U);
     EXPECT_EQ(scene.buildings[1].barrier->openings[0].sill, 1);
+}
+
+TEST_F(Structures, BuildingsMayBeAMesh) {
+    // Two boxes side by side on ground at about 97 to 103 m, with roofs at 106 and 109 m; a third one far away.
+    std::string obj;
+    int vertex = 1;
+    const auto box = [&](const std::string& name, double x, double y, double top) {
+        obj += "o " + name + "\n";
+        for (const double z : {90.0, top}) {
+            for (const auto& [dx, dy] : {std::pair{0, 0}, {6, 0}, {6, 8}, {0, 8}}) {
+                obj += fmt::format("v {} {} {}\n", west + x + dx, south + y + dy, z);
+            }
+        }
+        obj += fmt::format("f {3} {2} {1} {0}\nf {4} {5} {6} {7}\n", vertex, vertex + 1, vertex + 2, vertex + 3,
+                           vertex + 4, vertex + 5, vertex + 6, vertex + 7);
+        vertex += 8;
+    };
+    box("low", 200, 96, 106);
+    box("high", 206, 96, 109);
+    box("away", 5000, 96, 109);
+    write("houses.obj", obj);
+    write_valley("[buildings]\nfile = \"houses.obj\"\nresistance_Pa = 3e4\n");
+    const Scene scene = loaded();
+    ASSERT_EQ(scene.buildings.size(), 2U);
+    EXPECT_EQ(scene.buildings[0].name, "low");
+    EXPECT_EQ(scene.buildings[1].roof_elevation, 109);
+    EXPECT_NEAR(scene.buildings[0].height, 106 - (200 - 0.5 * 203), 0.5);
+    EXPECT_EQ(scene.buildings[0].resistance.pressure, 3e4);
+    EXPECT_THAT(scene.notes, Contains(HasSubstr("1 of 3 lie outside the terrain")));
+    const BuildingSolids solids(scene.terrain, scene.buildings, 1);
+    const LocalPoint p = scene.terrain.frame().to_local({west + 203, south + 100, 105});
+    EXPECT_TRUE(solids.inside(p));
+    EXPECT_FALSE(solids.inside(LocalPoint{p.x, p.y, p.z + 2}));
+    EXPECT_TRUE(solids.inside(LocalPoint{p.x + 6, p.y, p.z + 2}));
+    EXPECT_THAT(load_error({"buildings.height_attribute=height"}),
+                HasSubstr("buildings.height_attribute: is refused with the mesh"));
+    write("houses.obj", "v 1 2\n");
+    EXPECT_THAT(load_error(), HasSubstr("buildings.file: " + path("houses.obj") + ":1: a vertex needs three"));
 }
 
 TEST_F(Structures, ABarriersLineMayBeAFile) {
@@ -79,7 +119,7 @@ TEST_F(Structures, BadBarriersAreRefusedByKey) {
     EXPECT_THAT(refusal(dam("")), HasSubstr("barrier[0].height_m: exactly one of height_m and crest_elevation_m must"));
     EXPECT_THAT(refusal("[[barrier]]\nheight_m = 8\n"), HasSubstr("exactly one of line_m and file must be given"));
     EXPECT_THAT(refusal("[[barrier]]\nheight_m = 8\nline_m = [[1, 2, 3]]\n"),
-                HasSubstr("must be a list of places [[x, y], [x, y], ...] (m)"));
+                HasSubstr("must be a list of places, a pair of numbers each (m)"));
     EXPECT_THAT(refusal("[[barrier]]\nheight_m = 8\nline_m = [[1, 2]]\n"),
                 HasSubstr("has 1 place; a line needs at least two"));
     EXPECT_THAT(refusal("[[barrier]]\nheight_m = 8\nline_m = [[1, 2], [3, 4]]\n"), HasSubstr("is not on known ground"));
