@@ -19,7 +19,8 @@ const json& member(const json& object, const char* key) {
 }
 
 bool is_triple(const json& value) {
-    return value.is_array() && value.size() == 3 && value[0].is_number() && value[1].is_number() && value[2].is_number();
+    return value.is_array() && value.size() == 3 && value[0].is_number() && value[1].is_number() &&
+           value[2].is_number();
 }
 
 /// A value in a message; what is nested, perhaps deeply, is only named.
@@ -42,9 +43,10 @@ class CityReader {
         const std::size_t digits = name.find_last_not_of("0123456789");
         const int epsg = std::atoi(name.c_str() + (digits == std::string::npos ? 0 : digits + 1));
         if (epsg == terrain_crs.epsg) return {};
-        return Error{fmt::format("{}: metadata.referenceSystem is EPSG:{}, the terrain's is EPSG:{}; bring the file into it "
-                                 "(cjio FILE crs_reproject {})",
-                                 file_, epsg, terrain_crs.epsg, terrain_crs.epsg)};
+        return Error{
+            fmt::format("{}: metadata.referenceSystem is EPSG:{}, the terrain's is EPSG:{}; bring the file into it "
+                        "(cjio FILE crs_reproject {})",
+                        file_, epsg, terrain_crs.epsg, terrain_crs.epsg)};
     }
 
     Status read_vertices() {
@@ -113,7 +115,7 @@ class CityReader {
         double best_detail = 0;
         for (const json& geometry : member(object, "geometry")) {
             const json& lod = member(geometry, "lod");
-            const double detail = lod.is_string() ? std::atof(lod.get<std::string>().c_str())
+            const double detail = lod.is_string()   ? std::atof(lod.get<std::string>().c_str())
                                   : lod.is_number() ? lod.get<double>()
                                                     : 0;
             if (detail < 1 || detail >= 3 || (best != nullptr && detail <= best_detail)) continue;
@@ -122,13 +124,12 @@ class CityReader {
         }
         if (best == nullptr) return {};
         const json& type = member(*best, "type");
-        const int depth = type == "Solid"                                          ? 2
+        const int depth = type == "Solid"                                        ? 2
                           : type == "MultiSurface" || type == "CompositeSurface" ? 1
                           : type == "MultiSolid" || type == "CompositeSolid"     ? 3
-                                                                                   : 0;
+                                                                                 : 0;
         if (depth == 0) {
-            return Error{fmt::format("{}: \"{}\": geometry type {} is no surface or solid", file_, id,
-                                     brief(type))};
+            return Error{fmt::format("{}: \"{}\": geometry type {} is no surface or solid", file_, id, brief(type))};
         }
         return read_faces(id, member(*best, "boundaries"), depth, faces);
     }

@@ -10,7 +10,7 @@
 /// What the readers of meshes share.
 namespace talus {
 
-inline constexpr std::size_t most_mesh_faces = 30'000;    ///< of a file; walls are compared with each other
+inline constexpr std::size_t most_mesh_faces = 30'000;  ///< of a file; walls are compared with each other
 inline constexpr std::size_t most_face_corners = 1'000;
 inline constexpr std::size_t most_mesh_bytes = 256U << 20U;
 

@@ -67,8 +67,8 @@ class ObjReader {
         }
         if (ring.size() < 3) return at_line("a face needs three vertices or more");
         if (++face_count_ > most_mesh_faces) {
-            return at_line(fmt::format("there are more than {} faces; simplify the mesh or cut out what the terrain covers",
-                                       most_mesh_faces));
+            return at_line(fmt::format(
+                "there are more than {} faces; simplify the mesh or cut out what the terrain covers", most_mesh_faces));
         }
         faces_.push_back({std::move(ring)});
         return {};

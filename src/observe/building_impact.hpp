@@ -76,11 +76,11 @@ class ImpactRecorder {
     double window_ = 0, particle_area_ = 0;
     std::vector<BuildingImpact> impacts_;
     std::vector<Record> records_;
-    std::vector<LastTouch> last_touch_;  // by particle id
-    std::vector<std::size_t> touched_;   // buildings of this step
-    std::vector<std::size_t> failed_;    // in this step
+    std::vector<LastTouch> last_touch_;                    // by particle id
+    std::vector<std::size_t> touched_;                     // buildings of this step
+    std::vector<std::size_t> failed_;                      // in this step
     std::vector<std::unique_ptr<Overtopping>> crossings_;  // by building
-    bool jumped_ = false;                // particles were moved since the last step
+    bool jumped_ = false;                                  // particles were moved since the last step
 };
 
 }  // namespace talus

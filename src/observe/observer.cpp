@@ -123,7 +123,7 @@ struct Observer::Parts {
     FrontTracker front;
     ImpactRecorder impact;
     ReleasedMass released;
-    std::vector<LocalPoint> start;  ///< by particle id
+    std::vector<LocalPoint> start;                                ///< by particle id
     std::vector<std::pair<std::uint32_t, std::uint32_t>> let_in;  ///< ids [first, last) that came in during the run
     std::vector<TimeSample> timeseries;
     std::uint64_t next_row = 1;  ///< due at next_row * sample_interval

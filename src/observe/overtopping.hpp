@@ -24,9 +24,9 @@ class Overtopping {
     /// `jumped`: particles may have been moved since the last call; nothing counts as a crossing.
     void after_step(const State& state, bool jumped = false);
 
-    [[nodiscard]] double volume() const { return beyond(over_); }              ///< m3, over the crest
-    [[nodiscard]] double passed_volume() const { return beyond(through_); }    ///< m3, through openings
-    [[nodiscard]] double first_time() const { return first_time_; }            ///< s, over the crest; NaN: never
+    [[nodiscard]] double volume() const { return beyond(over_); }            ///< m3, over the crest
+    [[nodiscard]] double passed_volume() const { return beyond(through_); }  ///< m3, through openings
+    [[nodiscard]] double first_time() const { return first_time_; }          ///< s, over the crest; NaN: never
 
     /// Debris upstream of a barrier: on the side from which it has crossed, or where there is more of it.
     struct Filling {

@@ -31,10 +31,11 @@ Section declare_terrain() {
 }
 
 Section declare_release() {
-    Declaration<ReleaseSpec> s("release",
-                               "A body of debris that starts to move at one moment; a scene needs one, or an inflow. Exactly one of "
-                               "thickness_m, thickness_attribute, thickness_raster and volume_m3 says how much it is.",
-                               &SceneSpec::releases);
+    Declaration<ReleaseSpec> s(
+        "release",
+        "A body of debris that starts to move at one moment; a scene needs one, or an inflow. Exactly one of "
+        "thickness_m, thickness_attribute, thickness_raster and volume_m3 says how much it is.",
+        &SceneSpec::releases);
     s.text("name", &ReleaseSpec::name, "\"release N\"", "Name in reports and messages.");
     s.path("file", &ReleaseSpec::file, "", "Polygons of the release area: GeoJSON, GeoPackage, Shapefile.").required =
         true;
@@ -58,9 +59,10 @@ Section declare_inflow() {
                               "it and towards its right; any number. Exactly one of line_m and file says where.",
                               &SceneSpec::inflows);
     s.text("name", &InflowSpec::name, "\"inflow N\"", "Name in reports and messages.");
-    s.key("line_m", "m", &InflowSpec::line, anything(),
-          "The two ends of the line in plan, in the terrain's reference system: first the one on the right-hand side of "
-          "the debris that comes.");
+    s.key(
+        "line_m", "m", &InflowSpec::line, anything(),
+        "The two ends of the line in plan, in the terrain's reference system: first the one on the right-hand side of "
+        "the debris that comes.");
     s.path("file", &InflowSpec::file, "line_m is given", "The line in a file: GeoJSON, GeoPackage, Shapefile.");
     s.text("layer", &InflowSpec::layer, "the only layer", "Layer of the file.");
     s.path("hydrograph", &InflowSpec::hydrograph, "",
@@ -73,9 +75,10 @@ Section declare_inflow() {
 Section declare_buildings() {
     Declaration<BuildingsSpec> s("buildings", "Solid obstacles with vertical walls and flat roofs.",
                                  &SceneSpec::buildings);
-    s.path("file", &BuildingsSpec::file, "no buildings",
-           "Footprint polygons (GeoJSON, GeoPackage, Shapefile), or a mesh in the terrain's reference system, z upward: "
-           "CityJSON (.city.json, .cityjson) or Wavefront OBJ (.obj).");
+    s.path(
+        "file", &BuildingsSpec::file, "no buildings",
+        "Footprint polygons (GeoJSON, GeoPackage, Shapefile), or a mesh in the terrain's reference system, z upward: "
+        "CityJSON (.city.json, .cityjson) or Wavefront OBJ (.obj).");
     s.text("layer", &BuildingsSpec::layer, "the only layer", "Layer of the file.");
     s.text("height_attribute", &BuildingsSpec::height_attribute, "every building has the default height",
            "Attribute that holds a building's height above the mean ground of its footprint in metres.");
@@ -233,9 +236,10 @@ Section declare_outputs() {
 
 const std::vector<Section>& scene_sections() {
     static const std::vector<Section> sections = [] {
-        std::vector<Section> all = {declare_scene(),           declare_terrain(),   declare_release(), declare_inflow(),
-                                    declare_buildings(),       declare_barrier(),   declare_barrier_opening(),
-                                    declare_flow_path(),       declare_material(),  declare_solver(),  declare_outputs()};
+        std::vector<Section> all = {declare_scene(),           declare_terrain(),   declare_release(),
+                                    declare_inflow(),          declare_buildings(), declare_barrier(),
+                                    declare_barrier_opening(), declare_flow_path(), declare_material(),
+                                    declare_solver(),          declare_outputs()};
         for (Section& section : declare_observations()) all.push_back(std::move(section));
         return all;
     }();

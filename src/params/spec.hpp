@@ -63,9 +63,9 @@ struct BarrierSpec {
     std::string name;
     std::vector<PlanPoint> line;  ///< in the terrain's reference system
     std::string file, layer;
-    std::optional<double> height;           ///< m above the ground under the line
-    std::optional<double> crest_elevation;  ///< m
-    double thickness = 1;                   ///< m
+    std::optional<double> height;               ///< m above the ground under the line
+    std::optional<double> crest_elevation;      ///< m
+    double thickness = 1;                       ///< m
     std::optional<double> resistance_force;     ///< N/m; absent: it stands whatever happens
     std::optional<double> resistance_pressure;  ///< Pa; the same
 };

@@ -31,10 +31,9 @@ Result<std::string> render_report(const Scene& scene, const RunResult& result,
     const bool forces = has_structure_figure(result);
     const int first_figure_after_maps = maps->count + 1 + (forces ? 1 : 0);
     const std::string force_figure =
-        forces ? fill(report_files::forces_html,
-                      {{"number", fmt::format("{}", maps->count + 1)},
-                       {"figure", structure_figure(result)},
-                       {"window", plain(scene.spec.outputs.impact_filter_window)}})
+        forces ? fill(report_files::forces_html, {{"number", fmt::format("{}", maps->count + 1)},
+                                                  {"figure", structure_figure(result)},
+                                                  {"window", plain(scene.spec.outputs.impact_filter_window)}})
                : "";
     const std::string description =
         info.description.empty() ? "" : "<p class=\"lead\">" + escape(info.description) + "</p>";

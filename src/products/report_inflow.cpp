@@ -49,7 +49,8 @@ hydrograph and as deep as its discharge makes it; the number of particles is tha
 <figcaption><b>Figure {}. Hydrographs.</b> Discharge of bulk debris at rest density, and velocity, as given.</figcaption></figure>
 </section>
 )",
-        list, figure_svg(1000, 320, "Discharge and velocity of the inflows over time", discharge.svg() + velocity.svg()),
+        list,
+        figure_svg(1000, 320, "Discharge and velocity of the inflows over time", discharge.svg() + velocity.svg()),
         figure);
 }
 

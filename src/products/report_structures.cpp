@@ -20,7 +20,8 @@ std::vector<const BuildingImpact*> drawn(const RunResult& result) {
     for (const BuildingImpact& impact : result.observation.buildings) {
         if (impact.history.size() > 1 && impact.peak_force > 0) all.push_back(&impact);
     }
-    std::stable_sort(all.begin(), all.end(), [](const auto* a, const auto* b) { return a->peak_force > b->peak_force; });
+    std::stable_sort(all.begin(), all.end(),
+                     [](const auto* a, const auto* b) { return a->peak_force > b->peak_force; });
     if (all.size() > most_lines) all.resize(most_lines);
     return all;
 }
@@ -33,8 +34,9 @@ std::string failures(const std::vector<BuildingImpact>& impacts) {
     std::string html;
     for (const BuildingImpact& impact : impacts) {
         if (std::isnan(impact.failure_time)) continue;
-        html += fmt::format("<p><b>{} failed at {} s</b>: the force exceeded its resistance; from then on it is gone.</p>",
-                            escape(name_of(impact)), fixed(impact.failure_time, 2));
+        html +=
+            fmt::format("<p><b>{} failed at {} s</b>: the force exceeded its resistance; from then on it is gone.</p>",
+                        escape(name_of(impact)), fixed(impact.failure_time, 2));
     }
     return html;
 }
@@ -58,7 +60,8 @@ std::string barrier_table(const RunResult& result) {
             fixed(b.passed_volume, 1), fixed(b.held_volume, 1), fixed(b.peak_held_volume, 1),
             fixed(b.peak_filling_height, 2));
     }
-    return html + R"(</tbody></table><p class="note">Over the crest and through openings: what crossed the barrier's line
+    return html +
+           R"(</tbody></table><p class="note">Over the crest and through openings: what crossed the barrier's line
 and did not come back; around its ends is neither. Held: debris upstream within five heights of the line. Filled: mean
 depth of the deepest section, four particles square, along the upstream face. All of it until a barrier fails.</p>
 )";

@@ -48,10 +48,11 @@ Status add_openings(const ParsedScene& parsed, const Scene& scene, const std::st
     for (std::size_t k = 0; k < openings.size(); ++k) {
         if (openings[k].barrier != name) continue;
         if (openings[k].width < 2 * spacing) {
-            return Error{fmt::format("{} = {:.6g} is refused; with particles of {:.3g} m it must be at least {:.4g} m: "
-                                     "nothing would get through a narrower one; smaller particles allow less",
-                                     parsed.at(fmt::format("barrier_opening[{}].width_m", k)), openings[k].width,
-                                     spacing, std::ceil(2000 * spacing) / 1000)};
+            return Error{
+                fmt::format("{} = {:.6g} is refused; with particles of {:.3g} m it must be at least {:.4g} m: "
+                            "nothing would get through a narrower one; smaller particles allow less",
+                            parsed.at(fmt::format("barrier_opening[{}].width_m", k)), openings[k].width, spacing,
+                            std::ceil(2000 * spacing) / 1000)};
         }
         shape.openings.push_back({openings[k].position, openings[k].width, openings[k].sill});
     }
@@ -101,10 +102,10 @@ Status load_barriers(const ParsedScene& parsed, Scene& scene) {
             return s;
         }
         if (spec.thickness < spacing / 2) {
-            return Error{fmt::format("{} = {:.6g} is refused; with particles of {:.3g} m it must be at least {:.4g} m: "
-                                     "debris on both sides would feel each other through it",
-                                     parsed.at(path + ".thickness_m"), spec.thickness, spacing,
-                                     std::ceil(500 * spacing) / 1000)};
+            return Error{fmt::format(
+                "{} = {:.6g} is refused; with particles of {:.3g} m it must be at least {:.4g} m: "
+                "debris on both sides would feel each other through it",
+                parsed.at(path + ".thickness_m"), spec.thickness, spacing, std::ceil(500 * spacing) / 1000)};
         }
         BarrierShape shape{{}, spec.height.value_or(0), spec.crest_elevation, spec.thickness, {}};
         if (Status s = read_line_of(parsed, k, scene, name, shape.line); !s) return s;
@@ -118,10 +119,10 @@ Status load_barriers(const ParsedScene& parsed, Scene& scene) {
         for (const Release& release : scene.releases) {
             const double area = shared_area(release, *barrier);
             if (area <= 0) continue;
-            return Error{fmt::format("{}: barrier \"{}\" stands on release \"{}\" with {:.3g} m2: the ground under it "
-                                     "fails; move the line",
-                                     parsed.at(path + (spec.file.empty() ? ".line_m" : ".file")), name, release.name,
-                                     area)};
+            return Error{
+                fmt::format("{}: barrier \"{}\" stands on release \"{}\" with {:.3g} m2: the ground under it "
+                            "fails; move the line",
+                            parsed.at(path + (spec.file.empty() ? ".line_m" : ".file")), name, release.name, area)};
         }
         scene.buildings.push_back(std::move(*barrier));
     }

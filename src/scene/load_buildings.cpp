@@ -84,11 +84,12 @@ std::string attribute_of(const MeshBuilding& mesh, const std::string& name) {
 
 Status check_mesh_keys(const ParsedScene& parsed) {
     const BuildingsSpec& spec = parsed.spec.buildings;
-    for (const auto& [key, given] : {std::pair{"layer", !spec.layer.empty()},
-                                     std::pair{"height_attribute", !spec.height_attribute.empty()}}) {
+    for (const auto& [key, given] :
+         {std::pair{"layer", !spec.layer.empty()}, std::pair{"height_attribute", !spec.height_attribute.empty()}}) {
         if (!given) continue;
-        return Error{fmt::format("{}: is refused with the mesh {}, which has its own heights and no layers; leave it out",
-                                 parsed.at(std::string("buildings.") + key), spec.file)};
+        return Error{
+            fmt::format("{}: is refused with the mesh {}, which has its own heights and no layers; leave it out",
+                        parsed.at(std::string("buildings.") + key), spec.file)};
     }
     return {};
 }
@@ -124,10 +125,10 @@ Status load_mesh_buildings(const ParsedScene& parsed, Scene& scene, std::size_t&
             continue;
         }
         if (building.height > highest_building) {
-            return Error{fmt::format("{}: {}: \"{}\" is {:.6g} m higher than its ground; it must be at most {:.0f} m; are its "
-                                     "elevations those of the terrain?",
-                                     parsed.at("buildings.file"), spec.file, mesh.name, building.height,
-                                     highest_building)};
+            return Error{
+                fmt::format("{}: {}: \"{}\" is {:.6g} m higher than its ground; it must be at most {:.0f} m; are its "
+                            "elevations those of the terrain?",
+                            parsed.at("buildings.file"), spec.file, mesh.name, building.height, highest_building)};
         }
         const std::string name = attribute_of(mesh, spec.name_attribute);
         building.name = name.empty() ? mesh.name : name;
@@ -137,11 +138,12 @@ Status load_mesh_buildings(const ParsedScene& parsed, Scene& scene, std::size_t&
         scene.buildings.push_back(std::move(building));
     }
     if (sunk > 0) {
-        scene.notes.push_back(
-            fmt::format("buildings: {} of {} have their roofs below the ground and were left out", sunk, meshes->size()));
+        scene.notes.push_back(fmt::format("buildings: {} of {} have their roofs below the ground and were left out",
+                                          sunk, meshes->size()));
     }
-    scene.notes.push_back(fmt::format(
-        "buildings: {} read from a mesh; every roof face is taken to be level at its mean elevation", scene.buildings.size()));
+    scene.notes.push_back(
+        fmt::format("buildings: {} read from a mesh; every roof face is taken to be level at its mean elevation",
+                    scene.buildings.size()));
     return {};
 }
 
@@ -207,8 +209,8 @@ Status load_buildings(const ParsedScene& parsed, Scene& scene) {
     const BuildingsSpec& spec = scene.spec.buildings;
     if (spec.file.empty()) return {};
     std::size_t outside = 0;
-    const Status loaded = is_mesh_file(spec.file) ? load_mesh_buildings(parsed, scene, outside)
-                                                  : load_footprints(parsed, scene, outside);
+    const Status loaded =
+        is_mesh_file(spec.file) ? load_mesh_buildings(parsed, scene, outside) : load_footprints(parsed, scene, outside);
     if (!loaded) return loaded;
     if (scene.buildings.empty()) {
         return Error{

@@ -87,9 +87,9 @@ struct Source {
 
 Source largest_source(const Scene& scene) {
     if (scene.releases.empty()) {
-        const Inflow& inflow = *std::max_element(
-            scene.inflows.begin(), scene.inflows.end(),
-            [](const Inflow& a, const Inflow& b) { return a.volume() < b.volume(); });
+        const Inflow& inflow =
+            *std::max_element(scene.inflows.begin(), scene.inflows.end(),
+                              [](const Inflow& a, const Inflow& b) { return a.volume() < b.volume(); });
         const PlanPoint middle{(inflow.from.x + inflow.to.x) / 2, (inflow.from.y + inflow.to.y) / 2};
         return {"inflow \"" + inflow.name + "\"", middle, middle};
     }
@@ -115,9 +115,9 @@ Status trace_from_release(const ParsedScene& parsed, Scene& scene) {
     }
     scene.flow_path = FlowPath(points, scene.spec.flow_path.corridor_width);
     scene.flow_path_traced = true;
-    scene.notes.push_back(
-        fmt::format("flow path: traced downhill from {}, {:.0f} m from its crown at {} to {}", relief.label,
-                    scene.flow_path.length(), place_text(points.front()), place_text(points.back())));
+    scene.notes.push_back(fmt::format("flow path: traced downhill from {}, {:.0f} m from its crown at {} to {}",
+                                      relief.label, scene.flow_path.length(), place_text(points.front()),
+                                      place_text(points.back())));
     note_far_releases(scene, points);
     return {};
 }

@@ -45,9 +45,10 @@ Result<std::vector<InflowSample>> read_hydrograph(const std::string& file) {
     for (std::size_t c = 0; c < 3; ++c) {
         while (place[c] < header.size() && header[place[c]] != columns[c]) ++place[c];
         if (place[c] == header.size()) {
-            return Error{fmt::format("{}:1: there is no column {}; the first line must name time_s, discharge_m3ps and "
-                                     "velocity_mps, separated by commas",
-                                     file, columns[c])};
+            return Error{
+                fmt::format("{}:1: there is no column {}; the first line must name time_s, discharge_m3ps and "
+                            "velocity_mps, separated by commas",
+                            file, columns[c])};
         }
     }
     std::vector<InflowSample> rows;
@@ -59,21 +60,24 @@ Result<std::vector<InflowSample>> read_hydrograph(const std::string& file) {
         for (std::size_t c = 0; c < 3; ++c) {
             const std::string text = place[c] < fields.size() ? fields[place[c]] : "";
             if (!read_number(text, values[c]) || values[c] < 0) {
-                return Error{fmt::format("{}:{}: {} = \"{}\" is refused; it must be a number of at least 0", file, number,
-                                         columns[c], one_line(text, 40))};
+                return Error{fmt::format("{}:{}: {} = \"{}\" is refused; it must be a number of at least 0", file,
+                                         number, columns[c], one_line(text, 40))};
             }
         }
         if (!rows.empty() && values[0] <= rows.back().time) {
-            return Error{fmt::format("{}:{}: time_s = {:.6g} is refused; it must be above that of the row before, {:.6g}",
-                                     file, number, values[0], rows.back().time)};
+            return Error{
+                fmt::format("{}:{}: time_s = {:.6g} is refused; it must be above that of the row before, {:.6g}", file,
+                            number, values[0], rows.back().time)};
         }
         if (values[1] > 0 && !(values[2] > 0)) {
-            return Error{fmt::format("{}:{}: velocity_mps = {:.6g} is refused; it must be above 0 where there is discharge",
-                                     file, number, values[2])};
+            return Error{
+                fmt::format("{}:{}: velocity_mps = {:.6g} is refused; it must be above 0 where there is discharge",
+                            file, number, values[2])};
         }
         rows.push_back({values[0], values[1], values[2]});
     }
-    if (rows.size() < 2) return Error{fmt::format("{}: has {} rows of values; it must have at least 2", file, rows.size())};
+    if (rows.size() < 2)
+        return Error{fmt::format("{}: has {} rows of values; it must have at least 2", file, rows.size())};
     return rows;
 }
 

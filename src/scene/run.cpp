@@ -100,7 +100,8 @@ void Run::step_until_done(Simulation& simulation, Observer& observer, InflowFeed
         if (take_failed_down(simulation, observer)) rest.stir(state.time);
         show_frame();
         report_progress(simulation, observer, seconds_since(start));
-        if (rest.at_rest(state.time, total_momentum(model, state), still_waiting(model, state) || feeder.to_come() > 0)) {
+        if (rest.at_rest(state.time, total_momentum(model, state),
+                         still_waiting(model, state) || feeder.to_come() > 0)) {
             result.stop_reason = rest.reason();
             break;
         }
@@ -154,9 +155,10 @@ void let_in(Simulation& simulation, Observer& observer, InflowFeeder& feeder) {
 Status check_particles(const Model& model, std::uint32_t seeded, const InflowFeeder& feeder) {
     const double particles = static_cast<double>(seeded) + feeder.to_come();
     if (particles <= model.solver.particle_limit) return {};
-    return Error{fmt::format("releases and inflows need {:.0f} particles of solver.particle_spacing_m = {:.4g}, more "
-                             "than solver.particle_limit = {}; a larger spacing needs fewer",
-                             particles, model.particle_spacing, model.solver.particle_limit)};
+    return Error{
+        fmt::format("releases and inflows need {:.0f} particles of solver.particle_spacing_m = {:.4g}, more "
+                    "than solver.particle_limit = {}; a larger spacing needs fewer",
+                    particles, model.particle_spacing, model.solver.particle_limit)};
 }
 
 bool take_failed_down(Simulation& simulation, const Observer& observer) {

@@ -98,8 +98,8 @@ void InflowFeeder::Source::lead(const Model& model, State& state) {
             const GroundSample<double> here = model.terrain.sample(place.x, place.y);
             const GroundSample<double> there = model.terrain.sample(plan.x, plan.y);
             // As high above the ground, normal to it, as the solver left it.
-            const Vec3<double> target = Vec3<double>{plan.x, plan.y, there.height} +
-                                        there.normal * ((place.z - here.height) * here.normal.z);
+            const Vec3<double> target =
+                Vec3<double>{plan.x, plan.y, there.height} + there.normal * ((place.z - here.height) * here.normal.z);
             const LocalPoint led_to{static_cast<float>(target.x), static_cast<float>(target.y),
                                     static_cast<float>(target.z)};
             if (!model.solids.empty() && model.solids.inside(led_to)) continue;
@@ -154,8 +154,7 @@ void InflowFeeder::Source::add_row(const Model& model, State& state, double sinc
                                    static_cast<float>(along.z * velocity)});
             state.stress.set(i, {});
             const double above = (layers - k - 0.5) * layer;
-            state.multiplier[i] =
-                static_cast<float>(-model.gravity * ground.normal.z * above * previous * previous);
+            state.multiplier[i] = static_cast<float>(-model.gravity * ground.normal.z * above * previous * previous);
             state.id[i] = state.seeded++;
             state.held[i] = state.resting[i] = 0;
             state.calm_time[i] = 0;

@@ -26,8 +26,8 @@ class InflowFeeder {
     [[nodiscard]] std::uint32_t to_come() const;
     /// Whether there is anything to do at a time, s: a row is due, or rows are led.
     [[nodiscard]] bool due(double time) const;
-    /// Leads what came in lately and lets in what is due at the state's time, within Simulation::change(). Allocates nothing if the state's arrays
-    /// have room.
+    /// Leads what came in lately and lets in what is due at the state's time, within Simulation::change(). Allocates
+    /// nothing if the state's arrays have room.
     void feed(const Model& model, State& state);
 
   private:
@@ -39,8 +39,8 @@ class InflowFeeder {
         Inflow inflow;
         double spacing = 0, particle_volume = 0;
         std::uint32_t total = 0, fed = 0;
-        std::uint64_t rows = 0;  ///< that have been let in
-        double last_time = 0;    ///< s, of the last row
+        std::uint64_t rows = 0;           ///< that have been let in
+        double last_time = 0;             ///< s, of the last row
         std::array<Row, led_rows> led{};  ///< row k in place k % led_rows; empty: none, or no longer led
 
         [[nodiscard]] double way_of(std::uint64_t row, double time) const {

@@ -79,8 +79,9 @@ Status check_openings(const BarrierShape& shape) {
                                      a.position - a.width / 2, a.position + a.width / 2, length)};
         }
         if (!shape.crest_elevation && a.sill >= shape.height) {
-            return Error{fmt::format("opening {}: sill_height_m = {:.6g} must be below the barrier's height of {:.6g} m",
-                                     k + 1, a.sill, shape.height)};
+            return Error{
+                fmt::format("opening {}: sill_height_m = {:.6g} must be below the barrier's height of {:.6g} m", k + 1,
+                            a.sill, shape.height)};
         }
         for (std::size_t other = 0; other < k; ++other) {
             const BarrierOpening& b = shape.openings[other];

@@ -21,10 +21,10 @@ struct BarrierOpening {
 
 /// A wall or dam along a line.
 struct BarrierShape {
-    std::vector<PlanPoint> line;                ///< world plan coordinates, two points or more
-    double height = 0;                          ///< m above the ground under the line
-    std::optional<double> crest_elevation = {}; ///< m, world: a level crest, in place of `height`
-    double thickness = 0;                       ///< m across the line
+    std::vector<PlanPoint> line;                 ///< world plan coordinates, two points or more
+    double height = 0;                           ///< m above the ground under the line
+    std::optional<double> crest_elevation = {};  ///< m, world: a level crest, in place of `height`
+    double thickness = 0;                        ///< m across the line
     std::vector<BarrierOpening> openings = {};
 };
 

@@ -240,8 +240,8 @@ Status ActionReader::trigger_release() {
 }
 
 Status ActionReader::put_barrier() {
-    if (Status s = check_keys(action_, {"action", "id", "name", "line", "height_m", "thickness_m",
-                                          "resistance_Npm", "resistance_Pa"});
+    if (Status s = check_keys(
+            action_, {"action", "id", "name", "line", "height_m", "thickness_m", "resistance_Npm", "resistance_Pa"});
         !s) {
         return s;
     }
@@ -288,9 +288,8 @@ Status ActionReader::put_barrier() {
     body->resistance.pressure = pressure->value_or(body->resistance.pressure);
     const double body_height = body->height;
     barrier.body = std::make_shared<const Building>(std::move(*body));
-    edit_.sentence =
-        fmt::format("barrier {} {}: {:.1f} m long, {:.3g} m high, {:.3g} m thick", in_quotes(called),
-                    existing ? "changed" : "placed", length_of(shape.line), body_height, shape.thickness);
+    edit_.sentence = fmt::format("barrier {} {}: {:.1f} m long, {:.3g} m high, {:.3g} m thick", in_quotes(called),
+                                 existing ? "changed" : "placed", length_of(shape.line), body_height, shape.thickness);
     if (existing != nullptr) {
         *existing = std::move(barrier);
     } else {

@@ -109,7 +109,8 @@ void LiveRun::take_step() {
     }
     take_failed_down();
     record();
-    if (rest_.at_rest(state().time, total_momentum(model(), state()), still_waiting(model(), state()) || feeder_.to_come() > 0)) {
+    if (rest_.at_rest(state().time, total_momentum(model(), state()),
+                      still_waiting(model(), state()) || feeder_.to_come() > 0)) {
         stop(Phase::at_rest, rest_.reason());
     } else if (reached_end_time(scene_.spec.solver, state())) {
         stop(Phase::ended, end_time_reason(scene_.spec.solver));
@@ -126,8 +127,7 @@ const BuildingImpact* LiveRun::impact_on(const std::string& obstacle_id) const {
 
 double LiveRun::held_volume(const std::string& barrier_id) const {
     const Obstacle* obstacle = find_id(obstacles_, barrier_id);
-    const Overtopping* crossings =
-        observer_->overtopping(static_cast<std::size_t>(obstacle - obstacles_.data()));
+    const Overtopping* crossings = observer_->overtopping(static_cast<std::size_t>(obstacle - obstacles_.data()));
     return crossings != nullptr ? crossings->filling(state()).volume : impact_on(barrier_id)->held_volume;
 }
 

@@ -19,10 +19,10 @@ bool same_opening(const BarrierOpening& a, const BarrierOpening& b) {
 /// As far as the footprint does not tell.
 bool same_barrier(const std::optional<BarrierShape>& a, const std::optional<BarrierShape>& b) {
     if (a.has_value() != b.has_value()) return false;
-    return !a || (a->height == b->height && a->crest_elevation == b->crest_elevation &&
-                  a->thickness == b->thickness && same_ring(a->line, b->line) &&
-                  std::equal(a->openings.begin(), a->openings.end(), b->openings.begin(), b->openings.end(),
-                             same_opening));
+    return !a ||
+           (a->height == b->height && a->crest_elevation == b->crest_elevation && a->thickness == b->thickness &&
+            same_ring(a->line, b->line) &&
+            std::equal(a->openings.begin(), a->openings.end(), b->openings.begin(), b->openings.end(), same_opening));
 }
 
 bool same(const Polygon& a, const Polygon& b) {
@@ -71,10 +71,9 @@ bool same_shape(const std::shared_ptr<const Release>& a, const std::shared_ptr<c
 
 bool same_shape(const std::shared_ptr<const Building>& a, const std::shared_ptr<const Building>& b) {
     return a == b ||
-           (same_barrier(a->barrier, b->barrier) &&
-            a->resistance.force_per_metre == b->resistance.force_per_metre &&
-            a->resistance.pressure == b->resistance.pressure && a->height == b->height && a->roof_elevation == b->roof_elevation &&
-            a->part_roof_elevations == b->part_roof_elevations &&
+           (same_barrier(a->barrier, b->barrier) && a->resistance.force_per_metre == b->resistance.force_per_metre &&
+            a->resistance.pressure == b->resistance.pressure && a->height == b->height &&
+            a->roof_elevation == b->roof_elevation && a->part_roof_elevations == b->part_roof_elevations &&
             std::equal(a->footprint.begin(), a->footprint.end(), b->footprint.begin(), b->footprint.end(), same));
 }
 

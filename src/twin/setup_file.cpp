@@ -142,7 +142,8 @@ Result<std::vector<BarrierOpening>> SetupReader::read_openings(const json& file)
     if (!file["openings"].is_array()) return bad("openings", file);
     for (const json& entry : file["openings"]) {
         const json& object = entry.is_object() ? entry : json::object();
-        const auto position = read_number(object, "position_m", {}, "m"), width = read_number(object, "width_m", {}, "m"),
+        const auto position = read_number(object, "position_m", {}, "m"),
+                   width = read_number(object, "width_m", {}, "m"),
                    sill = read_number(object, "sill_height_m", {}, "m");
         if (!position || !*position || !width || !*width || !sill || !*sill) return bad("openings", file);
         openings.push_back({**position, **width, **sill});
@@ -156,7 +157,8 @@ Result<BarrierSetup> SetupReader::read_barrier(const json& file) const {
     const auto name = read_text(file, "name", 1000);
     const auto height = read_number(file, "height_m", {}, "m"), thickness = read_number(file, "thickness_m", {}, "m");
     const auto crest = read_number(file, "crest_elevation_m", {}, "m");
-    const auto force = read_number(file, "resistance_Npm", {}, "N/m"), pressure = read_number(file, "resistance_Pa", {}, "Pa");
+    const auto force = read_number(file, "resistance_Npm", {}, "N/m"),
+               pressure = read_number(file, "resistance_Pa", {}, "Pa");
     if (!line) return line.error();
     if (!*line) return bad("line", file);
     if (!name || !*name) return bad("name", file);
@@ -167,12 +169,13 @@ Result<BarrierSetup> SetupReader::read_barrier(const json& file) const {
     if (!pressure) return bad("resistance_Pa", file);
     auto openings = read_openings(file);
     if (!openings) return openings.error();
-    auto body = make_barrier(scene_.terrain, **name,
-                             {std::move(**line), **height, *crest, **thickness, std::move(*openings)});
+    auto body =
+        make_barrier(scene_.terrain, **name, {std::move(**line), **height, *crest, **thickness, std::move(*openings)});
     if (!body) return body.error();
     if (*force) body->resistance.force_per_metre = **force;
     if (*pressure) body->resistance.pressure = **pressure;
-    return BarrierSetup{file["id"], std::make_shared<const Building>(std::move(*body)), file.value("from_scene", false)};
+    return BarrierSetup{file["id"], std::make_shared<const Building>(std::move(*body)),
+                        file.value("from_scene", false)};
 }
 
 Result<BuildingSetup> SetupReader::read_building(const json& file) const {

@@ -69,10 +69,13 @@ TEST_F(Mesh, CityJsonGivesTheRoofFacesOfTheMostDetailedGeometry) {
 TEST_F(Mesh, ObjGivesABuildingPerObjectWhicheverWayItsFacesTurn) {
     for (const bool turned : {false, true}) {
         const std::string top = turned ? "f 8 7 6 5\n" : "f 5 6 7 8\n";
-        const auto buildings =
-            read("b.obj", "# two boxes\no tower\nv 0 0 10\nv 4 0 10\nv 4 4 10\nv 0 4 10\nv 0 0 30\nv 4 0 30\nv 4 4 30\nv 0 4 30\n"
-                          "f 1/1/1 2/2/2 6//3 5\nf 1 2 3 4\n" + top + "o shed\nv 9 9 10\nv 12 9 10\nv 9 12 10\nv 9 9 12\nv 12 9 12\n"
-                          "v 9 12 13\nf -3 -2 -1\nf -6 -5 -4\n");
+        const auto buildings = read(
+            "b.obj",
+            "# two boxes\no tower\nv 0 0 10\nv 4 0 10\nv 4 4 10\nv 0 4 10\nv 0 0 30\nv 4 0 30\nv 4 4 30\nv 0 4 30\n"
+            "f 1/1/1 2/2/2 6//3 5\nf 1 2 3 4\n" +
+                top +
+                "o shed\nv 9 9 10\nv 12 9 10\nv 9 12 10\nv 9 9 12\nv 12 9 12\n"
+                "v 9 12 13\nf -3 -2 -1\nf -6 -5 -4\n");
         ASSERT_TRUE(buildings) << buildings.error().message;
         ASSERT_EQ(buildings->size(), 2U);
         EXPECT_EQ((*buildings)[0].name, "tower");
@@ -99,11 +102,13 @@ TEST_F(Mesh, BadFilesAreRefusedWithThePlace) {
     };
     EXPECT_THAT(changed("CityJSON", "CityGML"), HasSubstr("is no CityJSON file"));
     EXPECT_THAT(changed("0/2326", "0/28992"), HasSubstr("is EPSG:28992, the terrain's is EPSG:2326"));
-    EXPECT_THAT(changed("[8, 9, 6, 7]", "[8, 9, 6, 70]"), HasSubstr("\"id-1-0\": a ring names vertex 70; there are 10"));
+    EXPECT_THAT(changed("[8, 9, 6, 7]", "[8, 9, 6, 70]"),
+                HasSubstr("\"id-1-0\": a ring names vertex 70; there are 10"));
     EXPECT_THAT(changed("[8, 9, 6, 7]", "[8, 9, 6, -1]"), HasSubstr("a ring names vertex -1"));
     EXPECT_THAT(changed("[8, 9, 6, 7]", "[8, 9]"), HasSubstr("a ring must have 3 to"));
     EXPECT_THAT(changed("[[8, 9, 6, 7]]", "7"), HasSubstr("a face has no rings"));
-    EXPECT_THAT(changed("\"Solid\"", "\"MultiPoint\""), HasSubstr("geometry type \"MultiPoint\" is no surface or solid"));
+    EXPECT_THAT(changed("\"Solid\"", "\"MultiPoint\""),
+                HasSubstr("geometry type \"MultiPoint\" is no surface or solid"));
     EXPECT_THAT(changed("[1000, 600, 0]", "[1000, 600]"), HasSubstr("vertices[2]: must be three numbers"));
     EXPECT_THAT(changed("\"scale\"", "\"size\""), HasSubstr("transform: needs scale and translate"));
     EXPECT_THAT(changed("]]]]}]}", "]]]]}]"), HasSubstr("is not valid JSON"));
@@ -114,10 +119,11 @@ TEST_F(Mesh, HostileFilesAreRefusedAndNothingElse) {
     const std::string deep(200'000, '[');
     EXPECT_THAT(refusal("a.city.json", deep), HasSubstr("is not valid JSON"));
     const std::string nested = deep + std::string(200'000, ']');
-    EXPECT_THAT(refusal("a.city.json", R"({"type": "CityJSON", "vertices": [], "CityObjects": {"a": {"type": "Building",)"
-                                       R"( "attributes": {"x": )" + nested + R"(}, "geometry": [{"type": )" + nested +
-                                       R"(, "lod": "1"}]}}})"),
-                HasSubstr("geometry type a list is no surface"));
+    EXPECT_THAT(
+        refusal("a.city.json", R"({"type": "CityJSON", "vertices": [], "CityObjects": {"a": {"type": "Building",)"
+                               R"( "attributes": {"x": )" +
+                                   nested + R"(}, "geometry": [{"type": )" + nested + R"(, "lod": "1"}]}}})"),
+        HasSubstr("geometry type a list is no surface"));
     std::string faces = "v 0 0 0\nv 1 0 1\nv 0 1 1\n";
     for (int k = 0; k < 30'001; ++k) faces += "f 1 2 3\n";
     EXPECT_THAT(refusal("a.obj", faces), HasSubstr("there are more than 30000 faces"));

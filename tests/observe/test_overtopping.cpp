@@ -1,9 +1,8 @@
-#include "observe/overtopping.hpp"
-
 #include <cmath>
 
 #include <gtest/gtest.h>
 
+#include "observe/overtopping.hpp"
 #include "observe/particles.hpp"
 
 namespace talus {

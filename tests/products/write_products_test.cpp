@@ -193,11 +193,11 @@ TEST_F(Products, RunOutTableGivesAnglesInDegrees) {
 TEST_F(Products, BuildingTableUsesKilonewtonAndKilopascal) {
     const auto rows = rows_of(test::read_text(folder_->path() / "buildings.csv"));
     ASSERT_EQ(rows.size(), 6U);
-    EXPECT_THAT(rows[0], ElementsAre("name", "hit", "first_hit_time_s", "peak_force_kN", "peak_pressure_kPa",
-                                     "peak_dynamic_pressure_kPa", "peak_depth_m", "filter_window_s", "height_m",
-                                     "height_assumed", "kind", "impulse_kNs", "failed_s", "overtopped_m3",
-                                     "first_overtopped_s", "passed_m3", "held_m3", "peak_held_m3",
-                                     "peak_filling_height_m"));
+    EXPECT_THAT(rows[0],
+                ElementsAre("name", "hit", "first_hit_time_s", "peak_force_kN", "peak_pressure_kPa",
+                            "peak_dynamic_pressure_kPa", "peak_depth_m", "filter_window_s", "height_m",
+                            "height_assumed", "kind", "impulse_kNs", "failed_s", "overtopped_m3", "first_overtopped_s",
+                            "passed_m3", "held_m3", "peak_held_m3", "peak_filling_height_m"));
     EXPECT_EQ(rows[1][0], "House 38");
     EXPECT_EQ(rows[1][1], "yes");
     EXPECT_EQ(rows[1][3], "412");

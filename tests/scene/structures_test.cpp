@@ -44,7 +44,8 @@ class Structures : public SceneFolder {
 
 TEST_F(Structures, BarriersComeBehindTheBuildings) {
     write_features("houses.geojson", {rectangle(200, 90, 210, 110)});
-    write_valley("[buildings]\nfile = \"houses.geojson\"\nresistance_Pa = 40000\n" + dam("crest_elevation_m = 165\nresistance_Npm = 9e4") +
+    write_valley("[buildings]\nfile = \"houses.geojson\"\nresistance_Pa = 40000\n" +
+                 dam("crest_elevation_m = 165\nresistance_Npm = 9e4") +
                  "[[barrier_opening]]\nbarrier = \"dam\"\nposition_m = 30\nwidth_m = 6\nsill_height_m = 1\n");
     const Scene scene = loaded();
     ASSERT_EQ(scene.buildings.size(), 2U);
@@ -192,7 +193,8 @@ TEST_F(Structures, InflowAndReleaseRunTogether) {
     write_valley(inflow());
     const RunResult result = run();
     EXPECT_EQ(result.status, RunStatus::complete) << result.stop_reason;
-    EXPECT_NEAR(result.observation.volume_released, total_volume(loaded()), 0.5 * std::pow(result.particle_spacing, 3) * 2);
+    EXPECT_NEAR(result.observation.volume_released, total_volume(loaded()),
+                0.5 * std::pow(result.particle_spacing, 3) * 2);
 }
 
 TEST_F(Structures, BadHydrographsAreRefusedByLine) {

@@ -1,3 +1,5 @@
+#include "terrain/barrier.hpp"
+
 #include <random>
 
 #include <gtest/gtest.h>
@@ -5,7 +7,6 @@
 #include "sim/change.hpp"
 #include "sim/physics/contact.hpp"
 #include "sim_fixtures.hpp"
-#include "terrain/barrier.hpp"
 
 namespace talus {
 namespace {

@@ -63,7 +63,8 @@ TEST(InflowFeeder, brings_the_volume_to_the_particle_whatever_the_steps) {
 TEST(InflowFeeder, new_debris_is_no_denser_than_at_rest_and_moves_with_the_inflow) {
     const Model model = plane();
     const double thickness = 1.2, velocity = 5;
-    InflowFeeder feeder(model, {inflow({{0, 6 * thickness * velocity, velocity}, {9, 6 * thickness * velocity, velocity}})});
+    InflowFeeder feeder(model,
+                        {inflow({{0, 6 * thickness * velocity, velocity}, {9, 6 * thickness * velocity, velocity}})});
     Simulation simulation(model, State{}, feeder.to_come());
     double worst = 0, fastest = 0;
     while (simulation.state().time < 2) {
@@ -72,7 +73,8 @@ TEST(InflowFeeder, new_debris_is_no_denser_than_at_rest_and_moves_with_the_inflo
         worst = std::max(worst, simulation.state().max_compression);
         for (std::uint32_t i = 0; i < simulation.state().count; ++i) {
             const LocalPoint v = simulation.state().velocity.at(i);
-            const double x = simulation.state().position.x[i] - simulation.model().terrain.frame().to_local({20, 0, 0}).x;
+            const double x =
+                simulation.state().position.x[i] - simulation.model().terrain.frame().to_local({20, 0, 0}).x;
             if (x < 2 * spacing) fastest = std::max<double>(fastest, length(v));
         }
     }

@@ -1,9 +1,9 @@
-#include "terrain/barrier.hpp"
-
 #include <cmath>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+
+#include "terrain/barrier.hpp"
 
 namespace talus {
 namespace {

@@ -17,7 +17,8 @@ constexpr Quantity quantities[] = {
     {"velocity", "m/s", true, Quantity::Site::none, "the same, down the slope"},
     {"discharge", "m3/s", true, Quantity::Site::none, "thickness x velocity x width there"},
     {"particles", "1", true, Quantity::Site::none, "that came in, over the volume of the hydrograph"},
-    {"speed_excess", "m/s", false, Quantity::Site::none, "greatest speed of a particle near the line, over the inflow's"},
+    {"speed_excess", "m/s", false, Quantity::Site::none,
+     "greatest speed of a particle near the line, over the inflow's"},
 };
 
 struct PlaneSpec {
@@ -56,6 +57,9 @@ Result<Outcome> compute(const PlaneSpec& spec, const Setting& setting, const Wat
             if (beyond < 4 * spec.spacing) fastest = std::max<double>(fastest, length(state.velocity.at(i)));
         }
     }
+    if (feeder.due(state.time)) {  // what had not filled a row yet
+        trial.change([&](Model& m, State& s) { feeder.feed(m, s); });
+    }
     if (!trial.problem().empty()) outcome.notes.push_back(trial.problem());
     const double volume = (state.count + state.left) * trial.model().particle_volume();
     outcome.measurements.push_back({"particles", "", volume, inflow.volume_until(state.time)});
@@ -87,8 +91,11 @@ Result<Outcome> compute(const PlaneSpec& spec, const Setting& setting, const Wat
         law.x.push_back((k + 0.5) * cell);
         law.y.push_back(profile.x.back() < spec.velocity * state.time ? spec.thickness : 0);
     }
-    outcome.charts.push_back({"profile", "Thickness of the stream along the slope", "distance from the line, m",
-                              "thickness, m", {law, profile}});
+    outcome.charts.push_back({"profile",
+                              "Thickness of the stream along the slope",
+                              "distance from the line, m",
+                              "thickness, m",
+                              {law, profile}});
     return outcome;
 }
 
