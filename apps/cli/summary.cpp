@@ -40,6 +40,12 @@ std::string buildings_text(const Observation& observation) {
     return text;
 }
 
+std::string barrier_text(const BuildingImpact& barrier) {
+    return fmt::format("{}: peak force {:.0f} kN, {:.1f} m3 over it, {:.1f} m3 through openings, {:.1f} m3 held",
+                       barrier.name, barrier.peak_force / 1000, barrier.overtopped_volume, barrier.passed_volume,
+                       barrier.held_volume);
+}
+
 std::string speed_text(double speed) {
     return std::isfinite(speed) ? fmt::format("{:.1f} m/s", speed) : std::string("not known");
 }
@@ -116,6 +122,10 @@ std::string summary_text(const Scene& scene, const RunResult& result, const std:
         text += line("picked up", fmt::format("{:.1f} m3 from the bed", seen.erosion.volume));
     }
     if (!seen.buildings.empty()) text += line("buildings hit", buildings_text(seen));
+    for (const BuildingImpact& b : seen.buildings) {
+        if (b.is_barrier) text += line("barrier", barrier_text(b));
+        if (!std::isnan(b.failure_time)) text += line("FAILED", fmt::format("{} at {:.2f} s", b.name, b.failure_time));
+    }
     text += line("compression", compression_text(seen));
     if (!within_compression_limits(seen)) text += line("NOT CONVERGED", remedy(scene.spec.solver));
     for (const Comparison& comparison : comparisons) text += comparison_text(comparison, result);
@@ -171,6 +181,7 @@ std::string summary_json(const Scene& scene, const RunResult& result, const std:
         {"runout_angle_deg", finite(seen.run_out.runout_angle * degrees)},
         {"observations", observations},
         {"buildings_hit", buildings},
+        {"structures", structures_json(seen)},
         {"compression", compression_json(seen)},
     };
     event.update(comparisons_json(comparisons));

@@ -111,7 +111,8 @@ std::optional<std::pair<RunRecord, HazardMaps>> Crew::compute(std::size_t run, s
         return made;
     }
     record.results = measure(*scene, *result);
-    record.buildings = result->observation.buildings;
+    record.buildings = std::move(result->observation.buildings);
+    for (BuildingImpact& building : record.buildings) building.history.clear();
     record.geometry = result->observation.maps.peak_depth.geometry;
     made.second = std::move(result->observation.maps);
     return made;

@@ -191,9 +191,7 @@ Result<PlannedRuns> PlannedRuns::make(const EnsemblePlan& plan, const SceneSourc
     if (!points) return points.error();
     runs.points_ = *std::move(points);
 
-    double volume = 0;
-    for (const Release& release : base.releases) volume += release.volume;
-    const double spacing = choose_particle_spacing(base.spec.solver, volume);
+    const double spacing = choose_particle_spacing(base.spec.solver, total_volume(base));
     const double cell = base.spec.outputs.map_cell.value_or(default_map_cell(base.terrain.cell(), spacing));
     if (!own_spacing) runs.fixed_.push_back(fmt::format("solver.particle_spacing_m={:.9g}", spacing));
     runs.fixed_.push_back(fmt::format("outputs.map_cell_m={:.17g}", cell));

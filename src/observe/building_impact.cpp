@@ -3,26 +3,69 @@
 #include <algorithm>
 #include <cmath>
 
+#include "terrain/barrier.hpp"
+
 namespace talus {
 
 ImpactRecorder::ImpactRecorder(const Model& model, const State& state, double filter_window)
     : window_(filter_window), particle_area_(model.particle_spacing * model.particle_spacing) {
     follow(model, state);
+    jumped_ = false;
 }
 
 void ImpactRecorder::follow(const Model& model, const State& state) {
+    jumped_ = true;
     impacts_.resize(model.buildings.size());
     records_.resize(model.buildings.size());
-    for (std::size_t b = 0; b < impacts_.size(); ++b) impacts_[b].name = model.buildings[b].name;
+    crossings_.resize(model.buildings.size());
+    for (std::size_t b = 0; b < impacts_.size(); ++b) {
+        impacts_[b].name = model.buildings[b].name;
+        impacts_[b].is_barrier = model.buildings[b].barrier.has_value();
+        if (!stands(model.buildings[b])) {
+            crossings_[b].reset();
+        } else if (!crossings_[b]) {
+            watch(model, state, b);
+        } else {
+            crossings_[b]->follow(state);
+        }
+    }
     touched_.reserve(impacts_.size());
-    if (impacts_.empty() || state.count == 0) return;
-    const std::uint32_t greatest = *std::max_element(state.id.begin(), state.id.begin() + state.count);
+    failed_.reserve(impacts_.size());
+    if (impacts_.empty()) return;
+    const std::uint32_t greatest =
+        state.count == 0 ? 0 : *std::max_element(state.id.begin(), state.id.begin() + state.count);
     last_touch_.resize(std::max({last_touch_.size(), std::size_t{state.seeded}, std::size_t{greatest} + 1}));
 }
 
-void ImpactRecorder::forget(std::size_t building) {
-    impacts_[building] = {.name = impacts_[building].name};
+void ImpactRecorder::let_in(const State& state) {
+    if (impacts_.empty()) return;
+    last_touch_.resize(std::max<std::size_t>(last_touch_.size(), state.seeded));
+    for (const auto& crossings : crossings_) {
+        if (crossings) crossings->follow(state);
+    }
+}
+
+void ImpactRecorder::expect(std::uint32_t particles) {
+    if (impacts_.empty()) return;
+    last_touch_.reserve(particles);
+    for (const auto& crossings : crossings_) {
+        if (crossings) crossings->expect(particles);
+    }
+}
+
+void ImpactRecorder::watch(const Model& model, const State& state, std::size_t building) {
+    const std::optional<BarrierShape>& barrier = model.buildings[building].barrier;
+    if (!barrier) return;
+    crossings_[building] = std::make_unique<Overtopping>(model, *barrier);
+    crossings_[building]->follow(state);
+    crossings_[building]->after_step(state);  // where debris is now
+}
+
+void ImpactRecorder::forget(const Model& model, const State& state, std::size_t building) {
+    impacts_[building] = {.name = impacts_[building].name, .is_barrier = impacts_[building].is_barrier};
     records_[building] = {};
+    crossings_[building].reset();
+    watch(model, state, building);
     for (LastTouch& last : last_touch_) {
         if (last.building == static_cast<std::int32_t>(building)) last = {};
     }
@@ -61,32 +104,94 @@ void ImpactRecorder::add_contact(const Model& model, const State& state, const B
     impact.peak_speed = std::max(impact.peak_speed, speed);
 }
 
-void ImpactRecorder::update_peaks(std::size_t building, const State& state) {
-    Record& record = records_[building];
-    record.events.push_back({state.time, state.time_step, record.impulse});
-    const double begin = state.time - window_;
-    std::erase_if(record.events, [&](const Event& e) { return e.end <= begin; });
+double ImpactRecorder::filtered_force(const Record& record, double time) const {
+    const double begin = time - window_;
     double impulse = 0;
     for (const Event& e : record.events) {
-        const double inside = std::min(1.0, (e.end - begin) / e.duration);  // the oldest step may straddle the edge
-        impulse += e.impulse * inside;
+        // The oldest step may straddle the edge of the window, or lie before it.
+        impulse += e.impulse * std::clamp((e.end - begin) / e.duration, 0.0, 1.0);
     }
-    const double force = impulse / window_;
+    return impulse / window_;
+}
+
+void ImpactRecorder::update_peaks(const Model& model, std::size_t building, const State& state) {
+    Record& record = records_[building];
+    record.events.push_back({state.time, state.time_step, record.impulse});
+    std::erase_if(record.events, [&](const Event& e) { return e.end <= state.time - window_; });
+    const double force = filtered_force(record, state.time);
     const double area = static_cast<double>(record.touches.size()) * particle_area_;
+    const double pressure = area > 0 ? force / area : 0;
     BuildingImpact& impact = impacts_[building];
+    impact.impulse += record.impulse;
     impact.peak_force = std::max(impact.peak_force, force);
-    if (area > 0) impact.peak_pressure = std::max(impact.peak_pressure, force / area);
+    impact.peak_pressure = std::max(impact.peak_pressure, pressure);
+
+    const Building& body = model.buildings[building];
+    const bool broken = body.barrier && force > body.resistance.force_per_metre * length_of(body.barrier->line);
+    if (std::isnan(impact.failure_time) && (broken || pressure > body.resistance.pressure)) {
+        impact.failure_time = state.time;
+        failed_.push_back(building);
+    }
+}
+
+void ImpactRecorder::take_overtopping(std::size_t building) {
+    const Overtopping* crossings = crossings_[building].get();
+    if (crossings == nullptr) return;
+    BuildingImpact& impact = impacts_[building];
+    impact.overtopped_volume = crossings->volume();
+    impact.first_overtopping_time = crossings->first_time();
+    impact.passed_volume = crossings->passed_volume();
 }
 
 void ImpactRecorder::after_step(const Model& model, const State& state, const MapAccumulator& maps) {
     touched_.clear();
+    failed_.clear();
     if (last_touch_.size() < state.seeded) last_touch_.resize(state.seeded + state.seeded / 2);
     for (const BuildingContact& contact : state.building_contacts) add_contact(model, state, contact, maps);
     // Between touches the filtered force only falls: nothing to do for the other buildings.
     for (const std::size_t building : touched_) {
-        update_peaks(building, state);
+        update_peaks(model, building, state);
         records_[building].touched = false;
     }
+    for (std::size_t b = 0; b < crossings_.size(); ++b) {
+        if (!crossings_[b]) continue;
+        crossings_[b]->after_step(state, jumped_);
+        take_overtopping(b);
+    }
+    jumped_ = false;
+    for (const std::size_t building : failed_) {
+        if (crossings_[building]) impacts_[building].held_volume = crossings_[building]->filling(state).volume;
+        crossings_[building].reset();  // what comes by from now on does not get over it
+    }
+}
+
+void ImpactRecorder::add_row(const State& state) {
+    for (std::size_t b = 0; b < impacts_.size(); ++b) {
+        BuildingImpact& impact = impacts_[b];
+        if (!impact.hit) continue;
+        if (crossings_[b]) {
+            const Overtopping::Filling filling = crossings_[b]->filling(state);
+            impact.held_volume = filling.volume;
+            impact.peak_held_volume = std::max(impact.peak_held_volume, filling.volume);
+            impact.peak_filling_height = std::max(impact.peak_filling_height, filling.height);
+            impact.history.push_back({state.time, filtered_force(records_[b], state.time), impact.impulse,
+                                      impact.overtopped_volume, impact.passed_volume, filling.volume, filling.height});
+        } else {
+            impact.history.push_back({.time = state.time,
+                                      .force = filtered_force(records_[b], state.time),
+                                      .impulse = impact.impulse,
+                                      .overtopped_volume = impact.overtopped_volume,
+                                      .passed_volume = impact.passed_volume});
+        }
+    }
+}
+
+std::vector<BuildingImpact> ImpactRecorder::complete(const State& state) const {
+    std::vector<BuildingImpact> impacts = impacts_;
+    for (std::size_t b = 0; b < impacts.size(); ++b) {
+        if (crossings_[b]) impacts[b].held_volume = crossings_[b]->filling(state).volume;
+    }
+    return impacts;
 }
 
 }  // namespace talus

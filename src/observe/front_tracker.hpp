@@ -26,6 +26,8 @@ class FrontTracker {
     void after_step(const Model& model, const State& state);
     /// Call when the state was changed between two steps.
     void follow(const State& state);
+    /// Makes room for so many particles.
+    void expect(std::uint32_t particles) { candidates_.reserve(particles); }
 
     [[nodiscard]] const FlowPath& flow_path() const { return flow_path_; }
     /// Chainage of the front now, m; NaN: none on the path.

@@ -72,7 +72,7 @@ MapAccumulator::MapAccumulator(const Model& model, const State& state, double ma
     tile_columns_ = tiles_along(geometry_.columns);
     const std::size_t positions = std::size_t{tile_columns_} * tiles_along(geometry_.rows);
     tile_at_.assign(positions, nullptr);
-    active_.resize(std::min(positions, 4 * static_cast<std::size_t>(state.count)));
+    make_room(state.count);
     if (state.count > 0) first_particle_ = {origin.x + state.position.x[0], origin.y + state.position.y[0]};
 }
 
@@ -206,8 +206,8 @@ void MapAccumulator::take(Patch& patch) {
     patch.rows = patch.east = 0;
 }
 
-void MapAccumulator::make_room(std::uint32_t particles) {
-    const std::size_t wanted = std::min(tile_at_.size(), 4 * static_cast<std::size_t>(particles));
+void MapAccumulator::make_room(std::size_t particles) {
+    const std::size_t wanted = std::min(tile_at_.size(), 4 * particles);
     if (active_.size() < wanted) active_.resize(std::min(tile_at_.size(), wanted + wanted / 2));
 }
 

@@ -31,6 +31,8 @@ class MapAccumulator {
 
     /// Call when model or state were changed between two steps. Peak pressures so far stay those of the density so far.
     void follow(const Model& model, const State& state);
+    /// Makes room for so many particles; call before more come in than there ever were.
+    void make_room(std::size_t particles);
 
     /// Takes the present state into the peaks. Particles of releases that have not started do not count.
     void add(const State& state);
@@ -91,7 +93,6 @@ class MapAccumulator {
     /// Adds particles [first, last) to their tiles.
     void spread(const State& state, std::size_t first, std::size_t last);
     /// Moves the sums of a patch into the tiles that it lies over.
-    void make_room(std::uint32_t particles);
     void take(Patch& patch);
     /// Made if it is not there yet.
     Tile& tile_at(unsigned tile_column, unsigned tile_row);

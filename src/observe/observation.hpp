@@ -37,6 +37,18 @@ struct RunOut {
     double travel_angle = never;         ///< the same between the centres of mass of release and deposit
 };
 
+/// A structure at one moment.
+struct StructureSample {
+    double time = 0;               ///< s
+    double force = 0;              ///< N, normal to the walls, filtered
+    double impulse = 0;            ///< N s, of all debris so far
+    double overtopped_volume = 0;  ///< m3, this and what follows of barriers only
+    double passed_volume = 0;      ///< m3, through openings
+    double held_volume = 0;        ///< m3, upstream
+    double filling_height = 0;     ///< m, upstream at the face
+};
+
+/// What debris did to a structure: a building, or a barrier, which is one along a line.
 struct BuildingImpact {
     std::string name;
     bool hit = false;
@@ -47,6 +59,18 @@ struct BuildingImpact {
     double peak_dynamic_pressure = 0;  ///< Pa, rest_density * speed^2 of debris within a cell of the walls
     double peak_speed = 0;             ///< m/s, depth-averaged, of debris within a cell of the walls
     double removed_time = never;       ///< s, when it was taken away between two steps; NaN: it stands
+    double impulse = 0;                ///< N s, normal to the walls, of the whole run
+    double failure_time = never;       ///< s, when its resistance was exceeded and it was taken away
+
+    bool is_barrier = false;                ///< of which the following is known; up to its failure
+    double overtopped_volume = 0;           ///< m3, over the crest and not back
+    double first_overtopping_time = never;  ///< s
+    double passed_volume = 0;               ///< m3, through openings
+    double held_volume = 0;                 ///< m3, upstream at the end
+    double peak_held_volume = 0;            ///< m3, of the samples
+    double peak_filling_height = 0;         ///< m, mean depth along the face where it was deepest, of the samples
+
+    std::vector<StructureSample> history{};  ///< from the first hit on, at the times of the time series
 };
 
 /// A row of the time series. Volumes add up exactly: released + entrained = held + moving + deposited + left.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "observe/building_impact.hpp"
 #include "observe/erosion.hpp"
@@ -92,11 +93,11 @@ struct Observer::Parts {
     [[nodiscard]] ReleasedMass measure_starts(const Model& model) const {
         State lay;
         lay.resize(start.size());
-        for (const ReleaseGroup& release : model.releases) {
-            for (std::uint32_t id = release.first_particle; id < release.last_particle; ++id) {
-                lay.position.set(lay.count++, start[id]);
-            }
-        }
+        const auto add = [&](std::uint32_t first, std::uint32_t last) {
+            for (std::uint32_t id = first; id < last; ++id) lay.position.set(lay.count++, start[id]);
+        };
+        for (const ReleaseGroup& release : model.releases) add(release.first_particle, release.last_particle);
+        for (const auto& [first, last] : let_in) add(first, last);
         return measure_release(model, lay, front.flow_path());
     }
 
@@ -116,6 +117,7 @@ struct Observer::Parts {
 
     void add_row(const Model& model, const State& state) {
         timeseries.push_back(make_sample(model, state, outputs.deposited_speed, front.current(), steps_per_second));
+        impact.add_row(state);
     }
 
     OutputSpec outputs;
@@ -123,7 +125,8 @@ struct Observer::Parts {
     FrontTracker front;
     ImpactRecorder impact;
     ReleasedMass released;
-    std::vector<LocalPoint> start;  ///< by particle id
+    std::vector<LocalPoint> start;                                ///< by particle id
+    std::vector<std::pair<std::uint32_t, std::uint32_t>> let_in;  ///< ids [first, last) that came in during the run
     std::vector<TimeSample> timeseries;
     std::uint64_t next_row = 1;  ///< due at next_row * sample_interval
     double steps_per_second = 0;
@@ -166,8 +169,37 @@ void Observer::follow(const Model& model, const State& state, std::uint32_t firs
     p.impact.follow(model, state);
 }
 
-void Observer::forget_building(std::size_t building) {
-    parts_->impact.forget(building);
+void Observer::let_in(const State& state, std::uint32_t first_new_id) {
+    Parts& p = *parts_;
+    if (first_new_id == state.seeded) return;
+    p.keep_starts(state, first_new_id);
+    if (!p.let_in.empty() && p.let_in.back().second == first_new_id) {
+        p.let_in.back().second = state.seeded;
+    } else {
+        p.let_in.emplace_back(first_new_id, state.seeded);
+    }
+    p.maps.make_room(state.count);
+    p.front.follow(state);
+    p.impact.let_in(state);
+}
+
+void Observer::expect(std::uint32_t particles) {
+    parts_->start.reserve(particles);
+    parts_->maps.make_room(particles);
+    parts_->front.expect(particles);
+    parts_->impact.expect(particles);
+}
+
+void Observer::forget_building(const Model& model, const State& state, std::size_t building) {
+    parts_->impact.forget(model, state, building);
+}
+
+const std::vector<std::size_t>& Observer::failed_buildings() const {
+    return parts_->impact.failed();
+}
+
+const Overtopping* Observer::overtopping(std::size_t building) const {
+    return parts_->impact.overtopping(building);
 }
 
 double Observer::front_chainage() const {
@@ -204,8 +236,9 @@ Observation Observer::finish(const Model& model, const State& state) const {
     Observation observation;
     observation.maps = p.maps.maps();
     observation.front = p.front.samples();
-    observation.run_out = measure_run_out(model, state, p.front.flow_path(), p.released, p.front.farthest());
-    observation.buildings = p.impact.impacts();
+    const ReleasedMass released = p.let_in.empty() ? p.released : p.measure_starts(model);
+    observation.run_out = measure_run_out(model, state, p.front.flow_path(), released, p.front.farthest());
+    observation.buildings = p.impact.complete(state);
     observation.timeseries = p.timeseries;
     if (p.timeseries.back().time != state.time) observation.timeseries.push_back(sample(model, state));
     observation.erosion = measure_erosion(model, p.front.flow_path(), p.outputs.chainage_interval);

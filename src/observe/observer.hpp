@@ -7,6 +7,7 @@
 
 #include "observe/map_accumulator.hpp"
 #include "observe/observation.hpp"
+#include "observe/overtopping.hpp"
 #include "params/spec.hpp"
 #include "sim/model.hpp"
 #include "sim/state.hpp"
@@ -30,8 +31,17 @@ class Observer {
 
     /// Call when model or state were changed between two steps: particles with ids from `first_new_id` on are new.
     void follow(const Model& model, const State& state, std::uint32_t first_new_id);
+    /// Call when particles with ids from `first_new_id` on came in between two steps, and nothing else was changed.
+    void let_in(const State& state, std::uint32_t first_new_id);
+    /// Makes room for so many particles, so that letting them in allocates nothing.
+    void expect(std::uint32_t particles);
     /// Begins what is known of a building anew, as for one that was moved.
-    void forget_building(std::size_t building);
+    void forget_building(const Model& model, const State& state, std::size_t building);
+
+    /// Buildings whose resistance was exceeded in the last step: to be taken down.
+    [[nodiscard]] const std::vector<std::size_t>& failed_buildings() const;
+    /// What has crossed a barrier's line; nullptr: not a barrier, or none that stands.
+    [[nodiscard]] const Overtopping* overtopping(std::size_t building) const;
 
     /// Farthest chainage that the front has reached, m; NaN: none yet.
     [[nodiscard]] double front_chainage() const;

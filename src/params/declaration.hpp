@@ -38,6 +38,7 @@ constexpr ParameterKind kind_of() {
     if constexpr (std::is_same_v<Member, std::string>) return ParameterKind::text;
     if constexpr (std::is_same_v<Member, std::vector<std::string>>) return ParameterKind::text_list;
     if constexpr (std::is_same_v<Member, Extent>) return ParameterKind::extent;
+    if constexpr (std::is_same_v<Member, std::vector<PlanPoint>>) return ParameterKind::points;
     return ParameterKind::number;
 }
 

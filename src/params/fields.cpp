@@ -40,10 +40,11 @@ Section declare_terrain() {
 }
 
 Section declare_release() {
-    Declaration<ReleaseSpec> s("release",
-                               "A body of debris that starts to move at one moment; at least one. Exactly one of "
-                               "thickness_m, thickness_attribute, thickness_raster and volume_m3 says how much it is.",
-                               &SceneSpec::releases);
+    Declaration<ReleaseSpec> s(
+        "release",
+        "A body of debris that starts to move at one moment; a scene needs one, or an inflow. Exactly one of "
+        "thickness_m, thickness_attribute, thickness_raster and volume_m3 says how much it is.",
+        &SceneSpec::releases);
     s.text("name", &ReleaseSpec::name, "\"release N\"", "Name in reports and messages.");
     s.path("file", &ReleaseSpec::file, "", "Polygons of the release area: GeoJSON, GeoPackage, Shapefile.").required =
         true;
@@ -94,10 +95,32 @@ Section declare_bed() {
     return s.take();
 }
 
+Section declare_inflow() {
+    Declaration<InflowSpec> s("inflow",
+                              "Debris that comes in across a straight line while the run goes on, at right angles to "
+                              "it and towards its right; any number. Exactly one of line_m and file says where.",
+                              &SceneSpec::inflows);
+    s.text("name", &InflowSpec::name, "\"inflow N\"", "Name in reports and messages.");
+    s.key(
+        "line_m", "m", &InflowSpec::line, anything(),
+        "The two ends of the line in plan, in the terrain's reference system: first the one on the right-hand side of "
+        "the debris that comes.");
+    s.path("file", &InflowSpec::file, "line_m is given", "The line in a file: GeoJSON, GeoPackage, Shapefile.");
+    s.text("layer", &InflowSpec::layer, "the only layer", "Layer of the file.");
+    s.path("hydrograph", &InflowSpec::hydrograph, "",
+           "CSV with the columns time_s, discharge_m3ps (bulk debris at rest density) and velocity_mps; linear between "
+           "rows, nothing before the first and after the last. Several surges are rows without discharge between them.")
+        .required = true;
+    return s.take();
+}
+
 Section declare_buildings() {
     Declaration<BuildingsSpec> s("buildings", "Solid obstacles with vertical walls and flat roofs.",
                                  &SceneSpec::buildings);
-    s.path("file", &BuildingsSpec::file, "no buildings", "Footprint polygons: GeoJSON, GeoPackage, Shapefile.");
+    s.path(
+        "file", &BuildingsSpec::file, "no buildings",
+        "Footprint polygons (GeoJSON, GeoPackage, Shapefile), or a mesh in the terrain's reference system, z upward: "
+        "CityJSON (.city.json, .cityjson) or Wavefront OBJ (.obj).");
     s.text("layer", &BuildingsSpec::layer, "the only layer", "Layer of the file.");
     s.text("height_attribute", &BuildingsSpec::height_attribute, "every building has the default height",
            "Attribute that holds a building's height above the mean ground of its footprint in metres.");
@@ -105,6 +128,49 @@ Section declare_buildings() {
            "Attribute that holds a building's name.");
     s.key("default_height_m", "m", &BuildingsSpec::default_height, above_to(0, 1000),
           "Height where the attribute is absent, empty or not above zero; counted as assumed.");
+    s.text("resistance_attribute", &BuildingsSpec::resistance_attribute, "every building has resistance_Pa",
+           "Attribute that holds the pressure in Pa that a building stands.");
+    s.optional_key("resistance_Pa", "Pa", &BuildingsSpec::resistance, above(0), "buildings stand whatever happens",
+                   "Filtered pressure above which a building is destroyed: it is gone from then on.");
+    return s.take();
+}
+
+Section declare_barrier() {
+    Declaration<BarrierSpec> s("barrier",
+                               "A wall or dam along a line; any number. Exactly one of line_m and file says where, "
+                               "exactly one of height_m and crest_elevation_m how high.",
+                               &SceneSpec::barriers);
+    s.text("name", &BarrierSpec::name, "\"barrier N\"", "Name in reports and messages.");
+    s.key("line_m", "m", &BarrierSpec::line, anything(),
+          "Its line in plan, in the terrain's reference system; at least two places.");
+    s.path("file", &BarrierSpec::file, "line_m is given", "Its line in a file: GeoJSON, GeoPackage, Shapefile.");
+    s.text("layer", &BarrierSpec::layer, "the only layer", "Layer of the file.");
+    s.optional_key("height_m", "m", &BarrierSpec::height, above_to(0, 200), "crest_elevation_m is given",
+                   "Height above the ground under the line: the crest follows the ground.");
+    s.optional_key("crest_elevation_m", "m", &BarrierSpec::crest_elevation, anything(), "height_m is given",
+                   "Elevation of a level crest.");
+    s.key("thickness_m", "m", &BarrierSpec::thickness, above_to(0, 100),
+          "Thickness across the line; at least half a particle spacing.");
+    s.optional_key("resistance_Npm", "N/m", &BarrierSpec::resistance_force, above(0), "it stands whatever happens",
+                   "Filtered force per metre of the line above which it is destroyed: it is gone from then on.");
+    s.optional_key("resistance_Pa", "Pa", &BarrierSpec::resistance_pressure, above(0), "it stands whatever happens",
+                   "Filtered pressure above which it is destroyed.");
+    return s.take();
+}
+
+Section declare_barrier_opening() {
+    Declaration<BarrierOpeningSpec> s("barrier_opening",
+                                      "A slot or a spillway in a barrier, as check dams have; any number.",
+                                      &SceneSpec::barrier_openings);
+    s.text("barrier", &BarrierOpeningSpec::barrier, "", "Name of the barrier.").required = true;
+    s.key("position_m", "m", &BarrierOpeningSpec::position, at_least(0),
+          "Distance of its middle along the barrier's line from its first place.")
+        .required = true;
+    s.key("width_m", "m", &BarrierOpeningSpec::width, above(0),
+          "Width along the line; at least two particle spacings, or nothing gets through.")
+        .required = true;
+    s.key("sill_height_m", "m", &BarrierOpeningSpec::sill, at_least(0),
+          "How much of the barrier stands there, above the ground; 0: open to the ground.");
     return s.take();
 }
 
@@ -191,9 +257,10 @@ Section declare_outputs() {
 
 const std::vector<Section>& scene_sections() {
     static const std::vector<Section> sections = [] {
-        std::vector<Section> all = {declare_scene(),     declare_terrain(),   declare_release(),  declare_bed(),
-                                    declare_buildings(), declare_flow_path(), declare_material(), declare_zone(),
-                                    declare_solver(),    declare_outputs()};
+        std::vector<Section> all = {
+            declare_scene(),     declare_terrain(), declare_release(),         declare_inflow(),    declare_bed(),
+            declare_buildings(), declare_barrier(), declare_barrier_opening(), declare_flow_path(), declare_material(),
+            declare_zone(),      declare_solver(),  declare_outputs()};
         for (Section& section : declare_observations()) all.push_back(std::move(section));
         return all;
     }();

@@ -14,11 +14,11 @@
 /// docs/scene-reference.md and the manifest all read it. Defaults are the member initialisers in spec.hpp.
 namespace talus {
 
-enum class ParameterKind { boolean, integer, number, text, path, choice, text_list, extent };
+enum class ParameterKind { boolean, integer, number, text, path, choice, text_list, extent, points };
 
 /// A value as it crosses the boundary, in the unit of its key. monostate: not given. A choice travels as its text.
-using ParameterValue =
-    std::variant<std::monostate, bool, std::int64_t, double, std::string, std::vector<std::string>, Extent>;
+using ParameterValue = std::variant<std::monostate, bool, std::int64_t, double, std::string, std::vector<std::string>,
+                                    Extent, std::vector<PlanPoint>>;
 
 /// The values a number may have.
 struct Range {

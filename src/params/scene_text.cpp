@@ -53,6 +53,7 @@ std::string example_value(const Parameter& parameter) {
         case ParameterKind::choice:
             return parameter.required ? "\"...\"" : "\"\"";
         case ParameterKind::text_list:
+        case ParameterKind::points:
             return "[]";
         case ParameterKind::extent:
             return "[0, 0, 1, 1]";

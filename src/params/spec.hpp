@@ -63,6 +63,14 @@ struct BedSpec {
     double erosion_depth_per_shear = 1e-4;  ///< m/Pa
 };
 
+/// `[[inflow]]`: its line is given either here or in a file.
+struct InflowSpec {
+    std::string name;
+    std::vector<PlanPoint> line;  ///< two places, in the terrain's reference system
+    std::string file, layer;
+    std::string hydrograph;  ///< CSV
+};
+
 /// `[buildings]`: no file means no buildings.
 struct BuildingsSpec {
     std::string file;
@@ -70,6 +78,28 @@ struct BuildingsSpec {
     std::string height_attribute;
     std::string name_attribute;
     double default_height = 6;  ///< m, where the attribute is absent or empty
+    std::string resistance_attribute;
+    std::optional<double> resistance;  ///< Pa; absent: they stand whatever happens
+};
+
+/// `[[barrier]]`: its line is given either here or in a file, its crest as a height or an elevation.
+struct BarrierSpec {
+    std::string name;
+    std::vector<PlanPoint> line;  ///< in the terrain's reference system
+    std::string file, layer;
+    std::optional<double> height;               ///< m above the ground under the line
+    std::optional<double> crest_elevation;      ///< m
+    double thickness = 1;                       ///< m
+    std::optional<double> resistance_force;     ///< N/m; absent: it stands whatever happens
+    std::optional<double> resistance_pressure;  ///< Pa; the same
+};
+
+/// `[[barrier_opening]]`
+struct BarrierOpeningSpec {
+    std::string barrier;  ///< its name
+    double position = 0;  ///< m along the barrier's line, of the middle
+    double width = 0;     ///< m
+    double sill = 0;      ///< m above the ground
 };
 
 /// `[flow_path]`: no file means traced by steepest descent from the release.
@@ -245,7 +275,10 @@ struct SceneSpec {
     TerrainSpec terrain;
     std::vector<ReleaseSpec> releases;
     std::vector<BedSpec> beds;
+    std::vector<InflowSpec> inflows;
     BuildingsSpec buildings;
+    std::vector<BarrierSpec> barriers;
+    std::vector<BarrierOpeningSpec> barrier_openings;
     FlowPathSpec flow_path;
     MaterialSpec material;
     std::vector<ZoneSpec> zones;

@@ -58,6 +58,8 @@ std::string kind_text(const Parameter& parameter) {
             return "a list of texts in quotes";
         case ParameterKind::extent:
             return "[x_min, y_min, x_max, y_max] with x_min < x_max and y_min < y_max";
+        case ParameterKind::points:
+            return "a list of places, a pair of numbers each";
     }
     return "";
 }
@@ -71,6 +73,9 @@ struct TomlText {
     std::string operator()(const std::vector<std::string>& value) const { return "[" + joined(value, quoted) + "]"; }
     std::string operator()(const Extent& e) const {
         return fmt::format("[{}, {}, {}, {}]", e.x_min, e.y_min, e.x_max, e.y_max);
+    }
+    std::string operator()(const std::vector<PlanPoint>& points) const {
+        return "[" + joined(points, [](const PlanPoint& p) { return fmt::format("[{}, {}]", p.x, p.y); }) + "]";
     }
 };
 
@@ -115,6 +120,9 @@ std::string problem_with(const Parameter& parameter, const ParameterValue& value
         allowed = std::isfinite(*number) && parameter.range.contains(*number);
     } else if (const auto* e = std::get_if<Extent>(&value)) {
         allowed = finite(*e) && e->x_min < e->x_max && e->y_min < e->y_max;
+    } else if (const auto* points = std::get_if<std::vector<PlanPoint>>(&value)) {
+        allowed = std::all_of(points->begin(), points->end(),
+                              [](const PlanPoint& p) { return std::isfinite(p.x) && std::isfinite(p.y); });
     } else if (parameter.kind == ParameterKind::choice) {
         const auto* text = std::get_if<std::string>(&value);
         allowed = text && std::count(parameter.choices.begin(), parameter.choices.end(), *text) > 0;

@@ -29,6 +29,11 @@ constexpr double degrees = 180 / std::numbers::pi;
 struct ToJson {
     Json operator()(std::monostate) const { return nullptr; }
     Json operator()(const Extent& e) const { return {e.x_min, e.y_min, e.x_max, e.y_max}; }
+    Json operator()(const std::vector<PlanPoint>& points) const {
+        Json list = Json::array();
+        for (const PlanPoint& p : points) list.push_back({p.x, p.y});
+        return list;
+    }
     template <class T>
     Json operator()(const T& value) const {
         return value;
@@ -55,6 +60,12 @@ Json resolved(const Scene& scene, const RunResult& result) {
         releases.push_back(
             {{"name", release.name}, {"start_time_s", release.start_time}, {"volume_m3", release.volume}});
     }
+    Json inflows = Json::array();
+    for (const Inflow& inflow : scene.inflows) {
+        inflows.push_back({{"name", inflow.name},
+                           {"volume_m3", inflow.volume()},
+                           {"volume_by_the_end_m3", inflow.volume_until(result.simulated_time)}});
+    }
     return {{"particle_spacing_m", result.particle_spacing},
             {"support_radius_m", result.support_radius},
             {"particle_count", result.particles},
@@ -69,7 +80,8 @@ Json resolved(const Scene& scene, const RunResult& result) {
                           : scene.flow_path_traced ? "traced"
                                                    : "given"},
             {"flow_path_length_m", scene.flow_path.length()},
-            {"releases", releases}};
+            {"releases", releases},
+            {"inflows", inflows}};
 }
 
 Json terrain(const Scene& scene) {
@@ -120,6 +132,7 @@ Json results(const RunResult& result) {
             {"volumes", volumes},
             {"buildings", o.buildings.size()},
             {"buildings_hit", hit},
+            {"structures", structures_json(o)},
             {"compression", compression_json(o)}};
 }
 

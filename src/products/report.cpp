@@ -28,44 +28,54 @@ Result<std::string> render_report(const Scene& scene, const RunResult& result,
     // Running heads on paper: what must not be overlooked is said on every page.
     std::string page_note = info.reconstruction ? "Reconstruction, not surveyed" : "";
     if (partial) page_note += page_note.empty() ? "Partial result" : " · Partial result";
-    const std::string first_figure_after_maps = fmt::format("{}", maps->count + 1);
-    const std::string second_figure_after_maps = fmt::format("{}", maps->count + 2);
-    const std::string erosion = erosion_section(scene, result, maps->count + 3);
+    const bool forces = has_structure_figure(result);
+    const int first_figure_after_maps = maps->count + 1 + (forces ? 1 : 0);
+    const std::string force_figure =
+        forces ? fill(report_files::forces_html, {{"number", fmt::format("{}", maps->count + 1)},
+                                                  {"figure", structure_figure(result)},
+                                                  {"window", plain(scene.spec.outputs.impact_filter_window)}})
+               : "";
+    const std::string inflow = inflow_section(scene, result, first_figure_after_maps + 2);
+    const int erosion_number = first_figure_after_maps + (scene.inflows.empty() ? 2 : 3);
+    const std::string erosion = erosion_section(scene, result, erosion_number);
+    const int first_of_comparisons = erosion_number + (erosion.empty() ? 0 : 1);
     const std::string description =
         info.description.empty() ? "" : "<p class=\"lead\">" + escape(info.description) + "</p>";
-    return fill(
-        report_files::report_html,
-        {{"title", title},
-         {"style", report_files::report_css},
-         {"script", report_files::report_js},
-         {"page_note", page_note},
-         {"date", date},
-         {"status", status},
-         {"status_class", partial ? "partial" : "complete"},
-         {"version", TALUS_VERSION},
-         {"description", description},
-         {"banners", banners(scene, result) + comparison_banners(comparisons)},
-         {"key_results", key_results(scene, result)},
-         {"observation_table", observation_table(scene, result)},
-         {"run_quality", run_quality(scene, result)},
-         {"map_definitions", maps->definitions},
-         {"map_figures", maps->figures},
-         {"map_read_out", maps->read_out},
-         {"crs", escape(scene.crs.label())},
-         {"front_number", first_figure_after_maps},
-         {"front_figure", front_figure(scene, result)},
-         {"front_window", plain(scene.spec.outputs.front_velocity_window)},
-         {"time_number", second_figure_after_maps},
-         {"time_figure", time_figure(result)},
-         {"erosion", erosion},
-         {"comparisons", comparison_sections(comparisons, scene, result, maps->count + (erosion.empty() ? 3 : 4))},
-         {"building_table", building_table(scene, result)},
-         {"chosen_values", chosen_values(scene, result)},
-         {"parameter_table", parameter_table(scene)},
-         {"method", method(scene)},
-         {"assumptions", assumptions(scene)},
-         {"input_table", input_table(scene)},
-         {"computation_table", computation_table(scene, result)}});
+    return fill(report_files::report_html,
+                {{"title", title},
+                 {"style", report_files::report_css},
+                 {"script", report_files::report_js},
+                 {"page_note", page_note},
+                 {"date", date},
+                 {"status", status},
+                 {"status_class", partial ? "partial" : "complete"},
+                 {"version", TALUS_VERSION},
+                 {"description", description},
+                 {"banners", banners(scene, result) + comparison_banners(comparisons)},
+                 {"key_results", key_results(scene, result)},
+                 {"observation_table", observation_table(scene, result)},
+                 {"run_quality", run_quality(scene, result)},
+                 {"map_definitions", maps->definitions},
+                 {"map_figures", maps->figures},
+                 {"map_read_out", maps->read_out},
+                 {"crs", escape(scene.crs.label())},
+                 {"front_number", fmt::format("{}", first_figure_after_maps)},
+                 {"front_figure", front_figure(scene, result)},
+                 {"front_window", plain(scene.spec.outputs.front_velocity_window)},
+                 {"time_number", fmt::format("{}", first_figure_after_maps + 1)},
+                 {"time_figure", time_figure(result)},
+                 {"inflow", inflow},
+                 {"erosion", erosion},
+                 {"comparisons", comparison_sections(comparisons, scene, result, first_of_comparisons)},
+                 {"building_table", building_table(scene, result)},
+                 {"barrier_table", barrier_table(result)},
+                 {"force_figure", force_figure},
+                 {"chosen_values", chosen_values(scene, result)},
+                 {"parameter_table", parameter_table(scene)},
+                 {"method", method(scene)},
+                 {"assumptions", assumptions(scene)},
+                 {"input_table", input_table(scene)},
+                 {"computation_table", computation_table(scene, result)}});
 }
 
 }  // namespace talus

@@ -123,7 +123,9 @@ std::string key_results(const Scene& scene, const RunResult& result) {
                                         [](const auto& a, const auto& b) { return a.peak_pressure < b.peak_pressure; });
     const MassBalance mass = mass_balance(o);
     std::string html = card("Released volume", fixed(o.volume_released, o.volume_released < 100 ? 1 : 0), "m³",
-                            plural(scene.releases.size(), "release"));
+                            scene.inflows.empty() ? plural(scene.releases.size(), "release")
+                                                  : plural(scene.releases.size(), "release") + ", " +
+                                                        plural(scene.inflows.size(), "inflow"));
     if (!scene.bed.empty()) {
         html += card("Picked up from the bed", fixed(mass.entrained, mass.entrained < 100 ? 1 : 0), "m³",
                      fmt::format("{} × the released volume, deepest {} m", fixed(mass.entrained / o.volume_released, 2),

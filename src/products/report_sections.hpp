@@ -15,6 +15,8 @@ namespace talus::report {
 [[nodiscard]] std::string run_quality(const Scene& scene, const RunResult& result);
 [[nodiscard]] std::string observation_table(const Scene& scene, const RunResult& result);
 [[nodiscard]] std::string building_table(const Scene& scene, const RunResult& result);
+/// What failed, and a table of barriers; nothing where there is neither.
+[[nodiscard]] std::string barrier_table(const RunResult& result);
 [[nodiscard]] std::string chosen_values(const Scene& scene, const RunResult& result);
 [[nodiscard]] std::string parameter_table(const Scene& scene);
 [[nodiscard]] std::string method(const Scene& scene);
@@ -28,8 +30,14 @@ namespace talus::report {
 [[nodiscard]] std::string erosion_figure(const RunResult& result);
 /// A <section> on what debris picked up; empty for a scene without a bed.
 [[nodiscard]] std::string erosion_section(const Scene& scene, const RunResult& result, int figure);
+/// Force over time on the structures that were hit.
+[[nodiscard]] bool has_structure_figure(const RunResult& result);
+[[nodiscard]] std::string structure_figure(const RunResult& result);
 /// Energy, volumes, largest speed and compression over time.
 [[nodiscard]] std::string time_figure(const RunResult& result);
+
+/// A <section> with the hydrographs; nothing without inflows.
+[[nodiscard]] std::string inflow_section(const Scene& scene, const RunResult& result, int figure);
 
 /// What must not be overlooked of the comparisons: a scene that is not converged under refinement.
 [[nodiscard]] std::string comparison_banners(const std::vector<Comparison>& comparisons);

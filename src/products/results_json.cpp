@@ -80,4 +80,28 @@ Json comparisons_json(const std::vector<Comparison>& comparisons) {
     return json;
 }
 
+Json structures_json(const Observation& observation) {
+    Json list = Json::array();
+    for (const BuildingImpact& b : observation.buildings) {
+        if (!b.hit && !b.is_barrier) continue;
+        Json entry = {{"name", b.name},
+                      {"kind", b.is_barrier ? "barrier" : "building"},
+                      {"first_hit_s", b.first_hit_time},
+                      {"peak_force_kN", b.peak_force / 1e3},
+                      {"peak_pressure_kPa", b.peak_pressure / 1e3},
+                      {"impulse_kNs", b.impulse / 1e3},
+                      {"failed_s", b.failure_time}};
+        if (b.is_barrier) {
+            entry["overtopped_m3"] = b.overtopped_volume;
+            entry["first_overtopped_s"] = b.first_overtopping_time;
+            entry["passed_m3"] = b.passed_volume;
+            entry["held_m3"] = b.held_volume;
+            entry["peak_held_m3"] = b.peak_held_volume;
+            entry["peak_filling_height_m"] = b.peak_filling_height;
+        }
+        list.push_back(entry);
+    }
+    return list;
+}
+
 }  // namespace talus

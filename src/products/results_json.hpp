@@ -14,4 +14,7 @@ namespace talus {
 /// variant with its values, changes and cost.
 [[nodiscard]] nlohmann::ordered_json comparisons_json(const std::vector<Comparison>& comparisons);
 
+/// What was hit, with its peaks, and every barrier. A value that does not exist is null.
+[[nodiscard]] nlohmann::ordered_json structures_json(const Observation& observation);
+
 }  // namespace talus

@@ -28,7 +28,8 @@ std::string run_out_table(const RunOut& r) {
 std::string building_table(const Scene& scene, const Observation& observation) {
     Csv csv(
         "name,hit,first_hit_time_s,peak_force_kN,peak_pressure_kPa,peak_dynamic_pressure_kPa,peak_depth_m,"
-        "filter_window_s,height_m,height_assumed,removed_time_s");
+        "filter_window_s,height_m,height_assumed,kind,impulse_kNs,failed_s,overtopped_m3,first_overtopped_s,passed_m3,"
+        "held_m3,peak_held_m3,peak_filling_height_m,removed_time_s");
     for (std::size_t i = 0; i < observation.buildings.size(); ++i) {
         const BuildingImpact& b = observation.buildings[i];
         csv.word(b.name).word(b.hit ? "yes" : "no").number(b.first_hit_time);
@@ -37,8 +38,28 @@ std::string building_table(const Scene& scene, const Observation& observation) {
         const Building* building = i < scene.buildings.size() ? &scene.buildings[i] : nullptr;
         csv.number(building != nullptr ? building->height : never);
         csv.word(building != nullptr && building->height_assumed ? "yes" : "no");
+        csv.word(b.is_barrier ? "barrier" : "building").number(b.impulse / 1e3).number(b.failure_time);
+        const auto of_barrier = [&](double value) { return b.is_barrier ? value : never; };
+        csv.number(of_barrier(b.overtopped_volume)).number(b.first_overtopping_time);
+        csv.number(of_barrier(b.passed_volume)).number(of_barrier(b.held_volume));
+        csv.number(of_barrier(b.peak_held_volume)).number(of_barrier(b.peak_filling_height));
         csv.number(b.removed_time);
         csv.end_row();
+    }
+    return csv.text();
+}
+
+/// A row per structure that was hit and row of the time series from then on.
+std::string structure_table(const Observation& observation) {
+    Csv csv("name,time_s,force_kN,impulse_kNs,overtopped_m3,passed_m3,held_m3,filling_height_m");
+    for (const BuildingImpact& b : observation.buildings) {
+        const auto of_barrier = [&](double value) { return b.is_barrier ? value : never; };
+        for (const StructureSample& s : b.history) {
+            csv.word(b.name).number(s.time).number(s.force / 1e3).number(s.impulse / 1e3);
+            csv.number(of_barrier(s.overtopped_volume)).number(of_barrier(s.passed_volume));
+            csv.number(of_barrier(s.held_volume)).number(of_barrier(s.filling_height));
+            csv.end_row();
+        }
     }
     return csv.text();
 }
@@ -75,6 +96,7 @@ Status write_tables(const Scene& scene, const RunResult& result, const std::file
     if (!observation.erosion.chainage.empty()) {
         if (Status s = write_text_file(folder / "erosion.csv", erosion_table(observation.erosion)); !s) return s;
     }
+    if (Status s = write_text_file(folder / "structures_over_time.csv", structure_table(observation)); !s) return s;
     return write_text_file(folder / "timeseries.csv", time_table(observation));
 }
 

@@ -14,19 +14,53 @@ Attribute yes_or_no(bool value) {
 
 /// The columns are those of buildings.csv.
 Status write_buildings(const Scene& scene, const Observation& observation, const std::string& file) {
-    const std::vector<Field> fields = {{"name", true},           {"hit", true},         {"first_hit_time_s"},
-                                       {"peak_force_kN"},        {"peak_pressure_kPa"}, {"peak_dynamic_pressure_kPa"},
-                                       {"peak_depth_m"},         {"filter_window_s"},   {"height_m"},
-                                       {"height_assumed", true}, {"removed_time_s"}};
+    const std::vector<Field> fields = {{"name", true},
+                                       {"hit", true},
+                                       {"first_hit_time_s"},
+                                       {"peak_force_kN"},
+                                       {"peak_pressure_kPa"},
+                                       {"peak_dynamic_pressure_kPa"},
+                                       {"peak_depth_m"},
+                                       {"filter_window_s"},
+                                       {"height_m"},
+                                       {"height_assumed", true},
+                                       {"kind", true},
+                                       {"impulse_kNs"},
+                                       {"failed_s"},
+                                       {"overtopped_m3"},
+                                       {"first_overtopped_s"},
+                                       {"passed_m3"},
+                                       {"held_m3"},
+                                       {"peak_held_m3"},
+                                       {"peak_filling_height_m"},
+                                       {"removed_time_s"}};
     std::vector<OutputFeature> features;
     for (std::size_t i = 0; i < scene.buildings.size() && i < observation.buildings.size(); ++i) {
         const Building& building = scene.buildings[i];
         const BuildingImpact& b = observation.buildings[i];
+        const auto of_barrier = [&](double value) { return b.is_barrier ? value : never; };
         features.push_back({building.footprint,
                             {},
-                            {b.name, yes_or_no(b.hit), b.first_hit_time, b.peak_force / 1e3, b.peak_pressure / 1e3,
-                             b.peak_dynamic_pressure / 1e3, b.peak_depth, scene.spec.outputs.impact_filter_window,
-                             building.height, yes_or_no(building.height_assumed), b.removed_time}});
+                            {b.name,
+                             yes_or_no(b.hit),
+                             b.first_hit_time,
+                             b.peak_force / 1e3,
+                             b.peak_pressure / 1e3,
+                             b.peak_dynamic_pressure / 1e3,
+                             b.peak_depth,
+                             scene.spec.outputs.impact_filter_window,
+                             building.height,
+                             yes_or_no(building.height_assumed),
+                             std::string(b.is_barrier ? "barrier" : "building"),
+                             b.impulse / 1e3,
+                             b.failure_time,
+                             of_barrier(b.overtopped_volume),
+                             b.first_overtopping_time,
+                             of_barrier(b.passed_volume),
+                             of_barrier(b.held_volume),
+                             of_barrier(b.peak_held_volume),
+                             of_barrier(b.peak_filling_height),
+                             b.removed_time}});
     }
     return write_geopackage_layer(file, "buildings", fields, features, scene.crs);
 }

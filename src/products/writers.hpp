@@ -15,8 +15,8 @@ namespace talus {
 /// peak_depth.tif, ... and erosion_depth.tif where anything was eroded, each with a QGIS style beside it.
 [[nodiscard]] Status write_maps(const Scene& scene, const RunResult& result, const std::filesystem::path& folder);
 
-/// front.csv, run_out.csv, buildings.csv, timeseries.csv, and erosion.csv where debris can pick up its bed. A value
-/// that does not exist is an empty field.
+/// front.csv, run_out.csv, buildings.csv, structures_over_time.csv, timeseries.csv, and erosion.csv where debris can
+/// pick up its bed. A value that does not exist is an empty field.
 [[nodiscard]] Status write_tables(const Scene& scene, const RunResult& result, const std::filesystem::path& folder);
 
 /// results.gpkg with the layers buildings, release, flow_path and chainage (a short line across the path per mark).

@@ -59,7 +59,12 @@ std::string buildings_line(const Scene& scene) {
     if (scene.buildings.empty()) return "buildings   none\n";
     const auto assumed = std::count_if(scene.buildings.begin(), scene.buildings.end(),
                                        [](const Building& building) { return building.height_assumed; });
-    return fmt::format("buildings   {}, {} with an assumed height\n", scene.buildings.size(), assumed);
+    const auto barriers = std::count_if(scene.buildings.begin(), scene.buildings.end(),
+                                        [](const Building& building) { return building.barrier.has_value(); });
+    std::string text = fmt::format("buildings   {}, {} with an assumed height\n",
+                                   static_cast<std::ptrdiff_t>(scene.buildings.size()) - barriers, assumed);
+    if (barriers > 0) text += fmt::format("barriers    {}\n", barriers);
+    return text;
 }
 
 }  // namespace
@@ -68,10 +73,11 @@ std::string describe_scene(const Scene& scene) {
     std::string out = "scene       " + scene.spec.scene.title + "\n";
     if (scene.spec.scene.reconstruction) out += "            its inputs are reconstructed, not surveyed\n";
     out += terrain_line(scene);
-    double volume = 0;
-    for (const Release& release : scene.releases) {
-        out += release_line(scene, release);
-        volume += release.volume;
+    const double volume = total_volume(scene);
+    for (const Release& release : scene.releases) out += release_line(scene, release);
+    for (const Inflow& inflow : scene.inflows) {
+        out += fmt::format("inflow      \"{}\": {:.4g} m3 between {:.6g} and {:.6g} s\n", inflow.name, inflow.volume(),
+                           inflow.hydrograph.front().time, inflow.hydrograph.back().time);
     }
     const double spacing = choose_particle_spacing(scene.spec.solver, volume);
     out += particle_line(scene, volume, spacing);

@@ -20,9 +20,7 @@ namespace {
 Status check_viscosity(const ParsedScene& parsed, const Scene& scene) {
     const SolverSpec& solver = scene.spec.solver;
     const MaterialSpec& material = scene.spec.material;
-    double volume = 0;
-    for (const Release& release : scene.releases) volume += release.volume;
-    const double spacing = choose_particle_spacing(solver, volume);
+    const double spacing = choose_particle_spacing(solver, total_volume(scene));
     const double longest_step = solver.time_step.value_or(solver.largest_time_step);
     double given = material.viscosity, most = viscosity_reference_step / longest_step;
     std::string key = "material.viscosity";
@@ -90,6 +88,13 @@ Status add_depths(const ParsedScene& parsed, const std::string& key, const std::
 }
 
 }  // namespace
+
+double total_volume(const Scene& scene) {
+    double volume = 0;
+    for (const Release& release : scene.releases) volume += release.volume;
+    for (const Inflow& inflow : scene.inflows) volume += inflow.volume();
+    return volume;
+}
 
 Status load_terrain(const ParsedScene& parsed, Scene& scene) {
     const TerrainSpec& spec = parsed.spec.terrain;
@@ -161,8 +166,10 @@ Result<Scene> assemble_scene(const ParsedScene& parsed) {
     if (Status s = load_zones(parsed, scene); !s) return s.error();
     if (Status s = load_releases(parsed, scene); !s) return s.error();
     if (Status s = load_bed(parsed, scene); !s) return s.error();
+    if (Status s = load_inflows(parsed, scene); !s) return s.error();
     if (Status s = check_viscosity(parsed, scene); !s) return s.error();
     if (Status s = load_buildings(parsed, scene); !s) return s.error();
+    if (Status s = load_barriers(parsed, scene); !s) return s.error();
     if (Status s = load_flow_path(parsed, scene); !s) return s.error();
     if (Status s = load_observations(parsed, scene); !s) return s.error();
     return Result<Scene>(std::move(scene));

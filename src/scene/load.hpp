@@ -27,6 +27,15 @@ namespace talus {
 /// Fills scene.buildings. The terrain and the releases are loaded.
 [[nodiscard]] Status load_buildings(const ParsedScene& parsed, Scene& scene);
 
+/// Fills scene.inflows. The terrain is loaded.
+[[nodiscard]] Status load_inflows(const ParsedScene& parsed, Scene& scene);
+
+/// Adds the barriers to scene.buildings. Terrain, releases and buildings are loaded.
+[[nodiscard]] Status load_barriers(const ParsedScene& parsed, Scene& scene);
+
+/// Plan area of a building on a release, m2; touching outlines count nothing.
+[[nodiscard]] double shared_area(const Release& release, const Building& building);
+
 /// Fills scene.flow_path from its file, or traced. The terrain and the releases are loaded.
 [[nodiscard]] Status load_flow_path(const ParsedScene& parsed, Scene& scene);
 

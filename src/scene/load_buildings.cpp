@@ -1,7 +1,12 @@
+#include <algorithm>
 #include <cmath>
+#include <cstdlib>
+#include <limits>
+#include <utility>
 
 #include <fmt/format.h>
 
+#include "geo/mesh.hpp"
 #include "geo/vector.hpp"
 #include "scene/load.hpp"
 #include "scene/polygons.hpp"
@@ -9,7 +14,7 @@
 namespace talus {
 namespace {
 
-constexpr double highest = 1000;  // m, as buildings.default_height_m allows
+constexpr double highest_building = 1000;  // m, as buildings.default_height_m allows
 
 /// Whether any part of the footprint stands on known ground.
 bool on_terrain(const PolygonFeature& feature, const Terrain& terrain) {
@@ -39,7 +44,7 @@ Status check_attribute(const ParsedScene& parsed, const std::string& key, const 
                              parsed.spec.buildings.file, names.empty() ? "none" : names)};
 }
 
-double height_of(const PolygonFeature& feature, const std::string& attribute) {
+double number_of(const PolygonFeature& feature, const std::string& attribute) {
     const auto found = feature.attributes.find(attribute);
     if (found == feature.attributes.end()) return 0;
     if (const auto* number = std::get_if<double>(&found->second)) return *number;
@@ -54,18 +59,6 @@ std::string name_of(const PolygonFeature& feature, const std::string& attribute,
         if (const auto* value = std::get_if<double>(&found->second)) return fmt::format("{}", *value);
     }
     return fmt::format("building {}", number);
-}
-
-/// Plan area of a building on a release, m2; touching outlines count nothing.
-double shared_area(const Release& release, const Building& building) {
-    double area = 0;
-    for (const ReleasePatch& patch : release.patches) {
-        for (const Polygon& part : building.footprint) {
-            const Overlap overlap = overlap_of(patch.polygon, part);
-            if (is_true_overlap(overlap, patch.polygon, part)) area += overlap.area;
-        }
-    }
-    return area;
 }
 
 /// A building whose ground fails is no obstacle to the debris: it goes with it.
@@ -84,19 +77,88 @@ void leave_out_buildings_on_releases(Scene& scene) {
     });
 }
 
-}  // namespace
+std::string attribute_of(const MeshBuilding& mesh, const std::string& name) {
+    const auto found = mesh.attributes.find(name);
+    return found == mesh.attributes.end() ? "" : found->second;
+}
 
-Status load_buildings(const ParsedScene& parsed, Scene& scene) {
+Status check_mesh_keys(const ParsedScene& parsed) {
+    const BuildingsSpec& spec = parsed.spec.buildings;
+    for (const auto& [key, given] :
+         {std::pair{"layer", !spec.layer.empty()}, std::pair{"height_attribute", !spec.height_attribute.empty()}}) {
+        if (!given) continue;
+        return Error{
+            fmt::format("{}: is refused with the mesh {}, which has its own heights and no layers; leave it out",
+                        parsed.at(std::string("buildings.") + key), spec.file)};
+    }
+    return {};
+}
+
+/// Every roof face becomes a part of the footprint with a roof of its own.
+Status load_mesh_buildings(const ParsedScene& parsed, Scene& scene, std::size_t& outside) {
     const BuildingsSpec& spec = scene.spec.buildings;
-    if (spec.file.empty()) return {};
+    if (Status s = check_mesh_keys(parsed); !s) return s;
+    const auto meshes = read_mesh_buildings(spec.file, scene.crs);
+    if (!meshes) return Error{parsed.at("buildings.file") + ": " + meshes.error().message};
+    record_input("buildings", spec.file, scene);
+    std::size_t sunk = 0;
+    for (const MeshBuilding& mesh : *meshes) {
+        PolygonFeature plan;
+        Building building;
+        double highest = -std::numeric_limits<double>::infinity();
+        for (const RoofFace& roof : mesh.roofs) {
+            plan.parts.push_back(roof.outline);
+            building.part_roof_elevations.push_back(roof.elevation);
+            highest = std::max(highest, roof.elevation);
+        }
+        if (!on_terrain(plan, scene.terrain)) {
+            ++outside;
+            continue;
+        }
+        building.footprint = std::move(plan.parts);
+        std::vector<Building> placed{building};
+        place_buildings(scene.terrain, placed);  // with no height: the mean ground below it
+        building.roof_elevation = highest;
+        building.height = highest - placed.front().roof_elevation;
+        if (!(building.height > 0)) {
+            ++sunk;
+            continue;
+        }
+        if (building.height > highest_building) {
+            return Error{
+                fmt::format("{}: {}: \"{}\" is {:.6g} m higher than its ground; it must be at most {:.0f} m; are its "
+                            "elevations those of the terrain?",
+                            parsed.at("buildings.file"), spec.file, mesh.name, building.height, highest_building)};
+        }
+        const std::string name = attribute_of(mesh, spec.name_attribute);
+        building.name = name.empty() ? mesh.name : name;
+        const double resistance = std::strtod(attribute_of(mesh, spec.resistance_attribute).c_str(), nullptr);
+        if (spec.resistance) building.resistance.pressure = *spec.resistance;
+        if (resistance > 0) building.resistance.pressure = resistance;
+        scene.buildings.push_back(std::move(building));
+    }
+    if (sunk > 0) {
+        scene.notes.push_back(fmt::format("buildings: {} of {} have their roofs below the ground and were left out",
+                                          sunk, meshes->size()));
+    }
+    scene.notes.push_back(
+        fmt::format("buildings: {} read from a mesh; every roof face is taken to be level at its mean elevation",
+                    scene.buildings.size()));
+    return {};
+}
+
+Status load_footprints(const ParsedScene& parsed, Scene& scene, std::size_t& outside) {
+    const BuildingsSpec& spec = scene.spec.buildings;
     const Result<PolygonLayer> layer = read_polygons(spec.file, spec.layer, scene.crs);
     if (!layer) return Error{parsed.at("buildings.file") + ": " + layer.error().message};
     record_input("buildings", spec.file, scene);
     if (!layer->reprojection.empty()) scene.notes.push_back("buildings: " + layer->reprojection);
     if (Status s = check_attribute(parsed, "buildings.height_attribute", spec.height_attribute, *layer); !s) return s;
     if (Status s = check_attribute(parsed, "buildings.name_attribute", spec.name_attribute, *layer); !s) return s;
-
-    std::size_t outside = 0, assumed = 0;
+    if (Status s = check_attribute(parsed, "buildings.resistance_attribute", spec.resistance_attribute, *layer); !s) {
+        return s;
+    }
+    std::size_t assumed = 0;
     for (std::size_t i = 0; i < layer->features.size(); ++i) {
         const PolygonFeature& feature = layer->features[i];
         if (!on_terrain(feature, scene.terrain)) {
@@ -106,19 +168,50 @@ Status load_buildings(const ParsedScene& parsed, Scene& scene) {
         Building building;
         building.name = name_of(feature, spec.name_attribute, i + 1);
         building.footprint = feature.parts;
-        building.height = height_of(feature, spec.height_attribute);
+        building.height = number_of(feature, spec.height_attribute);
+        const double resistance = number_of(feature, spec.resistance_attribute);
+        if (spec.resistance) building.resistance.pressure = *spec.resistance;
+        if (resistance > 0) building.resistance.pressure = resistance;
         if (!(building.height > 0)) {
             building.height = spec.default_height;
             building.height_assumed = true;
             ++assumed;
-        } else if (building.height > highest) {
+        } else if (building.height > highest_building) {
             return Error{
                 fmt::format("{}: {}: feature {} (\"{}\") has {} = {:.6g}; it must be a height of at most {:.0f} (m)",
                             parsed.at("buildings.height_attribute"), spec.file, i + 1, building.name,
-                            spec.height_attribute, building.height, highest)};
+                            spec.height_attribute, building.height, highest_building)};
         }
         scene.buildings.push_back(std::move(building));
     }
+    if (assumed > 0) {
+        scene.notes.push_back(fmt::format("buildings: the height of {} of {} is assumed to be {:.6g} m", assumed,
+                                          scene.buildings.size(), spec.default_height));
+    }
+    place_buildings(scene.terrain, scene.buildings);
+    return {};
+}
+
+}  // namespace
+
+double shared_area(const Release& release, const Building& building) {
+    double area = 0;
+    for (const ReleasePatch& patch : release.patches) {
+        for (const Polygon& part : building.footprint) {
+            const Overlap overlap = overlap_of(patch.polygon, part);
+            if (is_true_overlap(overlap, patch.polygon, part)) area += overlap.area;
+        }
+    }
+    return area;
+}
+
+Status load_buildings(const ParsedScene& parsed, Scene& scene) {
+    const BuildingsSpec& spec = scene.spec.buildings;
+    if (spec.file.empty()) return {};
+    std::size_t outside = 0;
+    const Status loaded =
+        is_mesh_file(spec.file) ? load_mesh_buildings(parsed, scene, outside) : load_footprints(parsed, scene, outside);
+    if (!loaded) return loaded;
     if (scene.buildings.empty()) {
         return Error{
             fmt::format("{}: {}: all {} buildings lie outside the terrain, {} ({}); leave out [buildings] or use "
@@ -128,13 +221,8 @@ Status load_buildings(const ParsedScene& parsed, Scene& scene) {
     }
     if (outside > 0) {
         scene.notes.push_back(fmt::format("buildings: {} of {} lie outside the terrain and were left out", outside,
-                                          layer->features.size()));
+                                          outside + scene.buildings.size()));
     }
-    if (assumed > 0) {
-        scene.notes.push_back(fmt::format("buildings: the height of {} of {} is assumed to be {:.6g} m", assumed,
-                                          scene.buildings.size(), spec.default_height));
-    }
-    place_buildings(scene.terrain, scene.buildings);
     leave_out_buildings_on_releases(scene);
     return {};
 }

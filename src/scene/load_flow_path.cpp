@@ -79,10 +79,28 @@ ReleaseRelief relief_of(const Release& release, const Terrain& terrain) {
     return relief;
 }
 
-Status trace_from_release(const ParsedScene& parsed, Scene& scene) {
+/// What is traced from, and where it begins.
+struct Source {
+    std::string label;
+    PlanPoint crown, lowest;
+};
+
+Source largest_source(const Scene& scene) {
+    if (scene.releases.empty()) {
+        const Inflow& inflow =
+            *std::max_element(scene.inflows.begin(), scene.inflows.end(),
+                              [](const Inflow& a, const Inflow& b) { return a.volume() < b.volume(); });
+        const PlanPoint middle{(inflow.from.x + inflow.to.x) / 2, (inflow.from.y + inflow.to.y) / 2};
+        return {"inflow \"" + inflow.name + "\"", middle, middle};
+    }
     const Release& largest = *std::max_element(scene.releases.begin(), scene.releases.end(),
                                                [](const Release& a, const Release& b) { return a.volume < b.volume; });
     const ReleaseRelief relief = relief_of(largest, scene.terrain);
+    return {"release \"" + largest.name + "\"", relief.crown, relief.lowest};
+}
+
+Status trace_from_release(const ParsedScene& parsed, Scene& scene) {
+    const Source relief = largest_source(scene);
     const Extent extent = scene.terrain.elevation().geometry.extent();
     const double longest = 2 * std::hypot(extent.width(), extent.height());
     const Result<std::vector<PlanPoint>> traced = trace_flow_path(scene.terrain.elevation(), relief.lowest, longest);
@@ -97,9 +115,9 @@ Status trace_from_release(const ParsedScene& parsed, Scene& scene) {
     }
     scene.flow_path = FlowPath(points, scene.spec.flow_path.corridor_width);
     scene.flow_path_traced = true;
-    scene.notes.push_back(
-        fmt::format("flow path: traced downhill from release \"{}\", {:.0f} m from its crown at {} to {}", largest.name,
-                    scene.flow_path.length(), place_text(points.front()), place_text(points.back())));
+    scene.notes.push_back(fmt::format("flow path: traced downhill from {}, {:.0f} m from its crown at {} to {}",
+                                      relief.label, scene.flow_path.length(), place_text(points.front()),
+                                      place_text(points.back())));
     note_far_releases(scene, points);
     return {};
 }

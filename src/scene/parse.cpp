@@ -88,8 +88,8 @@ class SceneReader {
                 }
             }
         }
-        if (scene_.spec.releases.empty()) {
-            return Error{name_ + ": there is no [[release]]; a scene needs at least one"};
+        if (scene_.spec.releases.empty() && scene_.spec.inflows.empty()) {
+            return Error{name_ + ": there is no [[release]] and no [[inflow]]; a scene needs at least one"};
         }
         return {};
     }

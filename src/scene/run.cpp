@@ -6,12 +6,15 @@
 #include <cstdio>
 #include <thread>
 
+#include <fmt/format.h>
 #include <tbb/global_control.h>
 #include <tbb/task_arena.h>
 
 #include "observe/observer.hpp"
 #include "scene/rate_meter.hpp"
 #include "scene/stop_rule.hpp"
+#include "sim/change.hpp"
+#include "sim/inflow.hpp"
 #include "sim/seed.hpp"
 #include "sim/simulation.hpp"
 
@@ -29,7 +32,7 @@ struct Run {
     const RunOptions& options;
     RunResult result;
 
-    void step_until_done(Simulation& simulation, Observer& observer);
+    void step_until_done(Simulation& simulation, Observer& observer, InflowFeeder& feeder);
     void report_progress(const Simulation& simulation, const Observer& observer, double wall_time) const;
 };
 
@@ -49,7 +52,7 @@ void Run::report_progress(const Simulation& simulation, const Observer& observer
     options.on_progress(progress);
 }
 
-void Run::step_until_done(Simulation& simulation, Observer& observer) {
+void Run::step_until_done(Simulation& simulation, Observer& observer, InflowFeeder& feeder) {
     const SolverSpec& solver = scene.spec.solver;
     const Model& model = simulation.model();
     const State& state = simulation.state();
@@ -77,7 +80,8 @@ void Run::step_until_done(Simulation& simulation, Observer& observer) {
             result.stop_reason = end_time_reason(solver);
             break;
         }
-        if (state.count == 0) {
+        let_in(simulation, observer, feeder);
+        if (state.count == 0 && feeder.to_come() == 0) {
             result.stop_reason = no_debris_reason;
             break;
         }
@@ -93,9 +97,11 @@ void Run::step_until_done(Simulation& simulation, Observer& observer) {
             const StageTimer timer(simulation.stage_times(), Stage::observe);
             observer.after_step(model, state, rate.update(state.step));
         }
+        if (take_failed_down(simulation, observer)) rest.stir(state.time);
         show_frame();
         report_progress(simulation, observer, seconds_since(start));
-        if (rest.at_rest(state.time, total_momentum(model, state), still_waiting(model, state))) {
+        if (rest.at_rest(state.time, total_momentum(model, state),
+                         still_waiting(model, state) || feeder.to_come() > 0)) {
             result.stop_reason = rest.reason();
             break;
         }
@@ -104,15 +110,17 @@ void Run::step_until_done(Simulation& simulation, Observer& observer) {
 }
 
 Result<RunResult> run_in_arena(const Scene& scene, const RunOptions& options, int thread_count) {
-    double volume = 0;
-    for (const Release& release : scene.releases) volume += release.volume;
     const SceneSpec& spec = scene.spec;
-    const double spacing = choose_particle_spacing(spec.solver, volume);
+    const double spacing = choose_particle_spacing(spec.solver, total_volume(scene));
     Model model = make_model(spec.material, spec.solver, scene.terrain, scene.buildings, spacing);
     model.cover = scene.cover;
     model.bed = scene.bed;
     Result<State> seeded = seed_releases(model, scene.releases);
     if (!seeded) return Error{scene.file.string() + ": " + seeded.error().message};
+    InflowFeeder feeder(model, scene.inflows);
+    if (Status s = check_particles(model, seeded->count, feeder); !s) {
+        return Error{scene.file.string() + ": " + s.error().message};
+    }
 
     Run run{scene, options, {}};
     RunResult& result = run.result;
@@ -122,11 +130,12 @@ Result<RunResult> run_in_arena(const Scene& scene, const RunOptions& options, in
     result.kinematic_viscosity = model.kinematic_viscosity;
     result.map_cell = spec.outputs.map_cell.value_or(default_map_cell(scene.terrain.cell(), spacing));
     result.thread_count = thread_count;
-    result.particles = seeded->seeded;
 
-    Simulation simulation(std::move(model), *std::move(seeded));
+    Simulation simulation(std::move(model), *std::move(seeded), feeder.to_come());
     Observer observer(simulation.model(), simulation.state(), scene.flow_path, spec.outputs, result.map_cell);
-    run.step_until_done(simulation, observer);
+    observer.expect(simulation.state().seeded + feeder.to_come());
+    run.step_until_done(simulation, observer, feeder);
+    result.particles = simulation.state().seeded;
     result.observation = observer.finish(simulation.model(), simulation.state());
     result.stage_times = simulation.stage_times();
     result.instruction_set = simulation.backend().instruction_set();
@@ -137,6 +146,29 @@ Result<RunResult> run_in_arena(const Scene& scene, const RunOptions& options, in
 }
 
 }  // namespace
+
+void let_in(Simulation& simulation, Observer& observer, InflowFeeder& feeder) {
+    if (!feeder.due(simulation.state().time)) return;
+    const std::uint32_t first = simulation.state().seeded;
+    simulation.change([&](Model& model, State& state) { feeder.feed(model, state); });
+    observer.let_in(simulation.state(), first);
+}
+
+Status check_particles(const Model& model, std::uint32_t seeded, const InflowFeeder& feeder) {
+    const double particles = static_cast<double>(seeded) + feeder.to_come();
+    if (particles <= model.solver.particle_limit) return {};
+    return Error{
+        fmt::format("releases and inflows need {:.0f} particles of solver.particle_spacing_m = {:.4g}, more "
+                    "than solver.particle_limit = {}; a larger spacing needs fewer",
+                    particles, model.particle_spacing, model.solver.particle_limit)};
+}
+
+bool take_failed_down(Simulation& simulation, const Observer& observer) {
+    for (const std::size_t building : observer.failed_buildings()) {
+        simulation.change([&](Model& model, State& state) { take_down(model, state, building); });
+    }
+    return !observer.failed_buildings().empty();
+}
 
 int thread_count(const SolverSpec& solver) {
     if (solver.thread_count > 0) return solver.thread_count;

@@ -12,6 +12,7 @@
 #include "terrain/buildings.hpp"
 #include "terrain/flow_path.hpp"
 #include "terrain/ground_cover.hpp"
+#include "terrain/inflow.hpp"
 #include "terrain/release.hpp"
 #include "terrain/terrain.hpp"
 
@@ -36,6 +37,7 @@ struct Scene {
     GroundCover cover;  ///< of the zones
     std::vector<Release> releases;
     Bed bed;
+    std::vector<Inflow> inflows;
     std::vector<Building> buildings;
     FlowPath flow_path;
     bool flow_path_traced = false;
@@ -43,6 +45,9 @@ struct Scene {
     std::vector<InputFile> inputs;
     std::vector<std::string> notes;  ///< what was done to the inputs: reprojections, defaults, traced path
 };
+
+/// What all releases and inflows bring, m3.
+[[nodiscard]] double total_volume(const Scene& scene);
 
 /// Reads a scene file, its values checked against the field table; relative paths are resolved against its folder,
 /// `${NAME}` in a path against the environment. `overrides`: "section.key=value", applied after the file.

@@ -120,6 +120,19 @@ std::optional<ParameterValue> to_parameter_value(const toml::node& node, Paramet
             }
             return Extent{numbers[0], numbers[1], numbers[2], numbers[3]};
         }
+        case ParameterKind::points: {
+            const toml::array* items = node.as_array();
+            if (!items) return std::nullopt;
+            std::vector<PlanPoint> points;
+            points.reserve(items->size());
+            for (const toml::node& item : *items) {
+                const toml::array* place = item.as_array();
+                if (!place || place->size() != 2) return std::nullopt;
+                if (!place->get(0)->is_number() || !place->get(1)->is_number()) return std::nullopt;
+                points.push_back({*place->get(0)->value<double>(), *place->get(1)->value<double>()});
+            }
+            return points;
+        }
     }
     return std::nullopt;
 }

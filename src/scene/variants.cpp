@@ -14,18 +14,12 @@ namespace {
 
 constexpr std::string_view base_name = "as given";
 
-double released_volume(const Scene& scene) {
-    double volume = 0;
-    for (const Release& release : scene.releases) volume += release.volume;
-    return volume;
-}
-
 double spacing_of(const Scene& scene) {
-    return choose_particle_spacing(scene.spec.solver, released_volume(scene));
+    return choose_particle_spacing(scene.spec.solver, total_volume(scene));
 }
 
 double particles_of(const Scene& scene) {
-    return released_volume(scene) / std::pow(spacing_of(scene), 3);
+    return total_volume(scene) / std::pow(spacing_of(scene), 3);
 }
 
 /// What a run costs, in arbitrary units: particles times iterations, over the time step at a speed that debris has.

@@ -1,6 +1,7 @@
 #include "sim/change.hpp"
 
 #include <algorithm>
+#include <utility>
 #include <vector>
 
 #include "sim/relax.hpp"
@@ -95,6 +96,15 @@ void clear_solids(const Model& model, State& state, const Extent& local) {
         state.position.set(i, part.position.at(k));
         state.resting[i] = 0;
     }
+}
+
+void take_down(Model& model, State& state, std::size_t building) {
+    const WorldPoint& origin = model.terrain.frame().origin;
+    const Extent e = extent_of(model.buildings[building]);
+    model.buildings[building] = without_solid(std::move(model.buildings[building]));
+    model.solids = BuildingSolids(model.terrain, model.buildings, model.support_radius);
+    const Extent local{e.x_min - origin.x, e.y_min - origin.y, e.x_max - origin.x, e.y_max - origin.y};
+    wake(state, local.grown(2 * model.support_radius));
 }
 
 }  // namespace talus

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 
 #include "core/geometry.hpp"
@@ -22,5 +23,8 @@ void wake(State& state, const Extent& local);
 /// gains speed: velocity into a wall is lost, and what then lies too close is pushed apart without inertia. Held
 /// particles stay.
 void clear_solids(const Model& model, State& state, const Extent& local);
+
+/// Takes a building's solid away; debris that rested on it or against it wakes.
+void take_down(Model& model, State& state, std::size_t building);
 
 }  // namespace talus

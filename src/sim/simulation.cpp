@@ -13,11 +13,13 @@
 
 namespace talus {
 
-Simulation::Simulation(Model model, State state)
+Simulation::Simulation(Model model, State state, std::uint32_t expected)
     : model_(std::move(model)),
       state_(std::move(state)),
-      capacity_(state_.count),
+      expected_(expected),
+      capacity_(state_.count + expected),
       highest_energy_head_(std::numeric_limits<double>::lowest()) {
+    if (expected > 0) state_.resize(capacity_);
     backend_.emplace(model_, capacity_);
     take_energy_and_speed();
 }
@@ -28,7 +30,7 @@ void Simulation::take_energy_and_speed() {
         highest_energy_head_ = std::max(highest_energy_head_, state_.position.z[i] + dot(v, v) / (2 * model_.gravity));
         state_.largest_speed = std::max<double>(state_.largest_speed, length(v));
     }
-    state_.building_contacts.reserve((face_count - 1) * state_.count);
+    state_.building_contacts.reserve((face_count - 1) * std::max(state_.count, capacity_));
 }
 
 std::optional<std::string> Simulation::advance() {
@@ -69,7 +71,7 @@ void Simulation::make_room(std::uint32_t count) {
 void Simulation::change(const std::function<void(Model&, State&)>& edit) {
     edit(model_, state_);
     state_.building_contacts.clear();
-    if (state_.count > capacity_) make_room(state_.count);
+    if (state_.count > capacity_) make_room(state_.count + expected_);
     take_energy_and_speed();
 }
 

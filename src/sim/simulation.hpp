@@ -16,7 +16,8 @@ namespace talus {
 /// A model, its state and the backend that moves it.
 class Simulation {
   public:
-    Simulation(Model model, State state);
+    /// `expected`: particles that will come in while it runs; there is room for them from the beginning.
+    Simulation(Model model, State state, std::uint32_t expected = 0);
 
     /// Takes one step. Returns why it cannot be trusted, if it cannot; the state is then as that step left it.
     std::optional<std::string> advance();
@@ -38,6 +39,7 @@ class Simulation {
 
     Model model_;
     State state_;
+    std::uint32_t expected_ = 0;
     std::uint32_t capacity_ = 0;           // particles that the backend has room for
     std::optional<cpu::Backend> backend_;  // anew when there are more
     Entrainment entrainment_;

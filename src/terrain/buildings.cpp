@@ -86,6 +86,26 @@ double mean_ground(const Terrain& terrain, const std::vector<Polygon>& footprint
 
 }  // namespace
 
+bool stands(const Building& building) {
+    return std::isfinite(building.roof_elevation) || !building.part_roof_elevations.empty();
+}
+
+Building without_solid(Building building) {
+    building.roof_elevation = std::numeric_limits<double>::quiet_NaN();
+    building.part_roof_elevations.clear();
+    return building;
+}
+
+Extent extent_of(const Building& building) {
+    Extent extent = extent_of(building.footprint.front());
+    for (const Polygon& part : building.footprint) {
+        const Extent e = extent_of(part);
+        extent.include({e.x_min, e.y_min});
+        extent.include({e.x_max, e.y_max});
+    }
+    return extent;
+}
+
 void place_buildings(const Terrain& terrain, std::vector<Building>& buildings) {
     for (Building& building : buildings) {
         building.roof_elevation = mean_ground(terrain, building.footprint) + building.height;

@@ -1,6 +1,8 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -9,6 +11,28 @@
 #include "terrain/terrain.hpp"
 
 namespace talus {
+
+/// A slot or a spillway of a barrier.
+struct BarrierOpening {
+    double position = 0;  ///< m along the line, of its middle
+    double width = 0;     ///< m along the line
+    double sill = 0;      ///< m, what stands of the barrier there, above the ground under the line
+};
+
+/// A wall or dam along a line.
+struct BarrierShape {
+    std::vector<PlanPoint> line;                 ///< world plan coordinates, two points or more
+    double height = 0;                           ///< m above the ground under the line
+    std::optional<double> crest_elevation = {};  ///< m, world: a level crest, in place of `height`
+    double thickness = 0;                        ///< m across the line
+    std::vector<BarrierOpening> openings = {};
+};
+
+/// What a structure stands, as the filtered force that debris exerts on it normal to its walls. Beyond it is gone.
+struct Resistance {
+    double force_per_metre = std::numeric_limits<double>::infinity();  ///< N/m of a barrier's line
+    double pressure = std::numeric_limits<double>::infinity();         ///< Pa over the wall area in contact
+};
 
 /// A solid with vertical walls and a flat roof, from below the ground up to `roof_elevation` (not finite: no solid).
 /// Its parts may have a roof each, as those of a wall whose crest follows the ground.
@@ -19,7 +43,18 @@ struct Building {
     bool height_assumed = false;                 ///< from the default, not from the data
     double roof_elevation = 0;                   ///< m, world; set by place_buildings
     std::vector<double> part_roof_elevations{};  ///< m, world, per part of the footprint; empty: one roof for all
+    Resistance resistance{};
+    std::optional<BarrierShape> barrier{};  ///< what it was made of, if it is one (make_barrier)
 };
+
+/// Whether there is a solid.
+[[nodiscard]] bool stands(const Building& building);
+
+/// The same without its solid: it keeps its place among the others.
+[[nodiscard]] Building without_solid(Building building);
+
+/// Of the whole footprint, world.
+[[nodiscard]] Extent extent_of(const Building& building);
 
 /// Sets every roof to the mean ground elevation of its footprint plus its height; NaN where the ground is not known.
 void place_buildings(const Terrain& terrain, std::vector<Building>& buildings);

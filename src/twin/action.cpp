@@ -9,7 +9,7 @@
 
 #include "scene/polygons.hpp"
 #include "sim/physics/viscosity.hpp"
-#include "twin/barrier.hpp"
+#include "terrain/barrier.hpp"
 #include "twin/json_keys.hpp"
 
 namespace talus::twin {
@@ -245,7 +245,11 @@ Status ActionReader::trigger_release() {
 }
 
 Status ActionReader::put_barrier() {
-    if (Status s = check_keys(action_, {"action", "id", "name", "line", "height_m", "thickness_m"}); !s) return s;
+    if (Status s = check_keys(
+            action_, {"action", "id", "name", "line", "height_m", "thickness_m", "resistance_Npm", "resistance_Pa"});
+        !s) {
+        return s;
+    }
     const auto given_id = id();
     if (!given_id) return given_id.error();
     BarrierSetup* existing = find_id(edit_.setup.barriers, *given_id);
@@ -260,10 +264,17 @@ Status ActionReader::put_barrier() {
     const double thinnest = std::ceil(100 * context_.particle_spacing / 2) / 100;
     const auto thickness = read_number(action_, "thickness_m", {.low = thinnest, .high = 100}, "m");
     if (!thickness) return thickness.error();
+    constexpr Range positive{.low = 0, .low_included = false};
+    const auto force = read_number(action_, "resistance_Npm", positive, "N/m");
+    if (!force) return force.error();
+    const auto pressure = read_number(action_, "resistance_Pa", positive, "Pa");
+    if (!pressure) return pressure.error();
     BarrierSetup barrier;
+    BarrierShape shape;
     std::string called = fmt::format("barrier {}", next_.barrier);
     if (existing != nullptr) {
         barrier = *existing;
+        shape = existing->shape();
         called = name_of(*existing);
     } else {
         if (!*line) return missing("line", "barrier");
@@ -271,16 +282,19 @@ Status ActionReader::put_barrier() {
         if (!*thickness) return missing("thickness_m", "barrier");
     }
     called = name->value_or(called);
-    if (*line) barrier.line = std::move(**line);
-    barrier.height = height->value_or(barrier.height);
-    barrier.thickness = thickness->value_or(barrier.thickness);
-    Result<Building> body =
-        make_barrier(context_.scene.terrain, called, barrier.line, barrier.height, barrier.thickness);
+    if (*line) shape.line = std::move(**line);
+    if (*height) shape.crest_elevation.reset();
+    shape.height = height->value_or(shape.height);
+    shape.thickness = thickness->value_or(shape.thickness);
+    Result<Building> body = make_barrier(context_.scene.terrain, called, shape);
     if (!body) return body.error();
+    if (existing != nullptr) body->resistance = existing->body->resistance;
+    body->resistance.force_per_metre = force->value_or(body->resistance.force_per_metre);
+    body->resistance.pressure = pressure->value_or(body->resistance.pressure);
+    const double body_height = body->height;
     barrier.body = std::make_shared<const Building>(std::move(*body));
-    edit_.sentence =
-        fmt::format("barrier {} {}: {:.1f} m long, {:.3g} m high, {:.3g} m thick", in_quotes(called),
-                    existing ? "changed" : "placed", length_of(barrier.line), barrier.height, barrier.thickness);
+    edit_.sentence = fmt::format("barrier {} {}: {:.1f} m long, {:.3g} m high, {:.3g} m thick", in_quotes(called),
+                                 existing ? "changed" : "placed", length_of(shape.line), body_height, shape.thickness);
     if (existing != nullptr) {
         *existing = std::move(barrier);
     } else {

@@ -24,6 +24,8 @@ Result<std::unique_ptr<LiveRun>> LiveRun::start(const Scene& scene, const Setup&
         model.bed = scene.bed;
         Result<State> state = seed_releases(model, releases);
         if (!state) return state.error();
+        const InflowFeeder feeder(model, scene.inflows);
+        if (Status s = check_particles(model, state->count, feeder); !s) return s.error();
         return std::unique_ptr<LiveRun>(
             new LiveRun(scene, setup, options, std::move(model), *std::move(state), threads));
     });
@@ -36,7 +38,8 @@ LiveRun::LiveRun(const Scene& scene, Setup setup, const ScenarioOptions& options
                                                           static_cast<std::size_t>(threads))),
       arena_(threads),
       threads_(threads),
-      simulation_(std::move(model), std::move(state)),
+      feeder_(model, scene.inflows),
+      simulation_(std::move(model), std::move(state), feeder_.to_come()),
       recording_(options.frame_interval, options.recording_bytes),
       rest_(scene.spec.solver),
       smallest_time_step_(scene.spec.solver.end_time) {
@@ -47,9 +50,9 @@ LiveRun::LiveRun(const Scene& scene, Setup setup, const ScenarioOptions& options
     const double map_cell =
         outputs.map_cell.value_or(default_map_cell(scene.terrain.cell(), this->model().particle_spacing));
     observer_ = std::make_unique<Observer>(this->model(), this->state(), scene.flow_path, outputs, map_cell);
+    observer_->expect(this->state().seeded + feeder_.to_come());
     slots_ = this->state().seeded;
-    follow_barriers(setup_);
-    if (this->state().count == 0) stop(Phase::at_rest, "there is no debris");
+    if (this->state().count == 0 && feeder_.to_come() == 0) stop(Phase::at_rest, "there is no debris");
     record();
 }
 
@@ -83,7 +86,7 @@ void LiveRun::record() {
 void LiveRun::record_impacts() {
     for (std::size_t k = 0; k < obstacles_.size(); ++k) {
         const bool untouched = !observer_->impacts()[k].hit && !obstacles_[k].barrier;
-        if (obstacles_[k].stands && !untouched) impact_history_.add(k, state().time, record_now(k));
+        if (obstacles_[k].stands && !untouched) impact_history_.add(k, state().time, impact_now(k));
     }
 }
 
@@ -95,7 +98,7 @@ void LiveRun::stop(Phase phase, std::string why) {
 void LiveRun::advance() {
     if (phase_ != Phase::ready) return;
     if (reached_end_time(scene_.spec.solver, state())) return stop(Phase::ended, end_time_reason(scene_.spec.solver));
-    if (state().count == 0) return stop(Phase::at_rest, no_debris_reason);
+    if (state().count == 0 && feeder_.to_come() == 0) return stop(Phase::at_rest, no_debris_reason);
     const auto start = std::chrono::steady_clock::now();
     arena_.execute([&] { take_step(); });
     wall_time_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
@@ -105,45 +108,42 @@ void LiveRun::take_step() {
     for (std::size_t g = 0; g < groups_.size(); ++g) {
         groups_[g].begun = groups_[g].begun || model().releases[g].start_time <= state().time;
     }
+    let_in(simulation_, *observer_, feeder_);
     const auto fault = simulation_.advance();
-    slots_ = std::max(slots_, state().seeded);  // debris picks up its bed
+    slots_ = std::max(slots_, state().seeded);  // debris came in, or was picked up from the bed
     smallest_time_step_ = std::min(smallest_time_step_, state().time_step);
     largest_time_step_ = std::max(largest_time_step_, state().time_step);
     if (fault) return stop(Phase::fault, *fault);
     {
         const StageTimer timer(simulation_.stage_times(), Stage::observe);
         observer_->after_step(model(), state(), rate_.update(state().step));
-        for (auto& [id, watch] : overtopping_) watch.overtopping->after_step(state(), jumped_);
-        jumped_ = false;
     }
+    take_failed_down();
     record();
-    if (rest_.at_rest(state().time, total_momentum(model(), state()), still_waiting(model(), state()))) {
+    if (rest_.at_rest(state().time, total_momentum(model(), state()),
+                      still_waiting(model(), state()) || feeder_.to_come() > 0)) {
         stop(Phase::at_rest, rest_.reason());
     } else if (reached_end_time(scene_.spec.solver, state())) {
         stop(Phase::ended, end_time_reason(scene_.spec.solver));
-    } else if (state().count == 0) {
+    } else if (state().count == 0 && feeder_.to_come() == 0) {
         stop(Phase::at_rest, no_debris_reason);
     }
 }
 
-ObstacleRecord LiveRun::record_now(std::size_t obstacle) const {
-    ObstacleRecord record{observer_->impacts()[obstacle]};
-    const auto watch = overtopping_.find(obstacles_[obstacle].id);
-    if (watch != overtopping_.end()) {
-        const Overtopping& over = *watch->second.overtopping;
-        record.overtopped = over.volume();
-        record.first_overtopped = over.first_time();
-        record.held = over.held_volume(state());
+BuildingImpact LiveRun::impact_now(std::size_t obstacle) const {
+    BuildingImpact impact = observer_->impacts()[obstacle];
+    if (const Overtopping* crossings = observer_->overtopping(obstacle)) {
+        impact.held_volume = crossings->filling(state()).volume;
     }
-    return record;
+    return impact;
 }
 
-ObstacleRecord LiveRun::record_of(const std::string& obstacle_id, std::optional<double> time) const {
+BuildingImpact LiveRun::impact_on(const std::string& obstacle_id, std::optional<double> time) const {
     const auto k = static_cast<std::size_t>(find_id(obstacles_, obstacle_id) - obstacles_.data());
-    if (!time) return record_now(k);
-    ObstacleRecord record = impact_history_.at(k, *time);
-    record.impact.name = observer_->impacts()[k].name;
-    return record;
+    if (!time) return impact_now(k);
+    BuildingImpact impact = impact_history_.at(k, *time);
+    impact.name = observer_->impacts()[k].name;
+    return impact;
 }
 
 std::vector<LiveRun::Removed> LiveRun::removed() const {
@@ -155,14 +155,14 @@ std::vector<LiveRun::Removed> LiveRun::removed() const {
     return removed;
 }
 
-void LiveRun::follow_barriers(const Setup& next) {
-    std::erase_if(overtopping_, [&](const auto& entry) { return find_id(next.barriers, entry.first) == nullptr; });
-    for (const BarrierSetup& barrier : next.barriers) {
-        Watch& watch = overtopping_[barrier.id];
-        if (watch.body && same_shape(watch.body, barrier.body)) continue;
-        watch = {barrier.body, std::make_unique<Overtopping>(model(), barrier.line, barrier.height)};
-        watch.overtopping->after_step(state());
+void LiveRun::take_failed_down() {
+    if (!talus::take_failed_down(simulation_, *observer_)) return;
+    for (const std::size_t k : observer_->failed_buildings()) {
+        obstacles_[k].stands = false;
+        obstacles_[k].failed = true;
+        impact_history_.add(k, state().time, impact_now(k));
     }
+    rest_.stir(state().time);
 }
 
 RunResult LiveRun::result() const {
@@ -176,11 +176,14 @@ RunResult LiveRun::result() const {
     result.observation = arena_.execute([&] { return observer_->finish(model(), state()); });
     std::vector<BuildingImpact> standing;
     const auto take = [&](const auto& entries) {
-        for (const auto& entry : entries) standing.push_back(record_of(entry.id).impact);
+        for (const auto& entry : entries) {
+            const auto k = static_cast<std::size_t>(find_id(obstacles_, entry.id) - obstacles_.data());
+            standing.push_back(std::move(result.observation.buildings[k]));
+        }
     };
     take(setup_.buildings);
     take(setup_.barriers);
-    for (const Removed& removed : this->removed()) standing.push_back(removed.record.impact);
+    for (const Removed& removed : this->removed()) standing.push_back(removed.impact);
     result.observation.buildings = std::move(standing);
     result.stage_times = simulation_.stage_times();
     result.instruction_set = simulation_.backend().instruction_set();

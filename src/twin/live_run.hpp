@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstdint>
-#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -16,9 +15,9 @@
 #include "scene/run.hpp"
 #include "scene/scene.hpp"
 #include "scene/stop_rule.hpp"
+#include "sim/inflow.hpp"
 #include "sim/simulation.hpp"
 #include "twin/impact_history.hpp"
-#include "twin/overtopping.hpp"
 #include "twin/recording.hpp"
 #include "twin/scenario.hpp"
 #include "twin/setup.hpp"
@@ -56,14 +55,14 @@ class LiveRun {
     [[nodiscard]] FramePtr frame(unsigned stride, unsigned flags) const;
 
     /// What an obstacle of the setup has met, until now or until a time of the recording.
-    [[nodiscard]] ObstacleRecord record_of(const std::string& obstacle_id, std::optional<double> time = {}) const;
+    [[nodiscard]] BuildingImpact impact_on(const std::string& obstacle_id, std::optional<double> time = {}) const;
 
     /// An obstacle that stood for a step at least and was taken away.
     struct Removed {
         std::string id;
         std::shared_ptr<const Building> body;
         bool barrier = false;
-        ObstacleRecord record;  ///< until then, its removed_time set
+        BuildingImpact impact;  ///< until then, its removed_time set
     };
     [[nodiscard]] std::vector<Removed> removed() const;
 
@@ -82,8 +81,9 @@ class LiveRun {
         bool barrier = false;
         std::uint64_t since_step = 0;  ///< when it came, or was moved, to where it is
         bool stands = true;
+        bool failed = false;           ///< under debris; a setup that still has it as it was does not put it up again
         std::uint64_t until_step = 0;  ///< of one that was taken away, as the next
-        ObstacleRecord last{};         ///< as it was taken away
+        BuildingImpact last{};         ///< as it was taken away
     };
     struct Change;
 
@@ -95,11 +95,11 @@ class LiveRun {
     void carry_out(Change& change, const Setup& next);
     void replace_releases(Model& model, State& state, Change& change);
     void set_start_times(Model& model, const State& state, const Setup& next, bool& let_go);
-    void follow_barriers(const Setup& next);
+    void take_failed_down();
     void take_step();
     void record();
     void record_impacts();
-    [[nodiscard]] ObstacleRecord record_now(std::size_t obstacle) const;
+    [[nodiscard]] BuildingImpact impact_now(std::size_t obstacle) const;
     void stop(Phase phase, std::string why);
 
     const Scene& scene_;
@@ -107,16 +107,11 @@ class LiveRun {
     std::unique_ptr<tbb::global_control> thread_limit_;
     mutable tbb::task_arena arena_;
     int threads_;
+    InflowFeeder feeder_;
     Simulation simulation_;
     std::unique_ptr<Observer> observer_;
     std::vector<Group> groups_;
     std::vector<Obstacle> obstacles_;
-    struct Watch {
-        std::shared_ptr<const Building> body;
-        std::unique_ptr<Overtopping> overtopping;
-    };
-    std::map<std::string, Watch> overtopping_;  // by barrier id
-    bool jumped_ = false;                       // particles were moved between steps
     std::uint32_t slots_ = 0;
     Recording recording_;
     ImpactHistory impact_history_;

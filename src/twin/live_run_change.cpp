@@ -16,16 +16,6 @@ namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-Extent extent_of(const Building& building) {
-    Extent extent = talus::extent_of(building.footprint.front());
-    for (const Polygon& part : building.footprint) {
-        const Extent e = talus::extent_of(part);
-        extent.include({e.x_min, e.y_min});
-        extent.include({e.x_max, e.y_max});
-    }
-    return extent;
-}
-
 bool overlap(const Extent& a, const Extent& b) {
     return a.x_min <= b.x_max && b.x_min <= a.x_max && a.y_min <= b.y_max && b.y_min <= a.y_max;
 }
@@ -39,13 +29,6 @@ template <class Entries>
 bool same_bodies(const Entries& a, const Entries& b) {
     return std::equal(a.begin(), a.end(), b.begin(), b.end(),
                       [](const auto& p, const auto& q) { return p.id == q.id && p.body == q.body; });
-}
-
-/// A building that is there no more: it keeps its index and has no solid.
-Building without_solid(Building building) {
-    building.roof_elevation = std::numeric_limits<double>::quiet_NaN();
-    building.part_roof_elevations.clear();
-    return building;
 }
 
 /// What holds debris back: when any of it changes, debris at rest may move again.
@@ -84,11 +67,11 @@ void LiveRun::plan_obstacles(const Setup& next, Change& change) const {
         Obstacle& obstacle = change.obstacles[k];
         const bool wanted =
             find_id(next.buildings, obstacle.id) != nullptr || find_id(next.barriers, obstacle.id) != nullptr;
-        if (wanted || !obstacle.stands) continue;
-        obstacle.stands = false;
+        if (wanted || !(obstacle.stands || obstacle.failed)) continue;
+        obstacle.stands = obstacle.failed = false;
         obstacle.until_step = state().step;
-        obstacle.last = record_now(k);
-        obstacle.last.impact.removed_time = state().time;
+        obstacle.last = impact_now(k);
+        obstacle.last.removed_time = state().time;
         buildings[k] = without_solid(buildings[k]);
         change.touched.push_back(extent_of(*obstacle.body));
     }
@@ -103,7 +86,7 @@ void LiveRun::plan_obstacles(const Setup& next, Change& change) const {
         const auto k = static_cast<std::size_t>(obstacle - change.obstacles.data());
         const bool moved = !same_shape(obstacle->body, entry.body);
         buildings[k].name = entry.body->name;
-        if (obstacle->stands && !moved) return;
+        if ((obstacle->stands || obstacle->failed) && !moved) return;
         if (obstacle->stands) change.touched.push_back(extent_of(*obstacle->body));
         change.touched.push_back(extent_of(*entry.body));
         if (moved) change.renewed.push_back(k);
@@ -252,11 +235,9 @@ void LiveRun::carry_out(Change& change, const Setup& next) {
     obstacles_ = std::move(change.obstacles);
     observer_->follow(model(), state(), first_new);
     for (const std::size_t k : change.renewed) {
-        observer_->forget_building(k);
+        observer_->forget_building(model(), state(), k);
         impact_history_.forget(k);
     }
-    jumped_ = true;
-    follow_barriers(next);
     if (let_go || !change.seeds.empty()) {
         rest_.begin_anew(state().time);
     } else {

@@ -25,23 +25,12 @@ using nlohmann::json;
 
 constexpr std::size_t most_undo = 200;
 
-/// What the tables of a plain run have no column for: debris over and behind barriers, and obstacles that are gone.
+/// What the tables of a plain run do not say: obstacles that are gone.
 std::vector<std::string> obstacle_notes(const LiveRun& run) {
     std::vector<std::string> notes;
-    const auto over = [](const ObstacleRecord& record) {
-        std::string text = fmt::format("{:.1f} m3 held behind it", record.held);
-        text += record.overtopped > 0 ? fmt::format(", {:.1f} m3 went over it, the first at {:.2f} s",
-                                                    record.overtopped, record.first_overtopped)
-                                      : ", nothing went over it";
-        return text;
-    };
-    for (const BarrierSetup& barrier : run.setup().barriers) {
-        notes.push_back(fmt::format("barrier \"{}\": {}", barrier.body->name, over(run.record_of(barrier.id))));
-    }
     for (const LiveRun::Removed& gone : run.removed()) {
-        notes.push_back(fmt::format("{} \"{}\": taken away at {:.2f} s{}", gone.barrier ? "barrier" : "building",
-                                    gone.body->name, gone.record.impact.removed_time,
-                                    gone.barrier ? "; until then " + over(gone.record) : ""));
+        notes.push_back(fmt::format("{} \"{}\": taken away at {:.2f} s", gone.barrier ? "barrier" : "building",
+                                    gone.body->name, gone.impact.removed_time));
     }
     return notes;
 }
@@ -84,9 +73,7 @@ Scenario::~Scenario() = default;
 
 Scenario::Parts::Parts(std::shared_ptr<const Scene> its_scene, ScenarioOptions its_options)
     : scene(std::move(its_scene)), options(std::move(its_options)) {
-    double volume = 0;
-    for (const Release& release : scene->releases) volume += release.volume;
-    particle_spacing = choose_particle_spacing(scene->spec.solver, volume);
+    particle_spacing = choose_particle_spacing(scene->spec.solver, total_volume(*scene));
 }
 
 Result<std::unique_ptr<Scenario>> Scenario::open(std::shared_ptr<const Scene> scene, ScenarioOptions options) {

@@ -5,10 +5,11 @@
 #include <fmt/format.h>
 
 #include "core/hash.hpp"
-#include "twin/barrier.hpp"
+#include "terrain/barrier.hpp"
 #include "twin/intensity.hpp"
 #include "twin/json_keys.hpp"
 #include "twin/scenario_parts.hpp"
+#include "twin/setup_file.hpp"
 
 namespace talus::twin {
 namespace {
@@ -72,8 +73,7 @@ std::pair<float, float> elevation_range(const Terrain& terrain) {
     return {lowest, highest};
 }
 
-json impact_json(const std::string& id, const ObstacleRecord& record, bool barrier) {
-    const BuildingImpact& impact = record.impact;
+json impact_json(const std::string& id, const BuildingImpact& impact, bool barrier) {
     const char* intensity = intensity_class(impact);
     json row = {{"id", id},
                 {"name", impact.name},
@@ -84,11 +84,15 @@ json impact_json(const std::string& id, const ObstacleRecord& record, bool barri
                 {"peak_depth_m", impact.peak_depth},
                 {"peak_speed_mps", impact.peak_speed},
                 {"peak_dynamic_pressure_kPa", impact.peak_dynamic_pressure / 1e3},
+                {"impulse_kNs", impact.impulse / 1e3},
+                {"failed_s", number_or_null(impact.failure_time)},
                 {"intensity", intensity != nullptr ? json(intensity) : json()}};
     if (barrier) {
-        row["overtopped_m3"] = record.overtopped;
-        row["first_overtopped_s"] = number_or_null(record.first_overtopped);
-        row["held_m3"] = record.held;
+        row["overtopped_m3"] = impact.overtopped_volume;
+        row["first_overtopped_s"] = number_or_null(impact.first_overtopping_time);
+        row["passed_m3"] = impact.passed_volume;
+        row["held_m3"] = impact.held_volume;
+        row["peak_filling_height_m"] = impact.peak_filling_height;
     }
     return row;
 }
@@ -202,10 +206,15 @@ json Scenario::setup_json() const {
     for (const BarrierSetup& barrier : setup.barriers) {
         barriers.push_back({{"id", barrier.id},
                             {"name", barrier.body->name},
-                            {"line", to_json(barrier.line)},
-                            {"height_m", barrier.height},
-                            {"thickness_m", barrier.thickness},
-                            {"crest_length_m", length_of(barrier.line)}});
+                            {"line", to_json(barrier.shape().line)},
+                            {"height_m", barrier.body->height},
+                            {"crest_elevation_m", optional_json(barrier.shape().crest_elevation)},
+                            {"thickness_m", barrier.shape().thickness},
+                            {"openings", openings_json(barrier.shape())},
+                            {"resistance_Npm", number_or_null(barrier.body->resistance.force_per_metre)},
+                            {"resistance_Pa", number_or_null(barrier.body->resistance.pressure)},
+                            {"crest_length_m", length_of(barrier.shape().line)},
+                            {"from_scene", barrier.from_scene}});
     }
     for (const BuildingSetup& building : setup.buildings) {
         const Building& body = *building.body;
@@ -266,15 +275,15 @@ json Scenario::impacts_json(std::optional<double> time) const {
     const LiveRun& run = *parts_->run;
     json buildings = json::array(), barriers = json::array(), removed = json::array();
     for (const BuildingSetup& building : parts_->setup().buildings) {
-        buildings.push_back(impact_json(building.id, run.record_of(building.id, time), false));
+        buildings.push_back(impact_json(building.id, run.impact_on(building.id, time), false));
     }
     for (const BarrierSetup& barrier : parts_->setup().barriers) {
-        barriers.push_back(impact_json(barrier.id, run.record_of(barrier.id, time), true));
+        barriers.push_back(impact_json(barrier.id, run.impact_on(barrier.id, time), true));
     }
     for (const LiveRun::Removed& gone : run.removed()) {
-        json row = impact_json(gone.id, gone.record, gone.barrier);
+        json row = impact_json(gone.id, gone.impact, gone.barrier);
         row["kind"] = gone.barrier ? "barrier" : "building";
-        row["removed_s"] = gone.record.impact.removed_time;
+        row["removed_s"] = gone.impact.removed_time;
         removed.push_back(std::move(row));
     }
     return {{"buildings", buildings}, {"barriers", barriers}, {"removed", removed}};

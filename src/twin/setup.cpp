@@ -13,6 +13,19 @@ bool same_ring(const Ring& a, const Ring& b) {
                       [](const PlanPoint& p, const PlanPoint& q) { return p.x == q.x && p.y == q.y; });
 }
 
+bool same_opening(const BarrierOpening& a, const BarrierOpening& b) {
+    return a.position == b.position && a.width == b.width && a.sill == b.sill;
+}
+
+/// As far as the footprint does not tell.
+bool same_barrier(const std::optional<BarrierShape>& a, const std::optional<BarrierShape>& b) {
+    if (a.has_value() != b.has_value()) return false;
+    return !a ||
+           (a->height == b->height && a->crest_elevation == b->crest_elevation && a->thickness == b->thickness &&
+            same_ring(a->line, b->line) &&
+            std::equal(a->openings.begin(), a->openings.end(), b->openings.begin(), b->openings.end(), same_opening));
+}
+
 bool same(const Polygon& a, const Polygon& b) {
     return same_ring(a.outer, b.outer) &&
            std::equal(a.holes.begin(), a.holes.end(), b.holes.begin(), b.holes.end(), same_ring);
@@ -30,8 +43,13 @@ Setup setup_of(const Scene& scene, NextNumbers& next) {
     }
     index = 0;
     for (const Building& building : scene.buildings) {
-        setup.buildings.push_back(
-            {fmt::format("building-{}", next.building++), std::make_shared<const Building>(building), index++, true});
+        auto body = std::make_shared<const Building>(building);
+        if (building.barrier) {
+            setup.barriers.push_back({fmt::format("barrier-{}", next.barrier++), std::move(body), true});
+        } else {
+            setup.buildings.push_back({fmt::format("building-{}", next.building++), std::move(body), index, true});
+        }
+        ++index;
     }
     return setup;
 }
@@ -54,8 +72,9 @@ bool same_shape(const std::shared_ptr<const Release>& a, const std::shared_ptr<c
 
 bool same_shape(const std::shared_ptr<const Building>& a, const std::shared_ptr<const Building>& b) {
     return a == b ||
-           (a->height == b->height && a->roof_elevation == b->roof_elevation &&
-            a->part_roof_elevations == b->part_roof_elevations &&
+           (same_barrier(a->barrier, b->barrier) && a->resistance.force_per_metre == b->resistance.force_per_metre &&
+            a->resistance.pressure == b->resistance.pressure && a->height == b->height &&
+            a->roof_elevation == b->roof_elevation && a->part_roof_elevations == b->part_roof_elevations &&
             std::equal(a->footprint.begin(), a->footprint.end(), b->footprint.begin(), b->footprint.end(), same));
 }
 

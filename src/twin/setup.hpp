@@ -25,9 +25,10 @@ struct ReleaseSetup {
 
 struct BarrierSetup {
     std::string id;
-    std::vector<PlanPoint> line;
-    double height = 0, thickness = 0;  ///< m
-    std::shared_ptr<const Building> body;
+    std::shared_ptr<const Building> body;  ///< with its Building::barrier
+    bool from_scene = false;
+
+    [[nodiscard]] const BarrierShape& shape() const { return *body->barrier; }
 };
 
 struct BuildingSetup {

@@ -5,7 +5,7 @@
 
 #include <fmt/format.h>
 
-#include "twin/barrier.hpp"
+#include "terrain/barrier.hpp"
 #include "twin/json_keys.hpp"
 
 namespace talus::twin {
@@ -52,6 +52,7 @@ class SetupReader {
                                  object.is_object() && found != object.end() ? shown(*found) : shown(object))};
     }
     static Result<Polygon> read_polygon(const json& rings);
+    static Result<std::vector<BarrierOpening>> read_openings(const json& file);
     static Result<int> read_index(const json& object, std::size_t count);
 
     const Scene& scene_;
@@ -136,20 +137,47 @@ Result<ReleaseSetup> SetupReader::read_release(const json& file) const {
     return setup;
 }
 
+/// None where the key is absent: journals older than openings.
+Result<std::vector<BarrierOpening>> SetupReader::read_openings(const json& file) {
+    std::vector<BarrierOpening> openings;
+    if (!file.contains("openings")) return openings;
+    if (!file["openings"].is_array()) return bad("openings", file);
+    for (const json& entry : file["openings"]) {
+        const json& object = entry.is_object() ? entry : json::object();
+        const auto position = read_number(object, "position_m", {}, "m"),
+                   width = read_number(object, "width_m", {}, "m"),
+                   sill = read_number(object, "sill_height_m", {}, "m");
+        if (!position || !*position || !width || !*width || !sill || !*sill) return bad("openings", file);
+        openings.push_back({**position, **width, **sill});
+    }
+    return openings;
+}
+
 Result<BarrierSetup> SetupReader::read_barrier(const json& file) const {
     if (!file.is_object() || !file.contains("id") || !file["id"].is_string()) return bad("id", file);
     auto line = read_points(file, "line", false, 2, 1'000'000);
     const auto name = read_text(file, "name", 1000);
     const auto height = read_number(file, "height_m", {}, "m"), thickness = read_number(file, "thickness_m", {}, "m");
+    const auto crest = read_number(file, "crest_elevation_m", {}, "m");
+    const auto force = read_number(file, "resistance_Npm", {}, "N/m"),
+               pressure = read_number(file, "resistance_Pa", {}, "Pa");
     if (!line) return line.error();
     if (!*line) return bad("line", file);
     if (!name || !*name) return bad("name", file);
     if (!height || !*height) return bad("height_m", file);
     if (!thickness || !*thickness) return bad("thickness_m", file);
-    auto body = make_barrier(scene_.terrain, **name, **line, **height, **thickness);
+    if (!crest) return bad("crest_elevation_m", file);
+    if (!force) return bad("resistance_Npm", file);
+    if (!pressure) return bad("resistance_Pa", file);
+    auto openings = read_openings(file);
+    if (!openings) return openings.error();
+    auto body =
+        make_barrier(scene_.terrain, **name, {std::move(**line), **height, *crest, **thickness, std::move(*openings)});
     if (!body) return body.error();
-    return BarrierSetup{file["id"], std::move(**line), **height, **thickness,
-                        std::make_shared<const Building>(std::move(*body))};
+    if (*force) body->resistance.force_per_metre = **force;
+    if (*pressure) body->resistance.pressure = **pressure;
+    return BarrierSetup{file["id"], std::make_shared<const Building>(std::move(*body)),
+                        file.value("from_scene", false)};
 }
 
 Result<BuildingSetup> SetupReader::read_building(const json& file) const {
@@ -186,6 +214,19 @@ Result<BuildingSetup> SetupReader::read_building(const json& file) const {
 
 }  // namespace
 
+json optional_json(const std::optional<double>& value) {
+    return value ? json(*value) : json();
+}
+
+json openings_json(const BarrierShape& shape) {
+    json openings = json::array();
+    for (const BarrierOpening& opening : shape.openings) {
+        openings.push_back(
+            {{"position_m", opening.position}, {"width_m", opening.width}, {"sill_height_m", opening.sill}});
+    }
+    return openings;
+}
+
 json write_setup(const Setup& setup) {
     json file = {{"material", material_json(setup.material)},
                  {"releases", json::array()},
@@ -208,9 +249,14 @@ json write_setup(const Setup& setup) {
     for (const BarrierSetup& barrier : setup.barriers) {
         file["barriers"].push_back({{"id", barrier.id},
                                     {"name", barrier.body->name},
-                                    {"line", to_json(barrier.line)},
-                                    {"height_m", barrier.height},
-                                    {"thickness_m", barrier.thickness}});
+                                    {"line", to_json(barrier.shape().line)},
+                                    {"height_m", barrier.shape().height},
+                                    {"crest_elevation_m", optional_json(barrier.shape().crest_elevation)},
+                                    {"thickness_m", barrier.shape().thickness},
+                                    {"openings", openings_json(barrier.shape())},
+                                    {"resistance_Npm", number_or_null(barrier.body->resistance.force_per_metre)},
+                                    {"resistance_Pa", number_or_null(barrier.body->resistance.pressure)},
+                                    {"from_scene", barrier.from_scene}});
     }
     for (const BuildingSetup& building : setup.buildings) {
         json entry = {{"id", building.id}};

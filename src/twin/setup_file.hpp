@@ -1,5 +1,7 @@
 #pragma once
 
+#include <optional>
+
 #include <nlohmann/json.hpp>
 
 #include "core/result.hpp"
@@ -9,6 +11,11 @@
 namespace talus::twin {
 
 [[nodiscard]] nlohmann::json write_setup(const Setup& setup);
+
+/// As actions and setups have them.
+[[nodiscard]] nlohmann::json openings_json(const BarrierShape& shape);
+/// null where there is no value.
+[[nodiscard]] nlohmann::json optional_json(const std::optional<double>& value);
 
 /// Errors name key and value.
 [[nodiscard]] Result<Setup> read_setup(const nlohmann::json& file, const Scene& scene);

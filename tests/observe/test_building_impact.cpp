@@ -102,6 +102,39 @@ TEST(ImpactRecorder, first_hit_depth_and_dynamic_pressure_come_from_the_debris_t
     EXPECT_EQ(c.recorder.impacts()[0].name, "untouched");
 }
 
+TEST(ImpactRecorder, impulse_is_that_of_all_steps_and_its_history_falls_to_no_force) {
+    Collision c(0.2);
+    for (int i = 0; i < 100; ++i) c.step(0.01, 50000, 0, 10);
+    EXPECT_NEAR(c.house().impulse, 50000, 5);
+    c.recorder.add_row(c.state);
+    for (int i = 0; i < 100; ++i) c.step(0.01, 0, 0, 0);
+    c.recorder.add_row(c.state);
+    ASSERT_EQ(c.house().history.size(), 2U);
+    EXPECT_NEAR(c.house().history[0].force, 50000, 5);
+    EXPECT_NEAR(c.house().history[1].force, 0, 1e-9);
+    EXPECT_NEAR(c.house().history[1].impulse, 50000, 5);
+    EXPECT_TRUE(c.recorder.impacts()[0].history.empty()) << "it was never hit";
+}
+
+TEST(ImpactRecorder, resistance_is_exceeded_once_by_the_filtered_pressure) {
+    Collision c(0.2);
+    c.model.buildings[1].resistance.pressure = 20000;  // of 10 x 0.16 m2: 32 kN
+    for (int i = 0; i < 50; ++i) c.step(0.01, 31000, 0, 10);
+    EXPECT_TRUE(c.recorder.failed().empty());
+    EXPECT_TRUE(std::isnan(c.house().failure_time));
+    int failures = 0;
+    double when = 0;
+    for (int i = 0; i < 50; ++i) {
+        c.step(0.01, 34000, 0, 10);
+        if (!c.recorder.failed().empty()) when = c.state.time;
+        failures += static_cast<int>(c.recorder.failed().size());
+    }
+    EXPECT_EQ(failures, 1);
+    EXPECT_EQ(c.house().failure_time, when);
+    // The window's mean gets there when a third of it is at the higher force.
+    EXPECT_NEAR(when, 0.57, 0.015);
+}
+
 TEST(ImpactRecorder, buildings_come_behind_and_records_begin_anew) {
     Collision c(0.2);
     for (int k = 0; k < 10; ++k) c.step(0.05, 50000, 0, 10);
@@ -110,7 +143,7 @@ TEST(ImpactRecorder, buildings_come_behind_and_records_begin_anew) {
     ASSERT_EQ(c.recorder.impacts().size(), 3U);
     EXPECT_EQ(c.recorder.impacts()[2].name, "new");
     EXPECT_NEAR(c.house().peak_force, 50000, 1);
-    c.recorder.forget(1);
+    c.recorder.forget(c.model, c.state, 1);
     EXPECT_FALSE(c.house().hit);
     EXPECT_EQ(c.house().peak_force, 0);
     EXPECT_EQ(c.house().name, "house");

@@ -49,8 +49,20 @@ TEST(FieldTable, EveryMemberIsDeclared) {
         EXPECT_EQ(declared("bed"), 11U);
     }
     {
-        [[maybe_unused]] const auto [a, b, c, d, e] = BuildingsSpec{};
-        EXPECT_EQ(declared("buildings"), 5U);
+        [[maybe_unused]] const auto [a, b, c, d, e] = InflowSpec{};
+        EXPECT_EQ(declared("inflow"), 5U);
+    }
+    {
+        [[maybe_unused]] const auto [a, b, c, d, e, f, g] = BuildingsSpec{};
+        EXPECT_EQ(declared("buildings"), 7U);
+    }
+    {
+        [[maybe_unused]] const auto [a, b, c, d, e, f, g, h, i] = BarrierSpec{};
+        EXPECT_EQ(declared("barrier"), 9U);
+    }
+    {
+        [[maybe_unused]] const auto [a, b, c, d] = BarrierOpeningSpec{};
+        EXPECT_EQ(declared("barrier_opening"), 4U);
     }
     {
         [[maybe_unused]] const auto [a, b, c] = FlowPathSpec{};
@@ -157,6 +169,8 @@ ParameterValue other_value(const Section& section, const Parameter& p) {
             return std::vector<std::string>{"one", "two"};
         case ParameterKind::extent:
             return Extent{1, 2, 3, 4};
+        case ParameterKind::points:
+            return std::vector<PlanPoint>{{1, 2}, {3, 4}};
     }
     ADD_FAILURE() << p.key;
     return {};

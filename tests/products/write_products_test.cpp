@@ -84,7 +84,7 @@ TEST_F(Products, FolderHoldsWhatItShouldAndNothingElse) {
                            "arrival_time.qml", "arrival_time.tif", "buildings.csv", "deposit_depth.qml",
                            "deposit_depth.tif", "front.csv", "manifest.json", "peak_depth.qml", "peak_depth.tif",
                            "peak_pressure.qml", "peak_pressure.tif", "peak_speed.qml", "peak_speed.tif", "report.html",
-                           "results.gpkg", "run_out.csv", "timeseries.csv"));
+                           "results.gpkg", "run_out.csv", "structures_over_time.csv", "timeseries.csv"));
 }
 
 TEST_F(Products, MapsReadBackInTheirUnits) {
@@ -193,9 +193,11 @@ TEST_F(Products, RunOutTableGivesAnglesInDegrees) {
 TEST_F(Products, BuildingTableUsesKilonewtonAndKilopascal) {
     const auto rows = rows_of(test::read_text(folder_->path() / "buildings.csv"));
     ASSERT_EQ(rows.size(), 6U);
-    EXPECT_THAT(rows[0], ElementsAre("name", "hit", "first_hit_time_s", "peak_force_kN", "peak_pressure_kPa",
-                                     "peak_dynamic_pressure_kPa", "peak_depth_m", "filter_window_s", "height_m",
-                                     "height_assumed", "removed_time_s"));
+    EXPECT_THAT(rows[0],
+                ElementsAre("name", "hit", "first_hit_time_s", "peak_force_kN", "peak_pressure_kPa",
+                            "peak_dynamic_pressure_kPa", "peak_depth_m", "filter_window_s", "height_m",
+                            "height_assumed", "kind", "impulse_kNs", "failed_s", "overtopped_m3", "first_overtopped_s",
+                            "passed_m3", "held_m3", "peak_held_m3", "peak_filling_height_m", "removed_time_s"));
     EXPECT_EQ(rows[1][0], "House 38");
     EXPECT_EQ(rows[1][1], "yes");
     EXPECT_EQ(rows[1][3], "412");
@@ -206,6 +208,36 @@ TEST_F(Products, BuildingTableUsesKilonewtonAndKilopascal) {
     EXPECT_EQ(rows[1][10], "") << "it stands";
     EXPECT_EQ(rows[5][1], "no");
     EXPECT_EQ(rows[5][2], "") << "never hit: no time";
+}
+
+TEST_F(Products, BarriersHaveTheirVolumesAndTheirHistory) {
+    const TemporaryFolder folder;
+    RunResult result = *result_;
+    BuildingImpact& dam = result.observation.buildings[0];
+    dam.is_barrier = true;
+    dam.impulse = 81000;
+    dam.failure_time = 12.5;
+    dam.overtopped_volume = 7.25;
+    dam.history = {{11, 2000, 3000, 1, 0.5, 40, 1.5}, {12, 5000, 7000, 7.25, 0.5, 44, 2}};
+    ASSERT_TRUE(write_tables(*scene_, result, folder.path()).ok());
+    const auto rows = rows_of(test::read_text(folder.path() / "buildings.csv"));
+    EXPECT_EQ(rows[1][10], "barrier");
+    EXPECT_EQ(rows[1][11], "81");
+    EXPECT_EQ(rows[1][12], "12.5");
+    EXPECT_EQ(rows[1][13], "7.25");
+    EXPECT_EQ(rows[2][10], "building");
+    EXPECT_EQ(rows[2][13], "") << "no barrier: nothing goes over it";
+    EXPECT_EQ(test::read_text(folder.path() / "structures_over_time.csv"),
+              "name,time_s,force_kN,impulse_kNs,overtopped_m3,passed_m3,held_m3,filling_height_m\n"
+              "House 38,11,2,3,1,0.5,40,1.5\nHouse 38,12,5,7,7.25,0.5,44,2\n");
+    const auto report = render_report(*scene_, result, {});
+    ASSERT_TRUE(report);
+    EXPECT_THAT(*report, HasSubstr("House 38 failed at 12.50 s"));
+    EXPECT_THAT(*report, HasSubstr("Force on structures over time."));
+    EXPECT_THAT(*report, HasSubstr("<h3>Barriers</h3>"));
+    const auto without = render_report(*scene_, *result_, {});
+    ASSERT_TRUE(without);
+    EXPECT_THAT(*without, testing::Not(HasSubstr("Force on structures over time.")));
 }
 
 TEST_F(Products, NamesWithCommasAndQuotesAreQuoted) {

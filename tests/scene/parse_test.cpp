@@ -135,7 +135,7 @@ TEST_F(ParseScene, MissingKeysAreNamed) {
     EXPECT_EQ(error_of("[terrain]\nfile = \"dem.tif\"\n[[release]]\nthickness_m = 2\n"),
               line(3) + "release[0].file is missing; it must be a file path in quotes");
     EXPECT_THAT(error_of("[terrain]\nfile = \"dem.tif\"\n"),
-                EndsWith("there is no [[release]]; a scene needs at least one"));
+                EndsWith("there is no [[release]] and no [[inflow]]; a scene needs at least one"));
     EXPECT_THAT(error_after("[[observation]]\nchainage_m = 3\n"),
                 StartsWith(line(6) + "observation[0].front_velocity_mps is missing"));
     EXPECT_THAT(error_of(""), HasSubstr("terrain.file is missing"));

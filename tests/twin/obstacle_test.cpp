@@ -2,7 +2,7 @@
 #include <gmock/gmock.h>
 
 #include "support/fixtures.hpp"
-#include "twin/barrier.hpp"
+#include "terrain/barrier.hpp"
 #include "twin_fixtures.hpp"
 
 namespace talus::twin::test {
@@ -25,7 +25,7 @@ json barrier_impact(const Scenario& scenario) {
 TEST(Barrier, follows_the_ground_with_joints_that_leave_no_gap) {
     const Scene scene = channel_scene();
     const std::vector<PlanPoint> line{{west + 30, south + 10}, {west + 40, south + 30}, {west + 28, south + 50}};
-    const auto made = make_barrier(scene.terrain, "dam", line, 3, 1.5);
+    const auto made = make_barrier(scene.terrain, "dam", {line, 3, {}, 1.5});
     ASSERT_TRUE(made);
     ASSERT_EQ(made->footprint.size(), made->part_roof_elevations.size());
     EXPECT_GE(made->footprint.size(), 22U);

@@ -40,10 +40,10 @@ export function impacts(s) {
     const h = s.hits.get(o.id);
     return { id: o.id, name: o.name, hit: h !== undefined, first_hit_s: h?.first ?? null, peak_force_kN: h?.force ?? null,
       peak_pressure_kPa: h?.pressure ?? null, peak_depth_m: h?.depth ?? null, peak_dynamic_pressure_kPa: h?.pressure ?? null,
-      intensity: h === undefined ? null : h.depth >= 1 ? "high" : h.depth >= 0.5 ? "medium" : "low" };
+      impulse_kNs: 0, failed_s: null, intensity: h === undefined ? null : h.depth >= 1 ? "high" : h.depth >= 0.5 ? "medium" : "low" };
   };
   return { buildings: s.setup.buildings.map(row), barriers: s.setup.barriers.map((b) => ({ ...row(b), overtopped_m3: 0,
-    first_overtopped_s: null, held_m3: s.hits.get(b.id)?.held ?? 0 })), removed: [] };
+    first_overtopped_s: null, passed_m3: 0, peak_filling_height_m: 0, held_m3: s.hits.get(b.id)?.held ?? 0 })), removed: [] };
 }
 
 export function probe(s, x, y) {

@@ -15,6 +15,8 @@ namespace talus::validate {
 [[nodiscard]] Kind lake_at_rest_kind();
 [[nodiscard]] Kind free_fall_kind();
 [[nodiscard]] Kind run_up_kind();
+[[nodiscard]] Kind wall_impact_kind();
+[[nodiscard]] Kind inflow_plane_kind();
 [[nodiscard]] Kind shear_decay_kind();
 [[nodiscard]] Kind sheet_flow_kind();
 [[nodiscard]] Kind debris_flume_kind();

@@ -25,7 +25,7 @@ function itemsOf(setup: Setup | null, shape: Shape): { id: string; name: string;
       note: `${quantity(r.volume_m3, "m3")}, ${r.status === "held" ? "held" : "released"}` }));
   }
   if (shape === "barrier") {
-    return setup.barriers.map((b) => ({ id: b.id, name: b.name, from_scene: false, note: `${quantity(b.crest_length_m, "m")} long, ${quantity(b.height_m, "m")} high` }));
+    return setup.barriers.map((b) => ({ id: b.id, name: b.name, from_scene: b.from_scene, note: `${quantity(b.crest_length_m, "m")} long, ${quantity(b.height_m, "m")} high` }));
   }
   return setup.buildings.map((b) => ({ id: b.id, name: b.name, from_scene: b.from_scene, note: `${quantity(b.height_m, "m")} high` }));
 }

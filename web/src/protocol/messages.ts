@@ -93,7 +93,22 @@ export interface Release {
   status: "held" | "released";
   start_time_s: number | null;
 }
-export interface Barrier { id: string; name: string; line: Point[]; height_m: number; thickness_m: number; crest_length_m: number }
+export interface BarrierOpening { position_m: number; width_m: number; sill_height_m: number }
+export interface Barrier {
+  id: string;
+  name: string;
+  line: Point[];
+  height_m: number;
+  /** Of a level crest; height_m is then a mean. */
+  crest_elevation_m: number | null;
+  thickness_m: number;
+  openings: BarrierOpening[];
+  /** null: it stands whatever happens. */
+  resistance_Npm: number | null;
+  resistance_Pa: number | null;
+  crest_length_m: number;
+  from_scene: boolean;
+}
 export interface Building {
   id: string;
   name: string;
@@ -124,9 +139,17 @@ export interface Impact {
   peak_pressure_kPa: number | null;
   peak_depth_m: number | null;
   peak_dynamic_pressure_kPa: number | null;
+  impulse_kNs: number;
+  failed_s: number | null;
   intensity: string | null;
 }
-export interface BarrierImpact extends Impact { overtopped_m3: number; first_overtopped_s: number | null; held_m3: number }
+export interface BarrierImpact extends Impact {
+  overtopped_m3: number;
+  first_overtopped_s: number | null;
+  passed_m3: number;
+  held_m3: number;
+  peak_filling_height_m: number;
+}
 /** An obstacle that was taken away while the run went on, and what it had met until then. */
 export interface RemovedImpact extends Impact { kind: "building" | "barrier"; removed_s: number; overtopped_m3?: number; held_m3?: number }
 export interface Impacts { buildings: Impact[]; barriers: BarrierImpact[]; removed: RemovedImpact[] }
@@ -149,7 +172,7 @@ export type Action =
   | { action: "set_parameter"; key: string; value: number }
   // With an id just what changes has to be given.
   | { action: "put_release"; id?: string; name?: string; polygon?: Point[]; thickness_m?: number }
-  | { action: "put_barrier"; id?: string; name?: string; line?: Point[]; height_m?: number; thickness_m?: number }
+  | { action: "put_barrier"; id?: string; name?: string; line?: Point[]; height_m?: number; thickness_m?: number; resistance_Npm?: number; resistance_Pa?: number }
   | { action: "put_building"; id?: string; name?: string; footprint?: Point[]; height_m?: number }
   | { action: "remove_release" | "trigger_release" | "remove_barrier" | "remove_building"; id: string };
 export interface Done { done: string; created: string | null }

@@ -3,7 +3,7 @@ import {
   BufferGeometry, EdgesGeometry, ExtrudeGeometry, Float32BufferAttribute, Group, LineBasicMaterial, LineSegments, Mesh, MeshLambertMaterial,
   Path, Shape, Vector2,
 } from "three";
-import type { Barrier, Building, Point } from "../protocol/messages";
+import type { Barrier, BarrierOpening, Building, Point } from "../protocol/messages";
 import type { Relief } from "./relief";
 
 export const plainHouse = "#f4f1ea";
@@ -57,39 +57,61 @@ export function band(line: readonly Point[], thickness: number): [Point[], Point
   return [left, right];
 }
 
-/** A wall whose crest is `height_m` above the ground along its line. */
-export function barrierSolid(barrier: Pick<Barrier, "id" | "line" | "height_m" | "thickness_m">, relief: Relief, colour: string): Group {
-  const line: Point[] = [];
-  barrier.line.forEach((p, k) => {
+/** The places of a line, no farther apart than `step`, with the ends of openings; each with its distance along the line. */
+function stations(line: Point[], openings: readonly BarrierOpening[], step: number): { at: Point; along: number }[] {
+  const all: { at: Point; along: number }[] = [];
+  let along = 0;
+  line.forEach((p, k) => {
     if (k > 0) {
-      const q = barrier.line[k - 1];
-      const parts = Math.max(1, Math.ceil(Math.hypot(p[0] - q[0], p[1] - q[1]) / Math.max(1, relief.grid.cell)));
-      for (let s = 1; s < parts; ++s) line.push([q[0] + ((p[0] - q[0]) * s) / parts, q[1] + ((p[1] - q[1]) * s) / parts]);
+      const q = line[k - 1];
+      const length = Math.hypot(p[0] - q[0], p[1] - q[1]);
+      const shares: number[] = [];
+      const parts = Math.max(1, Math.ceil(length / step));
+      for (let s = 1; s < parts; ++s) shares.push(s / parts);
+      for (const o of openings) for (const end of [o.position_m - o.width_m / 2, o.position_m + o.width_m / 2]) shares.push((end - along) / length);
+      for (const s of shares.filter((share) => share > 0 && share < 1).sort((a, b) => a - b)) {
+        all.push({ at: [q[0] + (p[0] - q[0]) * s, q[1] + (p[1] - q[1]) * s], along: along + s * length });
+      }
+      along += length;
     }
-    line.push(p);
+    all.push({ at: p, along });
   });
-  const [left, right] = band(line, Math.max(barrier.thickness_m, 0.3));
+  return all;
+}
+
+type BarrierForm = Pick<Barrier, "id" | "line" | "height_m" | "thickness_m"> & Partial<Pick<Barrier, "crest_elevation_m" | "openings">>;
+
+/** A wall whose crest is `height_m` above the ground along its line, or level; openings are left out down to their sills. */
+export function barrierSolid(barrier: BarrierForm, relief: Relief, colour: string): Group {
+  const openings = barrier.openings ?? [];
+  const places = stations(barrier.line, openings, Math.max(1, relief.grid.cell));
+  const [left, right] = band(places.map((p) => p.at), Math.max(barrier.thickness_m, 0.3));
   const corner: number[] = [];
-  line.forEach(([x, y], k) => {
-    const z = relief.at(x, y) - relief.origin[2];
-    for (const [px, py] of [left[k], right[k]]) {
-      const foot = Math.min(z, relief.at(px, py) - relief.origin[2]) - 0.5;
-      corner.push(px - relief.origin[0], py - relief.origin[1], foot, px - relief.origin[0], py - relief.origin[1], z + barrier.height_m);
-    }
-  });
-  // Corners of a cross-section: 0 left foot, 1 left crest, 2 right foot, 3 right crest.
   const index: number[] = [];
   const face = (a: number, b: number, c: number, d: number): void => void index.push(a, b, c, a, c, d);
-  for (let k = 0; k + 1 < line.length; ++k) {
-    const a = 4 * k;
+  for (let k = 0; k + 1 < places.length; ++k) {
+    const middle = (places[k].along + places[k + 1].along) / 2;
+    const opening = openings.find((o) => Math.abs(middle - o.position_m) < o.width_m / 2);
+    if (opening && !(opening.sill_height_m > 0)) continue;
+    // Corners of a cross-section: 0 left foot, 1 left crest, 2 right foot, 3 right crest.
+    const a = corner.length / 3;
     const b = a + 4;
+    for (const end of [k, k + 1]) {
+      const [x, y] = places[end].at;
+      const z = relief.at(x, y) - relief.origin[2];
+      const crest = typeof barrier.crest_elevation_m === "number" ? barrier.crest_elevation_m - relief.origin[2] : z + barrier.height_m;
+      const top = opening ? Math.min(crest, z + opening.sill_height_m) : crest;
+      for (const [px, py] of [left[end], right[end]]) {
+        const foot = Math.min(z, relief.at(px, py) - relief.origin[2]) - 0.5;
+        corner.push(px - relief.origin[0], py - relief.origin[1], foot, px - relief.origin[0], py - relief.origin[1], top);
+      }
+    }
     face(a, a + 1, b + 1, b);
     face(a + 1, a + 3, b + 3, b + 1);
     face(a + 3, a + 2, b + 2, b + 3);
+    face(a, a + 2, a + 3, a + 1);
+    face(b, b + 1, b + 3, b + 2);
   }
-  const end = 4 * (line.length - 1);
-  face(0, 2, 3, 1);
-  face(end, end + 1, end + 3, end + 2);
   const joined = new BufferGeometry();
   joined.setAttribute("position", new Float32BufferAttribute(corner, 3));
   joined.setIndex(index);

@@ -1,11 +1,11 @@
-#include "twin/barrier.hpp"
+#include "terrain/barrier.hpp"
 
 #include <algorithm>
 #include <cmath>
 
 #include <fmt/format.h>
 
-namespace talus::twin {
+namespace talus {
 namespace {
 
 constexpr double usual_part = 2;         ///< m of line
@@ -70,30 +70,81 @@ Status check_line(const Terrain& terrain, const std::vector<PlanPoint>& line) {
     return {};
 }
 
+Status check_openings(const BarrierShape& shape) {
+    const double length = length_of(shape.line);
+    for (std::size_t k = 0; k < shape.openings.size(); ++k) {
+        const BarrierOpening& a = shape.openings[k];
+        if (a.position - a.width / 2 < 0 || a.position + a.width / 2 > length) {
+            return Error{fmt::format("opening {}: reaches from {:.6g} to {:.6g} m along a line of {:.6g} m", k + 1,
+                                     a.position - a.width / 2, a.position + a.width / 2, length)};
+        }
+        if (!shape.crest_elevation && a.sill >= shape.height) {
+            return Error{
+                fmt::format("opening {}: sill_height_m = {:.6g} must be below the barrier's height of {:.6g} m", k + 1,
+                            a.sill, shape.height)};
+        }
+        for (std::size_t other = 0; other < k; ++other) {
+            const BarrierOpening& b = shape.openings[other];
+            if (std::abs(a.position - b.position) < (a.width + b.width) / 2) {
+                return Error{fmt::format("openings {} and {}: overlap", other + 1, k + 1)};
+            }
+        }
+    }
+    return {};
+}
+
+const BarrierOpening* opening_at(const BarrierShape& shape, double chainage) {
+    for (const BarrierOpening& opening : shape.openings) {
+        if (std::abs(chainage - opening.position) < opening.width / 2) return &opening;
+    }
+    return nullptr;
+}
+
+/// Where a segment, from chainage `from` to `to`, is cut: into even parts, and at the ends of openings. As shares.
+std::vector<double> find_cuts(const BarrierShape& shape, double from, double to, double part_length) {
+    const int parts = std::max(1, static_cast<int>(std::ceil((to - from) / part_length)));
+    std::vector<double> cuts;
+    cuts.reserve(static_cast<std::size_t>(parts) + 1 + 2 * shape.openings.size());
+    for (int p = 0; p <= parts; ++p) cuts.push_back(static_cast<double>(p) / parts);
+    for (const BarrierOpening& opening : shape.openings) {
+        for (const double end : {opening.position - opening.width / 2, opening.position + opening.width / 2}) {
+            const double share = (end - from) / (to - from);
+            if (share > 0 && share < 1) cuts.push_back(share);
+        }
+    }
+    std::sort(cuts.begin(), cuts.end());
+    const auto same = [&](double a, double b) { return (b - a) * (to - from) < 1e-3; };
+    cuts.erase(std::unique(cuts.begin(), cuts.end(), same), cuts.end());
+    cuts.back() = 1;
+    return cuts;
+}
+
 }  // namespace
 
-Result<Building> make_barrier(const Terrain& terrain, const std::string& name, const std::vector<PlanPoint>& line,
-                              double height, double thickness) {
+Result<Building> make_barrier(const Terrain& terrain, const std::string& name, const BarrierShape& shape) {
+    const std::vector<PlanPoint>& line = shape.line;
     if (Status s = check_line(terrain, line); !s) return s.error();
-    const Result<std::vector<PlanPoint>> mitres = find_mitres(line, thickness);
+    if (Status s = check_openings(shape); !s) return s.error();
+    const Result<std::vector<PlanPoint>> mitres = find_mitres(line, shape.thickness);
     if (!mitres) return mitres.error();
     Building barrier;
     barrier.name = name;
-    barrier.height = height;
+    barrier.barrier = shape;
     const double part_length = std::max(usual_part, length_of(line) / most_parts);
-    double roofs = 0;
+    double roofs = 0, heights = 0, chainage = 0, highest = 0;
     for (std::size_t k = 0; k + 1 < line.size(); ++k) {
         const PlanPoint &a = line[k], &b = line[k + 1], &ma = (*mitres)[k], &mb = (*mitres)[k + 1];
         const PlanPoint left_a{a.x + ma.x, a.y + ma.y}, left_b{b.x + mb.x, b.y + mb.y};
         const PlanPoint right_a{a.x - ma.x, a.y - ma.y}, right_b{b.x - mb.x, b.y - mb.y};
+        const double length = distance(a, b);
         if (dot(left_b - left_a, b - a) <= 0 || dot(right_b - right_a, b - a) <= 0) {
             return Error{
                 fmt::format("thickness_m = {:.6g}: too thick for the bends at points {} and {}, {:.3g} m apart",
-                            thickness, k + 1, k + 2, distance(a, b))};
+                            shape.thickness, k + 1, k + 2, length)};
         }
-        const int parts = std::max(1, static_cast<int>(std::ceil(distance(a, b) / part_length)));
-        for (int p = 0; p < parts; ++p) {
-            const double from = static_cast<double>(p) / parts, to = static_cast<double>(p + 1) / parts;
+        const std::vector<double> cuts = find_cuts(shape, chainage, chainage + length, part_length);
+        for (std::size_t p = 0; p + 1 < cuts.size(); ++p) {
+            const double from = cuts[p], to = cuts[p + 1];
             double ground = 0;
             for (const double share : {from, (from + to) / 2, to}) {
                 ground += terrain.elevation_at(between(a, b, share)) / 3;
@@ -103,14 +154,29 @@ Result<Building> make_barrier(const Terrain& terrain, const std::string& name, c
                 return Error{fmt::format("line: leaves the known ground at ({:.1f}, {:.1f}), between points {} and {}",
                                          middle.x, middle.y, k + 1, k + 2)};
             }
+            double roof = shape.crest_elevation.value_or(ground + shape.height);
+            highest = std::max(highest, roof - ground);
+            if (const BarrierOpening* opening = opening_at(shape, chainage + (from + to) / 2 * length)) {
+                if (!(opening->sill > 0)) continue;
+                roof = std::min(roof, ground + opening->sill);
+            }
             barrier.footprint.push_back({{between(right_a, right_b, from), between(right_a, right_b, to),
                                           between(left_a, left_b, to), between(left_a, left_b, from)},
                                          {}});
-            barrier.part_roof_elevations.push_back(ground + height);
-            roofs += ground + height;
+            barrier.part_roof_elevations.push_back(roof);
+            roofs += roof;
+            heights += roof - ground;
         }
+        chainage += length;
     }
-    barrier.roof_elevation = roofs / static_cast<double>(barrier.footprint.size());
+    if (barrier.footprint.empty()) return Error{"openings: nothing of the barrier is left between them"};
+    if (!(highest > 0)) {
+        return Error{fmt::format("crest_elevation_m = {:.6g}: lies below the ground all along the line",
+                                 shape.crest_elevation.value_or(0))};
+    }
+    const auto parts = static_cast<double>(barrier.footprint.size());
+    barrier.roof_elevation = roofs / parts;
+    barrier.height = shape.crest_elevation ? heights / parts : shape.height;
     return barrier;
 }
 
@@ -149,4 +215,4 @@ bool meets_itself(const Ring& ring) {
     return false;
 }
 
-}  // namespace talus::twin
+}  // namespace talus

@@ -1,0 +1,36 @@
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "core/geometry.hpp"
+#include "core/result.hpp"
+#include "geo/crs.hpp"
+
+namespace talus {
+
+/// A face of a roof seen from above, taken to be level at its mean elevation.
+struct RoofFace {
+    Polygon outline;       ///< world plan coordinates
+    double elevation = 0;  ///< m
+};
+
+/// A building of a mesh: what is below its roof faces is solid.
+struct MeshBuilding {
+    std::string name;
+    std::map<std::string, std::string> attributes;
+    std::vector<RoofFace> roofs;
+};
+
+/// Whether a file name is that of a mesh: .obj, .city.json, .cityjson.
+[[nodiscard]] bool is_mesh_file(const std::string& file);
+
+/// Reads the buildings of a CityJSON file (1.0 to 2.0; Building and BuildingPart, their most detailed geometry, LoD1 or
+/// LoD2) or of a Wavefront OBJ (an object or group each; coordinates in the terrain's reference system, z upward).
+/// Every face that is neither upright nor at the building's foot becomes a roof face.
+/// Errors, with the object or line: not readable, not such a file, indices out of range, numbers that are not finite,
+/// another reference system than `terrain_crs`, a building without a roof, too many faces.
+[[nodiscard]] Result<std::vector<MeshBuilding>> read_mesh_buildings(const std::string& file, const Crs& terrain_crs);
+
+}  // namespace talus

@@ -1,0 +1,176 @@
+#include "observe/overtopping.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+namespace talus {
+namespace {
+
+/// Highest ground under the line, world.
+double highest_ground(const Terrain& terrain, const std::vector<PlanPoint>& line) {
+    double highest = -std::numeric_limits<double>::infinity();
+    for (const PlanPoint& p : line) highest = std::max(highest, terrain.elevation_at(p));
+    return highest;
+}
+
+PlanPoint point_at(const std::vector<PlanPoint>& line, double chainage) {
+    for (std::size_t k = 0; k + 1 < line.size(); ++k) {
+        const PlanPoint &a = line[k], &b = line[k + 1];
+        const double length = std::hypot(b.x - a.x, b.y - a.y);
+        if (chainage <= length || k + 2 == line.size()) {
+            const double share = chainage / length;
+            return {a.x + share * (b.x - a.x), a.y + share * (b.y - a.y)};
+        }
+        chainage -= length;
+    }
+    return line.back();
+}
+
+}  // namespace
+
+Overtopping::Overtopping(const Model& model, const BarrierShape& shape)
+    : particle_volume_(model.particle_volume()),
+      section_(4 * model.particle_spacing),
+      half_thickness_(shape.thickness / 2) {
+    const WorldPoint& origin = model.terrain.frame().origin;
+    const double height =
+        shape.crest_elevation ? *shape.crest_elevation - highest_ground(model.terrain, shape.line) : shape.height;
+    reach_ = std::max(5 * height, half_thickness_ + section_);
+    for (const PlanPoint& p : shape.line) {
+        const PlanPoint local{p.x - origin.x, p.y - origin.y};
+        if (line_.empty()) near_ = {local.x, local.y, local.x, local.y};
+        near_.include(local);
+        line_.push_back({static_cast<float>(local.x), static_cast<float>(local.y)});
+    }
+    for (const BarrierOpening& opening : shape.openings) {
+        const double ground = model.terrain.elevation_at(point_at(shape.line, opening.position));
+        openings_.push_back({opening.position - opening.width / 2, opening.position + opening.width / 2,
+                             shape.crest_elevation.value_or(ground + shape.height) - origin.z});
+    }
+    // Nothing moves farther in a step than a few spacings.
+    near_ = near_.grown(std::max(2.0, 4 * model.particle_spacing));
+}
+
+Overtopping::Crossing Overtopping::crossing(const Point& a, const Point& b) const {
+    const auto cross = [](const Point& p, const Point& q, const Point& r) {
+        return (static_cast<double>(q.x) - p.x) * (static_cast<double>(r.y) - p.y) -
+               (static_cast<double>(q.y) - p.y) * (static_cast<double>(r.x) - p.x);
+    };
+    Crossing found;
+    double chainage = 0;
+    for (std::size_t k = 0; k + 1 < line_.size(); ++k) {
+        const Point &p = line_[k], &q = line_[k + 1];
+        const double length = std::hypot(static_cast<double>(q.x) - p.x, static_cast<double>(q.y) - p.y);
+        // A point on the line counts as to its right; a bend belongs to the segment that begins there.
+        const bool left_before = cross(p, q, a) > 0, left_now = cross(p, q, b) > 0;
+        const double at_begin = cross(a, b, p), at_end = cross(a, b, q);
+        if (left_before != left_now && (at_begin > 0) != (at_end > 0)) {
+            found.net += left_before ? 1 : -1;
+            found.chainage = chainage + length * at_begin / (at_begin - at_end);
+        }
+        chainage += length;
+    }
+    return found;
+}
+
+bool Overtopping::in_opening(double chainage, double z) const {
+    return std::any_of(openings_.begin(), openings_.end(), [&](const Opening& opening) {
+        return chainage > opening.from && chainage < opening.to && z < opening.crest;
+    });
+}
+
+void Overtopping::after_step(const State& state, bool jumped) {
+    if (jumped) {
+        for (Track& track : tracks_) track.step = 0;
+    }
+    ++calls_;
+    if (tracks_.size() < state.seeded) tracks_.resize(state.seeded);
+    const auto x_min = static_cast<float>(near_.x_min), x_max = static_cast<float>(near_.x_max);
+    const auto y_min = static_cast<float>(near_.y_min), y_max = static_cast<float>(near_.y_max);
+    for (std::uint32_t i = 0; i < state.count; ++i) {
+        const Point now{state.position.x[i], state.position.y[i]};
+        if (!(now.x >= x_min && now.x <= x_max && now.y >= y_min && now.y <= y_max)) continue;
+        Track& track = tracks_[state.id[i]];
+        const bool known = track.step == calls_;
+        const Point before = track.last;
+        track.last = now;
+        track.step = calls_ + 1;
+        if (!known || (before.x == now.x && before.y == now.y)) continue;
+        const Crossing crossed = crossing(before, now);
+        if (crossed.net == 0) continue;
+        Side& was = track.through ? through_ : over_;
+        was.to_right -= track.net > 0;
+        was.to_left -= track.net < 0;
+        track.net = static_cast<std::int8_t>(std::clamp(track.net + crossed.net, -1, 1));
+        track.through = in_opening(crossed.chainage, state.position.z[i]);
+        Side& is = track.through ? through_ : over_;
+        is.to_right += track.net > 0;
+        is.to_left += track.net < 0;
+        if (std::isnan(first_time_) && !track.through) first_time_ = state.time;
+    }
+}
+
+/// In the direction in which more has gone altogether.
+double Overtopping::beyond(const Side& counted) const {
+    const std::int64_t all = over_.to_right + through_.to_right - over_.to_left - through_.to_left;
+    const std::int64_t net = counted.to_right - counted.to_left;
+    return static_cast<double>(std::max<std::int64_t>(0, all < 0 ? -net : net)) * particle_volume_;
+}
+
+Overtopping::Place Overtopping::place_of(double x, double y) const {
+    Place place;
+    place.distance = reach_;
+    double chainage = 0;
+    for (std::size_t k = 0; k + 1 < line_.size(); ++k) {
+        const double px = line_[k].x, py = line_[k].y, dx = line_[k + 1].x - px, dy = line_[k + 1].y - py;
+        const double length = std::hypot(dx, dy), along = ((x - px) * dx + (y - py) * dy) / length;
+        const double across = (dx * (y - py) - dy * (x - px)) / length;
+        // At the outside of a bend neither segment has the position beside it.
+        const double past = std::max({0.0, -along, along - length});
+        const bool at_end = (k == 0 && along < 0) || (k + 2 == line_.size() && along > length);
+        const double distance = std::hypot(across, past);
+        if (!at_end && distance < place.distance) {
+            place = {chainage + std::clamp(along, 0.0, length), distance, across > 0 ? 1 : -1};
+        }
+        chainage += length;
+    }
+    return place;
+}
+
+Overtopping::Filling Overtopping::filling(const State& state) const {
+    double length = 0;
+    for (std::size_t k = 0; k + 1 < line_.size(); ++k) {
+        length += std::hypot(static_cast<double>(line_[k + 1].x) - line_[k].x,
+                             static_cast<double>(line_[k + 1].y) - line_[k].y);
+    }
+    const auto sections = static_cast<std::size_t>(std::max(1.0, std::floor(length / section_)));
+    struct Beside {
+        std::int64_t particles = 0;
+        std::vector<std::int64_t> at_face;  // by section
+    };
+    std::array<Beside, 2> sides;  // left, right
+    for (Beside& side : sides) side.at_face.resize(sections);
+    const Extent within = near_.grown(reach_);
+    for (std::uint32_t i = 0; i < state.count; ++i) {
+        const double x = state.position.x[i], y = state.position.y[i];
+        if (!within.contains({x, y}) || state.held[i] != 0) continue;
+        const Place place = place_of(x, y);
+        if (place.side == 0) continue;
+        Beside& side = sides[place.side > 0 ? 0 : 1];
+        ++side.particles;
+        if (place.distance < half_thickness_ || place.distance >= half_thickness_ + section_) continue;
+        const auto section = static_cast<std::size_t>(place.chainage / length * static_cast<double>(sections));
+        ++side.at_face[std::min(section, sections - 1)];
+    }
+    const std::int64_t gone = over_.to_right + through_.to_right - over_.to_left - through_.to_left;
+    const bool left = gone != 0 ? gone > 0 : sides[0].particles >= sides[1].particles;
+    const Beside& upstream = sides[left ? 0 : 1];
+    const double area = section_ * length / static_cast<double>(sections);
+    const auto deepest = *std::max_element(upstream.at_face.begin(), upstream.at_face.end());
+    return {static_cast<double>(upstream.particles) * particle_volume_,
+            static_cast<double>(deepest) * particle_volume_ / area};
+}
+
+}  // namespace talus

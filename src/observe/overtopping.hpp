@@ -1,0 +1,77 @@
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <vector>
+
+#include "core/geometry.hpp"
+#include "observe/observation.hpp"
+#include "sim/model.hpp"
+#include "sim/state.hpp"
+
+namespace talus {
+
+/// How much debris gets beyond a barrier: particles that cross its line between two steps, net of those that come back,
+/// each counted once: over it, or through one of its openings below the crest. Around its ends is neither. Looks at
+/// debris in a rectangle around the line only.
+class Overtopping {
+  public:
+    Overtopping(const Model& model, const BarrierShape& shape);
+
+    /// Makes room for so many particles, so that no step has to.
+    void follow(const State& state) { tracks_.resize(std::max<std::size_t>(tracks_.size(), state.seeded)); }
+    void expect(std::uint32_t particles) { tracks_.reserve(particles); }
+    /// `jumped`: particles may have been moved since the last call; nothing counts as a crossing.
+    void after_step(const State& state, bool jumped = false);
+
+    [[nodiscard]] double volume() const { return beyond(over_); }            ///< m3, over the crest
+    [[nodiscard]] double passed_volume() const { return beyond(through_); }  ///< m3, through openings
+    [[nodiscard]] double first_time() const { return first_time_; }          ///< s, over the crest; NaN: never
+
+    /// Debris upstream of a barrier: on the side from which it has crossed, or where there is more of it.
+    struct Filling {
+        double volume = 0;  ///< m3 within five heights of the line and between its ends
+        double height = 0;  ///< m, the mean depth of the deepest of the sections, four spacings square, along the face
+    };
+    [[nodiscard]] Filling filling(const State& state) const;
+
+  private:
+    struct Point {
+        float x, y;
+    };
+    struct Side {
+        std::int64_t to_right = 0, to_left = 0;  // particles
+    };
+    struct Track {
+        Point last{};
+        std::uint64_t step = 0;  ///< call after that of the last position; 0: none
+        std::int8_t net = 0;     ///< crossings from left to right less those back
+        bool through = false;    ///< an opening
+    };
+    struct Opening {
+        double from, to, crest;  ///< m along the line; local z
+    };
+    struct Crossing {
+        int net = 0;          ///< 1 from the line's left to its right, -1 back
+        double chainage = 0;  ///< m
+    };
+    struct Place {
+        double chainage = 0, distance = 0;
+        int side = 0;  ///< 1 left, -1 right, 0: not beside the line
+    };
+    [[nodiscard]] Crossing crossing(const Point& a, const Point& b) const;
+    [[nodiscard]] Place place_of(double x, double y) const;
+    [[nodiscard]] bool in_opening(double chainage, double z) const;
+    [[nodiscard]] double beyond(const Side& counted) const;
+
+    std::vector<Point> line_;  // local
+    std::vector<Opening> openings_;
+    Extent near_;  // local
+    double particle_volume_ = 0, reach_ = 0, section_ = 0, half_thickness_ = 0;
+    std::vector<Track> tracks_;  // by particle id
+    Side over_, through_;
+    double first_time_ = never;
+    std::uint64_t calls_ = 0;
+};
+
+}  // namespace talus

@@ -1,0 +1,132 @@
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "geo/vector.hpp"
+#include "scene/load.hpp"
+#include "sim/seed.hpp"
+#include "terrain/barrier.hpp"
+
+namespace talus {
+namespace {
+
+std::string path_of(std::size_t index) {
+    return fmt::format("barrier[{}]", index);
+}
+
+/// Exactly one of two keys must be given.
+Status check_one_of(const ParsedScene& parsed, const std::string& path, const char* first, bool has_first,
+                    const char* second, bool has_second) {
+    if (has_first != has_second) return {};
+    return Error{fmt::format("{}: exactly one of {} and {} must be given; {}",
+                             parsed.at(path + "." + (has_first ? second : first)), first, second,
+                             has_first ? "both are" : "there is none")};
+}
+
+Status read_line_of(const ParsedScene& parsed, std::size_t index, Scene& scene, const std::string& name,
+                    std::vector<PlanPoint>& line) {
+    const BarrierSpec& spec = scene.spec.barriers[index];
+    line = spec.line;
+    if (spec.file.empty()) {
+        if (line.size() >= 2) return {};
+        return Error{fmt::format("{} has {} place; a line needs at least two", parsed.at(path_of(index) + ".line_m"),
+                                 line.size())};
+    }
+    auto layer = read_line(spec.file, spec.layer, scene.crs);
+    if (!layer) return Error{parsed.at(path_of(index) + ".file") + ": " + layer.error().message};
+    record_input(fmt::format("barrier \"{}\"", name), spec.file, scene);
+    if (!layer->reprojection.empty()) {
+        scene.notes.push_back(fmt::format("barrier \"{}\": {}", name, layer->reprojection));
+    }
+    line = std::move(layer->points);
+    return {};
+}
+
+Status add_openings(const ParsedScene& parsed, const Scene& scene, const std::string& name, double spacing,
+                    BarrierShape& shape) {
+    const std::vector<BarrierOpeningSpec>& openings = scene.spec.barrier_openings;
+    for (std::size_t k = 0; k < openings.size(); ++k) {
+        if (openings[k].barrier != name) continue;
+        if (openings[k].width < 2 * spacing) {
+            return Error{
+                fmt::format("{} = {:.6g} is refused; with particles of {:.3g} m it must be at least {:.4g} m: "
+                            "nothing would get through a narrower one; smaller particles allow less",
+                            parsed.at(fmt::format("barrier_opening[{}].width_m", k)), openings[k].width, spacing,
+                            std::ceil(2000 * spacing) / 1000)};
+        }
+        shape.openings.push_back({openings[k].position, openings[k].width, openings[k].sill});
+    }
+    return {};
+}
+
+/// Names are what openings go by.
+Status check_names(const ParsedScene& parsed, const Scene& scene, std::size_t first) {
+    for (std::size_t k = first; k < scene.buildings.size(); ++k) {
+        for (std::size_t other = first; other < k; ++other) {
+            if (scene.buildings[k].name != scene.buildings[other].name) continue;
+            return Error{fmt::format("{} = \"{}\" is the name of another barrier too",
+                                     parsed.at(path_of(k - first) + ".name"), scene.buildings[k].name)};
+        }
+    }
+    const std::vector<BarrierOpeningSpec>& openings = scene.spec.barrier_openings;
+    for (std::size_t k = 0; k < openings.size(); ++k) {
+        std::string names;
+        bool found = false;
+        for (std::size_t b = first; b < scene.buildings.size(); ++b) {
+            found = found || scene.buildings[b].name == openings[k].barrier;
+            names += (names.empty() ? "\"" : ", \"") + scene.buildings[b].name + "\"";
+        }
+        if (found) continue;
+        return Error{fmt::format("{} = \"{}\": there is no such barrier; barriers: {}",
+                                 parsed.at(fmt::format("barrier_opening[{}].barrier", k)), openings[k].barrier,
+                                 names.empty() ? "none" : names)};
+    }
+    return {};
+}
+
+}  // namespace
+
+Status load_barriers(const ParsedScene& parsed, Scene& scene) {
+    const double spacing = choose_particle_spacing(scene.spec.solver, total_volume(scene));
+    const std::size_t first = scene.buildings.size();
+    for (std::size_t k = 0; k < scene.spec.barriers.size(); ++k) {
+        const BarrierSpec& spec = scene.spec.barriers[k];
+        const std::string path = path_of(k);
+        const std::string name = spec.name.empty() ? fmt::format("barrier {}", k + 1) : spec.name;
+        if (Status s = check_one_of(parsed, path, "line_m", !spec.line.empty(), "file", !spec.file.empty()); !s) {
+            return s;
+        }
+        if (Status s = check_one_of(parsed, path, "height_m", spec.height.has_value(), "crest_elevation_m",
+                                    spec.crest_elevation.has_value());
+            !s) {
+            return s;
+        }
+        if (spec.thickness < spacing / 2) {
+            return Error{fmt::format(
+                "{} = {:.6g} is refused; with particles of {:.3g} m it must be at least {:.4g} m: "
+                "debris on both sides would feel each other through it",
+                parsed.at(path + ".thickness_m"), spec.thickness, spacing, std::ceil(500 * spacing) / 1000)};
+        }
+        BarrierShape shape{{}, spec.height.value_or(0), spec.crest_elevation, spec.thickness, {}};
+        if (Status s = read_line_of(parsed, k, scene, name, shape.line); !s) return s;
+        if (Status s = add_openings(parsed, scene, name, spacing, shape); !s) return s;
+        Result<Building> barrier = make_barrier(scene.terrain, name, shape);
+        if (!barrier) {
+            return Error{parsed.at(path + (spec.file.empty() ? ".line_m" : ".file")) + ": " + barrier.error().message};
+        }
+        if (spec.resistance_force) barrier->resistance.force_per_metre = *spec.resistance_force;
+        if (spec.resistance_pressure) barrier->resistance.pressure = *spec.resistance_pressure;
+        for (const Release& release : scene.releases) {
+            const double area = shared_area(release, *barrier);
+            if (area <= 0) continue;
+            return Error{
+                fmt::format("{}: barrier \"{}\" stands on release \"{}\" with {:.3g} m2: the ground under it "
+                            "fails; move the line",
+                            parsed.at(path + (spec.file.empty() ? ".line_m" : ".file")), name, release.name, area)};
+        }
+        scene.buildings.push_back(std::move(*barrier));
+    }
+    return check_names(parsed, scene, first);
+}
+
+}  // namespace talus

@@ -1,0 +1,166 @@
+#include "sim/inflow.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "sim/relax.hpp"
+
+namespace talus {
+
+InflowFeeder::InflowFeeder(const Model& model, const std::vector<Inflow>& inflows) {
+    for (const Inflow& inflow : inflows) {
+        Source source;
+        source.inflow = inflow;
+        source.spacing = model.particle_spacing;
+        source.particle_volume = model.particle_volume();
+        source.total = static_cast<std::uint32_t>(std::lround(inflow.volume() / source.particle_volume));
+        source.last_time = inflow.hydrograph.front().time;
+        sources_.push_back(std::move(source));
+    }
+}
+
+std::uint32_t InflowFeeder::to_come() const {
+    std::uint32_t count = 0;
+    for (const Source& source : sources_) count += source.total - source.fed;
+    return count;
+}
+
+bool InflowFeeder::due(double time) const {
+    return std::any_of(sources_.begin(), sources_.end(),
+                       [&](const Source& source) { return source.due(time) || source.leads(); });
+}
+
+bool InflowFeeder::Source::leads() const {
+    return std::any_of(led.begin(), led.end(), [](const Row& row) { return row.first != row.last; });
+}
+
+bool InflowFeeder::Source::due(double time) const {
+    if (fed == total) return false;
+    return time >= end() || inflow.way_until(time) >= static_cast<double>(rows + 1) * spacing;
+}
+
+double InflowFeeder::Source::next_time(double time) const {
+    const double wanted = static_cast<double>(rows + 1) * spacing;
+    double early = last_time, late = std::min(time, end());
+    if (inflow.way_until(late) < wanted) return late;  // the end of the hydrograph
+    for (int bisection = 0; bisection < 50; ++bisection) {
+        const double middle = (early + late) / 2;
+        (inflow.way_until(middle) < wanted ? early : late) = middle;
+    }
+    return late;
+}
+
+void InflowFeeder::feed(const Model& model, State& state) {
+    const std::size_t room = state.id.size() - std::min(state.id.size(), array_padding);
+    if (room < state.count + to_come()) state.resize(state.count + to_come());
+    for (Source& source : sources_) {
+        source.lead(model, state);
+        while (source.due(state.time)) {
+            source.last_time = source.next_time(state.time);
+            source.add_row(model, state, state.time - source.last_time);
+            ++source.rows;
+        }
+    }
+}
+
+void InflowFeeder::Source::lead(const Model& model, State& state) {
+    if (!leads()) return;
+    const double early = inflow.volume_until(state.time - state.time_step), now = inflow.volume_until(state.time);
+    if (state.time >= end() || !(now > early)) {  // between surges nothing drives what came in
+        led = {};
+        return;
+    }
+    const WorldPoint& origin = model.terrain.frame().origin;
+    const double dx = inflow.to.x - inflow.from.x, dy = inflow.to.y - inflow.from.y, width = std::hypot(dx, dy);
+    const Vec3<double> level{dy / width, -dx / width, 0};
+    const Vec3<double> from{inflow.from.x - origin.x, inflow.from.y - origin.y, 0};
+    const double velocity =
+        (inflow.way_until(state.time) - inflow.way_until(state.time - state.time_step)) / state.time_step;
+    for (std::uint64_t back = 1; back <= std::min(rows, led_rows); ++back) {
+        const std::uint64_t number = rows - back;
+        Row& row = led[number % led_rows];
+        const double way = way_of(number, state.time);
+        if (row.first == row.last) continue;
+        if (way > static_cast<double>(led_rows) * spacing) {
+            row = {};
+            continue;
+        }
+        for (std::uint32_t i = 0; i < state.count; ++i) {
+            if (state.id[i] < row.first || state.id[i] >= row.last) continue;
+            const LocalPoint p = state.position.at(i), v = state.velocity.at(i);
+            const Vec3<double> place{p.x, p.y, p.z};
+            const double beyond = dot(place - from, level);
+            const Vec3<double> at_line = place - level * beyond;
+            const GroundSample<double> below = model.terrain.sample(at_line.x, at_line.y);
+            Vec3<double> along = level - below.normal * dot(level, below.normal);
+            along = along * (1 / length(along));
+            const Vec3<double> plan = at_line + along * way;
+            const GroundSample<double> here = model.terrain.sample(place.x, place.y);
+            const GroundSample<double> there = model.terrain.sample(plan.x, plan.y);
+            // As high above the ground, normal to it, as the solver left it.
+            const Vec3<double> target =
+                Vec3<double>{plan.x, plan.y, there.height} + there.normal * ((place.z - here.height) * here.normal.z);
+            const LocalPoint led_to{static_cast<float>(target.x), static_cast<float>(target.y),
+                                    static_cast<float>(target.z)};
+            if (!model.solids.empty() && model.solids.inside(led_to)) continue;
+            const double lacks = velocity - (v.x * along.x + v.y * along.y + v.z * along.z);
+            state.position.set(i, led_to);
+            state.velocity.set(i, {static_cast<float>(v.x + lacks * along.x), static_cast<float>(v.y + lacks * along.y),
+                                   static_cast<float>(v.z + lacks * along.z)});
+            state.resting[i] = 0;
+        }
+    }
+}
+
+/// `since`: s, how long ago the row passed the line.
+void InflowFeeder::Source::add_row(const Model& model, State& state, double since) {
+    const double in = inflow.volume_until(last_time) / particle_volume;
+    const std::uint32_t reached = last_time >= end() ? total : static_cast<std::uint32_t>(std::lround(in));
+    const std::uint32_t count = std::min(reached, total) - std::min(fed, reached);
+    led[rows % led_rows] = {state.seeded, state.seeded + count};
+    if (count == 0) return;
+    const WorldPoint& origin = model.terrain.frame().origin;
+    const double dx = inflow.to.x - inflow.from.x, dy = inflow.to.y - inflow.from.y, width = std::hypot(dx, dy);
+    const auto columns = static_cast<std::uint32_t>(std::max(1L, std::lround(width / spacing)));
+    const double column_width = width / columns, layer = spacing * spacing / column_width;
+    const double early = inflow.way_until(last_time - 1e-3), late = inflow.way_until(last_time);
+    const double velocity = (late - early) / std::min(1e-3, std::max(1e-9, last_time - inflow.hydrograph.front().time));
+    double whole = 0;
+    // What does not fill a layer goes to columns evenly, in every row to others.
+    const double shift = std::modf(static_cast<double>(rows) * 0.6180339887498949, &whole);
+    const std::uint32_t full = count / columns, odd = count % columns;
+    const double previous = state.previous_time_step > 0 ? state.previous_time_step : model.solver.largest_time_step;
+    state.previous_time_step = previous;
+    for (std::uint32_t c = 0; c < columns; ++c) {
+        const double share = static_cast<double>(odd) / columns;
+        const bool extra = std::floor((c + 1) * share + shift) > std::floor(c * share + shift);
+        const std::uint32_t layers = full + (extra ? 1 : 0);
+        const double across = (c + 0.5) / columns;
+        const Vec3<double> at_line{inflow.from.x + across * dx - origin.x, inflow.from.y + across * dy - origin.y, 0};
+        const GroundSample<double> below = model.terrain.sample(at_line.x, at_line.y);
+        const Vec3<double> level{dy / width, -dx / width, 0};
+        Vec3<double> along = level - below.normal * dot(level, below.normal);
+        along = along * (1 / length(along));
+        const Vec3<double> plan = at_line + along * (velocity * since);
+        const GroundSample<double> ground = model.terrain.sample(plan.x, plan.y);
+        for (std::uint32_t k = 0; k < layers; ++k) {
+            const Vec3<double> place =
+                Vec3<double>{plan.x, plan.y, ground.height} + ground.normal * ((k + 0.5) * layer);
+            LocalPoint p{static_cast<float>(place.x), static_cast<float>(place.y), static_cast<float>(place.z)};
+            if (!model.solids.empty()) put_out_of_solids(model, p, [](const LocalPoint&) {});
+            const std::uint32_t i = state.count++;
+            state.position.set(i, p);
+            state.velocity.set(i, {static_cast<float>(along.x * velocity), static_cast<float>(along.y * velocity),
+                                   static_cast<float>(along.z * velocity)});
+            state.stress.set(i, {});
+            const double above = (layers - k - 0.5) * layer;
+            state.multiplier[i] = static_cast<float>(-model.gravity * ground.normal.z * above * previous * previous);
+            state.id[i] = state.seeded++;
+            state.held[i] = state.resting[i] = 0;
+            state.calm_time[i] = 0;
+            ++fed;
+        }
+    }
+}
+
+}  // namespace talus

@@ -1,0 +1,61 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "sim/model.hpp"
+#include "sim/state.hpp"
+#include "terrain/inflow.hpp"
+
+namespace talus {
+
+/// Lets debris in while a run goes on. Whenever the inflow has moved on by a particle spacing, a row of particles
+/// appears at its line: as many as make the volume that came in meanwhile, to the nearest whole one of all so far,
+/// stacked in columns on a lattice of rest density, moving at the inflow velocity along the ground, and under the
+/// pressure of what lies above them. Nothing is let in denser than at rest, so nothing pops apart.
+///
+/// Over the first three spacings beyond the line rows are led: between steps their way and velocity along the inflow
+/// become those of the hydrograph, across it they are as the solver leaves them. Without that, the newest row would be
+/// pushed back by those before it, having nothing behind it, and the next one would come too close.
+class InflowFeeder {
+  public:
+    InflowFeeder(const Model& model, const std::vector<Inflow>& inflows);
+
+    /// Particles that all inflows together have yet to bring.
+    [[nodiscard]] std::uint32_t to_come() const;
+    /// Whether there is anything to do at a time, s: a row is due, or rows are led.
+    [[nodiscard]] bool due(double time) const;
+    /// Leads what came in lately and lets in what is due at the state's time, within Simulation::change(). Allocates
+    /// nothing if the state's arrays have room.
+    void feed(const Model& model, State& state);
+
+  private:
+    static constexpr std::uint64_t led_rows = 3;
+    struct Row {
+        std::uint32_t first = 0, last = 0;  ///< ids
+    };
+    struct Source {
+        Inflow inflow;
+        double spacing = 0, particle_volume = 0;
+        std::uint32_t total = 0, fed = 0;
+        std::uint64_t rows = 0;           ///< that have been let in
+        double last_time = 0;             ///< s, of the last row
+        std::array<Row, led_rows> led{};  ///< row k in place k % led_rows; empty: none, or no longer led
+
+        [[nodiscard]] double way_of(std::uint64_t row, double time) const {
+            return inflow.way_until(time) - static_cast<double>(row + 1) * spacing;
+        }
+        [[nodiscard]] bool leads() const;
+        void lead(const Model& model, State& state);
+
+        [[nodiscard]] double end() const { return inflow.hydrograph.back().time; }
+        [[nodiscard]] bool due(double time) const;
+        /// When the next row is due; `time` is known to be later.
+        [[nodiscard]] double next_time(double time) const;
+        void add_row(const Model& model, State& state, double since);
+    };
+    std::vector<Source> sources_;
+};
+
+}  // namespace talus

@@ -1,0 +1,120 @@
+#include <cmath>
+#include <numbers>
+
+#include <fmt/format.h>
+
+#include "sim/inflow.hpp"
+#include "sim/seed.hpp"
+#include "validate/kinds/kinds.hpp"
+#include "validate/measure.hpp"
+#include "validate/set_up.hpp"
+
+namespace talus::validate {
+namespace {
+
+constexpr Quantity quantities[] = {
+    {"thickness", "m", true, Quantity::Site::none, "mean of the steady part of the stream"},
+    {"velocity", "m/s", true, Quantity::Site::none, "the same, down the slope"},
+    {"discharge", "m3/s", true, Quantity::Site::none, "thickness x velocity x width there"},
+    {"particles", "1", true, Quantity::Site::none, "that came in, over the volume of the hydrograph"},
+    {"speed_excess", "m/s", false, Quantity::Site::none,
+     "greatest speed of a particle near the line, over the inflow's"},
+};
+
+struct PlaneSpec {
+    double slope = 0, thickness = 0, velocity = 0, spacing = 0, time = 0;
+    int width = 0;  // spacings
+};
+
+Result<Outcome> compute(const PlaneSpec& spec, const Setting& setting, const Watch& watch) {
+    const double width = spec.width * spec.spacing, reach = 1.6 * spec.velocity * spec.time;
+    const Incline incline(spec.slope, 2 * reach + 10, width + 4);
+    MaterialSpec material = setting.material;
+    material.building_friction_coefficient = 0;
+    material.friction_coefficient = std::tan(spec.slope);  // what drives the stream is what holds it back
+    Model model = make_model(material, setting.solver, incline.terrain(),
+                             make_slice(incline.terrain(), width, 20 * spec.thickness), spec.spacing);
+    Inflow inflow;
+    const LocalPoint line = incline.point(-reach / 2, 0, 0);
+    const WorldPoint at = incline.terrain().frame().to_world(line);
+    inflow.from = {at.x, at.y - width / 2};
+    inflow.to = {at.x, at.y + width / 2};
+    const double discharge = spec.thickness * spec.velocity * width;
+    inflow.hydrograph = {{0, discharge, spec.velocity}, {spec.time, discharge, spec.velocity}};
+    InflowFeeder feeder(model, {inflow});
+    watch.say(fmt::format("{} particles", feeder.to_come()));
+    Trial trial(std::move(model), State{}, watch, OnFault::stop, feeder.to_come());
+    const State& state = trial.state();
+    double fastest = 0;
+    Outcome outcome;
+    while (trial.problem().empty() && state.time < spec.time - 1e-9) {
+        if (feeder.due(state.time)) {
+            trial.change([&](Model& m, State& s) { feeder.feed(m, s); });
+        }
+        trial.advance_to(state.time + 1e-6);
+        for (std::uint32_t i = 0; i < state.count; ++i) {
+            const double beyond = incline.along(state.position.at(i)) + reach / 2;
+            if (beyond < 4 * spec.spacing) fastest = std::max<double>(fastest, length(state.velocity.at(i)));
+        }
+    }
+    if (feeder.due(state.time)) {  // what had not filled a row yet
+        trial.change([&](Model& m, State& s) { feeder.feed(m, s); });
+    }
+    if (!trial.problem().empty()) outcome.notes.push_back(trial.problem());
+    const double volume = (state.count + state.left) * trial.model().particle_volume();
+    outcome.measurements.push_back({"particles", "", volume, inflow.volume_until(state.time)});
+    // What the front does is heard of no farther upstream than this.
+    const double wave = std::sqrt(trial.model().gravity * incline.cosine() * spec.thickness);
+    const double first = 10 * spec.spacing, last = 0.9 * (spec.velocity - wave) * state.time;
+    double speeds = 0, count = 0;
+    for (std::uint32_t i = 0; i < state.count; ++i) {
+        const double beyond = incline.along(state.position.at(i)) + reach / 2;
+        if (beyond < first || beyond >= last) continue;
+        speeds += dot(state.velocity.at(i), incline.down(1));
+        count += 1;
+    }
+    const double thickness = count * trial.model().particle_volume() / ((last - first) * width);
+    const double velocity = count > 0 ? speeds / count : not_computed;
+    outcome.measurements.push_back({"thickness", "", thickness, spec.thickness});
+    outcome.measurements.push_back({"velocity", "", velocity, spec.velocity});
+    outcome.measurements.push_back({"discharge", "", thickness * velocity * width, discharge});
+    outcome.measurements.push_back({"speed_excess", "", fastest - spec.velocity, std::nullopt});
+    const double cell = 5 * spec.spacing;
+    const int cells = static_cast<int>(1.2 * spec.velocity * spec.time / cell);
+    Series profile{"computed", Series::Style::line, {}, {}}, law{"discharge / velocity", Series::Style::dashed, {}, {}};
+    const auto along = thickness_profile(trial.model(), state, 0, cell, cells, width, [&](std::uint32_t i) {
+        return incline.along(state.position.at(i)) + reach / 2;
+    });
+    for (int k = 0; k < cells; ++k) {
+        profile.x.push_back((k + 0.5) * cell);
+        profile.y.push_back(along[static_cast<std::size_t>(k)]);
+        law.x.push_back((k + 0.5) * cell);
+        law.y.push_back(profile.x.back() < spec.velocity * state.time ? spec.thickness : 0);
+    }
+    outcome.charts.push_back({"profile",
+                              "Thickness of the stream along the slope",
+                              "distance from the line, m",
+                              "thickness, m",
+                              {law, profile}});
+    return outcome;
+}
+
+Computation prepare(Parameters& parameters, const Setting& setting) {
+    constexpr Range positive{.low = 0, .low_included = false};
+    PlaneSpec spec;
+    spec.slope = parameters.number("slope_deg", {.low = 0, .high = 60}, 25) * std::numbers::pi / 180;
+    spec.thickness = parameters.number("thickness_m", positive, 0.6);
+    spec.velocity = parameters.number("velocity_mps", positive, 6);
+    spec.spacing = parameters.number("particle_spacing_m", positive, 0.1);
+    spec.time = parameters.number("time_s", positive, 4);
+    spec.width = parameters.whole_number("width_spacings", {.low = 2, .high = 1000}, 8);
+    return [spec, setting](const Watch& watch) { return compute(spec, setting, watch); };
+}
+
+}  // namespace
+
+Kind inflow_plane_kind() {
+    return {"inflow_plane", "a constant inflow on an incline where friction balances gravity", quantities, prepare};
+}
+
+}  // namespace talus::validate

@@ -1,0 +1,76 @@
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "observe/overtopping.hpp"
+#include "observe/particles.hpp"
+
+namespace talus {
+namespace {
+
+using test::add_particle;
+using test::advance;
+
+/// From south to north through the middle of the test ground: what runs east crosses it from left to right.
+BarrierShape dam(std::vector<BarrierOpening> openings = {}) {
+    return {{{1000, 1990}, {1000, 2010}}, 2, {}, 1, std::move(openings)};
+}
+
+/// A particle of 0.4 m runs east at `y` and `z`.
+State runner(float y, float z, float speed = 5) {
+    State state;
+    add_particle(state, {-3, y, z}, {speed, 0, 0});
+    return state;
+}
+
+void run(Overtopping& watch, State& state, int steps) {
+    for (int k = 0; k < steps; ++k) {
+        advance(state, 0.05);
+        watch.after_step(state);
+    }
+}
+
+TEST(Overtopping, tells_what_goes_over_the_crest_from_what_goes_through_a_slot) {
+    const Model model = test::make_model(0.4);
+    const double volume = model.particle_volume();
+    struct Case {
+        float y, z;
+        double over, through;
+    };
+    // The slot is 2 m wide around the middle of the line, y = 0; the crest is 2 m above the ground.
+    for (const Case& c : {Case{5, 3, 1, 0}, Case{0, 0.2F, 0, 1}, Case{0, 2.5F, 1, 0}, Case{0.9F, 1, 0, 1}}) {
+        Overtopping watch(model, dam({{10, 2, 0}}));
+        State state = runner(c.y, c.z);
+        run(watch, state, 30);
+        EXPECT_NEAR(watch.volume(), c.over * volume, 1e-12) << c.y << " " << c.z;
+        EXPECT_NEAR(watch.passed_volume(), c.through * volume, 1e-12) << c.y << " " << c.z;
+        EXPECT_EQ(std::isnan(watch.first_time()), c.over == 0);
+    }
+}
+
+TEST(Overtopping, what_comes_back_does_not_count) {
+    const Model model = test::make_model(0.4);
+    Overtopping watch(model, dam({{10, 2, 0}}));
+    State state = runner(0, 0.2F);
+    run(watch, state, 30);
+    EXPECT_GT(watch.passed_volume(), 0);
+    state.velocity.x[0] = -5;
+    run(watch, state, 30);
+    EXPECT_EQ(watch.passed_volume(), 0);
+    EXPECT_EQ(watch.volume(), 0);
+}
+
+TEST(Overtopping, filling_is_the_depth_at_the_upstream_face) {
+    const Model model = test::make_model(0.4);
+    Overtopping watch(model, dam());
+    // 4 m long, 8 m wide and 1.2 m deep behind the face, which is half a metre west of the line.
+    State state = test::block(0.4, -4.5, -4, 10, 20, 3);
+    watch.follow(state);
+    watch.after_step(state);
+    const Overtopping::Filling filling = watch.filling(state);
+    EXPECT_NEAR(filling.volume, 4 * 8 * 1.2, 1e-3);
+    EXPECT_NEAR(filling.height, 1.2, 0.15);
+}
+
+}  // namespace
+}  // namespace talus

@@ -1,0 +1,222 @@
+#include <cmath>
+#include <stdexcept>
+#include <utility>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "scene/run.hpp"
+#include "scene/scene.hpp"
+#include "scene_folder.hpp"
+
+namespace talus {
+namespace {
+
+using testing::AllOf;
+using testing::Contains;
+using testing::HasSubstr;
+
+class Structures : public SceneFolder {
+  protected:
+    /// A dam across the valley, 60 m wide, 90 m from its western edge.
+    static std::string dam(const std::string& more = "height_m = 8") {
+        return fmt::format("[[barrier]]\nname = \"dam\"\nline_m = [[{0}, {1}], [{0}, {2}]]\nthickness_m = 3\n{3}\n",
+                           west + 90, south + 70, south + 130, more);
+    }
+    static std::string inflow(const std::string& hydrograph = "surge.csv") {
+        return fmt::format("[[inflow]]\nname = \"gully\"\nline_m = [[{0}, {1}], [{0}, {2}]]\nhydrograph = \"{3}\"\n",
+                           west + 45, south + 95, south + 105, hydrograph);
+    }
+    [[nodiscard]] Scene loaded(const std::vector<std::string>& overrides = {}) const {
+        auto scene = load_scene(folder / "scene.toml", overrides);
+        if (!scene) throw std::runtime_error(scene.error().message);
+        return std::move(*scene);
+    }
+    [[nodiscard]] RunResult run(const std::vector<std::string>& overrides = {}) const {
+        std::vector<std::string> all{"solver.target_particle_count=1500", "solver.end_time_s=12",
+                                     "material.friction_coefficient=0.25"};
+        all.insert(all.end(), overrides.begin(), overrides.end());
+        auto result = run_scene(loaded(all), {});
+        if (!result) throw std::runtime_error(result.error().message);
+        return std::move(*result);
+    }
+};
+
+TEST_F(Structures, BarriersComeBehindTheBuildings) {
+    write_features("houses.geojson", {rectangle(200, 90, 210, 110)});
+    write_valley("[buildings]\nfile = \"houses.geojson\"\nresistance_Pa = 40000\n" +
+                 dam("crest_elevation_m = 165\nresistance_Npm = 9e4") +
+                 "[[barrier_opening]]\nbarrier = \"dam\"\nposition_m = 30\nwidth_m = 6\nsill_height_m = 1\n");
+    const Scene scene = loaded();
+    ASSERT_EQ(scene.buildings.size(), 2U);
+    EXPECT_FALSE(scene.buildings[0].barrier);
+    EXPECT_EQ(scene.buildings[0].resistance.pressure, 40000);
+    ASSERT_TRUE(scene.buildings[1].barrier);
+    EXPECT_EQ(scene.buildings[1].name, "dam");
+    EXPECT_EQ(scene.buildings[1].resistance.force_per_metre, 9e4);
+    EXPECT_TRUE(std::isinf(scene.buildings[1].resistance.pressure));
+    ASSERT_EQ(scene.buildings[1].barrier->openings.size(), 1U);
+    EXPECT_EQ(scene.buildings[1].barrier->openings[0].sill, 1);
+}
+
+TEST_F(Structures, BuildingsMayBeAMesh) {
+    // Two boxes side by side on ground at about 97 to 103 m, with roofs at 106 and 109 m; a third one far away.
+    std::string obj;
+    int vertex = 1;
+    const auto box = [&](const std::string& name, double x, double y, double top) {
+        obj += "o " + name + "\n";
+        for (const double z : {90.0, top}) {
+            for (const auto& [dx, dy] : {std::pair{0, 0}, {6, 0}, {6, 8}, {0, 8}}) {
+                obj += fmt::format("v {} {} {}\n", west + x + dx, south + y + dy, z);
+            }
+        }
+        obj += fmt::format("f {3} {2} {1} {0}\nf {4} {5} {6} {7}\n", vertex, vertex + 1, vertex + 2, vertex + 3,
+                           vertex + 4, vertex + 5, vertex + 6, vertex + 7);
+        vertex += 8;
+    };
+    box("low", 200, 96, 106);
+    box("high", 206, 96, 109);
+    box("away", 5000, 96, 109);
+    write("houses.obj", obj);
+    write_valley("[buildings]\nfile = \"houses.obj\"\nresistance_Pa = 3e4\n");
+    const Scene scene = loaded();
+    ASSERT_EQ(scene.buildings.size(), 2U);
+    EXPECT_EQ(scene.buildings[0].name, "low");
+    EXPECT_EQ(scene.buildings[1].roof_elevation, 109);
+    EXPECT_NEAR(scene.buildings[0].height, 106 - (200 - 0.5 * 203), 0.5);
+    EXPECT_EQ(scene.buildings[0].resistance.pressure, 3e4);
+    EXPECT_THAT(scene.notes, Contains(HasSubstr("1 of 3 lie outside the terrain")));
+    const BuildingSolids solids(scene.terrain, scene.buildings, 1);
+    const LocalPoint p = scene.terrain.frame().to_local({west + 203, south + 100, 105});
+    EXPECT_TRUE(solids.inside(p));
+    EXPECT_FALSE(solids.inside(LocalPoint{p.x, p.y, p.z + 2}));
+    EXPECT_TRUE(solids.inside(LocalPoint{p.x + 6, p.y, p.z + 2}));
+    EXPECT_THAT(load_error({"buildings.height_attribute=height"}),
+                HasSubstr("buildings.height_attribute: is refused with the mesh"));
+    write("houses.obj", "v 1 2\n");
+    EXPECT_THAT(load_error(), HasSubstr("buildings.file: " + path("houses.obj") + ":1: a vertex needs three"));
+}
+
+TEST_F(Structures, ABarriersLineMayBeAFile) {
+    write("line.geojson",
+          fmt::format(R"({{"type": "FeatureCollection", "crs": {{"type": "name", "properties": {{"name": )"
+                      R"("urn:ogc:def:crs:EPSG::2326"}}}}, "features": [{{"type": "Feature", "properties": {{}}, )"
+                      R"("geometry": {{"type": "LineString", "coordinates": [[{0}, {1}], [{0}, {2}]]}}}}]}})",
+                      west + 90, south + 70, south + 130));
+    write_valley("[[barrier]]\nfile = \"line.geojson\"\nheight_m = 8\n");
+    const Scene scene = loaded();
+    ASSERT_EQ(scene.buildings.size(), 1U);
+    EXPECT_EQ(scene.buildings[0].name, "barrier 1");
+    EXPECT_EQ(scene.inputs.back().role, "barrier \"barrier 1\"");
+}
+
+TEST_F(Structures, BadBarriersAreRefusedByKey) {
+    const auto refusal = [&](const std::string& text) {
+        write_valley(text);
+        return load_error();
+    };
+    EXPECT_THAT(refusal(dam("height_m = 8\ncrest_elevation_m = 170")),
+                AllOf(HasSubstr("scene.toml:12: barrier[0].crest_elevation_m"), HasSubstr("both are")));
+    EXPECT_THAT(refusal(dam("")), HasSubstr("barrier[0].height_m: exactly one of height_m and crest_elevation_m must"));
+    EXPECT_THAT(refusal("[[barrier]]\nheight_m = 8\n"), HasSubstr("exactly one of line_m and file must be given"));
+    EXPECT_THAT(refusal("[[barrier]]\nheight_m = 8\nline_m = [[1, 2, 3]]\n"),
+                HasSubstr("must be a list of places, a pair of numbers each (m)"));
+    EXPECT_THAT(refusal("[[barrier]]\nheight_m = 8\nline_m = [[1, 2]]\n"),
+                HasSubstr("has 1 place; a line needs at least two"));
+    EXPECT_THAT(refusal("[[barrier]]\nheight_m = 8\nline_m = [[1, 2], [3, 4]]\n"), HasSubstr("is not on known ground"));
+    EXPECT_THAT(refusal(dam("height_m = 8\nresistance_Npm = 0")), HasSubstr("must be a number above 0 (N/m)"));
+    EXPECT_THAT(refusal(dam() + "[[barrier_opening]]\nbarrier = \"dyke\"\nposition_m = 3\nwidth_m = 3\n"),
+                HasSubstr("barrier_opening[0].barrier = \"dyke\": there is no such barrier; barriers: \"dam\""));
+    EXPECT_THAT(refusal(dam() + "[[barrier_opening]]\nbarrier = \"dam\"\nposition_m = 3\nwidth_m = 0.2\n"),
+                HasSubstr("barrier_opening[0].width_m = 0.2 is refused; with particles of"));
+    EXPECT_THAT(refusal(dam() + dam()), HasSubstr("is the name of another barrier too"));
+    EXPECT_THAT(refusal(fmt::format("[[barrier]]\nheight_m = 8\nline_m = [[{0}, {1}], [{0}, {2}]]\n", west + 30,
+                                    south + 80, south + 120)),
+                HasSubstr("stands on release \"scarp\""));
+}
+
+TEST_F(Structures, ADamHoldsDebrisAndItsSlotLetsSomeThrough) {
+    write_valley(dam());
+    const RunResult held = run();
+    const BuildingImpact& dam_alone = held.observation.buildings.at(0);
+    EXPECT_TRUE(dam_alone.is_barrier);
+    EXPECT_TRUE(dam_alone.hit);
+    EXPECT_EQ(dam_alone.passed_volume, 0);
+    EXPECT_GT(dam_alone.impulse, 0);
+    EXPECT_GT(dam_alone.peak_filling_height, 0.5);
+    EXPECT_GT(dam_alone.history.size(), 20U);
+    write_valley(dam() + "[[barrier_opening]]\nbarrier = \"dam\"\nposition_m = 30\nwidth_m = 8\n");
+    const RunResult open = run();
+    EXPECT_GT(open.observation.buildings.at(0).passed_volume, 20);
+    EXPECT_LT(open.observation.buildings.at(0).held_volume, dam_alone.held_volume);
+}
+
+TEST_F(Structures, AResistanceThatIsExceededBringsItDownTheSameOnAnyNumberOfThreads) {
+    write_valley(dam());
+    const RunResult stood = run();
+    const double peak = stood.observation.buildings.at(0).peak_force / 60;  // N/m
+    EXPECT_TRUE(std::isnan(stood.observation.buildings.at(0).failure_time));
+    const std::string weak = fmt::format("barrier[0].resistance_Npm={}", peak / 2);
+    const RunResult one = run({weak, "solver.thread_count=1"}), two = run({weak, "solver.thread_count=2"});
+    const BuildingImpact& fallen = one.observation.buildings.at(0);
+    EXPECT_GT(fallen.failure_time, fallen.first_hit_time);
+    EXPECT_EQ(one.hash, two.hash);
+    EXPECT_EQ(fallen.failure_time, two.observation.buildings.at(0).failure_time);
+    EXPECT_NE(one.hash, stood.hash);
+    EXPECT_GT(one.observation.run_out.horizontal_distance, stood.observation.run_out.horizontal_distance + 10);
+    const RunResult strong = run({fmt::format("barrier[0].resistance_Npm={}", 2 * peak)});
+    EXPECT_EQ(strong.hash, stood.hash) << "a resistance that is not exceeded changes nothing";
+}
+
+TEST_F(Structures, InflowBringsItsVolumeToTheParticle) {
+    write_valley();
+    write("surge.csv", "time_s,discharge_m3ps,velocity_mps\n0,0,4\n2,40,6\n4,0,4\n6,0,4\n7,30,5\n8,0,5\n");
+    write("scene.toml", "[terrain]\nfile = \"dem.tif\"\n" + inflow());
+    const Scene scene = loaded();
+    ASSERT_EQ(scene.inflows.size(), 1U);
+    EXPECT_NEAR(scene.inflows[0].volume(), 110, 1e-9);
+    EXPECT_NEAR(total_volume(scene), 110, 1e-9);
+    EXPECT_THAT(scene.notes, Contains(HasSubstr("flow path: traced downhill from inflow \"gully\"")));
+    EXPECT_THAT(scene.notes, Contains(HasSubstr("where the ground falls by 0.5 in its direction")));
+    const RunResult result = run();
+    EXPECT_EQ(result.status, RunStatus::complete) << result.stop_reason;
+    EXPECT_EQ(result.particles, 1500U);
+    EXPECT_NEAR(result.observation.volume_released, 110, 1e-6);
+    const TimeSample& last = result.observation.timeseries.back();
+    EXPECT_NEAR(last.volume_held + last.volume_moving + last.volume_deposited + last.volume_left, 110, 1e-6);
+    EXPECT_EQ(run({"solver.thread_count=1"}).hash, result.hash);
+    EXPECT_GT(result.observation.run_out.horizontal_distance, 5);
+}
+
+TEST_F(Structures, InflowAndReleaseRunTogether) {
+    write("surge.csv", "time_s,discharge_m3ps,velocity_mps\n1,20,6\n4,20,6\n");
+    write_valley(inflow());
+    const RunResult result = run();
+    EXPECT_EQ(result.status, RunStatus::complete) << result.stop_reason;
+    EXPECT_NEAR(result.observation.volume_released, total_volume(loaded()),
+                0.5 * std::pow(result.particle_spacing, 3) * 2);
+}
+
+TEST_F(Structures, BadHydrographsAreRefusedByLine) {
+    const auto refusal = [&](const std::string& text) {
+        write("surge.csv", text);
+        write_valley(inflow());
+        return load_error();
+    };
+    const std::string header = "time_s,discharge_m3ps,velocity_mps\n";
+    EXPECT_THAT(refusal("time,Q,v\n0,1,1\n"), HasSubstr("surge.csv:1: there is no column time_s"));
+    EXPECT_THAT(refusal(header + "0,1,1\n0,2,1\n"), HasSubstr("surge.csv:3: time_s = 0 is refused"));
+    EXPECT_THAT(refusal(header + "0,1,1\n1,-2,1\n"), HasSubstr("surge.csv:3: discharge_m3ps = \"-2\" is refused"));
+    EXPECT_THAT(refusal(header + "0,1,1\n1,nan,1\n"), HasSubstr("discharge_m3ps = \"nan\" is refused"));
+    EXPECT_THAT(refusal(header + "0,1,1\n1,5,0\n"), HasSubstr("velocity_mps = 0 is refused"));
+    EXPECT_THAT(refusal(header + "0,1,1\n1,5\n"), HasSubstr("velocity_mps = \"\" is refused"));
+    EXPECT_THAT(refusal(header + "0,1,1\n"), HasSubstr("has 1 rows of values; it must have at least 2"));
+    EXPECT_THAT(refusal(header + "0,0,1\n1,0,1\n"), HasSubstr("brings no debris at all"));
+    EXPECT_THAT(refusal(""), HasSubstr("surge.csv:1: there is no column time_s"));
+    EXPECT_THAT(refusal(header + "500,1,1\n600,1,1\n"), HasSubstr("that must be below solver.end_time_s"));
+    write_valley(inflow("none.csv"));
+    EXPECT_THAT(load_error(), HasSubstr("inflow[0].hydrograph"));
+}
+
+}  // namespace
+}  // namespace talus

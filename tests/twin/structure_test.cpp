@@ -1,0 +1,98 @@
+#include <gmock/gmock.h>
+
+#include "terrain/barrier.hpp"
+#include "twin/journal.hpp"
+#include "twin_fixtures.hpp"
+
+namespace talus::twin::test {
+namespace {
+
+/// The channel with a house and a dam across it; both from the scene.
+Scene dammed_scene(double resistance = std::numeric_limits<double>::infinity()) {
+    Scene scene = channel_scene();
+    add_building(scene, "hut", rectangle(west + 100, south + 26, west + 104, south + 30), 3);
+    const BarrierShape shape{{{west + 52, south + 8}, {west + 52, south + 52}}, 5, {}, 1.2, {{22, 2, 0}}};
+    auto dam = make_barrier(scene.terrain, "dam", shape);
+    EXPECT_TRUE(dam);
+    dam->resistance.force_per_metre = resistance;
+    scene.buildings.push_back(*dam);
+    return scene;
+}
+
+TEST(SceneBarrier, is_shown_edited_and_removed_like_a_drawn_one) {
+    const auto scenario = open(dammed_scene());
+    json setup = scenario->setup_json();
+    ASSERT_EQ(setup["buildings"].size(), 1U);
+    ASSERT_EQ(setup["barriers"].size(), 1U);
+    const json& dam = setup["barriers"][0];
+    EXPECT_EQ(dam["name"], "dam");
+    EXPECT_EQ(dam["from_scene"], true);
+    EXPECT_EQ(dam["openings"][0]["width_m"], 2);
+    EXPECT_EQ(dam["resistance_Npm"], nullptr);
+    const std::string id = dam["id"];
+    act(*scenario, {{"action", "put_barrier"}, {"id", id}, {"height_m", 3}, {"resistance_Npm", 5000}});
+    setup = scenario->setup_json();
+    EXPECT_EQ(setup["barriers"][0]["height_m"], 3);
+    EXPECT_EQ(setup["barriers"][0]["resistance_Npm"], 5000);
+    EXPECT_EQ(setup["barriers"][0]["openings"].size(), 1U) << "the slot stays";
+    act(*scenario, {{"action", "remove_barrier"}, {"id", id}});
+    EXPECT_EQ(scenario->setup_json()["barriers"].size(), 0U);
+    act(*scenario, {{"action", "undo"}});
+    EXPECT_EQ(scenario->setup_json()["barriers"].size(), 1U);
+}
+
+TEST(SceneBarrier, lets_through_its_slot_what_is_counted_as_passed) {
+    const auto scenario = open(dammed_scene());
+    run_until(*scenario, 10);
+    ASSERT_NE(scenario->phase(), Phase::fault) << scenario->message();
+    const json dam = scenario->impacts_json()["barriers"][0];
+    EXPECT_EQ(dam["hit"], true);
+    EXPECT_GT(dam["impulse_kNs"], 0);
+    EXPECT_GT(dam["passed_m3"], 1);
+    EXPECT_GT(dam["peak_filling_height_m"], 0.3);
+    EXPECT_EQ(dam["failed_s"], nullptr);
+}
+
+TEST(Resistance, exceeded_takes_the_dam_away_once_and_replays_to_the_same_hash) {
+    const double weak = 500;  // N/m
+    const auto scenario = open(dammed_scene(weak));
+    run_until(*scenario, 6);
+    ASSERT_NE(scenario->phase(), Phase::fault) << scenario->message();
+    const json dam = scenario->impacts_json()["barriers"][0];
+    ASSERT_NE(dam["failed_s"], nullptr);
+    EXPECT_GE(dam["failed_s"], dam["first_hit_s"]);
+    // Another edit does not put it up again.
+    act(*scenario, {{"action", "set_parameter"}, {"key", "material.friction_coefficient"}, {"value", 0.2}});
+    run_until(*scenario, 9);
+    EXPECT_EQ(scenario->impacts_json()["barriers"][0]["failed_s"], dam["failed_s"]);
+    EXPECT_GT(number(*scenario, "front_chainage_m"), 60);
+
+    const auto journal = read_journal(scenario->journal_json().dump());
+    ASSERT_TRUE(journal) << journal.error().message;
+    const auto again = replay(*journal, std::make_shared<const Scene>(dammed_scene(weak)));
+    ASSERT_TRUE(again) << again.error().message;
+    EXPECT_EQ(again->hash, journal->hash);
+
+    act(*scenario, {{"action", "restart"}});
+    EXPECT_EQ(scenario->impacts_json()["barriers"][0]["failed_s"], nullptr) << "it stands again";
+}
+
+TEST(Inflow, runs_live_and_again_after_a_restart) {
+    Scene scene = channel_scene();
+    scene.releases.clear();
+    scene.inflows.push_back({"gully", {west + 20, south + 27}, {west + 20, south + 33}, {{0, 12, 4}, {5, 12, 4}}});
+    const auto scenario = open(std::move(scene));
+    run_until(*scenario, 3);
+    ASSERT_NE(scenario->phase(), Phase::fault) << scenario->message();
+    const double volume = number(*scenario, "volume_released_m3");
+    EXPECT_NEAR(volume, 36, 3);
+    expect_balance(*scenario);
+    const std::uint64_t hash = scenario->hash();
+    const std::uint64_t step = scenario->step();
+    act(*scenario, {{"action", "restart"}});
+    while (scenario->step() < step) scenario->advance();
+    EXPECT_EQ(scenario->hash(), hash);
+}
+
+}  // namespace
+}  // namespace talus::twin::test
