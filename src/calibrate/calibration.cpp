@@ -23,15 +23,16 @@ const char* kind_name(ObservedValue::Kind kind) {
 /// Runs of the scene at the places of a search.
 class SceneModel {
   public:
-    SceneModel(PlannedRuns& runs, const SceneSource& source, const Scene& base, const EnsembleFolder& folder,
-               std::size_t most, const CalibrationOptions& options, std::vector<RunRecord>& records)
+    SceneModel(PlannedRuns& runs, const SceneSource& source, const std::vector<ObservedValue>& observed,
+               const EnsembleFolder& folder, std::size_t most, const CalibrationOptions& options,
+               std::vector<RunRecord>& records)
         : runs_(runs),
           source_(source),
           folder_(folder),
           most_(most),
           options_(options),
           records_(records),
-          observed_(observed_values(base)) {}
+          observed_(observed) {}
 
     Result<std::optional<Points>> predict(const Points& points, Phase phase) {
         runs_.set_points(points);
@@ -92,7 +93,7 @@ class SceneModel {
     const std::size_t most_;
     const CalibrationOptions options_;
     std::vector<RunRecord>& records_;
-    const std::vector<ObservedValue> observed_;
+    const std::vector<ObservedValue>& observed_;
     double least_misfit_ = never;
 };
 
@@ -152,9 +153,10 @@ Json calibration_definition(const std::string& kind, const CalibrationPlan& plan
     return definition;
 }
 
-ForwardModel scene_model(PlannedRuns& runs, const SceneSource& source, const Scene& base, const EnsembleFolder& folder,
-                         std::size_t most, const CalibrationOptions& options, std::vector<RunRecord>& records) {
-    auto model = std::make_shared<SceneModel>(runs, source, base, folder, most, options, records);
+ForwardModel scene_model(PlannedRuns& runs, const SceneSource& source, const std::vector<ObservedValue>& observed,
+                         const EnsembleFolder& folder, std::size_t most, const CalibrationOptions& options,
+                         std::vector<RunRecord>& records) {
+    auto model = std::make_shared<SceneModel>(runs, source, observed, folder, most, options, records);
     return [model](const Points& points, Phase phase) { return model->predict(points, phase); };
 }
 
@@ -168,7 +170,7 @@ Result<Calibration> calibrate(const CalibrationPlan& plan, PlannedRuns runs, con
     made.observed = observed;
     std::vector<Distribution> priors;
     for (const Factor& f : made.factors) priors.push_back(f.distribution);
-    const ForwardModel model = scene_model(runs, source, base, folder, plan.search.runs, options, made.records);
+    const ForwardModel model = scene_model(runs, source, observed, folder, plan.search.runs, options, made.records);
     Result<SearchResult> found = search(priors, observed, model, plan.search);
     if (!found) {
         const bool failed = !made.records.empty() && !made.records.front().complete();

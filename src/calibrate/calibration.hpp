@@ -63,10 +63,11 @@ struct Calibration {
                                                             const std::string& scene_name);
 
 /// Predictions of the scene's observations by runs of it, kept in the folder, which is gone through again for those
-/// that are there. `records` takes what was run. All must outlive the model.
-[[nodiscard]] ForwardModel scene_model(PlannedRuns& runs, const SceneSource& source, const Scene& base,
-                                       const EnsembleFolder& folder, std::size_t most,
-                                       const CalibrationOptions& options, std::vector<RunRecord>& records);
+/// that are there. `observed`: to tell how well they fit; `records` takes what was run. All must outlive the model.
+[[nodiscard]] ForwardModel scene_model(PlannedRuns& runs, const SceneSource& source,
+                                       const std::vector<ObservedValue>& observed, const EnsembleFolder& folder,
+                                       std::size_t most, const CalibrationOptions& options,
+                                       std::vector<RunRecord>& records);
 
 /// Computes what the folder lacks and finds the values that explain `observed` (as observed_values(base), or other
 /// values of the same). Errors: a record cannot be written, or is of another calibration; no run is complete.

@@ -250,9 +250,15 @@ std::string observation_figure(const Calibration& c, const CalibrationSummary& s
     }
     const double height = row * static_cast<double>(s.observations.size());
     Plot plot(left, top, width, height, x, {0, 1});
-    plot.axes("standard deviations from what was observed", "");
-    plot.vertical(0, "limit");
-    std::string svg;
+    std::string svg = fmt::format(R"(<text class="axis-title" x="{}" y="{}" text-anchor="middle">{}</text>)",
+                                  coordinate(left + width / 2), coordinate(top + height + 38),
+                                  "standard deviations from what was observed");
+    const Ticks ticks = round_ticks(x, 8);
+    for (const double value : ticks.values) {
+        plot.vertical(value, value == 0 ? "axis" : "grid");
+        svg += fmt::format(R"(<text class="tick" x="{}" y="{}" text-anchor="middle">{}</text>)",
+                           coordinate(plot.px(value)), coordinate(top + height + 17), fixed(value, ticks.digits));
+    }
     for (std::size_t j = 0; j < s.observations.size(); ++j) {
         const ObservationResult& o = s.observations[j];
         const ObservedValue& observed = c.observed[j];

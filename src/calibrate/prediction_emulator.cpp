@@ -1,5 +1,6 @@
 #include "calibrate/prediction_emulator.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -7,7 +8,7 @@ namespace talus {
 
 namespace {
 
-constexpr double label_doubt = 0.35;  // a label of 1 is still right 998 times of 1000
+constexpr double label_doubt = 0.5;  // standard deviation half way between the labels
 
 }  // namespace
 
@@ -32,7 +33,8 @@ double PredictionEmulator::reached_at(const std::vector<double>& point) const {
     // Least-squares classification (Rasmussen & Williams 2006, section 6.5), read as a probability. A smooth function
     // is too sure of itself beside a step: where it says neither 1 nor -1 clearly, nothing is clear.
     const Emulator::Estimate label = reach_->at(point);
-    const double deviation = std::sqrt(label.variance + label.noise + label_doubt * label_doubt);
+    const double doubt = label_doubt * label_doubt * std::max(0.0, 1 - label.mean * label.mean);
+    const double deviation = std::sqrt(label.variance + label.noise + doubt);
     return 0.5 * std::erfc(-label.mean / deviation / std::numbers::sqrt2);
 }
 

@@ -57,7 +57,8 @@ Result<Recovery> recover(const CalibrationPlan& plan, const PlannedRuns& runs, c
         folder / "truths", calibration_definition("set of known runs", plan, runs, source, base, observed, scene_name));
     if (!all) return all.error();
     std::vector<RunRecord> records;
-    const ForwardModel model = scene_model(truths, source, base, *all, most_draws_per_seed * seeds, options, records);
+    const ForwardModel model =
+        scene_model(truths, source, observed, *all, most_draws_per_seed * seeds, options, records);
     std::vector<std::size_t> usable;
     Points points;
     while (usable.size() < seeds) {

@@ -142,9 +142,9 @@ TEST(Fit, ExpectsTheImprovementThatDrawsOfTheEmulatorsHave) {
 
 TEST(Search, FindsWhatMadeTheObservations) {
     const std::vector<double> truth = {0.4, 0.3};
-    const auto found = search(priors, observed_as(slide(truth)), model_of(), {});
+    const auto found = search(priors, observed_as(slide(truth)), model_of(), {.runs = 60});
     ASSERT_TRUE(found);
-    EXPECT_LE(found->runs.size(), 100u);
+    EXPECT_LE(found->runs.size(), 60u);
     EXPECT_TRUE(found->settled);
     const SearchRun& best = found->runs[*found->best];
     EXPECT_LT(best.misfit, 0.02);
@@ -164,7 +164,7 @@ TEST(Search, FindsWhatMadeTheObservations) {
 
 TEST(Search, ThePosteriorIsThatOfTheModelItself) {
     const auto observed = observed_as(slide({0.4, 0.3}));
-    const auto found = search(priors, observed, model_of(), {});
+    const auto found = search(priors, observed, model_of(), {.runs = 60});
     ASSERT_TRUE(found);
     // by summing over a fine grid of the model
     std::vector<double> marginal(200, 0);
@@ -197,7 +197,7 @@ TEST(Search, ReturnsTheTruthWithinItsIntervalInNineOfTenSeeds) {
         const std::vector<double> truth = {draw(seed, 0, 0), draw(seed, 0, 1)};
         std::vector<double> values = slide(truth, 0.1);
         for (std::size_t j = 0; j < 2; ++j) values[j] = std::max(0.0, filled(values[j]) + normal_draw(seed, 1, j));
-        const auto found = search(priors, observed_as(values), model_of(0.1), {.runs = 40, .seed = seed});
+        const auto found = search(priors, observed_as(values), model_of(0.1), {.runs = 30, .seed = seed});
         ASSERT_TRUE(found);
         bool all = true;
         for (std::size_t k = 0; k < 2; ++k) {
