@@ -215,7 +215,8 @@ std::string factor_figure(const Calibration& c, const CalibrationSummary& s, int
             y.include(part * 1.1);
         }
         const double left = width * static_cast<double>(k % columns) + 56;
-        Plot plot(left, height * static_cast<double>(k / columns) + 16, width - 76, height - 66, x, y);
+        const std::size_t row = k / columns;
+        Plot plot(left, height * static_cast<double>(row) + 16, width - 76, height - 66, x, y);
         plot.axes(c.factors[k].key, k % columns == 0 ? "draws, %" : "");
         for (std::size_t i = 0; i < bars; ++i) {
             if (counts[i] <= 0) continue;
@@ -228,8 +229,8 @@ std::string factor_figure(const Calibration& c, const CalibrationSummary& s, int
         for (const double limit : {s.factors[k].low, s.factors[k].high}) plot.vertical(limit, "percentile-line");
         svg += plot.svg();
     }
-    const auto rows = static_cast<double>((s.factors.size() + columns - 1) / columns);
-    return "<figure>" + figure_svg(1000, height * rows, "Factors before and after", svg) +
+    const std::size_t rows = (s.factors.size() + columns - 1) / columns;
+    return "<figure>" + figure_svg(1000, height * static_cast<double>(rows), "Factors before and after", svg) +
            caption(number, "What is known of each factor.",
                    "Bars: draws from the posterior; red: the interval that holds 95 % of them. Dashed: the same before "
                    "the observations, as the plan states it.") +
