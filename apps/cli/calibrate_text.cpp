@@ -37,8 +37,9 @@ std::string calibration_text(const Calibration& c, const std::filesystem::path& 
                         "off by", "emulator +-", "unit");
     for (std::size_t j = 0; j < s.observations.size(); ++j) {
         const ObservationResult& o = s.observations[j];
-        text += fmt::format("{:<38}{:>11.4g}{:>11.3g}{:>11.4g}{:>11.1f}{:>12.3g}  {}\n", c.observed[j].name,
-                            c.observed[j].value, c.observed[j].uncertainty, o.best, o.deviation, o.left_out,
+        text += fmt::format("{:<38}{:>11.4g}{:>11.3g}{:>11}{:>11.1f}{:>12.3g}  {}\n", c.observed[j].name,
+                            c.observed[j].value, c.observed[j].uncertainty,
+                            std::isfinite(o.best) ? fmt::format("{:.4g}", o.best) : "none", o.deviation, o.left_out,
                             c.observed[j].unit);
     }
     if (!s.warnings.empty()) text += "\n";

@@ -18,6 +18,21 @@ double tail_misfit(double z) {
     return z * z + 2 * std::log(-z) + std::log(2 * std::numbers::pi);
 }
 
+/// Per draw a standard normal number for each observation, then a share for each: a Latin hypercube, which knows a mean
+/// better than as many independent draws. Always the same, so that expectations are as smooth as the emulators.
+const Points& improvement_table(std::size_t observations) {
+    thread_local Points table;
+    if (!table.empty() && table.front().size() == 2 * observations) return table;
+    table = sample_points(DesignKind::latin_hypercube, improvement_draws, 2 * observations, 1);
+    Distribution normal;
+    normal.kind = DistributionKind::normal;
+    normal.deviation = 1;
+    for (auto& row : table) {
+        for (std::size_t j = 0; j < observations; ++j) row[j] = normal.quantile(row[j]);
+    }
+    return table;
+}
+
 /// Of an observation, up to a constant of the observation's own.
 double log_likelihood_of(const ObservedValue& observed, double predicted, double variance) {
     const double own = observed.uncertainty * observed.uncertainty;
@@ -95,6 +110,7 @@ double Fit::log_likelihood(const std::vector<double>& point) const {
 }
 
 double Fit::expected_improvement(const std::vector<double>& point, double least) const {
+    const Points& table = improvement_table(observed.size());
     std::array<double, improvement_draws> misfits{};
     double prior = 0;
     for (std::size_t k = 0; k < priors.size(); ++k) prior += prior_misfit(priors[k], point[k]);
@@ -103,10 +119,9 @@ double Fit::expected_improvement(const std::vector<double>& point, double least)
         const PredictionEmulator::Estimate e = emulators[j].at(point);
         const double deviation = std::sqrt(e.value.variance);
         for (std::size_t i = 0; i < improvement_draws; ++i) {
-            // The same draws everywhere, so that the expectation is as smooth as the emulators.
-            const bool reached = draw(2, i, j) < e.reached;
-            misfits[i] += misfit_of(observed[j],
-                                    reached ? e.value.mean + deviation * normal_draw(1, i, j) : observed[j].unreached);
+            const bool reached = table[i][observed.size() + j] < e.reached;
+            misfits[i] +=
+                misfit_of(observed[j], reached ? e.value.mean + deviation * table[i][j] : observed[j].unreached);
         }
     }
     double sum = 0;

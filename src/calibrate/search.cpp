@@ -17,6 +17,7 @@ namespace {
 // observations.
 constexpr double little_improvement = 0.01, little_uncertainty = 0.1;
 constexpr std::size_t quiet_rounds = 2;  // in a row
+constexpr double least_distance = 0.01;  // of the cube, between runs that are to tell what emulators do not know
 
 constexpr ChainOptions short_chains = {500, 500, 1}, long_chains = {3000, 8000, 1};
 
@@ -99,6 +100,14 @@ void Searcher::fit() {
     }
 }
 
+bool near_any(const std::vector<double>& point, const Points& others) {
+    return std::any_of(others.begin(), others.end(), [&](const auto& other) {
+        double square = 0;
+        for (std::size_t k = 0; k < point.size(); ++k) square += (point[k] - other[k]) * (point[k] - other[k]);
+        return square < least_distance * least_distance;
+    });
+}
+
 Fit believe(const Fit& fit, const std::vector<double>& point) {
     Fit more = fit;
     for (PredictionEmulator& emulator : more.emulators) emulator = emulator.believing(point);
@@ -124,7 +133,8 @@ double Searcher::least_misfit(const Fit& fit) const {
 
 void Searcher::choose(Points& points, std::vector<double>& improvements) {
     Fit fit = with_failed();
-    const Posterior posterior = sample_posterior(fit, run_points(), seeded(short_chains));
+    const Points runs = run_points();
+    const Posterior posterior = sample_posterior(fit, runs, seeded(short_chains));
     const double least = least_misfit(fit);
     const std::size_t factors = priors_.size();
     const std::vector<double> best_point = result_.runs[*result_.best].point;
@@ -149,10 +159,15 @@ void Searcher::choose(Points& points, std::vector<double>& improvements) {
             result_.improvement = std::max(result_.improvement, improvement);
         }
         if (improvement < little_improvement) {
-            const auto less = [&](const auto& a, const auto& b) {
-                return fit.emulator_share(a) < fit.emulator_share(b);
-            };
-            chosen = *std::max_element(posterior.draws.begin(), posterior.draws.end(), less);
+            double most = -1;
+            for (const auto& row : posterior.draws) {
+                if (near_any(row, points) || near_any(row, runs)) continue;  // a run twice tells nothing new
+                const double share = fit.emulator_share(row);
+                if (share <= most) continue;
+                most = share;
+                chosen = row;
+            }
+            if (chosen.empty()) chosen = sample_points(DesignKind::monte_carlo, 1, factors, runs.size() + i).front();
             improvement = 0;
         }
         fit = believe(fit, chosen);

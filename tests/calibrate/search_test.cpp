@@ -126,25 +126,26 @@ TEST(Fit, ExpectsTheImprovementThatDrawsOfTheEmulatorsHave) {
     const std::vector<double> place = {0.4, 0.6};
     const Emulator::Estimate a = fit.emulators[0].at(place).value, b = fit.emulators[1].at(place).value;
     const double reached = fit.emulators[1].reached_at(place);
+    constexpr double least = 80;  // most draws improve on it, so that 128 of them tell the mean
     double expected = 0;
     constexpr std::size_t draws = 20000;
     for (std::size_t i = 0; i < draws; ++i) {
         const double x = a.mean + std::sqrt(a.variance) * normal_draw(77, i, 0) - 12;
         const double y = b.mean + std::sqrt(b.variance) * normal_draw(77, i, 1) - 9;
         const double missed = draw(78, i, 0) < reached ? y : -9;
-        expected += std::max(0.0, 30 - x * x - missed * missed) / draws;
+        expected += std::max(0.0, least - x * x - missed * missed) / draws;
     }
     ASSERT_GT(expected, 1);
-    EXPECT_NEAR(fit.expected_improvement(place, 30) / expected, 1, 0.2);  // of 128 draws
+    EXPECT_NEAR(fit.expected_improvement(place, least) / expected, 1, 0.1);
     EXPECT_GT(fit.expected_improvement(place, 31), fit.expected_improvement(place, 30));
     EXPECT_EQ(fit.expected_improvement(place, 0), 0);  // nothing fits better than perfectly
 }
 
 TEST(Search, FindsWhatMadeTheObservations) {
     const std::vector<double> truth = {0.4, 0.3};
-    const auto found = search(priors, observed_as(slide(truth)), model_of(), {.runs = 60});
+    const auto found = search(priors, observed_as(slide(truth)), model_of(), {});
     ASSERT_TRUE(found);
-    EXPECT_LE(found->runs.size(), 60u);
+    EXPECT_LE(found->runs.size(), 100u);
     EXPECT_TRUE(found->settled);
     const SearchRun& best = found->runs[*found->best];
     EXPECT_LT(best.misfit, 0.02);
