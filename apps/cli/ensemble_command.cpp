@@ -1,9 +1,6 @@
 #include <algorithm>
 #include <charconv>
-#include <chrono>
-#include <cstdio>
 #include <filesystem>
-#include <memory>
 #include <optional>
 #include <string>
 #include <thread>
@@ -17,58 +14,14 @@
 #include "ensemble_text.hpp"
 #include "exit_code.hpp"
 #include "interrupt.hpp"
-#include "progress.hpp"
 #include "ranks.hpp"
-#include "scene/builtin.hpp"
-#include "scene/scene.hpp"
-#include "temporary_folder.hpp"
+#include "scene_input.hpp"
+#include "teller.hpp"
 
 namespace talus {
 namespace {
 
 namespace fs = std::filesystem;
-
-const std::string builtin_prefix = "built-in:";
-
-/// The scene of an ensemble, on disk and loaded.
-struct Source {
-    std::unique_ptr<TemporaryFolder> unpacked;  ///< of the built-in scene
-    SceneSource source;
-    std::string name;        ///< as the ensemble's definition has it
-    std::string short_name;  ///< of the default output folder
-    Scene scene;
-};
-
-void print(const std::string& text) {
-    (void)std::fputs(text.c_str(), stdout);
-    (void)std::fflush(stdout);
-}
-
-/// `scene` as given, empty or "built-in:sham_tseng" for the built-in one.
-Result<Source> open_scene(const std::string& scene, const std::vector<std::string>& overrides, InterruptWatch& watch) {
-    Source s;
-    s.source.overrides = overrides;
-    if (scene.empty() || scene.starts_with(builtin_prefix)) {
-        s.unpacked = std::make_unique<TemporaryFolder>();
-        if (s.unpacked->path().empty())
-            return Error{"cannot make a temporary folder for the built-in scene; set TMPDIR"};
-        watch.remove_at_once(s.unpacked->path());
-        const auto file = unpack_builtin_scene(s.unpacked->path());
-        if (!file) return file.error();
-        s.source.file = *file;
-        s.short_name = builtin_scene_name;
-        s.name = builtin_prefix + s.short_name;
-    } else {
-        s.source.file = scene;
-        s.name = fs::absolute(scene).lexically_normal().string();
-        const std::string stem = s.source.file.stem().string();
-        s.short_name = stem == "scene" ? fs::absolute(scene).parent_path().filename().string() : stem;
-    }
-    Result<Scene> loaded = load_scene(s.source.file, overrides);
-    if (!loaded) return loaded.error();
-    s.scene = *std::move(loaded);
-    return Result<Source>(std::move(s));
-}
 
 Status set_thresholds(Thresholds& thresholds, const std::string& depths, const std::string& speeds,
                       const std::string& pressures) {
@@ -123,36 +76,8 @@ Result<std::pair<std::size_t, std::size_t>> parse_shard(const std::string& text)
     return Error{fmt::format("--shard {} is refused; it must be i/n with i from 1 to n, such as 3/8", text)};
 }
 
-/// Tells a person or a program how far the ensemble is, not too often.
-class Teller {
-  public:
-    Teller(bool quiet, bool json) : style_(progress_style(quiet, json)), reporter_(style_) {
-        if (style_ == ProgressStyle::lines) next_ += std::chrono::seconds(1);  // the first estimates are poor
-    }
-
-    void tell(const EnsembleProgress& progress) {
-        const auto now = std::chrono::steady_clock::now();
-        if (now < next_) return;
-        if (style_ == ProgressStyle::json) {
-            print(progress_json(progress) + "\n");
-        } else {
-            reporter_.say(progress_text(progress));
-        }
-        next_ = now + std::chrono::milliseconds(style_ == ProgressStyle::lines  ? 5000
-                                                : style_ == ProgressStyle::json ? 500
-                                                                                : 200);
-    }
-    void say(const std::string& what) { reporter_.say(what); }
-    void clear() { reporter_.clear(); }
-
-  private:
-    ProgressStyle style_;
-    ProgressReporter reporter_;
-    std::chrono::steady_clock::time_point next_ = std::chrono::steady_clock::now();
-};
-
 /// Counts the runs of the folders and writes what they say into `folder`.
-int write_results(const Source& source, const PlannedRuns& runs, const std::vector<fs::path>& folders,
+int write_results(const SceneInput& source, const PlannedRuns& runs, const std::vector<fs::path>& folders,
                   const fs::path& folder, bool quiet, bool json, Teller& teller) {
     teller.say("counting the runs, writing maps, tables and report");
     Result<Reduction> reduction = reduce(folders, runs.count(), runs.plan().thresholds);
@@ -200,7 +125,7 @@ int ensemble_command(const EnsembleArguments& arguments) {
     if (!plan) return refuse(plan.error());
     const auto shard = parse_shard(arguments.shard);
     if (!shard) return refuse(shard.error());
-    const Result<Source> source = open_scene(arguments.scene, arguments.overrides, watch);
+    const Result<SceneInput> source = open_scene(arguments.scene, arguments.overrides, watch);
     if (!source) return refuse(source.error());
     const Result<PlannedRuns> runs = PlannedRuns::make(*plan, source->source, source->scene);
     if (!runs) return refuse(runs.error());
@@ -224,7 +149,9 @@ int ensemble_command(const EnsembleArguments& arguments) {
     options.shard = shard->first + shard->second * static_cast<std::size_t>(ranks.rank());
     options.retry_failed = arguments.retry_failed;
     options.stop_requested = &watch.stop_requested();
-    options.on_progress = [&](const EnsembleProgress& progress) { teller.tell(progress); };
+    options.on_progress = [&](const EnsembleProgress& progress) {
+        teller.tell([&] { return progress_text(progress); }, [&] { return progress_json(progress); });
+    };
     share_threads(arguments, *runs, ranks.count(), options);
 
     const Result<EnsembleOutcome> outcome = run_ensemble(*runs, source->source, *folder, options);
@@ -273,7 +200,8 @@ int merge_command(const MergeArguments& arguments) {
         return fail(exit_code::bad_input, s.error().message);
     }
     const std::string scene = arguments.scene.empty() ? definition->value("scene", "") : arguments.scene;
-    const Result<Source> source = open_scene(scene, definition->value("overrides", std::vector<std::string>()), watch);
+    const Result<SceneInput> source =
+        open_scene(scene, definition->value("overrides", std::vector<std::string>()), watch);
     if (!source)
         return fail(exit_code::bad_input,
                     source.error().message + (arguments.scene.empty() ? "; --scene says where it lies now" : ""));

@@ -11,6 +11,7 @@
 
 #include "bench/measure.hpp"
 #include "bench/scenes.hpp"
+#include "calibrate_command.hpp"
 #include "commands.hpp"
 #include "exit_code.hpp"
 #include "params/scene_text.hpp"
@@ -33,6 +34,8 @@ Examples:
   talus replay session.json                 runs a saved live session again and compares its result
   talus validate --quick                    computes cases whose results are known, and prints one table
   talus serve                               the built-in scene live in the browser: watch, steer and share it
+  talus calibrate my_scene.toml --vary material.friction_coefficient=0.1:0.6
+                                            which friction explains what was observed in the field, and how surely
   talus bench                               how fast talus is here: milliseconds per stage, particles per second
 
 Exit codes:
@@ -356,6 +359,8 @@ int talus_main(int argc, char** argv) {
         app.add_subcommand("ensemble", "run a scene many times with varied values: probability maps, sensitivity");
     MergeArguments merge;
     CLI::App* merge_app = add_ensemble(*ensemble_app, ensemble, merge);
+    CalibrateArguments calibrate;
+    CLI::App* calibrate_app = add_calibrate(app, calibrate);
 
     BenchArguments bench;
     std::string backend = "cpu";
@@ -415,6 +420,7 @@ int talus_main(int argc, char** argv) {
     if (*validate_app) return validate_command(validate);
     if (*merge_app) return merge_command(merge);
     if (*ensemble_app) return ensemble_command(ensemble);
+    if (*calibrate_app) return calibrate_command(calibrate);
     if (*bench_app) return bench_command(bench);
     if (*reference_app) return reference_command(markdown);
     std::fputs(app.help().c_str(), stdout);

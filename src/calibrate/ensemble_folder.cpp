@@ -71,11 +71,11 @@ std::string difference(const Json& there, const Json& wanted) {
     return "";
 }
 
-Result<Json> read_definition(const fs::path& folder) {
+Result<Json> read_definition(const fs::path& folder, const std::string& kind) {
     std::ifstream in(folder / "ensemble.json");
     Json json = Json::parse(in, nullptr, false);
-    if (!json.is_object() || json.value("program", Json()) != "talus" || json.value("kind", Json()) != "ensemble") {
-        return Error{fmt::format("{}: is no ensemble of talus (no ensemble.json of its own)", folder.string())};
+    if (!json.is_object() || json.value("program", Json()) != "talus" || json.value("kind", Json()) != kind) {
+        return Error{fmt::format("{}: is no {} of talus (no ensemble.json of its own)", folder.string(), kind)};
     }
     return json;
 }
@@ -126,7 +126,7 @@ Result<EnsembleFolder> EnsembleFolder::open(const fs::path& path, const Json& de
                          : fmt::format("{}: cannot be locked: {}", path.string(), std::strerror(errno))};
     }
     if (fs::exists(path / "ensemble.json", error)) {
-        const Result<Json> there = read_definition(path);
+        const Result<Json> there = read_definition(path, definition.value("kind", "ensemble"));
         if (!there) return there.error();
         if (const std::string differs = difference(*there, definition); !differs.empty()) {
             return Error{

@@ -50,8 +50,9 @@ class EnsembleFolder {
 /// with different results, a file that cannot be made.
 [[nodiscard]] Status take_runs(const std::filesystem::path& from, const EnsembleFolder& to, std::size_t count);
 
-/// ensemble.json of a folder. Errors: not there, not an ensemble's.
-[[nodiscard]] Result<nlohmann::ordered_json> read_definition(const std::filesystem::path& folder);
+/// ensemble.json of a folder. Errors: not there, not of that kind.
+[[nodiscard]] Result<nlohmann::ordered_json> read_definition(const std::filesystem::path& folder,
+                                                             const std::string& kind = "ensemble");
 
 /// Why the runs of two ensembles do not belong together: "seed: 2, not 1"; empty if they do.
 [[nodiscard]] std::string difference(const nlohmann::ordered_json& there, const nlohmann::ordered_json& wanted);

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "calibrate/design.hpp"
@@ -66,6 +67,8 @@ class PlannedRuns {
     [[nodiscard]] const Points& points() const { return points_; }
     [[nodiscard]] const std::vector<std::string>& fixed() const { return fixed_; }
     [[nodiscard]] PlannedRun at(std::size_t run) const;
+    /// Runs at these points of the unit cube in place of the design's, with a number per factor.
+    void set_points(Points points) { points_ = std::move(points); }
 
   private:
     PlannedRuns() = default;

@@ -93,7 +93,7 @@ std::vector<ObservedValue> observed_values(const Scene& scene) {
     const auto add = [&](const char* section, std::size_t i, const char* quantity, std::string name, const char* unit,
                          double value, double uncertainty) {
         all.push_back({fmt::format("{}[{}].{}", section, i, quantity), std::move(name), unit, value, uncertainty,
-                       ObservedValue::Kind::equal});
+                       ObservedValue::Kind::equal, 0});
     };
     for (std::size_t i = 0; i < spec.observations.size(); ++i) {
         const ObservationSpec& o = spec.observations[i];
@@ -110,10 +110,12 @@ std::vector<ObservedValue> observed_values(const Scene& scene) {
         const ArrivalSpec& o = spec.arrivals[i];
         add("arrival", i, "time_s", fmt::format("Arrival at {:.6g} m", o.chainage), "s", o.time,
             o.uncertainty.value_or(time_share * o.time));
+        all.back().unreached = std::max(spec.solver.end_time, o.time + 5 * all.back().uncertainty);
     }
     for (std::size_t i = 0; i < spec.run_ups.size(); ++i) {
         const RunUpSpec& o = spec.run_ups[i];
         add("run_up", i, "height_m", label(o.name, fmt::format("Run-up mark {}", i + 1)), "m", o.height, o.uncertainty);
+        all.back().unreached = -run_up_radius;
     }
     for (std::size_t i = 0; i < spec.deposit_depths.size(); ++i) {
         const DepositDepthSpec& o = spec.deposit_depths[i];

@@ -23,11 +23,13 @@ namespace talus {
 /// m, farthest chainage of the front.
 [[nodiscard]] double predict_run_out(const Observation& run);
 
+inline constexpr double run_up_radius = 15;  ///< m, in which debris near a run-up mark counts
+
 /// m above the ground at a place, to which debris stood there. Where it did not come there, how far below the place the
 /// highest debris within `search_radius` m stood, as a negative number: a run that nearly reaches a mark on a bank is
 /// better than one that stays in the bed.
 [[nodiscard]] double predict_run_up(const Observation& run, const Terrain& terrain, const PlanPoint& place,
-                                    double search_radius = 15);
+                                    double search_radius = run_up_radius);
 
 /// m, vertical deposit at a place; 0 where there is none.
 [[nodiscard]] double predict_deposit_depth(const Observation& run, const PlanPoint& place);
@@ -51,6 +53,9 @@ struct ObservedValue {
     double value = 0, uncertainty = 0;  ///< of damage: the limit of pressure
     /// Damage says only on which side of the value the prediction should lie.
     enum class Kind { equal, at_least, below } kind = Kind::equal;
+    /// What stands for the prediction of a run that gives none, as its debris never came there: front velocity and
+    /// run-out 0, no arrival until the run's latest end, run-up by as much below the mark as debris is looked for.
+    double unreached = 0;
 };
 
 /// All observations of a scene, in the order of its sections.

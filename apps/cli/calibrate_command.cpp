@@ -1,0 +1,177 @@
+#include "calibrate_command.hpp"
+
+#include <algorithm>
+#include <filesystem>
+#include <thread>
+
+#include <fmt/format.h>
+
+#include "calibrate/calibration.hpp"
+#include "calibrate/calibration_products.hpp"
+#include "calibrate/recovery.hpp"
+#include "calibrate_text.hpp"
+#include "commands.hpp"
+#include "exit_code.hpp"
+#include "interrupt.hpp"
+#include "products/text_file.hpp"
+#include "scene_input.hpp"
+#include "teller.hpp"
+
+namespace talus {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* help = R"(
+Finds the values of a scene that explain what was observed in the field ([[observation]], [[run_up]], [[deposit_depth]]
+and the rest, each with its uncertainty), and says how sure that is: a space-filling design, emulators of what runs
+predict, runs where they help most, the posterior, and runs that check it. What is free is given like a factor of talus
+ensemble, as a range or a prior:
+  --vary material.friction_coefficient=0.1:0.6        anything between
+  --vary material.viscosity=log:0.01:0.6              likewise, of its logarithm
+  --vary release.volume_m3=normal:600:60              known to be about so much
+The folder holds report.html, the runs, intervals, draws from the posterior, the misfit map, and best_fit/scene.toml.
+The same command again goes on where an earlier one stopped. --recover 10 does it ten times with observations made by
+runs with known values, and counts how often those are returned within the stated interval: what these observations
+can tell at all (docs/calibration.md).
+
+Exit codes: as talus run. A run that fails is left out; 3: no run of the design was complete.
+)";
+
+Result<CalibrationPlan> read_arguments(const CalibrateArguments& arguments) {
+    EnsemblePlan factors;
+    for (const std::string& factor : arguments.factors) {
+        if (Status s = add_factor(factors, factor); !s) return s.error();
+    }
+    CalibrationPlan plan;
+    plan.factors = std::move(factors.factors);
+    plan.search.runs = arguments.runs.value_or(plan.search.runs);
+    plan.search.design = arguments.design.value_or(plan.search.design);
+    plan.search.checks = arguments.checks.value_or(plan.search.checks);
+    plan.search.seed = arguments.seed.value_or(plan.search.seed);
+    if (plan.search.design > 0 && plan.search.design + plan.search.checks > plan.search.runs) {
+        return Error{fmt::format("--design {} with --checks {} is refused; together they must be at most --runs {}",
+                                 plan.search.design, plan.search.checks, plan.search.runs)};
+    }
+    return plan;
+}
+
+int say_interrupted(const fs::path& path) {
+    return fail(exit_code::interrupted,
+                fmt::format("interrupted; the runs that are done lie in {}, and the same command goes on from there",
+                            path.string()));
+}
+
+int run_recovery(const CalibrateArguments& arguments, const CalibrationPlan& plan, const PlannedRuns& runs,
+                 const SceneInput& input, const fs::path& path, CalibrationOptions options, Teller& teller) {
+    const std::size_t seeds = *arguments.recover;
+    std::size_t seed = 0;
+    options.on_progress = [&](const CalibrationProgress& progress) {
+        const std::string where = seed == 0 ? "runs with known values" : fmt::format("seed {} of {}", seed, seeds);
+        teller.tell([&] { return where + ", " + progress_text(progress); }, [&] { return progress_json(progress); });
+    };
+    const auto recovery = recover(plan, runs, input.source, input.scene, input.name, path, seeds, options,
+                                  [&](std::size_t now) { seed = now + 1; });
+    teller.clear();
+    if (!recovery) return fail(exit_code::bad_input, recovery.error().message);
+    if (recovery->interrupted) return say_interrupted(path);
+    if (Status s = write_text_file(path / "recovery.csv", recovery_table(*recovery)); !s) {
+        return fail(exit_code::failure, s.error().message);
+    }
+    if (arguments.json) {
+        print(recovery_json(*recovery) + "\n");
+    } else if (!arguments.quiet) {
+        print(recovery_text(*recovery, path));
+    }
+    return exit_code::success;
+}
+
+int run_calibration(const CalibrateArguments& arguments, const CalibrationPlan& plan, const PlannedRuns& runs,
+                    const SceneInput& input, const fs::path& path, CalibrationOptions options, Teller& teller) {
+    const std::vector<ObservedValue> observed = observed_values(input.scene);
+    const auto folder = EnsembleFolder::open(
+        path, calibration_definition("calibration", plan, runs, input.source, input.scene, observed, input.name));
+    if (!folder) return fail(exit_code::bad_input, folder.error().message);
+    options.on_progress = [&](const CalibrationProgress& progress) {
+        teller.tell([&] { return progress_text(progress); }, [&] { return progress_json(progress); });
+    };
+    const auto made = calibrate(plan, runs, input.source, input.scene, observed, *folder, options);
+    teller.clear();
+    if (!made) return fail(exit_code::fault, made.error().message);
+    if (made->result.interrupted) return say_interrupted(path);
+    teller.say("writing tables and report");
+    const Status written = write_calibration(*made, input.source, input.unpacked != nullptr, path);
+    teller.clear();
+    if (!written) return fail(exit_code::failure, written.error().message);
+    if (arguments.json) {
+        print(calibration_line(*made, path) + "\n");
+    } else if (!arguments.quiet) {
+        print(calibration_text(*made, path));
+    }
+    return exit_code::success;
+}
+
+}  // namespace
+
+CLI::App* add_calibrate(CLI::App& app, CalibrateArguments& arguments) {
+    CLI::App* command =
+        app.add_subcommand("calibrate", "find the values of a scene that explain field observations, and how surely");
+    command->add_option("scene", arguments.scene, "scene file; left out: the built-in scene")->type_name("SCENE");
+    command->add_option("-o,--output", arguments.output, "folder; left out: talus_out/<scene name>_calibration")
+        ->type_name("DIR");
+    command->add_option("--vary", arguments.factors, "a free value with its range or prior; may be given many times")
+        ->type_name("SECTION.KEY=DISTRIBUTION")
+        ->allow_extra_args(false);
+    command->add_option("--runs", arguments.runs, "at most so many; left out: 100")->type_name("N");
+    command->add_option("--design", arguments.design, "of them in the design; left out: ten per factor")
+        ->type_name("N")
+        ->check(CLI::Range(3, 2000));
+    command->add_option("--checks", arguments.checks, "runs that check the result; left out: 10")
+        ->type_name("N")
+        ->check(CLI::Range(0, 1000));
+    command->add_option("--seed", arguments.seed, "of the design and the chains; left out: 1")->type_name("N");
+    command->add_option("--recover", arguments.recover, "so many times with observations made by runs of known values")
+        ->type_name("N")
+        ->check(CLI::Range(1, 1000));
+    command->add_option("--set", arguments.overrides, "set a value of the scene; may be given many times")
+        ->type_name("SECTION.KEY=VALUE")
+        ->allow_extra_args(false);
+    command->add_option("--data", arguments.data, "folder that ${TALUS_DATA} in a scene's paths stands for")
+        ->type_name("DIR");
+    command->add_option("--threads", arguments.threads, "runs side by side, a thread each; left out: all cores")
+        ->type_name("N")
+        ->check(CLI::Range(1, 4096));
+    command->add_flag("--retry-failed", arguments.retry_failed, "run again what failed in an earlier call");
+    CLI::Option* quiet = command->add_flag("--quiet", arguments.quiet, "print nothing but errors");
+    command->add_flag("--json", arguments.json, "progress and result as one JSON object per line on stdout")
+        ->excludes(quiet);
+    command->footer(help);
+    return command;
+}
+
+int calibrate_command(const CalibrateArguments& arguments) {
+    if (!arguments.data.empty()) set_data_folder(arguments.data);
+    InterruptWatch watch;
+    const Result<CalibrationPlan> plan = read_arguments(arguments);
+    if (!plan) return fail(exit_code::bad_input, plan.error().message);
+    const Result<SceneInput> input = open_scene(arguments.scene, arguments.overrides, watch);
+    if (!input) return fail(exit_code::bad_input, input.error().message);
+    const Result<PlannedRuns> runs = plan_calibration(*plan, input->source, input->scene);
+    if (!runs) return fail(exit_code::bad_input, runs.error().message);
+    const std::string ending = arguments.recover ? "_recovery" : "_calibration";
+    const fs::path path =
+        arguments.output.empty() ? fs::path("talus_out") / (input->short_name + ending) : fs::path(arguments.output);
+
+    const int cores = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
+    CalibrationOptions options;
+    const int threads = arguments.threads.value_or(cores);
+    options.runs_at_once = std::min(threads, static_cast<int>(plan->search.at_once));
+    options.threads_per_run = std::max(1, threads / options.runs_at_once);
+    options.retry_failed = arguments.retry_failed;
+    options.stop_requested = &watch.stop_requested();
+    Teller teller(arguments.quiet, arguments.json);
+    return arguments.recover ? run_recovery(arguments, *plan, *runs, *input, path, options, teller)
+                             : run_calibration(arguments, *plan, *runs, *input, path, options, teller);
+}
+
+}  // namespace talus

@@ -1,0 +1,44 @@
+#include "scene_input.hpp"
+
+#include <filesystem>
+#include <utility>
+
+#include "scene/builtin.hpp"
+
+namespace talus {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+const std::string builtin_prefix = "built-in:";
+
+}  // namespace
+
+Result<SceneInput> open_scene(const std::string& scene, const std::vector<std::string>& overrides,
+                              InterruptWatch& watch) {
+    SceneInput s;
+    s.source.overrides = overrides;
+    if (scene.empty() || scene.starts_with(builtin_prefix)) {
+        s.unpacked = std::make_unique<TemporaryFolder>();
+        if (s.unpacked->path().empty())
+            return Error{"cannot make a temporary folder for the built-in scene; set TMPDIR"};
+        watch.remove_at_once(s.unpacked->path());
+        const auto file = unpack_builtin_scene(s.unpacked->path());
+        if (!file) return file.error();
+        s.source.file = *file;
+        s.short_name = builtin_scene_name;
+        s.name = builtin_prefix + s.short_name;
+    } else {
+        s.source.file = scene;
+        s.name = fs::absolute(scene).lexically_normal().string();
+        const std::string stem = s.source.file.stem().string();
+        s.short_name = stem == "scene" ? fs::absolute(scene).parent_path().filename().string() : stem;
+    }
+    Result<Scene> loaded = load_scene(s.source.file, overrides);
+    if (!loaded) return loaded.error();
+    s.scene = *std::move(loaded);
+    return Result<SceneInput>(std::move(s));
+}
+
+}  // namespace talus

@@ -1,0 +1,28 @@
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "core/result.hpp"
+#include "interrupt.hpp"
+#include "scene/scene.hpp"
+#include "scene/variants.hpp"
+#include "temporary_folder.hpp"
+
+namespace talus {
+
+/// The scene of many runs, on disk and loaded.
+struct SceneInput {
+    std::unique_ptr<TemporaryFolder> unpacked;  ///< of the built-in scene
+    SceneSource source;
+    std::string name;        ///< as the definition of its runs has it
+    std::string short_name;  ///< for the default output folder
+    Scene scene;
+};
+
+/// `scene` as given, empty or "built-in:sham_tseng" for the built-in one. Errors: as load_scene.
+[[nodiscard]] Result<SceneInput> open_scene(const std::string& scene, const std::vector<std::string>& overrides,
+                                            InterruptWatch& watch);
+
+}  // namespace talus

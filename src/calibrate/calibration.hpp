@@ -1,0 +1,78 @@
+#pragma once
+
+#include <atomic>
+#include <cstddef>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+#include "calibrate/ensemble_folder.hpp"
+#include "calibrate/plan.hpp"
+#include "calibrate/predict.hpp"
+#include "calibrate/run_record.hpp"
+#include "calibrate/search.hpp"
+#include "core/result.hpp"
+#include "scene/scene.hpp"
+#include "scene/variants.hpp"
+
+/// Back-analysis: which values of a scene explain what was observed in the field, by runs of that scene.
+namespace talus {
+
+struct CalibrationPlan {
+    std::vector<Factor> factors;  ///< free values with ranges or priors
+    SearchOptions search;
+};
+
+struct CalibrationProgress {
+    Phase phase = Phase::design;
+    std::size_t done = 0, failed = 0, most = 0;  ///< runs, and at most so many
+    double least_misfit = never;
+    double wall_remaining = 0;  ///< s, an estimate; NaN: not known yet
+};
+
+struct CalibrationOptions {
+    int runs_at_once = 1, threads_per_run = 1;  ///< as in EnsembleOptions
+    bool retry_failed = false;
+    const std::atomic<bool>* stop_requested = nullptr;
+    std::function<void(const CalibrationProgress&)> on_progress = {};  ///< from any thread, one at a time
+};
+
+/// A calibration and all that it says.
+struct Calibration {
+    const Scene* scene = nullptr;  ///< as given, before factors
+    std::vector<Factor> factors;
+    std::vector<ObservedValue> observed;
+    SearchResult result;
+    std::vector<RunRecord> records;           ///< as result.runs
+    std::vector<std::string> best_overrides;  ///< "section.key=value" that make the scene that of the best run
+    double wall_time = 0;                     ///< s, of this call
+};
+
+/// The factors as runs of the scene. Errors: as PlannedRuns::make; a factor without a range; too few runs; nothing
+/// observed, or beyond the flow path.
+[[nodiscard]] Result<PlannedRuns> plan_calibration(const CalibrationPlan& plan, const SceneSource& source,
+                                                   const Scene& base);
+
+/// What makes a calibration this one, for EnsembleFolder::open; `kind`: "calibration", or of other runs.
+[[nodiscard]] nlohmann::ordered_json calibration_definition(const std::string& kind, const CalibrationPlan& plan,
+                                                            const PlannedRuns& runs, const SceneSource& source,
+                                                            const Scene& base,
+                                                            const std::vector<ObservedValue>& observed,
+                                                            const std::string& scene_name);
+
+/// Predictions of the scene's observations by runs of it, kept in the folder, which is gone through again for those
+/// that are there. `observed`: to tell how well they fit; `records` takes what was run. All must outlive the model.
+[[nodiscard]] ForwardModel scene_model(PlannedRuns& runs, const SceneSource& source,
+                                       const std::vector<ObservedValue>& observed, const EnsembleFolder& folder,
+                                       std::size_t most, const CalibrationOptions& options,
+                                       std::vector<RunRecord>& records);
+
+/// Computes what the folder lacks and finds the values that explain `observed` (as observed_values(base), or other
+/// values of the same). Errors: a record cannot be written, or is of another calibration; no run is complete.
+[[nodiscard]] Result<Calibration> calibrate(const CalibrationPlan& plan, PlannedRuns runs, const SceneSource& source,
+                                            const Scene& base, const std::vector<ObservedValue>& observed,
+                                            const EnsembleFolder& folder, const CalibrationOptions& options);
+
+}  // namespace talus

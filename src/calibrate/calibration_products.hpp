@@ -1,0 +1,69 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+#include "calibrate/calibration.hpp"
+#include "core/result.hpp"
+
+namespace talus {
+
+/// What is known of one factor, in the unit of its key.
+struct FactorResult {
+    double best = 0;                                         ///< of the run of least misfit
+    double median = 0, low = 0, high = 0;                    ///< of the posterior, with its central 95 %
+    double prior_low = 0, prior_high = 0;                    ///< central 95 % of the prior
+    double kept = 0;                                         ///< width of the posterior's 95 % in shares of the prior's
+    double r_hat = 0, effective = 0;                         ///< of the chains
+    enum class End { none, low, high } against = End::none;  ///< the posterior is pressed against an end of the range
+};
+
+/// What the calibration says of one observation.
+struct ObservationResult {
+    double best = 0;                       ///< computed by the run of least misfit; NaN: nothing came there
+    double deviation = 0;                  ///< of that, as deviation_of
+    double prior_low = 0, prior_high = 0;  ///< 5th and 95th percentile of the design's runs
+    double median = 0, low = 0, high = 0;  ///< of runs that the posterior expects, with 95 %
+    double left_out = 0;                   ///< root mean square error of the emulator for a run that it does not know
+    double explained = 0;                  ///< share of the runs' variance that it tells beforehand
+    double noise = 0;                      ///< standard deviation of runs around the emulator
+    double reach_told = 1;                 ///< share of the runs of which the emulator tells whether debris came there
+};
+
+/// All numbers of a calibration.
+struct CalibrationSummary {
+    std::vector<FactorResult> factors;
+    std::vector<ObservationResult> observations;
+    std::size_t complete = 0, failed = 0;
+    double checks_within = never;       ///< share of the checks that lie in the 95 % that emulators gave
+    std::vector<std::string> warnings;  ///< what a reader must know before believing any of it, a sentence each
+};
+[[nodiscard]] CalibrationSummary summarise(const Calibration& calibration);
+
+/// Misfit over the first two factors, by the emulators, at the best values of all others that were looked at.
+struct MisfitMap {
+    std::size_t cells = 0;       ///< along each factor
+    std::vector<double> x, y;    ///< limits of the cells, cells + 1 of each, in the units of the keys; no y: one factor
+    std::vector<double> misfit;  ///< by rows of y
+};
+[[nodiscard]] MisfitMap misfit_map(const Calibration& calibration);
+
+/// The share of a distribution (not a list) that lies below a value.
+[[nodiscard]] double share_below(const Distribution& distribution, double value);
+
+/// runs.csv, factors.csv, observations.csv, misfit_map.csv, posterior.csv, calibration.json, report.html,
+/// misfit_map.svg and best_fit/scene.toml, which runs the best fit, into the folder. `own_files`: the scene's files are
+/// unpacked into best_fit too (the built-in scene). Errors name the file and the cause.
+[[nodiscard]] Status write_calibration(const Calibration& calibration, const SceneSource& source, bool own_files,
+                                       const std::filesystem::path& folder);
+
+/// Everything but draws and the map; values that do not exist are null.
+[[nodiscard]] nlohmann::ordered_json calibration_json(const Calibration& calibration);
+
+/// The self-contained page.
+[[nodiscard]] std::string render_calibration_report(const Calibration& calibration);
+
+}  // namespace talus

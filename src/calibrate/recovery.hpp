@@ -1,0 +1,48 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "calibrate/calibration.hpp"
+#include "core/result.hpp"
+
+/// Whether a calibration would return values that are known: made-up observations from runs with them.
+namespace talus {
+
+/// One attempt.
+struct RecoverySeed {
+    std::uint64_t seed = 0;
+    std::vector<double> truth;      ///< per factor, in the unit of its key
+    std::vector<double> low, high;  ///< the 95 % that the calibration states
+    std::vector<double> median;
+    double widest_r_hat = 0;
+    std::size_t runs = 0;
+
+    [[nodiscard]] bool returned(std::size_t factor) const {
+        return low[factor] <= truth[factor] && truth[factor] <= high[factor];
+    }
+    [[nodiscard]] bool returned() const;
+};
+
+struct Recovery {
+    std::vector<Factor> factors;
+    std::vector<RecoverySeed> seeds;
+    bool interrupted = false;
+};
+
+/// Draws values from the priors, runs the scene with them, takes its predictions with a normal error of each
+/// observation's uncertainty as observed, and calibrates; `seeds` times, in folders seed_01, ... of `folder`, with the
+/// runs with known values in `truths`. Values whose debris does not come to every place where something was observed
+/// are drawn again: nothing would have been observed there. Goes on with what the folders have. `on_seed` is told which
+/// seed begins. Errors: as calibrate; hardly any values bring debris to all observations.
+[[nodiscard]] Result<Recovery> recover(const CalibrationPlan& plan, const PlannedRuns& runs, const SceneSource& source,
+                                       const Scene& base, const std::string& scene_name,
+                                       const std::filesystem::path& folder, std::size_t seeds,
+                                       const CalibrationOptions& options,
+                                       const std::function<void(std::size_t)>& on_seed);
+
+/// recovery.csv: a row per seed and factor.
+[[nodiscard]] std::string recovery_table(const Recovery& recovery);
+
+}  // namespace talus

@@ -1,0 +1,72 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <vector>
+
+#include "calibrate/fit.hpp"
+#include "core/result.hpp"
+
+/// Finds what factors explain observations, with few runs of a model that is dear.
+namespace talus {
+
+enum class Phase { design, search, check };
+/// "design", "search", "check".
+[[nodiscard]] const char* phase_name(Phase phase);
+
+struct SearchOptions {
+    std::size_t runs = 100;   ///< at most, all together
+    std::size_t design = 0;   ///< of the space-filling design; 0: ten per factor (Loeppky, Sacks & Welch 2009)
+    std::size_t checks = 10;  ///< runs at the end: the best place and draws from the posterior
+    std::size_t at_once = 4;  ///< runs that are chosen together
+    std::uint64_t seed = 1;
+};
+
+/// The fewest runs that a search over so many factors takes.
+[[nodiscard]] std::size_t fewest_runs(std::size_t factors);
+
+/// One run of a search.
+struct SearchRun {
+    std::vector<double> point;  ///< of the unit cube
+    Phase phase = Phase::design;
+    std::vector<double> predicted;  ///< as the observations; NaN: nothing came there; empty: the run failed
+    double misfit = 0;              ///< of observations and priors; NaN: failed
+    double improvement = 0;         ///< that was expected of it when it was chosen; 0 where it was not chosen so
+};
+
+/// What emulators said of a run before it was made.
+struct Check {
+    std::size_t run = 0, observation = 0;
+    double computed = 0, mean = 0, deviation = 0;  ///< computed NaN: nothing came there
+    double reached = 1;                            ///< probability that something does
+
+    /// Whether the run's result is among the 95 % that were to be expected.
+    [[nodiscard]] bool expected() const;
+};
+
+struct SearchResult {
+    std::vector<SearchRun> runs;
+    std::optional<std::size_t> best;  ///< run of the least misfit; none where all failed
+    Fit fit;                          ///< of all runs
+    Posterior posterior;
+    std::vector<Check> checks;
+    double improvement = 0;     ///< most that was still expected of another run when the search ended, in misfit
+    double emulator_share = 0;  ///< mean of Fit::emulator_share over the posterior at the end
+    double shift = 0;           ///< of the posterior's medians by the checks, most, in standard deviations
+    bool settled = false;       ///< the search ended because nothing more was to be learned
+    bool interrupted = false;
+};
+
+/// Computes runs at `points` and returns all their predictions, one row per point; empty rows: failed. It is called
+/// with the same points and more at the end. Nothing: interrupted.
+using ForwardModel = std::function<Result<std::optional<Points>>(const Points& points, Phase phase)>;
+
+/// A design, then rounds of runs where the most improvement is expected and where the posterior is least certain of the
+/// emulators, then draws from the posterior as a check, which count in the end. The runs hang on the model, the
+/// observations and the options alone. `priors` without lists. Errors: of the model, all runs of the design failed.
+[[nodiscard]] Result<SearchResult> search(const std::vector<Distribution>& priors,
+                                          const std::vector<ObservedValue>& observed, const ForwardModel& model,
+                                          const SearchOptions& options);
+
+}  // namespace talus

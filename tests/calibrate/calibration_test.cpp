@@ -1,0 +1,101 @@
+#include "calibrate/calibration.hpp"
+
+#include <functional>
+#include <optional>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "calibrate/calibration_products.hpp"
+#include "scene/scene_folder.hpp"
+
+namespace talus {
+namespace {
+
+using testing::Contains;
+using testing::HasSubstr;
+
+TEST(Calibration, ASharesValueHasThatShareBelowIt) {
+    for (const char* text : {"0.1:0.6", "log:0.01:1", "normal:3:0.5", "triangular:0:0.2:1"}) {
+        const auto distribution = parse_distribution(text);
+        ASSERT_TRUE(distribution);
+        for (const double share : {0.02, 0.5, 0.9})
+            EXPECT_NEAR(share_below(*distribution, distribution->quantile(share)), share, 1e-6) << text;
+    }
+}
+
+/// Runs of the valley that are made up instead of simulated.
+class CalibrationTest : public SceneFolder {
+  protected:
+    CalibrationTest() {
+        write_valley(
+            "[solver]\nparticle_spacing_m = 3\nend_time_s = 30\n[[observation]]\nchainage_m = 50\n"
+            "front_velocity_mps = 8\nuncertainty_mps = 1\n[[arrival]]\nchainage_m = 60\ntime_s = 12\n");
+        scene.emplace(*load_scene(folder / "scene.toml"));
+        made.scene = &*scene;
+        made.factors = {{"material.friction_coefficient", *parse_distribution("0.1:0.5")},
+                        {"material.viscosity", *parse_distribution("0:0.4")}};
+        made.observed = observed_values(*scene);
+    }
+
+    void search_with(const std::function<std::vector<double>(const std::vector<double>&)>& run) {
+        const ForwardModel model = [&](const Points& points, Phase) -> Result<std::optional<Points>> {
+            Points all;
+            for (const auto& p : points) all.push_back(run(p));
+            return std::optional(all);
+        };
+        const auto found =
+            search({made.factors[0].distribution, made.factors[1].distribution}, made.observed, model, {.runs = 40});
+        ASSERT_TRUE(found);
+        made.result = *found;
+        made.records.resize(made.result.runs.size());
+    }
+
+    std::optional<Scene> scene;
+    Calibration made;
+};
+
+TEST_F(CalibrationTest, KnowsWhatStandsForNoPrediction) {
+    ASSERT_EQ(made.observed.size(), 2u);
+    EXPECT_EQ(made.observed[0].unreached, 0);   // no front, no velocity
+    EXPECT_EQ(made.observed[1].unreached, 30);  // it had not come when the run ended
+}
+
+TEST_F(CalibrationTest, WarnsOfWhatIsNotKnown) {
+    search_with([](const std::vector<double>& p) { return std::vector<double>{16 - 16 * p[0], 12}; });
+    const CalibrationSummary summary = summarise(made);
+    EXPECT_NEAR(summary.factors[0].median, 0.3, 0.03);
+    EXPECT_LT(summary.factors[0].kept, 0.4);
+    EXPECT_GT(summary.factors[1].kept, 0.8);
+    EXPECT_THAT(summary.warnings, Contains(HasSubstr("material.viscosity is hardly constrained")));
+    EXPECT_THAT(summary.warnings, testing::Not(Contains(HasSubstr("is not explained"))));
+}
+
+TEST_F(CalibrationTest, WarnsWhereNothingFits) {
+    search_with([](const std::vector<double>& p) { return std::vector<double>{30 - 10 * p[0], 12}; });
+    const CalibrationSummary summary = summarise(made);
+    EXPECT_GT(summary.observations[0].deviation, 10);
+    EXPECT_THAT(summary.warnings,
+                Contains(HasSubstr("Front velocity at 50 m is not explained: the best run gives 20")));
+    EXPECT_THAT(summary.warnings, Contains(HasSubstr("material.friction_coefficient is pressed against the high end")));
+}
+
+TEST_F(CalibrationTest, SeesThatTwoFactorsStandForEachOther) {
+    search_with([](const std::vector<double>& p) { return std::vector<double>{16 - 8 * (p[0] + p[1]), 12}; });
+    EXPECT_THAT(summarise(made).warnings, Contains(HasSubstr("are correlated by -0.")));
+}
+
+TEST_F(CalibrationTest, TheMapIsLowWhereTheRunsFit) {
+    search_with([](const std::vector<double>& p) { return std::vector<double>{16 - 16 * p[0], 12}; });
+    const MisfitMap map = misfit_map(made);
+    ASSERT_EQ(map.misfit.size(), map.cells * map.cells);
+    EXPECT_DOUBLE_EQ(map.x.front(), 0.1);
+    EXPECT_DOUBLE_EQ(map.y.back(), 0.4);
+    EXPECT_NEAR(map.misfit[map.cells / 2], 0, 0.3);  // friction 0.3
+    EXPECT_GT(map.misfit[0], 30);
+    EXPECT_GT(map.misfit[map.cells - 1], 30);
+}
+
+}  // namespace
+}  // namespace talus

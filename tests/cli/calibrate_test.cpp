@@ -1,0 +1,119 @@
+#include <filesystem>
+#include <signal.h>
+#include <string>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "cli/program.hpp"
+#include "cli/small_scene.hpp"
+
+namespace talus::test {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::HasSubstr;
+
+std::vector<std::string> command(const std::string& output, const std::vector<std::string>& more = {},
+                                 const std::string& runs = "8") {
+    std::vector<std::string> arguments = {"calibrate", "slope.toml",
+                                          "--vary",    "material.friction_coefficient=0.1:0.6",
+                                          "--vary",    "release.thickness_m=normal:0.3:0.05",
+                                          "--runs",    runs,
+                                          "-o",        output};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return arguments;
+}
+
+/// A front that comes to its observation in every run.
+class FlowingScene : public SmallScene {
+  public:
+    FlowingScene() {
+        replace("end_time_s = 1", "end_time_s = 4");
+        replace("chainage_m = 5", "chainage_m = 24");
+    }
+};
+
+TEST(Calibrate, WritesWhatItFoundAndASceneThatRunsIt) {
+    const FlowingScene scene;
+    const ProgramOptions here{.folder = scene.folder()};
+    const auto outcome = run_program(command("result", {"--json"}), here);
+    ASSERT_EQ(outcome.exit_code, 0) << outcome.error;
+    const auto event = nlohmann::json::parse(lines_of(outcome.out).back());
+    EXPECT_EQ(event.at("event"), "result");
+    EXPECT_LE(event.at("runs").get<int>(), 8);
+    EXPECT_EQ(event.at("factors").size(), 2u);
+    const auto interval = event.at("factors")[0].at("interval_95");
+    EXPECT_GE(interval[0].get<double>(), 0.1);
+    EXPECT_LE(interval[0].get<double>(), interval[1].get<double>());
+    EXPECT_LE(interval[1].get<double>(), 0.6);
+    for (const char* file : {"runs.csv", "factors.csv", "observations.csv", "misfit_map.csv", "posterior.csv",
+                             "misfit_map.svg", "report.html", "calibration.json"}) {
+        EXPECT_TRUE(fs::exists(scene.folder() / "result" / file)) << file;
+    }
+    const std::string page = read_text(scene.folder() / "result/report.html");
+    EXPECT_THAT(page, HasSubstr("<h2>Predicted against observed</h2>"));
+    EXPECT_THAT(page, testing::Not(HasSubstr("{{")));
+
+    const auto best = run_program({"run", "result/best_fit/scene.toml", "-o", "again", "--quiet"}, here);
+    ASSERT_EQ(best.exit_code, 0) << best.error;
+    const auto manifest = nlohmann::json::parse(read_text(scene.folder() / "again/manifest.json"));
+    EXPECT_EQ(manifest.at("result_hash"), event.at("best_hash"));
+}
+
+TEST(Calibrate, AnInterruptedOneGoesOnToTheSameResult) {
+    const FlowingScene scene;
+    const ProgramOptions here{.folder = scene.folder()};
+    ASSERT_EQ(run_program(command("whole", {"--quiet"}, "14"), here).exit_code, 0);
+    ProgramOptions options = here;
+    options.wait_for = "\"event\":\"progress\"";
+    options.while_running = [](int process) { kill(process, SIGINT); };
+    const auto first = run_program(command("part", {"--json", "--threads", "1"}, "14"), options);
+    ASSERT_EQ(first.exit_code, 130) << first.error;
+    EXPECT_THAT(first.error, HasSubstr("the same command goes on from there"));
+    EXPECT_FALSE(fs::exists(scene.folder() / "part/report.html"));
+    ASSERT_EQ(run_program(command("part", {"--quiet"}, "14"), here).exit_code, 0);
+    for (const char* file : {"factors.csv", "observations.csv", "posterior.csv", "calibration.json"}) {
+        EXPECT_EQ(read_text(scene.folder() / "whole" / file), read_text(scene.folder() / "part" / file)) << file;
+    }
+}
+
+TEST(Calibrate, TriesItselfOnKnownValues) {
+    const FlowingScene scene;
+    const ProgramOptions here{.folder = scene.folder()};
+    const auto outcome = run_program(command("tried", {"--recover", "2", "--json"}), here);
+    ASSERT_EQ(outcome.exit_code, 0) << outcome.error;
+    const auto event = nlohmann::json::parse(lines_of(outcome.out).back());
+    ASSERT_EQ(event.at("seeds").size(), 2u);
+    EXPECT_NE(event.at("seeds")[0].at("truth"), event.at("seeds")[1].at("truth"));
+    EXPECT_THAT(read_text(scene.folder() / "tried/recovery.csv"), HasSubstr("seed,factor,truth,median"));
+}
+
+TEST(Calibrate, BadInputIsOneLineAndLeavesNothing) {
+    const SmallScene scene;
+    const auto before = scene.files();
+    const auto expect = [&](const std::vector<std::string>& arguments, const std::string& part) {
+        const auto outcome = run_program(arguments, {.folder = scene.folder()});
+        EXPECT_EQ(outcome.exit_code, 2) << part;
+        EXPECT_EQ(lines_of(outcome.error).size(), 1u) << outcome.error;
+        EXPECT_THAT(outcome.error, HasSubstr(part));
+    };
+    expect({"calibrate", "slope.toml", "-o", "x"}, "there is nothing to vary");
+    expect({"calibrate", "nix.toml", "--vary", "material.viscosity=0:0.1", "-o", "x"}, "nix.toml");
+    expect(command("x", {"--vary", "material.viscosity=0.2:0.2"}), "the range is empty");
+    expect(command("x", {"--vary", "material.viscosity=0.2:2"}), "material.viscosity = 2 is refused");
+    expect(command("x", {"--vary", "solver.kernel=spiky,cubic_spline"}), "a list has nothing between its values");
+    expect(command("x", {}, "7"), "runs = 7 is refused; it must be 8 to 2000 with 2 factors");
+    expect(command("x", {"--design", "9"}), "--design 9 with --checks 10 is refused");
+    expect(command("x", {"--set", "observation[0].chainage_m=5000"}),
+           "observation[0].chainage_m = 5000 lies beyond the flow path");
+    scene.replace("[[observation]]\nchainage_m = 5\nfront_velocity_mps = 3\n", "");
+    expect(command("x"), "has nothing to calibrate against");
+    scene.write(SmallScene::text());
+    EXPECT_EQ(scene.files(), before);
+}
+
+}  // namespace
+}  // namespace talus::test
