@@ -84,7 +84,8 @@ class Terrain {
     [[nodiscard]] std::size_t cell_at(float x, float y) const;
     /// Cosine of the slope at the centre of a cell that has data.
     [[nodiscard]] double slope_cosine_of(std::size_t cell) const;
-    /// Sets the world elevation of a cell, which has data, anew; the surface changes up to two cells around.
+    /// Sets the world elevation of a cell, which has data, anew; the surface changes up to two cells around. Copies of
+    /// this terrain stay as they are: what they share with it is copied before.
     void set_elevation(std::size_t cell, float elevation);
 
   private:
@@ -131,11 +132,11 @@ class Terrain {
         return nodes_[i][0] + nodes_[i + 1][0] + nodes_[i + stride_][0] + nodes_[i + stride_ + 1][0];
     }
 
-    std::shared_ptr<const Grid<float>> elevation_ = std::make_shared<const Grid<float>>();
+    std::shared_ptr<Grid<float>> elevation_ = std::make_shared<Grid<float>>();
     LocalFrame frame_;
     /// A cell centre: local z (NaN: no data), and its rise over one cell eastwards and northwards, m. By fours, since
     /// what lies together is loaded at once.
-    std::shared_ptr<const Quad[]> nodes_;
+    std::shared_ptr<Quad[]> nodes_;
     int stride_ = 0;
     int last_column_ = 0, last_row_ = 0;
     float x_first_ = 0, y_first_ = 0;  // local position of the south-west cell's centre
