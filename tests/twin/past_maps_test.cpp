@@ -9,14 +9,6 @@ namespace {
 
 using ::testing::HasSubstr;
 
-/// The value of a layer at a place; NaN: nothing there, or outside.
-float value_at(const Grid<float>& grid, const PlanPoint& p) {
-    const auto column = static_cast<int>(std::floor((p.x - grid.geometry.x_min) / grid.geometry.cell)),
-               row = static_cast<int>(std::floor((p.y - grid.geometry.y_min) / grid.geometry.cell));
-    const bool inside = column >= 0 && row >= 0 && column < grid.geometry.columns && row < grid.geometry.rows;
-    return inside ? grid.at(column, row) : std::nanf("");
-}
-
 /// Calls `look(then, rebuilt)` for all cells of the whole map in which either has a value.
 template <class Look>
 void compare(const Scenario& scenario, const Grid<float>& then, const Grid<float>& rebuilt, const Look& look) {
