@@ -85,12 +85,12 @@ Section declare_bed() {
                    "law = \"growth\" needs it, and law = \"shear\" does not have it",
                    "Share of its volume that debris picks up per metre: ln(volume after / volume before) over the "
                    "length of the bed.");
-    s.key("critical_shear_stress_pa", "Pa", &BedSpec::critical_shear_stress, at_least(0),
+    s.key("critical_shear_stress_Pa", "Pa", &BedSpec::critical_shear_stress, at_least(0),
           "With law = \"shear\": less shear stress, rest density x gravity x depth x sine of the slope, picks up "
           "nothing.");
     s.key("erosion_rate_mps", "m/s", &BedSpec::erosion_rate, above_to(0, 10),
           "With law = \"shear\": how fast the bed is lowered.");
-    s.key("erosion_depth_m_per_pa", "m/Pa", &BedSpec::erosion_depth_per_shear, above_to(0, 1),
+    s.key("erosion_depth_mpPa", "m/Pa", &BedSpec::erosion_depth_per_shear, above_to(0, 1),
           "With law = \"shear\": how deep at most, per shear stress above the critical one.");
     return s.take();
 }

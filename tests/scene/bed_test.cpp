@@ -55,7 +55,7 @@ TEST_F(LoadBed, TakesDepthsFromARasterWithinItsPolygons) {
     write_terrain("depth.tif", [](double x, double) { return x < west + 100 ? 0 : 2; });
     write_valley(
         "[[bed]]\nfile = \"channel.geojson\"\ndepth_raster = \"depth.tif\"\nlaw = \"shear\"\n"
-        "critical_shear_stress_pa = 500\n");
+        "critical_shear_stress_Pa = 500\n");
     const Scene scene = loaded();
     EXPECT_NEAR(volume_of(scene.bed), 2 * 150 * 40, 1);
     EXPECT_EQ(scene.bed.materials[0].law, EntrainmentLaw::shear);

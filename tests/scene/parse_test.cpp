@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cstdlib>
+#include <set>
 #include <sstream>
 
 #include <gmock/gmock.h>
@@ -300,8 +301,15 @@ TEST_F(ParseScene, EveryCommentedDefaultOfAWrittenSceneIsValid) {
     spec.releases[0].file = "release.gpkg";
     spec.releases[0].thickness = 2;
     std::istringstream lines(write_scene(spec));
-    std::string text, current;
+    // Of these, one of several keys must be given.
+    const std::set<std::string> with_a_choice = {"bed", "zone", "inflow", "barrier", "barrier_opening"};
+    std::string text, current, section;
     while (std::getline(lines, current)) {
+        if (current.rfind("# [", 0) == 0 || current.rfind('[', 0) == 0) {
+            const std::size_t from = current.find_first_not_of("# [");
+            section = current.substr(from, current.find(']') - from);
+        }
+        if (with_a_choice.contains(section)) continue;
         const bool is_default =
             current.rfind("# [", 0) == 0 || (current.rfind("# ", 0) == 0 && current.find(" = ") != std::string::npos &&
                                              current.find_first_of(" =", 2) == current.find(" = "));

@@ -82,7 +82,7 @@ export async function testLevers(run, server) {
     await until(setup, (s) => s.parameters[key] === first, "undo by key");
     await page.keyboard.press("Control+Shift+Z");
     await until(setup, (s) => s.parameters[key] === 0.55, "redo by key");
-    assert.match(await page.locator(".levers button:has-text('Undo')").getAttribute("title"), /Undo: .+/);
+    await until(() => page.locator(".levers button:has-text('Undo')").getAttribute("title"), (t) => /Undo: .+/.test(t), "what undo would undo");
     await friction.locator("button[aria-label^=Reset]").click();
     const usual = (await server.ask("scene")).parameters.find((p) => p.key === key).default;
     await until(setup, (s) => s.parameters[key] === usual, "reset");
