@@ -235,7 +235,7 @@ export async function testLevers(run, server) {
     if (houses.length === 0) return;
     await page.click("[data-tab=impact]");
     await until(() => page.locator(".impacts tbody th button").count(), (n) => n > 0, "the table");
-    await page.locator(".impacts tbody th button").first().click();
+    await page.locator(".impacts").last().locator("tbody th button").first().click();
     await page.waitForTimeout(300);
     await clickGround(page, 0.5, 0.5);
     await until(() => page.locator(".editor input[aria-label=Name]").count(), (n) => n === 1, "the editor of a house");

@@ -19,13 +19,11 @@ const houseColumns: Column<Impact>[] = [
 ];
 const barrierColumns: Column<BarrierImpact>[] = [
   { key: "name", title: "Barrier", unit: "", value: (r) => r.name },
-  { key: "pressure", title: "Pressure", unit: "kPa", value: (r) => r.peak_pressure_kPa, digits: 1 },
   { key: "force", title: "Force", unit: "kN", value: (r) => r.peak_force_kN, digits: 0 },
   { key: "held", title: "Held", unit: "m3", value: (r) => r.held_m3, digits: 0 },
   { key: "over", title: "Over", unit: "m3", value: (r) => r.overtopped_m3, digits: 1 },
   { key: "through", title: "Through", unit: "m3", value: (r) => r.passed_m3, digits: 1 },
-  { key: "failed", title: "Failed at", unit: "s", value: (r) => r.failed_s, digits: 1 },
-  { key: "first", title: "Hit at", unit: "s", value: (r) => r.first_hit_s, digits: 1 },
+  { key: "failed", title: "Failed", unit: "s", value: (r) => r.failed_s, digits: 1 },
 ];
 
 /** Colour of a house by what hit it; null: nothing did. */
