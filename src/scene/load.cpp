@@ -70,7 +70,8 @@ Status add_depths(const ParsedScene& parsed, const std::string& key, const std::
         for (int column = 0; column < g.columns; ++column) {
             double sum = 0;
             for (int k = 0; k < parts * parts; ++k) {
-                const double east = (k % parts + 0.5) / parts, north = (k / parts + 0.5) / parts;
+                const int column_part = k % parts, row_part = k / parts;
+                const double east = (column_part + 0.5) / parts, north = (row_part + 0.5) / parts;
                 const float depth =
                     value_at(depths->grid, {g.x_min + (column + east) * g.cell, g.y_min + (row + north) * g.cell});
                 if (depth > 0) sum += depth;

@@ -209,7 +209,7 @@ Status load_buildings(const ParsedScene& parsed, Scene& scene) {
     const BuildingsSpec& spec = scene.spec.buildings;
     if (spec.file.empty()) return {};
     std::size_t outside = 0;
-    const Status loaded =
+    Status loaded =
         is_mesh_file(spec.file) ? load_mesh_buildings(parsed, scene, outside) : load_footprints(parsed, scene, outside);
     if (!loaded) return loaded;
     if (scene.buildings.empty()) {

@@ -30,13 +30,13 @@ class Entrainment {
 
   private:
     struct Site {
-        std::uint32_t particle;  ///< sorted index of the one that ground comes loose below
-        std::size_t cell;
+        std::uint32_t particle = 0;  ///< sorted index of the one that ground comes loose below
+        std::size_t cell = 0;
         LocalPoint foot;    ///< on the ground; of find() right below the particle
         LocalPoint normal;  ///< of the ground
     };
     struct Neighbour {
-        std::uint32_t site, particle;
+        std::uint32_t site = 0, particle = 0;
         friend auto operator<=>(const Neighbour&, const Neighbour&) = default;
     };
 
