@@ -1,6 +1,5 @@
 #pragma once
 
-#include <compare>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -37,7 +36,9 @@ class Entrainment {
     };
     struct Neighbour {
         std::uint32_t site = 0, particle = 0;
-        friend auto operator<=>(const Neighbour&, const Neighbour&) = default;
+        friend bool operator<(const Neighbour& a, const Neighbour& b) {
+            return a.site != b.site ? a.site < b.site : a.particle < b.particle;
+        }
     };
 
     void find_shear_rates(const Model& model, const State& state);

@@ -61,7 +61,7 @@ Quad Terrain::make_node(int column, int row) const {
 
 std::size_t Terrain::cell_at(float x, float y) const {
     const auto nearest = [this](float along, float first, int last) {
-        return std::clamp(static_cast<int>((along - first) * inverse_cell_ + 0.5f), 0, last);
+        return std::clamp(static_cast<int>(std::lround((along - first) * inverse_cell_)), 0, last);
     };
     return elevation_->geometry.index(nearest(x, x_first_, last_column_), nearest(y, y_first_, last_row_));
 }
