@@ -29,9 +29,9 @@ double moving_speed(const Model& model) {
 /// low-discrepancy sequence, Roberts 2018).
 double head_start(const GridGeometry& g, std::size_t cell) {
     const auto columns = static_cast<std::size_t>(g.columns);
+    const std::size_t column = cell % columns, row = cell / columns;
     double whole = 0;
-    return std::modf(static_cast<double>(cell % columns) * 0.7548776662466927 +
-                         static_cast<double>(cell / columns) * 0.5698402909980532,
+    return std::modf(static_cast<double>(column) * 0.7548776662466927 + static_cast<double>(row) * 0.5698402909980532,
                      &whole);
 }
 
@@ -165,8 +165,9 @@ void Entrainment::choose_foot(const Model& model, const State& state, std::size_
     float best = -1;
     constexpr int around = 8, rings = 3;
     for (int k = 0; k <= rings * around; ++k) {
-        const float angle = static_cast<float>(k % around) * 2 * std::numbers::pi_v<float> / around;
-        const float offset = foot_offset * spacing * static_cast<float>((k + around - 1) / around) / rings;
+        const int spoke = k % around, ring = (k + around - 1) / around;
+        const float angle = static_cast<float>(spoke) * 2 * std::numbers::pi_v<float> / around;
+        const float offset = foot_offset * spacing * static_cast<float>(ring) / rings;
         const float x = above.x + offset * std::cos(angle), y = above.y + offset * std::sin(angle);
         if (!model.terrain.covers(x, y)) continue;
         const GroundSample<float> ground = model.terrain.sample(x, y);

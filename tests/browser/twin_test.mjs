@@ -34,7 +34,7 @@ let sharing = server;
 try {
   if (parts.includes("levers")) await (await testLevers(run, server)).context().close();
   if (parts.includes("readings")) await testReadings(run, server);
-  if (parts.includes("barrier")) await testBarrier(run, server);
+  if (parts.includes("barrier")) await testBarrier(run, command);
   if (parts.includes("photo")) await testPhoto(run, server, command);
   if (parts.includes("sharing")) sharing = await testSharing(run, server, command);
   await run.check("nothing but the server is asked for, and the console is silent", async () => {

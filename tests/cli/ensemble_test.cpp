@@ -67,11 +67,11 @@ TEST(Ensemble, AnInterruptedOneGoesOn) {
     ProgramOptions options{.folder = scene.folder()};
     options.wait_for = "\"event\":\"progress\"";
     options.while_running = [](int process) { kill(process, SIGINT); };
-    const auto first = run_program(command("result", {"--json", "--threads", "1"}, "12"), options);
+    const auto first = run_program(command("result", {"--json", "--threads", "1"}, "6"), options);
     ASSERT_EQ(first.exit_code, 130) << first.error;
     EXPECT_THAT(first.error, HasSubstr("the same command goes on from there"));
     EXPECT_FALSE(fs::exists(scene.folder() / "result/report.html"));
-    const auto rest = run_program(command("result", {"--quiet"}, "12"), {.folder = scene.folder()});
+    const auto rest = run_program(command("result", {"--quiet"}, "6"), {.folder = scene.folder()});
     EXPECT_EQ(rest.exit_code, 0) << rest.error;
     EXPECT_TRUE(fs::exists(scene.folder() / "result/report.html"));
 }

@@ -53,7 +53,8 @@ Measured measure(const ImpactSpec& spec, double froude, const Setting& setting, 
     std::vector<LocalPoint> points;
     const auto columns = static_cast<int>(std::lround(stream / spec.spacing));
     const auto layers = static_cast<int>(std::lround(spec.depth / spec.spacing));
-    points.reserve(static_cast<std::size_t>(columns * layers * spec.width));
+    points.reserve(static_cast<std::size_t>(columns) * static_cast<std::size_t>(layers) *
+                   static_cast<std::size_t>(spec.width));
     for (int k = 0; k < layers; ++k) {
         for (int j = 0; j < spec.width; ++j) {
             for (int i = 0; i < columns; ++i) {

@@ -71,7 +71,7 @@ export class Run {
         this.problems.push(message.text());
       }
     });
-    page.on("pageerror", (error) => this.problems.push(String(error)));
+    page.on("pageerror", (error) => this.problems.push(error.stack ?? String(error)));
     page.on("request", (request) => {
       if (!/^(data|blob):/.test(request.url())) this.requests.push(request.url());
     });

@@ -48,7 +48,8 @@ export class Chart {
 
   /** data: x and one column per curve. `curves` replaces the curves when their number changed. */
   update(data: AlignedData, curves: Curve[] = this.curves): void {
-    const changed = curves !== this.curves && JSON.stringify(curves) !== JSON.stringify(this.curves);
+    // A plot has one column per curve for as long as it lives, also while nobody sees it.
+    if (curves !== this.curves && JSON.stringify(curves) !== JSON.stringify(this.curves)) this.drop();
     this.curves = curves;
     this.data = data;
     const empty = data[0].length === 0;
@@ -56,7 +57,7 @@ export class Chart {
     this.blank.hidden = !empty;
     if (empty) return;
     this.holder.setAttribute("aria-label", this.sentence());
-    if (this.plot && !changed) this.plot.setData(data);
+    if (this.plot) this.plot.setData(data);
     else this.build();
   }
   /** A line at an x, such as the time that is shown. */
@@ -66,10 +67,13 @@ export class Chart {
     this.plot?.redraw(false);
   }
 
+  private drop(): void {
+    this.plot?.destroy();
+    this.plot = null;
+  }
   private build(): void {
     const width = this.holder.clientWidth;
     if (width < 40) return;
-    this.plot?.destroy();
     const { x, y, right, height } = this.options;
     const axis = (label: string, unit: string, side: 0 | 1 | 2 | 3): NonNullable<Options["axes"]>[number] => ({
       label: unit === "" ? label : `${label}, ${unitText(unit)}`, labelFont: font, font, stroke: ink, labelSize: 16, size: side === 2 ? 30 : 40, gap: 3, labelGap: 0,
