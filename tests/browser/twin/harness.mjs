@@ -143,6 +143,8 @@ export async function until(question, wanted, what, limit_ms = 10_000) {
     await new Promise((resolve) => setTimeout(resolve, 100));
   }
 }
+/** Where an element is, once it is there: what lies over the view comes and goes with pictures. */
+export const boxOf = (locator) => until(() => locator.boundingBox({ timeout: 1000 }).catch(() => null), (box) => box !== null, String(locator));
 export const shownTime = async (page) => Number((await page.textContent(".clock")).replace("−", "-").split(" ")[0]);
 export async function saved(page, click) {
   const [download] = await Promise.all([page.waitForEvent("download"), click()]);

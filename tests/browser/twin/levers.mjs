@@ -1,5 +1,5 @@
 // What changes a scenario: time, parameters, releases, barriers, buildings, undo.
-import { assert, clickGround, shownTime, until, viewClip } from "./harness.mjs";
+import { assert, boxOf, clickGround, shownTime, until, viewClip } from "./harness.mjs";
 
 export async function testLevers(run, server) {
   const page = await run.open(server.controller, { name: "Ada" });
@@ -117,7 +117,7 @@ export async function testLevers(run, server) {
     const handles = page.locator(".handle:visible");
     await until(() => handles.count(), (n) => n === 5, "handles");
     await run.shot(page, "3-release");
-    const box = await handles.nth(2).boundingBox();
+    const box = await boxOf(handles.nth(2));
     await page.mouse.move(box.x + 6, box.y + 6);
     await page.mouse.down();
     await page.mouse.move(box.x + 26, box.y + 16, { steps: 4 });
@@ -218,7 +218,7 @@ export async function testLevers(run, server) {
     await name.fill("Pump house");
     await name.press("Enter");
     await until(setup, (s) => s.buildings.at(-1).name === "Pump house", "its name");
-    const whole = await page.locator(".handle.whole:visible").boundingBox();
+    const whole = await boxOf(page.locator(".handle.whole:visible"));
     await page.mouse.move(whole.x + 6, whole.y + 6);
     await page.mouse.down();
     await page.mouse.move(whole.x + 36, whole.y + 6, { steps: 4 });

@@ -1,6 +1,6 @@
 // What is read from a scenario: layers, camera, charts, probes, sections, impacts, recording, exports, comparison.
 import { join } from "node:path";
-import { assert, clickGround, saved, shownTime, until, viewClip } from "./harness.mjs";
+import { assert, boxOf, clickGround, saved, shownTime, until, viewClip } from "./harness.mjs";
 
 /** While one looks back, charts, mass balance, map layers and impacts are those of the time on display. */
 async function readPast(page, server, last) {
@@ -135,7 +135,7 @@ export async function testReadings(run, server) {
     const chart = page.locator(".tab-panel:visible .chart-plot").first();
     await until(() => chart.getAttribute("aria-label"), (t) => /Front.* from .* m\/s/.test(t ?? ""), "front velocities");
     assert.match(await chart.getAttribute("aria-label"), /Observed from .* m\/s/);
-    const seen = await run.colours(page, await chart.boundingBox());
+    const seen = await run.colours(page, await boxOf(chart));
     assert.ok(seen.different > 40, `${seen.different} colours in the chart`);
     await page.keyboard.press("ArrowRight");
     assert.equal(await page.locator("[role=tab][aria-selected=true]").getAttribute("data-tab"), "time");
@@ -209,7 +209,7 @@ export async function testReadings(run, server) {
     const now = await run.colours(page, clip);
     const last = (await state()).recording.last_s;
     const slider = page.locator("input.timeline");
-    const box = await slider.boundingBox();
+    const box = await boxOf(slider);
     const end = (await state()).end_time_s;
     await page.mouse.click(box.x + 7 + (box.width - 14) * (0.3 * last / end), box.y + box.height / 2);
     await until(() => shownTime(page), (t) => Math.abs(t - 0.3 * last) < 0.1 * last + 0.3, "an earlier time");

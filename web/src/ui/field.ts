@@ -84,7 +84,7 @@ export function numberField(options: NumberFieldOptions): NumberField {
     input,
     show(value) {
       const busy = document.activeElement === input || (slider !== null && slider.matches(":active"));
-      if (busy && shown !== null && value !== shown) return;
+      if (busy && shown !== null) return;
       shown = value;
       input.value = value === null ? "" : text(value);
       if (slider && value !== null) slider.value = String(value);

@@ -1,0 +1,45 @@
+// What the script of the twin's page costs while debris moves; no test, since it depends on the machine.
+// Usage: node page_speed.mjs SERVER [ARGUMENT ...], as for twin_test.mjs. Without a graphics card the pixels are drawn by
+// the processor, in another process; the figures here are the page's own script and what it hands to WebGL.
+import { tmpdir } from "node:os";
+import { join } from "node:path";
+import { chromium } from "playwright-core";
+import { Run, startServer, until } from "./twin/harness.mjs";
+
+const browser = await chromium.launch({ executablePath: process.env.TALUS_BROWSER ?? "/usr/bin/chromium", args: ["--headless", "--no-sandbox",
+  "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--ignore-gpu-blocklist", "--no-first-run"] });
+const server = await startServer(process.argv.slice(2));
+try {
+  const run = new Run(browser, join(tmpdir(), "talus_page_speed"));
+  const page = await run.open(server.controller, { name: "Ada" });
+  console.log(`first picture    ${page.firstPicture_ms} ms after opening the link`);
+  await page.selectOption("select[aria-label^=Speed]", "");
+  await page.click(".run");
+  await until(() => page.evaluate(() => window.talusStats.shownTime_s), (t) => t > 1, "debris on its way", 300_000);
+  const seen = await page.evaluate(() => new Promise((resolve) => {
+    const pictures = [];
+    let last = window.talusStats.frames;
+    const look = () => {
+      const { frames, script_ms, draw_ms, unfold_ms, upload_ms, particles } = window.talusStats;
+      if (frames !== last) pictures.push({ script_ms, draw_ms, unfold_ms, upload_ms, particles });
+      last = frames;
+      if (pictures.length < 150) requestAnimationFrame(look);
+      else resolve(pictures);
+    };
+    look();
+  }));
+  const of = (key) => seen.map((p) => p[key]).sort((a, b) => a - b);
+  const told = (key, what) => {
+    const sorted = of(key);
+    const at = (share) => sorted[Math.floor(share * (sorted.length - 1))].toFixed(2);
+    console.log(`${what}  median ${at(0.5)} ms, 95th percentile ${at(0.95)} ms`);
+  };
+  console.log(`particles        ${seen.at(-1).particles}`);
+  told("script_ms", "a picture:     ");
+  told("draw_ms", "  of it WebGL: ");
+  told("unfold_ms", "a message:     ");
+  told("upload_ms", "  its upload:  ");
+} finally {
+  await browser.close();
+  await server.stop();
+}
