@@ -17,7 +17,7 @@ function across(path, chainage, half) {
 export async function testBarrier(run, command) {
   const server = await startServer(command);
   const page = await run.open(server.controller, { name: "Dan" });
-  await until(() => page.textContent(".control"), (t) => /You have control/.test(t), "control", 12_000);
+  await until(() => page.textContent(".control"), (t) => /You have control/.test(t), "control");
   const state = () => server.ask("scenarios/A/state");
   const setup = () => server.ask("scenarios/A/setup");
   const scene = await server.ask("scene");

@@ -75,7 +75,7 @@ export class Run {
     page.on("request", (request) => {
       if (!/^(data|blob):/.test(request.url())) this.requests.push(request.url());
     });
-    page.setDefaultTimeout(15_000);
+    page.setDefaultTimeout(30_000);
     this.ports.push(new URL(link).port);
     const begun = Date.now();
     await page.goto(link);
@@ -133,7 +133,7 @@ export async function clickGround(page, u, v, options = {}) {
   await page.mouse.click(box.x + u * box.width, box.y + v * box.height, options);
 }
 /** Waits until a question has the wanted answer; says the last answer if it never has. */
-export async function until(question, wanted, what, limit_ms = 10_000) {
+export async function until(question, wanted, what, limit_ms = 20_000) {
   const begun = Date.now();
   let answer;
   for (;;) {
@@ -147,7 +147,7 @@ export async function until(question, wanted, what, limit_ms = 10_000) {
 export const boxOf = (locator) => until(() => locator.boundingBox({ timeout: 1000 }).catch(() => null), (box) => box !== null, String(locator));
 export const shownTime = async (page) => Number((await page.textContent(".clock")).replace("−", "-").split(" ")[0]);
 export async function saved(page, click) {
-  const [download] = await Promise.all([page.waitForEvent("download"), click()]);
+  const [download] = await Promise.all([page.waitForEvent("download", { timeout: 60_000 }), click()]);
   return { name: download.suggestedFilename(), bytes: readFileSync(await download.path()) };
 }
 export { assert, existsSync };

@@ -7,7 +7,7 @@ export async function testLevers(run, server) {
   const setup = () => server.ask("scenarios/A/setup");
 
   await run.check("opens: title, terrain on the canvas, token gone from the address", async () => {
-    assert.ok(page.firstPicture_ms < 8000, `first picture after ${page.firstPicture_ms} ms`);
+    assert.ok(page.firstPicture_ms < 20_000, `first picture after ${page.firstPicture_ms} ms`);
     console.log(`        first picture after ${page.firstPicture_ms} ms`);
     assert.ok(!page.url().includes("token"), page.url());
     assert.equal(await page.textContent(".topbar h1"), (await server.ask("scene")).title);

@@ -35,7 +35,7 @@ export async function testReadings(run, server) {
   const post = (body) => fetch(`${server.base}api/scenarios/A/actions`, { method: "POST", body: JSON.stringify(body),
     headers: { Authorization: `Bearer ${server.token}`, "Content-Type": "application/json", "Talus-Person": page.person } });
   // A controller who left keeps control for some seconds, lest a break takes it away.
-  await until(() => page.textContent(".control"), (t) => /You have control/.test(t), "control", 12_000);
+  await until(() => page.textContent(".control"), (t) => /You have control/.test(t), "control");
   page.person = (await server.ask("session")).people.find((p) => p.name === "Ben").id;
   assert.equal((await post({ action: "restart" })).status, 200);
   await post({ action: "set_speed", factor: null });

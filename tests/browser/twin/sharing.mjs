@@ -7,7 +7,7 @@ export async function testSharing(run, server, command) {
   const state = () => server.ask("scenarios/A/state");
 
   await run.check("a viewer sees the same time and cannot change anything, and is told why", async () => {
-    await until(async () => (await ada.textContent(".control")).trim(), (t) => t === "You have control", "control of the first", 12_000);
+    await until(async () => (await ada.textContent(".control")).trim(), (t) => t === "You have control", "control of the first");
     const eve = await run.open(server.viewer, { ...small, name: "Eve" });
     await until(async () => Math.abs((await shownTime(eve)) - (await state()).time_s), (d) => d < 0.2, "the same time for the late comer");
     assert.equal(await eve.isDisabled(".run"), true);
@@ -24,9 +24,9 @@ export async function testSharing(run, server, command) {
     assert.ok((await eve.inputValue("dialog input[readonly]")).endsWith(`#token=${server.viewerToken}`));
     await eve.keyboard.press("Escape");
     await ada.click(".run");
-    await until(() => eve.textContent(".status"), (t) => /Running/.test(t), "running for the viewer too", 15_000);
+    await until(() => eve.textContent(".status"), (t) => /Running/.test(t), "running for the viewer too");
     await ada.click(".run");
-    await until(() => eve.textContent(".status"), (t) => /Paused|rest|End/.test(t), "paused for the viewer too", 15_000);
+    await until(() => eve.textContent(".status"), (t) => /Paused|rest|End/.test(t), "paused for the viewer too");
 
     const box = await ada.locator(".stage canvas").boundingBox();
     await ada.mouse.move(box.x + 0.5 * box.width, box.y + 0.5 * box.height);
@@ -34,7 +34,7 @@ export async function testSharing(run, server, command) {
     await until(() => eve.locator(".person-mark:not([hidden])").allTextContents(), (names) => names.includes("Ada"), "Ada's mark");
     await run.shot(eve, "14-viewer");
     await eve.context().close();
-    await until(() => ada.locator(".chips .person").count(), (n) => n === 1, "one person again", 12_000);
+    await until(() => ada.locator(".chips .person").count(), (n) => n === 1, "one person again");
   });
 
   await run.check("control is asked for, declined, granted, given back; names and links are shared", async () => {
