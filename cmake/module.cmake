@@ -36,7 +36,9 @@ function(talus_module name)
 endfunction()
 
 # talus_test(NAME LABEL DEPENDS...): the program test_NAME from every .cpp in the current folder, its tests labelled. With
-# `talus_test_processors` set in the folder, each of them has so many processors for itself.
+# `talus_test_processors` set in the folder, each of them has so many processors for itself; those that match the googletest
+# pattern `talus_long_tests` are minutes of arithmetic and left out of sanitized programs, in which others run the same code.
+# What is labelled `physics` is also tested in the release build (target physics_tests).
 function(talus_test name label)
   file(GLOB sources CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/*.cpp)
   if(NOT sources)
@@ -47,10 +49,17 @@ function(talus_test name label)
   target_include_directories(test_${name} PRIVATE ${PROJECT_SOURCE_DIR}/tests)
   target_compile_definitions(test_${name} PRIVATE TALUS_SOURCE_DIR="${PROJECT_SOURCE_DIR}"
                              TALUS_PROGRAM="${CMAKE_BINARY_DIR}/bin/talus")
+  set(filter "")
+  if(TALUS_SANITIZE AND talus_long_tests)
+    set(filter TEST_FILTER "-${talus_long_tests}")
+  endif()
+  if(label STREQUAL physics OR label STREQUAL threads)
+    add_dependencies(physics_tests test_${name})
+  endif()
   set(processors 1)
   if(talus_test_processors)
     set(processors ${talus_test_processors})
   endif()
-  gtest_discover_tests(test_${name} TEST_PREFIX ${name}. PROPERTIES LABELS ${label} TIMEOUT 300
+  gtest_discover_tests(test_${name} TEST_PREFIX ${name}. ${filter} PROPERTIES LABELS ${label} TIMEOUT 300
                        PROCESSORS ${processors} DISCOVERY_TIMEOUT 60)
 endfunction()

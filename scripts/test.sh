@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # Installs what is missing, builds everything and passes all tests:
-#   release  the program that users run
-#   asan     everything once more under the address and undefined-behaviour sanitizers, warnings being errors, and the
-#            checks of style and layering
+#   release  the program that users run: physics, validation, speed, the pages in a browser
+#   asan     all tests but the longest under the address and undefined-behaviour sanitizers, warnings being errors, and
+#            the checks of style and layering
 # Presets' names as arguments test those alone: scripts/test.sh dev (as asan, without sanitizers), scripts/test.sh tsan
 # (what runs in parallel, under the thread sanitizer).
 set -euo pipefail
@@ -14,11 +14,11 @@ step() {
 }
 
 test_preset() {
-    local preset=$1
-    shift
+    local preset=$1 target=$2
+    shift 2
     step "build $preset"
     cmake --preset "$preset"
-    cmake --build --preset "$preset" --parallel "$(nproc)"
+    cmake --build --preset "$preset" --target "$target" --parallel "$(nproc)"
     step "test $preset"
     ctest --preset "$preset" --parallel "$(nproc)" "$@"
 }
@@ -34,9 +34,9 @@ if [[ -f tests/browser/package-lock.json ]]; then
 fi
 
 if (($# > 0)); then
-    for preset in "$@"; do test_preset "$preset"; done
+    for preset in "$@"; do test_preset "$preset" all; done
     exit
 fi
-test_preset release --label-exclude style
-test_preset asan
+test_preset release physics_tests --label-regex 'physics|threads|validation|performance|browser'
+test_preset asan all
 step "done"
