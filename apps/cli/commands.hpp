@@ -43,6 +43,8 @@ struct ServeArguments {
     std::optional<int> threads;
     std::vector<std::string> overrides;  ///< "section.key=value"
     std::string data;                    ///< value of TALUS_DATA; empty: as in the environment
+    std::string calibrations;            ///< a folder that keeps calibrations; empty: they are not kept
+    std::vector<std::string> ensembles;  ///< folders of finished ensembles whose maps are shown
     bool run = false;                    ///< begin at once
     bool quiet = false, json = false;
 };

@@ -5,6 +5,7 @@
 #include <mutex>
 #include <optional>
 #include <string>
+#include <system_error>
 #include <utility>
 
 #include <fmt/format.h>
@@ -104,6 +105,21 @@ int serve_command(const ServeArguments& arguments) {
     options.export_folder = folder.path();
     options.scenario.overrides = overrides;
     options.run = arguments.run;
+    options.ensembles.assign(arguments.ensembles.begin(), arguments.ensembles.end());
+    options.calibration.source = {file, overrides};
+    options.calibration.own_files = arguments.scene.empty();
+    options.calibration.scene_name =
+        arguments.scene.empty() ? std::string("built-in") : fs::absolute(file).lexically_normal().string();
+    options.calibration.keep = !arguments.calibrations.empty();
+    options.calibration.folder = options.calibration.keep ? fs::path(arguments.calibrations) : folder.path();
+    if (options.calibration.keep) {
+        std::error_code error;
+        fs::create_directories(options.calibration.folder, error);
+        if (error) {
+            return fail(exit_code::bad_input,
+                        fmt::format("--calibrations {}: cannot be made: {}", arguments.calibrations, error.message()));
+        }
+    }
     options.on_failure = [&](const std::string& message) {
         {
             const std::lock_guard lock(mutex);

@@ -42,6 +42,7 @@ class SceneModel {
         options.retry_failed = options_.retry_failed;
         options.stop_requested = options_.stop_requested;
         options.on_progress = [&](const EnsembleProgress& now) { tell(now, phase); };
+        if (options_.on_run) options.on_run = [&](const RunRecord& record) { tell_run(record, points, phase); };
         const Result<EnsembleOutcome> outcome = run_ensemble(runs_, source_, folder_, options);
         if (!outcome) return outcome.error();
         if (outcome->interrupted) return std::optional<Points>();
@@ -68,6 +69,21 @@ class SceneModel {
         least_misfit_ = std::isnan(least_misfit_) ? misfit_of(observed_, values)
                                                   : std::min(least_misfit_, misfit_of(observed_, values));
         return values;
+    }
+
+    void tell_run(const RunRecord& record, const Points& points, Phase phase) const {
+        CalibrationRun made{record.run, phase, {}, never};
+        const std::vector<Factor>& factors = runs_.plan().factors;
+        const std::vector<double>& point = points[record.run];
+        for (std::size_t k = 0; k < factors.size(); ++k)
+            made.values.push_back(factors[k].distribution.quantile(point[k]));
+        if (record.complete() && record.results.size() >= observed_.size()) {
+            made.misfit = misfit_of(observed_, {record.results.end() - static_cast<std::ptrdiff_t>(observed_.size()),
+                                                record.results.end()});
+            for (std::size_t k = 0; k < factors.size(); ++k)
+                made.misfit += prior_misfit(factors[k].distribution, point[k]);
+        }
+        options_.on_run(made);
     }
 
     void tell(const EnsembleProgress& now, Phase phase) const {
@@ -171,7 +187,15 @@ Result<Calibration> calibrate(const CalibrationPlan& plan, PlannedRuns runs, con
     std::vector<Distribution> priors;
     for (const Factor& f : made.factors) priors.push_back(f.distribution);
     const ForwardModel model = scene_model(runs, source, observed, folder, plan.search.runs, options, made.records);
-    Result<SearchResult> found = search(priors, observed, model, plan.search);
+    const FitReader on_fit = [&](const SearchResult& so_far) {
+        Calibration now;
+        now.scene = &base;
+        now.factors = made.factors;
+        now.observed = observed;
+        now.result = so_far;
+        options.on_fit(now);
+    };
+    Result<SearchResult> found = search(priors, observed, model, plan.search, options.on_fit ? on_fit : FitReader());
     if (!found) {
         const bool failed = !made.records.empty() && !made.records.front().complete();
         return failed ? Error{found.error().message + "; the first: " + made.records.front().fault} : found.error();

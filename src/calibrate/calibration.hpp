@@ -32,11 +32,12 @@ struct CalibrationProgress {
     double wall_remaining = 0;  ///< s, an estimate; NaN: not known yet
 };
 
-struct CalibrationOptions {
-    int runs_at_once = 1, threads_per_run = 1;  ///< as in EnsembleOptions
-    bool retry_failed = false;
-    const std::atomic<bool>* stop_requested = nullptr;
-    std::function<void(const CalibrationProgress&)> on_progress = {};  ///< from any thread, one at a time
+/// A run that has just been made.
+struct CalibrationRun {
+    std::size_t run = 0;
+    Phase phase = Phase::design;
+    std::vector<double> values;  ///< of the factors
+    double misfit = never;       ///< as SearchRun::misfit
 };
 
 /// A calibration and all that it says.
@@ -48,6 +49,16 @@ struct Calibration {
     std::vector<RunRecord> records;           ///< as result.runs
     std::vector<std::string> best_overrides;  ///< "section.key=value" that make the scene that of the best run
     double wall_time = 0;                     ///< s, of this call
+};
+
+struct CalibrationOptions {
+    int runs_at_once = 1, threads_per_run = 1;  ///< as in EnsembleOptions
+    bool retry_failed = false;
+    const std::atomic<bool>* stop_requested = nullptr;
+    std::function<void(const CalibrationProgress&)> on_progress = {};  ///< from any thread, one at a time
+    std::function<void(const CalibrationRun&)> on_run = {};            ///< likewise, for each that this call makes
+    /// After each round, from the caller's thread: emulators and runs so far; no posterior and no records yet.
+    std::function<void(const Calibration&)> on_fit = {};
 };
 
 /// The factors as runs of the scene. Errors: as PlannedRuns::make; a factor without a range; too few runs; nothing

@@ -43,7 +43,8 @@ struct CalibrationSummary {
 };
 [[nodiscard]] CalibrationSummary summarise(const Calibration& calibration);
 
-/// Misfit over the first two factors, by the emulators, at the best values of all others that were looked at.
+/// Misfit over the first two factors, by the emulators, at the best values of all others that were looked at
+/// (between rounds, when there is no posterior yet: of fewer).
 struct MisfitMap {
     std::size_t cells = 0;       ///< along each factor
     std::vector<double> x, y;    ///< limits of the cells, cells + 1 of each, in the units of the keys; no y: one factor

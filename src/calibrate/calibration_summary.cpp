@@ -190,7 +190,8 @@ MisfitMap misfit_map(const Calibration& c) {
         const Points more = sample_points(DesignKind::latin_hypercube, other_places, factors, 1);
         const Points& draws = c.result.posterior.draws;
         places.insert(places.end(), more.begin(), more.end());
-        for (std::size_t i = 0; i < other_places; ++i) places.push_back(draws[i * draws.size() / other_places]);
+        for (std::size_t i = 0; i < other_places && !draws.empty(); ++i)
+            places.push_back(draws[i * draws.size() / other_places]);
     }
     for (std::size_t row = 0; row < (factors > 1 ? map_cells : 1); ++row) {
         for (std::size_t column = 0; column < map_cells; ++column) {

@@ -151,6 +151,7 @@ void Crew::finish(const RunRecord& record, const HazardMaps& maps, std::size_t w
         }
         ++computed_;
         record.complete() ? ++outcome_.done : ++outcome_.failed;
+        if (options_.on_run) options_.on_run(record);
     }
     report(worker, 0);
 }

@@ -27,6 +27,7 @@ struct EnsembleOptions {
     bool retry_failed = false;                          ///< runs that failed before are run again
     const std::atomic<bool>* stop_requested = nullptr;  ///< runs under way are dropped, those that are done stay
     std::function<void(const EnsembleProgress&)> on_progress = {};  ///< from any of the runs' threads, one at a time
+    std::function<void(const RunRecord&)> on_run = {};  ///< likewise, when one that this call made is recorded
 };
 
 struct EnsembleOutcome {

@@ -24,8 +24,8 @@ constexpr ChainOptions short_chains = {500, 500, 1}, long_chains = {3000, 8000, 
 class Searcher {
   public:
     Searcher(const std::vector<Distribution>& priors, const std::vector<ObservedValue>& observed,
-             const ForwardModel& model, const SearchOptions& options)
-        : priors_(priors), observed_(observed), model_(model), options_(options) {}
+             const ForwardModel& model, const SearchOptions& options, const FitReader& on_fit)
+        : priors_(priors), observed_(observed), model_(model), options_(options), on_fit_(on_fit) {}
 
     Result<SearchResult> work();
 
@@ -49,6 +49,7 @@ class Searcher {
     const std::vector<ObservedValue>& observed_;
     const ForwardModel& model_;
     const SearchOptions options_;
+    const FitReader& on_fit_;
     SearchResult result_;
 };
 
@@ -98,6 +99,7 @@ void Searcher::fit() {
         }
         result_.fit.emulators.push_back(PredictionEmulator::fit(points, values, observed_[j].unreached));
     }
+    if (on_fit_) on_fit_(result_);
 }
 
 bool near_any(const std::vector<double>& point, const Points& others) {
@@ -259,8 +261,8 @@ std::size_t fewest_runs(std::size_t factors) {
 }
 
 Result<SearchResult> search(const std::vector<Distribution>& priors, const std::vector<ObservedValue>& observed,
-                            const ForwardModel& model, const SearchOptions& options) {
-    return Searcher(priors, observed, model, options).work();
+                            const ForwardModel& model, const SearchOptions& options, const FitReader& on_fit) {
+    return Searcher(priors, observed, model, options, on_fit).work();
 }
 
 }  // namespace talus

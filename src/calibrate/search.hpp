@@ -62,11 +62,14 @@ struct SearchResult {
 /// with the same points and more at the end. Nothing: interrupted.
 using ForwardModel = std::function<Result<std::optional<Points>>(const Points& points, Phase phase)>;
 
+/// What a search knows after a round: runs, best and emulators; no posterior yet.
+using FitReader = std::function<void(const SearchResult& so_far)>;
+
 /// A design, then rounds of runs where the most improvement is expected and where the posterior is least certain of the
 /// emulators, then draws from the posterior as a check, which count in the end. The runs hang on the model, the
 /// observations and the options alone. `priors` without lists. Errors: of the model, all runs of the design failed.
 [[nodiscard]] Result<SearchResult> search(const std::vector<Distribution>& priors,
                                           const std::vector<ObservedValue>& observed, const ForwardModel& model,
-                                          const SearchOptions& options);
+                                          const SearchOptions& options, const FitReader& on_fit = {});
 
 }  // namespace talus

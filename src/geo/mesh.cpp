@@ -23,6 +23,11 @@ bool ends_with(const std::string& text, const std::string& end) {
     return text.size() >= end.size() && text.compare(text.size() - end.size(), end.size(), end) == 0;
 }
 
+/// `name` in lower case.
+bool is_gltf(const std::string& name) {
+    return ends_with(name, ".gltf") || ends_with(name, ".glb");
+}
+
 /// Newell's: twice the area along each axis, right for faces that are not quite plane.
 Vec3<double> normal_of(const std::vector<WorldPoint>& ring) {
     Vec3<double> sum;
@@ -47,7 +52,7 @@ Ring plan_of(const std::vector<WorldPoint>& ring) {
 
 bool is_mesh_file(const std::string& file) {
     const std::string name = lower_case(file);
-    return ends_with(name, ".obj") || ends_with(name, ".city.json") || ends_with(name, ".cityjson");
+    return ends_with(name, ".obj") || is_gltf(name) || ends_with(name, ".city.json") || ends_with(name, ".cityjson");
 }
 
 Result<std::string> read_mesh_text(const std::string& file) {
@@ -97,8 +102,11 @@ Result<std::vector<RoofFace>> find_roofs(const std::vector<MeshFace>& faces) {
     return roofs;
 }
 
-Result<std::vector<MeshBuilding>> read_mesh_buildings(const std::string& file, const Crs& terrain_crs) {
-    return ends_with(lower_case(file), ".obj") ? read_obj(file) : read_city_json(file, terrain_crs);
+Result<std::vector<MeshBuilding>> read_mesh_buildings(const std::string& file, const Crs& terrain_crs,
+                                                      std::vector<std::string>& more_files) {
+    const std::string name = lower_case(file);
+    if (is_gltf(name)) return read_gltf(file, more_files);
+    return ends_with(name, ".obj") ? read_obj(file) : read_city_json(file, terrain_crs);
 }
 
 }  // namespace talus

@@ -25,6 +25,8 @@ using MeshFace = std::vector<std::vector<WorldPoint>>;
 [[nodiscard]] Result<std::vector<RoofFace>> find_roofs(const std::vector<MeshFace>& faces);
 
 [[nodiscard]] Result<std::vector<MeshBuilding>> read_obj(const std::string& file);
+[[nodiscard]] Result<std::vector<MeshBuilding>> read_gltf(const std::string& file,
+                                                          std::vector<std::string>& more_files);
 [[nodiscard]] Result<std::vector<MeshBuilding>> read_city_json(const std::string& file, const Crs& terrain_crs);
 
 }  // namespace talus

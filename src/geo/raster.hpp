@@ -30,6 +30,9 @@ struct Raster {
 /// Reads a band of values (release thickness) that must be in the CRS of the terrain; otherwise as above.
 [[nodiscard]] Result<Raster> read_value_raster(const std::string& file, const Crs& terrain_crs);
 
+/// A map that talus has written, to be laid over the terrain: as read_value_raster, but it may hold no data at all.
+[[nodiscard]] Result<Raster> read_map_raster(const std::string& file, const Crs& terrain_crs);
+
 /// One band to write.
 struct RasterBand {
     const Grid<float>* grid = nullptr;

@@ -161,8 +161,10 @@ Status check_elevations(const std::string& file, const RasterSource& source, con
     return {};
 }
 
+enum class Kind { elevations, values, map };
+
 Result<Raster> read_cells(const std::string& file, const RasterSource& source, const std::optional<Extent>& extent,
-                          bool elevations) {
+                          Kind kind) {
     auto window = window_of(file, source, extent);
     if (!window) return window.error();
     Raster raster;
@@ -177,26 +179,19 @@ Result<Raster> read_cells(const std::string& file, const RasterSource& source, c
                               std::numeric_limits<float>::quiet_NaN());
     auto range = read_window(file, source, *window, raster.grid);
     if (!range) return range.error();
-    if (range->valid == 0) {
+    if (range->valid == 0 && kind != Kind::map) {
         return Error{fmt::format("{}: {} no cell holds data, all {} x {} are nodata", file,
                                  extent ? "within the extent" : "in the whole raster", window->columns, window->rows)};
     }
-    if (elevations) {
+    if (kind == Kind::elevations) {
         if (Status s = check_elevations(file, source, *range); !s) return s.error();
     }
     raster.nodata_share = 1 - static_cast<double>(range->valid) / static_cast<double>(raster.grid.values.size());
     return Result<Raster>(std::move(raster));
 }
 
-}  // namespace
-
-Result<Raster> read_terrain_raster(const std::string& file, int band, const std::optional<Extent>& extent) {
-    auto source = open_raster(file, band);
-    if (!source) return source.error();
-    return read_cells(file, *source, extent, true);
-}
-
-Result<Raster> read_value_raster(const std::string& file, const Crs& terrain_crs) {
+/// A raster that has to be in the CRS of the terrain.
+Result<Raster> read_over_terrain(const std::string& file, const Crs& terrain_crs, Kind kind) {
     auto source = open_raster(file, 1);
     if (!source) return source.error();
     if (!same_crs(to_spatial_reference(source->crs), to_spatial_reference(terrain_crs))) {
@@ -207,7 +202,23 @@ Result<Raster> read_value_raster(const std::string& file, const Crs& terrain_crs
                         file, source->crs.label(), terrain_crs.label(), target, shell_quoted(file),
                         mended_name(file, "_terrain_crs", ".tif"))};
     }
-    return read_cells(file, *source, std::nullopt, false);
+    return read_cells(file, *source, std::nullopt, kind);
+}
+
+}  // namespace
+
+Result<Raster> read_terrain_raster(const std::string& file, int band, const std::optional<Extent>& extent) {
+    auto source = open_raster(file, band);
+    if (!source) return source.error();
+    return read_cells(file, *source, extent, Kind::elevations);
+}
+
+Result<Raster> read_value_raster(const std::string& file, const Crs& terrain_crs) {
+    return read_over_terrain(file, terrain_crs, Kind::values);
+}
+
+Result<Raster> read_map_raster(const std::string& file, const Crs& terrain_crs) {
+    return read_over_terrain(file, terrain_crs, Kind::map);
 }
 
 }  // namespace talus

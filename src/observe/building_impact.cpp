@@ -20,7 +20,9 @@ void ImpactRecorder::follow(const Model& model, const State& state) {
     crossings_.resize(model.buildings.size());
     for (std::size_t b = 0; b < impacts_.size(); ++b) {
         impacts_[b].name = model.buildings[b].name;
-        impacts_[b].is_barrier = model.buildings[b].barrier.has_value();
+        const std::optional<BarrierShape>& barrier = model.buildings[b].barrier;
+        impacts_[b].is_barrier = barrier.has_value();
+        impacts_[b].passing_share = barrier ? barrier->passing_share.value_or(never) : never;
         if (!stands(model.buildings[b])) {
             crossings_[b].reset();
         } else if (!crossings_[b]) {
@@ -62,7 +64,9 @@ void ImpactRecorder::watch(const Model& model, const State& state, std::size_t b
 }
 
 void ImpactRecorder::forget(const Model& model, const State& state, std::size_t building) {
-    impacts_[building] = {.name = impacts_[building].name, .is_barrier = impacts_[building].is_barrier};
+    impacts_[building] = {.name = impacts_[building].name,
+                          .is_barrier = impacts_[building].is_barrier,
+                          .passing_share = impacts_[building].passing_share};
     records_[building] = {};
     crossings_[building].reset();
     watch(model, state, building);
@@ -100,7 +104,7 @@ void ImpactRecorder::add_contact(const Model& model, const State& state, const B
     const double depth = p.z + model.particle_spacing / 2 - model.terrain.sample(p.x, p.y).height;
     impact.peak_depth = std::max(impact.peak_depth, depth);
     const double speed = maps.speed_at(p);
-    impact.peak_dynamic_pressure = std::max(impact.peak_dynamic_pressure, model.rest_density * speed * speed);
+    impact.peak_dynamic_pressure = std::max(impact.peak_dynamic_pressure, maps.density_at(p) * speed * speed);
     impact.peak_speed = std::max(impact.peak_speed, speed);
 }
 

@@ -12,7 +12,6 @@ Erosion measure_erosion(const Model& model, const FlowPath& flow_path, double ch
     if (bed.empty()) return erosion;
     const GridGeometry& g = model.terrain.elevation().geometry;
     const double area = g.cell * g.cell;
-    int first_column = g.columns, first_row = g.rows, last_column = -1, last_row = -1;
     if (!flow_path.empty()) {
         const auto bins = static_cast<std::size_t>(flow_path.length() / chainage_interval) + 2;
         erosion.chainage.resize(bins);
@@ -26,10 +25,6 @@ Erosion measure_erosion(const Model& model, const FlowPath& flow_path, double ch
             const double eroded = bed.eroded[g.index(column, row)];
             if (eroded == 0) continue;
             erosion.volume += eroded * area;
-            first_column = std::min(first_column, column);
-            last_column = std::max(last_column, column);
-            first_row = std::min(first_row, row);
-            last_row = std::max(last_row, row);
             if (const auto at = flow_path.locate(g.centre(column, row))) {
                 const auto bin = static_cast<std::size_t>(std::ceil(at->chainage / chainage_interval));
                 erosion.upstream[std::min(bin, erosion.upstream.size() - 1)] += eroded * area;
@@ -37,22 +32,38 @@ Erosion measure_erosion(const Model& model, const FlowPath& flow_path, double ch
         }
     }
     for (std::size_t k = 1; k < erosion.upstream.size(); ++k) erosion.upstream[k] += erosion.upstream[k - 1];
-    if (last_column < first_column) return erosion;
+    erosion.depth = erosion_depth(g, bed.eroded);
+    return erosion;
+}
+
+Grid<float> erosion_depth(const GridGeometry& terrain, const std::vector<float>& eroded) {
+    int first_column = terrain.columns, first_row = terrain.rows, last_column = -1, last_row = -1;
+    for (std::size_t k = 0; k < eroded.size(); ++k) {
+        if (!(eroded[k] > 0)) continue;
+        const auto columns = static_cast<std::size_t>(terrain.columns);
+        const auto column = static_cast<int>(k % columns), row = static_cast<int>(k / columns);
+        first_column = std::min(first_column, column);
+        last_column = std::max(last_column, column);
+        first_row = std::min(first_row, row);
+        last_row = std::max(last_row, row);
+    }
+    if (last_column < first_column) return {};
 
     constexpr int margin = 2;
     first_column = std::max(0, first_column - margin);
     first_row = std::max(0, first_row - margin);
-    const int columns = std::min(g.columns - 1, last_column + margin) - first_column + 1;
-    const int rows = std::min(g.rows - 1, last_row + margin) - first_row + 1;
-    const GridGeometry window{g.x_min + first_column * g.cell, g.y_min + first_row * g.cell, g.cell, columns, rows};
-    erosion.depth = Grid<float>(window, std::numeric_limits<float>::quiet_NaN());
+    const int columns = std::min(terrain.columns - 1, last_column + margin) - first_column + 1;
+    const int rows = std::min(terrain.rows - 1, last_row + margin) - first_row + 1;
+    Grid<float> depth({terrain.x_min + first_column * terrain.cell, terrain.y_min + first_row * terrain.cell,
+                       terrain.cell, columns, rows},
+                      std::numeric_limits<float>::quiet_NaN());
     for (int row = 0; row < rows; ++row) {
         for (int column = 0; column < columns; ++column) {
-            const float eroded = bed.eroded[g.index(first_column + column, first_row + row)];
-            if (eroded > 0) erosion.depth.at(column, row) = eroded;
+            const float here = eroded[terrain.index(first_column + column, first_row + row)];
+            if (here > 0) depth.at(column, row) = here;
         }
     }
-    return erosion;
+    return depth;
 }
 
 }  // namespace talus

@@ -79,7 +79,7 @@ MapAccumulator::MapAccumulator(const Model& model, const State& state, double ma
 /// What the particles of a chunk share out, and where.
 struct MapAccumulator::Shares {
     AxisShares x, y;
-    std::array<float, chunk> speed;
+    std::array<float, chunk> speed;  ///< or density, kg/m3: whole numbers either way
     std::array<float, chunk> known;  ///< 0: its position is not finite
 };
 
@@ -119,7 +119,7 @@ class MapAccumulator::Patches {
     std::array<Patch, columns * rows> patches_;
 };
 
-void MapAccumulator::find_shares(const State& state, std::size_t first, Shares& shares) const {
+void MapAccumulator::find_shares(const State& state, std::size_t first, bool densities, Shares& shares) const {
     const L x_offset(x_offset_), y_offset(y_offset_), inverse_cell(inverse_cell_);
     for (std::size_t k = 0; k < chunk; k += L::size) {
         const std::size_t i = first + k;
@@ -133,13 +133,19 @@ void MapAccumulator::find_shares(const State& state, std::size_t first, Shares& 
         const L limited = select(speed < L(fastest), speed, L(fastest));
         from_index<L>(truncated(limited * L(speed_units) + L(0.5))).store(&shares.speed[k]);
     }
+    if (!densities) return;
+    for (std::size_t k = 0; k < chunk; ++k) {
+        const std::uint32_t id = first + k < state.count ? state.id[first + k] : 0;
+        const float own = id < state.density_of_id.size() ? state.density_of_id[id] : 0;
+        shares.speed[k] = std::round(own > 0 ? own : static_cast<float>(rest_density_));
+    }
 }
 
-void MapAccumulator::spread(const State& state, std::size_t first, std::size_t last) {
+void MapAccumulator::spread(const State& state, bool densities, std::size_t first, std::size_t last) {
     Patches patches(*this);
     Shares shares{};
     for (std::size_t i = first; i < last; i += chunk) {
-        find_shares(state, i, shares);
+        find_shares(state, i, densities, shares);
         const std::size_t present = std::min(chunk, last - i);
         for (std::size_t k = 0; k < present; ++k) {
             if (state.held[i + k] != 0 || shares.known[k] == 0) continue;
@@ -214,6 +220,11 @@ void MapAccumulator::make_room(std::size_t particles) {
 void MapAccumulator::follow(const Model& model, const State& state) {
     make_room(state.count);
     if (model.rest_density == rest_density_) return;
+    keep_pressures();
+    rest_density_ = model.rest_density;
+}
+
+void MapAccumulator::keep_pressures() {
     if (!density_changed_) {
         for (const auto& tile : tiles_) {
             for (std::size_t cell = 0; cell < tile_cells; ++cell)
@@ -221,7 +232,6 @@ void MapAccumulator::follow(const Model& model, const State& state) {
         }
     }
     density_changed_ = true;
-    rest_density_ = model.rest_density;
 }
 
 float MapAccumulator::peak_pressure(const Tile& tile, std::size_t cell) const {
@@ -240,7 +250,7 @@ void MapAccumulator::update_peaks(Tile& tile, double time) const {
         }
         if (density_changed_) {
             const double speed = sum.momentum() / sum.volume() / speed_units;
-            const auto pressure = static_cast<float>(rest_density_ * speed * speed);
+            const auto pressure = static_cast<float>(density_in(tile, cell) * speed * speed);
             tile.peak_pressure[cell] = std::max(tile.peak_pressure[cell], pressure);
         }
         // Debris arrives with a depth that it never had.
@@ -253,11 +263,33 @@ void MapAccumulator::update_peaks(Tile& tile, double time) const {
     }
 }
 
-void MapAccumulator::add(const State& state) {
+void MapAccumulator::spread_all(const State& state, bool densities) {
     ++adds_;
     active_count_ = 0;
+    cpu::parallel_ranges(state.count, grain,
+                         [&](std::size_t first, std::size_t last) { spread(state, densities, first, last); });
+}
+
+void MapAccumulator::take_densities(const State& state) {
+    keep_pressures();
+    spread_all(state, true);
+    cpu::parallel_ranges(active_count_, 16, [&](std::size_t first, std::size_t last) {
+        for (std::size_t k = first; k < last; ++k) {
+            Tile& tile = *active_[k];
+            tile.density.resize(tile_cells);
+            for (std::size_t cell = 0; cell < tile_cells; ++cell) {
+                const CellSum& sum = tile.sums[cell];
+                const double mean = sum.volume() > 0 ? sum.momentum() / sum.volume() : rest_density_;
+                tile.density[cell] = static_cast<float>(mean);
+            }
+        }
+    });
+}
+
+void MapAccumulator::add(const State& state) {
     make_room(state.count);
-    cpu::parallel_ranges(state.count, grain, [&](std::size_t first, std::size_t last) { spread(state, first, last); });
+    if (!state.density_of_id.empty()) take_densities(state);
+    spread_all(state, false);
     cpu::parallel_ranges(active_count_, 16, [&](std::size_t first, std::size_t last) {
         for (std::size_t k = first; k < last; ++k) update_peaks(*active_[k], state.time);
     });
@@ -267,16 +299,26 @@ MapAccumulator::CellSum MapAccumulator::sum_of(const Tile& tile, std::size_t cel
     return tile.added == adds_ ? tile.sums[cell] : CellSum{};
 }
 
-double MapAccumulator::speed_at(const LocalPoint& p) const {
+MapAccumulator::TileCell MapAccumulator::cell_at(const LocalPoint& p) const {
     const auto cell_along = [&](double along, int cells) {  // counted from the one before the map's first
         return static_cast<unsigned>(std::clamp(along * inverse_cell_, 0.0, cells - 1.0)) + 1;
     };
     const unsigned column = cell_along(p.x + x_offset_, geometry_.columns);
     const unsigned row = cell_along(p.y + y_offset_, geometry_.rows);
-    const Tile* tile = tile_at_[std::size_t{row / tile_size} * tile_columns_ + column / tile_size];
-    if (tile == nullptr) return 0;
-    const CellSum sum = sum_of(*tile, row % tile_size * tile_size + column % tile_size);
+    return {tile_at_[std::size_t{row / tile_size} * tile_columns_ + column / tile_size],
+            row % tile_size * tile_size + column % tile_size};
+}
+
+double MapAccumulator::speed_at(const LocalPoint& p) const {
+    const TileCell at = cell_at(p);
+    if (at.tile == nullptr) return 0;
+    const CellSum sum = sum_of(*at.tile, at.cell);
     return depth(sum.volume()) < thinnest_depth_ ? 0 : sum.momentum() / sum.volume() / speed_units;
+}
+
+double MapAccumulator::density_at(const LocalPoint& p) const {
+    const TileCell at = cell_at(p);
+    return at.tile == nullptr ? rest_density_ : density_in(*at.tile, at.cell);
 }
 
 double MapAccumulator::volume() const {
@@ -305,6 +347,9 @@ MapAccumulator::Present MapAccumulator::present() const {
                               geometry_.y_min + first_row * geometry_.cell, geometry_.cell,
                               last_column - first_column + 1, last_row - first_row + 1};
     present.depth = present.speed = Grid<float>(window);
+    const bool own_densities =
+        std::any_of(tiles_.begin(), tiles_.end(), [](const auto& tile) { return !tile->density.empty(); });
+    if (own_densities) present.density = Grid<float>(window, static_cast<float>(rest_density_));
     for (std::uint32_t t = 0; t < active_count_; ++t) {
         const Tile& tile = *active_[t];
         for (std::size_t cell = 0; cell < tile_cells; ++cell) {
@@ -313,6 +358,7 @@ MapAccumulator::Present MapAccumulator::present() const {
             const std::size_t k =
                 window.index(tile.column + column_of(cell) - first_column, tile.row + row_of(cell) - first_row);
             present.depth.values[k] = static_cast<float>(depth(sum.volume()));
+            if (own_densities) present.density.values[k] = static_cast<float>(density_in(tile, cell));
             if (present.depth.values[k] < thinnest_depth_) continue;
             present.speed.values[k] = static_cast<float>(sum.momentum() / sum.volume() / speed_units);
         }

@@ -40,6 +40,9 @@ class MapAccumulator {
     /// Depth-averaged speed, m/s, at a local position as of the last `add`; 0 where debris is too thin to tell.
     [[nodiscard]] double speed_at(const LocalPoint& p) const;
 
+    /// Mean density, kg/m3, of the debris there as of the last `add`.
+    [[nodiscard]] double density_at(const LocalPoint& p) const;
+
     /// Volume on the map as of the last `add`, m3: exactly the particles added.
     [[nodiscard]] double volume() const;
 
@@ -48,6 +51,7 @@ class MapAccumulator {
         int first_column = 0, first_row = 0;  ///< of geometry()
         Grid<float> depth;                    ///< m
         Grid<float> speed;                    ///< depth-averaged, m/s; 0 where debris is too thin to tell
+        Grid<float> density;                  ///< depth-averaged, kg/m3; empty: that of the material everywhere
     };
     [[nodiscard]] Present present() const;
 
@@ -83,15 +87,31 @@ class MapAccumulator {
         std::array<float, tile_cells> peak_speed{};     // depth-averaged
         std::array<float, tile_cells> arrival_time{};   // NaN: never
         std::array<float, tile_cells> peak_pressure{};  // Pa; only where the density has changed
+        std::vector<float> density;                     // mean, kg/m3, by cell; empty: the rest density
+    };
+    /// A cell of a tile that is there.
+    struct TileCell {
+        const Tile* tile = nullptr;
+        std::size_t cell = 0;
     };
     struct Shares;
     struct Patch;
     class Patches;
 
+    /// Adds up, over the cells of all particles, `shares` of them: their speeds or their densities.
+    void spread_all(const State& state, bool densities);
+    /// Finds the mean density of every cell, of particles that have densities of their own.
+    void take_densities(const State& state);
+    /// Peak pressures are kept from now on, as they no longer follow from peak speeds.
+    void keep_pressures();
+    [[nodiscard]] TileCell cell_at(const LocalPoint& p) const;
+    [[nodiscard]] double density_in(const Tile& tile, std::size_t cell) const {
+        return tile.density.empty() ? rest_density_ : static_cast<double>(tile.density[cell]);
+    }
     /// What the next particles share out, and where.
-    void find_shares(const State& state, std::size_t first, Shares& shares) const;
+    void find_shares(const State& state, std::size_t first, bool densities, Shares& shares) const;
     /// Adds particles [first, last) to their tiles.
-    void spread(const State& state, std::size_t first, std::size_t last);
+    void spread(const State& state, bool densities, std::size_t first, std::size_t last);
     /// Moves the sums of a patch into the tiles that it lies over.
     void take(Patch& patch);
     /// Made if it is not there yet.

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cmath>
 #include <limits>
 #include <string>
 #include <vector>
@@ -15,7 +16,7 @@ inline constexpr double never = std::numeric_limits<double>::quiet_NaN();
 struct HazardMaps {
     Grid<float> peak_depth;     ///< vertical flow depth, m
     Grid<float> peak_speed;     ///< depth-averaged speed, m/s
-    Grid<float> peak_pressure;  ///< rest_density * speed^2, Pa
+    Grid<float> peak_pressure;  ///< density * speed^2, Pa
     Grid<float> arrival_time;   ///< first time above the arrival depth, s
     Grid<float> deposit_depth;  ///< depth at the end of the run, m
 };
@@ -43,7 +44,7 @@ struct StructureSample {
     double force = 0;              ///< N, normal to the walls, filtered
     double impulse = 0;            ///< N s, of all debris so far
     double overtopped_volume = 0;  ///< m3, this and what follows of barriers only
-    double passed_volume = 0;      ///< m3, through openings
+    double passed_volume = 0;      ///< m3, through openings and meshes
     double held_volume = 0;        ///< m3, upstream
     double filling_height = 0;     ///< m, upstream at the face
 };
@@ -56,22 +57,28 @@ struct BuildingImpact {
     double peak_force = 0;             ///< N, normal to the walls, filtered
     double peak_pressure = 0;          ///< Pa, filtered force over the wall area in contact
     double peak_depth = 0;             ///< m, highest debris at the walls above the ground
-    double peak_dynamic_pressure = 0;  ///< Pa, rest_density * speed^2 of debris within a cell of the walls
+    double peak_dynamic_pressure = 0;  ///< Pa, density * speed^2 of debris within a cell of the walls
     double peak_speed = 0;             ///< m/s, depth-averaged, of debris within a cell of the walls
     double removed_time = never;       ///< s, when it was taken away between two steps; NaN: it stands
     double impulse = 0;                ///< N s, normal to the walls, of the whole run
     double failure_time = never;       ///< s, when its resistance was exceeded and it was taken away
 
     bool is_barrier = false;                ///< of which the following is known; up to its failure
+    double passing_share = never;           ///< of a net, through its meshes; NaN: no net
     double overtopped_volume = 0;           ///< m3, over the crest and not back
     double first_overtopping_time = never;  ///< s
-    double passed_volume = 0;               ///< m3, through openings
+    double passed_volume = 0;               ///< m3, through openings and meshes
     double held_volume = 0;                 ///< m3, upstream at the end
     double peak_held_volume = 0;            ///< m3, of the samples
     double peak_filling_height = 0;         ///< m, mean depth along the face where it was deepest, of the samples
 
     std::vector<StructureSample> history{};  ///< from the first hit on, at the times of the time series
 };
+
+/// "building", "barrier" or "net".
+[[nodiscard]] inline const char* kind_of(const BuildingImpact& impact) {
+    return !impact.is_barrier ? "building" : std::isnan(impact.passing_share) ? "barrier" : "net";
+}
 
 /// A row of the time series. Volumes add up exactly: released + entrained = held + moving + deposited + left.
 struct TimeSample {

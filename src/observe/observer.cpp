@@ -10,6 +10,7 @@
 #include "observe/map_accumulator.hpp"
 #include "observe/run_out.hpp"
 #include "sim/cpu/parallel.hpp"
+#include "sim/particle_density.hpp"
 
 namespace talus {
 namespace {
@@ -19,17 +20,19 @@ struct Totals {
     std::uint32_t held = 0, moving = 0, deposited = 0;
     double speed_squared = 0;  ///< sum, m2/s2
     double height = 0;         ///< sum over the particles, m above the lowest terrain
-};
+};                             ///< both weighed by density over rest density
 
-Totals sum_up(const State& state, double deposited_speed) {
+Totals sum_up(const Model& model, const State& state, double deposited_speed) {
+    const bool own_densities = !state.density_of_id.empty();
     return cpu::reduce_ranges(
         state.count, 1024, Totals{},
         [&](std::size_t first, std::size_t last, Totals sum) {
             for (std::size_t i = first; i < last; ++i) {
                 const LocalPoint v = state.velocity.at(i);
                 const double speed_squared = dot(v, v);
-                sum.speed_squared += speed_squared;
-                sum.height += state.position.z[i];
+                const double weight = own_densities ? density_of(model, state, i) / model.rest_density : 1;
+                sum.speed_squared += weight * speed_squared;
+                sum.height += weight * static_cast<double>(state.position.z[i]);
                 if (state.held[i] != 0) {
                     ++sum.held;
                 } else if (speed_squared < deposited_speed * deposited_speed) {
@@ -48,7 +51,7 @@ Totals sum_up(const State& state, double deposited_speed) {
 
 TimeSample make_sample(const Model& model, const State& state, double deposited_speed, double front_chainage,
                        double steps_per_second) {
-    const Totals totals = sum_up(state, deposited_speed);
+    const Totals totals = sum_up(model, state, deposited_speed);
     TimeSample sample;
     sample.time = state.time;
     sample.volume_released = state.released() * model.particle_volume();

@@ -5,6 +5,9 @@
 #include <cmath>
 #include <limits>
 
+#include "sim/physics/net.hpp"
+#include "terrain/barrier.hpp"
+
 namespace talus {
 namespace {
 
@@ -49,6 +52,14 @@ Overtopping::Overtopping(const Model& model, const BarrierShape& shape)
         openings_.push_back({opening.position - opening.width / 2, opening.position + opening.width / 2,
                              shape.crest_elevation.value_or(ground + shape.height) - origin.z});
     }
+    if (shape.passing_share) {
+        passing_share_ = static_cast<float>(*shape.passing_share);
+        const double length = length_of(shape.line);
+        for (double chainage = 0; chainage < length + 1; ++chainage) {
+            const double ground = model.terrain.elevation_at(point_at(shape.line, std::min(chainage, length)));
+            crest_.push_back(shape.crest_elevation.value_or(ground + shape.height) - origin.z);
+        }
+    }
     // Nothing moves farther in a step than a few spacings.
     near_ = near_.grown(std::max(2.0, 4 * model.particle_spacing));
 }
@@ -81,6 +92,11 @@ bool Overtopping::in_opening(double chainage, double z) const {
     });
 }
 
+bool Overtopping::in_mesh(std::uint32_t id, double chainage, double z) const {
+    if (crest_.empty() || !(grain_rank(id) < passing_share_)) return false;
+    return z < crest_[std::min(static_cast<std::size_t>(std::max(0.0, chainage)), crest_.size() - 1)];
+}
+
 void Overtopping::after_step(const State& state, bool jumped) {
     if (jumped) {
         for (Track& track : tracks_) track.step = 0;
@@ -104,7 +120,8 @@ void Overtopping::after_step(const State& state, bool jumped) {
         was.to_right -= track.net > 0;
         was.to_left -= track.net < 0;
         track.net = static_cast<std::int8_t>(std::clamp(track.net + crossed.net, -1, 1));
-        track.through = in_opening(crossed.chainage, state.position.z[i]);
+        const double z = state.position.z[i];
+        track.through = in_opening(crossed.chainage, z) || in_mesh(state.id[i], crossed.chainage, z);
         Side& is = track.through ? through_ : over_;
         is.to_right += track.net > 0;
         is.to_left += track.net < 0;

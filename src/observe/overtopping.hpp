@@ -12,8 +12,8 @@
 namespace talus {
 
 /// How much debris gets beyond a barrier: particles that cross its line between two steps, net of those that come back,
-/// each counted once: over it, or through one of its openings below the crest. Around its ends is neither. Looks at
-/// debris in a rectangle around the line only.
+/// each counted once: over it, or below the crest through one of its openings or the meshes of a net. Around its ends
+/// is neither. Looks at debris in a rectangle around the line only.
 class Overtopping {
   public:
     Overtopping(const Model& model, const BarrierShape& shape);
@@ -25,7 +25,7 @@ class Overtopping {
     void after_step(const State& state, bool jumped = false);
 
     [[nodiscard]] double volume() const { return beyond(over_); }            ///< m3, over the crest
-    [[nodiscard]] double passed_volume() const { return beyond(through_); }  ///< m3, through openings
+    [[nodiscard]] double passed_volume() const { return beyond(through_); }  ///< m3, through openings and meshes
     [[nodiscard]] double first_time() const { return first_time_; }          ///< s, over the crest; NaN: never
 
     /// Debris upstream of a barrier: on the side from which it has crossed, or where there is more of it.
@@ -46,7 +46,7 @@ class Overtopping {
         Point last{};
         std::uint64_t step = 0;  ///< call after that of the last position; 0: none
         std::int8_t net = 0;     ///< crossings from left to right less those back
-        bool through = false;    ///< an opening
+        bool through = false;    ///< an opening or a mesh
     };
     struct Opening {
         double from, to, crest;  ///< m along the line; local z
@@ -62,11 +62,14 @@ class Overtopping {
     [[nodiscard]] Crossing crossing(const Point& a, const Point& b) const;
     [[nodiscard]] Place place_of(double x, double y) const;
     [[nodiscard]] bool in_opening(double chainage, double z) const;
+    [[nodiscard]] bool in_mesh(std::uint32_t id, double chainage, double z) const;
     [[nodiscard]] double beyond(const Side& counted) const;
 
     std::vector<Point> line_;  // local
     std::vector<Opening> openings_;
-    Extent near_;  // local
+    float passing_share_ = 0;    // of a net
+    std::vector<double> crest_;  // of a net, local z, by metres along the line
+    Extent near_;                // local
     double particle_volume_ = 0, reach_ = 0, section_ = 0, half_thickness_ = 0;
     std::vector<Track> tracks_;  // by particle id
     Side over_, through_;

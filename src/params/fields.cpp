@@ -97,19 +97,28 @@ Section declare_bed() {
 
 Section declare_inflow() {
     Declaration<InflowSpec> s("inflow",
-                              "Debris that comes in across a straight line while the run goes on, at right angles to "
-                              "it and towards its right; any number. Exactly one of line_m and file says where.",
+                              "Debris that comes in while the run goes on, any number of them: across a straight line, "
+                              "at right angles to it and towards its right, or all over an area, such as a slope "
+                              "that rain wears down. Exactly one of line_m, file, polygon_m and polygon_file says "
+                              "where.",
                               &SceneSpec::inflows);
     s.text("name", &InflowSpec::name, "\"inflow N\"", "Name in reports and messages.");
     s.key(
         "line_m", "m", &InflowSpec::line, anything(),
         "The two ends of the line in plan, in the terrain's reference system: first the one on the right-hand side of "
         "the debris that comes.");
-    s.path("file", &InflowSpec::file, "line_m is given", "The line in a file: GeoJSON, GeoPackage, Shapefile.");
-    s.text("layer", &InflowSpec::layer, "the only layer", "Layer of the file.");
+    s.path("file", &InflowSpec::file, "another one is given", "The line in a file: GeoJSON, GeoPackage, Shapefile.");
+    s.text("layer", &InflowSpec::layer, "the only layer", "Layer of file or polygon_file.");
+    s.key("polygon_m", "m", &InflowSpec::polygon, anything(),
+          "The corners of the area in plan, in the terrain's reference system.");
+    s.path("polygon_file", &InflowSpec::polygon_file, "another one is given",
+           "The area in a file, one polygon or more: GeoJSON, GeoPackage, Shapefile.");
+    s.optional_key("direction_deg", "deg", &InflowSpec::direction, from_to_below(0, 360), "down the slope",
+                   "Over an area: where the debris moves as it comes in, clockwise from north.");
     s.path("hydrograph", &InflowSpec::hydrograph, "",
-           "CSV with the columns time_s, discharge_m3ps (bulk debris at rest density) and velocity_mps; linear between "
-           "rows, nothing before the first and after the last. Several surges are rows without discharge between them.")
+           "CSV with the columns time_s, discharge_m3ps (bulk debris), velocity_mps and, if its density changes, "
+           "density_kgpm3; linear between rows, nothing before the first and after the last. Several surges are rows "
+           "without discharge between them.")
         .required = true;
     return s.take();
 }
@@ -119,8 +128,9 @@ Section declare_buildings() {
                                  &SceneSpec::buildings);
     s.path(
         "file", &BuildingsSpec::file, "no buildings",
-        "Footprint polygons (GeoJSON, GeoPackage, Shapefile), or a mesh in the terrain's reference system, z upward: "
-        "CityJSON (.city.json, .cityjson) or Wavefront OBJ (.obj).");
+        "Footprint polygons (GeoJSON, GeoPackage, Shapefile), or a mesh in the terrain's reference system: CityJSON "
+        "(.city.json, .cityjson) and Wavefront OBJ (.obj), z upward, or glTF 2.0 (.gltf, .glb), x east, y upward, -z "
+        "north; the translation of a node may bring it to its place.");
     s.text("layer", &BuildingsSpec::layer, "the only layer", "Layer of the file.");
     s.text("height_attribute", &BuildingsSpec::height_attribute, "every building has the default height",
            "Attribute that holds a building's height above the mean ground of its footprint in metres.");
@@ -136,10 +146,11 @@ Section declare_buildings() {
 }
 
 Section declare_barrier() {
-    Declaration<BarrierSpec> s("barrier",
-                               "A wall or dam along a line; any number. Exactly one of line_m and file says where, "
-                               "exactly one of height_m and crest_elevation_m how high.",
-                               &SceneSpec::barriers);
+    Declaration<BarrierSpec> s(
+        "barrier",
+        "A wall, a dam or a net along a line; any number. Exactly one of line_m and file says where, "
+        "exactly one of height_m and crest_elevation_m how high.",
+        &SceneSpec::barriers);
     s.text("name", &BarrierSpec::name, "\"barrier N\"", "Name in reports and messages.");
     s.key("line_m", "m", &BarrierSpec::line, anything(),
           "Its line in plan, in the terrain's reference system; at least two places.");
@@ -151,6 +162,9 @@ Section declare_barrier() {
                    "Elevation of a level crest.");
     s.key("thickness_m", "m", &BarrierSpec::thickness, above_to(0, 100),
           "Thickness across the line; at least half a particle spacing.");
+    s.optional_key("passing_share", "", &BarrierSpec::passing_share, from_to_below(0, 1), "it is a wall",
+                   "Makes it a net: the share of the debris, by volume, in grains that pass its meshes (the percentage "
+                   "passing at the size of the opening, over 100). The others are held as by a wall.");
     s.optional_key("resistance_Npm", "N/m", &BarrierSpec::resistance_force, above(0), "it stands whatever happens",
                    "Filtered force per metre of the line above which it is destroyed: it is gone from then on.");
     s.optional_key("resistance_Pa", "Pa", &BarrierSpec::resistance_pressure, above(0), "it stands whatever happens",

@@ -63,12 +63,15 @@ struct BedSpec {
     double erosion_depth_per_shear = 1e-4;  ///< m/Pa
 };
 
-/// `[[inflow]]`: its line is given either here or in a file.
+/// `[[inflow]]`: exactly one of line, file, polygon, polygon_file.
 struct InflowSpec {
     std::string name;
     std::vector<PlanPoint> line;  ///< two places, in the terrain's reference system
     std::string file, layer;
-    std::string hydrograph;  ///< CSV
+    std::vector<PlanPoint> polygon;  ///< three places or more
+    std::string polygon_file;
+    std::optional<double> direction;  ///< degrees clockwise from north, of what comes in over an area; absent: downhill
+    std::string hydrograph;           ///< CSV
 };
 
 /// `[buildings]`: no file means no buildings.
@@ -90,6 +93,7 @@ struct BarrierSpec {
     std::optional<double> height;               ///< m above the ground under the line
     std::optional<double> crest_elevation;      ///< m
     double thickness = 1;                       ///< m
+    std::optional<double> passing_share;        ///< of a net; absent: it has no meshes
     std::optional<double> resistance_force;     ///< N/m; absent: it stands whatever happens
     std::optional<double> resistance_pressure;  ///< Pa; the same
 };

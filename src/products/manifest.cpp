@@ -65,6 +65,7 @@ Json resolved(const Scene& scene, const RunResult& result) {
         inflows.push_back({{"name", inflow.name},
                            {"volume_m3", inflow.volume()},
                            {"volume_by_the_end_m3", inflow.volume_until(result.simulated_time)}});
+        if (inflow.has_density()) inflows.back()["mass_kg"] = inflow.mass_until(inflow.hydrograph.back().time);
     }
     return {{"particle_spacing_m", result.particle_spacing},
             {"support_radius_m", result.support_radius},

@@ -203,6 +203,11 @@ MapFrame map_frame(const Scene& scene, const MapContent& content) {
     for (const Release& release : scene.releases) {
         if (!release.patches.empty() || release.thickness_raster) parts.push_back(release.extent());
     }
+    for (const Inflow& inflow : scene.inflows) {
+        for (const Polygon& part : inflow.area) parts.push_back(extent_of(part));
+        if (inflow.over_area()) continue;
+        for (const PlanPoint& end : {inflow.from, inflow.to}) parts.push_back({end.x, end.y, end.x, end.y});
+    }
     if (!scene.flow_path.empty()) {
         double last = content.farthest_chainage;
         for (const ObservationSpec& o : scene.spec.observations)
@@ -335,6 +340,7 @@ Result<MapFigures> render_maps(const Scene& scene, const MapContent& content) {
             draw_classes(shown, classes, most, frame), flag, out.count, escape(shown.caption),
             plain(map.values.empty() ? content.cell : map.geometry.cell), coordinate(1.04 * width));
     }
+    out.contour_interval = contour_interval;
     out.read_out = page.dump();
     // Inside a script element only "<" could end it; JSON may write it as an escape.
     for (std::size_t at = 0; (at = out.read_out.find('<', at)) != std::string::npos;)

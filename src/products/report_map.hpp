@@ -68,6 +68,7 @@ struct MapFigures {
     std::string figures;      ///< a <figure> per layer
     std::string read_out;     ///< JSON for the page's script: where the maps lie and their values
     int count = 0;
+    double contour_interval = 0;  ///< m
 };
 
 /// Errors: a picture could not be encoded.

@@ -140,6 +140,26 @@ std::string draw_observations(const Scene& scene, const MapFrame& frame) {
     return svg;
 }
 
+/// A line with an arrow where debris goes, or the outline of an area.
+std::string draw_inflow(const Inflow& inflow, const MapFrame& frame) {
+    std::string d;
+    for (const Polygon& part : inflow.area) d += polygon_data(frame, part);
+    if (!inflow.over_area()) {
+        const double x0 = frame.x(inflow.from.x), y0 = frame.y(inflow.from.y), x1 = frame.x(inflow.to.x),
+                     y1 = frame.y(inflow.to.y), length = std::hypot(x1 - x0, y1 - y0);
+        // On the page north is up and y goes down: to the right of the line is (-dy, dx).
+        const double along_x = (x1 - x0) / length, along_y = (y1 - y0) / length, x = (x0 + x1) / 2, y = (y0 + y1) / 2;
+        const auto place = [&](double forward, double aside) {
+            return fmt::format("{} {}", coordinate(x - along_y * forward + along_x * aside),
+                               coordinate(y + along_x * forward + along_y * aside));
+        };
+        d = fmt::format("M{} {}L{} {}M{}L{}M{}L{}L{}", coordinate(x0), coordinate(y0), coordinate(x1), coordinate(y1),
+                        place(0, 0), place(16, 0), place(10, -4.5), place(16, 0), place(10, 4.5));
+    }
+    return fmt::format(R"(<path class="inflow-case" d="{0}"/><path class="inflow" d="{0}"><title>{1}</title></path>)",
+                       d, escape(inflow.name));
+}
+
 }  // namespace
 
 std::string draw_contours(const Scene& scene, const MapFrame& frame, double& interval) {
@@ -195,6 +215,7 @@ std::string draw_vectors(const Scene& scene, const BuildingMarks& marks, const M
             R"(<path class="release-case" d="{0}"/><path class="release" d="{0}"><title>{1}</title></path>)", d,
             escape(release.name));
     }
+    for (const Inflow& inflow : scene.inflows) svg += draw_inflow(inflow, frame);
     return svg + draw_flow_path(scene, frame) + draw_observations(scene, frame) + draw_labels(std::move(labels));
 }
 
@@ -238,7 +259,8 @@ std::string draw_frame(const Scene& scene, const MapFrame& frame) {
 }
 
 double key_height(const Scene& scene) {
-    const int rows = 3 + (scene.spec.observations.empty() ? 0 : 1) + (scene.buildings.empty() ? 0 : 5);
+    const int rows = 2 + (scene.releases.empty() ? 0 : 1) + (scene.inflows.empty() ? 0 : 1) +
+                     (scene.spec.observations.empty() ? 0 : 1) + (scene.buildings.empty() ? 0 : 5);
     return 20.0 * rows + 100;
 }
 
@@ -252,8 +274,14 @@ std::string draw_key(const Scene& scene, const BuildingMarks& marks, const MapFr
                         coordinate(x), coordinate(y), symbol, text);
         y += 20;
     };
-    row(R"(<rect class="release-case" x="2" y="3" width="26" height="13"/><rect class="release" x="2" y="3" width="26" height="13"/>)",
-        "Release area");
+    if (!scene.releases.empty()) {
+        row(R"(<rect class="release-case" x="2" y="3" width="26" height="13"/><rect class="release" x="2" y="3" width="26" height="13"/>)",
+            "Release area");
+    }
+    if (!scene.inflows.empty()) {
+        row(R"(<path class="inflow-case" d="M3 15h24M15 15v-10m-4 4l4 -5l4 5"/><path class="inflow" d="M3 15h24M15 15v-10m-4 4l4 -5l4 5"/>)",
+            "Inflow");
+    }
     if (!scene.flow_path.empty()) {
         row(R"(<path class="flow-path-case" d="M0 10h30"/><path class="flow-path" d="M0 10h30"/><path class="chainage-tick" d="M15 5v10"/>)",
             scene.flow_path_traced ? "Flow path (traced)" : "Flow path, chainage");

@@ -3,6 +3,8 @@
 #include <string>
 #include <vector>
 
+#include "core/result.hpp"
+#include "products/report_map.hpp"
 #include "scene/comparison.hpp"
 #include "scene/run.hpp"
 #include "scene/scene.hpp"
@@ -33,11 +35,20 @@ namespace talus::report {
 /// Force over time on the structures that were hit.
 [[nodiscard]] bool has_structure_figure(const RunResult& result);
 [[nodiscard]] std::string structure_figure(const RunResult& result);
+/// What nets held, let through and did not keep from going over them, over time; "" where debris met none.
+[[nodiscard]] std::string net_figure(const RunResult& result);
 /// Energy, volumes, largest speed and compression over time.
 [[nodiscard]] std::string time_figure(const RunResult& result);
 
 /// A <section> with the hydrographs; nothing without inflows.
 [[nodiscard]] std::string inflow_section(const Scene& scene, const RunResult& result, int figure);
+
+/// Whether there are zones or a bed to be drawn.
+[[nodiscard]] bool has_zone_figure(const Scene& scene);
+/// A <section> with the map of zones and bed over the `maps`' hillshade; empty where there are none. Errors: a picture
+/// could not be encoded.
+[[nodiscard]] Result<std::string> zone_section(const Scene& scene, const MapContent& content, const MapFigures& maps,
+                                               int figure);
 
 /// What must not be overlooked of the comparisons: a scene that is not converged under refinement.
 [[nodiscard]] std::string comparison_banners(const std::vector<Comparison>& comparisons);

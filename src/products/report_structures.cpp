@@ -13,6 +13,7 @@ namespace talus::report {
 namespace {
 
 constexpr std::size_t most_lines = 8;  // of the figure: report.css has so many colours
+constexpr std::size_t most_nets = 4;   // a plot each
 
 /// Structures with a history to draw, those under the greatest force first.
 std::vector<const BuildingImpact*> drawn(const RunResult& result) {
@@ -41,6 +42,23 @@ std::string failures(const std::vector<BuildingImpact>& impacts) {
     return html;
 }
 
+/// A sentence on each net that debris met.
+std::string net_balances(const std::vector<BuildingImpact>& impacts) {
+    std::string html;
+    for (const BuildingImpact& net : impacts) {
+        if (!net.hit || std::isnan(net.passing_share)) continue;
+        const double let_by = net.passed_volume + net.overtopped_volume, all = net.held_volume + let_by;
+        html += fmt::format(
+            "<p><b>{}</b>, a net: its meshes let {} % of the grains through, by volume, and hold the others. Of {} m³ "
+            "that "
+            "came to it, {} m³ lie behind it{}, {} m³ went through and {} m³ over it; at most {} kN bore on it.</p>\n",
+            escape(name_of(net)), fmt::format("{:.3g}", 100 * net.passing_share), fixed(all, 1),
+            fixed(net.held_volume, 1), all > 0 ? fmt::format(" ({} %)", fixed(100 * net.held_volume / all, 0)) : "",
+            fixed(net.passed_volume, 1), fixed(net.overtopped_volume, 1), significant(net.peak_force / 1e3, 3));
+    }
+    return html;
+}
+
 }  // namespace
 
 std::string barrier_table(const RunResult& result) {
@@ -48,7 +66,7 @@ std::string barrier_table(const RunResult& result) {
     std::string html = failures(impacts);
     if (std::none_of(impacts.begin(), impacts.end(), [](const auto& b) { return b.is_barrier; })) return html;
     html +=
-        R"(<h3>Barriers</h3><table class="data"><thead><tr><th>Barrier</th><th class="n">First hit<br><small>s</small></th><th class="n">Peak force<br><small>kN</small></th><th class="n">Impulse<br><small>kN s</small></th><th class="n">Over the crest<br><small>m³</small></th><th class="n">First over<br><small>s</small></th><th class="n">Through openings<br><small>m³</small></th><th class="n">Held at the end<br><small>m³</small></th><th class="n">Held at most<br><small>m³</small></th><th class="n">Filled at most<br><small>m</small></th></tr></thead><tbody>
+        R"(<h3>Barriers</h3><table class="data"><thead><tr><th>Barrier</th><th class="n">First hit<br><small>s</small></th><th class="n">Peak force<br><small>kN</small></th><th class="n">Impulse<br><small>kN s</small></th><th class="n">Over the crest<br><small>m³</small></th><th class="n">First over<br><small>s</small></th><th class="n">Through openings and meshes<br><small>m³</small></th><th class="n">Held at the end<br><small>m³</small></th><th class="n">Held at most<br><small>m³</small></th><th class="n">Filled at most<br><small>m</small></th></tr></thead><tbody>
 )";
     for (const BuildingImpact& b : impacts) {
         if (!b.is_barrier) continue;
@@ -61,10 +79,10 @@ std::string barrier_table(const RunResult& result) {
             fixed(b.peak_filling_height, 2));
     }
     return html +
-           R"(</tbody></table><p class="note">Over the crest and through openings: what crossed the barrier's line
+           R"(</tbody></table><p class="note">Over the crest and through openings or the meshes of nets: what crossed the barrier's line
 and did not come back; around its ends is neither. Held: debris upstream within five heights of the line. Filled: mean
 depth of the deepest section, four particles square, along the upstream face. All of it until a barrier fails.</p>
-)";
+)" + net_balances(impacts);
 }
 
 bool has_structure_figure(const RunResult& result) {
@@ -100,6 +118,43 @@ std::string structure_figure(const RunResult& result) {
         if (!std::isnan(all[k]->failure_time)) plot.vertical(all[k]->failure_time, "toe-line");
     }
     return figure_svg(1000, 320, "Force on structures over time", plot.svg() + names);
+}
+
+std::string net_figure(const RunResult& result) {
+    std::vector<const BuildingImpact*> nets;
+    for (const BuildingImpact& impact : result.observation.buildings) {
+        if (!std::isnan(impact.passing_share) && impact.history.size() > 1) nets.push_back(&impact);
+    }
+    std::stable_sort(nets.begin(), nets.end(),
+                     [](const auto* a, const auto* b) { return a->peak_force > b->peak_force; });
+    if (nets.size() > most_nets) nets.resize(most_nets);
+    if (nets.empty()) return "";
+    constexpr double left = 66, width = 640, height = 190, step = 270;
+    std::string content;
+    for (std::size_t k = 0; k < nets.size(); ++k) {
+        ValueRange time{0, 0}, volume{0, 1e-3};
+        std::vector<double> t, held, through, over;
+        for (const StructureSample& s : nets[k]->history) {
+            t.push_back(s.time);
+            held.push_back(s.held_volume);
+            through.push_back(s.passed_volume);
+            over.push_back(s.overtopped_volume);
+            time.include(s.time);
+            for (const double value : {held.back(), through.back(), over.back()}) volume.include(value);
+        }
+        volume.high *= 1.05;
+        const double top = 34 + step * static_cast<double>(k);
+        Plot plot(left, top, width, height, time, volume);
+        plot.axes("time, s", "volume, m³");
+        plot.line(t, held, "series v0");
+        plot.line(t, through, "series v1");
+        plot.line(t, over, "series v2");
+        plot.keys({{"series v0", "held"}, {"series v1", "through"}, {"series v2", "over"}});
+        if (!std::isnan(nets[k]->failure_time)) plot.vertical(nets[k]->failure_time, "toe-line");
+        content += plot.svg() + fmt::format(R"(<text class="key" x="730" y="{}">{}</text>)", top + 16,
+                                            escape(shortened(name_of(*nets[k]), 34)));
+    }
+    return figure_svg(1000, step * static_cast<double>(nets.size()) + 20, "What nets held and let through", content);
 }
 
 }  // namespace talus::report

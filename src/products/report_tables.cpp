@@ -116,7 +116,13 @@ std::string resistance_laws(const Scene& scene) {
     if (has_pore_pressure(scene.spec)) {
         html +=
             "<p><b>Pore pressure.</b> Water bears the share r<sub>u</sub> of the normal stress, so that friction on "
-            "ground, buildings and inside is 1 - r<sub>u</sub> of that of dry debris.</p>\n";
+            "ground, buildings and inside is 1 - r<sub>u</sub> of that of dry debris";
+        html += material.pore_pressure_decay_time
+                    ? fmt::format(
+                          "; it fades as exp(-t / T) from the start of a body of debris, T = {} s, the first "
+                          "mode of consolidation (Hutchinson 1986).</p>\n",
+                          plain(*material.pore_pressure_decay_time))
+                    : "; it stays (undrained).</p>\n";
     }
     if (material.inertial_friction_coefficient) {
         html +=
@@ -133,6 +139,15 @@ std::string resistance_laws(const Scene& scene) {
             "<p><b>Forest.</b> Stems slow debris as cylinders across the flow, by C<sub>D</sub> n D v² / 2 for n stems "
             "of diameter D per area (Petryk &amp; Bosmajian 1975). They neither break nor hold debris back as a "
             "heap.</p>\n";
+    }
+    const auto& barriers = scene.spec.barriers;
+    if (std::any_of(barriers.begin(), barriers.end(),
+                    [](const BarrierSpec& b) { return b.passing_share.has_value(); })) {
+        html +=
+            "<p><b>Nets.</b> Debris of one density stands for grains of all sizes: every particle has a rank by size, "
+            "drawn evenly, and a net is no obstacle to those whose rank is below the share that passes its meshes, and "
+            "a wall for the others. What is held fills the net from behind and closes it to fine grains. Ropes and "
+            "rings do not stretch or sag, and fine grains lose nothing to them.</p>\n";
     }
     if (!scene.spec.zones.empty()) {
         html +=

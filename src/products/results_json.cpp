@@ -1,5 +1,7 @@
 #include "products/results_json.hpp"
 
+#include <cmath>
+
 #include "core/hash.hpp"
 
 namespace talus {
@@ -85,13 +87,14 @@ Json structures_json(const Observation& observation) {
     for (const BuildingImpact& b : observation.buildings) {
         if (!b.hit && !b.is_barrier) continue;
         Json entry = {{"name", b.name},
-                      {"kind", b.is_barrier ? "barrier" : "building"},
+                      {"kind", kind_of(b)},
                       {"first_hit_s", b.first_hit_time},
                       {"peak_force_kN", b.peak_force / 1e3},
                       {"peak_pressure_kPa", b.peak_pressure / 1e3},
                       {"impulse_kNs", b.impulse / 1e3},
                       {"failed_s", b.failure_time}};
         if (b.is_barrier) {
+            if (!std::isnan(b.passing_share)) entry["passing_share"] = b.passing_share;
             entry["overtopped_m3"] = b.overtopped_volume;
             entry["first_overtopped_s"] = b.first_overtopping_time;
             entry["passed_m3"] = b.passed_volume;

@@ -38,7 +38,7 @@ std::string building_table(const Scene& scene, const Observation& observation) {
         const Building* building = i < scene.buildings.size() ? &scene.buildings[i] : nullptr;
         csv.number(building != nullptr ? building->height : never);
         csv.word(building != nullptr && building->height_assumed ? "yes" : "no");
-        csv.word(b.is_barrier ? "barrier" : "building").number(b.impulse / 1e3).number(b.failure_time);
+        csv.word(kind_of(b)).number(b.impulse / 1e3).number(b.failure_time);
         const auto of_barrier = [&](double value) { return b.is_barrier ? value : never; };
         csv.number(of_barrier(b.overtopped_volume)).number(b.first_overtopping_time);
         csv.number(of_barrier(b.passed_volume)).number(of_barrier(b.held_volume));

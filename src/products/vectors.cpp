@@ -51,7 +51,7 @@ Status write_buildings(const Scene& scene, const Observation& observation, const
                              scene.spec.outputs.impact_filter_window,
                              building.height,
                              yes_or_no(building.height_assumed),
-                             std::string(b.is_barrier ? "barrier" : "building"),
+                             std::string(kind_of(b)),
                              b.impulse / 1e3,
                              b.failure_time,
                              of_barrier(b.overtopped_volume),

@@ -63,7 +63,11 @@ std::string buildings_line(const Scene& scene) {
                                         [](const Building& building) { return building.barrier.has_value(); });
     std::string text = fmt::format("buildings   {}, {} with an assumed height\n",
                                    static_cast<std::ptrdiff_t>(scene.buildings.size()) - barriers, assumed);
-    if (barriers > 0) text += fmt::format("barriers    {}\n", barriers);
+    const auto nets = std::count_if(scene.buildings.begin(), scene.buildings.end(), [](const Building& building) {
+        return building.barrier && building.barrier->passing_share;
+    });
+    if (barriers > 0)
+        text += fmt::format("barriers    {}", barriers) + (nets > 0 ? fmt::format(", {} of them nets\n", nets) : "\n");
     return text;
 }
 

@@ -15,13 +15,13 @@ namespace talus {
 /// Fills scene.terrain and what its file says of it.
 [[nodiscard]] Status load_terrain(const ParsedScene& parsed, Scene& scene);
 
-/// Fills scene.cover. The terrain is loaded.
+/// Fills scene.zones and what follows from them. The terrain is loaded.
 [[nodiscard]] Status load_zones(const ParsedScene& parsed, Scene& scene);
 
 /// Fills scene.releases. The terrain is loaded.
 [[nodiscard]] Status load_releases(const ParsedScene& parsed, Scene& scene);
 
-/// Fills scene.bed; the terrain is loaded. Where polygons of several beds overlap the last one lies there.
+/// Fills scene.bed_layers and scene.bed. The terrain is loaded.
 [[nodiscard]] Status load_bed(const ParsedScene& parsed, Scene& scene);
 
 /// Fills scene.buildings. The terrain and the releases are loaded.

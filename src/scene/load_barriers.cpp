@@ -107,7 +107,7 @@ Status load_barriers(const ParsedScene& parsed, Scene& scene) {
                 "debris on both sides would feel each other through it",
                 parsed.at(path + ".thickness_m"), spec.thickness, spacing, std::ceil(500 * spacing) / 1000)};
         }
-        BarrierShape shape{{}, spec.height.value_or(0), spec.crest_elevation, spec.thickness, {}};
+        BarrierShape shape{{}, spec.height.value_or(0), spec.crest_elevation, spec.thickness, {}, spec.passing_share};
         if (Status s = read_line_of(parsed, k, scene, name, shape.line); !s) return s;
         if (Status s = add_openings(parsed, scene, name, spacing, shape); !s) return s;
         Result<Building> barrier = make_barrier(scene.terrain, name, shape);

@@ -98,9 +98,11 @@ Status check_mesh_keys(const ParsedScene& parsed) {
 Status load_mesh_buildings(const ParsedScene& parsed, Scene& scene, std::size_t& outside) {
     const BuildingsSpec& spec = scene.spec.buildings;
     if (Status s = check_mesh_keys(parsed); !s) return s;
-    const auto meshes = read_mesh_buildings(spec.file, scene.crs);
+    std::vector<std::string> more_files;
+    const auto meshes = read_mesh_buildings(spec.file, scene.crs, more_files);
     if (!meshes) return Error{parsed.at("buildings.file") + ": " + meshes.error().message};
     record_input("buildings", spec.file, scene);
+    for (const std::string& file : more_files) record_input("buildings", file, scene);
     std::size_t sunk = 0;
     for (const MeshBuilding& mesh : *meshes) {
         PolygonFeature plan;

@@ -53,18 +53,23 @@ void note_far_releases(Scene& scene, const std::vector<PlanPoint>& line) {
     }
 }
 
-/// Highest and lowest ground of a release.
+/// Highest and lowest ground of where debris starts.
 struct ReleaseRelief {
     PlanPoint crown, lowest;
 };
 
-ReleaseRelief relief_of(const Release& release, const Terrain& terrain) {
-    const Extent extent = release.extent();
-    const double step = std::min(terrain.cell() / 2, std::max(extent.width(), extent.height()) / 50);
+ReleaseRelief relief_of(const std::vector<Polygon>& parts, const Terrain& terrain) {
     ReleaseRelief relief;
     double highest = -std::numeric_limits<double>::infinity(), lowest = -highest;
-    for (const ReleasePatch& patch : release.patches) {
-        for_each_inside(patch.polygon, step, [&](const PlanPoint& p) {
+    Extent extent = extent_of(parts.front());
+    for (const Polygon& part : parts) {
+        const Extent own = extent_of(part);
+        extent.include({own.x_min, own.y_min});
+        extent.include({own.x_max, own.y_max});
+    }
+    const double step = std::min(terrain.cell() / 2, std::max(extent.width(), extent.height()) / 50);
+    for (const Polygon& part : parts) {
+        for_each_inside(part, step, [&](const PlanPoint& p) {
             const double z = terrain.elevation_at(p);
             if (z > highest) {
                 highest = z;
@@ -90,12 +95,18 @@ Source largest_source(const Scene& scene) {
         const Inflow& inflow =
             *std::max_element(scene.inflows.begin(), scene.inflows.end(),
                               [](const Inflow& a, const Inflow& b) { return a.volume() < b.volume(); });
+        if (inflow.over_area()) {
+            const ReleaseRelief relief = relief_of(inflow.area, scene.terrain);
+            return {"inflow \"" + inflow.name + "\"", relief.crown, relief.lowest};
+        }
         const PlanPoint middle{(inflow.from.x + inflow.to.x) / 2, (inflow.from.y + inflow.to.y) / 2};
         return {"inflow \"" + inflow.name + "\"", middle, middle};
     }
     const Release& largest = *std::max_element(scene.releases.begin(), scene.releases.end(),
                                                [](const Release& a, const Release& b) { return a.volume < b.volume; });
-    const ReleaseRelief relief = relief_of(largest, scene.terrain);
+    std::vector<Polygon> parts;
+    for (const ReleasePatch& patch : largest.patches) parts.push_back(patch.polygon);
+    const ReleaseRelief relief = relief_of(parts, scene.terrain);
     return {"release \"" + largest.name + "\"", relief.crown, relief.lowest};
 }
 

@@ -1,84 +1,87 @@
-#include <charconv>
 #include <cmath>
-#include <fstream>
-#include <sstream>
+#include <numbers>
+#include <optional>
 
 #include <fmt/format.h>
 
 #include "geo/vector.hpp"
+#include "scene/hydrograph.hpp"
 #include "scene/load.hpp"
+#include "scene/polygons.hpp"
+#include "terrain/barrier.hpp"
 
 namespace talus {
 namespace {
 
-constexpr std::size_t most_rows = 1'000'000;
-constexpr const char* columns[] = {"time_s", "discharge_m3ps", "velocity_mps"};
-
-std::string trimmed(const std::string& text) {
-    const std::size_t first = text.find_first_not_of(" \t\r\"");
-    if (first == std::string::npos) return "";
-    return text.substr(first, text.find_last_not_of(" \t\r\"") - first + 1);
+Status load_line(const InflowSpec& spec, const std::string& at, const std::string& label, Inflow& inflow,
+                 Scene& scene) {
+    std::vector<PlanPoint> line = spec.line;
+    if (!spec.file.empty()) {
+        auto layer = read_line(spec.file, spec.layer, scene.crs);
+        if (!layer) return Error{at + ": " + layer.error().message};
+        record_input(label, spec.file, scene);
+        if (!layer->reprojection.empty()) scene.notes.push_back(label + ": " + layer->reprojection);
+        line = std::move(layer->points);
+    }
+    if (line.size() != 2) {
+        return Error{fmt::format("{}: has {} places; an inflow's line is straight, with exactly two", at, line.size())};
+    }
+    inflow.from = line[0];
+    inflow.to = line[1];
+    return check_line(inflow, scene.terrain, at);
 }
 
-std::vector<std::string> fields_of(const std::string& line) {
-    std::vector<std::string> fields;
-    std::stringstream in(line);
-    for (std::string field; std::getline(in, field, ',');) fields.push_back(trimmed(field));
-    return fields;
-}
-
-bool read_number(const std::string& text, double& value) {
-    const char* end = text.data() + text.size();
-    const auto read = std::from_chars(text.data(), end, value);
-    return read.ec == std::errc() && read.ptr == end && std::isfinite(value);
-}
-
-/// Errors name file, line, column and what is allowed.
-Result<std::vector<InflowSample>> read_hydrograph(const std::string& file) {
-    std::ifstream in(file, std::ios::binary);
-    std::error_code code;
-    if (!in || std::filesystem::is_directory(file, code)) return Error{file + ": no such file, or it cannot be opened"};
-    std::string line;
-    std::getline(in, line);
-    const std::vector<std::string> header = fields_of(line.substr(0, 1000));
-    std::size_t place[3] = {};
-    for (std::size_t c = 0; c < 3; ++c) {
-        while (place[c] < header.size() && header[place[c]] != columns[c]) ++place[c];
-        if (place[c] == header.size()) {
-            return Error{
-                fmt::format("{}:1: there is no column {}; the first line must name time_s, discharge_m3ps and "
-                            "velocity_mps, separated by commas",
-                            file, columns[c])};
+Status load_area(const InflowSpec& spec, const std::string& at, const std::string& label, Inflow& inflow,
+                 Scene& scene) {
+    if (!spec.polygon.empty()) {
+        if (spec.polygon.size() < 3) {
+            return Error{fmt::format("{}: has {} corners; an area needs three or more", at, spec.polygon.size())};
+        }
+        inflow.area.push_back({spec.polygon, {}});
+    } else {
+        const Result<PolygonLayer> layer = read_polygons(spec.polygon_file, spec.layer, scene.crs);
+        if (!layer) return Error{at + ": " + layer.error().message};
+        record_input(label, spec.polygon_file, scene);
+        if (!layer->reprojection.empty()) scene.notes.push_back(label + ": " + layer->reprojection);
+        for (const PolygonFeature& feature : layer->features) {
+            inflow.area.insert(inflow.area.end(), feature.parts.begin(), feature.parts.end());
         }
     }
-    std::vector<InflowSample> rows;
-    for (std::size_t number = 2; std::getline(in, line); ++number) {
-        if (trimmed(line).empty()) continue;
-        if (rows.size() >= most_rows) return Error{fmt::format("{}: has more than {} rows", file, most_rows)};
-        const std::vector<std::string> fields = fields_of(line.substr(0, 1000));
-        double values[3] = {};
-        for (std::size_t c = 0; c < 3; ++c) {
-            const std::string text = place[c] < fields.size() ? fields[place[c]] : "";
-            if (!read_number(text, values[c]) || values[c] < 0) {
-                return Error{fmt::format("{}:{}: {} = \"{}\" is refused; it must be a number of at least 0", file,
-                                         number, columns[c], one_line(text, 40))};
-            }
-        }
-        if (!rows.empty() && values[0] <= rows.back().time) {
-            return Error{
-                fmt::format("{}:{}: time_s = {:.6g} is refused; it must be above that of the row before, {:.6g}", file,
-                            number, values[0], rows.back().time)};
-        }
-        if (values[1] > 0 && !(values[2] > 0)) {
-            return Error{
-                fmt::format("{}:{}: velocity_mps = {:.6g} is refused; it must be above 0 where there is discharge",
-                            file, number, values[2])};
-        }
-        rows.push_back({values[0], values[1], values[2]});
+    for (const Polygon& part : inflow.area) {
+        if (!(plan_area(part) > 0)) return Error{at + ": the corners span no area"};
+        if (meets_itself(part.outer)) return Error{at + ": the outline of the area crosses itself"};
+        std::optional<PlanPoint> bare;
+        const auto test = [&](const PlanPoint& p) {
+            if (!bare && std::isnan(scene.terrain.elevation_at(p))) bare = p;
+        };
+        for_each_on_rings(part, scene.terrain.cell() / 2, test);
+        for_each_inside(part, scene.terrain.cell() / 2, test);
+        if (!bare) continue;
+        return Error{fmt::format("{}: is not on known ground at {}; the terrain covers {}", at, place_text(*bare),
+                                 extent_text(covered_extent(scene.terrain)))};
     }
-    if (rows.size() < 2)
-        return Error{fmt::format("{}: has {} rows of values; it must have at least 2", file, rows.size())};
-    return rows;
+    if (spec.direction) inflow.direction = *spec.direction * std::numbers::pi / 180;
+    return {};
+}
+
+std::string where_from(const Inflow& inflow, const Terrain& terrain) {
+    if (inflow.over_area()) {
+        double area = 0;
+        for (const Polygon& part : inflow.area) area += plan_area(part);
+        return fmt::format("over {:.4g} m2, {}", area,
+                           inflow.direction
+                               ? fmt::format("towards {:.4g} degrees", *inflow.direction * 180 / std::numbers::pi)
+                               : "down the slope");
+    }
+    const double width = std::hypot(inflow.to.x - inflow.from.x, inflow.to.y - inflow.from.y);
+    const PlanPoint middle{(inflow.from.x + inflow.to.x) / 2, (inflow.from.y + inflow.to.y) / 2};
+    const double cell = terrain.cell();
+    const PlanPoint ahead{middle.x + (inflow.to.y - inflow.from.y) / width * cell,
+                          middle.y - (inflow.to.x - inflow.from.x) / width * cell};
+    const double rise = (terrain.elevation_at(ahead) - terrain.elevation_at(middle)) / cell;
+    return fmt::format("across {:.4g} m, where the ground {} by {:.2g} in its direction{}", width,
+                       rise > 0 ? "rises" : "falls", std::abs(rise),
+                       rise > 0.05 ? "; turn the line if it should come from the other side" : "");
 }
 
 Result<Inflow> load_inflow(const ParsedScene& parsed, std::size_t index, Scene& scene) {
@@ -87,47 +90,33 @@ Result<Inflow> load_inflow(const ParsedScene& parsed, std::size_t index, Scene& 
     Inflow inflow;
     inflow.name = spec.name.empty() ? fmt::format("inflow {}", index + 1) : spec.name;
     const std::string label = fmt::format("inflow \"{}\"", inflow.name);
-    if (spec.line.empty() == spec.file.empty()) {
-        return Error{fmt::format("{}: exactly one of line_m and file must be given; {}",
-                                 parsed.at(path + (spec.line.empty() ? "line_m" : "file")),
-                                 spec.line.empty() ? "there is none" : "both are")};
+    std::vector<const char*> given;
+    if (!spec.line.empty()) given.push_back("line_m");
+    if (!spec.file.empty()) given.push_back("file");
+    if (!spec.polygon.empty()) given.push_back("polygon_m");
+    if (!spec.polygon_file.empty()) given.push_back("polygon_file");
+    if (given.size() != 1) {
+        return Error{fmt::format("{}: exactly one of line_m, file, polygon_m and polygon_file must be given; {}",
+                                 parsed.at(path + (given.empty() ? "line_m" : given.back())),
+                                 given.empty()       ? "there is none"
+                                 : given.size() == 2 ? "both are"
+                                                     : "there are more")};
     }
-    std::vector<PlanPoint> line = spec.line;
-    if (!spec.file.empty()) {
-        auto layer = read_line(spec.file, spec.layer, scene.crs);
-        if (!layer) return Error{parsed.at(path + "file") + ": " + layer.error().message};
-        record_input(label, spec.file, scene);
-        if (!layer->reprojection.empty()) scene.notes.push_back(label + ": " + layer->reprojection);
-        line = std::move(layer->points);
+    const bool over_area = !spec.polygon.empty() || !spec.polygon_file.empty();
+    if (spec.direction && !over_area) {
+        return Error{parsed.at(path + "direction_deg") +
+                     ": is refused across a line, which has a direction of its own"};
     }
-    const std::string at = parsed.at(path + (spec.file.empty() ? "line_m" : "file"));
-    if (line.size() != 2) {
-        return Error{fmt::format("{}: has {} places; an inflow's line is straight, with exactly two", at, line.size())};
-    }
-    inflow.from = line[0];
-    inflow.to = line[1];
-    const double width = std::hypot(inflow.to.x - inflow.from.x, inflow.to.y - inflow.from.y);
-    if (!(width > 0)) return Error{at + ": both ends of the line are the same place"};
-    for (int k = 0; k <= 100; ++k) {
-        const PlanPoint p{inflow.from.x + (inflow.to.x - inflow.from.x) * k / 100,
-                          inflow.from.y + (inflow.to.y - inflow.from.y) * k / 100};
-        if (!std::isnan(scene.terrain.elevation_at(p))) continue;
-        return Error{fmt::format("{}: is not on known ground at {}; the terrain covers {}", at, place_text(p),
-                                 extent_text(covered_extent(scene.terrain)))};
-    }
-    Result<std::vector<InflowSample>> rows = read_hydrograph(spec.hydrograph);
+    const std::string at = parsed.at(path + given.front());
+    const Status where =
+        over_area ? load_area(spec, at, label, inflow, scene) : load_line(spec, at, label, inflow, scene);
+    if (!where) return where.error();
+    Result<std::vector<InflowSample>> rows = read_hydrograph(spec.hydrograph, over_area);
     if (!rows) return Error{parsed.at(path + "hydrograph") + ": " + rows.error().message};
     record_input(label + " hydrograph", spec.hydrograph, scene);
     inflow.hydrograph = std::move(*rows);
     if (!(inflow.volume() > 0)) return Error{parsed.at(path + "hydrograph") + ": brings no debris at all"};
-    const PlanPoint middle{(inflow.from.x + inflow.to.x) / 2, (inflow.from.y + inflow.to.y) / 2};
-    const double cell = scene.terrain.cell();
-    const PlanPoint ahead{middle.x + (inflow.to.y - inflow.from.y) / width * cell,
-                          middle.y - (inflow.to.x - inflow.from.x) / width * cell};
-    const double rise = (scene.terrain.elevation_at(ahead) - scene.terrain.elevation_at(middle)) / cell;
-    scene.notes.push_back(fmt::format("{}: {:.6g} m3 across {:.4g} m, where the ground {} by {:.2g} in its direction{}",
-                                      label, inflow.volume(), width, rise > 0 ? "rises" : "falls", std::abs(rise),
-                                      rise > 0.05 ? "; turn the line if it should come from the other side" : ""));
+    scene.notes.push_back(fmt::format("{}: {:.6g} m3 {}", label, inflow.volume(), where_from(inflow, scene.terrain)));
     return Result<Inflow>(std::move(inflow));
 }
 

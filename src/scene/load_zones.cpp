@@ -1,7 +1,8 @@
 #include <cmath>
-#include <limits>
+#include <memory>
 #include <optional>
 #include <sstream>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -12,8 +13,6 @@
 
 namespace talus {
 namespace {
-
-constexpr float as_elsewhere = std::numeric_limits<float>::quiet_NaN();
 
 /// "x y, x y, x y".
 std::optional<Polygon> parse_polygon(const std::string& text) {
@@ -59,61 +58,31 @@ const Parameter& parameter_of(ZoneRaster raster) {
                                                                                   : "turbulent_friction_mps2");
 }
 
-class ZoneWriter {
-  public:
-    ZoneWriter(const ZoneSpec& spec, Grid<CoverCell>& cells) : spec_(spec), cells_(cells) {}
-
-    void add(int column, int row) {
-        CoverCell& cell = cells_.at(column, row);
-        ++count_;
-        if (spec_.friction_coefficient) cell.friction_coefficient = static_cast<float>(*spec_.friction_coefficient);
-        if (spec_.turbulent_friction)
-            cell.inverse_turbulent_friction = static_cast<float>(1 / *spec_.turbulent_friction);
-        if (spec_.cohesion) cell.cohesion = static_cast<float>(*spec_.cohesion);
-        if (spec_.stem_density > 0) {
-            cell.stem_drag =
-                static_cast<float>(spec_.stem_drag_coefficient * spec_.stem_density * spec_.stem_diameter / 2);
-        }
-    }
-
-    /// Adds the cells that the raster says; its coefficients where it holds some.
-    Status add_raster(const Grid<float>& raster) {
-        const GridGeometry &to = cells_.geometry, &from = raster.geometry;
-        for (int row = 0; row < to.rows; ++row) {
-            for (int column = 0; column < to.columns; ++column) {
-                const PlanPoint p = to.centre(column, row);
-                const double c = std::floor((p.x - from.x_min) / from.cell),
-                             r = std::floor((p.y - from.y_min) / from.cell);
-                if (c < 0 || r < 0 || c >= from.columns || r >= from.rows) continue;
-                const float value = raster.at(static_cast<int>(c), static_cast<int>(r));
-                if (std::isnan(value) || (spec_.raster_value && value != static_cast<float>(*spec_.raster_value)))
-                    continue;
-                add(column, row);
-                if (spec_.raster_holds == ZoneRaster::zone_number) continue;
-                const std::string allowed = problem_with(parameter_of(spec_.raster_holds), double{value});
-                if (!allowed.empty()) {
-                    return Error{fmt::format("{}: holds {:.6g} at {}; it must be {}", spec_.raster, value,
-                                             place_text(p), allowed)};
-                }
-                if (spec_.raster_holds == ZoneRaster::friction_coefficient) {
-                    cells_.at(column, row).friction_coefficient = value;
-                } else {
-                    cells_.at(column, row).inverse_turbulent_friction = 1 / value;
-                }
+/// The cells of the terrain that the raster says, with its values. Errors: a coefficient out of range.
+Result<ZoneCells> read_cells(const ZoneSpec& spec, const Grid<float>& raster, const GridGeometry& terrain) {
+    ZoneCells cells;
+    const GridGeometry& from = raster.geometry;
+    for (int row = 0; row < terrain.rows; ++row) {
+        for (int column = 0; column < terrain.columns; ++column) {
+            const PlanPoint p = terrain.centre(column, row);
+            const double c = std::floor((p.x - from.x_min) / from.cell), r = std::floor((p.y - from.y_min) / from.cell);
+            if (c < 0 || r < 0 || c >= from.columns || r >= from.rows) continue;
+            const float value = raster.at(static_cast<int>(c), static_cast<int>(r));
+            if (std::isnan(value) || (spec.raster_value && value != static_cast<float>(*spec.raster_value))) continue;
+            cells.cell.push_back(terrain.index(column, row));
+            cells.value.push_back(value);
+            if (spec.raster_holds == ZoneRaster::zone_number) continue;
+            const std::string allowed = problem_with(parameter_of(spec.raster_holds), double{value});
+            if (!allowed.empty()) {
+                return Error{
+                    fmt::format("{}: holds {:.6g} at {}; it must be {}", spec.raster, value, place_text(p), allowed)};
             }
         }
-        return {};
     }
+    return cells;
+}
 
-    [[nodiscard]] std::size_t count() const { return count_; }
-
-  private:
-    const ZoneSpec& spec_;
-    Grid<CoverCell>& cells_;
-    std::size_t count_ = 0;
-};
-
-Status load_zone(const ParsedScene& parsed, std::size_t index, Grid<CoverCell>& cells, Scene& scene) {
+Status load_zone(const ParsedScene& parsed, std::size_t index, Scene& scene) {
     ZoneSpec& spec = scene.spec.zones[index];
     if (spec.name.empty()) spec.name = fmt::format("zone {}", index + 1);
     const std::string label = fmt::format("zone \"{}\"", spec.name);
@@ -121,39 +90,43 @@ Status load_zone(const ParsedScene& parsed, std::size_t index, Grid<CoverCell>& 
     const auto refused = [&](const Error& error) {
         return Error{parsed.at(fmt::format("zone[{}].{}", index, key)) + ": " + error.message};
     };
-    ZoneWriter writer(spec, cells);
+    const GridGeometry& terrain = scene.terrain.elevation().geometry;
+    Zone zone;
+    zone.spec = spec;
     if (spec.raster.empty()) {
-        const Result<std::vector<Polygon>> parts = read_outline(spec, label, scene);
+        Result<std::vector<Polygon>> parts = read_outline(spec, label, scene);
         if (!parts) return refused(parts.error());
-        for (const Polygon& part : *parts) {
-            for_each_cell_inside(part, cells.geometry, [&](int column, int row) { writer.add(column, row); });
-        }
+        zone.outline = std::move(*parts);
     } else {
         const Result<Raster> raster = read_value_raster(spec.raster, scene.crs);
         if (!raster) return refused(raster.error());
         record_input(label, spec.raster, scene);
-        if (Status s = writer.add_raster(raster->grid); !s) return refused(s.error());
+        Result<ZoneCells> cells = read_cells(spec, raster->grid, terrain);
+        if (!cells) return refused(cells.error());
+        zone.cells = std::make_shared<const ZoneCells>(std::move(*cells));
     }
-    if (writer.count() == 0) {
+    const double area = area_of(zone, terrain);
+    if (!(area > 0)) {
         return refused(
             Error{fmt::format("{} covers the centre of no cell of the terrain, {} in cells of {:.6g} m; leave "
                               "it out or redraw it",
-                              label, extent_text(cells.geometry.extent()), cells.geometry.cell)});
+                              label, extent_text(terrain.extent()), terrain.cell)});
     }
-    const double area = static_cast<double>(writer.count()) * cells.geometry.cell * cells.geometry.cell;
-    scene.notes.push_back(fmt::format("{}: {} cells of the terrain, {:.6g} m2 in plan", label, writer.count(), area));
+    scene.notes.push_back(fmt::format("{}: {:.0f} cells of the terrain, {:.6g} m2 in plan", label,
+                                      area / (terrain.cell * terrain.cell), area));
+    scene.zones.push_back(std::move(zone));
     return {};
 }
 
 }  // namespace
 
 Status load_zones(const ParsedScene& parsed, Scene& scene) {
-    if (scene.spec.zones.empty()) return {};
-    Grid<CoverCell> cells(scene.terrain.elevation().geometry, {as_elsewhere, as_elsewhere, as_elsewhere, 0});
     for (std::size_t index = 0; index < scene.spec.zones.size(); ++index) {
-        if (Status s = load_zone(parsed, index, cells, scene); !s) return s;
+        if (Status s = load_zone(parsed, index, scene); !s) return s;
     }
-    scene.cover = GroundCover(cells);
+    LaidZones laid = lay_zones(scene.zones, scene.terrain);
+    scene.cover = std::move(laid.cover);
+    scene.zone_at = std::move(laid.zone_at);
     return {};
 }
 

@@ -177,7 +177,12 @@ int thread_count(const SolverSpec& solver) {
 
 Result<RunResult> run_scene(const Scene& scene, const RunOptions& options) {
     const int threads = thread_count(scene.spec.solver);
-    const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads));
+    // It is for more threads than cores, which an arena alone does not get. Of several such limits in a program the
+    // least holds: with fewer threads the arena must do, or this run would slow another one beside it.
+    std::optional<tbb::global_control> limit;
+    if (static_cast<unsigned>(threads) > std::thread::hardware_concurrency()) {
+        limit.emplace(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads));
+    }
     tbb::task_arena arena(threads);
     return arena.execute([&] { return run_in_arena(scene, options, threads); });
 }

@@ -8,6 +8,8 @@
 #include "core/result.hpp"
 #include "geo/raster.hpp"
 #include "params/spec.hpp"
+#include "scene/bed_layer.hpp"
+#include "scene/zone.hpp"
 #include "terrain/bed.hpp"
 #include "terrain/buildings.hpp"
 #include "terrain/flow_path.hpp"
@@ -34,9 +36,12 @@ struct Scene {
     std::string vertical_unit;
     double nodata_share = 0;
     Terrain terrain;
-    GroundCover cover;  ///< of the zones
+    std::vector<Zone> zones;
+    GroundCover cover;                   ///< of the zones
+    std::vector<std::uint16_t> zone_at;  ///< by cell of the terrain, for the eye: 1 + the last zone there; 0: none
     std::vector<Release> releases;
-    Bed bed;
+    std::vector<BedLayer> bed_layers;
+    Bed bed;  ///< of the layers
     std::vector<Inflow> inflows;
     std::vector<Building> buildings;
     FlowPath flow_path;

@@ -9,10 +9,12 @@
 
 namespace talus::serve {
 
-Router make_api(Session& session, Exports& exports) {
+Router make_api(Session& session, Exports& exports, const Ensembles& ensembles, Calibrations& calibrations) {
     Router router;
     add_session_routes(router, session);
     add_scenario_routes(router, session, exports);
+    add_ensemble_routes(router, ensembles);
+    add_calibration_routes(router, session, calibrations);
     return router;
 }
 

@@ -1,17 +1,22 @@
 #pragma once
 
+#include "serve/calibrations.hpp"
+#include "serve/ensembles.hpp"
 #include "serve/exports.hpp"
 #include "serve/router.hpp"
 #include "serve/session.hpp"
 
 namespace talus::serve {
 
-/// The routes of docs/protocol.md. `session` and `exports` must outlive them.
-[[nodiscard]] Router make_api(Session& session, Exports& exports);
+/// The routes of docs/protocol.md. What they are given must outlive them.
+[[nodiscard]] Router make_api(Session& session, Exports& exports, const Ensembles& ensembles,
+                              Calibrations& calibrations);
 
 // The parts of it.
 void add_session_routes(Router& router, Session& session);
 void add_scenario_routes(Router& router, Session& session, Exports& exports);
+void add_ensemble_routes(Router& router, const Ensembles& ensembles);
+void add_calibration_routes(Router& router, Session& session, Calibrations& calibrations);
 
 /// Calls `act` with the name of who asks if that may change something now, and answers why not otherwise.
 void change(Session& session, const Request& request, const Respond& respond,

@@ -17,7 +17,8 @@ namespace fs = std::filesystem;
 using nlohmann::json;
 
 struct ExportFile {
-    const char *name, *type, *what;
+    const char *name = nullptr, *type = nullptr, *what = nullptr;
+    bool of_erosion = false;  ///< written only if debris picked up anything
 };
 
 // The files of a run; names that are asked for are held against these, so none leads out of the folder.
@@ -39,6 +40,9 @@ constexpr ExportFile export_files[] = {
     {"arrival_time.qml", "application/xml", "QGIS style of it"},
     {"deposit_depth.tif", "image/tiff", "Depth of the debris now, m"},
     {"deposit_depth.qml", "application/xml", "QGIS style of it"},
+    {"erosion_depth.tif", "image/tiff", "Depth picked up from the bed, m", true},
+    {"erosion_depth.qml", "application/xml", "QGIS style of it", true},
+    {"erosion.csv", "text/csv", "Volume picked up against chainage", true},
 };
 
 const ExportFile* find_file(const std::string& name) {
@@ -107,10 +111,12 @@ void Exports::list(const std::string& scenario, const Respond& respond) {
             return;
         }
         const bool current = is_current(*index, all.at(*index));
-        writer_->post([taken = current ? taken_[static_cast<std::size_t>(*index)] : nullptr, respond] {
+        writer_->post([taken = current ? taken_[static_cast<std::size_t>(*index)] : nullptr,
+                       erosion = all.at(*index).has_erosion(), respond] {
             json files = json::array();
             const bool written = taken && !taken->products;
             for (const ExportFile& file : export_files) {
+                if (file.of_erosion && !erosion) continue;
                 std::error_code error;
                 const auto bytes = written ? fs::file_size(taken->folder / file.name, error) : 0;
                 if (error) continue;  // this run has none
@@ -135,6 +141,10 @@ void Exports::file(const std::string& scenario, const std::string& name, const R
         }
         SnapshotPtr& taken = taken_[static_cast<std::size_t>(*index)];
         const twin::Scenario& run = all.at(*index);
+        if (wanted->of_erosion && !run.has_erosion()) {
+            respond(error_response(404, fmt::format("there is no {}: nothing was picked up", wanted->name)));
+            return;
+        }
         if (!is_current(*index, run)) {
             auto fresh = std::make_shared<Snapshot>();
             fresh->step = run.step();

@@ -17,6 +17,7 @@
 
 #include "serve/api.hpp"
 #include "serve/connection.hpp"
+#include "serve/ensembles.hpp"
 
 namespace talus::serve {
 namespace {
@@ -60,8 +61,10 @@ struct Server::Parts {
 
     // Connections end with `io`, and so before what they use.
     ServerOptions options;
+    Ensembles ensembles;
     std::optional<Session> session;
     std::optional<Exports> exports;
+    std::optional<Calibrations> calibrations;
     std::optional<Desk> desk;
     asio::io_context io{1};
     tcp::acceptor acceptor;
@@ -76,6 +79,7 @@ Server::Parts::~Parts() {
     io.stop();
     if (thread.joinable()) thread.join();
     // Threads end while everything that they tell is still there.
+    if (calibrations) calibrations->close();
     if (session) session->close();
     if (exports) exports->close();
 }
@@ -142,15 +146,21 @@ Result<std::unique_ptr<Server>> Server::listen(ServerOptions options) {
 Status Server::serve(std::shared_ptr<const Scene> scene) {
     Parts& parts = *parts_;
     const ServerOptions& options = parts.options;
-    parts.session.emplace(parts.thread_of_session(), std::move(scene), options.tokens);
+    auto ensembles = Ensembles::read(options.ensembles, *scene);
+    if (!ensembles) return ensembles.error();
+    parts.ensembles = std::move(*ensembles);
+    parts.session.emplace(parts.thread_of_session(), scene, options.tokens);
     const auto on_failure = options.on_failure ? options.on_failure : [](const std::string&) {};
     if (Status opened = parts.session->open(options.scenario, on_failure); !opened) return opened;
     parts.exports.emplace(*parts.session, options.export_folder);
+    parts.calibrations.emplace(std::move(scene), options.calibration,
+                               [&parts](nlohmann::json status) { parts.session->calibration(std::move(status)); });
+    parts.session->calibration(parts.calibrations->describe());
     parts.connection_limit = raise_connection_limit();
     parts.desk.emplace(
         Desk{Access(options.tokens, bracketed(parts.bound.address()), parts.bound.port(), options.allowed_hosts),
-             make_api(*parts.session, *parts.exports), *parts.session, Site(), options.patience, 0,
-             parts.connection_limit / 2});
+             make_api(*parts.session, *parts.exports, parts.ensembles, *parts.calibrations), *parts.session, Site(),
+             options.patience, 0, parts.connection_limit / 2});
     if (options.run) {
         parts.session->loop().post([](Scenarios& all) { (void)all.act(0, {{"action", "run"}}, ""); });
     }

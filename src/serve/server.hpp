@@ -11,6 +11,7 @@
 #include "core/result.hpp"
 #include "scene/scene.hpp"
 #include "serve/access.hpp"
+#include "serve/calibrations.hpp"
 #include "serve/router.hpp"
 #include "twin/scenario.hpp"
 
@@ -23,9 +24,11 @@ struct ServerOptions {
     Tokens tokens;
     std::filesystem::path export_folder;  ///< an existing folder for result files
     twin::ScenarioOptions scenario;
-    std::chrono::milliseconds patience{60000};    ///< how long a connection may be silent, or take for a header
-    bool run = false;                             ///< begin at once
-    std::function<void(std::string)> on_failure;  ///< the simulation cannot go on: out of memory; from any thread
+    std::chrono::milliseconds patience{60000};     ///< how long a connection may be silent, or take for a header
+    bool run = false;                              ///< begin at once
+    CalibrationSettings calibration;               ///< without a scene file there are none
+    std::vector<std::filesystem::path> ensembles;  ///< folders of finished ensembles whose maps are shown
+    std::function<void(std::string)> on_failure;   ///< the simulation cannot go on: out of memory; from any thread
 };
 
 /// A session that people and programs reach over HTTP and WebSocket, as docs/protocol.md has it. Runs on threads of its
@@ -34,7 +37,8 @@ class Server {
   public:
     /// Takes the port. Errors: bad address, port in use, bad tokens.
     [[nodiscard]] static Result<std::unique_ptr<Server>> listen(ServerOptions options);
-    /// Opens the scene and begins to answer; once. Errors: the scene cannot be run.
+    /// Opens the scene and begins to answer; once. Errors: the scene cannot be run, an ensemble
+    /// cannot be shown on it.
     [[nodiscard]] Status serve(std::shared_ptr<const Scene> scene);
     ~Server();
     Server(const Server&) = delete;

@@ -80,6 +80,7 @@ void Session::join(Viewer& viewer, Role role, const std::string& name, const std
         if (setups_[i]) viewer.send(setups_[i]);
         if (states_[i]) viewer.send(states_[i]);
     }
+    if (calibration_) viewer.send(calibration_);
     people_changed();
 }
 
@@ -236,6 +237,13 @@ void Session::state(int scenario, json state) {
 void Session::setup(int scenario, json setup) {
     thread_.post([this, scenario, text = message_text("setup", std::move(setup))] {
         setups_[static_cast<std::size_t>(scenario)] = text;
+        for (const auto& [viewer, view] : viewers_) viewer->send(text);
+    });
+}
+
+void Session::calibration(json status) {
+    thread_.post([this, text = message_text("calibration", std::move(status))] {
+        calibration_ = text;
         for (const auto& [viewer, view] : viewers_) viewer->send(text);
     });
 }

@@ -64,6 +64,9 @@ class Session final : public Watcher {
     /// As `GET /api/session`.
     [[nodiscard]] nlohmann::json describe(Role role) const;
 
+    /// What everybody is told of a calibration, and those who join later; from any thread.
+    void calibration(nlohmann::json status);
+
     // Watcher, from the loop's thread.
     void frames(FrameSet set) override;
     void state(int scenario, nlohmann::json state) override;
@@ -96,6 +99,7 @@ class Session final : public Watcher {
     std::map<Viewer*, View> viewers_;
     std::vector<std::string> names_{"A"};
     std::array<Bytes, Scenarios::most> states_, setups_;  // as messages; for those who join
+    Bytes calibration_;                                   // likewise
     std::vector<Audience> audience_;
     /// Frames as they are sent, by cap.
     using Packed = std::vector<std::pair<unsigned, Bytes>>;

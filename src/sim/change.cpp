@@ -1,9 +1,11 @@
 #include "sim/change.hpp"
 
 #include <algorithm>
+#include <unordered_map>
 #include <utility>
 #include <vector>
 
+#include "sim/physics/net.hpp"
 #include "sim/relax.hpp"
 
 namespace talus {
@@ -33,6 +35,27 @@ void append_particles(State& state, const State& more, std::uint32_t first_id) {
     state.left += more.left;
 }
 
+std::uint32_t add_particle(State& state, const LocalPoint& position, const LocalPoint& velocity, float multiplier) {
+    const std::uint32_t i = state.count++;
+    state.position.set(i, position);
+    state.velocity.set(i, velocity);
+    state.stress.set(i, {});
+    state.multiplier[i] = multiplier;
+    state.id[i] = state.seeded++;
+    state.held[i] = state.resting[i] = 0;
+    state.calm_time[i] = 0;
+    return i;
+}
+
+void set_density(State& state, std::uint32_t particle, double density) {
+    const std::uint32_t id = state.id[particle];
+    if (state.density_of_id.size() <= id) {
+        state.density_of_id.reserve(state.id.size());
+        state.density_of_id.resize(std::size_t{id} + 1, 0);
+    }
+    state.density_of_id[id] = static_cast<float>(density);
+}
+
 void take_away(State& state, std::uint32_t first, std::uint32_t last) {
     std::uint32_t kept = 0;
     for (std::uint32_t i = 0; i < state.count; ++i) {
@@ -57,8 +80,9 @@ void clear_solids(const Model& model, State& state, const Extent& local) {
     Extent around;
     for (std::uint32_t i = 0; i < state.count; ++i) {
         LocalPoint p = state.position.at(i), v = state.velocity.at(i);
-        if (state.held[i] != 0 || !local.contains({p.x, p.y}) || !model.solids.inside(p)) continue;
-        put_out_of_solids(model, p, [&](const LocalPoint& normal) {
+        const float rank = grain_rank(state.id[i]);
+        if (state.held[i] != 0 || !local.contains({p.x, p.y}) || !model.solids.inside(p, rank)) continue;
+        put_out_of_solids(model, p, rank, [&](const LocalPoint& normal) {
             const float into = dot(v, normal);
             if (into < 0) v -= normal * into;
         });
@@ -78,6 +102,7 @@ void clear_solids(const Model& model, State& state, const Extent& local) {
     const Extent yields = around.grown(3 * model.support_radius), stands = yields.grown(model.support_radius);
     State part;
     std::vector<std::uint32_t> source;
+    std::unordered_map<std::uint32_t, std::uint32_t> source_of_id;
     for (std::uint32_t i = 0; i < state.count; ++i) {
         if (stands.contains({state.position.x[i], state.position.y[i]})) source.push_back(i);
     }
@@ -86,13 +111,14 @@ void clear_solids(const Model& model, State& state, const Extent& local) {
     for (std::uint32_t k = 0; k < part.count; ++k) {
         const std::uint32_t i = source[k];
         part.position.set(k, state.position.at(i));
-        part.id[k] = k;
+        part.id[k] = state.id[i];  // what nets do to it hangs on that
+        source_of_id[state.id[i]] = i;
         part.held[k] = state.held[i] != 0 || !yields.contains({state.position.x[i], state.position.y[i]});
     }
     push_apart(model, part);
     for (std::uint32_t k = 0; k < part.count; ++k) {
         if (part.held[k] != 0) continue;
-        const std::uint32_t i = source[part.id[k]];
+        const std::uint32_t i = source_of_id.at(part.id[k]);
         state.position.set(i, part.position.at(k));
         state.resting[i] = 0;
     }

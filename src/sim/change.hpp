@@ -13,6 +13,12 @@ namespace talus {
 /// Adds the particles of `more` (see seed_releases), their ids raised by `first_id`, and counts them as seeded.
 void append_particles(State& state, const State& more, std::uint32_t first_id);
 
+/// Adds a particle that is awake, behind the others, and returns its index; the arrays have room for it.
+std::uint32_t add_particle(State& state, const LocalPoint& position, const LocalPoint& velocity, float multiplier);
+
+/// Gives a particle a density of its own, kg/m3; see density_of().
+void set_density(State& state, std::uint32_t particle, double density);
+
 /// Takes the particles with ids [first, last) away; those that have left the terrain stay counted as left.
 void take_away(State& state, std::uint32_t first, std::uint32_t last);
 

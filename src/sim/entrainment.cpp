@@ -6,6 +6,8 @@
 #include <limits>
 #include <numbers>
 
+#include "sim/change.hpp"
+#include "sim/physics/net.hpp"
 #include "sim/relax.hpp"
 
 namespace talus {
@@ -204,7 +206,7 @@ void Entrainment::make_room(const Model& model, State& state, std::size_t index)
         if (!(distance > 0) || distance > reach) continue;
         p += away * (std::cbrt(distance * distance * distance + room) / distance - 1);
         if (!model.terrain.covers(p.x, p.y)) continue;
-        put_out_of_solids(model, p, [](const LocalPoint&) {});
+        put_out_of_solids(model, p, grain_rank(state.id[i]), [](const LocalPoint&) {});
         state.position.set(i, p);
         if (distance > 2 * spacing) continue;
         state.resting[i] = 0;
@@ -222,14 +224,8 @@ void Entrainment::apply(Model& model, State& state) {
         model.terrain.set_elevation(site.cell, static_cast<float>(model.terrain.elevation().values[site.cell] - depth));
         choose_foot(model, state, s);
         make_room(model, state, s);
-        const std::uint32_t i = state.count++;
-        state.position.set(i, site.foot + site.normal * static_cast<float>(model.contact_distance()));
-        state.velocity.set(i, {});
-        state.stress.set(i, {});
-        state.multiplier[i] = state.multiplier[site.particle];
-        state.id[i] = state.seeded++;
-        state.held[i] = state.resting[i] = 0;
-        state.calm_time[i] = 0;
+        add_particle(state, site.foot + site.normal * static_cast<float>(model.contact_distance()), {},
+                     state.multiplier[site.particle]);
         ++state.entrained;
     }
 }

@@ -3,12 +3,18 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sim/change.hpp"
+#include "sim/physics/net.hpp"
 #include "sim/relax.hpp"
 
 namespace talus {
 
 InflowFeeder::InflowFeeder(const Model& model, const std::vector<Inflow>& inflows) {
     for (const Inflow& inflow : inflows) {
+        if (inflow.over_area()) {
+            areas_.emplace_back(model, inflow);
+            continue;
+        }
         Source source;
         source.inflow = inflow;
         source.spacing = model.particle_spacing;
@@ -22,12 +28,14 @@ InflowFeeder::InflowFeeder(const Model& model, const std::vector<Inflow>& inflow
 std::uint32_t InflowFeeder::to_come() const {
     std::uint32_t count = 0;
     for (const Source& source : sources_) count += source.total - source.fed;
+    for (const AreaSource& area : areas_) count += area.to_come();
     return count;
 }
 
 bool InflowFeeder::due(double time) const {
     return std::any_of(sources_.begin(), sources_.end(),
-                       [&](const Source& source) { return source.due(time) || source.leads(); });
+                       [&](const Source& source) { return source.due(time) || source.leads(); }) ||
+           std::any_of(areas_.begin(), areas_.end(), [&](const AreaSource& area) { return area.due(time); });
 }
 
 bool InflowFeeder::Source::leads() const {
@@ -56,11 +64,17 @@ void InflowFeeder::feed(const Model& model, State& state) {
     for (Source& source : sources_) {
         source.lead(model, state);
         while (source.due(state.time)) {
+            const double before = source.last_time;
             source.last_time = source.next_time(state.time);
+            const std::uint32_t first = state.count;
             source.add_row(model, state, state.time - source.last_time);
             ++source.rows;
+            if (!source.inflow.has_density()) continue;
+            const double density = source.inflow.density_between(before, source.last_time);
+            for (std::uint32_t i = first; i < state.count; ++i) set_density(state, i, density);
         }
     }
+    for (AreaSource& area : areas_) area.feed(model, state);
 }
 
 void InflowFeeder::Source::lead(const Model& model, State& state) {
@@ -102,7 +116,7 @@ void InflowFeeder::Source::lead(const Model& model, State& state) {
                 Vec3<double>{plan.x, plan.y, there.height} + there.normal * ((place.z - here.height) * here.normal.z);
             const LocalPoint led_to{static_cast<float>(target.x), static_cast<float>(target.y),
                                     static_cast<float>(target.z)};
-            if (!model.solids.empty() && model.solids.inside(led_to)) continue;
+            if (!model.solids.empty() && model.solids.inside(led_to, grain_rank(state.id[i]))) continue;
             const double lacks = velocity - (v.x * along.x + v.y * along.y + v.z * along.z);
             state.position.set(i, led_to);
             state.velocity.set(i, {static_cast<float>(v.x + lacks * along.x), static_cast<float>(v.y + lacks * along.y),
@@ -147,17 +161,14 @@ void InflowFeeder::Source::add_row(const Model& model, State& state, double sinc
             const Vec3<double> place =
                 Vec3<double>{plan.x, plan.y, ground.height} + ground.normal * ((k + 0.5) * layer);
             LocalPoint p{static_cast<float>(place.x), static_cast<float>(place.y), static_cast<float>(place.z)};
-            if (!model.solids.empty()) put_out_of_solids(model, p, [](const LocalPoint&) {});
-            const std::uint32_t i = state.count++;
-            state.position.set(i, p);
-            state.velocity.set(i, {static_cast<float>(along.x * velocity), static_cast<float>(along.y * velocity),
-                                   static_cast<float>(along.z * velocity)});
-            state.stress.set(i, {});
+            if (!model.solids.empty()) {
+                put_out_of_solids(model, p, grain_rank(state.seeded), [](const LocalPoint&) {});
+            }
             const double above = (layers - k - 0.5) * layer;
-            state.multiplier[i] = static_cast<float>(-model.gravity * ground.normal.z * above * previous * previous);
-            state.id[i] = state.seeded++;
-            state.held[i] = state.resting[i] = 0;
-            state.calm_time[i] = 0;
+            add_particle(state, p,
+                         {static_cast<float>(along.x * velocity), static_cast<float>(along.y * velocity),
+                          static_cast<float>(along.z * velocity)},
+                         static_cast<float>(-model.gravity * ground.normal.z * above * previous * previous));
             ++fed;
         }
     }

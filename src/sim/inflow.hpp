@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "sim/area_source.hpp"
 #include "sim/model.hpp"
 #include "sim/state.hpp"
 #include "terrain/inflow.hpp"
@@ -18,6 +19,8 @@ namespace talus {
 /// Over the first three spacings beyond the line rows are led: between steps their way and velocity along the inflow
 /// become those of the hydrograph, across it they are as the solver leaves them. Without that, the newest row would be
 /// pushed back by those before it, having nothing behind it, and the next one would come too close.
+///
+/// What comes in over an area does so by an AreaSource.
 class InflowFeeder {
   public:
     InflowFeeder(const Model& model, const std::vector<Inflow>& inflows);
@@ -56,6 +59,7 @@ class InflowFeeder {
         void add_row(const Model& model, State& state, double since);
     };
     std::vector<Source> sources_;
+    std::vector<AreaSource> areas_;
 };
 
 }  // namespace talus

@@ -66,6 +66,7 @@ struct Model {
     /// The distance, m, at which a particle touches ground and walls: half its own size.
     [[nodiscard]] double contact_distance() const { return particle_spacing / 2; }
     [[nodiscard]] double particle_volume() const { return particle_spacing * particle_spacing * particle_spacing; }
+    /// kg, of one at rest density; see density_of().
     [[nodiscard]] double particle_mass() const { return rest_density * particle_volume(); }
 };
 

@@ -63,6 +63,7 @@ void relax(const Model& model, State& state, const std::vector<float>& overburde
     constexpr double dense_enough = 0.005;
     constexpr int most_rounds = 400, loading_rounds = 200;
     Model still = without_forces(model);
+    still.solids.close_nets();
     for (ReleaseGroup& release : still.releases) release.start_time = 0;
     state.time_step = model.solver.largest_time_step;
     creep(still, state, most_rounds, [](const State& s) { return s.max_compression < dense_enough; });

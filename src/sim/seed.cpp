@@ -84,7 +84,7 @@ void put_out_of_buildings(const Model& model, State& state) {
     if (model.solids.empty()) return;
     for (std::uint32_t i = 0; i < state.count; ++i) {
         LocalPoint p = state.position.at(i);
-        put_out_of_solids(model, p, [](const LocalPoint&) {});
+        put_out_of_solids(model, p, largest_grain, [](const LocalPoint&) {});
         state.position.set(i, p);
     }
 }

@@ -9,6 +9,7 @@
 #include "core/hash.hpp"
 #include "sim/cpu/parallel.hpp"
 #include "sim/fault.hpp"
+#include "sim/particle_density.hpp"
 #include "sim/step.hpp"
 
 namespace talus {
@@ -91,13 +92,13 @@ std::uint64_t hash_state(const State& state) {
 }
 
 double kinetic_energy(const Model& model, const State& state) {
-    return model.particle_mass() / 2 *
+    return model.particle_volume() / 2 *
            cpu::reduce_ranges(
                state.count, 4096, 0.0,
                [&](std::size_t first, std::size_t last, double sum) {
                    for (std::size_t i = first; i < last; ++i) {
                        const double x = state.velocity.x[i], y = state.velocity.y[i], z = state.velocity.z[i];
-                       sum += x * x + y * y + z * z;
+                       sum += (x * x + y * y + z * z) * density_of(model, state, i);
                    }
                    return sum;
                },
@@ -105,11 +106,11 @@ double kinetic_energy(const Model& model, const State& state) {
 }
 
 double potential_energy(const Model& model, const State& state) {
-    return model.particle_mass() * model.gravity *
+    return model.particle_volume() * model.gravity *
            cpu::reduce_ranges(
                state.count, 4096, 0.0,
                [&](std::size_t first, std::size_t last, double sum) {
-                   for (std::size_t i = first; i < last; ++i) sum += state.position.z[i];
+                   for (std::size_t i = first; i < last; ++i) sum += state.position.z[i] * density_of(model, state, i);
                    return sum;
                },
                [](double a, double b) { return a + b; });

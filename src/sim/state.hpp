@@ -76,6 +76,7 @@ struct State {
     std::vector<std::uint32_t> id;
     std::vector<std::uint8_t> held;     ///< 1: its release has not started
     std::vector<float> calm_time;       ///< s, for how long the particle has hardly moved; 0 at rest
+    std::vector<float> density_of_id;   ///< kg/m3, by id; 0 and beyond its end: the rest density
     std::vector<std::uint8_t> resting;  ///< 1: it stays where it is until something moves beside it
 
     void resize(std::size_t n) {

@@ -134,7 +134,8 @@ BuildingSolids::BuildingSolids(const Terrain& terrain, const std::vector<Buildin
                         edges_[first].ay,
                         edges_[first].ax,
                         edges_[first].ay,
-                        roof};
+                        roof,
+                        building.barrier ? static_cast<float>(building.barrier->passing_share.value_or(0)) : 0};
             for (std::size_t e = first; e < edges_.size(); ++e) {
                 solid.x_min = std::min(solid.x_min, edges_[e].ax);
                 solid.y_min = std::min(solid.y_min, edges_[e].ay);
@@ -186,8 +187,13 @@ void BuildingSolids::split_walls() {
                 const double outside_x = (piece.ax + piece.bx) / 2 + 2 * touching * dy / length;
                 const double outside_y = (piece.ay + piece.by) / 2 - 2 * touching * dx / length;
                 for (const std::uint32_t o : near) {
-                    if (in_plan(solids_[o], outside_x, outside_y)) {
-                        piece.hidden_below = std::max(piece.hidden_below, solids_[o].roof);
+                    const Solid& other = solids_[o];
+                    if (!in_plan(other, outside_x, outside_y)) continue;
+                    if (other.passing_share <= solid.passing_share) {
+                        piece.hidden_below = std::max(piece.hidden_below, other.roof);
+                    } else {
+                        piece.hidden_by_nets = std::max(piece.hidden_by_nets, other.roof);
+                        piece.net_share = std::max(piece.net_share, other.passing_share);
                     }
                 }
                 pieces.push_back(piece);
@@ -251,7 +257,7 @@ std::pair<std::uint32_t, std::uint32_t> BuildingSolids::candidates(double x, dou
 }
 
 template <class Real>
-SolidSample<Real> BuildingSolids::nearest(const Vec3<Real>& p) const {
+SolidSample<Real> BuildingSolids::nearest(const Vec3<Real>& p, float grain_rank) const {
     // In double throughout: a float position is exact in it, so that normals hold down to a nanometre from a wall.
     const double x = p.x, y = p.y, z = p.z;
     const auto [first, last] = candidates(x, y);
@@ -262,7 +268,8 @@ SolidSample<Real> BuildingSolids::nearest(const Vec3<Real>& p) const {
     double roof = -infinity;
     for (std::uint32_t k = first; k < last; ++k) {
         const Solid& solid = solids_[bin_solids_[k]];
-        if (solid.roof > roof && in_plan(solid, x, y)) roof = solid.roof, roof_building = solid.building;
+        if (solid.roof > roof && solid.stops(grain_rank) && in_plan(solid, x, y))
+            roof = solid.roof, roof_building = solid.building;
     }
     const bool inside = z < roof;
     int building = roof_building;
@@ -271,10 +278,11 @@ SolidSample<Real> BuildingSolids::nearest(const Vec3<Real>& p) const {
 
     for (std::uint32_t k = first; k < last; ++k) {
         const Solid& solid = solids_[bin_solids_[k]];
+        if (!solid.stops(grain_rank)) continue;
         for (std::uint32_t i = solid.first_edge; i < solid.last_edge; ++i) {
             const Edge& e = edges_[i];
             // From inside, only what other solids do not hide is a way out. From outside hidden walls are never nearer.
-            const double bottom = inside ? e.hidden_below : -infinity;
+            const double bottom = inside ? e.hidden_for(grain_rank) : -infinity;
             if (bottom >= solid.roof) continue;
             const double dx = e.bx - e.ax, dy = e.by - e.ay, length_squared = dx * dx + dy * dy;
             const double t = std::clamp(((x - e.ax) * dx + (y - e.ay) * dy) / length_squared, 0.0, 1.0);
@@ -295,7 +303,8 @@ SolidSample<Real> BuildingSolids::nearest(const Vec3<Real>& p) const {
 }
 
 template <class Real>
-SolidSample<Real> BuildingSolids::second_nearest(const Vec3<Real>& p, const SolidSample<Real>& nearest) const {
+SolidSample<Real> BuildingSolids::second_nearest(const Vec3<Real>& p, const SolidSample<Real>& nearest,
+                                                 float grain_rank) const {
     if (nearest.building < 0 || nearest.distance < 0) return {};
     constexpr double same_direction = 0.5;  // cosine
     const double x = p.x, y = p.y, z = p.z;
@@ -313,6 +322,7 @@ SolidSample<Real> BuildingSolids::second_nearest(const Vec3<Real>& p, const Soli
     const auto [first, last] = candidates(x, y);
     for (std::uint32_t k = first; k < last; ++k) {
         const Solid& solid = solids_[bin_solids_[k]];
+        if (!solid.stops(grain_rank)) continue;
         if (z >= solid.roof) {
             if (z - solid.roof < best && turned_away(0, 0, 1) && in_plan(solid, x, y)) {
                 take(solid.building, z - solid.roof, 0, 0, 1);
@@ -323,7 +333,7 @@ SolidSample<Real> BuildingSolids::second_nearest(const Vec3<Real>& p, const Soli
             const Edge& e = edges_[i];
             const double dx = e.bx - e.ax, dy = e.by - e.ay, length_squared = dx * dx + dy * dy;
             const double t = ((x - e.ax) * dx + (y - e.ay) * dy) / length_squared;
-            if (t < 0 || t > 1 || z < e.hidden_below) continue;
+            if (t < 0 || t > 1 || z < e.hidden_for(grain_rank)) continue;
             const double length = std::sqrt(length_squared), nx = dy / length, ny = -dx / length;
             const double distance = (x - e.ax) * nx + (y - e.ay) * ny;
             if (distance < 0 || distance >= best || !turned_away(nx, ny, 0)) continue;
@@ -334,16 +344,17 @@ SolidSample<Real> BuildingSolids::second_nearest(const Vec3<Real>& p, const Soli
 }
 
 template <class Real>
-bool BuildingSolids::inside(const Vec3<Real>& p) const {
-    const SolidSample<Real> sample = nearest(p);
+bool BuildingSolids::inside(const Vec3<Real>& p, float grain_rank) const {
+    const SolidSample<Real> sample = nearest(p, grain_rank);
     return sample.building >= 0 && sample.distance < 0;
 }
 
-template SolidSample<float> BuildingSolids::nearest(const Vec3<float>&) const;
-template SolidSample<double> BuildingSolids::nearest(const Vec3<double>&) const;
-template SolidSample<float> BuildingSolids::second_nearest(const Vec3<float>&, const SolidSample<float>&) const;
-template SolidSample<double> BuildingSolids::second_nearest(const Vec3<double>&, const SolidSample<double>&) const;
-template bool BuildingSolids::inside(const Vec3<float>&) const;
-template bool BuildingSolids::inside(const Vec3<double>&) const;
+template SolidSample<float> BuildingSolids::nearest(const Vec3<float>&, float) const;
+template SolidSample<double> BuildingSolids::nearest(const Vec3<double>&, float) const;
+template SolidSample<float> BuildingSolids::second_nearest(const Vec3<float>&, const SolidSample<float>&, float) const;
+template SolidSample<double> BuildingSolids::second_nearest(const Vec3<double>&, const SolidSample<double>&,
+                                                            float) const;
+template bool BuildingSolids::inside(const Vec3<float>&, float) const;
+template bool BuildingSolids::inside(const Vec3<double>&, float) const;
 
 }  // namespace talus

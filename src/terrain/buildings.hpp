@@ -19,13 +19,14 @@ struct BarrierOpening {
     double sill = 0;      ///< m, what stands of the barrier there, above the ground under the line
 };
 
-/// A wall or dam along a line.
+/// A wall, a dam or a net along a line.
 struct BarrierShape {
     std::vector<PlanPoint> line;                 ///< world plan coordinates, two points or more
     double height = 0;                           ///< m above the ground under the line
     std::optional<double> crest_elevation = {};  ///< m, world: a level crest, in place of `height`
     double thickness = 0;                        ///< m across the line
     std::vector<BarrierOpening> openings = {};
+    std::optional<double> passing_share = {};  ///< of the debris that goes through its meshes; absent: it has none
 };
 
 /// What a structure stands, as the filtered force that debris exerts on it normal to its walls. Beyond it is gone.
@@ -67,8 +68,12 @@ struct SolidSample {
     Vec3<Real> normal{};  ///< unit, out of the solid
 };
 
+/// The rank of a grain that no mesh lets through.
+inline constexpr float largest_grain = 1;
+
 /// Answers how far a local position is from the buildings. Cost away from all buildings: one table look-up.
 /// Buildings that touch or overlap act as one solid: a wall between two of them is no surface.
+/// A net is no solid for grains whose rank by size, 0 to 1, is below its passing share: to them it is not there.
 class BuildingSolids {
   public:
     BuildingSolids() = default;
@@ -88,22 +93,35 @@ class BuildingSolids {
     /// The building whose surface is nearest to the local position, if within range or inside. On an edge of a solid
     /// the normal is that of one of the faces that meet there.
     template <class Real>
-    [[nodiscard]] SolidSample<Real> nearest(const Vec3<Real>& p) const;
+    [[nodiscard]] SolidSample<Real> nearest(const Vec3<Real>& p, float grain_rank = largest_grain) const;
 
     /// From outside, the nearest wall or roof that the local position faces squarely, within range, and that is turned
     /// away from `first`, the sample of nearest(), by 60 degrees or more: the other wall of a corner or an alley.
     template <class Real>
-    [[nodiscard]] SolidSample<Real> second_nearest(const Vec3<Real>& p, const SolidSample<Real>& first) const;
+    [[nodiscard]] SolidSample<Real> second_nearest(const Vec3<Real>& p, const SolidSample<Real>& first,
+                                                   float grain_rank = largest_grain) const;
 
     /// Whether the local position lies strictly inside any building.
     template <class Real>
-    [[nodiscard]] bool inside(const Vec3<Real>& p) const;
+    [[nodiscard]] bool inside(const Vec3<Real>& p, float grain_rank = largest_grain) const;
+
+    /// Makes walls of nets.
+    void close_nets() {
+        for (Solid& solid : solids_) solid.passing_share = 0;
+    }
 
   private:
     /// A piece of a footprint's outline in local plan coordinates, the solid to its left.
     struct Edge {
-        double ax, ay, bx, by;
-        double hidden_below;  ///< local z: up to here the wall lies against or within another solid
+        double ax = 0, ay = 0, bx = 0, by = 0;
+        double hidden_below = 0;  ///< local z: up to here the wall lies against or within another solid
+        /// The same of nets that let through some of what this wall stops, for the grains that they all stop.
+        double hidden_by_nets = -std::numeric_limits<double>::infinity();
+        float net_share = 0;
+
+        [[nodiscard]] double hidden_for(float grain_rank) const {
+            return grain_rank < net_share || hidden_by_nets < hidden_below ? hidden_below : hidden_by_nets;
+        }
     };
     /// A part of a building's footprint.
     struct Solid {
@@ -111,6 +129,9 @@ class BuildingSolids {
         int building;
         double x_min, y_min, x_max, y_max;  ///< local, not grown
         double roof;                        ///< local z
+        float passing_share;                ///< grains of a lower rank do not meet it
+
+        [[nodiscard]] bool stops(float grain_rank) const { return grain_rank >= passing_share; }
     };
 
     void split_walls();

@@ -1,5 +1,7 @@
 #include "terrain/inflow.hpp"
 
+#include <algorithm>
+
 namespace talus {
 namespace {
 
@@ -15,6 +17,16 @@ double integral(const std::vector<InflowSample>& rows, double InflowSample::*col
     return sum;
 }
 
+/// A column at a time, that of the first or last row outside the hydrograph.
+double value_at(const std::vector<InflowSample>& rows, double InflowSample::*column, double time) {
+    const auto after = std::upper_bound(rows.begin(), rows.end(), time,
+                                        [](double t, const InflowSample& row) { return t < row.time; });
+    if (after == rows.begin()) return rows.front().*column;
+    if (after == rows.end()) return rows.back().*column;
+    const InflowSample &a = *(after - 1), &b = *after;
+    return a.*column + (b.*column - a.*column) * (time - a.time) / (b.time - a.time);
+}
+
 }  // namespace
 
 double Inflow::volume_until(double time) const {
@@ -23,6 +35,31 @@ double Inflow::volume_until(double time) const {
 
 double Inflow::way_until(double time) const {
     return integral(hydrograph, &InflowSample::velocity, time);
+}
+
+double Inflow::mass_until(double time) const {
+    double sum = 0;
+    for (std::size_t k = 0; k + 1 < hydrograph.size() && time > hydrograph[k].time; ++k) {
+        const InflowSample &a = hydrograph[k], &b = hydrograph[k + 1];
+        const double length = b.time - a.time, share = time < b.time ? (time - a.time) / length : 1;
+        const double rise = b.discharge - a.discharge, denser = b.density - a.density;
+        // A product of two straight lines, integrated.
+        sum += length * share *
+               (a.discharge * a.density +
+                share * ((a.discharge * denser + rise * a.density) / 2 + share * rise * denser / 3));
+    }
+    return sum;
+}
+
+double Inflow::velocity_at(double time) const {
+    return value_at(hydrograph, &InflowSample::velocity, time);
+}
+
+double Inflow::density_between(double early, double late) const {
+    const double volume = volume_until(late) - volume_until(early);
+    // Too little to divide by: where nothing comes in, or too shortly.
+    if (!(volume > 1e-9 * this->volume())) return value_at(hydrograph, &InflowSample::density, late);
+    return (mass_until(late) - mass_until(early)) / volume;
 }
 
 }  // namespace talus

@@ -17,6 +17,7 @@ struct ActionContext {
     double particle_spacing;  ///< m
     double viscosity;         ///< in force
     std::function<bool(const std::string& release_id)> has_begun;
+    bool begun = false;  ///< a step was taken
 };
 
 /// What an action makes of a setup.

@@ -143,6 +143,7 @@ Frame make_frame(const State& state, const MapAccumulator::Present& debris, std:
     frame.window = {static_cast<std::uint32_t>(debris.first_column), static_cast<std::uint32_t>(debris.first_row),
                     static_cast<std::uint32_t>(debris.depth.geometry.columns),
                     static_cast<std::uint32_t>(debris.depth.geometry.rows)};
+    frame.densities = debris.density.values;
     std::vector<std::uint16_t> depths(m);
     for (std::size_t k = 0; k < m; ++k) {
         depths[k] = static_cast<std::uint16_t>(std::min(debris.depth.values[k] / frame.depth_unit + 0.5F, 65535.0F));
@@ -176,7 +177,7 @@ void read_window(const Frame& frame, std::size_t count, const Take& take) {
     for (std::size_t k = 0; k < count; ++k) {
         depth = static_cast<std::uint16_t>(depth + unfold(static_cast<std::uint16_t>(low[k] | low[m + k] << 8)));
         take(k, DebrisAt{depth * static_cast<double>(frame.depth_unit),
-                         low[2 * m + k] * static_cast<double>(frame.depth_speed_unit)});
+                         low[2 * m + k] * static_cast<double>(frame.depth_speed_unit), frame.density_in(k)});
     }
 }
 

@@ -23,9 +23,13 @@ struct Frame {
     float depth_unit = 0;                   ///< m
     float depth_speed_unit = 0;             ///< m/s
     double rest_density = 0;                ///< kg/m3, at that time; stays here
+    std::vector<float> densities;           ///< kg/m3, by cell of the window; empty: rest_density. Stay here, too
     std::vector<std::uint8_t> body;         ///< byte planes
 
-    [[nodiscard]] std::size_t bytes() const { return sizeof(Frame) + body.size(); }
+    [[nodiscard]] std::size_t bytes() const { return sizeof(Frame) + body.size() + densities.size() * sizeof(float); }
+    [[nodiscard]] double density_in(std::size_t cell) const {
+        return cell < densities.size() ? static_cast<double>(densities[cell]) : rest_density;
+    }
 };
 
 /// Frames do not change once they are made: other threads may read them while the run goes on.
@@ -38,9 +42,9 @@ using FramePtr = std::shared_ptr<const Frame>;
 /// As it goes over the wire.
 [[nodiscard]] std::string encode(const Frame& frame, int scenario_index, unsigned further_flags = 0);
 
-/// Depth, m, and depth-averaged speed, m/s, in a cell of the map grid; 0 outside the window.
+/// Depth, m, depth-averaged speed, m/s, and density, kg/m3, in a cell of the map grid; 0 outside the window.
 struct DebrisAt {
-    double depth = 0, speed = 0;
+    double depth = 0, speed = 0, density = 0;
 };
 [[nodiscard]] DebrisAt debris_at(const Frame& frame, std::uint32_t column, std::uint32_t row);
 

@@ -73,18 +73,22 @@ json write_journal(const Journal& journal) {
         if (!entry.setup.is_null()) written["setup"] = entry.setup;
         actions.push_back(std::move(written));
     }
-    return {
-        {"talus_journal", version},
-        {"scene", {{"file", journal.scene_file}, {"overrides", journal.overrides}, {"inputs", inputs}}},
-        {"first_setup", journal.first_setup},
-        {"next",
-         {{"release", journal.next.release}, {"barrier", journal.next.barrier}, {"building", journal.next.building}}},
-        {"actions", actions},
-        {"last",
-         {{"step", journal.steps},
-          {"time_s", journal.time},
-          {"hash", journal.hash},
-          {"instruction_set", journal.instruction_set}}}};
+    return {{"talus_journal", version},
+            {"scene", {{"file", journal.scene_file}, {"overrides", journal.overrides}, {"inputs", inputs}}},
+            {"first_setup", journal.first_setup},
+            {"next",
+             {{"release", journal.next.release},
+              {"barrier", journal.next.barrier},
+              {"building", journal.next.building},
+              {"zone", journal.next.zone},
+              {"bed", journal.next.bed},
+              {"inflow", journal.next.inflow}}},
+            {"actions", actions},
+            {"last",
+             {{"step", journal.steps},
+              {"time_s", journal.time},
+              {"hash", journal.hash},
+              {"instruction_set", journal.instruction_set}}}};
 }
 
 Result<Journal> read_journal(const std::string& text) {
@@ -109,8 +113,9 @@ Result<Journal> read_journal(const std::string& text) {
     }
     journal.first_setup = read.object(file, "first_setup");
     const json& next = read.object(file, "next");
-    journal.next = {static_cast<int>(read.whole(next, "release")), static_cast<int>(read.whole(next, "barrier")),
-                    static_cast<int>(read.whole(next, "building"))};
+    journal.next = {static_cast<int>(read.whole(next, "release")),  static_cast<int>(read.whole(next, "barrier")),
+                    static_cast<int>(read.whole(next, "building")), static_cast<int>(read.whole(next, "zone")),
+                    static_cast<int>(read.whole(next, "bed")),      static_cast<int>(read.whole(next, "inflow"))};
     std::uint64_t before = 0;
     for (const json& entry : read.list(file, "actions")) {
         JournalEntry action{read.whole(entry, "step"), read.text(entry, "by"), read.object(entry, "action"), {}};

@@ -15,14 +15,20 @@ std::string shown(const json& value) {
     return text;
 }
 
-Status check_keys(const json& object, std::initializer_list<std::string_view> allowed) {
+Status check_keys(const json& object, std::span<const char* const> allowed,
+                  std::initializer_list<std::string_view> also) {
+    std::vector<std::string_view> names(also.begin(), also.end());
+    names.insert(names.end(), allowed.begin(), allowed.end());
     for (const auto& [key, value] : object.items()) {
-        if (std::find(allowed.begin(), allowed.end(), key) != allowed.end()) continue;
-        std::vector<std::string> names(allowed.begin(), allowed.end());
+        if (std::find(names.begin(), names.end(), key) != names.end()) continue;
         return Error{fmt::format("{} = {}: no such key here; allowed: {}", shown(json(key)), shown(value),
                                  fmt::join(names, ", "))};
     }
     return {};
+}
+
+Status check_keys(const json& object, std::initializer_list<std::string_view> allowed) {
+    return check_keys(object, {}, allowed);
 }
 
 Result<std::optional<double>> read_number(const json& object, const std::string& key, const Range& range,
@@ -72,10 +78,26 @@ Result<std::optional<std::vector<PlanPoint>>> read_points(const json& object, co
     return std::optional(std::move(points));
 }
 
+Result<std::optional<PlanPoint>> read_shift(const json& object, const std::string& key) {
+    const auto found = object.find(key);
+    if (found == object.end() || found->is_null()) return std::optional<PlanPoint>();
+    if (found->is_array() && found->size() == 2 && (*found)[0].is_number() && (*found)[1].is_number()) {
+        const PlanPoint shift{(*found)[0].get<double>(), (*found)[1].get<double>()};
+        if (std::isfinite(shift.x) && std::isfinite(shift.y)) return std::optional(shift);
+    }
+    return Error{fmt::format("{} = {}: must be [east, north] in metres", key, shown(*found))};
+}
+
 json to_json(const std::vector<PlanPoint>& points) {
     json array = json::array();
     for (const PlanPoint& p : points) array.push_back({p.x, p.y});
     return array;
+}
+
+json to_json(const Polygon& polygon) {
+    json rings = json::array({to_json(polygon.outer)});
+    for (const Ring& hole : polygon.holes) rings.push_back(to_json(hole));
+    return rings;
 }
 
 json number_or_null(double value) {

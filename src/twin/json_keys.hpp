@@ -2,6 +2,7 @@
 
 #include <initializer_list>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -18,6 +19,10 @@ namespace talus::twin {
 /// Errors: a key that is not among the allowed ones.
 [[nodiscard]] Status check_keys(const nlohmann::json& object, std::initializer_list<std::string_view> allowed);
 
+/// Those that are allowed are in two lists.
+[[nodiscard]] Status check_keys(const nlohmann::json& object, std::span<const char* const> allowed,
+                                std::initializer_list<std::string_view> also);
+
 /// Nothing where the key is absent or null. Errors: no number, outside the range. `unit` is for the message.
 [[nodiscard]] Result<std::optional<double>> read_number(const nlohmann::json& object, const std::string& key,
                                                         const Range& range, const std::string& unit);
@@ -32,10 +37,16 @@ namespace talus::twin {
                                                                         const std::string& key, bool closed,
                                                                         std::size_t fewest, std::size_t most);
 
+/// `[east, north]`, m; nothing where absent or null. Errors: not two finite numbers.
+[[nodiscard]] Result<std::optional<PlanPoint>> read_shift(const nlohmann::json& object, const std::string& key);
+
 /// The value as written, shortened.
 [[nodiscard]] std::string shown(const nlohmann::json& value);
 
 [[nodiscard]] nlohmann::json to_json(const std::vector<PlanPoint>& points);
+
+/// The outer ring, then holes.
+[[nodiscard]] nlohmann::json to_json(const Polygon& polygon);
 
 /// null where there is no finite number.
 [[nodiscard]] nlohmann::json number_or_null(double value);

@@ -20,11 +20,11 @@ Result<std::unique_ptr<LiveRun>> LiveRun::start(const Scene& scene, const Setup&
     tbb::task_arena arena(threads);
     return arena.execute([&]() -> Result<std::unique_ptr<LiveRun>> {
         Model model = make_model(setup.material, scene.spec.solver, scene.terrain, std::move(buildings), spacing);
-        model.cover = scene.cover;
-        model.bed = scene.bed;
+        model.cover = lay_zones(bodies_of(setup.zones), scene.terrain).cover;
+        model.bed = lay_bed(bodies_of(setup.beds), scene.terrain);
         Result<State> state = seed_releases(model, releases);
         if (!state) return state.error();
-        const InflowFeeder feeder(model, scene.inflows);
+        const InflowFeeder feeder(model, bodies_of(setup.inflows));
         if (Status s = check_particles(model, state->count, feeder); !s) return s.error();
         return std::unique_ptr<LiveRun>(
             new LiveRun(scene, setup, options, std::move(model), *std::move(state), threads));
@@ -33,12 +33,13 @@ Result<std::unique_ptr<LiveRun>> LiveRun::start(const Scene& scene, const Setup&
 
 LiveRun::LiveRun(const Scene& scene, Setup setup, const ScenarioOptions& options, Model model, State state, int threads)
     : scene_(scene),
-      setup_(std::move(setup)),
+      begun_with_(std::move(setup)),
+      setup_(begun_with_),
       thread_limit_(std::make_unique<tbb::global_control>(tbb::global_control::max_allowed_parallelism,
                                                           static_cast<std::size_t>(threads))),
       arena_(threads),
       threads_(threads),
-      feeder_(model, scene.inflows),
+      feeder_(model, bodies_of(setup_.inflows)),
       simulation_(std::move(model), std::move(state), feeder_.to_come()),
       recording_(options.frame_interval, options.recording_bytes),
       rest_(scene.spec.solver),
@@ -81,6 +82,7 @@ void LiveRun::record() {
     if (!recording_.due(state().time)) return;
     recording_.add(frame(1, 0));
     record_impacts();
+    erosion_history_.add(state().time, state().entrained, model().bed.eroded);
 }
 
 void LiveRun::record_impacts() {
@@ -144,6 +146,11 @@ BuildingImpact LiveRun::impact_on(const std::string& obstacle_id, std::optional<
     BuildingImpact impact = impact_history_.at(k, *time);
     impact.name = observer_->impacts()[k].name;
     return impact;
+}
+
+std::vector<float> LiveRun::eroded(std::optional<double> time) const {
+    if (state().entrained == 0) return {};
+    return time ? erosion_history_.at(*time) : model().bed.eroded;
 }
 
 std::vector<LiveRun::Removed> LiveRun::removed() const {

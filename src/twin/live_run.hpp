@@ -17,6 +17,7 @@
 #include "scene/stop_rule.hpp"
 #include "sim/inflow.hpp"
 #include "sim/simulation.hpp"
+#include "twin/erosion_history.hpp"
 #include "twin/impact_history.hpp"
 #include "twin/recording.hpp"
 #include "twin/scenario.hpp"
@@ -33,11 +34,13 @@ class LiveRun {
 
     /// Takes a step if ready.
     void advance();
-    /// Changes what differs. A release whose debris has begun to move keeps its old shape. Errors: too many particles,
+    /// Changes what differs. A release whose debris has begun to move keeps its old shape, beds and inflows stay as
+    /// they were at the start: see begun_with(). Errors: too many particles,
     /// a release smaller than a particle; nothing has changed then.
     [[nodiscard]] Status bring_to(const Setup& next);
 
     [[nodiscard]] const Setup& setup() const { return setup_; }
+    [[nodiscard]] const Setup& begun_with() const { return begun_with_; }
     /// Whether a release's debris has been let go.
     [[nodiscard]] bool has_begun(const std::string& release_id) const;
 
@@ -56,6 +59,8 @@ class LiveRun {
 
     /// What an obstacle of the setup has met, until now or until a time of the recording.
     [[nodiscard]] BuildingImpact impact_on(const std::string& obstacle_id, std::optional<double> time = {}) const;
+    /// m by cell of the terrain, as Bed::eroded, now or at a time of the recording; empty: nothing was picked up.
+    [[nodiscard]] std::vector<float> eroded(std::optional<double> time = {}) const;
 
     /// An obstacle that stood for a step at least and was taken away.
     struct Removed {
@@ -103,7 +108,7 @@ class LiveRun {
     void stop(Phase phase, std::string why);
 
     const Scene& scene_;
-    Setup setup_;
+    Setup begun_with_, setup_;
     std::unique_ptr<tbb::global_control> thread_limit_;
     mutable tbb::task_arena arena_;
     int threads_;
@@ -115,6 +120,7 @@ class LiveRun {
     std::uint32_t slots_ = 0;
     Recording recording_;
     ImpactHistory impact_history_;
+    ErosionHistory erosion_history_;
     RestDetector rest_;
     RateMeter rate_;
     Phase phase_ = Phase::ready;

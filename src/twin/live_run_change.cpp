@@ -51,6 +51,8 @@ struct LiveRun::Change {
     std::vector<Extent> touched;                     ///< world, of obstacles that came, went or were moved
     std::vector<std::size_t> renewed;                ///< obstacles whose record begins anew
 
+    std::optional<GroundCover> cover;  ///< of zones that came, went or were changed
+
     struct Seed {
         const ReleaseSetup* release;
         State state;
@@ -148,6 +150,9 @@ Status LiveRun::plan_releases(const Setup& next, Change& change) const {
 Result<LiveRun::Change> LiveRun::plan(const Setup& next) const {
     Change change;
     plan_obstacles(next, change);
+    if (!same_shapes(setup_.zones, next.zones)) {
+        change.cover = lay_zones(bodies_of(next.zones), scene_.terrain).cover;
+    }
     if (Status s = plan_releases(next, change); !s) return s.error();
     return change;
 }
@@ -229,7 +234,8 @@ void LiveRun::carry_out(Change& change, const Setup& next) {
             wake(state, local.grown(2 * model.support_radius));
             clear_solids(model, state, local);
         }
-        if (held_back != holding_back(model)) wake(state, {-infinity, -infinity, infinity, infinity});
+        if (change.cover) model.cover = std::move(*change.cover);
+        if (change.cover || held_back != holding_back(model)) wake(state, {-infinity, -infinity, infinity, infinity});
     });
     slots_ = std::max(slots_, state().seeded);
     obstacles_ = std::move(change.obstacles);

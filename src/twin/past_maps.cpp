@@ -43,9 +43,9 @@ void for_each_cell(const Frame& frame, const GridGeometry& map, const GridGeomet
 }
 
 /// What a layer holds of one frame's debris in a cell; below 0: nothing.
-double value_of(const std::string& name, const Frame& frame, const DebrisAt& debris) {
+double value_of(const std::string& name, const DebrisAt& debris) {
     if (name == "peak_speed") return debris.speed;
-    if (name == "peak_pressure") return frame.rest_density * debris.speed * debris.speed;
+    if (name == "peak_pressure") return debris.density * debris.speed * debris.speed;
     return debris.depth;
 }
 
@@ -74,7 +74,7 @@ Grid<float> past_layer(const std::string& name, const std::vector<FramePtr>& fra
             if (debris.depth >= map.thinnest && name != "depth" && std::isnan(value)) value = 0;
             if (!peaks && !last) return;
             if (name != "depth" && std::isnan(value)) return;
-            const auto now = static_cast<float>(value_of(name, *frame, debris));
+            const auto now = static_cast<float>(value_of(name, debris));
             value = std::isnan(value) ? now : std::max(value, now);
         });
     }

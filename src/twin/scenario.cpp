@@ -10,6 +10,7 @@
 #include <fmt/ranges.h>
 
 #include "core/hash.hpp"
+#include "observe/erosion.hpp"
 #include "products/products.hpp"
 #include "sim/seed.hpp"
 #include "twin/action.hpp"
@@ -33,6 +34,18 @@ std::vector<std::string> obstacle_notes(const LiveRun& run) {
                                     gone.body->name, gone.impact.removed_time));
     }
     return notes;
+}
+
+/// What follows from a scene's zones and beds.
+void lay_ground(Scene& scene) {
+    LaidZones laid = lay_zones(scene.zones, scene.terrain);
+    scene.cover = std::move(laid.cover);
+    scene.zone_at = std::move(laid.zone_at);
+    scene.spec.zones.clear();
+    for (const Zone& zone : scene.zones) scene.spec.zones.push_back(zone.spec);
+    scene.bed = lay_bed(scene.bed_layers, scene.terrain);
+    scene.spec.beds.clear();
+    for (const BedLayer& layer : scene.bed_layers) scene.spec.beds.push_back(layer.spec);
 }
 
 /// Whether a setup's releases wait again, as they do at time 0.
@@ -65,6 +78,15 @@ Status Scenario::Parts::start(const Setup& setup) {
     first_next = next;
     entries.clear();
     ++revision;
+    return {};
+}
+
+Status Scenario::Parts::bring_to(const Setup& next_setup) {
+    if (run->state().step > 0 || begin_alike(next_setup, run->begun_with())) return run->bring_to(next_setup);
+    auto anew = LiveRun::start(*scene, next_setup, particle_spacing, options);
+    if (!anew) return anew.error();
+    if (Status s = (*anew)->bring_to(next_setup); !s) return s;  // releases that were triggered
+    run = std::move(*anew);
     return {};
 }
 
@@ -106,12 +128,12 @@ void Scenario::advance() {
 
 Result<Done> Scenario::Parts::edit(const json& action) {
     const ActionContext context{*scene, particle_spacing, run->model().viscosity,
-                                [&](const std::string& id) { return run->has_begun(id); }};
+                                [&](const std::string& id) { return run->has_begun(id); }, run->state().step > 0};
     NextNumbers numbers = next;
     Result<Edit> made = read_action(action, setup(), numbers, context);
     if (!made) return made.error();
     Setup before = setup();
-    if (Status s = run->bring_to(made->setup); !s) return s.error();
+    if (Status s = bring_to(made->setup); !s) return s.error();
     next = numbers;
     undo.push_back({std::move(before), made->sentence, action["action"] == "trigger_release"});
     if (undo.size() > most_undo) undo.erase(undo.begin());
@@ -122,7 +144,7 @@ Result<Done> Scenario::Parts::edit(const json& action) {
 Result<Done> Scenario::Parts::step_back(std::vector<Past>& from, std::vector<Past>& to, const char* word) {
     if (from.empty()) return Error{fmt::format("action = \"{}\": there is nothing to {}", word, word)};
     Setup before = setup();
-    if (Status s = run->bring_to(from.back().setup); !s) return s.error();
+    if (Status s = bring_to(from.back().setup); !s) return s.error();
     Past past = std::move(from.back());
     from.pop_back();
     to.push_back({std::move(before), past.sentence, past.by_trigger});
@@ -166,7 +188,7 @@ Status Scenario::follow(const JournalEntry& entry) {
     }
     auto setup = read_setup(entry.setup, *parts_->scene);
     if (!setup) return setup.error();
-    if (Status s = parts_->run->bring_to(*setup); !s) return s;
+    if (Status s = parts_->bring_to(*setup); !s) return s;
     parts_->entries.push_back(entry);
     ++parts_->revision;
     return {};
@@ -204,7 +226,8 @@ FramePtr Scenario::recorded_frame(double time) const {
 
 namespace {
 
-constexpr std::array layer_names{"depth", "peak_depth", "peak_speed", "peak_pressure", "arrival_time", "deposit_depth"};
+constexpr std::array layer_names{"depth",        "peak_depth",    "peak_speed",   "peak_pressure",
+                                 "arrival_time", "deposit_depth", "erosion_depth"};
 
 Grid<float> present_layer(const MapAccumulator& maps, const std::string& name) {
     if (name == "depth") {
@@ -222,6 +245,12 @@ Grid<float> present_layer(const MapAccumulator& maps, const std::string& name) {
     return std::move(peaks.deposit_depth);
 }
 
+Grid<float> erosion_layer(const GridGeometry& terrain, const std::vector<float>& eroded) {
+    Grid<float> depth = erosion_depth(terrain, eroded);
+    if (!depth.values.empty()) return depth;
+    return Grid<float>({terrain.x_min, terrain.y_min, terrain.cell, 1, 1}, std::numeric_limits<float>::quiet_NaN());
+}
+
 }  // namespace
 
 Result<std::function<Grid<float>()>> Scenario::layer(const std::string& name, std::optional<double> time) const {
@@ -230,13 +259,23 @@ Result<std::function<Grid<float>()>> Scenario::layer(const std::string& name, st
     }
     const LiveRun& run = *parts_->run;
     const MapAccumulator& maps = run.observer().maps();
+    std::vector<FramePtr> frames;
+    if (time) frames = run.recording().until(*time);
+    if (time && frames.empty()) return Error{fmt::format("nothing is recorded at or before time_s = {}", *time)};
+    if (name == "erosion_depth") {
+        const auto then = time ? std::optional(frames.back()->time) : std::nullopt;
+        return std::function<Grid<float>()>([terrain = run.model().terrain.elevation().geometry,
+                                             eroded = run.eroded(then)] { return erosion_layer(terrain, eroded); });
+    }
     if (!time) return std::function<Grid<float>()>([grid = present_layer(maps, name)] { return grid; });
-    std::vector<FramePtr> frames = run.recording().until(*time);
-    if (frames.empty()) return Error{fmt::format("nothing is recorded at or before time_s = {}", *time)};
     MapFrame frame{maps.geometry(), maps.thinnest_depth(), {}};
     if (name == "arrival_time") frame.arrival_now = maps.maps().arrival_time;
     return std::function<Grid<float>()>(
         [name, frames = std::move(frames), frame = std::move(frame)] { return past_layer(name, frames, frame); });
+}
+
+bool Scenario::has_erosion() const {
+    return parts_->run->state().entrained > 0;
 }
 
 std::function<Status(const std::filesystem::path&)> Scenario::products() const {
@@ -252,6 +291,12 @@ std::function<Status(const std::filesystem::path&)> Scenario::products() const {
     for (const BuildingSetup& building : p.setup().buildings) scene.buildings.push_back(*building.body);
     for (const BarrierSetup& barrier : p.setup().barriers) scene.buildings.push_back(*barrier.body);
     for (const LiveRun::Removed& removed : p.run->removed()) scene.buildings.push_back(*removed.body);
+    // Zones as they are now, beds and inflows as they were for all of the run.
+    const Setup& first = p.run->begun_with();
+    scene.zones = bodies_of(p.setup().zones);
+    scene.bed_layers = bodies_of(first.beds);
+    scene.inflows = bodies_of(first.inflows);
+    lay_ground(scene);
     for (std::string& note : obstacle_notes(*p.run)) scene.notes.push_back(std::move(note));
     for (const JournalEntry& entry : p.entries) {
         scene.notes.push_back(fmt::format("before step {}, by {}: {}", entry.step, entry.by, entry.action.dump()));

@@ -104,11 +104,14 @@ class Scenario {
 
     /// What passed at a point, over the recording.
     [[nodiscard]] std::function<nlohmann::json()> probe(const PlanPoint& p) const;
-    /// `depth`, `peak_depth`, `peak_speed`, `peak_pressure`, `arrival_time`, `deposit_depth`; NaN: nothing there. SI
-    /// units. As they are now, or were at the recorded frame at or before a time (see past_layer).
-    /// Errors: no such layer, nothing recorded by that time.
+    /// `depth`, `peak_depth`, `peak_speed`, `peak_pressure`, `arrival_time`, `deposit_depth`, `erosion_depth`; NaN:
+    /// nothing there. SI units. The last has cells of the terrain, the others those of the maps. As they are now, or
+    /// were at the recorded frame at or before a time (see past_layer; erosion is exact). Errors: no such layer,
+    /// nothing recorded by that time.
     [[nodiscard]] Result<std::function<Grid<float>()>> layer(const std::string& name,
                                                              std::optional<double> time = {}) const;
+    /// Whether debris picked up anything of its bed.
+    [[nodiscard]] bool has_erosion() const;
     /// Writes the run so far as `talus run` would, into an existing empty folder.
     [[nodiscard]] std::function<Status(const std::filesystem::path& folder)> products() const;
 

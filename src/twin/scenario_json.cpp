@@ -5,22 +5,14 @@
 #include <fmt/format.h>
 
 #include "core/hash.hpp"
-#include "terrain/barrier.hpp"
 #include "twin/intensity.hpp"
 #include "twin/json_keys.hpp"
 #include "twin/scenario_parts.hpp"
-#include "twin/setup_file.hpp"
 
 namespace talus::twin {
 namespace {
 
 using nlohmann::json;
-
-json rings_json(const Polygon& polygon) {
-    json rings = json::array({to_json(polygon.outer)});
-    for (const Ring& hole : polygon.holes) rings.push_back(to_json(hole));
-    return rings;
-}
 
 json range_json(const Range& range) {
     return {{"low", number_or_null(range.low)},
@@ -177,66 +169,6 @@ json Scenario::state_json(bool with_hash) const {
     return answer;
 }
 
-json Scenario::setup_json() const {
-    const Parts& p = *parts_;
-    const Setup& setup = p.setup();
-    json parameters = json::object(), releases = json::array(), barriers = json::array(), buildings = json::array();
-    for (const Parameter* lever : levers()) {
-        parameters["material." + lever->key] =
-            number_or_null(value_in_force(setup.material, *lever, p.run->model().viscosity));
-    }
-    for (const ReleaseSetup& release : setup.releases) {
-        json polygons = json::array();
-        const Release& body = *release.body;
-        double thickness = body.patches.empty() || body.thickness_raster ? never : body.patches.front().thickness;
-        for (const ReleasePatch& patch : body.patches) {
-            polygons.push_back(to_json(patch.polygon.outer));
-            if (patch.thickness != thickness) thickness = never;
-        }
-        const bool released = release.triggered || p.run->has_begun(release.id);
-        releases.push_back({{"id", release.id},
-                            {"name", body.name},
-                            {"polygons", polygons},
-                            {"thickness_m", number_or_null(thickness)},
-                            {"volume_m3", body.volume},
-                            {"from_scene", release.scene_index >= 0},
-                            {"status", released ? "released" : "held"},
-                            {"start_time_s", number_or_null(p.run->start_time_of(release.id))}});
-    }
-    for (const BarrierSetup& barrier : setup.barriers) {
-        barriers.push_back({{"id", barrier.id},
-                            {"name", barrier.body->name},
-                            {"line", to_json(barrier.shape().line)},
-                            {"height_m", barrier.body->height},
-                            {"crest_elevation_m", optional_json(barrier.shape().crest_elevation)},
-                            {"thickness_m", barrier.shape().thickness},
-                            {"openings", openings_json(barrier.shape())},
-                            {"resistance_Npm", number_or_null(barrier.body->resistance.force_per_metre)},
-                            {"resistance_Pa", number_or_null(barrier.body->resistance.pressure)},
-                            {"crest_length_m", length_of(barrier.shape().line)},
-                            {"from_scene", barrier.from_scene}});
-    }
-    for (const BuildingSetup& building : setup.buildings) {
-        const Building& body = *building.body;
-        json footprint = json::array();
-        for (const Polygon& part : body.footprint) footprint.push_back(rings_json(part));
-        buildings.push_back({{"id", building.id},
-                             {"name", body.name},
-                             {"footprint", footprint},
-                             {"height_m", body.height},
-                             {"base_m", number_or_null(body.roof_elevation - body.height)},
-                             {"roof_m", number_or_null(body.roof_elevation)},
-                             {"from_scene", building.scene_index >= 0}});
-    }
-    return {{"revision", p.revision},
-            {"parameters", parameters},
-            {"releases", releases},
-            {"barriers", barriers},
-            {"buildings", buildings},
-            {"undo", p.undo.empty() ? json() : json(p.undo.back().sentence)},
-            {"redo", p.redo.empty() ? json() : json(p.redo.back().sentence)}};
-}
-
 json Scenario::series_json() const {
     const Observer& observer = parts_->run->observer();
     json time = json::object();
@@ -317,7 +249,7 @@ json read_probe(const std::vector<FramePtr>& frames, const GridGeometry& map, co
         times.push_back(frame->time);
         depths.push_back(here.depth);
         speeds.push_back(here.speed);
-        pressures.push_back(frame->rest_density * here.speed * here.speed / 1e3);
+        pressures.push_back(here.density * here.speed * here.speed / 1e3);
     }
     return {{"time_s", times}, {"depth_m", depths}, {"speed_mps", speeds}, {"pressure_kPa", pressures}};
 }

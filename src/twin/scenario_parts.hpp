@@ -35,6 +35,8 @@ struct Scenario::Parts {
     [[nodiscard]] const Setup& setup() const { return run->setup(); }
     /// Starts, or starts anew, with a setup.
     [[nodiscard]] Status start(const Setup& setup);
+    /// Brings the run to a setup. What holds from time 0 on does so at once as long as no step was taken.
+    [[nodiscard]] Status bring_to(const Setup& next);
     [[nodiscard]] Result<Done> edit(const nlohmann::json& action);
     [[nodiscard]] Result<Done> step_back(std::vector<Past>& from, std::vector<Past>& to, const char* word);
     [[nodiscard]] Result<Done> restart();

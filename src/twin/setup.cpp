@@ -5,6 +5,8 @@
 
 #include <fmt/format.h>
 
+#include "twin/section_values.hpp"
+
 namespace talus::twin {
 namespace {
 
@@ -22,7 +24,7 @@ bool same_barrier(const std::optional<BarrierShape>& a, const std::optional<Barr
     if (a.has_value() != b.has_value()) return false;
     return !a ||
            (a->height == b->height && a->crest_elevation == b->crest_elevation && a->thickness == b->thickness &&
-            same_ring(a->line, b->line) &&
+            a->passing_share == b->passing_share && same_ring(a->line, b->line) &&
             std::equal(a->openings.begin(), a->openings.end(), b->openings.begin(), b->openings.end(), same_opening));
 }
 
@@ -51,6 +53,22 @@ Setup setup_of(const Scene& scene, NextNumbers& next) {
         }
         ++index;
     }
+    index = 0;
+    for (const Zone& zone : scene.zones) {
+        const double area = area_of(zone, scene.terrain.elevation().geometry);
+        setup.zones.push_back(
+            {fmt::format("zone-{}", next.zone++), std::make_shared<const Zone>(zone), area, index++, true});
+    }
+    index = 0;
+    for (const BedLayer& layer : scene.bed_layers) {
+        setup.beds.push_back({fmt::format("bed-{}", next.bed++), std::make_shared<const BedLayer>(layer),
+                              amount_of(layer, scene.terrain), index++, true});
+    }
+    index = 0;
+    for (const Inflow& inflow : scene.inflows) {
+        setup.inflows.push_back(
+            {fmt::format("inflow-{}", next.inflow++), std::make_shared<const Inflow>(inflow), index++, true});
+    }
     return setup;
 }
 
@@ -76,6 +94,33 @@ bool same_shape(const std::shared_ptr<const Building>& a, const std::shared_ptr<
             a->resistance.pressure == b->resistance.pressure && a->height == b->height &&
             a->roof_elevation == b->roof_elevation && a->part_roof_elevations == b->part_roof_elevations &&
             std::equal(a->footprint.begin(), a->footprint.end(), b->footprint.begin(), b->footprint.end(), same));
+}
+
+bool same_shape(const std::shared_ptr<const Zone>& a, const std::shared_ptr<const Zone>& b) {
+    return a == b || (values_json(a->spec) == values_json(b->spec) && a->cells == b->cells &&
+                      std::equal(a->outline.begin(), a->outline.end(), b->outline.begin(), b->outline.end(), same));
+}
+
+bool same_shape(const std::shared_ptr<const BedLayer>& a, const std::shared_ptr<const BedLayer>& b) {
+    const auto same_part = [](const BedLayer::Part& p, const BedLayer::Part& q) {
+        return p.depth == q.depth && same(p.polygon, q.polygon);
+    };
+    return a == b || (values_json(a->spec) == values_json(b->spec) && a->depth_raster == b->depth_raster &&
+                      std::equal(a->parts.begin(), a->parts.end(), b->parts.begin(), b->parts.end(), same_part));
+}
+
+bool same_shape(const std::shared_ptr<const Inflow>& a, const std::shared_ptr<const Inflow>& b) {
+    const auto same_row = [](const InflowSample& p, const InflowSample& q) {
+        return p.time == q.time && p.discharge == q.discharge && p.velocity == q.velocity && p.density == q.density;
+    };
+    return a == b || (same_ring({a->from, a->to}, {b->from, b->to}) && a->direction == b->direction &&
+                      std::equal(a->area.begin(), a->area.end(), b->area.begin(), b->area.end(), same) &&
+                      std::equal(a->hydrograph.begin(), a->hydrograph.end(), b->hydrograph.begin(), b->hydrograph.end(),
+                                 same_row));
+}
+
+bool begin_alike(const Setup& a, const Setup& b) {
+    return same_shapes(a.beds, b.beds) && same_shapes(a.inflows, b.inflows);
 }
 
 const std::vector<const Parameter*>& levers() {

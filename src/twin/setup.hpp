@@ -1,14 +1,19 @@
 #pragma once
 
+#include <algorithm>
 #include <memory>
 #include <string>
+#include <type_traits>
 #include <vector>
 
 #include "core/geometry.hpp"
 #include "params/fields.hpp"
 #include "params/spec.hpp"
+#include "scene/bed_layer.hpp"
 #include "scene/scene.hpp"
+#include "scene/zone.hpp"
 #include "terrain/buildings.hpp"
+#include "terrain/inflow.hpp"
 #include "terrain/release.hpp"
 
 /// What people can change of a run while it runs: a plain value. Bodies are shared between setups, so that a copy costs
@@ -38,16 +43,43 @@ struct BuildingSetup {
     bool as_in_scene = false;
 };
 
+/// `area`, `amount`: of the body, on the terrain.
+struct ZoneSetup {
+    std::string id;
+    std::shared_ptr<const Zone> body;
+    double area = 0;       ///< m2 in plan
+    int scene_index = -1;  ///< of the scene's; -1: made by somebody
+    bool as_in_scene = false;
+};
+
+struct BedSetup {
+    std::string id;
+    std::shared_ptr<const BedLayer> body;
+    BedAmount amount;
+    int scene_index = -1;
+    bool as_in_scene = false;
+};
+
+struct InflowSetup {
+    std::string id;
+    std::shared_ptr<const Inflow> body;
+    int scene_index = -1;
+    bool as_in_scene = false;
+};
+
 struct Setup {
     MaterialSpec material;
     std::vector<ReleaseSetup> releases;
     std::vector<BarrierSetup> barriers;
     std::vector<BuildingSetup> buildings;
+    std::vector<ZoneSetup> zones;  ///< later ones go before earlier ones
+    std::vector<BedSetup> beds;    ///< later ones lie where several are; these and inflows hold from time 0 on
+    std::vector<InflowSetup> inflows;
 };
 
 /// The numbers that the next new things get in their ids; an id is never used twice.
 struct NextNumbers {
-    int release = 1, barrier = 1, building = 1;
+    int release = 1, barrier = 1, building = 1, zone = 1, bed = 1, inflow = 1;
 };
 
 /// The scene as it was loaded; `next` is set to what comes behind it.
@@ -62,9 +94,31 @@ template <class Entry>
     return static_cast<decltype(&entries.front())>(nullptr);
 }
 
+/// The bodies of entries, in their order.
+template <class Entry>
+[[nodiscard]] auto bodies_of(const std::vector<Entry>& entries) {
+    std::vector<std::remove_cvref_t<decltype(*entries.front().body)>> bodies;
+    bodies.reserve(entries.size());
+    for (const Entry& entry : entries) bodies.push_back(*entry.body);
+    return bodies;
+}
+
 /// Whether two bodies are the same but for their names.
 [[nodiscard]] bool same_shape(const std::shared_ptr<const Release>& a, const std::shared_ptr<const Release>& b);
 [[nodiscard]] bool same_shape(const std::shared_ptr<const Building>& a, const std::shared_ptr<const Building>& b);
+[[nodiscard]] bool same_shape(const std::shared_ptr<const Zone>& a, const std::shared_ptr<const Zone>& b);
+[[nodiscard]] bool same_shape(const std::shared_ptr<const BedLayer>& a, const std::shared_ptr<const BedLayer>& b);
+[[nodiscard]] bool same_shape(const std::shared_ptr<const Inflow>& a, const std::shared_ptr<const Inflow>& b);
+
+/// Whether the bodies of two lists are, one by one.
+template <class Entry>
+[[nodiscard]] bool same_shapes(const std::vector<Entry>& a, const std::vector<Entry>& b) {
+    return std::equal(a.begin(), a.end(), b.begin(), b.end(),
+                      [](const Entry& p, const Entry& q) { return same_shape(p.body, q.body); });
+}
+
+/// Whether runs of both would begin with the same beds and inflows.
+[[nodiscard]] bool begin_alike(const Setup& a, const Setup& b);
 
 /// The keys of the material section that can change while debris moves, as declared for the scene file.
 [[nodiscard]] const std::vector<const Parameter*>& levers();

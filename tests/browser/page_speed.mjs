@@ -18,12 +18,13 @@ try {
   await until(() => page.evaluate(() => window.talusStats.shownTime_s), (t) => t > 1, "debris on its way", 300_000);
   const seen = await page.evaluate(() => new Promise((resolve) => {
     const pictures = [];
+    const end = performance.now() + 120_000; // a run that has ended draws no more
     let last = window.talusStats.frames;
     const look = () => {
       const { frames, script_ms, draw_ms, unfold_ms, upload_ms, particles } = window.talusStats;
       if (frames !== last) pictures.push({ script_ms, draw_ms, unfold_ms, upload_ms, particles });
       last = frames;
-      if (pictures.length < 150) requestAnimationFrame(look);
+      if (pictures.length < 150 && performance.now() < end) requestAnimationFrame(look);
       else resolve(pictures);
     };
     look();

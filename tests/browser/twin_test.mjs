@@ -4,8 +4,12 @@
 // Exit code 77: skipped, the browser or its driver is missing.
 import { resolve } from "node:path";
 import { existsSync, Run, startServer } from "./twin/harness.mjs";
+import { testBackanalysis } from "./twin/backanalysis.mjs";
 import { testBarrier } from "./twin/barrier.mjs";
+import { testErosion } from "./twin/erosion.mjs";
+import { testGround } from "./twin/ground.mjs";
 import { testLevers } from "./twin/levers.mjs";
+import { testParts } from "./twin/parts.mjs";
 import { testPhoto } from "./twin/photo.mjs";
 import { testReadings } from "./twin/readings.mjs";
 import { testSharing } from "./twin/sharing.mjs";
@@ -29,13 +33,17 @@ const browser = await chromium.launch({ executablePath: browserPath, args: ["--h
   "--enable-unsafe-swiftshader", "--ignore-gpu-blocklist", "--disable-background-networking", "--disable-component-update", "--no-first-run"] });
 const run = new Run(browser, resolve(output), process.env.TALUS_ONLY);
 const server = await startServer(command);
-const parts = (process.env.TALUS_PARTS ?? "levers,readings,barrier,photo,sharing").split(",");
+const parts = (process.env.TALUS_PARTS ?? "levers,readings,barrier,parts,erosion,ground,photo,backanalysis,sharing").split(",");
 let sharing = server;
 try {
   if (parts.includes("levers")) await (await testLevers(run, server)).context().close();
   if (parts.includes("readings")) await testReadings(run, server);
   if (parts.includes("barrier")) await testBarrier(run, command);
+  if (parts.includes("parts")) await testParts(run, server, command);
+  if (parts.includes("erosion")) await testErosion(run, command);
+  if (parts.includes("ground")) await testGround(run, server, command);
   if (parts.includes("photo")) await testPhoto(run, server, command);
+  if (parts.includes("backanalysis")) await testBackanalysis(run, command);
   if (parts.includes("sharing")) sharing = await testSharing(run, server, command);
   await run.check("nothing but the server is asked for, and the console is silent", async () => {
     const own = run.ports.flatMap((port) => [`http://127.0.0.1:${port}/`, `ws://127.0.0.1:${port}/`]);

@@ -97,5 +97,29 @@ TEST_F(CalibrationTest, TheMapIsLowWhereTheRunsFit) {
     EXPECT_GT(map.misfit[map.cells - 1], 30);
 }
 
+TEST_F(CalibrationTest, SaysAfterEachRoundWhatItKnows) {
+    made.factors.push_back({"material.rest_density_kgpm3", *parse_distribution("1500:2500")});
+    const ForwardModel model = [](const Points& points, Phase) -> Result<std::optional<Points>> {
+        Points all;
+        for (const auto& p : points) all.push_back({16 - 16 * p[0], 12});
+        return std::optional(all);
+    };
+    std::vector<Distribution> priors;
+    for (const Factor& f : made.factors) priors.push_back(f.distribution);
+    std::vector<std::size_t> runs;
+    const auto found = search(priors, made.observed, model, {.runs = 40}, [&](const SearchResult& so_far) {
+        runs.push_back(so_far.runs.size());
+        EXPECT_TRUE(so_far.best);
+        made.result = so_far;
+        const MisfitMap map = misfit_map(made);  // without draws from a posterior
+        EXPECT_EQ(map.misfit.size(), map.cells * map.cells);
+        EXPECT_LT(map.misfit[map.cells / 2], 1);
+    });
+    ASSERT_TRUE(found);
+    ASSERT_GE(runs.size(), 2u);
+    EXPECT_LT(runs.front(), runs.back());
+    EXPECT_EQ(runs.back(), found->runs.size());
+}
+
 }  // namespace
 }  // namespace talus

@@ -24,7 +24,8 @@ class Mesh : public testing::Test {
 
     Result<std::vector<MeshBuilding>> read(const std::string& name, const std::string& text) const {
         std::ofstream(folder_ / name, std::ios::binary) << text;
-        return read_mesh_buildings((folder_ / name).string(), {"", "", 2326});
+        std::vector<std::string> more_files;
+        return read_mesh_buildings((folder_ / name).string(), {"", "", 2326}, more_files);
     }
     std::string refusal(const std::string& name, const std::string& text) const {
         const auto read_in = read(name, text);

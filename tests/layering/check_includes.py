@@ -23,7 +23,7 @@ BELOW = {
     "validate": ["core", "params", "terrain", "sim", "geo", "observe", "scene", "products"],
     "bench": ["core", "params", "terrain", "sim", "geo", "observe", "scene", "products"],
     "twin": ["core", "params", "terrain", "sim", "geo", "observe", "scene", "products"],
-    "serve": ["core", "params", "terrain", "sim", "geo", "observe", "scene", "products", "twin"],
+    "serve": ["core", "params", "terrain", "sim", "geo", "observe", "scene", "products", "calibrate", "twin"],
     "apps": ["core", "params", "terrain", "sim", "geo", "observe", "scene", "products", "calibrate", "validate",
              "bench", "twin", "serve"],
 }

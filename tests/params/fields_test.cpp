@@ -49,16 +49,16 @@ TEST(FieldTable, EveryMemberIsDeclared) {
         EXPECT_EQ(declared("bed"), 11U);
     }
     {
-        [[maybe_unused]] const auto [a, b, c, d, e] = InflowSpec{};
-        EXPECT_EQ(declared("inflow"), 5U);
+        [[maybe_unused]] const auto [a, b, c, d, e, f, g, h] = InflowSpec{};
+        EXPECT_EQ(declared("inflow"), 8U);
     }
     {
         [[maybe_unused]] const auto [a, b, c, d, e, f, g] = BuildingsSpec{};
         EXPECT_EQ(declared("buildings"), 7U);
     }
     {
-        [[maybe_unused]] const auto [a, b, c, d, e, f, g, h, i] = BarrierSpec{};
-        EXPECT_EQ(declared("barrier"), 9U);
+        [[maybe_unused]] const auto [a, b, c, d, e, f, g, h, i, j] = BarrierSpec{};
+        EXPECT_EQ(declared("barrier"), 10U);
     }
     {
         [[maybe_unused]] const auto [a, b, c, d] = BarrierOpeningSpec{};

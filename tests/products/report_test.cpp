@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <regex>
 #include <string>
 
 #include <gmock/gmock.h>
@@ -194,6 +195,83 @@ TEST(Report, PrintsEveryParameterWithItsUnit) {
     const std::string chosen = report::chosen_values(s.scene, s.result);
     EXPECT_TRUE(has(chosen, "0.1 per 1/60 s"));
     EXPECT_TRUE(has(chosen, "0.310 m²/s"));
+}
+
+/// Whether the page's figures are numbered from 1 up, none twice.
+void expect_numbered_figures(const std::string& html) {
+    int count = 0;
+    for (std::size_t at = 0; (at = html.find("<b>Figure ", at)) != std::string::npos; ++at) {
+        EXPECT_EQ(std::atoi(html.c_str() + at + 10), ++count);
+    }
+    EXPECT_GT(count, 5);
+}
+
+TEST(Report, DrawsZonesAndBedWithTheirValuesWhereThereAreSome) {
+    Sample sample;
+    const std::string without = sample.html();
+    EXPECT_FALSE(has(without, "id=\"zones\""));
+    expect_numbered_figures(without);
+    ZoneSpec rough, forest;
+    rough.name = "rough <gully>";
+    rough.friction_coefficient = 0.37;
+    rough.turbulent_friction = 450;
+    forest.name = "forest";
+    forest.stem_density = 0.08;
+    forest.stem_diameter = 0.35;
+    sample.scene.spec.zones = {rough, forest};
+    BedSpec bed;
+    bed.name = "colluvium";
+    bed.depth = 1.5;
+    bed.growth_rate = 0.006;
+    sample.scene.spec.beds = {bed};
+    const std::size_t cells = sample.scene.terrain.elevation().values.size();
+    sample.scene.zone_at.assign(cells, 1);
+    std::fill(sample.scene.zone_at.begin(), sample.scene.zone_at.begin() + static_cast<std::ptrdiff_t>(cells / 2), 2);
+    sample.scene.bed.materials.resize(1);
+    sample.scene.bed.material_at.assign(cells, 1);
+    const std::string html = sample.html();
+    for (const char* part : {"id=\"zones\"", "rough &lt;gully&gt;", "friction 0.37", "ξ 450 m/s²", "0.08 stems/m²",
+                             "0.35 m thick", "colluvium", "1.5 m deep", "growth 0.006 per m",
+                             "Petryk &amp; Bosmajian 1975", "Zones of the ground and bed.</b>"}) {
+        EXPECT_TRUE(has(html, part)) << part;
+    }
+    expect_numbered_figures(html);
+}
+
+TEST(Report, DrawsTheDensityOfAnInflowWhereItHasOne) {
+    Sample sample;
+    sample.scene.inflows.push_back({"torrent", {0, 0}, {3, 0}, {{0, 5, 2}, {10, 5, 2}}});
+    std::string html = sample.html();
+    EXPECT_TRUE(has(html, "torrent, across a line: 50.0 m³"));
+    EXPECT_FALSE(has(html, "density, kg/m³"));
+    expect_numbered_figures(html);
+    Inflow rain{"scarp", {}, {}, {{0, 5, 2, 1500}, {10, 5, 2, 1700}}};
+    rain.area.push_back({{{0, 0}, {20, 0}, {20, 10}, {0, 10}}, {}});
+    sample.scene.inflows.push_back(rain);
+    html = sample.html();
+    EXPECT_TRUE(has(html, "scarp, over 200 m², down the slope: 50.0 m³"));
+    EXPECT_TRUE(has(html, "80.0 t, ") && has(html, "600 kg/m³ on average"));
+    EXPECT_TRUE(has(html, "density, kg/m³"));
+    EXPECT_TRUE(has(html, "Their motion does not depend on it."));
+}
+
+TEST(Report, MarksInflowsOnItsMapsWithAnArrowWhereDebrisGoes) {
+    Sample sample;
+    const Extent ground = sample.scene.terrain.elevation().geometry.extent();
+    const double x = (ground.x_min + ground.x_max) / 2, y = (ground.y_min + ground.y_max) / 2;
+    EXPECT_FALSE(has(sample.html(), R"(class="inflow")"));
+    // Northwards: to its right is the east, to the right on the page.
+    sample.scene.inflows.push_back({"torrent", {x, y}, {x, y + 2}, {{0, 5, 2}, {10, 5, 2}}});
+    const std::string html = sample.html();
+    const std::regex mark(
+        R"re(class="inflow" d="M([\d.]+) ([\d.]+)L([\d.]+) ([\d.]+)M\S+ \S+?L([\d.]+) ([\d.]+)M.*?<title>torrent)re");
+    std::smatch found;
+    ASSERT_TRUE(std::regex_search(html, found, mark));
+    const auto number = [&](std::size_t k) { return std::stod(found[k]); };
+    EXPECT_NEAR(number(1), number(3), 0.11);
+    EXPECT_GT(number(2), number(4)) << "north is up";
+    EXPECT_NEAR(number(5), number(1) + 16, 0.21) << "the tip";
+    EXPECT_TRUE(has(html, ">Inflow</text>"));
 }
 
 TEST(Report, RendersARunInWhichNothingMoved) {

@@ -235,6 +235,18 @@ TEST_F(Products, BarriersHaveTheirVolumesAndTheirHistory) {
     EXPECT_THAT(*report, HasSubstr("House 38 failed at 12.50 s"));
     EXPECT_THAT(*report, HasSubstr("Force on structures over time."));
     EXPECT_THAT(*report, HasSubstr("<h3>Barriers</h3>"));
+    EXPECT_THAT(*report, testing::Not(HasSubstr("What nets held and let through.")));
+    dam.passing_share = 0.4;
+    dam.hit = true;
+    dam.held_volume = 44;
+    dam.passed_volume = 8.75;
+    ASSERT_TRUE(write_tables(*scene_, result, folder.path()).ok());
+    EXPECT_EQ(rows_of(test::read_text(folder.path() / "buildings.csv"))[1][10], "net");
+    const auto of_net = render_report(*scene_, result, {});
+    ASSERT_TRUE(of_net);
+    EXPECT_THAT(*of_net, HasSubstr("What nets held and let through."));
+    EXPECT_THAT(*of_net, HasSubstr("its meshes let 40 % of the grains through"));
+    EXPECT_THAT(*of_net, HasSubstr("Of 60.0 m³ that came to it, 44.0 m³ lie behind it (73 %), 8.8 m³ went through"));
     const auto without = render_report(*scene_, *result_, {});
     ASSERT_TRUE(without);
     EXPECT_THAT(*without, testing::Not(HasSubstr("Force on structures over time.")));

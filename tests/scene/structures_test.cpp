@@ -59,6 +59,38 @@ TEST_F(Structures, BarriersComeBehindTheBuildings) {
     EXPECT_EQ(scene.buildings[1].barrier->openings[0].sill, 1);
 }
 
+TEST_F(Structures, ABarrierWithAPassingShareIsANet) {
+    write_valley(dam("height_m = 8\npassing_share = 0.35"));
+    const Scene scene = loaded();
+    ASSERT_TRUE(scene.buildings[0].barrier);
+    EXPECT_EQ(scene.buildings[0].barrier->passing_share, 0.35);
+    for (const char* bad : {"1", "-0.1", "1.5", "nan", "\"half\""}) {
+        write_valley(dam(fmt::format("height_m = 8\npassing_share = {}", bad)));
+        const auto refused = load_scene(folder / "scene.toml");
+        ASSERT_FALSE(refused) << bad;
+        EXPECT_THAT(refused.error().message, AllOf(HasSubstr("scene.toml"), HasSubstr("barrier[0].passing_share")));
+    }
+}
+
+TEST_F(Structures, ANetHoldsMoreThanASlotLetsThroughAndEverythingIsAccountedFor) {
+    write_valley(dam("height_m = 8"));
+    const RunResult wall = run();
+    write_valley(dam("height_m = 8\npassing_share = 0.5"));
+    const RunResult net = run();
+    const BuildingImpact& at_wall = wall.observation.buildings[0];
+    const BuildingImpact& at_net = net.observation.buildings[0];
+    EXPECT_TRUE(std::isnan(at_wall.passing_share));
+    EXPECT_EQ(at_net.passing_share, 0.5);
+    EXPECT_EQ(at_wall.passed_volume, 0);
+    EXPECT_GT(at_net.passed_volume, 1);
+    EXPECT_GT(at_net.held_volume, 1);
+    EXPECT_LT(at_net.held_volume, at_wall.held_volume);
+    EXPECT_LT(at_net.impulse, at_wall.impulse);
+    EXPECT_GT(at_net.peak_filling_height, 0);
+    ASSERT_GT(at_net.history.size(), 3U);
+    EXPECT_EQ(at_net.history.back().passed_volume, at_net.passed_volume);
+}
+
 TEST_F(Structures, BuildingsMayBeAMesh) {
     // Two boxes side by side on ground at about 97 to 103 m, with roofs at 106 and 109 m; a third one far away.
     std::string obj;
@@ -195,6 +227,85 @@ TEST_F(Structures, InflowAndReleaseRunTogether) {
     EXPECT_EQ(result.status, RunStatus::complete) << result.stop_reason;
     EXPECT_NEAR(result.observation.volume_released, total_volume(loaded()),
                 0.5 * std::pow(result.particle_spacing, 3) * 2);
+}
+
+TEST_F(Structures, InflowOverAnAreaBringsItsVolumeAndItsDensity) {
+    const std::string source = fmt::format(
+        "[[inflow]]\nname = \"scarp\"\npolygon_m = [[{0}, {2}], [{1}, {2}], [{1}, {3}], [{0}, {3}]]\nhydrograph = "
+        "\"rain.csv\"\n",
+        west + 40, west + 60, south + 90, south + 110);
+    write("rain.csv", "time_s,discharge_m3ps,velocity_mps\n0,0,1\n2,40,2\n4,0,1\n");
+    write_features("houses.geojson", {rectangle(90, 90, 96, 110)});
+    const std::string houses = "[buildings]\nfile = \"houses.geojson\"\n";
+    write("scene.toml", "[terrain]\nfile = \"dem.tif\"\n" + houses + source);
+    write_valley();
+    write("scene.toml", "[terrain]\nfile = \"dem.tif\"\n" + houses + source);
+    const Scene scene = loaded();
+    EXPECT_THAT(scene.notes, Contains(HasSubstr("inflow \"scarp\": 80 m3 over 400 m2, down the slope")));
+    const RunResult result = run();
+    EXPECT_EQ(result.status, RunStatus::complete) << result.stop_reason;
+    EXPECT_NEAR(result.observation.volume_released, 80, 1e-6);
+    EXPECT_EQ(run({"solver.thread_count=1"}).hash, result.hash);
+    ASSERT_TRUE(result.observation.buildings[0].hit);
+
+    // Half as dense: the same motion, half the force and half the pressure.
+    write("rain.csv", "time_s,discharge_m3ps,velocity_mps,density_kgpm3\n0,0,1,1000\n2,40,2,1000\n4,0,1,1000\n");
+    const RunResult light = run();
+    EXPECT_EQ(light.hash, result.hash);
+    const BuildingImpact &heavy_impact = result.observation.buildings[0], &impact = light.observation.buildings[0];
+    EXPECT_NEAR(impact.peak_force, heavy_impact.peak_force / 2, 1e-5 * heavy_impact.peak_force);
+    EXPECT_NEAR(impact.peak_dynamic_pressure, heavy_impact.peak_dynamic_pressure / 2,
+                1e-5 * heavy_impact.peak_dynamic_pressure);
+    const TimeSample &heavy_row = result.observation.timeseries[30], &row = light.observation.timeseries[30];
+    EXPECT_GT(row.kinetic_energy, 0);
+    EXPECT_NEAR(row.kinetic_energy, heavy_row.kinetic_energy / 2, 1e-5 * heavy_row.kinetic_energy);
+    const std::vector<float>&heavy_map = result.observation.maps.peak_pressure.values,
+          &map = light.observation.maps.peak_pressure.values;
+    ASSERT_EQ(map.size(), heavy_map.size());
+    for (std::size_t k = 0; k < map.size(); ++k) {
+        if (!(heavy_map[k] > 0)) continue;
+        EXPECT_NEAR(map[k], heavy_map[k] / 2, 1e-4F * heavy_map[k]);
+    }
+    // Densities that differ: between those of the ends.
+    write("rain.csv", "time_s,discharge_m3ps,velocity_mps,density_kgpm3\n0,0,1,1000\n2,40,2,1500\n4,0,1,2000\n");
+    const RunResult mixed = run();
+    EXPECT_EQ(mixed.hash, result.hash);
+    EXPECT_GT(mixed.observation.buildings[0].peak_force, 1.02 * impact.peak_force);
+    EXPECT_LT(mixed.observation.buildings[0].peak_force, 0.98 * heavy_impact.peak_force);
+    EXPECT_EQ(run({"solver.thread_count=1"}).observation.maps.peak_pressure.values.size(),
+              mixed.observation.maps.peak_pressure.values.size());
+}
+
+TEST_F(Structures, BadInflowAreasAreRefused) {
+    write("rain.csv", "time_s,discharge_m3ps,velocity_mps\n0,10,0\n2,10,0\n");
+    const auto refusal = [&](const std::string& keys) {
+        write_valley("[[inflow]]\nhydrograph = \"rain.csv\"\n" + keys);
+        return load_error();
+    };
+    const auto corners = [](double x, double y, double to_x, double to_y) {
+        return fmt::format("polygon_m = [[{0}, {1}], [{2}, {1}], [{2}, {3}]]\n", west + x, south + y, west + to_x,
+                           south + to_y);
+    };
+    EXPECT_THAT(refusal(""), HasSubstr("exactly one of line_m, file, polygon_m and polygon_file must be given"));
+    EXPECT_THAT(refusal(corners(40, 90, 60, 110) + "polygon_file = \"a.geojson\"\n"), HasSubstr("both are"));
+    EXPECT_THAT(refusal("polygon_m = [[0, 0], [1, 1]]\n"), HasSubstr("has 2 corners; an area needs three or more"));
+    EXPECT_THAT(refusal(corners(40, 90, 40, 110)), HasSubstr("inflow[0].polygon_m: the corners span no area"));
+    EXPECT_THAT(refusal(corners(40, 90, 6000, 110)), HasSubstr("is not on known ground at"));
+    EXPECT_THAT(refusal("polygon_file = \"none.geojson\"\n"), HasSubstr("inflow[0].polygon_file"));
+    EXPECT_THAT(refusal(corners(40, 90, 60, 110) + "direction_deg = 360\n"),
+                AllOf(HasSubstr("direction_deg"), HasSubstr("0 to below 360")));
+    write_valley(inflow("rain.csv") + "direction_deg = 90\n");
+    EXPECT_THAT(load_error(), HasSubstr("inflow[0].direction_deg: is refused across a line"));
+    write_valley(inflow("rain.csv"));
+    EXPECT_THAT(load_error(), HasSubstr("velocity_mps = 0 is refused")) << "across a line nothing comes in standing";
+    const std::string header = "time_s,discharge_m3ps,velocity_mps,density_kgpm3\n";
+    for (const auto& [row, message] :
+         {std::pair{"0,1,1,0\n", "density_kgpm3 = 0 is refused; it must be a number above 0 to 30000"},
+          {"0,1,1,1e9\n", "density_kgpm3 = 1e+09 is refused"},
+          {"0,1,1\n", "density_kgpm3 = \"\" is refused"}}) {
+        write("rain.csv", header + row);
+        EXPECT_THAT(load_error(), HasSubstr(message));
+    }
 }
 
 TEST_F(Structures, BadHydrographsAreRefusedByLine) {

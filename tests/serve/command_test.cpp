@@ -154,7 +154,8 @@ TEST(ServeCommand, says_in_one_line_what_is_wrong) {
 TEST(ServeCommand, help_teaches) {
     const auto outcome = run_program({"serve", "--help"});
     EXPECT_EQ(outcome.exit_code, 0);
-    for (const char* part : {"--port", "--allow-host", "--token", "Ctrl-C", "Exit codes", "8123"}) {
+    for (const char* part :
+         {"--port", "--allow-host", "--token", "--ensemble", "--calibrations", "Ctrl-C", "Exit codes", "8123"}) {
         EXPECT_THAT(outcome.out, HasSubstr(part));
     }
 }

@@ -75,7 +75,10 @@ TEST_F(OpenApi, every_route_answers_as_described) {
                           {"name", "Dam"},
                           {"line", {{824185, 825080}, {824185, 825120}}},
                           {"height_m", 2},
-                          {"thickness_m", 1}},
+                          {"thickness_m", 1},
+                          {"passing_share", 0.5},
+                          {"openings", {{{"position_m", 20}, {"width_m", 4}}}},
+                          {"resistance_Npm", nullptr}},
                          {{"action", "put_building"},
                           {"name", "Barn"},
                           {"footprint", {{824120, 825090}, {824130, 825090}, {824130, 825100}}},
@@ -104,16 +107,22 @@ TEST_F(OpenApi, every_route_answers_as_described) {
                                                         {"/api/terrain", "?max_cells=500"}};
     const std::map<std::string, std::string> names = {{"/api/scenarios/{s}/layers/{name}", "peak_depth"},
                                                       {"/api/scenarios/{s}/exports/{name}", "front.csv"}};
-    const std::map<std::string, json> bodies = {{"/api/scenarios/{s}/actions", {{"action", "step"}}},
-                                                {"/api/control", {{"do", "request"}}},
-                                                {"/api/scenarios", {{"copy_of", "A"}}}};
-    const std::map<std::string, int> refused = {
-        {"/api/control", 409}, {"/api/scenarios", 409}, {"/api/orthophoto", 404}};
+    const std::map<std::string, json> bodies = {
+        {"/api/scenarios/{s}/actions", {{"action", "step"}}},
+        {"/api/control", {{"do", "request"}}},
+        {"/api/scenarios", {{"copy_of", "A"}}},
+        {"/api/calibration",
+         {{"parameters", {{{"key", "material.friction_coefficient"}, {"low", 0.1}, {"high", 0.6}}}}, {"runs", 9}}}};
+    const std::map<std::string, int> refused = {{"/api/control", 409},
+                                                {"/api/scenarios", 409},
+                                                {"/api/orthophoto", 404},
+                                                {"/api/ensembles/{e}/maps/{name}", 404}};
     for (const serve::Route& route : server_->routes()) {
         SCOPED_TRACE(route.method + " " + route.pattern);
         const std::string name = names.count(route.pattern) ? names.at(route.pattern) : "nothing";
         const std::string query = queries.count(route.pattern) ? queries.at(route.pattern) : "";
-        const std::string body = bodies.count(route.pattern) ? bodies.at(route.pattern).dump() : "";
+        const bool sends = route.method == "POST" && bodies.count(route.pattern) > 0;
+        const std::string body = sends ? bodies.at(route.pattern).dump() : "";
         const std::string target = filled(route.pattern, route.method == "DELETE" ? "B" : "A", name) + query;
         const Answer answer = hand.ask(route.method, target, body);
         EXPECT_EQ(answer.status, refused.count(route.pattern) ? refused.at(route.pattern) : 200)
@@ -226,6 +235,10 @@ TEST_F(OpenApi, exports_are_of_the_run_so_far) {
     EXPECT_TRUE(bytes_of("timeseries.csv").is_null());
     EXPECT_EQ(eye.get("/api/scenarios/A/exports/report.html").status, 200);
     EXPECT_EQ(eye.get("/api/scenarios/A/exports/peak_depth.tif").status, 200);
+    EXPECT_EQ(bytes_of("erosion_depth.tif"), "not listed");
+    const Answer none = eye.get("/api/scenarios/A/exports/erosion_depth.tif");
+    EXPECT_EQ(none.status, 404);
+    EXPECT_NE(none.body.find("nothing was picked up"), std::string::npos);
 }
 
 }  // namespace

@@ -1,7 +1,9 @@
 #pragma once
 
+#include <filesystem>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -33,6 +35,10 @@ class Serve : public ::testing::Test {
         options.export_folder = scene_.folder();
         options.patience = patience;
         options.allowed_hosts = {"twin.example.org"};
+        options.ensembles = ensembles_;
+        options.calibration.source = {scene_.scene_file(), all};
+        options.calibration.folder = scene_.folder();
+        options.calibration.keep = keep_;
         auto server = serve::Server::listen(std::move(options));
         ASSERT_TRUE(server) << server.error().message;
         const Status serving = (*server)->serve(std::make_shared<const Scene>(std::move(*scene)));
@@ -53,6 +59,8 @@ class Serve : public ::testing::Test {
     }
 
     SmallScene scene_;
+    std::vector<std::filesystem::path> ensembles_;  ///< whose maps are shown
+    bool keep_ = false;                             ///< what calibrations find
     std::unique_ptr<serve::Server> server_;
 };
 

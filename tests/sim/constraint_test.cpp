@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <limits>
@@ -10,6 +11,7 @@
 #include "sim/reference/reference.hpp"
 #include "sim/step.hpp"
 #include "sim_fixtures.hpp"
+#include "terrain/barrier.hpp"
 
 namespace talus {
 namespace {
@@ -111,9 +113,16 @@ MaterialSpec everything() {
     return material;
 }
 
+/// Across the debris's way, just before the building.
+Building net_on(const Terrain& terrain) {
+    const auto net = make_barrier(terrain, "net", {{{20.4, 16}, {20.4, 24}}, 2, {}, 0.3, {}, 0.5});
+    EXPECT_TRUE(net);
+    return *net;
+}
+
 /// Runs the fast backend and the reference side by side over debris that falls onto a slope beside a building.
 void expect_agreement(InternalFriction friction, KernelChoice kernel, int steps, double tolerance,
-                      const MaterialSpec& material = {}, bool zones = false) {
+                      const MaterialSpec& material = {}, bool zones = false, bool net = false) {
     SolverSpec solver;
     solver.internal_friction = friction;
     solver.kernel = kernel;
@@ -123,6 +132,7 @@ void expect_agreement(InternalFriction friction, KernelChoice kernel, int steps,
     const Terrain terrain = testing::inclined_plane(25, 40, 40);
     std::vector<Building> buildings{house};
     place_buildings(terrain, buildings);
+    if (net) buildings.push_back(net_on(terrain));
     Model model = make_model(material, solver, terrain, buildings, 0.4);
     if (zones) model.cover = half_and_half(terrain);
     Result<State> seeded =
@@ -146,6 +156,10 @@ void expect_agreement(InternalFriction friction, KernelChoice kernel, int steps,
     }
     EXPECT_LT(worst, tolerance) << "m";
     EXPECT_FALSE(state.building_contacts.empty()) << "the building was never touched";
+    if (!net) return;
+    EXPECT_TRUE(std::any_of(state.building_contacts.begin(), state.building_contacts.end(),
+                            [](const BuildingContact& contact) { return contact.building == 1; }))
+        << "the net was never touched";
 }
 
 /// One that the processor lacks falls back to its best.
@@ -172,8 +186,14 @@ TEST_P(InstructionSet, agrees_with_the_reference_for_every_resistance) {
     expect_agreement(InternalFriction::stress, KernelChoice::wendland_c2, 12, 2e-4, everything(), true);
 }
 
+TEST_P(InstructionSet, agrees_with_the_reference_for_a_net) {
+    expect_agreement(InternalFriction::stress, KernelChoice::wendland_c2, 12, 2e-4, {}, false, true);
+    expect_agreement(InternalFriction::pair, KernelChoice::poly6_spiky, 4, 2e-4, {}, false, true);
+}
+
 TEST_P(InstructionSet, gives_the_same_bits_as_the_baseline) {
-    const auto hash_after = [](const char* set, InternalFriction friction, const MaterialSpec& material = {}) {
+    const auto hash_after = [](const char* set, InternalFriction friction, const MaterialSpec& material = {},
+                               bool net = false) {
         setenv("TALUS_SIMD", set, 1);
         SolverSpec solver;
         solver.internal_friction = friction;
@@ -182,14 +202,19 @@ TEST_P(InstructionSet, gives_the_same_bits_as_the_baseline) {
         Building house;
         house.footprint = {testing::rectangle(20.6, 18, 24, 22)};
         house.height = 3;
-        Simulation simulation =
-            testing::simulate(material, solver, terrain,
-                              {testing::block(terrain, testing::rectangle(17.5, 18.5, 20.5, 21.5), 1.2)}, 0.3, {house});
+        std::vector<Building> buildings{house};
+        place_buildings(terrain, buildings);
+        if (net) buildings.push_back(net_on(terrain));
+        Model model = make_model(material, solver, terrain, buildings, 0.3);
+        Result<State> seeded =
+            seed_releases(model, {testing::block(terrain, testing::rectangle(17.5, 18.5, 20.5, 21.5), 1.2)});
+        Simulation simulation(std::move(model), *std::move(seeded));
         for (int i = 0; i < 30; ++i) simulation.advance();
         return hash_state(simulation.state());
     };
     for (const InternalFriction friction : {InternalFriction::stress, InternalFriction::pair}) {
         EXPECT_EQ(hash_after(GetParam(), friction), hash_after("SCALAR", friction));
+        EXPECT_EQ(hash_after(GetParam(), friction, {}, true), hash_after("SCALAR", friction, {}, true));
     }
     EXPECT_EQ(hash_after(GetParam(), InternalFriction::stress, everything()),
               hash_after("SCALAR", InternalFriction::stress, everything()));

@@ -145,6 +145,50 @@ TEST(ViscosityOnGround, stops_a_linear_profile_on_the_surface) {
     EXPECT_EQ(slower.z, -2);
 }
 
+/// Sum over a rest lattice of what `term` makes of an offset in spacings and of q.
+template <class Term>
+double lattice_sum(const Model& model, const Term& term) {
+    const double ratio = model.support_radius / model.particle_spacing;
+    double sum = 0;
+    for (int i = -3; i <= 3; ++i) {
+        for (int j = -3; j <= 3; ++j) {
+            for (int k = -3; k <= 3; ++k) {
+                const double q = std::sqrt(double(i * i + j * j + k * k)) / ratio;
+                if (q < 1) sum += term(k, q);
+            }
+        }
+    }
+    return sum * model.kernel.particle_volume / std::pow(model.support_radius, 3);
+}
+
+TEST(ViscosityOnGround, takes_from_even_shear_what_viscosity_passes_on_inside) {
+    MaterialSpec material;
+    material.viscosity_on_ground = true;
+    const Model model = model_of(material);
+    const double spacing = model.particle_spacing;
+    // Through a plane between two layers go m pairs of layers m apart, whose velocities differ by m times the shear.
+    const double passed_on = lattice_sum(model, [&](int layers, double q) {
+        return layers > 0 ? layers * layers * spacing * kernels::WendlandC2::value(q) : 0;
+    });
+    double taken = 0;
+    for (double d = spacing / 2; d < model.support_radius; d += spacing) taken += d * model.boundary.sticking_at(d);
+    EXPECT_NEAR(taken, passed_on, 1e-3 * passed_on);
+}
+
+TEST(Cohesion, inside_makes_up_for_what_sums_over_neighbours_do_not_pass_on) {
+    MaterialSpec material;
+    material.cohesion = 800;
+    const Model model = model_of(material);
+    const double ratio = model.support_radius / model.particle_spacing;
+    const double passed_on = lattice_sum(model, [&](int layers, double q) {
+        return layers * layers / (ratio * ratio) * kernels::WendlandC2::slope_over_q(q);
+    });
+    EXPECT_GT(passed_on, 0.9);
+    EXPECT_LT(passed_on, 1);
+    const double dt = 0.01;
+    EXPECT_NEAR(internal_strength(model, dt) * passed_on, 800 * dt * dt / model.rest_density, 1e-12);
+}
+
 TEST(RoughZone, stops_debris_that_runs_elsewhere) {
     const Terrain terrain = inclined_plane(20, 60, 40);
     MaterialSpec material;

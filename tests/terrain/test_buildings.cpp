@@ -247,6 +247,28 @@ TEST(BuildingSolids, distance_to_an_l_shaped_house_agrees_with_a_dense_sample_of
     }
 }
 
+TEST(BuildingSolids, a_net_is_a_wall_for_coarse_grains_only) {
+    // A house with a net along its eastern wall, both 6 m high.
+    std::vector<Building> buildings{building({{rectangle(0, 0, 10, 6), {}}}, 6),
+                                    building({{rectangle(10, 0, 11, 6), {}}}, 6)};
+    buildings[1].barrier = BarrierShape{{}, 6, {}, 1, {}, 0.4};
+    BuildingSolids solids(level_ground(), buildings, 4);
+    const Vec in_net{10.4, 3, 1}, in_house{9.8, 3, 1}, before{12, 3, 1};
+    EXPECT_TRUE(solids.inside(in_net, 0.4F));
+    EXPECT_FALSE(solids.inside(in_net, 0.39F));
+    EXPECT_EQ(solids.nearest(before, 0.4F).building, 1);
+    EXPECT_NEAR(solids.nearest(before, 0.4F).distance, 1, 1e-12);
+    EXPECT_EQ(solids.nearest(before, 0.39F).building, 0);
+    EXPECT_NEAR(solids.nearest(before, 0.39F).distance, 2, 1e-12);
+    // The way out of the house leads through the net for what the net does not stop.
+    EXPECT_NEAR(solids.nearest(in_house, 0.39F).distance, -0.2, 1e-12);
+    EXPECT_EQ(solids.nearest(in_house, 0.39F).normal.x, 1);
+    EXPECT_LT(solids.nearest(in_net, 0.4F).distance, 0);
+    EXPECT_NEAR(solids.nearest(in_net, 0.4F).normal.x, 1, 1e-12) << "into the house is no way out";
+    solids.close_nets();
+    EXPECT_TRUE(solids.inside(in_net, 0.0F));
+}
+
 TEST(BuildingSolids, float_and_double_agree_to_rounding) {
     const BuildingSolids solids(level_ground(), {building({{rectangle(100, 100, 110, 106), {}}}, 5)}, 4);
     const SolidSample<float> s = solids.nearest(Vec3<float>{99.9F, 103, 1});

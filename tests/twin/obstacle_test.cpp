@@ -261,5 +261,50 @@ TEST(Building, is_put_moved_and_removed_also_one_of_the_scene) {
                 HasSubstr("height_m: missing"));
 }
 
+TEST(Building, of_several_parts_with_a_courtyard_moves_as_a_whole) {
+    Scene scene = channel_scene();
+    add_building(scene, "farm", rectangle(west + 60, south + 24, west + 70, south + 36), 6);
+    Building& farm = scene.buildings.front();
+    farm.footprint[0].holes.push_back(rectangle(west + 63, south + 28, west + 67, south + 32).outer);
+    farm.footprint.push_back(rectangle(west + 72, south + 27, west + 75, south + 33));
+    const auto scenario = open(scene);
+    const json before = scenario->setup_json()["buildings"][0];
+    act(*scenario, {{"action", "put_building"}, {"id", "building-1"}, {"move_m", {-20, 1.5}}});
+    const json after = scenario->setup_json()["buildings"][0];
+    ASSERT_EQ(after["footprint"].size(), 2U);
+    ASSERT_EQ(after["footprint"][0].size(), 2U);
+    for (std::size_t part = 0; part < 2; ++part) {
+        for (std::size_t ring = 0; ring < before["footprint"][part].size(); ++ring) {
+            for (std::size_t k = 0; k < before["footprint"][part][ring].size(); ++k) {
+                const json& was = before["footprint"][part][ring][k];
+                const json& is = after["footprint"][part][ring][k];
+                EXPECT_DOUBLE_EQ(is[0].get<double>(), was[0].get<double>() - 20);
+                EXPECT_DOUBLE_EQ(is[1].get<double>(), was[1].get<double>() + 1.5);
+            }
+        }
+    }
+    EXPECT_EQ(after["height_m"], 6);
+    EXPECT_GT(after["base_m"].get<double>(), before["base_m"].get<double>() + 2);  // uphill
+    run_until(*scenario, 4);
+    EXPECT_EQ(scenario->impacts_json()["buildings"][0]["hit"], true);
+    act(*scenario, {{"action", "undo"}});
+    EXPECT_EQ(scenario->setup_json()["buildings"][0], before);
+
+    const auto put = [](const json& keys) {
+        json action = {{"action", "put_building"}};
+        action.update(keys);
+        return action;
+    };
+    EXPECT_THAT(refusal(*scenario, put({{"id", "building-1"}, {"move_m", {1e300, 0}}})), HasSubstr("move_m: reaches"));
+    EXPECT_THAT(refusal(*scenario, put({{"id", "building-1"}, {"move_m", {1, "north"}}})),
+                HasSubstr("must be [east, north] in metres"));
+    EXPECT_THAT(refusal(*scenario, put({{"height_m", 3}, {"move_m", {1, 1}}})), HasSubstr("needs the id"));
+    EXPECT_THAT(refusal(*scenario, put({{"id", "building-1"},
+                                        {"move_m", {1, 1}},
+                                        {"footprint", ring(west + 60, south + 24, west + 70, south + 36)}})),
+                HasSubstr("cannot go with footprint"));
+    EXPECT_EQ(scenario->setup_json()["buildings"][0], before);
+}
+
 }  // namespace
 }  // namespace talus::twin::test

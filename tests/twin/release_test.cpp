@@ -53,6 +53,21 @@ TEST(DrawnRelease, waits_until_it_is_triggered) {
     EXPECT_EQ(number(*scenario, "volume_held_m3"), 0);
 }
 
+TEST(DrawnRelease, is_moved_as_a_whole_while_held) {
+    Scene scene = channel_scene();
+    const auto scenario = open(scene);
+    const std::string id = act(*scenario, drawn(25, 1)).created;
+    const json before = release_of(*scenario, id);
+    act(*scenario, {{"action", "put_release"}, {"id", id}, {"move_m", {7, 0}}});
+    const json after = release_of(*scenario, id);
+    EXPECT_DOUBLE_EQ(after["polygons"][0][0][0].get<double>(), before["polygons"][0][0][0].get<double>() + 7);
+    EXPECT_NEAR(after["volume_m3"].get<double>(), before["volume_m3"].get<double>(), 0.1);
+    expect_balance(*scenario);
+    EXPECT_THAT(refusal(*scenario, {{"action", "put_release"}, {"id", id}, {"move_m", {-500, 0}}}),
+                HasSubstr("move_m: reaches"));
+    EXPECT_EQ(release_of(*scenario, id), after);
+}
+
 TEST(DrawnRelease, follows_its_outline_while_held_without_using_up_ids) {
     const auto scenario = open(channel_scene());
     run_until(*scenario, 0.5);

@@ -72,6 +72,23 @@ TEST(Scenario, a_parameter_holds_from_the_next_step_on) {
     EXPECT_LT(number(*changed, "front_chainage_m"), number(*unchanged, "front_chainage_m") - 3);
 }
 
+TEST(Scenario, several_parameters_at_once_are_one_change) {
+    const auto scenario = open(channel_scene());
+    const json before = scenario->setup_json()["parameters"];
+    const json action = {{"action", "set_parameters"},
+                         {"values", {{"material.friction_coefficient", 0.2}, {"material.viscosity", 0.05}}}};
+    EXPECT_THAT(act(*scenario, action).sentence, testing::HasSubstr("-> 0.2, viscosity "));
+    EXPECT_EQ(scenario->setup_json()["parameters"]["material.friction_coefficient"], 0.2);
+    EXPECT_EQ(scenario->setup_json()["parameters"]["material.viscosity"], 0.05);
+    act(*scenario, {{"action", "undo"}});
+    EXPECT_EQ(scenario->setup_json()["parameters"], before);
+    // Where one is wrong, none is changed.
+    const json wrong = {{"material.friction_coefficient", 0.3}, {"material.viscosity", -1}};
+    EXPECT_FALSE(scenario->apply({{"action", "set_parameters"}, {"values", wrong}}, "Ada"));
+    EXPECT_FALSE(scenario->apply({{"action", "set_parameters"}, {"values", json::object()}}, "Ada"));
+    EXPECT_EQ(scenario->setup_json()["parameters"], before);
+}
+
 TEST(Scenario, density_changes_pressures_from_then_on_and_not_those_before) {
     Scene scene = channel_scene();
     const auto light = open(scene), heavy = open(scene), late = open(scene);

@@ -77,6 +77,88 @@ TEST(Resistance, exceeded_takes_the_dam_away_once_and_replays_to_the_same_hash) 
     EXPECT_EQ(scenario->impacts_json()["barriers"][0]["failed_s"], nullptr) << "it stands again";
 }
 
+TEST(Net, is_drawn_opened_closed_and_made_a_wall) {
+    const auto scenario = open(dammed_scene());
+    const std::string id = scenario->setup_json()["barriers"][0]["id"];
+    const auto net = [&] { return scenario->setup_json()["barriers"][0]; };
+    EXPECT_EQ(net()["passing_share"], nullptr);
+    act(*scenario, {{"action", "put_barrier"}, {"id", id}, {"passing_share", 0.4}, {"openings", json::array()}});
+    EXPECT_EQ(net()["passing_share"], 0.4);
+    EXPECT_EQ(net()["openings"].size(), 0U);
+    act(*scenario, {{"action", "put_barrier"},
+                    {"id", id},
+                    {"openings", {{{"position_m", 10}, {"width_m", 3}, {"sill_height_m", 1}}}},
+                    {"resistance_Pa", 3e4}});
+    EXPECT_EQ(net()["passing_share"], 0.4) << "left out: as it was";
+    EXPECT_EQ(net()["openings"][0]["sill_height_m"], 1);
+    act(*scenario, {{"action", "put_barrier"}, {"id", id}, {"passing_share", nullptr}, {"resistance_Pa", nullptr}});
+    EXPECT_EQ(net()["passing_share"], nullptr);
+    EXPECT_EQ(net()["resistance_Pa"], nullptr);
+    EXPECT_EQ(net()["openings"].size(), 1U);
+    for (const json& bad : {json{{"passing_share", 1}}, json{{"passing_share", -0.1}}, json{{"passing_share", "half"}},
+                            json{{"openings", 3}}, json{{"openings", {3}}}, json{{"openings", {{{"width_m", 3}}}}},
+                            json{{"openings", {{{"position_m", 10}, {"width_m", 0.01}}}}},
+                            json{{"openings", {{{"position_m", 1e9}, {"width_m", 3}}}}}}) {
+        json action = {{"action", "put_barrier"}, {"id", id}};
+        action.update(bad);
+        const auto done = scenario->apply(action, "test");
+        ASSERT_FALSE(done) << bad;
+        EXPECT_THAT(done.error().message, testing::HasSubstr(bad.begin().key().substr(0, 7)));
+    }
+}
+
+TEST(Net, lets_through_and_holds_in_the_live_twin_and_replays_to_the_same_hash) {
+    const auto scenario = open(dammed_scene());
+    const std::string id = scenario->setup_json()["barriers"][0]["id"];
+    act(*scenario, {{"action", "put_barrier"}, {"id", id}, {"passing_share", 0.6}, {"openings", json::array()}});
+    run_until(*scenario, 5);
+    // Another one behind it, as debris comes down.
+    act(*scenario, {{"action", "put_barrier"},
+                    {"line", {{west + 60, south + 12}, {west + 60, south + 48}}},
+                    {"height_m", 3},
+                    {"thickness_m", 1},
+                    {"passing_share", 0.2}});
+    run_until(*scenario, 10);
+    ASSERT_NE(scenario->phase(), Phase::fault) << scenario->message();
+    expect_balance(*scenario);
+    const json net = scenario->impacts_json()["barriers"][0];
+    EXPECT_EQ(net["hit"], true);
+    EXPECT_GT(net["passed_m3"], 0.5);
+    EXPECT_GT(net["held_m3"], 1);
+    EXPECT_GT(net["peak_force_kN"], 0);
+    const auto journal = read_journal(scenario->journal_json().dump());
+    ASSERT_TRUE(journal) << journal.error().message;
+    const auto again = replay(*journal, std::make_shared<const Scene>(dammed_scene()));
+    ASSERT_TRUE(again) << again.error().message;
+    EXPECT_EQ(again->hash, journal->hash);
+}
+
+TEST(Inflow, over_an_area_with_a_density_runs_live_and_again_after_a_restart) {
+    Scene scene = channel_scene();
+    scene.releases.clear();
+    Inflow rain{"slope", {}, {}, {{0, 12, 1, 1200}, {5, 12, 1, 1200}}};
+    rain.area.push_back({{{west + 20, south + 27}, {west + 30, south + 27}, {west + 30, south + 33}}, {}});
+    scene.inflows.push_back(rain);
+    const auto scenario = open(std::move(scene));
+    run_until(*scenario, 3);
+    ASSERT_NE(scenario->phase(), Phase::fault) << scenario->message();
+    EXPECT_NEAR(number(*scenario, "volume_released_m3"), 36, 3);
+    expect_balance(*scenario);
+    bool any = false;
+    const auto series = scenario->probe({west + 27, south + 29})();
+    for (std::size_t k = 0; k < series["speed_mps"].size(); ++k) {
+        const double speed = series["speed_mps"][k];
+        any = any || speed > 0.1;
+        EXPECT_NEAR(series["pressure_kPa"][k], 1200 * speed * speed / 1e3, 1e-4 * (1 + speed * speed));
+    }
+    EXPECT_TRUE(any);
+    const std::uint64_t hash = scenario->hash();
+    const std::uint64_t step = scenario->step();
+    act(*scenario, {{"action", "restart"}});
+    while (scenario->step() < step) scenario->advance();
+    EXPECT_EQ(scenario->hash(), hash);
+}
+
 TEST(Inflow, runs_live_and_again_after_a_restart) {
     Scene scene = channel_scene();
     scene.releases.clear();

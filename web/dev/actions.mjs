@@ -1,4 +1,6 @@
 // The actions of docs/protocol.md on a stand-in scenario. Each answers {done, created} or {error}.
+import { groundItem } from "./ground_actions.mjs";
+
 const lengthOf = (line) => line.slice(1).reduce((sum, [x, y], k) => sum + Math.hypot(x - line[k][0], y - line[k][1]), 0);
 const between = (key, value, low, high, unit) =>
   typeof value === "number" && value >= low && value <= high ? null : `${key} is ${value}; allowed is ${low} to ${high} ${unit}`.trim();
@@ -93,9 +95,19 @@ export function act(scenario, body) {
       return error ? { error } : put(scenario, setup.buildings, "building", { ...(old ? {} : { from_scene: false }), ...rest,
         footprint: rest.footprint && [[rest.footprint]] }, (b) => scenario.based(b));
     }
+    case "put_zone":
+    case "put_bed":
+    case "put_inflow": {
+      const kind = action.slice(4);
+      const item = groundItem(kind, setup[`${kind}s`].find((entry) => entry.id === rest.id), rest);
+      return item.error ? item : put(scenario, setup[`${kind}s`], kind, item, (entry) => entry);
+    }
     case "remove_release":
     case "remove_barrier":
     case "remove_building":
+    case "remove_zone":
+    case "remove_bed":
+    case "remove_inflow":
       return remove(scenario, action.slice(7), rest.id);
     case "undo":
     case "redo": {

@@ -1,5 +1,6 @@
 // One scenario of the stand-in server: setup with undo, debris, recording.
 import { Debris, pointInRing } from "./debris.mjs";
+import { told } from "./ground_actions.mjs";
 import { encodeFrame } from "./wire.mjs";
 
 const clone = (value) => JSON.parse(JSON.stringify(value));
@@ -31,6 +32,7 @@ export class Scenario {
       barriers: [],
       buildings: this.valley.houses.map((h, i) => this.based({ id: `building-${i + 1}`, name: h.name, footprint: [[h.ring]],
         height_m: h.height, from_scene: true })),
+      zones: [], beds: [], inflows: [],
     };
   }
   measured(release) {
@@ -58,8 +60,13 @@ export class Scenario {
       r.status = "held";
       if (r.from_scene) this.release(r);
     }
+    this.begin();
     this.block();
     this.sample();
+  }
+  /** Beds and inflows are those of the run's begin until it is restarted. */
+  begin() {
+    this.begun = clone({ beds: this.setup.beds, inflows: this.setup.inflows });
   }
   release(r) {
     r.status = "released";
@@ -100,6 +107,7 @@ export class Scenario {
     this.past.push({ sentence, setup: clone(this.setup) });
     this.future = [];
     edit();
+    if (this.steps === 0) this.begin();
     ++this.revision;
     this.block();
   }
@@ -113,6 +121,7 @@ export class Scenario {
     for (const r of this.setup.releases) {
       if (before.find((s) => s.id === r.id)?.status === "released") r.status = "released";
     }
+    if (this.steps === 0) this.begin();
     ++this.revision;
     this.block();
     return entry.sentence;
@@ -226,7 +235,7 @@ export class Scenario {
       ...(this.status === "running" ? {} : { hash: (this.steps * 2654435761 % 2 ** 32).toString(16).padStart(16, "0") }) };
   }
   setupMessage() {
-    return { scenario: this.letter, revision: this.revision, ...this.setup,
+    return { scenario: this.letter, revision: this.revision, ...this.setup, ...told(this.setup, this.begun),
       undo: this.past.at(-1)?.sentence ?? null, redo: this.future.at(-1)?.sentence ?? null };
   }
 }

@@ -120,6 +120,7 @@ async function api(message, response, url) {
     return answer(response, 200, { ...session(), you: { role }, links: role === "controller" ? tokens : { viewer: tokens.viewer } });
   }
   if (parts[0] === "scene") return answer(response, 200, scene);
+  if (parts[0] === "ensembles") return answer(response, 200, { ensembles: [] });
   const g = valley.ground;
   if (parts[0] === "terrain") return answer(response, 200, encodeGrid(g.xMin, g.yMin, g.cell, g.columns, g.rows, g.z));
   const s = parts[0] === "scenarios" ? scenarios[parts[1]] : undefined;

@@ -3,6 +3,7 @@ import "uplot/dist/uPlot.min.css";
 import { Probes } from "./charts/probes";
 import { sectionPanel } from "./charts/section";
 import { frontCharts, timeCharts } from "./charts/series_charts";
+import { calibratePanel } from "./panels/calibrate";
 import { exportButtons } from "./panels/exports";
 import { impactColour, impactsPanel, largestPressure } from "./panels/impacts";
 import { help, keys } from "./panels/keys";
@@ -21,6 +22,7 @@ import { marks } from "./scene/marks";
 import { Relief } from "./scene/relief";
 import { placeOnPath } from "./scene/scenario_view";
 import { ShownLayers } from "./scene/shown_layers";
+import { Sinking } from "./scene/sinking";
 import { Stage } from "./scene/stage";
 import { watchAll } from "./state/cell";
 import { Playback } from "./state/playback";
@@ -40,6 +42,7 @@ function buildPage(page: HTMLElement, twin: Twin): void {
   const stage = new Stage(twin, twin.relief);
   const drawing = new Drawing(twin, stage);
   const layers = new ShownLayers(twin, stage);
+  new Sinking(twin, stage);
   const playback = new Playback(twin);
   const bar = viewBar(twin, stage);
   const picture = new Picture(twin, stage, layers);
@@ -57,6 +60,7 @@ function buildPage(page: HTMLElement, twin: Twin): void {
     { name: "section", title: "Section", content: section.element },
     { name: "impact", title: "Impact", content: impactsPanel(twin, stage) },
     { name: "balance", title: "Balance", content: balance(twin) },
+    { name: "calibrate", title: "Calibrate", content: calibratePanel(twin) },
   ]);
   twin.probes.watch((list) => {
     if (list.length > 0) readings.show("points");

@@ -1,7 +1,8 @@
 import { describe, expect, it } from "vitest";
 import type { Grid } from "../src/protocol/grid";
+import type { Ensemble } from "../src/protocol/messages";
 import { divergingAt, lightness, rampAt, ramps, roundStep } from "../src/scene/colour";
-import { differenceOf, scaleEnd, shownValues } from "../src/scene/layers";
+import { differenceOf, ensembleLayer, ensembleTitle, findMap, infoOf, inUnit, rangeOfMap, scaleEnd, shownOfMap, shownValues } from "../src/scene/layers";
 
 const grid = (...values: number[]): Grid => ({ west: 0, south: 0, cell: 1, columns: values.length, rows: 1, values: Float32Array.from(values) });
 
@@ -34,6 +35,10 @@ describe("layers", () => {
     expect([...shownValues("peak_depth", grid(0, NaN, 2))]).toEqual([NaN, NaN, 2]);
     expect([...shownValues("arrival_time", grid(0, NaN, 2))]).toEqual([0, NaN, 2]);
   });
+  it("pressures come in Pa and are shown in kPa", () => {
+    expect([...inUnit("peak_pressure", grid(2500, NaN)).values]).toEqual([2.5, NaN]);
+    expect([...inUnit("peak_speed", grid(2500)).values]).toEqual([2500]);
+  });
   it("a single odd cell does not set the scale", () => {
     const values = new Float32Array(1000).fill(1.8);
     values[7] = 400;
@@ -48,5 +53,30 @@ describe("layers", () => {
     expect(both).toMatchObject({ west: 10, south: 20, cell: 2, columns: 3, rows: 2 });
     expect([...both.values]).toEqual([-1, 3, 6, NaN, 7, 8]);
     expect([...differenceOf("arrival_time", grid(10, NaN), grid(12, 2)).values]).toEqual([2, NaN]);
+  });
+});
+
+describe("maps of an ensemble", () => {
+  const map = (name: string, kind: "probability" | "percentile", greatest: number | null = 80) =>
+    ({ name, title: `Title of ${name}`, unit: kind === "probability" ? "%" : "m", kind, of: "peak_depth" as const, threshold: 0.5, threshold_unit: "m", percentile: 95, greatest });
+  const ensemble: Ensemble = { id: "2", name: "wet", runs: 64, failed: 1, factors: [{ key: "material.viscosity", distribution: "uniform from 0 to 1" }],
+    same_terrain: true, maps: [map("probability_depth_0.5m", "probability"), map("peak_depth_p95", "percentile", null)] };
+  const name = ensembleLayer(ensemble, ensemble.maps[0]);
+
+  it("are found by their key, with title, unit, and what they are of", () => {
+    expect(name).toBe("ensemble/2/probability_depth_0.5m");
+    expect(findMap([ensemble], name)?.map).toBe(ensemble.maps[0]);
+    expect(findMap([], name)).toBeNull();
+    expect(ensembleTitle(ensemble)).toBe("wet, 64 runs, 1 failed");
+    expect(infoOf(name, [ensemble])).toMatchObject({ title: "Title of probability_depth_0.5m", unit: "%", from: "wet, 64 runs, 1 failed", ramp: ramps.probability });
+    expect(infoOf(ensembleLayer(ensemble, ensemble.maps[1]), [ensemble])).toMatchObject({ ramp: ramps.peak_depth, from: "wet, 64 runs, 1 failed: nowhere" });
+    expect(infoOf(name, [{ ...ensemble, same_terrain: false }]).from).toContain("other terrain");
+    expect(infoOf("peak_speed", []).title).toBe("Peak speed");
+  });
+  it("probabilities have one scale, and places that no run reached are left out", () => {
+    const values = shownOfMap(ensemble.maps[0], grid(0, NaN, 12.5, 100));
+    expect([...values]).toEqual([NaN, NaN, 12.5, 100]);
+    expect(rangeOfMap(ensemble.maps[0], values)).toEqual([0, 100]);
+    expect(rangeOfMap(ensemble.maps[1], Float32Array.of(1.7))).toEqual([0, 2]);
   });
 });

@@ -7,7 +7,7 @@ import type { Point, SceneInfo } from "../src/protocol/messages";
 import { Relief } from "../src/scene/relief";
 import { band } from "../src/scene/solids";
 import { bytes, count, fixed, number, quantity, tick, unitText } from "../src/state/format";
-import { area, crossesItself, inside, length, releaseVolume } from "../src/state/shapes";
+import { area, footprintArea, crossesItself, inside, length, releaseVolume } from "../src/state/shapes";
 
 /** A plane that rises by `slope` to the east, 100 x 100 cells of 1 m in national coordinates. */
 function plane(slope: number): Relief {
@@ -116,5 +116,12 @@ describe("numbers and units", () => {
     expect(count(5673)).toBe("5\u202f673");
     expect([0, 5, 2.5, 100, 0.25].map(tick)).toEqual(["0", "5", "2.5", "100", "0.25"]);
     expect(bytes(2_340_000)).toBe("2.34\u202fMB");
+  });
+});
+
+describe("a footprint of several parts", () => {
+  it("has the area of all of them without their courtyards", () => {
+    const square = (west: number, side: number): [number, number][] => [[west, 0], [west + side, 0], [west + side, side], [west, side]];
+    expect(footprintArea([[square(0, 10), square(2, 3)], [square(20, 4)]])).toBeCloseTo(100 - 9 + 16);
   });
 });

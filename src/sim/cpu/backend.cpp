@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "sim/cpu/parallel.hpp"
+#include "sim/particle_density.hpp"
 #include "sim/physics/contact.hpp"
 
 namespace talus::cpu {
@@ -179,9 +180,9 @@ void Backend::update_velocities(const Model& model, State& state) {
 void Backend::find_building_contacts(const Model& model, State& state) const {
     state.building_contacts.clear();
     if (model.solids.empty()) return;
-    const double mass = model.particle_mass();
     for (std::uint32_t i = 0; i < state.awake; ++i) {
         if (!work_.has_walls[i]) continue;
+        const double mass = density_of(model, state, i) * model.particle_volume();
         const Work::Walls& walls = work_.walls[i];
         for (std::size_t f = 0; f < walls.faces.size(); ++f) {
             const BoundaryFace<float>& wall = walls.faces[f];

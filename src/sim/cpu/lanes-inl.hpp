@@ -176,8 +176,8 @@ HWY_INLINE Mask near_walls(const Model& model, const V3& p) {
 }
 
 /// Samples ground and walls of particles at `p`, `displacement` from where they started the step.
-HWY_INLINE BoundaryShare sample_boundary_at(const Model& model, Work& work, std::size_t i, const V3& p,
-                                            const V3& displacement) {
+HWY_INLINE BoundaryShare sample_boundary_at(const Model& model, const State& state, Work& work, std::size_t i,
+                                            const V3& p, const V3& displacement) {
     const GroundFace<L> ground = sample_ground(model, p);
     BoundaryShare share{ground.density, ground.normal * ground.slope};
     store(ground.distance - dot(displacement, ground.normal), work.ground_distance, i);
@@ -190,10 +190,10 @@ HWY_INLINE BoundaryShare sample_boundary_at(const Model& model, Work& work, std:
     if (!any(near)) return share;
     for (int lane = 0; lane < lane_count; ++lane) {
         if (!near.at(lane)) continue;
-        share.density.set(
-            lane,
-            sample_walls(model, work, i + static_cast<std::size_t>(lane), {p.x.at(lane), p.y.at(lane), p.z.at(lane)},
-                         {displacement.x.at(lane), displacement.y.at(lane), displacement.z.at(lane)}));
+        share.density.set(lane,
+                          sample_walls(model, state, work, i + static_cast<std::size_t>(lane),
+                                       {p.x.at(lane), p.y.at(lane), p.z.at(lane)},
+                                       {displacement.x.at(lane), displacement.y.at(lane), displacement.z.at(lane)}));
     }
     share.gradient = load(work.boundary_gradient, i);
     return share;

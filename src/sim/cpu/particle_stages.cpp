@@ -144,7 +144,8 @@ TALUS_STAGE void undo_overlaps(const StageData& data, std::size_t first, std::si
         if (any(near)) {
             for (int l = 0; l < lane_count; ++l) {
                 if (!near.at(l)) continue;
-                const Vec3<float> one = undo_overlap_near_walls(model, {p.x.at(l), p.y.at(l), p.z.at(l)}, most.at(l));
+                const Vec3<float> one = undo_overlap_near_walls(model, data.state, i + static_cast<std::size_t>(l),
+                                                                {p.x.at(l), p.y.at(l), p.z.at(l)}, most.at(l));
                 shift.x.set(l, one.x);
                 shift.y.set(l, one.y);
                 shift.z.set(l, one.z);

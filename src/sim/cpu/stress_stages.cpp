@@ -91,7 +91,7 @@ TALUS_STAGE void linearise(const StageData& data, std::size_t first, std::size_t
         const Octs<L> motion = load(work.motion, i);
         const V3 p = vector_of(motion.low), moved = vector_of(motion.high);
         const PairSums sums = sum_pairs<Kernel>(scale, LaneLists(neighbours, i), work, p, moved);
-        const BoundaryShare boundary = sample_boundary_at(model, work, i, p, moved);
+        const BoundaryShare boundary = sample_boundary_at(model, state, work, i, p, moved);
         const DensityConstraint<L> constraint = linearise_density(model, sums, boundary, moved, softness);
         store(constraint.start, work.constraint_start, i);
         store(constraint.surface_share, work.surface_share, i);
@@ -108,7 +108,7 @@ TALUS_STAGE void solve(const StageData& data, std::size_t first, std::size_t las
     NeighbourLists& neighbours = data.neighbours;
     const L factor(jacobi_factor(model.solver.under_relaxation, model.kernel));
     const L internal_friction(model.internal_friction_coefficient);
-    const L cohesion(model.cohesion * state.time_step * state.time_step / model.rest_density);
+    const L cohesion(internal_strength(model, state.time_step));
     const bool by_particle = resists_by_particle(model), cohesive = model.cohesion > 0;
     const InertialFriction& inertial = model.inertial_friction;
     for_each_lanes(first, last, [&](std::size_t i) {

@@ -16,9 +16,9 @@ Work::Work(std::size_t capacity) : has_walls(capacity + array_padding), walls(ca
     }
 }
 
-float sample_walls(const Model& model, Work& work, std::size_t i, const Vec3<float>& p,
+float sample_walls(const Model& model, const State& state, Work& work, std::size_t i, const Vec3<float>& p,
                    const Vec3<float>& displacement) {
-    const Boundary<float> boundary = sample_boundary(model, p);
+    const Boundary<float> boundary = sample_boundary(model, p, grain_rank(state.id[i]));
     const BoundaryFace<float>& ground = boundary.faces[0];
     work.ground_distance[i] = ground.distance - dot(displacement, ground.normal);
     work.ground_slope[i] = ground.slope;
@@ -49,16 +49,18 @@ Vec3<float> resolve_wall_contacts(const Model& model, Work& work, std::size_t i,
     return displacement;
 }
 
-Vec3<float> undo_overlap_near_walls(const Model& model, const Vec3<float>& p, float most) {
-    return undo_overlap(model, p, most);
+Vec3<float> undo_overlap_near_walls(const Model& model, const State& state, std::size_t i, const Vec3<float>& p,
+                                    float most) {
+    return undo_overlap(model, p, most, grain_rank(state.id[i]));
 }
 
 void enforce_particle(const Model& model, const State& state, Work& work, std::size_t i) {
     std::array<float, 8>& motion = work.motion[i].v;
     const Vec3<float> start = state.position.at(i), displacement{motion[4], motion[5], motion[6]};
     const Vec3<float> wanted = start + displacement;
-    const Vec3<float> end = free_end(model, start, displacement);
-    work.predicted.set(i, free_end(model, end, work.shift.at(i)));
+    const float rank = grain_rank(state.id[i]);
+    const Vec3<float> end = free_end(model, start, displacement, rank);
+    work.predicted.set(i, free_end(model, end, work.shift.at(i), rank));
     if (end.x == wanted.x && end.y == wanted.y && end.z == wanted.z) return;
     // What puts a particle back above ground must not speed it up.
     const Vec3<float> reached = end - start;

@@ -67,13 +67,14 @@ struct StageData {
 
 /// Samples ground and walls of particle `i` at `p`, `displacement` from where it started the step.
 /// Returns their share of the density; the rest is in `work`.
-float sample_walls(const Model& model, Work& work, std::size_t i, const Vec3<float>& p,
+float sample_walls(const Model& model, const State& state, Work& work, std::size_t i, const Vec3<float>& p,
                    const Vec3<float>& displacement);
 /// Resolves the contacts with the walls; returns the new displacement.
 Vec3<float> resolve_wall_contacts(const Model& model, Work& work, std::size_t i, float multiplier,
                                   Vec3<float> displacement);
-/// undo_overlap() as it is.
-Vec3<float> undo_overlap_near_walls(const Model& model, const Vec3<float>& p, float most);
+/// undo_overlap() of particle `i`.
+Vec3<float> undo_overlap_near_walls(const Model& model, const State& state, std::size_t i, const Vec3<float>& p,
+                                    float most);
 /// Where the particle ends its step, swept; keeps what puts it back above ground from speeding it up.
 void enforce_particle(const Model& model, const State& state, Work& work, std::size_t i);
 

@@ -4,6 +4,7 @@
 
 #include "core/geometry.hpp"
 #include "sim/model.hpp"
+#include "sim/physics/net.hpp"
 
 namespace talus {
 
@@ -43,9 +44,9 @@ GroundFace<Real> sample_ground(const Model& model, const Vec3<Real>& p) {
 }
 
 /// Where faces meet, their shares overlap. For a kernel close to a Gaussian and faces at right angles the shared part
-/// is the product of the shares.
+/// is the product of the shares. `grain_rank` decides which nets are walls (see net.hpp).
 template <class Real>
-Boundary<Real> sample_boundary(const Model& model, const Vec3<Real>& p) {
+Boundary<Real> sample_boundary(const Model& model, const Vec3<Real>& p, float grain_rank = largest_grain) {
     Boundary<Real> result;
     auto& [ground, wall, second_wall] = result.faces;
     const GroundFace<Real> ground_share = sample_ground(model, p);
@@ -53,9 +54,9 @@ Boundary<Real> sample_boundary(const Model& model, const Vec3<Real>& p) {
     result.density = ground_share.density;
     result.gradient = ground.normal * ground.slope;
     if (model.solids.empty()) return result;
-    const SolidSample<Real> nearest = model.solids.nearest(p);
+    const SolidSample<Real> nearest = model.solids.nearest(p, grain_rank);
     if (nearest.building < 0) return result;
-    const SolidSample<Real> second = model.solids.second_nearest(p, nearest);
+    const SolidSample<Real> second = model.solids.second_nearest(p, nearest, grain_rank);
     const auto share = model.boundary.at(nearest.distance);
     const auto second_share = second.building < 0 ? decltype(share){} : model.boundary.at(second.distance);
     const Real free = 1 - ground_share.density, wall_free = 1 - share.density, second_free = 1 - second_share.density;

@@ -79,11 +79,11 @@ BoundaryTable::BoundaryTable(const Kernel& kernel, double particle_spacing)
         tabulate(layers / at(particle_spacing / 2).density);
     });
     tabulate_by_slope();
-    tabulate_sticking(particle_spacing / 4);
+    tabulate_sticking(kernel, particle_spacing);
 }
 
-void BoundaryTable::tabulate_sticking(double least_distance) {
-    const double step = 1 / (2 * inverse_step_);
+void BoundaryTable::tabulate_sticking(const Kernel& kernel, double particle_spacing) {
+    const double step = 1 / (2 * inverse_step_), least_distance = particle_spacing / 4;
     std::vector<double> values(node_count);
     // The first moment of what lies beyond d is the integral of the share from d on.
     double moment = 0;
@@ -92,10 +92,20 @@ void BoundaryTable::tabulate_sticking(double least_distance) {
         if (i < node_count - 1) moment += step * (at(d).density + at(d + step).density) / 2;
         values[static_cast<std::size_t>(i)] = at(d).density + moment / std::max(d, least_distance);
     }
-    for (std::size_t i = 0; i < values.size(); ++i) {
-        const double next = i + 1 < values.size() ? values[i + 1] : values[i];
-        sticking_.push_back({float(values[i]), float(next - values[i]), 0, 0});
-    }
+    const auto tabulate = [&](double scale) {
+        sticking_.clear();
+        for (std::size_t i = 0; i < values.size(); ++i) {
+            const double next = i + 1 < values.size() ? values[i + 1] : values[i];
+            sticking_.push_back({float(scale * values[i]), float(scale * (next - values[i])), 0, 0});
+        }
+    };
+    tabulate(1);
+    // What ground takes from a rest lattice in even shear, sum of d times the loss over its layers, must be what a
+    // plane inside the lattice passes on: half the second moment of the kernel. The continuum's integral is a fifth
+    // less.
+    double taken = 0;
+    for (double d = particle_spacing / 2; d < support_radius_; d += particle_spacing) taken += d * sticking_at(d);
+    tabulate(kernel.second_moment / (2 * particle_spacing * taken));
 }
 
 void BoundaryTable::tabulate_by_slope() {

@@ -45,7 +45,7 @@ class BoundaryTable {
 
     /// Sum of V W (1 + z / d) over ground at depths z, for a particle at the distance d: how much it loses of its
     /// velocity to ground where the flow goes on with its velocity turned around. At most what it is at a quarter of a
-    /// spacing.
+    /// spacing. Scaled so that a rest lattice loses as much to ground as viscosity inside passes on.
     template <class Real>
     [[nodiscard]] Real sticking_at(Real distance) const {
         const Real last = Real(static_cast<int>(sticking_.size()) - 1);
@@ -57,7 +57,7 @@ class BoundaryTable {
 
   private:
     void tabulate_by_slope();
-    void tabulate_sticking(double least_distance);
+    void tabulate_sticking(const Kernel& kernel, double particle_spacing);
 
     double support_radius_ = 0, inverse_step_ = 0;
     std::vector<Quad> nodes_;  // density, its rise to the next node, slope, its rise

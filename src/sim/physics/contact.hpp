@@ -89,9 +89,9 @@ Vec3<Real> resolve_contacts(const Model& model, const Boundary<Real>& boundary, 
 
 /// What brings a particle that overlaps ground or a wall back to touching it, at most `most` metres of it.
 template <class Real>
-Vec3<Real> undo_overlap(const Model& model, const Vec3<Real>& p, Real most) {
+Vec3<Real> undo_overlap(const Model& model, const Vec3<Real>& p, Real most, float grain_rank = largest_grain) {
     const Real touching = Real(model.contact_distance());
-    const Boundary<Real> now = sample_boundary(model, p);
+    const Boundary<Real> now = sample_boundary(model, p, grain_rank);
     Vec3<Real> shift{};
     for (std::size_t f = 0; f < face_count; ++f) {
         const BoundaryFace<Real>& face = now.faces[f];
@@ -103,18 +103,19 @@ Vec3<Real> undo_overlap(const Model& model, const Vec3<Real>& p, Real most) {
     return shift;
 }
 
-/// Whether a position is free: not below ground that is known, not inside a building.
+/// Whether a position is free: not below ground that is known, not inside a building, or a net that stops the grain.
 template <class Real>
-bool is_free(const Model& model, const Vec3<Real>& p) {
+bool is_free(const Model& model, const Vec3<Real>& p, float grain_rank = largest_grain) {
     if (p.z < model.terrain.sample(p.x, p.y).height) return false;
-    return model.solids.empty() || !model.solids.inside(p);
+    return model.solids.empty() || !model.solids.inside(p, grain_rank);
 }
 
 /// Where a particle may end its step: `start + displacement` if the way there is free, else a place on this side of
 /// what it would have run through. Swept in parts of at most a quarter spacing, so it holds at any speed and step.
 /// `start` must be free; the result is.
 template <class Real>
-Vec3<Real> free_end(const Model& model, const Vec3<Real>& start, const Vec3<Real>& displacement) {
+Vec3<Real> free_end(const Model& model, const Vec3<Real>& start, const Vec3<Real>& displacement,
+                    float grain_rank = largest_grain) {
     const Vec3<Real> end = start + displacement;
     const Real longest_part = Real(model.particle_spacing / 4);
     const Real distance = length(displacement);
@@ -123,7 +124,7 @@ Vec3<Real> free_end(const Model& model, const Vec3<Real>& start, const Vec3<Real
     Real blocked = -1;
     for (int part = 1; part <= parts; ++part) {
         const Real share = Real(part) / Real(parts);
-        if (!is_free(model, part == parts ? end : start + displacement * share)) {
+        if (!is_free(model, part == parts ? end : start + displacement * share, grain_rank)) {
             blocked = share;
             break;
         }
@@ -137,13 +138,13 @@ Vec3<Real> free_end(const Model& model, const Vec3<Real>& start, const Vec3<Real
         Vec3<Real> lifted = end + ground.normal * (depth > 0 ? depth : Real(0));
         const Real height = model.terrain.sample(lifted.x, lifted.y).height;
         if (lifted.z < height && height - lifted.z < longest_part) lifted.z = height;
-        if (is_free(model, lifted)) return lifted;
+        if (is_free(model, lifted, grain_rank)) return lifted;
     }
     Vec3<Real> reached = start + displacement * clear;
     for (int bisection = 0; bisection < 12; ++bisection) {
         const Real middle = (clear + blocked) / 2;
         const Vec3<Real> p = start + displacement * middle;
-        if (is_free(model, p)) {
+        if (is_free(model, p, grain_rank)) {
             clear = middle;
             reached = p;
         } else {

@@ -34,7 +34,7 @@ Kernel make_kernel(KernelChoice choice, double particle_spacing, double support_
     return with_kernel(choice, [&](auto kernel) {
         const double r = support_radius, r3 = r * r * r, r5 = r3 * r * r;
         const int reach = static_cast<int>(std::ceil(r / particle_spacing));
-        double sum = 0, gradient_square = 0, moment = 0;
+        double sum = 0, gradient_square = 0, gradient_moment = 0, moment = 0;
         std::vector<Vec3<double>> offsets, gradients;  // offsets in spacings
         for (int i = -reach; i <= reach; ++i) {
             for (int j = -reach; j <= reach; ++j) {
@@ -47,6 +47,7 @@ Kernel make_kernel(KernelChoice choice, double particle_spacing, double support_
                     if (i == 0 && j == 0 && k == 0) continue;
                     const double gradient = kernel.slope_over_q(distance / r) * distance / r5;
                     gradient_square += gradient * gradient;
+                    gradient_moment += x * x / distance * gradient;
                     offsets.push_back({double(i), double(j), double(k)});
                     gradients.push_back(offsets.back() * (gradient * particle_spacing / distance));
                 }
@@ -58,6 +59,7 @@ Kernel make_kernel(KernelChoice choice, double particle_spacing, double support_
         result.particle_volume = 1 / sum;
         result.rest_gradient_sum = gradient_square * result.particle_volume * result.particle_volume;
         result.largest_eigenvalue = largest_lattice_eigenvalue(offsets, gradients, gradient_square);
+        result.gradient_moment = gradient_moment * result.particle_volume;
         result.second_moment = moment * result.particle_volume;
         return result;
     });

@@ -108,6 +108,8 @@ struct Kernel {
     /// Largest eigenvalue of the density constraints' Jacobi iteration in the rest lattice: by how much neighbours that
     /// all correct at once overshoot.
     double largest_eigenvalue = 1;
+    /// Sum of -x d(V W)/dx over the lattice: how much of a stress that varies evenly the sum over neighbours passes on.
+    double gradient_moment = 1;
     double second_moment = 0;  ///< sum of x^2 V W over the lattice, m2: links XSPH smoothing to a kinematic viscosity
 };
 

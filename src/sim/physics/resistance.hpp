@@ -65,6 +65,13 @@ inline double strength_per_pascal(const Model& model, double time_step) {
     return time_step * time_step / (model.rest_density * model.particle_spacing);
 }
 
+/// The shear strength that cohesion gives debris inside, in the units of lambda. Pressure comes out of the iteration as
+/// large as it takes to carry the weight through the sums over neighbours, and friction with it; cohesion is given from
+/// outside and is raised by what these sums fall short of.
+inline double internal_strength(const Model& model, double time_step) {
+    return model.cohesion * time_step * time_step / (model.rest_density * model.kernel.gradient_moment);
+}
+
 /// The share of a particle in the layer that touches the ground: 1 where it touches, 0 a spacing higher.
 template <class Real>
 Real basal_share(const Model& model, Real distance) {

@@ -23,6 +23,11 @@ Pair pair_of(const Model& model, const Vector& separation) {
     });
 }
 
+/// Particles are in the order of their ids.
+float rank_of(std::size_t i) {
+    return grain_rank(static_cast<std::uint32_t>(i));
+}
+
 double own_value(const Model& model) {
     return pair_of(model, {}).value;
 }
@@ -183,7 +188,7 @@ void solve_stress(const Model& model, State& state) {
         const InertialFriction& inertial = model.inertial_friction;
         const double friction = inertial_friction(model.internal_friction_coefficient, inertial.rise, inertial.half,
                                                   inertial.grain_size, shear, pressure);
-        const double cohesion = model.cohesion * state.time_step * state.time_step / model.rest_density;
+        const double cohesion = internal_strength(model, state.time_step);
         const Deviator<double> stress = next_stress(
             p.stress, shear, strength_limit_square(friction, pressure, cohesion), p.constraint.pair_square, factor);
         p.multiplier_change = multiplier - p.multiplier;
@@ -203,7 +208,7 @@ void solve_pairs(const Model& model, State& state) {
         Particle& p = state.particles[i];
         p.multiplier_change = 0;
         if (p.held) continue;
-        p.boundary = sample_boundary(model, p.predicted());
+        p.boundary = sample_boundary(model, p.predicted(), rank_of(i));
         p.sampled_at = p.displacement;
         const Sums sums = sums_at(model, state, point, i);
         const auto constraint = linearise_density(model, sums, p.boundary, p.displacement, softness);
@@ -221,10 +226,11 @@ void Backend::warm_start(const Model& model, State& state) {
     const double ratio = state.previous_time_step > 0 ? state.time_step / state.previous_time_step : 0;
     const double scale = ratio * ratio;
     state.previous_time_step = state.time_step;
-    for (Particle& p : state.particles) {
+    for (std::size_t i = 0; i < state.particles.size(); ++i) {
+        Particle& p = state.particles[i];
         p.sampled_at = p.displacement;
         p.linearised_at = p.predicted();
-        p.boundary = sample_boundary(model, p.linearised_at);
+        p.boundary = sample_boundary(model, p.linearised_at, rank_of(i));
     }
     if (keeps_stress(model)) {
         const double softness = model.solver.constraint_relaxation * model.kernel.rest_gradient_sum;
@@ -286,17 +292,18 @@ void Backend::undo_overlaps(const Model& model, State& state) {
                 p.shift += pair.gradient * (spread[i] + spread[j]);
             });
         }
-        p.shift += undo_overlap(model, p.predicted(), most);
+        p.shift += undo_overlap(model, p.predicted(), most, rank_of(i));
         const double size = length(p.shift);
         if (size > most) p.shift = p.shift * (most / size);
     }
 }
 
 void Backend::enforce_boundaries(const Model& model, State& state) {
-    for (Particle& p : state.particles) {
+    for (std::size_t i = 0; i < state.particles.size(); ++i) {
+        Particle& p = state.particles[i];
         if (p.held) continue;
-        p.displacement = free_end(model, p.position, p.displacement) - p.position;
-        p.shift = free_end(model, p.predicted(), p.shift) - p.predicted();
+        p.displacement = free_end(model, p.position, p.displacement, rank_of(i)) - p.position;
+        p.shift = free_end(model, p.predicted(), p.shift, rank_of(i)) - p.predicted();
     }
 }
 

@@ -186,6 +186,8 @@ Result<Outcome> compute(const FlumeSpec& spec, const Setting& setting, const Wat
         const bool coarse = spacing > finest;
         const std::string end = fmt::format(", spacing {:g} m", spacing);
         for (const Obstacle obstacle : {Obstacle::none, Obstacle::wall, Obstacle::ramp}) {
+            // The coarse channel shows what the spacing does; its obstacles would show little more for twice the time.
+            if (coarse && obstacle != Obstacle::none) continue;
             const std::string kind = obstacle == Obstacle::none   ? "open channel"
                                      : obstacle == Obstacle::wall ? "wall"
                                                                   : "ramp";

@@ -85,7 +85,7 @@ export class Run {
     this.last = page;
     return page;
   }
-  /** Colours in a part of the page, read from pixels on the screen: how many, the share of the commonest, mean of each channel. */
+  /** Colours in a part of the page, read from pixels on the screen: how many, shares of the commonest, of clear red and of clear blue. */
   async colours(page, clip) {
     await page.evaluate(drawn);
     const png = await page.screenshot(clip ? { clip } : {});
@@ -114,12 +114,14 @@ async function readPixels(data) {
   const pixels = context.getImageData(0, 0, canvas.width, canvas.height).data;
   const counts = new Map();
   let reddish = 0;
+  let bluish = 0;
   for (let i = 0; i < pixels.length; i += 4) {
     const key = (pixels[i] << 16) | (pixels[i + 1] << 8) | pixels[i + 2];
     counts.set(key, (counts.get(key) ?? 0) + 1);
     reddish += pixels[i] > 1.5 * pixels[i + 1] && pixels[i] > 1.5 * pixels[i + 2];
+    bluish += pixels[i + 2] > 1.5 * pixels[i];
   }
-  return { reddish: reddish / (pixels.length / 4), different: counts.size, commonest: Math.max(...counts.values()) / (pixels.length / 4) };
+  return { reddish: reddish / (pixels.length / 4), bluish: bluish / (pixels.length / 4), different: counts.size, commonest: Math.max(...counts.values()) / (pixels.length / 4) };
 }
 
 /** The middle of the view: without bars, legends and labels' edges. */

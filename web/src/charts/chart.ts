@@ -67,6 +67,10 @@ export class Chart {
     this.plot?.redraw(false);
   }
 
+  /** What goes away with the editor that it is in: uPlot listens to the window. */
+  destroy(): void {
+    this.drop();
+  }
   private drop(): void {
     this.plot?.destroy();
     this.plot = null;

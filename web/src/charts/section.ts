@@ -75,7 +75,8 @@ export function sectionPanel(twin: Twin, stage: Stage): { element: HTMLElement; 
     const frame = stage.views.get(twin.edited.value)?.clock.next ?? null;
     const stations = sectionStations(line);
     const xs = stations.map((s) => s.along);
-    const ground = stations.map((s) => twin.relief.at(...s.at));
+    const relief = stage.reliefOf(twin.edited.value);
+    const ground = stations.map((s) => relief.at(...s.at));
     const now = stations.map((s) => (frame ? frameDepthAt(frame, twin.scene, ...s.at) : 0));
     const most = stations.map((s) => {
       const v = peak ? gridAt(peak, ...s.at) : NaN;
@@ -112,6 +113,7 @@ export function sectionPanel(twin: Twin, stage: Stage): { element: HTMLElement; 
     refresh();
   });
   watchAll([twin.replay_s], refresh);
+  watchAll([stage.sinkings], plot);
   watchAll([twin.tool], () => draw.setAttribute("aria-pressed", String(twin.tool.value.kind === "section")));
   twin.onFrame((frame) => {
     const now = performance.now();

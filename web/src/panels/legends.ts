@@ -1,7 +1,7 @@
 // Legends with units, compass, scale bar, contour interval.
 import { css, divergingAt, rampAt, ramps, roundStep, type Rgb } from "../scene/colour";
 import { contourInterval } from "../scene/ground";
-import { layerInfo } from "../scene/layers";
+import { infoOf, isEnsembleLayer } from "../scene/layers";
 import type { ShownLayers } from "../scene/shown_layers";
 import type { Stage } from "../scene/stage";
 import { watchAll } from "../state/cell";
@@ -10,7 +10,7 @@ import { fixed, quantity, tick, unitText } from "../state/format";
 import type { Twin } from "../state/twin";
 import { h } from "../ui/dom";
 
-export interface Legend { title: string; unit: string; low: number; high: number; at: (share: number) => Rgb; note?: string }
+export interface Legend { title: string; unit: string; low: number; high: number; at: (share: number) => Rgb; note?: string; from?: string }
 
 const pastNote = "Rebuilt from the recording: a peak between two recorded frames is missed, so values can be a little low.";
 
@@ -29,9 +29,13 @@ export function presentLegends(twin: Twin, stage: Stage, layers: ShownLayers): L
   }
   const name = twin.layer.value;
   if (name !== "none") {
-    const info = layerInfo[name];
+    const info = infoOf(name, twin.ensembles.value);
     const [low, high] = layers.range.value;
     const time = layers.shown_s.value;
+    if (isEnsembleLayer(name)) {
+      list.push({ title: info.title, unit: info.unit, low, high, at: (s) => rampAt(info.ramp, s), note: info.help, ...(info.from ? { from: info.from } : {}) });
+      return list;
+    }
     const title = (name === "depth" && time !== null ? "Depth" : info.title) + (layers.isDifference ? ", B − A" : "") +
       (time === null ? "" : name === "depth" || name === "deposit_depth" ? ` at ${fixed(time, 1)} s` : ` until ${fixed(time, 1)} s`);
     list.push(layers.isDifference ? { title, unit: info.unit, low, high, at: (s) => divergingAt(2 * s - 1) }
@@ -70,8 +74,9 @@ export function legends(twin: Twin, stage: Stage, layers: ShownLayers): HTMLElem
         scale.append(mark);
       }
       return h("div", { class: "legend", role: "img", ...(legend.note ? { title: legend.note } : {}),
-        "aria-label": `${legend.title}: colours from ${quantity(legend.low, legend.unit)} to ${quantity(legend.high, legend.unit)}` },
-      h("div", { class: "legend-title" }, h("b", {}, legend.title), h("span", {}, unitText(legend.unit))), bar, scale);
+        "aria-label": `${legend.title}: colours from ${quantity(legend.low, legend.unit)} to ${quantity(legend.high, legend.unit)}${legend.from ? `; ${legend.from}` : ""}` },
+      h("div", { class: "legend-title" }, h("b", {}, legend.title), h("span", {}, unitText(legend.unit))), bar, scale,
+      legend.from ? h("div", { class: "legend-from" }, legend.from) : null);
     }));
   });
   return holder;

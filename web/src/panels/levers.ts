@@ -4,6 +4,7 @@ import type { Drawing } from "../scene/drawing";
 import { watchAll } from "../state/cell";
 import type { Twin } from "../state/twin";
 import { button, h } from "../ui/dom";
+import { groundGroup } from "./ground_group";
 import { parameterFields } from "./parameters";
 import { shapeSection } from "./shapes";
 
@@ -46,5 +47,6 @@ export function levers(twin: Twin, drawing: Drawing): HTMLElement {
     shapeSection(twin, drawing, "release"),
     shapeSection(twin, drawing, "barrier"),
     shapeSection(twin, drawing, "building"),
+    groundGroup(twin, drawing),
     parameterFields(twin));
 }

@@ -59,9 +59,10 @@ export class Picture {
     c.fillText(time + (stage.views.size > 1 ? "   A left, B right" : ""), 20, 43);
     let bottom = height - 10;
     for (const legend of presentLegends(twin, stage, this.layers)) {
-      plate(10, bottom - 48, 208, 48);
+      if (legend.from) bottom -= 15;
+      plate(10, bottom - 48, 208, legend.from ? 63 : 48);
       c.font = `600 12px ${font}`;
-      c.fillText(`${legend.title}, ${unitText(legend.unit)}`, 20, bottom - 37);
+      c.fillText(`${legend.title}, ${unitText(legend.unit)}`, 20, bottom - 37, 188);
       for (let i = 0; i < 188; ++i) {
         c.fillStyle = css(legend.at(i / 187));
         c.fillRect(20 + i, bottom - 28, 1.5, 9);
@@ -74,6 +75,7 @@ export class Picture {
         c.fillText(tick(v), 20 + (188 * (v - legend.low)) / (legend.high - legend.low), bottom - 9);
       }
       c.textAlign = "left";
+      if (legend.from) c.fillText(legend.from, 20, bottom + 6, 188);
       bottom -= 54;
     }
     const perPixel = stage.metresPerPixel;

@@ -1,6 +1,6 @@
 // What is shown and from where: camera, debris, layers.
-import { layerNames, type LayerName } from "../protocol/messages";
-import { layerInfo } from "../scene/layers";
+import { layerNames, type ShownLayer } from "../protocol/messages";
+import { ensembleLayer, ensembleTitle, infoOf, isEnsembleLayer, layerInfo } from "../scene/layers";
 import type { CameraMode, Viewpoint } from "../scene/rig";
 import type { Stage } from "../scene/stage";
 import { watchAll } from "../state/cell";
@@ -54,8 +54,21 @@ export function viewBar(twin: Twin, stage: Stage): ViewBar {
   const particles = h("input", { type: "checkbox", onchange: () => (twin.particles.value = particles.checked) });
   const surface = h("select", { "aria-label": "Debris as a surface", onchange: () => (twin.surface.value = surface.value as SurfaceColour) },
     h("option", { value: "off" }, "no surface"), h("option", { value: "depth" }, "surface by depth"), h("option", { value: "speed" }, "surface by speed"));
-  const layer = h("select", { "aria-label": "Map layer on the ground", onchange: () => (twin.layer.value = layer.value as LayerName | "none") },
+  const layer = h("select", { "aria-label": "Map layer on the ground", onchange: () => (twin.layer.value = layer.value as ShownLayer | "none") },
     h("option", { value: "none" }, "no layer"), ...layerNames.map((name) => h("option", { value: name, title: layerInfo[name].help }, layerInfo[name].title)));
+  // A layer that stays chosen stays in the list, also while nothing has been picked up again.
+  const erosion = layer.querySelector<HTMLOptionElement>("option[value=erosion_depth]");
+  watchAll([twin.cells.A.state, twin.cells.B.state, twin.layer], () => {
+    const some = twin.scenarios.value.some((s) => (twin.cells[s].state.value?.volume_entrained_m3 ?? 0) > 0);
+    if (erosion) erosion.hidden = erosion.disabled = !some && twin.layer.value !== "erosion_depth";
+  });
+  twin.ensembles.watch((list) => {
+    layer.querySelectorAll("optgroup").forEach((group) => group.remove());
+    layer.append(...list.map((ensemble) => h("optgroup", { label: `Ensemble ${ensembleTitle(ensemble)}` }, ...ensemble.maps.map((map) => {
+      const key = ensembleLayer(ensemble, map);
+      return h("option", { value: key, title: infoOf(key, list).help }, map.title + (map.greatest === null ? " (nowhere)" : ""));
+    }))));
+  });
   const opacity = h("input", { type: "range", min: "0.1", max: "1", step: "0.05", "aria-label": "Opacity of the layer", title: "Opacity of the layer",
     oninput: () => (twin.layerOpacity.value = Number(opacity.value)) });
   const difference = h("input", { type: "checkbox", onchange: () => (twin.difference.value = difference.checked) });
@@ -70,11 +83,12 @@ export function viewBar(twin: Twin, stage: Stage): ViewBar {
     particles.checked = twin.particles.value;
     surface.value = twin.surface.value;
     layer.value = twin.layer.value;
+    layer.title = twin.layer.value === "none" ? "" : infoOf(twin.layer.value, twin.ensembles.value).help;
     opacity.value = String(twin.layerOpacity.value);
     opacity.hidden = twin.layer.value === "none";
     difference.checked = twin.difference.value;
     differenceLabel.hidden = twin.scenarios.value.length < 2;
-    difference.disabled = twin.layer.value === "none";
+    difference.disabled = twin.layer.value === "none" || isEnsembleLayer(twin.layer.value);
     contours.checked = twin.contours.value;
     names.checked = twin.names.value;
   });

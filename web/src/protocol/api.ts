@@ -1,7 +1,7 @@
 // The HTTP half of docs/protocol.md.
 import { decodeFrame, type Frame, type ScenarioName } from "./frame";
 import { decodeGrid, type Grid } from "./grid";
-import type { Action, Done, ExportFile, Impacts, LayerName, ProbeSeries, Recording, SceneInfo, Series, Session } from "./messages";
+import type { Action, Done, Ensemble, ExportFile, Impacts, LayerName, ProbeSeries, Recording, SceneInfo, Series, Session } from "./messages";
 
 /** What the server answered to a request that it refused. */
 export class Refused extends Error {
@@ -56,6 +56,8 @@ export class Api {
   recording = (s: ScenarioName): Promise<Recording> => this.json(`scenarios/${s}/recording`);
   layer = async (s: ScenarioName, name: LayerName, time_s: number | null = null): Promise<Grid> =>
     decodeGrid(await this.binary(`scenarios/${s}/layers/${name}${at(time_s)}`));
+  ensembles = async (): Promise<Ensemble[]> => (await this.json<{ ensembles: Ensemble[] }>("ensembles")).ensembles;
+  ensembleMap = async (ensemble: string, name: string): Promise<Grid> => decodeGrid(await this.binary(`ensembles/${ensemble}/maps/${name}`));
   orthophoto = async (): Promise<Blob> => (await this.ask("GET", "orthophoto")).blob();
   frame = async (s: ScenarioName, time_s: number): Promise<Frame> =>
     decodeFrame(await this.binary(`scenarios/${s}/frame?time_s=${time_s.toFixed(4)}`));
@@ -69,6 +71,9 @@ export class Api {
     (await (await this.ask("POST", `scenarios/${s}/actions`, action)).json()) as Done;
   addScenario = async (): Promise<void> => void (await this.ask("POST", "scenarios", { copy_of: "A" }));
   endScenario = async (): Promise<void> => void (await this.ask("DELETE", "scenarios/B"));
+  calibrate = async (parameters: { key: string; low: number; high: number }[], runs: number): Promise<void> =>
+    void (await this.ask("POST", "calibration", { parameters, runs }));
+  cancelCalibration = async (): Promise<void> => void (await this.ask("DELETE", "calibration"));
   control = async (what: "request" | "release" | "grant" | "decline"): Promise<void> =>
     void (await this.ask("POST", "control", { do: what, person: this.person }));
 }

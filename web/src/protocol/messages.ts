@@ -103,6 +103,8 @@ export interface Barrier {
   crest_elevation_m: number | null;
   thickness_m: number;
   openings: BarrierOpening[];
+  /** What a net lets through; null: a wall. */
+  passing_share: number | null;
   /** null: it stands whatever happens. */
   resistance_Npm: number | null;
   resistance_Pa: number | null;
@@ -119,6 +121,57 @@ export interface Building {
   roof_m: number;
   from_scene: boolean;
 }
+/** Ground that resists in its own way; null: as elsewhere. */
+export interface Zone {
+  id: string;
+  name: string;
+  /** Each with its outer ring first; none: it comes from a raster and has no outline. */
+  polygons: Point[][][];
+  area_m2: number;
+  friction_coefficient: number | null;
+  turbulent_friction_mps2: number | null;
+  cohesion_Pa: number | null;
+  /** 0: no forest. */
+  stem_density_pm2: number;
+  stem_diameter_m: number;
+  stem_drag_coefficient: number;
+  from_scene: boolean;
+}
+/** Loose material that debris picks up. */
+export interface Bed {
+  id: string;
+  name: string;
+  /** None: it comes from a raster, or lies everywhere. */
+  polygons: Point[][][];
+  area_m2: number;
+  volume_m3: number;
+  /** null: it differs from place to place. */
+  depth_m: number | null;
+  law: "growth" | "shear";
+  growth_rate_per_m: number | null;
+  critical_shear_stress_Pa: number;
+  erosion_rate_mps: number;
+  erosion_depth_mpPa: number;
+  from_scene: boolean;
+  /** false: changed, it holds from the next restart. */
+  in_force: boolean;
+}
+/** density_kgpm3: null or left out is the material's rest density. */
+export interface HydrographRow { time_s: number; discharge_m3ps: number; velocity_mps: number; density_kgpm3?: number | null }
+/** Debris that comes in while the run goes on: to the right of a line, seen along it, or all over an area. */
+export interface Inflow {
+  id: string;
+  name: string;
+  line: Point[] | null;
+  polygons: Point[][][];
+  /** Clockwise from north; null: downhill. */
+  direction_deg: number | null;
+  /** null: too long to be edited here. */
+  hydrograph: HydrographRow[] | null;
+  volume_m3: number;
+  from_scene: boolean;
+  in_force: boolean;
+}
 export interface Setup {
   scenario: ScenarioName;
   revision: number;
@@ -126,6 +179,11 @@ export interface Setup {
   releases: Release[];
   barriers: Barrier[];
   buildings: Building[];
+  zones: Zone[];
+  beds: Bed[];
+  inflows: Inflow[];
+  /** Beds or inflows differ from those that the run began with. */
+  pending_restart: boolean;
   undo: string | null;
   redo: string | null;
 }
@@ -163,18 +221,78 @@ export interface ProbeSeries { time_s: Column; depth_m: Column; speed_mps: Colum
 export interface Recording { times_s: number[]; bytes: number }
 export interface ExportFile { name: string; bytes: number | null; what: string }
 
-export const layerNames = ["depth", "peak_depth", "peak_speed", "peak_pressure", "arrival_time", "deposit_depth"] as const;
+export type CalibrationState = "idle" | "running" | "cancelling" | "done" | "cancelled" | "failed";
+export interface CalibrationRun { values: number[]; phase: "design" | "search" | "check"; misfit: number | null }
+export interface CalibrationStatus {
+  state: CalibrationState;
+  /** Why none can be started here; null: one can. */
+  why_not: string | null;
+  by: string | null;
+  message: string;
+  observations: { name: string; unit: string; observed: number; uncertainty: number; is: "equal" | "at_least" | "below"; best: number | null; deviation: number | null }[];
+  parameters: { key: string; label: string; unit: string; low: number; high: number }[];
+  phase: CalibrationRun["phase"] | null;
+  runs_at_most: number;
+  runs_failed: number;
+  wall_remaining_s: number | null;
+  runs: CalibrationRun[];
+  /** By the emulators over the first two parameters, by rows of the second; one row where there is one parameter. */
+  map: { columns: number; rows: number; misfit: (number | null)[] } | null;
+  best: { run: number; values: number[]; misfit: number } | null;
+  result: {
+    settled: boolean;
+    checks_within_95: number | null;
+    parameters: { key: string; best: number; median: number; low_95: number; high_95: number; share_of_prior_width: number }[];
+    warnings: string[];
+  } | null;
+}
+
+export const layerNames = ["depth", "peak_depth", "peak_speed", "peak_pressure", "arrival_time", "deposit_depth", "erosion_depth"] as const;
 export type LayerName = (typeof layerNames)[number];
+
+/** A map of a finished ensemble. */
+export interface EnsembleMap {
+  name: string;
+  title: string;
+  unit: string;
+  kind: "probability" | "percentile";
+  /** The layer of a single run that it counts. */
+  of: Exclude<LayerName, "depth" | "erosion_depth">;
+  threshold: number | null;
+  threshold_unit: string | null;
+  percentile: number | null;
+  /** null: debris of no run came there by that measure. */
+  greatest: number | null;
+}
+export interface Ensemble {
+  id: string;
+  name: string;
+  runs: number;
+  failed: number;
+  factors: { key: string; distribution: string }[];
+  same_terrain: boolean;
+  maps: EnsembleMap[];
+}
+export type EnsembleLayer = `ensemble/${string}/${string}`;
+/** What can lie on the ground: a layer of the run, or a map of an ensemble. */
+export type ShownLayer = LayerName | EnsembleLayer;
 
 export type Action =
   | { action: "run" | "pause" | "step" | "restart" | "undo" | "redo" }
   | { action: "set_speed"; factor: number | null }
   | { action: "set_parameter"; key: string; value: number }
+  | { action: "set_parameters"; values: Record<string, number> }
   // With an id just what changes has to be given.
-  | { action: "put_release"; id?: string; name?: string; polygon?: Point[]; thickness_m?: number }
-  | { action: "put_barrier"; id?: string; name?: string; line?: Point[]; height_m?: number; thickness_m?: number; resistance_Npm?: number; resistance_Pa?: number }
-  | { action: "put_building"; id?: string; name?: string; footprint?: Point[]; height_m?: number }
-  | { action: "remove_release" | "trigger_release" | "remove_barrier" | "remove_building"; id: string };
+  | { action: "put_release"; id?: string; name?: string; polygon?: Point[]; move_m?: Point; thickness_m?: number }
+  | { action: "put_barrier"; id?: string; name?: string; line?: Point[]; height_m?: number; thickness_m?: number;
+      passing_share?: number | null; openings?: BarrierOpening[]; resistance_Npm?: number | null; resistance_Pa?: number | null }
+  | { action: "put_building"; id?: string; name?: string; footprint?: Point[]; move_m?: Point; height_m?: number }
+  | { action: "put_zone"; id?: string; name?: string; polygon?: Point[]; move_m?: Point; friction_coefficient?: number | null; turbulent_friction_mps2?: number | null;
+      cohesion_Pa?: number | null; stem_density_pm2?: number; stem_diameter_m?: number; stem_drag_coefficient?: number }
+  | { action: "put_bed"; id?: string; name?: string; polygon?: Point[]; move_m?: Point; depth_m?: number | null; law?: Bed["law"]; growth_rate_per_m?: number | null;
+      critical_shear_stress_Pa?: number; erosion_rate_mps?: number; erosion_depth_mpPa?: number }
+  | { action: "put_inflow"; id?: string; name?: string; line?: Point[]; polygon?: Point[]; move_m?: Point; direction_deg?: number | null; hydrograph?: HydrographRow[] }
+  | { action: "trigger_release" | "remove_release" | "remove_barrier" | "remove_building" | "remove_zone" | "remove_bed" | "remove_inflow"; id: string };
 export interface Done { done: string; created: string | null }
 
 export type ServerMessage =
@@ -182,5 +300,6 @@ export type ServerMessage =
   | ({ type: "state" } & State)
   | ({ type: "setup" } & Setup)
   | { type: "people"; people: Person[]; controller: string | null; request: { id: string; name: string } | null }
+  | ({ type: "calibration" } & CalibrationStatus)
   | { type: "scenarios"; scenarios: ScenarioName[] }
   | { type: "done"; scenario: ScenarioName; by: string; done: string };

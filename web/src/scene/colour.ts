@@ -70,7 +70,12 @@ export const ramps = {
   peak_speed: ramp(104, 0.11, 8, 0.13, 0.93, 0.28),
   peak_pressure: ramp(88, 0.08, -48, 0.14, 0.93, 0.26),
   arrival_time: ramp(215, 0.06, 118, 0.1, 0.3, 0.92),
+  /** Of a calibration, turned about: what fits best is dark. */
+  misfit: ramp(262, 0.12, 95, 0.05, 0.34, 0.96),
+  /** Share of an ensemble's runs: as in its GeoTIFF styles. */
+  probability: ramp(300, 0.05, 262, 0.13, 0.94, 0.26),
   deposit_depth: ramp(92, 0.07, 42, 0.09, 0.92, 0.28),
+  erosion_depth: ramp(25, 0.07, 52, 0.13, 0.92, 0.3),
 } as const;
 
 /** B - A: blue where B is less, orange where B is more, near white at none. */

@@ -4,8 +4,10 @@ import type { Line2 } from "three/examples/jsm/lines/Line2.js";
 import type { Point } from "../protocol/messages";
 import { Cell, watchAll } from "../state/cell";
 import { change, create } from "../state/edits";
-import { canReshape, crossesItself, fewestPoints, inside, itemOf, pointsOf } from "../state/shapes";
-import { probeColours, type Shape, type Twin } from "../state/twin";
+import { arrowsOf } from "../state/inflows";
+import { groundUnder } from "../state/picking";
+import { canReshape, crossesItself, drawnAsLine, fewestPoints, hasOutline, inside, itemOf, lineOf, mostPoints, pointsOf } from "../state/shapes";
+import { probeColours, type Selection, type Shape, type Twin } from "../state/twin";
 import { h } from "../ui/dom";
 import { Handles } from "./handles";
 import { disposeLine, pixelLine } from "./lines";
@@ -17,7 +19,7 @@ export class Drawing {
   /** Corners set so far of what is being drawn, or those of the selected shape while it is dragged. */
   readonly draft = new Cell<readonly Point[]>([]);
   private pointer: Point | null = null;
-  private line: Line2 | null = null;
+  private lines: Line2[] = [];
   private readonly handles: Handles;
   private readonly crosshair = h("div", { class: "crosshair", hidden: true, "aria-hidden": "true" });
 
@@ -46,12 +48,13 @@ export class Drawing {
     const { shape } = this;
     const points = this.draft.value;
     if (shape === null) return;
-    const fewest = shape === "section" ? 2 : fewestPoints[shape];
+    const byLine = this.twin.inflowByLine.value;
+    const fewest = shape === "section" ? 2 : fewestPoints(shape, byLine);
     if (points.length < fewest) {
-      this.twin.notice(`A ${shape === "section" ? "cross-section" : shape} needs at least ${fewest} points; click on the ground to add them.`, "error");
+      this.twin.notice(`${shape === "inflow" ? "An inflow" : `A ${shape === "section" ? "cross-section" : shape}`} needs at least ${fewest} points; click on the ground to add them.`, "error");
       return;
     }
-    if (shape !== "section" && shape !== "barrier" && crossesItself(points)) {
+    if (shape !== "section" && !drawnAsLine(shape, byLine) && crossesItself(points)) {
       this.twin.notice(`The outline of the ${shape} crosses itself; remove the last point with Backspace.`, "error");
       return;
     }
@@ -70,8 +73,9 @@ export class Drawing {
   addPoint(point: Point): void {
     this.draft.value = [...this.draft.value, point];
     this.redraw();
-    // A section is a straight line unless more is wanted: two points make it.
-    if (this.shape === "section" && this.draft.value.length === 2) this.finish();
+    // A section and an inflow's line are straight: two points make them.
+    const { shape } = this;
+    if (shape !== null && this.draft.value.length === (shape === "section" ? 2 : mostPoints(shape, this.twin.inflowByLine.value))) this.finish();
   }
 
   private listen(): void {
@@ -131,7 +135,7 @@ export class Drawing {
       this.twin.probes.value = [...this.twin.probes.value, { at: point, colour: probeColours[used % probeColours.length], series: {} }].slice(-6);
     }
   }
-  /** A click without a tool selects the house, barrier or release under it. */
+  /** A click without a tool selects the house, barrier or release under it, else the inflow, bed or zone. */
   private select(event: PointerEvent, hit: Hit | null): void {
     const box = this.stage.canvas.getBoundingClientRect();
     const { views, rig } = this.stage;
@@ -144,11 +148,13 @@ export class Drawing {
     ray.setFromCamera(new Vector2(((event.clientX - box.left - column * wide) / wide) * 2 - 1, 1 - ((event.clientY - box.top) / box.height) * 2), rig.camera);
     const id = view.solidUnder(ray);
     const setup = this.twin.cells[name].setup.value;
-    let selection = null;
-    if (id !== null) selection = { shape: setup?.barriers.some((b) => b.id === id) ? ("barrier" as const) : ("building" as const), id };
-    else if (hit) {
-      const release = setup?.releases.find((r) => r.polygons.some((ring) => inside(ring, hit.world[0], hit.world[1])));
-      if (release) selection = { shape: "release" as const, id: release.id };
+    let selection: Selection | null = null;
+    if (id !== null) selection = { shape: setup?.barriers.some((b) => b.id === id) ? "barrier" : "building", id };
+    else if (hit && setup) {
+      const [x, y] = hit.world;
+      const release = setup.releases.find((r) => r.polygons.some((ring) => inside(ring, x, y)));
+      const { relief, metresPerPixel } = this.stage;
+      selection = release ? { shape: "release", id: release.id } : groundUnder(setup, [x, y], 8 * metresPerPixel, relief.width * relief.height);
     }
     if (selection && this.twin.scenarios.value.length > 1) this.twin.edited.value = name;
     this.twin.selection.value = selection;
@@ -162,20 +168,22 @@ export class Drawing {
       this.draft.value = [];
       this.redraw();
     }
-    if (!item || twin.hindrance !== null || !canReshape(item) || twin.tool.value.kind !== "none") {
+    if (!item || !hasOutline(item) || twin.hindrance !== null || twin.tool.value.kind !== "none") {
       this.handles.clear();
       return;
     }
     const points = pointsOf(item);
-    // A scar traced from a survey has dozens of corners; those are moved as a whole.
-    const corners = points.length <= 40;
-    this.handles.show(item.name, corners ? points : [], twin.edited.value, corners, {
+    // A scar traced from a survey has dozens of corners, and one outline cannot tell several parts: those move as a whole.
+    const whole = !canReshape(item) || points.length > 40;
+    const isLine = lineOf(item) !== null;
+    this.handles.show(item.name, points, twin.edited.value, whole ? "whole" : "all", {
       move: (moved) => {
         this.draft.value = moved;
-        this.redraw(item.shape !== "barrier");
+        this.redraw(!isLine);
       },
       drop: (moved) => {
-        void change(twin, item, { points: moved }).then((fine) => {
+        const by: Point = [moved[0][0] - points[0][0], moved[0][1] - points[0][1]];
+        void change(twin, item, whole && !isLine ? { move_m: by } : { points: moved }).then((fine) => {
           if (!fine) this.reselect();
         });
       },
@@ -183,16 +191,20 @@ export class Drawing {
   }
 
   private redraw(closed = false): void {
-    if (this.line) disposeLine(this.line);
-    this.line = null;
+    this.lines.forEach(disposeLine);
+    this.lines = [];
     const points = [...this.draft.value];
     const { shape } = this;
     if (shape !== null && this.pointer && points.length > 0) points.push(this.pointer);
     const view = this.stage.views.get(this.twin.edited.value);
     if (view && points.length > 1) {
-      const ring = closed || ((shape === "release" || shape === "building") && points.length > 2);
-      this.line = pixelLine(this.stage.relief.drape(points, 0.4, ring), { colour: drawColour, width_px: 2.5, onTop: true });
-      view.overlay.add(this.line);
+      const byLine = this.twin.inflowByLine.value;
+      const ring = closed || (shape !== null && shape !== "section" && !drawnAsLine(shape, byLine) && points.length > 2);
+      const strokes = [view.relief.drape(points, 0.4, ring)];
+      const flows = shape === null ? this.twin.selection.value?.shape === "inflow" && !closed : shape === "inflow" && byLine;
+      if (flows) for (const arrow of arrowsOf(points)) strokes.push(view.relief.drape(arrow, 0.4));
+      this.lines = strokes.map((stroke) => pixelLine(stroke, { colour: drawColour, width_px: 2.5, onTop: true }));
+      view.overlay.add(...this.lines);
     }
     this.dots();
     this.stage.invalidate();
@@ -202,7 +214,7 @@ export class Drawing {
       if (!this.twin.selection.value) this.handles.clear();
       return;
     }
-    this.handles.show("the drawing", this.draft.value, this.twin.edited.value, false, {
+    this.handles.show("the drawing", this.draft.value, this.twin.edited.value, "corners", {
       move: (moved) => {
         this.draft.value = moved;
       },

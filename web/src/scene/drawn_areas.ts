@@ -1,4 +1,4 @@
-// Areas (releases, fills of what is being drawn) painted into one picture that lies on the ground.
+// Areas (releases; zones, beds, inflows) painted into one picture that lies on the ground.
 import { CanvasTexture, LinearFilter, SRGBColorSpace, Vector4 } from "three";
 import type { Point } from "../protocol/messages";
 import type { Draped } from "./ground";
@@ -9,7 +9,10 @@ export interface Area {
   colour: string;
   /** Share of the ground's colour that is covered, 0 to 1. */
   opacity: number;
-  hatched: boolean;
+  /** Told apart also where colours are not: lines that rise or fall to the right, level ones, dots. */
+  pattern: "none" | "rising" | "falling" | "level" | "dots";
+  /** Between lines or dots, m. */
+  gap_m: number;
 }
 
 const longestSide_px = 1024;
@@ -54,18 +57,10 @@ export class DrawnAreas {
       context.fillStyle = area.colour;
       context.globalAlpha = area.opacity;
       context.fillRect(0, 0, this.canvas.width, this.canvas.height);
-      if (area.hatched) {
-        context.globalAlpha = Math.min(1, area.opacity + 0.35);
-        context.strokeStyle = area.colour;
-        context.lineWidth = 0.35 * scale;
-        const step = 2.5 * scale;
-        for (let d = -this.canvas.height; d < this.canvas.width; d += step) {
-          context.beginPath();
-          context.moveTo(d, this.canvas.height);
-          context.lineTo(d + this.canvas.height, 0);
-          context.stroke();
-        }
-      }
+      context.globalAlpha = Math.min(1, area.opacity + 0.35);
+      context.strokeStyle = area.colour;
+      context.lineWidth = 0.14 * area.gap_m * scale;
+      this.pattern(context, area.pattern, Math.max(4, area.gap_m * scale));
       context.restore();
     }
     this.texture.dispose();
@@ -76,6 +71,26 @@ export class DrawnAreas {
     const [ox, oy] = this.relief.origin;
     this.placing.set(west - ox, south - oy, 1 / (east - west), 1 / (north - south));
     return { texture: this.texture, placing: this.placing };
+  }
+  private pattern(context: CanvasRenderingContext2D, pattern: Area["pattern"], step: number): void {
+    const { width, height } = this.canvas;
+    const stroke = (x0: number, y0: number, x1: number, y1: number): void => {
+      context.beginPath();
+      context.moveTo(x0, y0);
+      context.lineTo(x1, y1);
+      context.stroke();
+    };
+    if (pattern === "rising") for (let d = -height; d < width; d += step) stroke(d, height, d + height, 0);
+    if (pattern === "falling") for (let d = -height; d < width; d += step) stroke(d, 0, d + height, height);
+    if (pattern === "level") for (let y = 0.5 * step; y < height; y += step) stroke(0, y, width, y);
+    if (pattern !== "dots") return;
+    for (let row = 0; row * step < height + step; ++row) {
+      for (let x = row % 2 === 0 ? 0 : 0.5 * step; x < width + step; x += step) {
+        context.beginPath();
+        context.arc(x, row * step, 0.16 * step, 0, 2 * Math.PI);
+        context.fill();
+      }
+    }
   }
   dispose(): void {
     this.texture.dispose();

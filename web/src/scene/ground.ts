@@ -1,9 +1,10 @@
 // The ground: a mesh with side walls like a relief model, elevation colours, contour lines, draped layers, and the
 // debris as a surface that lifts the same mesh.
 import {
-  BufferAttribute, BufferGeometry, DataTexture, LinearFilter, Mesh, MeshLambertMaterial, RGBAFormat, SRGBColorSpace, Vector2, Vector4,
+  BufferAttribute, BufferGeometry, DataTexture, FloatType, LinearFilter, Mesh, MeshLambertMaterial, RedFormat, RGBAFormat, SRGBColorSpace, Vector2, Vector4,
   type IUniform, type Texture,
 } from "three";
+import type { Grid } from "../protocol/grid";
 import { rampAt, roundStep, table, type Rgb } from "./colour";
 import type { Relief } from "./relief";
 import { groundFragment, groundNormal, groundVertex, sharedHead } from "./ground_shader";
@@ -105,6 +106,15 @@ const groundRamp = rampTexture(groundColour);
 const nothing = new DataTexture(new Uint8Array(4), 1, 1, RGBAFormat);
 nothing.needsUpdate = true;
 
+/** Filtered, so that the ground falls evenly from cell to cell. */
+function sunkTexture(depth: Grid): DataTexture {
+  const texture = new DataTexture(depth.values.map((v) => (v > 0 ? v : 0)) as Float32Array<ArrayBuffer>, depth.columns, depth.rows, RedFormat, FloatType);
+  texture.internalFormat = "R16F";
+  texture.minFilter = texture.magFilter = LinearFilter;
+  texture.needsUpdate = true;
+  return texture;
+}
+
 /** Contour interval that gives some 30 lines over the relief, and every fifth is an index contour. */
 export function contourInterval(relief: Relief): number {
   return roundStep((relief.highest - relief.lowest) / 40);
@@ -116,7 +126,7 @@ export class Ground {
     uSurface: IUniform<number>; uContour: IUniform<number>; uLayerOpacity: IUniform<number>;
   };
 
-  constructor(geometry: BufferGeometry, relief: Relief, depthUniforms: Record<string, IUniform>) {
+  constructor(geometry: BufferGeometry, private readonly relief: Relief, depthUniforms: Record<string, IUniform>) {
     const low = relief.lowest - relief.origin[2];
     this.uniforms = {
       ...depthUniforms,
@@ -137,15 +147,21 @@ export class Ground {
       uPhoto: { value: nothing },
       uPhotoPlacing: { value: new Vector4() },
       uPhotoShown: { value: 0 },
+      uSunk: { value: nothing },
+      uSunkPlacing: { value: new Vector4() },
+      uCell: { value: relief.grid.cell },
       uDrawn: { value: nothing },
       uDrawnPlacing: { value: new Vector4() },
+      uWide: { value: nothing },
+      uWidePlacing: { value: new Vector4() },
     };
     const material = new MeshLambertMaterial();
     material.onBeforeCompile = (shader) => {
       Object.assign(shader.uniforms, this.uniforms);
       shader.vertexShader = shader.vertexShader
-        .replace("#include <common>", `#include <common>\n${sharedHead}\nattribute float shade;\nvarying float vShade;\nvarying vec3 vLocal;\nvarying vec3 vGroundNormal;`)
-        .replace("#include <begin_vertex>", `#include <begin_vertex>\n${groundVertex}`);
+        .replace("#include <common>", `#include <common>\n${sharedHead}\n${groundVertex.head}`)
+        .replace("#include <beginnormal_vertex>", `#include <beginnormal_vertex>\n${groundVertex.normal}`)
+        .replace("#include <begin_vertex>", `#include <begin_vertex>\n${groundVertex.place}`);
       shader.fragmentShader = shader.fragmentShader
         .replace("#include <common>", `#include <common>\n${sharedHead}\n${groundFragment.head}`)
         .replace("#include <color_fragment>", groundFragment.colour)
@@ -160,15 +176,25 @@ export class Ground {
     const uniform = this.uniforms[name];
     if (uniform) uniform.value = value;
   }
-  drape(drawn: Draped): void {
+  /** wide: areas that may cover all of the ground; below `drawn`, whose own picture stays sharp beside them. */
+  drape(drawn: Draped, wide: Draped): void {
     this.set("uDrawn", drawn.texture);
     this.set("uDrawnPlacing", drawn.placing);
+    this.set("uWide", wide.texture);
+    this.set("uWidePlacing", wide.placing);
   }
   /** A picture in place of the colours of elevation; null: none. */
   showPhoto(photo: Draped | null): void {
     this.set("uPhoto", photo?.texture ?? nothing);
     if (photo) this.set("uPhotoPlacing", photo.placing);
     this.set("uPhotoShown", photo ? 1 : 0);
+  }
+  /** The ground lies deeper by `depth`, NaN: nowhere; null: as the scene has it. */
+  sink(depth: Grid | null): void {
+    if (this.uniforms["uSunk"].value !== nothing) (this.uniforms["uSunk"].value as Texture).dispose();
+    const { west, south, cell, columns, rows } = depth ?? { west: 0, south: 0, cell: 1, columns: 0, rows: 0 };
+    this.set("uSunk", depth ? sunkTexture(depth) : nothing);
+    this.set("uSunkPlacing", depth ? new Vector4(west - this.relief.origin[0], south - this.relief.origin[1], 1 / (columns * cell), 1 / (rows * cell)) : new Vector4());
   }
   /** range: values at the ends of the ramp; `opacity` 0 hides the layer. */
   showLayer(layer: Draped | null, ramp: Texture | null, range: [number, number], opacity: number): void {
@@ -186,6 +212,7 @@ export class Ground {
     this.set("uSurfaceTop", top);
   }
   dispose(): void {
+    this.sink(null);
     (this.mesh.material as MeshLambertMaterial).dispose();
   }
 }

@@ -15,17 +15,44 @@ export const sharedHead = /* glsl */ `
   }
 `;
 
-export const groundVertex = /* glsl */ `
+const vertexHead = /* glsl */ `
+  attribute float shade;
+  uniform sampler2D uSunk;
+  uniform vec4 uSunkPlacing;
+  uniform float uCell;
+  varying float vShade;
+  varying vec3 vLocal;
+  varying vec3 vGroundNormal;
+  // Depth (m) that debris picked up.
+  float sunkAt(vec2 at) {
+    vec2 uv = (at - uSunkPlacing.xy) * uSunkPlacing.zw;
+    bool inside = all(greaterThan(uv, vec2(0.0))) && all(lessThan(uv, vec2(1.0)));
+    return inside ? texture2D(uSunk, uv).r : 0.0;
+  }
+`;
+
+const vertexNormal = /* glsl */ `
+  if (uSunkPlacing.z > 0.0 && shade >= 0.0) {
+    vec2 steeper = vec2(sunkAt(position.xy + vec2(uCell, 0.0)) - sunkAt(position.xy - vec2(uCell, 0.0)),
+                        sunkAt(position.xy + vec2(0.0, uCell)) - sunkAt(position.xy - vec2(0.0, uCell))) / (2.0 * uCell);
+    objectNormal = normalize(vec3(normal.xy / normal.z + steeper, 1.0));
+  }
+`;
+
+const vertexPlace = /* glsl */ `
+  if (uSunkPlacing.z > 0.0) transformed.z -= sunkAt(position.xy);
   vShade = shade;
-  vLocal = position;
-  vGroundNormal = normal;
+  vLocal = transformed;
+  vGroundNormal = objectNormal;
   if (uSurface > 0.5) transformed.z += flowAt(position.xy).x * step(0.0, shade);
 `;
 
+export const groundVertex = { head: vertexHead, normal: vertexNormal, place: vertexPlace };
+
 const head = /* glsl */ `
-  uniform sampler2D uGroundRamp, uSurfaceRamp, uLayer, uLayerRamp, uDrawn, uPhoto;
+  uniform sampler2D uGroundRamp, uSurfaceRamp, uLayer, uLayerRamp, uDrawn, uWide, uPhoto;
   uniform vec2 uElevation, uLayerRange;
-  uniform vec4 uLayerPlacing, uDrawnPlacing, uPhotoPlacing;
+  uniform vec4 uLayerPlacing, uDrawnPlacing, uWidePlacing, uPhotoPlacing;
   uniform float uPhotoShown, uOriginZ, uContourInterval, uContour, uSurfaceBySpeed, uSurfaceTop, uLayerOpacity;
   varying float vShade;
   varying vec3 vLocal;
@@ -35,6 +62,11 @@ const head = /* glsl */ `
     float pixel = fwidth(at);
     // Lines closer than some pixels melt into grey instead of flickering.
     return (1.0 - smoothstep(width * pixel, (width + 1.0) * pixel, gap)) * (1.0 - smoothstep(0.12, 0.35, pixel));
+  }
+  vec4 areaIn(sampler2D picture, vec4 placing) {
+    vec2 at = (vLocal.xy - placing.xy) * placing.zw;
+    bool inside = placing.z > 0.0 && all(greaterThan(at, vec2(0.0))) && all(lessThan(at, vec2(1.0)));
+    return inside ? texture2D(picture, at) : vec4(0.0);
   }
   float flowCover = 0.0;
 `;
@@ -56,9 +88,9 @@ const colour = /* glsl */ `
       vec4 photo = texture2D(uPhoto, (vLocal.xy - uPhotoPlacing.xy) * uPhotoPlacing.zw);
       ground = mix(ground, photo.rgb * (0.7 + 0.3 * open), photo.a);
     }
-    vec4 drawn = vec4(0.0);
-    vec2 drawnAt = (vLocal.xy - uDrawnPlacing.xy) * uDrawnPlacing.zw;
-    if (uDrawnPlacing.z > 0.0 && all(greaterThan(drawnAt, vec2(0.0))) && all(lessThan(drawnAt, vec2(1.0)))) drawn = texture2D(uDrawn, drawnAt);
+    vec4 wide = areaIn(uWide, uWidePlacing);
+    ground = mix(ground, wide.rgb, wide.a);
+    vec4 drawn = areaIn(uDrawn, uDrawnPlacing);
     ground = mix(ground, drawn.rgb, drawn.a);
     float z = (vLocal.z + uOriginZ) / uContourInterval;
     float contour = max(0.30 * lineAt(z, 0.25), 0.55 * lineAt(z / 5.0, 0.55));

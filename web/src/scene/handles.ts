@@ -18,6 +18,7 @@ export class Handles {
   private buttons: HTMLButtonElement[] = [];
   private points: Point[] = [];
   private scenario: ScenarioName = "A";
+  private first = 0; // the corner that the first button moves
   private dragging = false;
 
   constructor(private readonly stage: Stage) {
@@ -27,16 +28,17 @@ export class Handles {
     return this.dragging;
   }
 
-  /** Shows corners, and one more handle in the middle that moves the whole. */
-  show(name: string, points: readonly Point[], scenario: ScenarioName, whole: boolean, events: HandleEvents): void {
+  /** Shows corners, one handle in the middle that moves the whole, or both. */
+  show(name: string, points: readonly Point[], scenario: ScenarioName, grips: "corners" | "whole" | "all", events: HandleEvents): void {
     if (this.dragging) return;
     const focused = this.buttons.indexOf(document.activeElement as HTMLButtonElement);
     this.clear();
     this.points = points.map(([x, y]) => [x, y]);
     this.scenario = scenario;
     const pane = this.stage.pane(scenario);
-    const count = points.length + (whole ? 1 : 0);
-    for (let k = 0; k < count; ++k) {
+    this.first = grips === "whole" ? points.length : 0;
+    const end = points.length + (grips === "corners" ? 0 : 1);
+    for (let k = this.first; k < end; ++k) {
       const isWhole = k === points.length;
       const button = h("button", { type: "button", class: isWhole ? "handle whole" : "handle",
         "aria-label": `${isWhole ? "Whole of" : `Corner ${k + 1} of`} ${name}; arrow keys move it by ${nudge_m} m`,
@@ -100,9 +102,10 @@ export class Handles {
     if (this.buttons.length === 0) return;
     const pane = this.stage.pane(this.scenario)?.getBoundingClientRect();
     if (!pane) return;
-    this.buttons.forEach((button, k) => {
+    this.buttons.forEach((button, i) => {
+      const k = this.first + i;
       const [x, y] = k === this.points.length ? middle(this.points) : this.points[k];
-      const at = this.stage.seenAt(this.stage.relief.local(x, y, 0.3), this.scenario);
+      const at = this.stage.seenAt(this.stage.reliefOf(this.scenario).local(x, y, 0.3), this.scenario);
       button.hidden = at === null || at.x < pane.left || at.x > pane.right || at.y < pane.top || at.y > pane.bottom;
       if (at) button.style.transform = `translate(${at.x - pane.left}px, ${at.y - pane.top}px) translate(-50%, -50%)`;
     });

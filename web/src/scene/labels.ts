@@ -8,7 +8,7 @@ export interface Label {
   /** Local place. */
   at: Place;
   text: string;
-  kind: "chainage" | "observation" | "release" | "house" | "probe" | "person" | "barrier";
+  kind: "chainage" | "observation" | "release" | "house" | "probe" | "person" | "barrier" | "zone" | "bed" | "inflow";
   colour?: string;
   priority: number;
   /** Farther away than this the label is left out, m. */
@@ -22,7 +22,7 @@ export class Labels {
   readonly layer = h("div", { class: "labels", "aria-hidden": "true" });
   private shown: Shown[] = [];
 
-  constructor(private readonly relief: Relief) {}
+  constructor(public relief: Relief) {}
 
   set(labels: readonly Label[]): void {
     this.layer.replaceChildren();

@@ -1,7 +1,7 @@
 // The map layers: names, units, colours, and how a grid becomes something that lies on the ground.
 import { DataTexture, FloatType, LinearFilter, RGFormat, Vector4 } from "three";
 import type { Grid } from "../protocol/grid";
-import type { LayerName, Place } from "../protocol/messages";
+import type { Ensemble, EnsembleLayer, EnsembleMap, LayerName, Place, ShownLayer } from "../protocol/messages";
 import { ramps, roundStep, type Ramp } from "./colour";
 import type { Draped } from "./ground";
 
@@ -10,6 +10,8 @@ export interface LayerInfo {
   unit: string;
   ramp: Ramp;
   help: string;
+  /** Of a map of an ensemble: what it was counted from. */
+  from?: string;
 }
 
 export const layerInfo: Record<LayerName, LayerInfo> = {
@@ -19,11 +21,55 @@ export const layerInfo: Record<LayerName, LayerInfo> = {
   peak_pressure: { title: "Peak pressure", unit: "kPa", ramp: ramps.peak_pressure, help: "Largest impact pressure so far: rest density times speed squared" },
   arrival_time: { title: "Arrival time", unit: "s", ramp: ramps.arrival_time, help: "When debris first came" },
   deposit_depth: { title: "Deposit depth", unit: "m", ramp: ramps.deposit_depth, help: "Depth of debris as it lies" },
+  erosion_depth: { title: "Erosion", unit: "m", ramp: ramps.erosion_depth, help: "Depth that debris picked up from the bed, vertical: the ground has sunk by it" },
 };
+
+export const isEnsembleLayer = (name: ShownLayer | "none"): name is EnsembleLayer => name.startsWith("ensemble/");
+export const ensembleLayer = (ensemble: Ensemble, map: EnsembleMap): EnsembleLayer => `ensemble/${ensemble.id}/${map.name}`;
+const plural = (count: number, what: string): string => `${count} ${what}${count === 1 ? "" : "s"}`;
+
+export function ensembleTitle(ensemble: Ensemble): string {
+  return `${ensemble.name}, ${plural(ensemble.runs, "run")}${ensemble.failed > 0 ? `, ${ensemble.failed} failed` : ""}`;
+}
+export function findMap(ensembles: readonly Ensemble[], name: EnsembleLayer): { ensemble: Ensemble; map: EnsembleMap } | null {
+  for (const ensemble of ensembles) {
+    for (const map of ensemble.maps) if (ensembleLayer(ensemble, map) === name) return { ensemble, map };
+  }
+  return null;
+}
+/** How a layer is called and coloured. */
+export function infoOf(name: ShownLayer, ensembles: readonly Ensemble[]): LayerInfo {
+  if (!isEnsembleLayer(name)) return layerInfo[name];
+  const found = findMap(ensembles, name);
+  if (!found) return { title: "Map of an ensemble", unit: "", ramp: ramps.probability, help: "" };
+  const { ensemble, map } = found;
+  const runs = `${plural(ensemble.runs, "run")} of the ensemble ${ensemble.name}, with ${ensemble.factors.map((f) => `${f.key} ${f.distribution}`).join(", ")}`;
+  const help = map.kind === "probability" ? `Share of ${runs}, in which ${map.title.replace(/^Probability of /, "")} is exceeded`
+    : `${map.percentile} % of ${runs}, do not exceed this`;
+  return {
+    title: map.title, unit: map.unit, ramp: map.kind === "probability" ? ramps.probability : layerInfo[map.of].ramp,
+    help: help + (ensemble.same_terrain ? "" : ". Computed on another terrain file than this scene's") + (map.greatest === null ? ". Nowhere in any run" : ""),
+    from: ensembleTitle(ensemble) + (ensemble.same_terrain ? "" : ", other terrain") + (map.greatest === null ? ": nowhere" : ""),
+  };
+}
+/** What is shown of an ensemble's map, NaN elsewhere; a place that no run reached is not part of it. */
+export function shownOfMap(map: EnsembleMap, grid: Grid): Float32Array {
+  return grid.values.map((v) => (v >= (map.kind === "probability" ? 1e-6 : least[map.of]) ? v : NaN));
+}
+/** Ends of its scale: every probability has the same, so that thresholds can be compared. */
+export function rangeOfMap(map: EnsembleMap, values: Float32Array): [number, number] {
+  return [0, map.kind === "probability" ? 100 : scaleEnd(values)];
+}
+
+/** A layer of the run in the unit of its legend: servers send SI. */
+export function inUnit(name: LayerName, grid: Grid): Grid {
+  return name === "peak_pressure" ? { ...grid, values: grid.values.map((v) => 1e-3 * v) } : grid;
+}
 
 /** Values below this are not drawn; times count from 0. */
 const least: Record<LayerName, number> = {
   depth: 0.01, peak_depth: 0.01, peak_speed: 0.05, peak_pressure: 0.01, arrival_time: 0, deposit_depth: 0.02,
+  erosion_depth: 0,
 };
 
 /** Values of the layer that are shown, NaN elsewhere. */

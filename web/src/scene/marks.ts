@@ -6,7 +6,7 @@ import { watchAll } from "../state/cell";
 import { fixed, quantity } from "../state/format";
 import type { Twin } from "../state/twin";
 import { h } from "../ui/dom";
-import { layerInfo } from "./layers";
+import { infoOf } from "./layers";
 import { disposeLine, pixelLine } from "./lines";
 import type { ShownLayers } from "./shown_layers";
 import type { Stage } from "./stage";
@@ -54,13 +54,13 @@ export function marks(twin: Twin, stage: Stage, layers: ShownLayers): HTMLElemen
     place();
   });
 
-  watchAll([twin.probes, twin.section, twin.scenarios], () => {
+  watchAll([twin.probes, twin.section, twin.scenarios, stage.sinkings], () => {
     for (const line of lines.values()) disposeLine(line);
     lines.clear();
     for (const [name, view] of stage.views) {
-      view.extraLabels = twin.probes.value.map((probe, i) => ({ at: twin.relief.local(probe.at[0], probe.at[1], 0.2), text: String(i + 1), kind: "probe", colour: probe.colour, priority: 9 }));
+      view.extraLabels = twin.probes.value.map((probe, i) => ({ at: view.relief.local(probe.at[0], probe.at[1], 0.2), text: String(i + 1), kind: "probe", colour: probe.colour, priority: 9 }));
       if (twin.section.value) {
-        const line = pixelLine(twin.relief.drape(twin.section.value, 0.4), { colour: "#8a4a8f", width_px: 2.5, onTop: true });
+        const line = pixelLine(view.relief.drape(twin.section.value, 0.4), { colour: "#8a4a8f", width_px: 2.5, onTop: true });
         lines.set(name, line);
         view.overlay.add(line);
       }
@@ -76,7 +76,7 @@ export function marks(twin: Twin, stage: Stage, layers: ShownLayers): HTMLElemen
     const tell = (): void => {
       sent_ms = performance.now();
       const hit = stage.hit(event.clientX, event.clientY);
-      const local: Place | null = hit ? twin.relief.local(hit.world[0], hit.world[1]) : null;
+      const local: Place | null = hit ? stage.reliefOf(hit.scenario).local(hit.world[0], hit.world[1]) : null;
       twin.mark(local);
       if (!hit) {
         readOut.textContent = "";
@@ -85,7 +85,7 @@ export function marks(twin: Twin, stage: Stage, layers: ShownLayers): HTMLElemen
       const name = twin.layer.value;
       const value = name === "none" ? null : layers.valueAt(hit.scenario, hit.world[0], hit.world[1]);
       readOut.textContent = `E ${fixed(hit.world[0], 1)}  N ${fixed(hit.world[1], 1)}  ground ${fixed(hit.world[2], 1)} m` +
-        (name !== "none" && value !== null ? `  ${layerInfo[name].title.toLowerCase()}${layers.isDifference ? " B − A" : ""} ${quantity(value, layerInfo[name].unit)}` : "");
+        (name !== "none" && value !== null ? `  ${infoOf(name, twin.ensembles.value).title.toLowerCase()}${layers.isDifference ? " B − A" : ""} ${quantity(value, infoOf(name, twin.ensembles.value).unit)}` : "");
     };
     if (now - sent_ms > markEvery_ms) tell();
     else timer = window.setTimeout(tell, markEvery_ms - (now - sent_ms));

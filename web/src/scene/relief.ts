@@ -49,6 +49,24 @@ export class Relief {
     return [x - this.origin[0], y - this.origin[1], this.at(x, y) + above - this.origin[2]];
   }
 
+  /** This ground less a depth, NaN: none. Each height takes the depth of the cell that it lies in. */
+  lowered(depth: Grid): Relief {
+    const { west, south, cell, columns, rows } = this.grid;
+    const values = this.grid.values.slice();
+    const first = (from: number, edge: number): number => Math.max(0, Math.ceil((from - edge) / cell - 0.5));
+    for (let j = first(depth.south, south); j < rows; ++j) {
+      const row = Math.floor((south + (j + 0.5) * cell - depth.south) / depth.cell);
+      if (row >= depth.rows) break;
+      for (let i = first(depth.west, west); i < columns; ++i) {
+        const column = Math.floor((west + (i + 0.5) * cell - depth.west) / depth.cell);
+        if (column >= depth.columns) break;
+        const less = depth.values[row * depth.columns + column];
+        if (less > 0) values[j * columns + i] -= less;
+      }
+    }
+    return new Relief({ ...this.grid, values }, this.origin);
+  }
+
   /** Where a ray in the local frame meets the ground, as a world place; null if it does not. */
   meet(from: Place, direction: Place): Place | null {
     const [ox, oy, oz] = this.origin;

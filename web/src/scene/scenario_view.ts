@@ -4,12 +4,14 @@ import {
 } from "three";
 import type { Line2 } from "three/examples/jsm/lines/Line2.js";
 import type { Frame, ScenarioName } from "../protocol/frame";
+import type { Grid } from "../protocol/grid";
 import type { Impacts, SceneInfo, Setup } from "../protocol/messages";
 import { Debris } from "./debris";
 import { DepthField } from "./depth_field";
 import { DrawnAreas, type Area } from "./drawn_areas";
 import { FrameClock } from "./frame_clock";
 import { Ground } from "./ground";
+import { groundAreas, groundLabels, groundLines } from "./ground_marks";
 import { Labels, type Label } from "./labels";
 import { disposeLine, pixelLine } from "./lines";
 import type { Relief } from "./relief";
@@ -39,37 +41,44 @@ export class ScenarioView {
   readonly overlay = new Group();
   extraLabels: Label[] = [];
   namesShown = true;
+  /** The ground as it is drawn: that of the scene less what debris picked up. */
+  relief: Relief;
   /** Id of what is being edited: its handles take the place of its name. */
   selected: string | null = null;
   private readonly depths: DepthField;
   private readonly solids = new Group();
   private readonly outlines = new Group();
+  private readonly path = new Group();
   private readonly areas: DrawnAreas;
+  private readonly wideAreas: DrawnAreas;
   private setup: Setup | null = null;
   private readonly sunInView = new Vector3();
   shadowsDue = true;
 
   constructor(readonly name: ScenarioName, private readonly shared: Shared) {
     const { scene, relief } = shared;
+    this.relief = relief;
     this.sky = new Sky(this.three);
     this.depths = new DepthField(scene);
     this.ground = new Ground(shared.geometry, relief, this.depths.uniforms);
     this.debris = new Debris(1.25 * scene.particle_spacing_m, shared.speedRamp);
     this.labels = new Labels(relief);
     this.areas = new DrawnAreas(relief);
-    this.three.add(this.ground.mesh, this.debris.points, this.solids, this.outlines, this.overlay);
+    this.wideAreas = new DrawnAreas(relief);
+    this.three.add(this.ground.mesh, this.debris.points, this.solids, this.outlines, this.path, this.overlay);
     this.drawPath();
   }
 
   private drawPath(): void {
-    const { scene, relief } = this.shared;
-    const path = scene.flow_path;
+    const { relief } = this;
+    for (const child of [...this.path.children]) disposeLine(child as Line2);
+    const path = this.shared.scene.flow_path;
     if (!path) return;
-    this.three.add(pixelLine(relief.drape(path.points.map(([x, y]) => [x, y]), 0.25), { colour: pathColour, width_px: 1.6, opacity: 0.75 }));
+    this.path.add(pixelLine(relief.drape(path.points.map(([x, y]) => [x, y]), 0.25), { colour: pathColour, width_px: 1.6, opacity: 0.75 }));
     for (const { at, across } of this.chainageMarks()) {
       const [x, y] = at;
       const half = 2.5;
-      this.three.add(pixelLine(
+      this.path.add(pixelLine(
         relief.drape([[x - across[0] * half, y - across[1] * half], [x + across[0] * half, y + across[1] * half]], 0.3),
         { colour: pathColour, width_px: 1.6, opacity: 0.75 },
       ));
@@ -102,20 +111,36 @@ export class ScenarioView {
     for (const child of [...this.solids.children]) disposeSolid(child as Group);
     for (const building of setup.buildings) this.solids.add(houseSolid(building, relief, plainHouse));
     for (const barrier of setup.barriers) this.solids.add(barrierSolid(barrier, relief, barrierColour));
-    for (const child of [...this.outlines.children]) disposeLine(child as Line2);
     const areas: Area[] = [];
     for (const release of setup.releases) {
       // The thicker the release, the fuller its tint.
       const tint = 0.10 + 0.30 * Math.min(1, (release.thickness_m ?? 1) / 4);
-      areas.push({ rings: release.polygons, colour: releaseColour, opacity: tint, hatched: release.status === "held" });
-      for (const ring of release.polygons) {
-        this.outlines.add(pixelLine(relief.drape(ring, 0.25, true), { colour: releaseColour, width_px: 2, dashed: release.status === "held" }));
-      }
+      areas.push({ rings: release.polygons, colour: releaseColour, opacity: tint, pattern: release.status === "held" ? "rising" : "none", gap_m: 2.5 });
     }
-    this.ground.drape(this.areas.paint(areas));
+    this.drawOutlines();
+    this.ground.drape(this.areas.paint(areas), this.wideAreas.paint(groundAreas(setup)));
     this.sky.aim(new Box3().setFromObject(this.solids));
     this.shadowsDue = true;
     this.refreshLabels();
+  }
+
+  private drawOutlines(): void {
+    for (const child of [...this.outlines.children]) disposeLine(child as Line2);
+    for (const release of this.setup?.releases ?? []) {
+      for (const ring of release.polygons) {
+        this.outlines.add(pixelLine(this.relief.drape(ring, 0.25, true), { colour: releaseColour, width_px: 2, dashed: release.status === "held" }));
+      }
+    }
+    if (this.setup) for (const line of groundLines(this.setup, this.relief)) this.outlines.add(line);
+  }
+
+  /** The ground lies deeper by `depth`, NaN: nowhere; null: as the scene has it. Lines on it go along, solids stand as they stood. */
+  sink(depth: Grid | null): void {
+    this.relief = depth ? this.shared.relief.lowered(depth) : this.shared.relief;
+    this.labels.relief = this.relief;
+    this.ground.sink(depth);
+    this.drawPath();
+    this.drawOutlines();
   }
 
   /** Colours houses and barriers by what hit them; `colourOf` answers null for untouched ones. */
@@ -140,15 +165,15 @@ export class ScenarioView {
   solidUnder(ray: Raycaster): string | null {
     const [first] = ray.intersectObjects(this.solids.children.map((group) => group.children[0]), false);
     if (!first) return null;
-    const ground = this.shared.relief.meet(ray.ray.origin.toArray(), ray.ray.direction.toArray());
-    const [ox, oy, oz] = this.shared.relief.origin;
+    const ground = this.relief.meet(ray.ray.origin.toArray(), ray.ray.direction.toArray());
+    const [ox, oy, oz] = this.relief.origin;
     const far = ground ? ray.ray.origin.distanceTo(new Vector3(ground[0] - ox, ground[1] - oy, ground[2] - oz)) : Infinity;
     return first.distance < far + 1 ? ((first.object.parent?.userData["id"] as string | undefined) ?? null) : null;
   }
 
   refreshLabels(): void {
     const labels: Label[] = [...this.extraLabels];
-    const { scene, relief } = this.shared;
+    const { relief, shared: { scene } } = this;
     const size = relief.width + relief.height;
     if (this.namesShown) {
       for (const { chainage, at } of this.chainageMarks()) {
@@ -174,6 +199,7 @@ export class ScenarioView {
         const [x, y] = barrier.line[Math.floor(barrier.line.length / 2)] ?? [0, 0];
         labels.push({ at: relief.local(x, y, barrier.height_m + 1), text: `${barrier.name}, ${quantity(barrier.height_m, "m")}`, kind: "barrier", priority: 7 });
       }
+      if (this.setup) labels.push(...groundLabels(this.setup, relief, this.selected));
       for (const building of this.setup?.buildings ?? []) {
         const ring = building.footprint[0]?.[0] ?? [];
         if (ring.length === 0) continue;
@@ -201,6 +227,7 @@ export class ScenarioView {
     this.debris.dispose();
     this.depths.dispose();
     this.areas.dispose();
+    this.wideAreas.dispose();
     this.labels.layer.remove();
   }
 }

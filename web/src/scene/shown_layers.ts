@@ -2,13 +2,13 @@
 import type { Texture } from "three";
 import type { ScenarioName } from "../protocol/frame";
 import { gridAt, type Grid } from "../protocol/grid";
-import type { LayerName } from "../protocol/messages";
+import type { EnsembleLayer, LayerName, ShownLayer } from "../protocol/messages";
 import { Cell, watchAll } from "../state/cell";
 import type { Twin } from "../state/twin";
 import { divergingAt, rampAt, ramps, roundStep } from "./colour";
 import { rampTexture, type Draped } from "./ground";
 import { photoTexture } from "./photo";
-import { differenceOf, drapedFrom, layerInfo, scaleEnd, shownValues } from "./layers";
+import { differenceOf, drapedFrom, findMap, infoOf, inUnit, isEnsembleLayer, rangeOfMap, scaleEnd, shownOfMap, shownValues } from "./layers";
 import type { Stage } from "./stage";
 
 const refresh_ms = 2000;
@@ -22,6 +22,7 @@ export class ShownLayers {
   surfaceTop = 3;
   private ofNow: { key: string; grids: readonly Grid[] } | null = null;
   private difference: Grid | null = null;
+  private readonly ofEnsembles = new Map<EnsembleLayer, Grid>();
   private readonly rampTextures = new Map<string, Texture>();
   private readonly held = new Map<ScenarioName, Texture>();
   private photo: Draped | null = null;
@@ -35,7 +36,7 @@ export class ShownLayers {
     watchAll([twin.photo, twin.scenarios], () => void this.putPhoto());
     setInterval(() => {
       const running = twin.scenarios.value.some((s) => twin.cells[s].state.value?.status === "running");
-      if (running && twin.layer.value !== "none" && twin.replay_s.value === null) void this.load();
+      if (running && this.isLive && twin.replay_s.value === null) void this.load();
     }, refresh_ms);
     // A step or the end of the run changes the maps once more.
     for (const s of ["A", "B"] as const) {
@@ -43,13 +44,18 @@ export class ShownLayers {
       twin.cells[s].state.watch((state) => {
         if (state && state.status !== "running" && state.step !== before) {
           before = state.step;
-          if (twin.layer.value !== "none") void this.load();
+          if (this.isLive) void this.load();
         }
       });
     }
   }
+  /** Whether the layer is one of the run, which changes with it. */
+  private get isLive(): boolean {
+    const name = this.twin.layer.value;
+    return name !== "none" && !isEnsembleLayer(name);
+  }
   get isDifference(): boolean {
-    return this.twin.difference.value && this.twin.scenarios.value.length > 1;
+    return this.twin.difference.value && this.twin.scenarios.value.length > 1 && this.isLive;
   }
   /** Value of the shown layer of a scenario, or of the difference, at a world place; null: no layer or nothing there. */
   valueAt(scenario: ScenarioName, x: number, y: number): number | null {
@@ -69,13 +75,18 @@ export class ShownLayers {
       const name = this.twin.layer.value;
       if (name === "none") {
         this.grids.clear();
+        this.difference = null;
         this.put();
+        continue;
+      }
+      if (isEnsembleLayer(name)) {
+        if (!(await this.twin.attempt(() => this.loadMap(name)))) break;
         continue;
       }
       const names = this.twin.scenarios.value;
       const time = this.twin.replay_s.value;
       const fine = await this.twin.attempt(async () => {
-        const [grids, present] = await Promise.all([Promise.all(names.map((s) => this.twin.api.layer(s, name, time))), this.presentFor(name, names, time)]);
+        const [grids, present] = await Promise.all([Promise.all(names.map((s) => this.layerOf(s, name, time))), this.presentFor(name, names, time)]);
         names.forEach((s, i) => this.grids.set(s, grids[i]));
         this.shown_s.value = time;
         if (this.twin.layer.value === name) this.show(name, present);
@@ -84,6 +95,24 @@ export class ShownLayers {
     } while (this.again);
     this.busy = false;
   }
+  private async layerOf(scenario: ScenarioName, name: LayerName, time: number | null = null): Promise<Grid> {
+    return inUnit(name, await this.twin.api.layer(scenario, name, time));
+  }
+  /** A map of an ensemble lies on every scenario's ground, whatever the time. */
+  private async loadMap(name: EnsembleLayer): Promise<void> {
+    const found = findMap(this.twin.ensembles.value, name);
+    if (!found) return;
+    const grid = this.ofEnsembles.get(name) ?? (await this.twin.api.ensembleMap(found.ensemble.id, found.map.name));
+    this.ofEnsembles.set(name, grid);
+    if (this.twin.layer.value !== name) return;
+    const shown = { ...grid, values: shownOfMap(found.map, grid) };
+    this.difference = null;
+    this.shown_s.value = null;
+    this.range.value = rangeOfMap(found.map, shown.values);
+    this.grids.clear();
+    for (const s of this.twin.scenarios.value) this.grids.set(s, shown);
+    this.lay(name, this.grids);
+  }
   /** While one looks back, colours stay those of now: maps of different times can be compared. */
   private async presentFor(name: LayerName, names: readonly ScenarioName[], time: number | null): Promise<readonly Grid[] | null> {
     if (time === null) {
@@ -91,7 +120,7 @@ export class ShownLayers {
       return null;
     }
     const key = `${name} ${names.join()}`;
-    if (this.ofNow?.key !== key) this.ofNow = { key, grids: await Promise.all(names.map((s) => this.twin.api.layer(s, name))) };
+    if (this.ofNow?.key !== key) this.ofNow = { key, grids: await Promise.all(names.map((s) => this.layerOf(s, name))) };
     return this.ofNow.grids;
   }
   private show(name: LayerName, present: readonly Grid[] | null): void {
@@ -121,13 +150,16 @@ export class ShownLayers {
       if (present) end = Math.max(...present.map((grid) => scaleEnd(shownValues(name, grid))));
       this.range.value = [0, end];
     }
+    this.lay(name, all);
+  }
+  private lay(name: ShownLayer, all: ReadonlyMap<ScenarioName, Grid>): void {
     for (const [s, grid] of all) {
       const view = this.stage.views.get(s);
       if (!view) continue;
       this.held.get(s)?.dispose();
-      const draped = drapedFrom(grid, twin.scene.origin);
+      const draped = drapedFrom(grid, this.twin.scene.origin);
       this.held.set(s, draped.texture);
-      view.ground.showLayer(draped, this.rampFor(name), [...this.range.value] as [number, number], twin.layerOpacity.value);
+      view.ground.showLayer(draped, this.rampFor(name), [...this.range.value] as [number, number], this.twin.layerOpacity.value);
     }
     this.stage.invalidate();
   }
@@ -138,12 +170,12 @@ export class ShownLayers {
     }
     this.stage.invalidate();
   }
-  private rampFor(name: LayerName | "speed" | "difference"): Texture {
+  private rampFor(name: ShownLayer | "speed" | "difference"): Texture {
     const key = this.isDifference && name !== "speed" ? "difference" : name;
     let texture = this.rampTextures.get(key);
     if (!texture) {
       texture = rampTexture(key === "difference" ? (s) => divergingAt(2 * s - 1)
-        : (s) => rampAt(key === "speed" ? ramps.speed : layerInfo[key as LayerName].ramp, s));
+        : (s) => rampAt(key === "speed" ? ramps.speed : infoOf(key as ShownLayer, this.twin.ensembles.value).ramp, s));
       this.rampTextures.set(key, texture);
     }
     return texture;

@@ -9,10 +9,10 @@ import type { Relief } from "./relief";
 export const plainHouse = "#f4f1ea";
 const edge = new LineBasicMaterial({ color: 0x3a3f45, transparent: true, opacity: 0.55 });
 
-function solid(geometry: BufferGeometry, colour: string, id: string): Group {
+function solid(geometry: BufferGeometry, colour: string, id: string, opacity = 1): Group {
   const group = new Group();
-  const mesh = new Mesh(geometry, new MeshLambertMaterial({ color: colour }));
-  mesh.castShadow = true;
+  const mesh = new Mesh(geometry, new MeshLambertMaterial({ color: colour, transparent: opacity < 1, opacity, depthWrite: opacity === 1 }));
+  mesh.castShadow = opacity === 1;
   mesh.receiveShadow = true;
   group.add(mesh, new LineSegments(new EdgesGeometry(geometry, 25), edge));
   group.userData["id"] = id;
@@ -79,9 +79,9 @@ function stations(line: Point[], openings: readonly BarrierOpening[], step: numb
   return all;
 }
 
-type BarrierForm = Pick<Barrier, "id" | "line" | "height_m" | "thickness_m"> & Partial<Pick<Barrier, "crest_elevation_m" | "openings">>;
+type BarrierForm = Pick<Barrier, "id" | "line" | "height_m" | "thickness_m"> & Partial<Pick<Barrier, "crest_elevation_m" | "openings" | "passing_share">>;
 
-/** A wall whose crest is `height_m` above the ground along its line, or level; openings are left out down to their sills. */
+/** A wall, or a net that one sees through, whose crest is `height_m` above the ground along its line, or level; openings are left out down to their sills. */
 export function barrierSolid(barrier: BarrierForm, relief: Relief, colour: string): Group {
   const openings = barrier.openings ?? [];
   const places = stations(barrier.line, openings, Math.max(1, relief.grid.cell));
@@ -117,7 +117,7 @@ export function barrierSolid(barrier: BarrierForm, relief: Relief, colour: strin
   joined.setIndex(index);
   const geometry = joined.toNonIndexed();
   geometry.computeVertexNormals();
-  return solid(geometry, colour, barrier.id);
+  return solid(geometry, colour, barrier.id, typeof barrier.passing_share === "number" ? 0.4 : 1);
 }
 
 export function disposeSolid(group: Group): void {

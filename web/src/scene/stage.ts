@@ -1,6 +1,7 @@
 // The canvas: one renderer, a view per scenario side by side, one camera for all, pictures only when something changed.
 import { Vector3, WebGLRenderer, type BufferGeometry } from "three";
 import { lastDecode, type Frame, type ScenarioName } from "../protocol/frame";
+import type { Grid } from "../protocol/grid";
 import type { Place } from "../protocol/messages";
 import type { Twin } from "../state/twin";
 import { h } from "../ui/dom";
@@ -28,6 +29,8 @@ export interface Stats {
   shownTime_s: number;
   /** Pixels of the canvas per pixel of the page: lower while slow graphics draw what moves. */
   pixelRatio: number;
+  /** How far the ground has sunk where debris picked up most, by scenario, m. */
+  sunk_m: Partial<Record<ScenarioName, number>>;
 }
 declare global {
   interface Window {
@@ -43,9 +46,11 @@ export class Stage {
     "aria-label": "Three-dimensional view. Arrow keys turn, Shift with arrow keys moves, plus and minus zoom." });
   readonly rig: Rig;
   readonly views = new Map<ScenarioName, ScenarioView>();
-  readonly stats: Stats = { frames: 0, script_ms: 0, draw_ms: 0, decode_ms: 0, unfold_ms: 0, upload_ms: 0, particles: 0, shownTime_s: 0, pixelRatio: 1 };
+  readonly stats: Stats = { frames: 0, script_ms: 0, draw_ms: 0, decode_ms: 0, unfold_ms: 0, upload_ms: 0, particles: 0, shownTime_s: 0, pixelRatio: 1, sunk_m: {} };
   /** Speed at the upper end of the colours; it grows with what is seen, in round steps. */
   readonly fastest_mps = new Cell(10);
+  /** Counts changes of the ground. */
+  readonly sinkings = new Cell(0);
   /** Elements that lie over the view; labels keep clear of them. */
   covers: readonly HTMLElement[] = [];
   private readonly renderer: WebGLRenderer;
@@ -95,6 +100,20 @@ export class Stage {
   }
   pane(name: ScenarioName): HTMLElement | undefined {
     return this.panes.get(name);
+  }
+
+  /** The ground of a scenario as it is drawn. */
+  reliefOf(name: ScenarioName): Relief {
+    return this.views.get(name)?.relief ?? this.relief;
+  }
+  /** See ScenarioView.sink. */
+  sink(view: ScenarioView, depth: Grid | null): void {
+    view.sink(depth);
+    let most = 0;
+    for (const v of depth?.values ?? []) if (v > most) most = v;
+    this.stats.sunk_m[view.name] = most;
+    ++this.sinkings.value;
+    this.relabel(view);
   }
 
   private arrange(names: readonly ScenarioName[]): void {
@@ -224,7 +243,7 @@ export class Stage {
     const y = 1 - ((clientY - box.top) / box.height) * 2;
     const camera = this.rig.camera;
     const direction = new Vector3(x, y, 0.5).unproject(camera).sub(camera.position).normalize();
-    const world = this.relief.meet(camera.position.toArray(), direction.toArray());
+    const world = this.reliefOf(name).meet(camera.position.toArray(), direction.toArray());
     return world ? { scenario: name, world, x: clientX, y: clientY } : null;
   }
   /** Where a local place is seen, in pixels of the page; null behind the camera. */

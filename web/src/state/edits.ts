@@ -1,6 +1,9 @@
 // Changes of the setup as the page asks for them.
-import type { Action, Point } from "../protocol/messages";
-import type { Item } from "./shapes";
+import type { Action, HydrographRow, Point } from "../protocol/messages";
+import type { BarrierSet } from "./barriers";
+import type { BedSet, ZoneSet } from "./ground";
+import { told } from "./inflows";
+import { lineOf, type Item } from "./shapes";
 import type { Shape, Twin } from "./twin";
 
 const rounded = (points: readonly Point[]): Point[] => points.map(([x, y]) => [Number(x.toFixed(2)), Number(y.toFixed(2))]);
@@ -9,24 +12,29 @@ const rounded = (points: readonly Point[]): Point[] => points.map(([x, y]) => [N
 export async function create(twin: Twin, shape: Shape, points: readonly Point[]): Promise<void> {
   const corners = rounded(points);
   const sizes = twin.newShape;
-  const done = await twin.act(
-    shape === "release" ? { action: "put_release", polygon: corners, ...sizes.release }
-      : shape === "barrier" ? { action: "put_barrier", line: corners, ...sizes.barrier }
-        : { action: "put_building", footprint: corners, ...sizes.building });
+  const actions: Record<Shape, () => Action> = {
+    release: () => ({ action: "put_release", polygon: corners, ...sizes.release }),
+    barrier: () => ({ action: "put_barrier", line: corners, ...sizes.barrier }),
+    building: () => ({ action: "put_building", footprint: corners, ...sizes.building }),
+    zone: () => ({ action: "put_zone", polygon: corners, ...sizes.zone }),
+    bed: () => ({ action: "put_bed", polygon: corners, ...sizes.bed }),
+    inflow: () => ({ action: "put_inflow", ...(twin.inflowByLine.value ? { line: corners } : { polygon: corners }), hydrograph: told(sizes.inflow.hydrograph) }),
+  };
+  const done = await twin.act(actions[shape]());
   if (done?.created) twin.selection.value = { shape, id: done.created };
 }
 
-export interface Change { points?: readonly Point[]; name?: string; thickness_m?: number; height_m?: number }
+export interface Change extends BarrierSet, ZoneSet, BedSet {
+  points?: readonly Point[]; move_m?: Point; name?: string; thickness_m?: number; height_m?: number; direction_deg?: number | null; hydrograph?: HydrographRow[];
+}
 
 /** Sends just what changes: all else stays as it is. */
 export async function change(twin: Twin, item: Item, what: Change): Promise<boolean> {
-  const { points, ...sizes } = what;
-  const corners = points === undefined ? null : rounded(points);
-  const { id } = item;
-  const action: Action = item.shape === "release" ? { action: "put_release", id, ...sizes, ...(corners ? { polygon: corners } : {}) }
-    : item.shape === "barrier" ? { action: "put_barrier", id, ...sizes, ...(corners ? { line: corners } : {}) }
-      : { action: "put_building", id, ...sizes, ...(corners ? { footprint: corners } : {}) };
-  return (await twin.act(action)) !== null;
+  const { points, move_m, ...sizes } = what;
+  const by = move_m === undefined ? {} : { move_m: rounded([move_m])[0] };
+  const key = lineOf(item) ? "line" : item.shape === "building" ? "footprint" : "polygon";
+  const outline = points === undefined ? {} : { [key]: rounded(points) };
+  return (await twin.act({ action: `put_${item.shape}`, id: item.id, ...sizes, ...by, ...outline })) !== null;
 }
 
 export async function remove(twin: Twin, item: Item): Promise<void> {

@@ -36,6 +36,7 @@ export function stateAt(state: State, series: Series | null, time_s: number | nu
     ...state,
     time_s,
     volume_released_m3: number("volume_released_m3", state.volume_released_m3),
+    volume_entrained_m3: number("volume_entrained_m3", state.volume_entrained_m3),
     volume_held_m3: number("volume_held_m3", state.volume_held_m3),
     volume_moving_m3: number("volume_moving_m3", state.volume_moving_m3),
     volume_deposited_m3: number("volume_deposited_m3", state.volume_deposited_m3),

@@ -1,5 +1,5 @@
 // Plane geometry of what is drawn: areas, lengths, volumes.
-import type { Barrier, Building, Point, Release, Setup } from "../protocol/messages";
+import type { Barrier, Bed, Building, Inflow, Point, Release, Setup, Zone } from "../protocol/messages";
 import type { Relief } from "../scene/relief";
 import type { Selection, Shape } from "./twin";
 
@@ -11,6 +11,10 @@ export function area(ring: readonly Point[]): number {
     twice += (x - ring[0][0]) * (v - ring[0][1]) - (u - ring[0][0]) * (y - ring[0][1]);
   });
   return Math.abs(twice) / 2;
+}
+/** Of polygons, each with its outer ring first: courtyards do not count. */
+export function footprintArea(polygons: readonly (readonly (readonly Point[])[])[]): number {
+  return polygons.reduce((sum, [outer, ...holes]) => sum + area(outer) - holes.reduce((all, hole) => all + area(hole), 0), 0);
 }
 export function length(line: readonly Point[]): number {
   let sum = 0;
@@ -65,31 +69,53 @@ export function releaseVolume(ring: readonly Point[], thickness_m: number, relie
   return area(ring) * thickness_m * (count > 0 ? sum / count : 1);
 }
 
-export const fewestPoints: Record<Shape, number> = { release: 3, barrier: 2, building: 3 };
+/** byLine: an inflow across a line, in place of one over an area. */
+export const drawnAsLine = (shape: Shape, byLine: boolean): boolean => shape === "barrier" || (shape === "inflow" && byLine);
+export const fewestPoints = (shape: Shape, byLine: boolean): number => (drawnAsLine(shape, byLine) ? 2 : 3);
+/** An inflow's line is straight: it has no third point. */
+export const mostPoints = (shape: Shape, byLine: boolean): number => (shape === "inflow" && byLine ? 2 : Infinity);
 
-export type Item = ({ shape: "release" } & Release) | ({ shape: "barrier" } & Barrier) | ({ shape: "building" } & Building);
+export type Item = ({ shape: "release" } & Release) | ({ shape: "barrier" } & Barrier) | ({ shape: "building" } & Building)
+  | ({ shape: "zone" } & Zone) | ({ shape: "bed" } & Bed) | ({ shape: "inflow" } & Inflow);
 
+export function itemsOf(setup: Setup | null, shape: Shape): Item[] {
+  if (!setup) return [];
+  switch (shape) {
+    case "release": return setup.releases.map((r) => ({ shape, ...r }));
+    case "barrier": return setup.barriers.map((b) => ({ shape, ...b }));
+    case "building": return setup.buildings.map((b) => ({ shape, ...b }));
+    case "zone": return setup.zones.map((z) => ({ shape, ...z }));
+    case "bed": return setup.beds.map((b) => ({ shape, ...b }));
+    case "inflow": return setup.inflows.map((i) => ({ shape, ...i }));
+  }
+}
 export function itemOf(setup: Setup | null, selection: Selection | null): Item | null {
-  if (!setup || !selection) return null;
-  if (selection.shape === "release") {
-    const found = setup.releases.find((r) => r.id === selection.id);
-    return found ? { shape: "release", ...found } : null;
+  return selection === null ? null : (itemsOf(setup, selection.shape).find((item) => item.id === selection.id) ?? null);
+}
+/** The line of what is one, null of areas. */
+export const lineOf = (item: Item): Point[] | null => (item.shape === "barrier" || item.shape === "inflow" ? item.line : null);
+/** Polygons of an area, each with its outer ring first. */
+export function partsOf(item: Item): Point[][][] {
+  switch (item.shape) {
+    case "release": return item.polygons.map((ring) => [ring]);
+    case "barrier": return [];
+    case "building": return item.footprint;
+    default: return item.polygons;
   }
-  if (selection.shape === "barrier") {
-    const found = setup.barriers.find((b) => b.id === selection.id);
-    return found ? { shape: "barrier", ...found } : null;
-  }
-  const found = setup.buildings.find((b) => b.id === selection.id);
-  return found ? { shape: "building", ...found } : null;
 }
 /** Corners that can be moved; a ring's repeated last corner is left out. */
 export function pointsOf(item: Item): Point[] {
-  const points = item.shape === "release" ? (item.polygons[0] ?? []) : item.shape === "barrier" ? item.line : (item.footprint[0]?.[0] ?? []);
+  const line = lineOf(item);
+  const points = line ?? partsOf(item)[0]?.[0] ?? [];
   const [first] = points;
   const last = points[points.length - 1];
-  const closed = item.shape !== "barrier" && points.length > 1 && first[0] === last[0] && first[1] === last[1];
+  const closed = line === null && points.length > 1 && first[0] === last[0] && first[1] === last[1];
   return closed ? points.slice(0, -1) : points;
 }
 /** What has several parts or holes cannot be sent back as one outline. */
-export const canReshape = (item: Item): boolean =>
-  item.shape === "release" ? item.polygons.length === 1 : item.shape === "barrier" || (item.footprint.length === 1 && item.footprint[0].length === 1);
+export function canReshape(item: Item): boolean {
+  const parts = partsOf(item);
+  return lineOf(item) !== null || (parts.length === 1 && parts[0].length === 1);
+}
+/** What a raster tells, or what is everywhere, has no outline to move. */
+export const hasOutline = (item: Item): boolean => lineOf(item) !== null || partsOf(item).length > 0;

@@ -2,9 +2,11 @@
 import { Api, Refused } from "../protocol/api";
 import type { Frame, ScenarioName } from "../protocol/frame";
 import { Live, type Connection } from "../protocol/live";
-import type { Action, Done, Impacts, LayerName, Person, Place, Point, ProbeSeries, SceneInfo, Series, ServerMessage, Session, Setup, State, You } from "../protocol/messages";
+import type { Action, CalibrationStatus, Done, Ensemble, Impacts, Person, Place, Point, ProbeSeries, SceneInfo, Series, ServerMessage, Session, Setup, ShownLayer, State, You } from "../protocol/messages";
 import type { Relief } from "../scene/relief";
 import { Cell } from "./cell";
+import { usualBed, usualZone, type ZoneSet } from "./ground";
+import { usualHydrograph } from "./inflows";
 import { stateAt } from "./past";
 
 export interface ScenarioCells {
@@ -14,7 +16,7 @@ export interface ScenarioCells {
   impacts: Cell<Impacts | null>;
 }
 
-export type Shape = "release" | "barrier" | "building";
+export type Shape = "release" | "barrier" | "building" | "zone" | "bed" | "inflow";
 export type Tool = { kind: "none" } | { kind: "draw"; shape: Shape } | { kind: "probe" } | { kind: "section" };
 export interface Selection { shape: Shape; id: string }
 export interface Probe { at: Point; colour: string; series: Partial<Record<ScenarioName, ProbeSeries>> }
@@ -40,7 +42,9 @@ export class Twin {
   /** Whether the frame of the recording that is on display was not converged. */
   readonly replayConverged = new Cell(true);
   readonly playing = new Cell(false);
-  readonly layer = new Cell<LayerName | "none">("none");
+  readonly layer = new Cell<ShownLayer | "none">("none");
+  /** Finished ensembles whose maps can be shown. */
+  readonly ensembles = new Cell<readonly Ensemble[]>([]);
   readonly difference = new Cell(false);
   readonly layerOpacity = new Cell(0.85);
   readonly particles = new Cell(true);
@@ -49,10 +53,14 @@ export class Twin {
   readonly names = new Cell(true);
   readonly photo = new Cell(false);
   readonly houseColour = new Cell<HouseColour>("intensity");
+  readonly calibration = new Cell<CalibrationStatus | null>(null);
   readonly tool = new Cell<Tool>({ kind: "none" });
   readonly selection = new Cell<Selection | null>(null);
   /** Thickness, height and so on that the next drawn shape gets. */
-  readonly newShape = { release: { thickness_m: 1.5 }, barrier: { height_m: 3, thickness_m: 1 }, building: { height_m: 6 } };
+  readonly newShape = { release: { thickness_m: 1.5 }, barrier: { height_m: 3, thickness_m: 1, passing_share: null as number | null }, building: { height_m: 6 },
+    zone: { ...usualZone.friction } as ZoneSet, bed: { ...usualBed }, inflow: { hydrograph: usualHydrograph } };
+  /** Whether the next inflow is drawn as a line; else as an area. */
+  readonly inflowByLine = new Cell(true);
   readonly probes = new Cell<readonly Probe[]>([]);
   readonly section = new Cell<readonly Point[] | null>(null);
 
@@ -119,6 +127,14 @@ export class Twin {
       return null;
     }
   }
+  /** Back to time 0 with the setup as it is now, on display too. */
+  async restart(): Promise<void> {
+    if (this.replay_s.value !== null) {
+      this.replay_s.value = null;
+      this.askForFrames();
+    }
+    await this.act({ action: "restart" });
+  }
   async attempt(work: () => Promise<void>): Promise<boolean> {
     try {
       await work();
@@ -154,6 +170,7 @@ export class Twin {
         this.askForFrames();
         void this.attempt(async () => {
           this.links.value = (await this.api.session()).links ?? {};
+          if (this.ensembles.value.length === 0) this.ensembles.value = await this.api.ensembles();
         });
         break;
       case "state":
@@ -166,6 +183,9 @@ export class Twin {
         this.people.value = message.people;
         this.controller.value = message.controller;
         this.request.value = message.request;
+        break;
+      case "calibration":
+        this.calibration.value = message;
         break;
       case "scenarios":
         this.setScenarios(message.scenarios);

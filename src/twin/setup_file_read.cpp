@@ -1,39 +1,18 @@
-#include "twin/setup_file.hpp"
-
 #include <cmath>
 #include <limits>
 
 #include <fmt/format.h>
 
 #include "terrain/barrier.hpp"
+#include "twin/hydrograph_json.hpp"
 #include "twin/json_keys.hpp"
+#include "twin/section_values.hpp"
+#include "twin/setup_file.hpp"
 
 namespace talus::twin {
 namespace {
 
 using nlohmann::json;
-
-constexpr const char* kinematic = "kinematic_viscosity_m2ps";
-
-json polygon_json(const Polygon& polygon) {
-    json rings = json::array({to_json(polygon.outer)});
-    for (const Ring& hole : polygon.holes) rings.push_back(to_json(hole));
-    return rings;
-}
-
-json material_json(const MaterialSpec& material) {
-    SceneSpec spec;
-    spec.material = material;
-    json values = json::object();
-    const auto add = [&](const Parameter& parameter) {
-        const ParameterValue value = parameter.get(spec, 0);
-        const double* number = std::get_if<double>(&value);
-        values[parameter.key] = number != nullptr ? json(*number) : json();
-    };
-    for (const Parameter* lever : levers()) add(*lever);
-    add(*find_section("material")->find(kinematic));
-    return values;
-}
 
 /// Reads what write_setup wrote; whatever does not fit ends in an Error.
 class SetupReader {
@@ -44,6 +23,9 @@ class SetupReader {
     Result<ReleaseSetup> read_release(const json& file) const;
     Result<BarrierSetup> read_barrier(const json& file) const;
     Result<BuildingSetup> read_building(const json& file) const;
+    Result<ZoneSetup> read_zone(const json& file) const;
+    Result<BedSetup> read_bed(const json& file) const;
+    Result<InflowSetup> read_inflow(const json& file) const;
 
   private:
     static Error bad(const char* key, const json& object) {
@@ -52,6 +34,10 @@ class SetupReader {
                                  object.is_object() && found != object.end() ? shown(*found) : shown(object))};
     }
     static Result<Polygon> read_polygon(const json& rings);
+    static Result<std::vector<Polygon>> read_polygons(const json& file, const char* key);
+    /// The id, and which of `count` of the scene's it is; `key`: what only one that was changed has.
+    template <class Entry>
+    static Status read_origin(const json& file, const char* key, std::size_t count, Entry& setup);
     static Result<std::vector<BarrierOpening>> read_openings(const json& file);
     static Result<int> read_index(const json& object, std::size_t count);
 
@@ -159,6 +145,7 @@ Result<BarrierSetup> SetupReader::read_barrier(const json& file) const {
     const auto name = read_text(file, "name", 1000);
     const auto height = read_number(file, "height_m", {}, "m"), thickness = read_number(file, "thickness_m", {}, "m");
     const auto crest = read_number(file, "crest_elevation_m", {}, "m");
+    const auto passing = read_number(file, "passing_share", {.low = 0, .high = 1, .high_included = false}, "");
     const auto force = read_number(file, "resistance_Npm", {}, "N/m"),
                pressure = read_number(file, "resistance_Pa", {}, "Pa");
     if (!line) return line.error();
@@ -167,12 +154,13 @@ Result<BarrierSetup> SetupReader::read_barrier(const json& file) const {
     if (!height || !*height) return bad("height_m", file);
     if (!thickness || !*thickness) return bad("thickness_m", file);
     if (!crest) return bad("crest_elevation_m", file);
+    if (!passing) return bad("passing_share", file);
     if (!force) return bad("resistance_Npm", file);
     if (!pressure) return bad("resistance_Pa", file);
     auto openings = read_openings(file);
     if (!openings) return openings.error();
-    auto body =
-        make_barrier(scene_.terrain, **name, {std::move(**line), **height, *crest, **thickness, std::move(*openings)});
+    auto body = make_barrier(scene_.terrain, **name,
+                             {std::move(**line), **height, *crest, **thickness, std::move(*openings), *passing});
     if (!body) return body.error();
     if (*force) body->resistance.force_per_metre = **force;
     if (*pressure) body->resistance.pressure = **pressure;
@@ -212,69 +200,108 @@ Result<BuildingSetup> SetupReader::read_building(const json& file) const {
     return setup;
 }
 
+Result<std::vector<Polygon>> SetupReader::read_polygons(const json& file, const char* key) {
+    std::vector<Polygon> polygons;
+    if (!file[key].is_array()) return bad(key, file);
+    for (const json& rings : file[key]) {
+        auto polygon = read_polygon(rings);
+        if (!polygon) return polygon.error();
+        polygons.push_back(std::move(*polygon));
+    }
+    return polygons;
+}
+
+template <class Entry>
+Status SetupReader::read_origin(const json& file, const char* key, std::size_t count, Entry& setup) {
+    if (!file.is_object() || !file.contains("id") || !file["id"].is_string()) return bad("id", file);
+    const Result<int> index = read_index(file, count);
+    if (!index) return index.error();
+    setup.id = file["id"];
+    setup.scene_index = *index;
+    setup.as_in_scene = !file.contains(key);
+    return setup.as_in_scene && *index < 0 ? Status(bad(key, file)) : Status();
+}
+
+Result<ZoneSetup> SetupReader::read_zone(const json& file) const {
+    ZoneSetup setup;
+    if (Status s = read_origin(file, "polygons", scene_.zones.size(), setup); !s) return s.error();
+    Zone zone;
+    if (setup.scene_index >= 0) zone = scene_.zones[static_cast<std::size_t>(setup.scene_index)];
+    if (!setup.as_in_scene) {
+        const auto name = read_text(file, "name", 1000);
+        if (!name || !*name) return bad("name", file);
+        zone.spec.name = **name;
+        if (Status s = read_values(file, zone.spec); !s) return s.error();
+        auto outline = read_polygons(file, "polygons");
+        if (!outline) return outline.error();
+        zone.outline = std::move(*outline);
+    }
+    setup.area = area_of(zone, scene_.terrain.elevation().geometry);
+    setup.body = std::make_shared<const Zone>(std::move(zone));
+    return setup;
+}
+
+Result<BedSetup> SetupReader::read_bed(const json& file) const {
+    BedSetup setup;
+    if (Status s = read_origin(file, "parts", scene_.bed_layers.size(), setup); !s) return s.error();
+    BedLayer layer;
+    if (setup.scene_index >= 0) layer = scene_.bed_layers[static_cast<std::size_t>(setup.scene_index)];
+    if (!setup.as_in_scene) {
+        const auto name = read_text(file, "name", 1000);
+        if (!name || !*name) return bad("name", file);
+        layer.spec.name = **name;
+        if (Status s = read_values(file, layer.spec); !s) return s.error();
+        if (!file.contains("raster")) layer.depth_raster = nullptr;
+        layer.parts.clear();
+        if (!file["parts"].is_array()) return bad("parts", file);
+        for (const json& part : file["parts"]) {
+            const auto depth = read_number(part.is_object() ? part : json::object(), "depth_m", {}, "m");
+            if (!depth || !*depth || !part.contains("rings")) return bad("parts", file);
+            auto polygon = read_polygon(part["rings"]);
+            if (!polygon) return polygon.error();
+            layer.parts.push_back({std::move(*polygon), **depth});
+        }
+    }
+    setup.amount = amount_of(layer, scene_.terrain);
+    setup.body = std::make_shared<const BedLayer>(std::move(layer));
+    return setup;
+}
+
+Result<InflowSetup> SetupReader::read_inflow(const json& file) const {
+    InflowSetup setup;
+    if (Status s = read_origin(file, "polygons", scene_.inflows.size(), setup); !s) return s.error();
+    if (setup.as_in_scene) {
+        setup.body = std::make_shared<const Inflow>(scene_.inflows[static_cast<std::size_t>(setup.scene_index)]);
+        return setup;
+    }
+    Inflow inflow;
+    const auto name = read_text(file, "name", 1000);
+    const auto line = read_points(file, "line", false, 2, 2);
+    const auto direction = read_number(file, "direction", {}, "rad");
+    auto area = read_polygons(file, "polygons");
+    if (!name || !*name) return bad("name", file);
+    if (!area) return area.error();
+    if (!line || (line->has_value() != area->empty())) return bad("line", file);
+    if (!direction) return direction.error();
+    inflow.name = **name;
+    if (*line) {
+        inflow.from = (**line)[0];
+        inflow.to = (**line)[1];
+    }
+    inflow.area = std::move(*area);
+    inflow.direction = *direction;
+    auto rows = read_hydrograph_rows(file.value("hydrograph", json()), inflow.over_area());
+    if (!rows) return rows.error();
+    inflow.hydrograph = std::move(*rows);
+    setup.body = std::make_shared<const Inflow>(std::move(inflow));
+    return setup;
+}
+
 }  // namespace
-
-json optional_json(const std::optional<double>& value) {
-    return value ? json(*value) : json();
-}
-
-json openings_json(const BarrierShape& shape) {
-    json openings = json::array();
-    for (const BarrierOpening& opening : shape.openings) {
-        openings.push_back(
-            {{"position_m", opening.position}, {"width_m", opening.width}, {"sill_height_m", opening.sill}});
-    }
-    return openings;
-}
-
-json write_setup(const Setup& setup) {
-    json file = {{"material", material_json(setup.material)},
-                 {"releases", json::array()},
-                 {"barriers", json::array()},
-                 {"buildings", json::array()}};
-    for (const ReleaseSetup& release : setup.releases) {
-        json entry = {{"id", release.id}};
-        if (release.scene_index >= 0) entry["scene"] = release.scene_index;
-        if (release.triggered) entry["triggered"] = true;
-        if (!release.as_in_scene) {
-            entry["name"] = release.body->name;
-            entry["patches"] = json::array();
-            for (const ReleasePatch& patch : release.body->patches) {
-                entry["patches"].push_back({{"rings", polygon_json(patch.polygon)}, {"thickness_m", patch.thickness}});
-            }
-            if (release.body->thickness_raster) entry["raster"] = true;
-        }
-        file["releases"].push_back(std::move(entry));
-    }
-    for (const BarrierSetup& barrier : setup.barriers) {
-        file["barriers"].push_back({{"id", barrier.id},
-                                    {"name", barrier.body->name},
-                                    {"line", to_json(barrier.shape().line)},
-                                    {"height_m", barrier.shape().height},
-                                    {"crest_elevation_m", optional_json(barrier.shape().crest_elevation)},
-                                    {"thickness_m", barrier.shape().thickness},
-                                    {"openings", openings_json(barrier.shape())},
-                                    {"resistance_Npm", number_or_null(barrier.body->resistance.force_per_metre)},
-                                    {"resistance_Pa", number_or_null(barrier.body->resistance.pressure)},
-                                    {"from_scene", barrier.from_scene}});
-    }
-    for (const BuildingSetup& building : setup.buildings) {
-        json entry = {{"id", building.id}};
-        if (building.scene_index >= 0) entry["scene"] = building.scene_index;
-        if (!building.as_in_scene) {
-            entry["name"] = building.body->name;
-            entry["height_m"] = building.body->height;
-            entry["footprint"] = json::array();
-            for (const Polygon& part : building.body->footprint) entry["footprint"].push_back(polygon_json(part));
-        }
-        file["buildings"].push_back(std::move(entry));
-    }
-    return file;
-}
 
 Result<Setup> read_setup(const json& file, const Scene& scene) {
     if (!file.is_object()) return Error{fmt::format("setup = {}: must be an object", shown(file))};
-    for (const char* key : {"material", "releases", "barriers", "buildings"}) {
+    for (const char* key : {"material", "releases", "barriers", "buildings", "zones", "beds", "inflows"}) {
         if (!file.contains(key)) return Error{fmt::format("setup.{}: missing", key)};
         if (std::string_view(key) != "material" && !file[key].is_array()) {
             return Error{fmt::format("setup.{} = {}: must be a list", key, shown(file[key]))};
@@ -299,6 +326,10 @@ Result<Setup> read_setup(const json& file, const Scene& scene) {
     if (s)
         s = read_all(file["buildings"], setup.buildings, "buildings",
                      [&](const json& e) { return reader.read_building(e); });
+    if (s) s = read_all(file["zones"], setup.zones, "zones", [&](const json& e) { return reader.read_zone(e); });
+    if (s) s = read_all(file["beds"], setup.beds, "beds", [&](const json& e) { return reader.read_bed(e); });
+    if (s)
+        s = read_all(file["inflows"], setup.inflows, "inflows", [&](const json& e) { return reader.read_inflow(e); });
     if (!s) return s.error();
     return setup;
 }

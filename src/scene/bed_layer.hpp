@@ -1,0 +1,40 @@
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <memory>
+#include <vector>
+
+#include "core/geometry.hpp"
+#include "core/grid.hpp"
+#include "params/spec.hpp"
+#include "terrain/bed.hpp"
+#include "terrain/terrain.hpp"
+
+namespace talus {
+
+/// Loose material of one kind and where it lies.
+struct BedLayer {
+    struct Part {
+        Polygon polygon;   ///< world
+        double depth = 0;  ///< m, vertical
+    };
+    BedSpec spec;
+    std::vector<Part> parts;                          ///< none: wherever the raster is; without one, everywhere
+    std::shared_ptr<const Grid<float>> depth_raster;  ///< m; nullptr: the depth of the parts, or that of `spec`
+};
+
+/// Calls `visit(cell, depth)` for the cells of known ground whose centre has some of the layer; m, above 0.
+void for_each_cell(const BedLayer& layer, const Terrain& terrain,
+                   const std::function<void(std::size_t cell, double depth)>& visit);
+
+struct BedAmount {
+    double area = 0, volume = 0, deepest = 0;  ///< m2 in plan, m3, m
+};
+[[nodiscard]] BedAmount amount_of(const BedLayer& layer, const Terrain& terrain);
+
+/// Layers on the cells of the terrain; where several overlap the last one lies there. There are at most
+/// Bed::most_materials. Empty without layers: then they cost nothing.
+[[nodiscard]] Bed lay_bed(const std::vector<BedLayer>& layers, const Terrain& terrain);
+
+}  // namespace talus

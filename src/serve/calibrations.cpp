@@ -1,0 +1,347 @@
+#include "serve/calibrations.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <exception>
+#include <pthread.h>
+#include <sys/resource.h>
+#include <system_error>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "calibrate/calibration_products.hpp"
+#include "calibrate/ensemble_folder.hpp"
+#include "params/fields.hpp"
+#include "twin/setup.hpp"
+
+namespace talus::serve {
+namespace {
+
+using nlohmann::json;
+namespace fs = std::filesystem;
+
+constexpr int niceness = 10;  // a tenth of the live run's share where cores are short
+constexpr std::chrono::milliseconds tell_every{1000};
+constexpr std::size_t most_parameters = 6;
+
+json number_json(double value) {
+    return std::isfinite(value) ? json(value) : json();
+}
+
+/// Four digits are more than a colour shows, and make the message a third as long.
+double rounded(double value) {
+    if (!(value > 0)) return value;
+    const double unit = std::pow(10, std::floor(std::log10(value)) - 3);
+    return std::round(value / unit) * unit;
+}
+
+const Parameter* find_lever(const std::string& key) {
+    for (const Parameter* lever : twin::levers()) {
+        if ("material." + lever->key == key) return lever;
+    }
+    return nullptr;
+}
+
+/// One of "parameters" of the body.
+Result<Factor> read_factor(const json& entry) {
+    if (!entry.is_object()) return Error{"parameters: each is an object with key, low and high"};
+    const auto number = [&](const char* name) {
+        const auto found = entry.find(name);
+        return found != entry.end() && found->is_number() ? found->get<double>() : never;
+    };
+    const auto name = entry.find("key");
+    const std::string key = name != entry.end() && name->is_string() ? name->get<std::string>() : "";
+    if (find_lever(key) == nullptr) {
+        return Error{fmt::format("parameters: key = {}: must be one of the scene's parameters",
+                                 name == entry.end() ? json().dump() : name->dump().substr(0, 80))};
+    }
+    Factor factor{key, {}};
+    factor.distribution.kind = DistributionKind::uniform;
+    factor.distribution.low = number("low");
+    factor.distribution.high = number("high");
+    if (!(factor.distribution.low < factor.distribution.high)) {
+        return Error{fmt::format("{}: low and high must be numbers, low below high", key)};
+    }
+    return factor;
+}
+
+Result<CalibrationPlan> read_plan(const json& wanted) {
+    CalibrationPlan plan;
+    const auto list = wanted.is_object() ? wanted.find("parameters") : wanted.end();
+    if (list == wanted.end() || !list->is_array() || list->empty() || list->size() > most_parameters) {
+        return Error{
+            fmt::format("parameters: must be a list of 1 to {}, each with key, low and high", most_parameters)};
+    }
+    for (const json& entry : *list) {
+        auto factor = read_factor(entry);
+        if (!factor) return factor.error();
+        for (const Factor& other : plan.factors) {
+            if (other.key == factor->key) return Error{fmt::format("parameters: {} is there twice", other.key)};
+        }
+        plan.factors.push_back(std::move(*factor));
+    }
+    if (const auto runs = wanted.find("runs"); runs != wanted.end()) {
+        if (!runs->is_number_unsigned() || runs->get<std::uint64_t>() > 2000) {
+            return Error{fmt::format("runs = {}: must be a whole number up to 2000", runs->dump().substr(0, 40))};
+        }
+        plan.search.runs = runs->get<std::size_t>();
+    }
+    return plan;
+}
+
+json observations_json(const std::vector<ObservedValue>& observed) {
+    json list = json::array();
+    for (const ObservedValue& o : observed) {
+        list.push_back({{"name", o.name},
+                        {"unit", o.unit},
+                        {"observed", o.value},
+                        {"uncertainty", o.uncertainty},
+                        {"is", o.kind == ObservedValue::Kind::equal      ? "equal"
+                               : o.kind == ObservedValue::Kind::at_least ? "at_least"
+                                                                         : "below"},
+                        {"best", nullptr},
+                        {"deviation", nullptr}});
+    }
+    return list;
+}
+
+}  // namespace
+
+Calibrations::Calibrations(std::shared_ptr<const Scene> scene, CalibrationSettings settings,
+                           std::function<void(json)> tell)
+    : scene_(std::move(scene)),
+      settings_(std::move(settings)),
+      observed_(observed_values(*scene_)),
+      tell_(std::move(tell)) {
+    json why_not;
+    if (observed_.empty()) {
+        why_not =
+            "This scene has no field observations to calibrate against. Add [[observation]], [[run_up]], "
+            "[[deposit_depth]] or another of the sections in docs/ensembles.md to its file and open it again.";
+    } else if (settings_.source.file.empty()) {
+        why_not = "This program serves the scene without calibrations.";
+    }
+    status_ = {{"state", "idle"},
+               {"why_not", why_not},
+               {"by", nullptr},
+               {"message", ""},
+               {"observations", observations_json(observed_)},
+               {"parameters", json::array()},
+               {"phase", nullptr},
+               {"runs_at_most", 0},
+               {"runs_failed", 0},
+               {"wall_remaining_s", nullptr},
+               {"runs", json::array()},
+               {"map", nullptr},
+               {"best", nullptr},
+               {"result", nullptr}};
+}
+
+Calibrations::~Calibrations() {
+    close();
+}
+
+void Calibrations::close() {
+    {
+        const std::lock_guard lock(mutex_);
+        closed_ = true;
+    }
+    stop_ = true;
+    if (thread_.joinable()) thread_.join();
+}
+
+json Calibrations::describe() const {
+    const std::lock_guard lock(mutex_);
+    return status_;
+}
+
+void Calibrations::tell_now() {
+    told_ = Clock::now();
+    if (!closed_) tell_(status_);
+}
+
+void Calibrations::start(const json& wanted, const std::string& by, const Respond& respond) {
+    auto plan = read_plan(wanted);
+    if (!plan) {
+        respond(error_response(400, plan.error().message));
+        return;
+    }
+    const std::lock_guard lock(mutex_);
+    if (!status_["why_not"].is_null() || closed_) {
+        respond(error_response(409, closed_ ? "the program ends" : status_["why_not"].get<std::string>()));
+        return;
+    }
+    if (busy_) {
+        respond(error_response(409, "a calibration runs; cancel it or wait for its end"));
+        return;
+    }
+    if (thread_.joinable()) thread_.join();  // it has ended
+    busy_ = true;
+    stop_ = false;
+    thread_ = std::thread([this, plan = std::move(*plan), by, respond] { work(plan, by, respond); });
+}
+
+Status Calibrations::cancel() {
+    const std::lock_guard lock(mutex_);
+    if (!busy_) return Error{"no calibration runs"};
+    stop_ = true;
+    if (status_["state"] == "running") {
+        status_["state"] = "cancelling";
+        tell_now();
+    }
+    return {};
+}
+
+fs::path Calibrations::new_folder() const {
+    if (!settings_.keep) return settings_.folder / "calibration";
+    std::error_code error;
+    for (int number = 1;; ++number) {
+        fs::path folder = settings_.folder / fmt::format("calibration_{}", number);
+        if (!fs::exists(folder, error)) return folder;
+    }
+}
+
+void Calibrations::work(const CalibrationPlan& plan, const std::string& by, const Respond& respond) {
+    pthread_setname_np(pthread_self(), "calibration");
+    setpriority(PRIO_PROCESS, 0, niceness);  // of this thread and those that it starts
+    const fs::path folder = new_folder();
+    Ending ending;
+    try {
+        const Result<PlannedRuns> runs = plan_calibration(plan, settings_.source, *scene_);
+        if (!runs) {
+            {
+                const std::lock_guard lock(mutex_);
+                busy_ = false;
+            }
+            respond(error_response(400, runs.error().message));
+            return;
+        }
+        begin(plan, by);
+        std::string names;
+        for (const Factor& factor : plan.factors) {
+            names += (names.empty() ? "" : ", ") + twin::label_of(*find_lever(factor.key));
+        }
+        const std::string done = fmt::format("calibration of {} with at most {} runs", names, plan.search.runs);
+        respond(json_response(200, {{"done", done}, {"created", nullptr}}));
+        ending = calibrate_in(folder, plan, *runs);
+    } catch (const std::exception& error) {  // out of memory here is no reason to end the live run
+        ending = {"failed", error.what()};
+    }
+    std::error_code ignored;
+    if (!settings_.keep) fs::remove_all(folder, ignored);
+    end(ending);  // who starts the next one joins this thread with the lock held: nothing here may ask for it again
+}
+
+Calibrations::Ending Calibrations::calibrate_in(const fs::path& path, const CalibrationPlan& plan,
+                                                const PlannedRuns& runs) {
+    const auto folder = EnsembleFolder::open(path, calibration_definition("calibration", plan, runs, settings_.source,
+                                                                          *scene_, observed_, settings_.scene_name));
+    if (!folder) return {"failed", folder.error().message};
+    CalibrationOptions options;
+    options.stop_requested = &stop_;
+    options.on_progress = [this](const CalibrationProgress& now) { take_progress(now); };
+    options.on_run = [this](const CalibrationRun& run) { take_run(run); };
+    options.on_fit = [this](const Calibration& now) { take_fit(now); };
+    const auto made = calibrate(plan, runs, settings_.source, *scene_, observed_, *folder, options);
+    if (!made) return {"failed", made.error().message};
+    if (made->result.interrupted || stop_) return {"cancelled", ""};
+    take_fit(*made);
+    take_result(*made);
+    if (!settings_.keep) return {"done", ""};
+    const Status written = write_calibration(*made, settings_.source, settings_.own_files, path);
+    return {"done", written ? "" : written.error().message};
+}
+
+void Calibrations::begin(const CalibrationPlan& plan, const std::string& by) {
+    const std::lock_guard lock(mutex_);
+    json parameters = json::array();
+    for (const Factor& factor : plan.factors) {
+        const Parameter& lever = *find_lever(factor.key);
+        parameters.push_back({{"key", factor.key},
+                              {"label", twin::label_of(lever)},
+                              {"unit", lever.unit},
+                              {"low", factor.distribution.low},
+                              {"high", factor.distribution.high}});
+    }
+    status_["state"] = "running";
+    status_["by"] = by;
+    status_["message"] = "";
+    status_["observations"] = observations_json(observed_);
+    status_["parameters"] = parameters;
+    status_["phase"] = phase_name(Phase::design);
+    status_["runs_at_most"] = plan.search.runs;
+    status_["runs_failed"] = 0;
+    status_["runs"] = json::array();
+    for (const char* none : {"wall_remaining_s", "map", "best", "result"}) status_[none] = nullptr;
+    tell_now();
+}
+
+void Calibrations::take_run(const CalibrationRun& run) {
+    const std::lock_guard lock(mutex_);
+    json made = {{"values", run.values}, {"phase", phase_name(run.phase)}, {"misfit", number_json(run.misfit)}};
+    if (std::isfinite(run.misfit)) {
+        json& best = status_["best"];
+        if (best.is_null() || run.misfit < best["misfit"].get<double>()) {
+            best = {{"run", run.run}, {"values", run.values}, {"misfit", run.misfit}};
+        }
+    } else {
+        status_["runs_failed"] = status_["runs_failed"].get<int>() + 1;
+    }
+    status_["runs"].push_back(std::move(made));
+    tell_now();
+}
+
+void Calibrations::take_progress(const CalibrationProgress& now) {
+    const std::lock_guard lock(mutex_);
+    status_["phase"] = phase_name(now.phase);
+    status_["wall_remaining_s"] = number_json(now.wall_remaining);
+    if (Clock::now() - told_ >= tell_every) tell_now();
+}
+
+void Calibrations::take_fit(const Calibration& now) {
+    if (!now.result.best) return;
+    const MisfitMap map = misfit_map(now);
+    json misfit = json::array();
+    for (const double value : map.misfit) misfit.push_back(number_json(rounded(value)));
+    const std::vector<double>& predicted = now.result.runs[*now.result.best].predicted;
+    const std::lock_guard lock(mutex_);
+    status_["map"] = {{"columns", map.cells}, {"rows", map.misfit.size() / map.cells}, {"misfit", misfit}};
+    for (std::size_t j = 0; j < observed_.size() && j < predicted.size(); ++j) {
+        const double value = std::isfinite(predicted[j]) ? predicted[j] : observed_[j].unreached;
+        status_["observations"][j]["best"] = number_json(predicted[j]);
+        status_["observations"][j]["deviation"] = number_json(deviation_of(observed_[j], value));
+    }
+    tell_now();
+}
+
+void Calibrations::take_result(const Calibration& made) {
+    const CalibrationSummary summary = summarise(made);
+    json parameters = json::array();
+    for (std::size_t k = 0; k < summary.factors.size(); ++k) {
+        const FactorResult& f = summary.factors[k];
+        parameters.push_back({{"key", made.factors[k].key},
+                              {"best", f.best},
+                              {"median", f.median},
+                              {"low_95", f.low},
+                              {"high_95", f.high},
+                              {"share_of_prior_width", f.kept}});
+    }
+    const std::lock_guard lock(mutex_);
+    status_["result"] = {{"settled", made.result.settled},
+                         {"checks_within_95", number_json(summary.checks_within)},
+                         {"parameters", parameters},
+                         {"warnings", summary.warnings}};
+}
+
+void Calibrations::end(const Ending& ending) {
+    const std::lock_guard lock(mutex_);
+    status_["state"] = ending.state;
+    status_["message"] = ending.message;
+    status_["phase"] = nullptr;
+    status_["wall_remaining_s"] = nullptr;
+    busy_ = false;
+    tell_now();
+}
+
+}  // namespace talus::serve

@@ -1,0 +1,84 @@
+#pragma once
+
+#include <atomic>
+#include <chrono>
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <thread>
+
+#include <nlohmann/json.hpp>
+
+#include "calibrate/calibration.hpp"
+#include "core/result.hpp"
+#include "scene/scene.hpp"
+#include "scene/variants.hpp"
+#include "serve/message.hpp"
+
+namespace talus::serve {
+
+/// What calibrations run, and where.
+struct CalibrationSettings {
+    SceneSource source;            ///< loads the session's scene again; no file: there are no calibrations
+    std::string scene_name;        ///< for the record
+    bool own_files = false;        ///< as in write_calibration
+    std::filesystem::path folder;  ///< an existing one; each calibration records its runs in a folder there
+    bool keep = false;             ///< the folders stay, with tables and report
+};
+
+/// One calibration at a time, on a thread of its own beside the live run: it makes way for that one's steps. What it
+/// finds stays until the next begins. Functions may be called from any thread.
+class Calibrations {
+  public:
+    /// `tell` is given describe() when something has changed, from any thread.
+    Calibrations(std::shared_ptr<const Scene> scene, CalibrationSettings settings,
+                 std::function<void(nlohmann::json)> tell);
+    ~Calibrations();
+    Calibrations(const Calibrations&) = delete;
+    Calibrations& operator=(const Calibrations&) = delete;
+
+    /// Starts one as the body of `POST /api/calibration` says, and answers once it is known whether it can run. Errors
+    /// (400, 409) name key, value and what is allowed.
+    void start(const nlohmann::json& wanted, const std::string& by, const Respond& respond);
+    /// The run under way is dropped. Error: none runs.
+    [[nodiscard]] Status cancel();
+    /// Ends the thread; nobody is told any more.
+    void close();
+
+    /// As `GET /api/calibration`.
+    [[nodiscard]] nlohmann::json describe() const;
+
+  private:
+    using Clock = std::chrono::steady_clock;
+    struct Ending {
+        const char* state = "failed";
+        std::string message;
+    };
+    void work(const CalibrationPlan& plan, const std::string& by, const Respond& respond);
+    [[nodiscard]] Ending calibrate_in(const std::filesystem::path& folder, const CalibrationPlan& plan,
+                                      const PlannedRuns& runs);
+    void begin(const CalibrationPlan& plan, const std::string& by);
+    void take_run(const CalibrationRun& run);
+    void take_fit(const Calibration& now);
+    void take_progress(const CalibrationProgress& now);
+    void take_result(const Calibration& made);
+    void end(const Ending& ending);
+    /// Under the lock: sends what there is now.
+    void tell_now();
+    [[nodiscard]] std::filesystem::path new_folder() const;
+
+    std::shared_ptr<const Scene> scene_;
+    const CalibrationSettings settings_;
+    const std::vector<ObservedValue> observed_;
+    std::function<void(nlohmann::json)> tell_;
+    std::atomic<bool> stop_{false};
+    mutable std::mutex mutex_;  // guards what follows
+    nlohmann::json status_;     // as describe() gives it
+    bool busy_ = false, closed_ = false;
+    Clock::time_point told_{};
+    std::thread thread_;
+};
+
+}  // namespace talus::serve

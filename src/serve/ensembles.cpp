@@ -1,0 +1,113 @@
+#include "serve/ensembles.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "geo/raster.hpp"
+#include "twin/scenario.hpp"
+
+namespace talus::serve {
+namespace {
+
+using nlohmann::json;
+namespace fs = std::filesystem;
+
+/// Why a map of an ensemble cannot lie on this terrain; nothing if it can.
+Status check_extent(const fs::path& file, const Extent& map, const Extent& terrain, double cell) {
+    const Extent most = terrain.grown(cell);
+    if (map.x_min >= most.x_min && map.y_min >= most.y_min && map.x_max <= most.x_max && map.y_max <= most.y_max) {
+        return {};
+    }
+    const auto words = [](const Extent& e) {
+        return fmt::format("{:.0f} to {:.0f} east, {:.0f} to {:.0f} north", e.x_min, e.x_max, e.y_min, e.y_max);
+    };
+    return Error{fmt::format("{}: lies at {}, beyond the terrain of this scene, {}; the ensemble is of another scene",
+                             file.string(), words(map), words(terrain))};
+}
+
+json number_or_null(bool there, double value) {
+    return there ? json(value) : json();
+}
+
+}  // namespace
+
+Result<Ensembles::Ensemble> Ensembles::read_one(const fs::path& folder, const Scene& scene) {
+    auto about = read_finished_ensemble(folder);
+    if (!about) return about.error();
+    Ensemble made;
+    made.about = std::move(*about);
+    for (const InputFile& input : scene.inputs) {
+        if (input.role == "terrain" && !made.about.terrain_hash.empty()) {
+            made.same_terrain = input.hash == made.about.terrain_hash;
+        }
+    }
+    const Extent terrain = scene.terrain.elevation().geometry.extent();
+    for (FinishedMap& map : made.about.maps) {
+        const auto raster = read_map_raster(map.file.string(), scene.crs);
+        if (!raster) return raster.error();
+        const GridGeometry& grid = raster->grid.geometry;
+        if (Status s = check_extent(map.file, grid.extent(), terrain, std::max(grid.cell, scene.terrain.cell())); !s) {
+            return s.error();
+        }
+        made.maps.push_back({std::move(map), std::make_shared<const std::string>(twin::encode_grid(raster->grid)),
+                             greatest(raster->grid)});
+    }
+    made.about.maps.clear();
+    return Result<Ensemble>(std::move(made));
+}
+
+Result<Ensembles> Ensembles::read(const std::vector<fs::path>& folders, const Scene& scene) {
+    Ensembles all;
+    for (const fs::path& folder : folders) {
+        auto ensemble = read_one(folder, scene);
+        if (!ensemble) return ensemble.error();
+        all.ensembles_.push_back(std::move(*ensemble));
+    }
+    return Result<Ensembles>(std::move(all));
+}
+
+json Ensembles::describe() const {
+    json list = json::array();
+    for (const Ensemble& ensemble : ensembles_) {
+        json factors = json::array(), maps = json::array();
+        for (const Factor& f : ensemble.about.factors) {
+            factors.push_back({{"key", f.key}, {"distribution", f.distribution.text()}});
+        }
+        for (const Map& map : ensemble.maps) {
+            const FinishedMap& about = map.about;
+            const bool probability = about.kind == EnsembleMap::Kind::probability;
+            const HazardMap& counted = hazard_maps().at(about.map);
+            maps.push_back({{"name", about.style.file},
+                            {"title", about.style.title},
+                            {"unit", about.style.unit},
+                            {"kind", probability ? "probability" : "percentile"},
+                            {"of", counted.file},
+                            {"threshold", number_or_null(probability, about.level)},
+                            {"threshold_unit", probability ? json(counted.unit) : json()},
+                            {"percentile", number_or_null(!probability, about.level)},
+                            {"greatest", number_or_null(map.greatest > 0, map.greatest)}});
+        }
+        list.push_back({{"id", std::to_string(list.size() + 1)},
+                        {"name", ensemble.about.name},
+                        {"runs", ensemble.about.complete},
+                        {"failed", ensemble.about.failed},
+                        {"factors", factors},
+                        {"same_terrain", ensemble.same_terrain},
+                        {"maps", maps}});
+    }
+    return {{"ensembles", list}};
+}
+
+Bytes Ensembles::map(const std::string& ensemble, const std::string& name) const {
+    for (std::size_t i = 0; i < ensembles_.size(); ++i) {
+        if (std::to_string(i + 1) != ensemble) continue;
+        for (const Map& map : ensembles_[i].maps) {
+            if (map.about.style.file == name) return map.grid;
+        }
+    }
+    return nullptr;
+}
+
+}  // namespace talus::serve

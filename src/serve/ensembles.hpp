@@ -1,0 +1,46 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+#include "calibrate/finished_ensemble.hpp"
+#include "core/result.hpp"
+#include "scene/scene.hpp"
+#include "serve/message.hpp"
+
+namespace talus::serve {
+
+/// The maps of finished ensembles of this scene, to lie beside those of the live run. They are read once, so that what
+/// is wrong with a folder is said at the start, and nobody can ask for any other file.
+class Ensembles {
+  public:
+    Ensembles() = default;
+
+    /// Errors, each naming folder or file: no ensemble, not finished, another CRS, off the scene's terrain, damaged.
+    [[nodiscard]] static Result<Ensembles> read(const std::vector<std::filesystem::path>& folders, const Scene& scene);
+
+    /// As `GET /api/ensembles`.
+    [[nodiscard]] nlohmann::json describe() const;
+    /// A grid message, in the unit that describe() tells. nullptr: there is no such map.
+    [[nodiscard]] Bytes map(const std::string& ensemble, const std::string& name) const;
+
+  private:
+    struct Map {
+        FinishedMap about;
+        Bytes grid;
+        double greatest = 0;  // 0: debris came nowhere by that measure
+    };
+    struct Ensemble {
+        FinishedEnsemble about;
+        std::vector<Map> maps;
+        bool same_terrain = true;
+    };
+    [[nodiscard]] static Result<Ensemble> read_one(const std::filesystem::path& folder, const Scene& scene);
+
+    std::vector<Ensemble> ensembles_;
+};
+
+}  // namespace talus::serve

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <string>
+
+#include <nlohmann/json.hpp>
+
+#include "core/result.hpp"
+#include "scene/bed_layer.hpp"
+#include "scene/zone.hpp"
+#include "terrain/buildings.hpp"
+#include "terrain/inflow.hpp"
+#include "terrain/release.hpp"
+#include "twin/action.hpp"
+#include "twin/setup.hpp"
+
+/// What the put actions of docs/protocol.md ask for, each: `existing` with what the action gives, or, where that is
+/// nullptr, a new one; of this name. Errors name key, value and what is allowed.
+namespace talus::twin {
+
+/// `setup`: with the other releases.
+[[nodiscard]] Result<Release> read_release(const nlohmann::json& action, const ActionContext& context,
+                                           const Setup& setup, const ReleaseSetup* existing, const std::string& name);
+
+/// A null makes a wall of a net, and a barrier with a resistance stand whatever happens.
+[[nodiscard]] Result<Building> read_barrier(const nlohmann::json& action, const ActionContext& context,
+                                            const Building* existing, const std::string& name);
+
+[[nodiscard]] Result<Building> read_building(const nlohmann::json& action, const ActionContext& context,
+                                             const Building* existing, const std::string& name);
+
+[[nodiscard]] Result<Zone> read_zone(const nlohmann::json& action, const ActionContext& context, const Zone* existing,
+                                     const std::string& name);
+
+[[nodiscard]] Result<BedLayer> read_bed(const nlohmann::json& action, const ActionContext& context,
+                                        const BedLayer* existing, const std::string& name);
+
+/// `setup`: with all that brings debris, which particles must be enough for.
+[[nodiscard]] Result<Inflow> read_inflow(const nlohmann::json& action, const ActionContext& context, const Setup& setup,
+                                         const InflowSetup* existing, const std::string& name);
+
+}  // namespace talus::twin

@@ -1,0 +1,71 @@
+#include <optional>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "twin/json_keys.hpp"
+#include "twin/outline.hpp"
+#include "twin/put.hpp"
+#include "twin/section_values.hpp"
+
+namespace talus::twin {
+namespace {
+
+Status check_law(const BedSpec& spec) {
+    if (spec.law == EntrainmentLaw::growth && !spec.growth_rate) {
+        return Error{"growth_rate_per_m: missing; law = \"growth\" needs it"};
+    }
+    return {};
+}
+
+}  // namespace
+
+Result<BedLayer> read_bed(const nlohmann::json& action, const ActionContext& context, const BedLayer* existing,
+                          const std::string& name) {
+    if (Status s = check_keys(action, bed_keys(), {"action", "id", "name", "polygon", "move_m"}); !s) {
+        return s.error();
+    }
+    auto polygon = read_points(action, "polygon", true, 3, most_points);
+    if (!polygon) return polygon.error();
+    const auto by = read_move(action, "polygon", "bed", existing != nullptr);
+    if (!by) return by.error();
+    const bool depth_given = action.contains("depth_m") && !action["depth_m"].is_null();
+    if (existing == nullptr && !*polygon) return missing("polygon", "bed");
+    if (existing == nullptr && !depth_given) return missing("depth_m", "bed");
+    BedLayer layer;
+    if (existing != nullptr) layer = *existing;
+    layer.spec.name = name;
+    const std::optional<double> depth_before = layer.spec.depth;
+    if (Status s = read_values(action, layer.spec); !s) return s.error();
+    if (!depth_given) layer.spec.depth = depth_before;  // a null asks for nothing: a bed has a depth
+    if (Status s = check_law(layer.spec); !s) return s.error();
+    const Terrain& terrain = context.scene.terrain;
+    if ((*polygon || *by) && !depth_given && (layer.depth_raster != nullptr || !layer.spec.depth)) {
+        return Error{"depth_m: missing; the bed's depth differs from place to place, a new outline needs one value"};
+    }
+    if (*polygon) {
+        if (Status s = check_ring(terrain, **polygon, "polygon", false); !s) return s.error();
+        layer.parts = {{{std::move(**polygon), {}}, *layer.spec.depth}};
+    }
+    if (*by) {
+        if (layer.parts.empty()) return Error{"move_m: the bed has no outline that could be moved; give a polygon"};
+        for (BedLayer::Part& part : layer.parts) {
+            part.polygon = moved(std::move(part.polygon), **by);
+            if (Status s = check_ground(terrain, part.polygon, "move_m", false); !s) return s.error();
+        }
+    }
+    if (depth_given) {
+        if (layer.depth_raster != nullptr && layer.parts.empty()) {
+            return Error{"depth_m: the bed lies where its raster has depths; one depth needs a polygon, too"};
+        }
+        layer.depth_raster = nullptr;
+        for (BedLayer::Part& part : layer.parts) part.depth = *layer.spec.depth;
+    }
+    if (!(amount_of(layer, terrain).volume > 0)) {
+        return Error{fmt::format("{}: covers the centre of no cell of the terrain, which are {:.6g} m wide",
+                                 *by ? "move_m" : "polygon", terrain.cell())};
+    }
+    return layer;
+}
+
+}  // namespace talus::twin

@@ -1,0 +1,126 @@
+// Maps of an ensemble on the terrain, and a calibration started from the page; on servers of their own with few particles.
+import { spawnSync } from "node:child_process";
+import { cpSync, readFileSync, rmSync, writeFileSync } from "node:fs";
+import { basename, dirname, join, resolve } from "node:path";
+import { assert, startServer, until, viewClip } from "./harness.mjs";
+
+const few = ["--set", "solver.target_particle_count=400"];
+const layerSelect = "select[aria-label^='Map layer']";
+
+export async function testBackanalysis(run, command) {
+  const at = command.indexOf("serve");
+  const scene = command.find((word) => word.endsWith(".toml"));
+  if (at < 0 || !scene) return;
+  const folder = join(run.output, "ensemble of friction");
+  rmSync(folder, { recursive: true, force: true });
+  const made = spawnSync(command[0], ["ensemble", scene, ...few, "--vary", "material.friction_coefficient=0.25:0.5", "--runs", "6", "-o", folder, "--quiet"]);
+  assert.equal(made.status, 0, String(made.stderr));
+  const server = await startServer([...command, ...few, "--ensemble", folder]);
+  const page = await run.open(server.controller, { name: "Ada" });
+  await until(() => page.textContent(".control"), (t) => /You have control/.test(t), "control");
+  await testMaps(run, page);
+  await testCalibration(run, server, page);
+  await page.context().close();
+  await server.stop();
+  await testNoObservations(run, command, scene);
+}
+
+async function testMaps(run, page) {
+  await run.check("maps of an ensemble are layers with title, unit, threshold and number of runs", async () => {
+    const group = page.locator(`${layerSelect} optgroup`);
+    await until(() => group.count(), (n) => n === 1, "a group of layers");
+    assert.equal(await group.getAttribute("label"), "Ensemble ensemble of friction, 6 runs");
+    await page.locator("label:has-text('Particles') input").uncheck();
+    await page.click("[aria-label='Top view']");
+    await page.waitForTimeout(700);
+    const clip = await viewClip(page);
+    const bare = await run.colours(page, clip);
+    const legend = page.locator(".legend").last();
+    const seen = new Set([bare.hash]);
+    for (const [name, title, unit] of [["probability_depth_0.5m", "Probability of peak depth over 0.5 m", "%"], ["probability_speed_10mps", "Probability of peak speed over 10 m/s", "%"],
+      ["peak_depth_p95", "Peak depth, 95th percentile", "m"], ["peak_pressure_p50", "Peak impact pressure, 50th percentile", "kPa"], ["arrival_time_p05", "Arrival time, 5th percentile", "s"]]) {
+      await page.selectOption(layerSelect, `ensemble/1/${name}`);
+      await until(() => legend.locator(".legend-title b").textContent(), (t) => t === title, `legend of ${name}`);
+      assert.equal(await legend.locator(".legend-title span").textContent(), unit);
+      assert.equal(await legend.locator(".legend-from").textContent(), "ensemble of friction, 6 runs");
+      await page.waitForTimeout(700);
+      seen.add((await run.colours(page, clip)).hash);
+      await run.shot(page, `30-${name}`);
+    }
+    assert.equal(seen.size, 6, "different pictures");
+    await page.selectOption(layerSelect, "none");
+    await until(async () => (await run.colours(page, clip)).hash, (hash) => hash === bare.hash, "the ground without a layer");
+    await page.locator("label:has-text('Particles') input").check();
+  });
+}
+
+async function testCalibration(run, server, page) {
+  const setup = () => server.ask("scenarios/A/setup");
+  const status = () => server.ask("calibration");
+  const viewer = await run.open(server.viewer, { name: "Cy" });
+  await run.check("a calibration: dots come in beside the live run, everybody sees them, the best values can be used and undone", async () => {
+    await page.click("[data-tab=calibrate]");
+    await viewer.click("[data-tab=calibrate]");
+    assert.ok(await viewer.locator(".calibrate-form button.primary").isDisabled(), "a viewer cannot start");
+    await run.shot(page, "31-calibrate");
+    await page.locator("[aria-label='Lowest friction coefficient']").fill("0.6");
+    await page.click(".calibrate-form button.primary");
+    assert.match(await page.textContent(".calibrate-form .field-note"), /must be below/);
+    await page.locator("[aria-label='Lowest friction coefficient']").fill("0.2");
+    await page.locator("[aria-label='Runs at most']").fill("16");
+    await page.click(".run");
+    await page.click(".calibrate-form button.primary");
+    await until(() => page.locator(".misfit circle.run").count(), (n) => n >= 2, "dots", 120_000);
+    await until(() => viewer.locator(".misfit circle.run").count(), (n) => n >= 2, "dots for the viewer", 120_000);
+    assert.ok((await server.ask("scenarios/A/state")).step > 0, "the live run goes on");
+    await run.shot(page, "32-dots");
+    await until(() => page.locator("canvas.misfit-field").isVisible(), (v) => v, "the field", 240_000);
+    await run.shot(page, "33-field");
+    const end = await until(status, (s) => !["running", "cancelling"].includes(s.state), "the end", 300_000);
+    assert.equal(end.state, "done", end.message);
+    await until(() => page.locator(".misfit circle.run").count(), (n) => n === end.runs.length, "all dots");
+    await page.locator("table.found").waitFor();
+    await run.shot(page, "34-done");
+    assert.match(await page.textContent(".calibrate-progress"), /16 runs/);
+    assert.ok(await viewer.locator(".calibrate button:has-text('Use these values')").isDisabled());
+    const before = (await setup()).parameters;
+    await page.click(".calibrate button:has-text('Use these values')");
+    const close = (p) => Math.abs(p["material.friction_coefficient"] / end.best.values[0] - 1) < 1e-3 && Math.abs(p["material.viscosity"] / end.best.values[1] - 1) < 1e-3;
+    await until(async () => (await setup()).parameters, close, "the values in the setup");
+    await page.locator(".calibrate button:has-text('Use these values')").scrollIntoViewIfNeeded();
+    await run.shot(page, "35-used");
+    await page.click(".levers button:has-text('Undo')");
+    await until(async () => JSON.stringify((await setup()).parameters), (p) => p === JSON.stringify(before), "one undo takes both back");
+  });
+  await run.check("a calibration can be cancelled, by keyboard too", async () => {
+    await page.locator(".calibrate-form button.primary").focus();
+    await page.keyboard.press("Enter");
+    const focused = () => page.evaluate(() => document.activeElement.textContent);
+    await until(focused, (text) => text === "Cancel", "the focus goes on to what takes the place of the button");
+    assert.equal((await status()).state, "running");
+    await page.keyboard.press("Enter");
+    const end = await until(async () => (await status()).state, (state) => state !== "running" && state !== "cancelling", "an end", 60_000);
+    assert.equal(end, "cancelled");
+    await until(() => page.textContent(".calibrate-progress"), (t) => t.startsWith("Cancelled"), "the page says so");
+    await until(focused, (text) => text === "Start", "the focus comes back");
+  });
+  await viewer.context().close();
+}
+
+async function testNoObservations(run, command, scene) {
+  const copy = join(run.output, "scene without observations");
+  cpSync(dirname(resolve(scene)), copy, { recursive: true });
+  const file = join(copy, basename(scene));
+  const text = readFileSync(scene, "utf8").split(/^(?=\[)/m).filter((section) => !section.startsWith("[[observation]]")).join("");
+  writeFileSync(file, text);
+  const server = await startServer([...command.filter((word) => word !== scene), ...few, file]);
+  const page = await run.open(server.controller, { name: "Di" });
+  await run.check("a scene without observations says what is missing", async () => {
+    await page.click("[data-tab=calibrate]");
+    await until(() => page.textContent(".calibrate-why"), (t) => t.includes("no field observations"), "why not");
+    assert.ok(!(await page.locator(".calibrate-form").isVisible()));
+    await run.shot(page, "36-no-observations");
+  });
+  await page.context().close();
+  await server.stop();
+}

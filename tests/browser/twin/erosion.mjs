@@ -1,0 +1,169 @@
+// Debris that picks up its bed: the ground sinks under it, on the page too, as far as at the time on display, and a restart
+// brings it back. On a server and a scene of its own: the shipped ones have no bed.
+import { writeFileSync } from "node:fs";
+import { join } from "node:path";
+import { assert, boxOf, saved, startServer, until, viewClip } from "./harness.mjs";
+
+const [west, south, columns, rows] = [500000, 5200000, 100, 50];
+const prj = `PROJCS["WGS 84 / UTM zone 33N",GEOGCS["WGS 84",DATUM["WGS_1984",SPHEROID["WGS 84",6378137,298.257223563]],PRIMEM["Greenwich",0],UNIT["degree",0.0174532925199433]],PROJECTION["Transverse_Mercator"],PARAMETER["latitude_of_origin",0],PARAMETER["central_meridian",15],PARAMETER["scale_factor",0.9996],PARAMETER["false_easting",500000],PARAMETER["false_northing",0],UNIT["metre",1]]`;
+
+/** A gully that falls to the east by 30 degrees for 60 m, in gravel 2 m deep. */
+function writeScene(folder) {
+  const lines = [`ncols ${columns}`, `nrows ${rows}`, `xllcorner ${west}`, `yllcorner ${south}`, "cellsize 1"];
+  for (let j = rows - 1; j >= 0; --j) {
+    const across = Math.max(0, Math.abs(j + 0.5 - rows / 2) - 4);
+    lines.push(Array.from({ length: columns }, (_, i) => (100 + Math.max(0, 60 - i) * 0.577 + across / 2).toFixed(3)).join(" "));
+  }
+  writeFileSync(join(folder, "gully.asc"), lines.join("\n"));
+  writeFileSync(join(folder, "gully.prj"), prj);
+  const places = (list) => list.map(([x, y]) => [west + x, south + y]);
+  const writeFeature = (name, type, coordinates) => writeFileSync(join(folder, name), JSON.stringify({ type: "FeatureCollection",
+    crs: { type: "name", properties: { name: "urn:ogc:def:crs:EPSG::32633" } }, features: [{ type: "Feature", properties: {}, geometry: { type, coordinates } }] }));
+  writeFeature("scar.geojson", "Polygon", [places([[5, 20], [14, 20], [14, 30], [5, 30], [5, 20]])]);
+  writeFeature("path.geojson", "LineString", places([[6, 25], [95, 25]]));
+  const file = join(folder, "gully.toml");
+  writeFileSync(file, `[scene]
+title = "Gully"
+[terrain]
+file = "gully.asc"
+[[release]]
+file = "scar.geojson"
+thickness_m = 1.5
+[[bed]]
+name = "gravel"
+depth_m = 2
+growth_rate_per_m = 0.04
+[flow_path]
+file = "path.geojson"
+corridor_width_m = 30
+[material]
+friction_coefficient = 0.2
+[solver]
+particle_spacing_m = 0.7
+end_time_s = 60
+`);
+  return file;
+}
+
+/** Grid message of docs/protocol.md: where the largest value is, and how large. */
+async function largestOf(page, path, token) {
+  return page.evaluate(async ([url, bearer]) => {
+    const data = await (await fetch(url, { headers: { Authorization: `Bearer ${bearer}` } })).arrayBuffer();
+    const head = new DataView(data);
+    const [x, y, cell, wide] = [head.getFloat64(8, true), head.getFloat64(16, true), head.getFloat64(24, true), head.getUint32(32, true)];
+    const body = new Response(new Blob([data.slice(44)]).stream().pipeThrough(new DecompressionStream("deflate")));
+    const values = new Float32Array(await body.arrayBuffer());
+    let [most, at, cells] = [0, 0, 0];
+    values.forEach((v, k) => {
+      if (v > 0) ++cells;
+      if (v > most) [most, at] = [v, k];
+    });
+    return { most, cells, x: x + (at % wide + 0.5) * cell, y: y + (Math.floor(at / wide) + 0.5) * cell };
+  }, [`api/scenarios/A/layers/${path}`, token]);
+}
+
+export async function testErosion(run, command) {
+  if (!command.includes("serve")) return;
+  const own = await startServer([...command.slice(0, -1), writeScene(run.output)]);
+  const page = await run.open(own.controller, { name: "Hal" });
+  await until(() => page.textContent(".control"), (t) => /You have control/.test(t), "control");
+  const state = () => own.ask("scenarios/A/state");
+  const sunk = () => page.evaluate(() => window.talusStats.sunk_m.A ?? 0);
+  const offered = () => page.locator("option[value=erosion_depth]").evaluate((option) => !option.disabled);
+  // Downstream of the release, whose outline tells whether it is held: nothing but the ground is there.
+  const box = await boxOf(page.locator(".stage canvas"));
+  const clip = { x: box.x + 0.15 * box.width, y: box.y + 0.25 * box.height, width: 0.7 * box.width, height: 0.45 * box.height };
+  let deepest, before;
+
+  /** The read-out's height of the ground right below a share of the view. */
+  const heightAt = async (u, v) => {
+    await page.mouse.move(box.x + u * box.width + 3, box.y + v * box.height);
+    await page.mouse.move(box.x + u * box.width, box.y + v * box.height);
+    const text = await until(() => page.textContent(".read-out"), (t) => /ground/.test(t), "the read-out");
+    return Number(/ground (\S+) m/.exec(text)[1]);
+  };
+  /** Share of the flow path in the reach that debris picks up from. */
+  const path = async () => (await run.colours(page, { ...clip, width: 0.4 * box.width })).bluish;
+  const ground = async () => (await run.colours(page, clip)).png;
+
+  await run.check("the ground sinks where debris picks up its bed, as far as the server says", async () => {
+    await page.click("[aria-label='Top view']");
+    for (const name of ["Names", "Particles"]) await page.locator(`label:has-text('${name}') input`).uncheck();
+    await page.waitForTimeout(600);
+    assert.equal(await offered(), false, "nothing was picked up, so there is no map of it");
+    before = { png: await ground(), path: await path(), height: await heightAt(0.5, 0.5) };
+    // No faster than in reality, so that it is still under way when it is paused: a scenario B does not run then.
+    await page.selectOption("select[aria-label^=Speed]", "1");
+    await page.click(".run");
+    await until(sunk, (depth) => depth > 0, "the ground sinks while debris moves", 60_000);
+    await until(state, (s) => s.time_s > 5, "more of it", 120_000);
+    await page.click(".run");
+    await until(state, (s) => s.status === "paused", "the pause");
+    const { volume_entrained_m3: volume } = await state();
+    deepest = await largestOf(page, "erosion_depth", own.token);
+    assert.ok(volume > 10 && deepest.most > 0.3 && deepest.cells > 50, JSON.stringify({ volume, deepest }));
+    await until(sunk, (depth) => Math.abs(depth - deepest.most) < 1e-6, "the page's ground in the pause");
+    await until(async () => (await ground()).equals(before.png), (same) => !same, "another look of the ground");
+    // The flow path lies on the sunk ground: under the old one it would not be seen.
+    assert.ok(before.path > 1e-3, `${before.path} of the view is the flow path`);
+    await until(path, (share) => share > 0.8 * before.path, `the flow path, which was ${before.path} of the view`);
+    await run.shot(page, "45-sunk-ground");
+    const height = await heightAt(0.5, 0.5);
+    assert.ok(height < before.height - 0.1 && height > before.height - deepest.most - 0.1, `${before.height} m, then ${height} m`);
+  });
+
+  await run.check("erosion is a map layer with a legend in metres, and among the exports", async () => {
+    await until(offered, (there) => there, "the layer is offered");
+    const bare = await ground();
+    await page.selectOption("select[aria-label^='Map layer']", "erosion_depth");
+    await until(() => page.locator(".legend").last().textContent(), (t) => /^Erosionm/.test(t), "legend");
+    await until(async () => (await ground()).equals(bare), (same) => !same, "the layer");
+    await page.waitForTimeout(600);
+    await run.shot(page, "45-erosion-layer");
+    await page.click("button:has-text('Export')");
+    const tif = await saved(page, () => page.click("[aria-label='Save erosion_depth.tif']"));
+    assert.ok(tif.bytes.length > 300);
+    await page.keyboard.press("Escape");
+  });
+
+  await run.check("looking back, ground and layer are those of then", async () => {
+    const now = await ground();
+    const last = (await state()).recording.last_s;
+    const then = await largestOf(page, `erosion_depth?time_s=${0.4 * last}`, own.token);
+    assert.ok(then.cells > 0 && then.cells < deepest.cells, `${then.cells} cells then, ${deepest.cells} now`);
+    await page.locator("input.timeline").focus();
+    await page.keyboard.press("Home");
+    await until(sunk, (depth) => depth === 0, "the ground of the beginning");
+    await page.selectOption("select[aria-label^='Map layer']", "none");
+    await until(async () => (await ground()).equals(before.png), (same) => same, "looks as at the beginning");
+    await page.click(".live");
+    await page.selectOption("select[aria-label^='Map layer']", "erosion_depth");
+    await until(async () => (await ground()).equals(now), (same) => same, "the ground of now");
+    await page.selectOption("select[aria-label^='Map layer']", "none");
+  });
+
+  await run.check("each scenario has its own ground, and a restart brings the old one back", async () => {
+    await page.click("button:has-text('Compare')");
+    await page.locator(".pane[data-scenario=B]").waitFor();
+    await until(() => page.evaluate(() => window.talusStats.sunk_m), (s) => Math.abs(s.A - deepest.most) < 1e-6, "the ground of A");
+    await page.waitForTimeout(1200);  // longer than the page waits before it asks again
+    assert.equal(await page.evaluate(() => window.talusStats.sunk_m.B ?? 0), 0, "B is at time 0");
+    const panes = await Promise.all(["A", "B"].map(async (name) => (await run.colours(page, await viewClip(page, name))).png));
+    assert.ok(!panes[0].equals(panes[1]), "both views are alike");
+    await page.click("[aria-label='Fit']");
+    await page.locator("label:has-text('Particles') input").check();
+    await page.waitForTimeout(900);
+    await run.shot(page, "45-own-ground");
+    await page.locator("label:has-text('Particles') input").uncheck();
+    await page.click("[aria-label='End scenario B']");
+    await until(() => page.locator(".pane").count(), (n) => n === 1, "one view");
+    await page.click("[aria-label='Top view']");
+    await page.click('[aria-label="Restart"]');
+    await until(state, (s) => s.time_s === 0, "time 0");
+    await until(sunk, (depth) => depth === 0, "the old ground");
+    await until(async () => (await ground()).equals(before.png), (same) => same, "looks as before");
+    assert.equal(await heightAt(0.5, 0.5), before.height);
+  });
+  await page.context().close();
+  await own.stop();
+}

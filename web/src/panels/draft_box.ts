@@ -1,0 +1,81 @@
+// What is shown while a new shape is drawn: how to, sizes, live measures, and a way without a mouse.
+import type { Drawing } from "../scene/drawing";
+import { number, quantity } from "../state/format";
+import { area, drawnAsLine, fewestPoints, length, releaseVolume } from "../state/shapes";
+import type { Shape, Twin } from "../state/twin";
+import { choice } from "../ui/choice";
+import { button, h } from "../ui/dom";
+import { depthField, growthField } from "./bed_fields";
+import { heightField, thicknessField } from "./shape_fields";
+import { newZoneFields } from "./zone_fields";
+
+function howTo(shape: Shape, byLine: boolean): string {
+  if (shape === "barrier") return "Click points along the line; double-click or Enter ends it.";
+  if (shape === "inflow" && byLine) return "Click the two ends of a line across the flow. Debris goes to the right of the way from the first to the second.";
+  return `Click ${shape === "building" ? "the corners of the footprint" : "corners on the ground"}; double-click or Enter closes ${shape === "building" ? "it" : "the outline"}.`;
+}
+
+/** Fields for what a new shape begins with; its other keys come when it is there. */
+function newFields(twin: Twin, shape: Shape, changed: () => void): HTMLElement[] {
+  const sizes = twin.newShape;
+  switch (shape) {
+    case "release":
+      return [thicknessField("release", sizes.release.thickness_m, (v) => {
+        sizes.release.thickness_m = v;
+        changed();
+      }).element];
+    case "barrier":
+      return [heightField("barrier", sizes.barrier.height_m, (v) => (sizes.barrier.height_m = v)).element,
+        thicknessField("barrier", sizes.barrier.thickness_m, (v) => (sizes.barrier.thickness_m = v)).element,
+        h("label", { class: "check", title: "Half of the debris passes its meshes at first; the share is in its editor" },
+          h("input", { type: "checkbox", onchange: (event: Event) => {
+            sizes.barrier.passing_share = (event.currentTarget as HTMLInputElement).checked ? 0.5 : null;
+          } }), "Net")];
+    case "building":
+      return [heightField("building", sizes.building.height_m, (v) => (sizes.building.height_m = v)).element];
+    case "zone":
+      return [newZoneFields((zone) => (sizes.zone = zone))];
+    case "bed":
+      return [depthField(sizes.bed.depth_m, (v) => {
+        sizes.bed.depth_m = v;
+        changed();
+      }).element, growthField(sizes.bed.growth_rate_per_m, (v) => (sizes.bed.growth_rate_per_m = v)).element];
+    case "inflow":
+      return [choice("Where debris comes in", [["line", "Across a line"], ["area", "Over an area"]], "line", (where) => {
+        twin.inflowByLine.value = where === "line";
+        // Points of an outline are no line: drawing begins anew.
+        twin.tool.value = { kind: "draw", shape };
+      })];
+  }
+}
+
+export function draftBox(twin: Twin, drawing: Drawing, shape: Shape): HTMLElement {
+  const measure = h("output", { class: "measure", "aria-live": "polite" });
+  const done = button("Finish", { class: "primary small", onclick: () => drawing.finish() });
+  const how = h("p", { class: "hint" });
+  const east = h("input", { type: "number", step: "any", "aria-label": "East of the next point, m", placeholder: "E, m" });
+  const north = h("input", { type: "number", step: "any", "aria-label": "North of the next point, m", placeholder: "N, m" });
+  const add = button("Add point", { class: "small", onclick: () => {
+    if (Number.isFinite(east.valueAsNumber) && Number.isFinite(north.valueAsNumber)) drawing.addPoint([east.valueAsNumber, north.valueAsNumber]);
+    else twin.notice("A point needs an east and a north coordinate in metres.", "error");
+  } });
+  const show = (): void => {
+    const points = [...drawing.draft.value];
+    const byLine = twin.inflowByLine.value;
+    const fewest = fewestPoints(shape, byLine);
+    how.textContent = `${howTo(shape, byLine)} Backspace takes the last one back, Escape cancels.`;
+    done.disabled = points.length < fewest;
+    if (drawing.shape !== shape) return;
+    const { release, bed } = twin.newShape;
+    measure.value = points.length < fewest ? `${points.length} of ${shape === "inflow" && byLine ? "" : "at least "}${fewest} points`
+      : drawnAsLine(shape, byLine) ? `${quantity(length(points), "m")} long`
+        : shape === "release" ? `${number(area(points))} m² × ${number(release.thickness_m)} m = ${quantity(releaseVolume(points, release.thickness_m, twin.relief), "m3")}`
+          : shape === "bed" ? `${number(area(points))} m² × ${number(bed.depth_m)} m = ${quantity(area(points) * bed.depth_m, "m3")}` : `${quantity(area(points), "m2")}`;
+  };
+  const fields = newFields(twin, shape, () => show());
+  drawing.draft.watch(show);
+  twin.inflowByLine.watch(show);
+  return h("div", { class: "draft" }, how, ...fields, measure,
+    h("details", {}, h("summary", {}, "By coordinates"), h("div", { class: "row coordinates" }, east, north, add)),
+    h("div", { class: "row" }, done, button("Cancel", { class: "small", onclick: () => drawing.cancel() })));
+}

@@ -1,0 +1,96 @@
+// What only inflows have: the hydrograph as a table and a chart, and the way in which debris comes.
+import { Chart } from "../charts/chart";
+import type { HydrographRow, Inflow } from "../protocol/messages";
+import { hasDensity, rowsAndOne, rowsOfDensity, rowsWith, rowsWithout, told, type HydrographKey } from "../state/inflows";
+import { unitText } from "../state/format";
+import { button, h } from "../ui/dom";
+import { optionalField } from "../ui/optional_field";
+
+export interface InflowFields {
+  element: HTMLElement;
+  show(inflow: Inflow): void;
+  enable(hindrance: string | null): void;
+  end(): void;
+}
+export interface InflowChange { hydrograph?: HydrographRow[]; direction_deg?: number | null; turn?: true }
+
+const columns: [HydrographKey, string, string][] = [["time_s", "Time", "s"], ["discharge_m3ps", "Discharge", "m3/s"], ["velocity_mps", "Velocity", "m/s"], ["density_kgpm3", "Density", "kg/m3"]];
+const text = (value: number | null | undefined): string => (value === null || value === undefined ? "" : String(Number(value.toPrecision(6))));
+
+/** downhill_deg: what a direction begins with; restDensity: what a density of its own begins with. */
+export function inflowFields(inflow: Inflow, downhill_deg: number, restDensity: number, onset: (change: InflowChange) => void): InflowFields {
+  let rows: HydrographRow[] = [];
+  let hindered: string | null = null;
+  let listed = "";
+  const table = h("table", { class: "hydrograph" });
+  const chart = new Chart({ title: "Discharge", x: { label: "Time", unit: "s" }, y: { label: "Discharge", unit: "m3/s" }, height: 128, legend: false, empty: "",
+    curves: [{ label: "Discharge", unit: "m3/s", colour: "#0a5fae", fill: "rgb(10 95 174 / 0.12)", points: true }] });
+  /** place: where a row has come to. */
+  const put = (next: HydrographRow[], place?: (row: number) => number): void => {
+    rows = next;
+    fill(place);
+    onset({ hydrograph: told(next) });
+  };
+  const add = button("Add a row", { class: "small", icon: "plus", onclick: () => put(rowsAndOne(rows)) });
+  const density = h("input", { type: "checkbox", onchange: () => put(rowsOfDensity(rows, density.checked ? restDensity : null)) });
+  const turn = button("Turn round", { class: "small", title: "Debris goes to the other side of the line", onclick: () => onset({ turn: true }) });
+  const direction = optionalField("Set direction", "Where debris moves as it comes in; unticked: downhill", downhill_deg,
+    { label: "Clockwise from north", unit: "deg", low: 0, high: 359.999, sliderLow: 0, sliderHigh: 359, value: null, help: "0 is north, 90 east" }, (v) => onset({ direction_deg: v }));
+  const long = h("p", { class: "hint" }, "Its hydrograph has more than 200 rows: it stays as the scene's file has it.");
+  const form = h("div", {}, table, h("div", { class: "row" }, add, h("label", { class: "check", title: "Else the debris has the material's rest density" }, density, "Density")), chart.element);
+
+  const cell = (row: number, [key, label, unit]: (typeof columns)[number]): HTMLElement => {
+    const input = h("input", { type: "number", step: "any", min: "0", value: text(rows[row][key]), disabled: hindered !== null, "data-cell": `${row} ${key}`,
+      "aria-label": `Row ${row + 1}: ${label.toLowerCase()}, ${unitText(unit)}`, onchange: () => {
+        const next = rowsWith(rows, row, key, input.valueAsNumber);
+        // A change comes before the focus moves on: the table is made anew, or put in order, after that.
+        const before = rows;
+        if (next) setTimeout(() => put(next, (k) => (k === row ? next.findIndex((r) => !before.includes(r)) : next.indexOf(before[k]))));
+        else input.value = text(rows[row][key]);
+      } });
+    return h("td", {}, input);
+  };
+  const fill = (place: (row: number) => number = (row) => row): void => {
+    const shown = columns.slice(0, hasDensity(rows) ? 4 : 3);
+    const key = JSON.stringify([rows.map((row) => columns.map(([name]) => row[name] ?? null)), hindered]);
+    density.checked = hasDensity(rows);
+    if (key === listed) return;
+    listed = key;
+    const held = table.contains(document.activeElement) && document.activeElement instanceof HTMLElement ? document.activeElement : null;
+    table.replaceChildren(
+      h("thead", {}, h("tr", {}, ...shown.map(([, label, unit]) => h("th", { scope: "col" }, label, h("span", {}, unitText(unit)))), h("td", {}))),
+      h("tbody", {}, ...rows.map((_, k) => h("tr", {}, ...shown.map((column) => cell(k, column)),
+        h("td", {}, button(`Remove row ${k + 1}`, { icon: "remove", bare: true, class: "bare quiet small", disabled: hindered !== null || rows.length < 3, "data-cell": `${k} away`,
+          onclick: () => put(rowsWithout(rows, k)) }))))));
+    if (held) keepFocus(held, place);
+    table.setAttribute("aria-label", `Hydrograph, ${rows.length} rows`);
+    chart.update([rows.map((row) => row.time_s), rows.map((row) => row.discharge_m3ps)]);
+  };
+  /** The table is made anew below who is at it: the focus and what is being typed stay. */
+  const keepFocus = (held: HTMLElement, place: (row: number) => number): void => {
+    const [row, key] = (held.dataset["cell"] ?? "0").split(" ");
+    const fresh = table.querySelector<HTMLElement>(`[data-cell="${place(Number(row))} ${key}"]`);
+    fresh?.focus();
+    if (held instanceof HTMLInputElement && fresh instanceof HTMLInputElement && held.value !== held.defaultValue) fresh.value = held.value;
+  };
+  const way = h("div", { class: "row" }, turn, h("span", { class: "muted" }, "Debris goes where the arrows show."));
+  way.hidden = inflow.line === null;
+  direction.element.hidden = inflow.line !== null;
+  return {
+    element: h("div", { class: "options" }, way, direction.element, long, form),
+    show(fresh) {
+      form.hidden = fresh.hydrograph === null;
+      long.hidden = fresh.hydrograph !== null;
+      direction.show(fresh.direction_deg);
+      rows = (fresh.hydrograph ?? []).map((row) => ({ ...row }));
+      fill();
+    },
+    enable(hindrance) {
+      hindered = hindrance;
+      turn.disabled = add.disabled = density.disabled = hindrance !== null;
+      direction.enable(hindrance);
+      fill();
+    },
+    end: () => chart.destroy(),
+  };
+}

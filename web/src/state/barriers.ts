@@ -1,0 +1,25 @@
+// What barriers have beside their line and sizes, as the page tells the server.
+import type { Barrier, BarrierOpening } from "../protocol/messages";
+
+/** null: none. */
+export type BarrierSet = Partial<Pick<Barrier, "passing_share" | "openings" | "resistance_Npm">>;
+
+export const barrierChange = {
+  /** Percent as in the form; to four digits, or 35 would become 0.35000000000000003. */
+  passing: (percent: number | null): BarrierSet => ({ passing_share: percent === null ? null : Number((percent / 100).toPrecision(4)) }),
+  resistance: (kilonewton: number | null): BarrierSet => ({ resistance_Npm: kilonewton === null ? null : Number((kilonewton * 1000).toPrecision(6)) }),
+};
+
+/** The openings with one number of one of them changed; as they are where that is no number. */
+export function openingsWith(openings: readonly BarrierOpening[], index: number, key: keyof BarrierOpening, value: number): BarrierOpening[] {
+  return openings.map((o, k) => (k === index && Number.isFinite(value) && value >= 0 ? { ...o, [key]: value } : o));
+}
+
+/** In a list: "net, 40 % pass, 2 openings". */
+export function barrierNote(barrier: BarrierSet): string {
+  const said: string[] = [];
+  if (typeof barrier.passing_share === "number") said.push(`net, ${Number((100 * barrier.passing_share).toPrecision(3))} % pass`);
+  const count = barrier.openings?.length ?? 0;
+  if (count > 0) said.push(count === 1 ? "1 opening" : `${count} openings`);
+  return said.map((s) => `, ${s}`).join("");
+}

@@ -1,0 +1,74 @@
+// What the misfit map of a calibration is drawn from.
+import type { CalibrationStatus, Parameter } from "../protocol/messages";
+
+/** Misfits range over decades, and near the best their differences matter most: a logarithm of 1 + misfit. */
+export class MisfitScale {
+  constructor(readonly low: number, readonly high: number) {}
+
+  static of(status: Pick<CalibrationStatus, "runs" | "map">): MisfitScale {
+    const all = [...status.runs.map((r) => r.misfit), ...(status.map?.misfit ?? [])].filter((v): v is number => v !== null);
+    if (all.length === 0) return new MisfitScale(0, 1);
+    const low = Math.min(...all);
+    const high = Math.max(...all);
+    // Runs that fit alike should look alike, and not span all colours.
+    return new MisfitScale(low, Math.max(high, 1.5 * (1 + low) - 1));
+  }
+  share(misfit: number): number {
+    const part = Math.log((1 + misfit) / (1 + this.low)) / Math.log((1 + this.high) / (1 + this.low));
+    return Math.min(1, Math.max(0, part));
+  }
+  /** The misfit at a share of the scale. */
+  at(share: number): number {
+    return (1 + this.low) * ((1 + this.high) / (1 + this.low)) ** share - 1;
+  }
+}
+
+/** Ranges that a calibration begins with; as in docs/calibration.md, otherwise around the present value. */
+const usual: Record<string, [number, number]> = { "material.friction_coefficient": [0.1, 0.6], "material.viscosity": [0.01, 0.6] };
+export const freeAtFirst = Object.keys(usual);
+
+export function firstRange(parameter: Parameter, present: number | null): [number, number] {
+  const value = present ?? parameter.value ?? parameter.default ?? 1;
+  const known = usual[parameter.key];
+  if (known && value >= known[0] && value <= known[1]) return known;
+  const low = Math.max(parameter.range.low ?? -Infinity, value > 0 ? value / 2 : 0);
+  const high = Math.min(parameter.range.high ?? Infinity, value > 0 ? 1.5 * value : 1);
+  return [Number(low.toPrecision(3)), Number((high > low ? high : low + 1).toPrecision(3))];
+}
+
+/** Why these cannot be the ends of a range; null: they can. */
+export function rangeProblem(parameter: Parameter, low: number, high: number): string | null {
+  const { range } = parameter;
+  if (!Number.isFinite(low) || !Number.isFinite(high)) return `${parameter.label}: give a lowest and a highest value`;
+  if (!(low < high)) return `${parameter.label}: ${low} must be below ${high}`;
+  if (range.low !== null && low < range.low) return `${parameter.label}: at least ${range.low} is allowed`;
+  if (range.high !== null && high > range.high) return `${parameter.label}: at most ${range.high} is allowed`;
+  return null;
+}
+
+/** "about 3 min": no better than that is known. */
+export function aboutTime(seconds: number | null): string {
+  if (seconds === null || !Number.isFinite(seconds)) return "";
+  if (seconds < 90) return `about ${Math.max(5, 5 * Math.round(seconds / 5))}\u202fs`;
+  if (seconds < 5400) return `about ${Math.round(seconds / 60)}\u202fmin`;
+  return `about ${Number((seconds / 3600).toPrecision(2))}\u202fh`;
+}
+
+const phases = { design: "spread over the ranges", search: "search for the best", check: "checks of the result" };
+
+/** How far a calibration is, in a sentence. */
+export function progressText(status: CalibrationStatus): string {
+  const done = `${status.runs.length} of at most ${status.runs_at_most} runs`;
+  const failed = status.runs_failed > 0 ? `, ${status.runs_failed} failed` : "";
+  switch (status.state) {
+    case "idle": return "";
+    case "running": {
+      const left = aboutTime(status.wall_remaining_s);
+      return `${done}${failed}${status.phase ? ` · ${phases[status.phase]}` : ""}${left ? ` · ${left} left at most` : ""}`;
+    }
+    case "cancelling": return `${done}${failed} · ends after the present step`;
+    case "cancelled": return `Cancelled after ${status.runs.length} runs${failed}`;
+    case "failed": return `Ended after ${status.runs.length} runs${failed}: ${status.message}`;
+    case "done": return `${status.runs.length} runs${failed}${status.result?.settled ? "; more would tell nothing new" : ", as many as allowed"}${status.message ? `. ${status.message}` : ""}`;
+  }
+}

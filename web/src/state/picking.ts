@@ -1,0 +1,30 @@
+// What of the ground a click means, where no house, barrier or release is.
+import type { Point, Setup } from "../protocol/messages";
+import { footprintArea, inside } from "./shapes";
+import type { Selection } from "./twin";
+
+function distanceToLine([x, y]: Point, line: readonly Point[]): number {
+  let least = Infinity;
+  for (let k = 1; k < line.length; ++k) {
+    const [[x0, y0], [x1, y1]] = [line[k - 1], line[k]];
+    const squared = (x1 - x0) ** 2 + (y1 - y0) ** 2;
+    const t = squared > 0 ? Math.min(1, Math.max(0, ((x - x0) * (x1 - x0) + (y - y0) * (y1 - y0)) / squared)) : 0;
+    least = Math.min(least, Math.hypot(x - x0 - t * (x1 - x0), y - y0 - t * (y1 - y0)));
+  }
+  return least;
+}
+
+/**
+ * An inflow's line within reach, else the smallest area around the place. One that covers much of the terrain would take every
+ * click that means nothing: it is selected in its list.
+ */
+export function groundUnder(setup: Setup, at: Point, reach_m: number, terrain_m2: number): Selection | null {
+  const line = setup.inflows.filter((i) => i.line !== null).map((i) => ({ id: i.id, far: distanceToLine(at, i.line ?? []) })).sort((a, b) => a.far - b.far)[0];
+  if (line && line.far <= reach_m) return { shape: "inflow", id: line.id };
+  const [x, y] = at;
+  const areas = ([["inflow", setup.inflows], ["bed", setup.beds], ["zone", setup.zones]] as const).flatMap(([shape, list]) => list
+    .filter(({ polygons }) => polygons.some((rings) => rings.filter((ring) => inside(ring, x, y)).length % 2 === 1))
+    .map(({ id, polygons }) => ({ shape, id, size: footprintArea(polygons) })));
+  const smallest = areas.filter(({ size }) => size < terrain_m2 / 4).sort((a, b) => a.size - b.size)[0];
+  return smallest ? { shape: smallest.shape, id: smallest.id } : null;
+}

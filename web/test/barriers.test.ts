@@ -1,0 +1,23 @@
+import { describe, expect, it } from "vitest";
+import { barrierChange, barrierNote, openingsWith } from "../src/state/barriers";
+
+describe("barriers", () => {
+  it("are told in the server's units, and null takes away", () => {
+    expect(barrierChange.passing(35)).toEqual({ passing_share: 0.35 });
+    expect(barrierChange.passing(0)).toEqual({ passing_share: 0 });
+    expect(barrierChange.passing(null)).toEqual({ passing_share: null });
+    expect(barrierChange.resistance(0.2)).toEqual({ resistance_Npm: 200 });
+    expect(barrierChange.resistance(null)).toEqual({ resistance_Npm: null });
+  });
+  it("change one number of one opening", () => {
+    const openings = [{ position_m: 4, width_m: 2, sill_height_m: 0 }, { position_m: 9, width_m: 3, sill_height_m: 1 }];
+    expect(openingsWith(openings, 1, "width_m", 5)).toEqual([openings[0], { ...openings[1], width_m: 5 }]);
+    expect(openingsWith(openings, 0, "width_m", NaN)).toEqual(openings);
+    expect(openingsWith(openings, 0, "width_m", -1)).toEqual(openings);
+  });
+  it("say in the list that they are nets", () => {
+    expect(barrierNote({ passing_share: 0.4, openings: [] })).toBe(", net, 40 % pass");
+    expect(barrierNote({ passing_share: null, openings: [{ position_m: 4, width_m: 2, sill_height_m: 0 }] })).toBe(", 1 opening");
+    expect(barrierNote({})).toBe("");
+  });
+});
