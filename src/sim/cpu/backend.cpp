@@ -44,6 +44,7 @@ Backend::Backend(const Model& model, std::size_t capacity)
     : particle_stages_(particle_stages_for(model.kernel.choice)),
       stress_stages_(stress_stages_for(model.kernel.choice)),
       pair_stages_(pair_stages_for(model.kernel.choice)),
+      columns_(capacity),
       cell_sort_(capacity),
       search_(capacity),
       neighbours_(capacity),
@@ -68,8 +69,20 @@ void Backend::run(StageFunction stage, const Model& model, State& state) {
 
 void Backend::predict_positions(const Model& model, State& state) {
     release_held(model, state);
-    if (slows_by_speed(model)) run(particle_stages_.drag, model, state, everything(state));
+    if (slows_by_speed(model)) {
+        count_columns(model, state);
+        run(particle_stages_.drag, model, state, everything(state));
+    }
     run(particle_stages_.predict, model, state, everything(state));
+}
+
+void Backend::count_columns(const Model& model, const State& state) {
+    columns_.count(state.position, state.count, column_width(model));
+    parallel_ranges(state.count, particle_grain, [&](std::size_t first, std::size_t last) {
+        for (std::size_t i = first; i < last; ++i) {
+            work_.column_particles[i] = columns_.particles_at(state.position.x[i], state.position.y[i]);
+        }
+    });
 }
 
 void Backend::release_held(const Model& model, State& state) {

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "sim/cpu/cell_sort.hpp"
+#include "sim/cpu/columns.hpp"
 #include "sim/cpu/neighbours.hpp"
 #include "sim/cpu/stages.hpp"
 #include "sim/cpu/work.hpp"
@@ -23,7 +24,7 @@ struct Bundles {
 };
 
 /// The stages of a step on all cores. Holds what lives within a step only; allocates nothing after construction, except
-/// when debris gets denser than ever before. Every stage works on bundles of particles; those with formulas in them are
+/// when debris gets denser than ever before, and for the columns of drag by speed when it first slows debris. Every stage works on bundles of particles; those with formulas in them are
 /// compiled per instruction set (stages.hpp).
 ///
 /// Displacements of the step, not predicted positions, are what the iterations correct: a velocity is then a small
@@ -53,6 +54,7 @@ class Backend {
     void run(StageFunction stage, const Model& model, State& state, Bundles bundles);
     void run(StageFunction stage, const Model& model, State& state);  ///< on all that is not at rest
     void release_held(const Model& model, State& state);
+    void count_columns(const Model& model, const State& state);
     void reorder(State& state, std::span<const std::uint32_t> order);
     void measure_compression(State& state) const;
     void find_building_contacts(const Model& model, State& state) const;
@@ -60,6 +62,7 @@ class Backend {
     ParticleStages particle_stages_;
     StressStages stress_stages_;
     PairStages pair_stages_;
+    Columns columns_;
     CellSort cell_sort_;
     CellGrid grid_;
     NeighbourSearch search_;

@@ -22,18 +22,18 @@ HWY_INLINE L mobility(const State& state, std::size_t i) {
     return flags(state.held, i, 0, 1) * flags(state.resting, i, 0, 1);
 }
 
-/// Drag by speed, with the pressures of the last step.
+/// Drag by speed, with the thickness of the flow before the step.
 TALUS_STAGE void drag(const StageData& data, std::size_t first, std::size_t last) {
     const Model& model = data.model;
     State& state = data.state;
-    const double before = state.previous_time_step;
-    const L dt(state.time_step), pressure_scale(before > 0 ? -1 / (before * before) : 0);
+    const L dt(state.time_step);
     for_each_lanes(first, last, [&](std::size_t i) {
         const V3 velocity = load(state.velocity, i), p = load(state.position, i);
         const GroundSample<L> below = model.terrain.sample(p.x, p.y);
         const L distance = (p.z - below.height) * below.normal.z;
-        const V3 slower = slowed_by_drag(model, ground_resistance(model, p), below, distance,
-                                         load(state.multiplier, i) * pressure_scale, velocity, dt);
+        const L thickness = flow_thickness(model, below, load(data.work.column_particles, i));
+        const V3 slower =
+            slowed_by_drag(model, ground_resistance(model, p), below, distance, thickness, velocity, dt);
         store(select(mobility(state, i) > L(0), slower, velocity), state.velocity, i);
     });
 }

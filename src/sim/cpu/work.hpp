@@ -18,7 +18,8 @@ namespace talus::cpu {
 struct Work {
     explicit Work(std::size_t capacity);
 
-    std::vector<float> mobile;  ///< 1, or 0 for debris that is held
+    std::vector<float> column_particles;  ///< before the step, in the column of the flow; with drag by speed only
+    std::vector<float> mobile;            ///< 1, or 0 for debris that is held
     VectorArray predicted;      ///< x*: before the step, for finding neighbours; after it, where it ends
     std::vector<Oct> motion;    ///< x*, nothing; x* - x so far, the last change of lambda. At last x and v
     std::vector<Oct> stress;    ///< xx, xy, xz, yy; yz, zz, nothing, pressure: what is applied to neighbours.

@@ -79,24 +79,37 @@ Real basal_share(const Model& model, Real distance) {
     return larger(Real(0), smaller(Real(1), Real(1) - above));
 }
 
+/// Width of the columns in which the thickness of the flow is counted, m: particles in one are some, and few.
+inline double column_width(const Model& model) {
+    return 2 * model.particle_spacing;
+}
+
+/// Thickness of the flow at right angles to the ground, m, where a column holds so many particles. Of what the depth
+/// is in depth-averaged laws: volume over area. A pressure would tell it too, but debris that is thinner than some
+/// particles bears none most of the time. A particle alone counts as a quarter of its width.
+template <class Real>
+Real flow_thickness(const Model& model, const GroundSample<Real>& below, Real particles) {
+    const double width = column_width(model);
+    return larger(Real(model.particle_spacing / 4),
+                  particles * Real(model.particle_volume() / (width * width)) * below.normal.z);
+}
+
 /// A velocity after a step of drag by speed, tangential to the ground:
 ///
 /// - Voellmy (1955), "Ueber die Zerstoerungskraft von Lawinen": the shear stress rho g v^2 / xi on the ground below
 ///   flow of thickness h, taken from all of its depth alike, as a deceleration g v^2 / (xi h). The law is one of the
 ///   whole column; taken from the lowest layer alone, debris would shear off above it wherever friction inside is less
-///   than the slope. Thickness: what lies below, and what weighs on the particle, p / (rho g cos). Debris that bears no
-///   pressure is in the air and feels none of it.
+///   than the slope. Debris more than a spacing above the flow's thickness is in the air and feels none of it.
 /// - Stems as cylinders across the flow (Petryk & Bosmajian 1975, "Analysis of flow through vegetation", eq. 4): a
 ///   deceleration C_D n D / 2 v^2 for n stems of diameter D per area.
 ///
-/// The exact solution of dv/dt = -k v^2 over a step, so it never reverses the motion. `pressure`: over density, m2/s2.
+/// The exact solution of dv/dt = -k v^2 over a step, so it never reverses the motion. `thickness`: of the flow, at
+/// right angles to the ground (see flow_thickness).
 template <class Real>
 Vec3<Real> slowed_by_drag(const Model& model, const GroundResistance<Real>& ground, const GroundSample<Real>& below,
-                          Real distance, Real pressure, const Vec3<Real>& velocity, Real time_step) {
-    const Real weight = Real(model.gravity) * below.normal.z;
-    const Real thickness = larger(Real(model.particle_spacing), distance + pressure / weight);
-    const Real turbulent =
-        select(pressure > Real(0), ground.inverse_turbulent_friction * Real(model.gravity) / thickness, Real(0));
+                          Real distance, Real thickness, const Vec3<Real>& velocity, Real time_step) {
+    const Real turbulent = select(distance <= thickness + Real(model.particle_spacing),
+                                  ground.inverse_turbulent_friction * Real(model.gravity) / thickness, Real(0));
     const Vec3<Real> along = velocity - below.normal * dot(velocity, below.normal);
     const Real loss = (turbulent + ground.stem_drag) * length(along) * time_step;
     const Vec3<Real> slower = velocity - along * (loss / (Real(1) + loss));

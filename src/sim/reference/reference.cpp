@@ -41,6 +41,19 @@ void for_each_neighbour(const Model& model, std::size_t count, std::size_t i, co
     }
 }
 
+/// Particles in the column at a place, between the middles of columns by bilinear interpolation.
+double particles_in_column(const Model& model, const State& state, const Vector& p) {
+    const double width = column_width(model);
+    const auto share = [&](double along, double counted) {
+        return std::max(0.0, 1 - std::abs(std::floor(counted / width) + 0.5 - along / width));
+    };
+    double sum = 0;
+    for (const Particle& other : state.particles) {
+        sum += share(p.x, other.position.x) * share(p.y, other.position.y);
+    }
+    return sum;
+}
+
 }  // namespace
 
 State::State(const talus::State& state)
@@ -85,9 +98,9 @@ void Backend::predict_positions(const Model& model, State& state) {
         p.displacement = {};
         if (!p.held && slows_by_speed(model)) {
             const GroundSample<double> below = model.terrain.sample(p.position.x, p.position.y);
-            const double distance = (p.position.z - below.height) * below.normal.z, dt = state.previous_time_step;
-            const double pressure = dt > 0 ? -p.multiplier / (dt * dt) : 0;
-            p.velocity = slowed_by_drag(model, ground_resistance(model, p.position), below, distance, pressure,
+            const double distance = (p.position.z - below.height) * below.normal.z;
+            const double thickness = flow_thickness(model, below, particles_in_column(model, state, p.position));
+            p.velocity = slowed_by_drag(model, ground_resistance(model, p.position), below, distance, thickness,
                                         p.velocity, state.time_step);
         }
         p.effective_share = effective_share(model, id, state.time);

@@ -1,6 +1,6 @@
 // Debris against a barrier: one that is high enough holds it, one that is not is overtopped; both are told, and one that is
 // taken away stays in the books. On a server of its own: another barrier on the way would change what this one holds.
-import { assert, shownTime, startServer, until, viewClip } from "./harness.mjs";
+import { assert, pause, shownTime, startServer, until, viewClip } from "./harness.mjs";
 
 /** Ends of a line of `half` metres to either side of the flow path at a chainage. */
 function across(path, chainage, half) {
@@ -24,14 +24,10 @@ export async function testBarrier(run, command) {
   const chainage = 70;
   const reach = 9; // s, enough for debris to get there and for most of it to stop
 
-  const pause = async () => {
-    if ((await state()).status === "running") await page.click(".run");
-    await until(state, (s) => s.status !== "running", "the end of it");
-  };
   const restart = async () => {
     // Debris that a barrier held flows on once the barrier is lower, and who restarts a running run sees it run on.
     for (;;) {
-      await pause();
+      await pause(page, state);
       await page.click('[aria-label="Restart"]');
       const s = await until(state, (now) => now.time_s === 0 || now.status === "running", "time 0");
       if (s.status !== "running") return;
@@ -41,7 +37,7 @@ export async function testBarrier(run, command) {
     await page.selectOption("select[aria-label^=Speed]", "");
     await page.click(".run");
     await until(state, (s) => s.time_s > reach || !["running", "paused"].includes(s.status), "the run", 120_000);
-    await pause();
+    await pause(page, state);
     await until(() => shownTime(page), (t) => t > reach - 1, "time on the page");
     await page.waitForTimeout(1500);
   };

@@ -2,7 +2,7 @@
 // brings it back. On a server and a scene of its own: the shipped ones have no bed.
 import { writeFileSync } from "node:fs";
 import { join } from "node:path";
-import { assert, boxOf, saved, startServer, until, viewClip } from "./harness.mjs";
+import { assert, boxOf, pause, saved, startServer, until, viewClip } from "./harness.mjs";
 
 const [west, south, columns, rows] = [500000, 5200000, 100, 50];
 const prj = `PROJCS["WGS 84 / UTM zone 33N",GEOGCS["WGS 84",DATUM["WGS_1984",SPHEROID["WGS 84",6378137,298.257223563]],PRIMEM["Greenwich",0],UNIT["degree",0.0174532925199433]],PROJECTION["Transverse_Mercator"],PARAMETER["latitude_of_origin",0],PARAMETER["central_meridian",15],PARAMETER["scale_factor",0.9996],PARAMETER["false_easting",500000],PARAMETER["false_northing",0],UNIT["metre",1]]`;
@@ -97,8 +97,8 @@ export async function testErosion(run, command) {
     await page.click(".run");
     await until(sunk, (depth) => depth > 0, "the ground sinks while debris moves", 60_000);
     await until(state, (s) => s.time_s > 5, "more of it", 120_000);
-    await page.click(".run");
-    await until(state, (s) => s.status === "paused", "the pause");
+    await pause(page, state);
+    assert.equal((await state()).status, "paused");
     const { volume_entrained_m3: volume } = await state();
     deepest = await largestOf(page, "erosion_depth", own.token);
     assert.ok(volume > 10 && deepest.most > 0.3 && deepest.cells > 50, JSON.stringify({ volume, deepest }));

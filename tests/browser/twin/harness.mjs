@@ -147,6 +147,15 @@ export async function until(question, wanted, what, limit_ms = 20_000) {
 }
 /** Where an element is, once it is there: what lies over the view comes and goes with pictures. */
 export const boxOf = (locator) => until(() => locator.boundingBox({ timeout: 1000 }).catch(() => null), (box) => box !== null, String(locator));
+/** Presses Pause, unless the run ends by itself meanwhile. `state`: asks the server for the scenario's. */
+export async function pause(page, state) {
+  const ended = (s) => s.status !== "running";
+  await until(async () => {
+    // A button that is no longer Pause, or off because the run has ended, is not waited for: the server says how it is.
+    if (!ended(await state())) await page.click(".run[data-face=Pause]", { timeout: 2000 }).catch(() => {});
+    return state();
+  }, ended, "the pause");
+}
 export const shownTime = async (page) => Number((await page.textContent(".clock")).replace("−", "-").split(" ")[0]);
 export async function saved(page, click) {
   const [download] = await Promise.all([page.waitForEvent("download", { timeout: 60_000 }), click()]);

@@ -1,5 +1,5 @@
 // What changes a scenario: time, parameters, releases, barriers, buildings, undo.
-import { assert, boxOf, clickGround, shownTime, until, viewClip } from "./harness.mjs";
+import { assert, boxOf, clickGround, pause, shownTime, until, viewClip } from "./harness.mjs";
 
 export async function testLevers(run, server) {
   const page = await run.open(server.controller, { name: "Ada" });
@@ -20,13 +20,14 @@ export async function testLevers(run, server) {
   await run.check("run: debris moves on the canvas, time goes on; pause holds both", async () => {
     const clip = await viewClip(page);
     const before = await run.colours(page, clip);
+    await page.selectOption("select[aria-label^=Speed]", "1");  // however slow the page is, the end is far
     await page.click(".run");
     await until(state, (s) => s.status === "running" && s.time_s > 2, "running", 30_000);
     await until(() => shownTime(page), (t) => t > 2, "time on the page");
     const moving = await run.colours(page, clip);
     assert.ok(!moving.png.equals(before.png), "the canvas has not changed");
-    await page.click(".run");
-    await until(state, (s) => s.status === "paused", "paused");
+    await pause(page, state);
+    assert.equal((await state()).status, "paused");
     await page.waitForTimeout(700);
     const still = await run.colours(page, clip);
     await page.waitForTimeout(500);
@@ -130,8 +131,7 @@ export async function testLevers(run, server) {
     await until(setup, (s) => s.releases.find((r) => r.id === fresh.id).status === "released", "triggered");
     await page.click(".run");
     await until(state, (s) => s.volume_held_m3 < 0.1 * held && s.step > 3, "its debris", 20_000);
-    await page.click(".run");
-    await until(state, (s) => s.status !== "running", "paused");
+    await pause(page, state);
     await page.locator(".stage canvas").focus();
     for (let k = 0; k < 3; ++k) {
       const sentence = (await setup()).undo;

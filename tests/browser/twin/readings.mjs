@@ -1,6 +1,6 @@
 // What is read from a scenario: layers, camera, charts, probes, sections, impacts, recording, exports, comparison.
 import { join } from "node:path";
-import { assert, boxOf, clickGround, saved, shownTime, until, viewClip } from "./harness.mjs";
+import { assert, boxOf, clickGround, pause, saved, shownTime, until, viewClip } from "./harness.mjs";
 
 /** While one looks back, charts, mass balance, map layers and impacts are those of the time on display. */
 async function readPast(page, server, last) {
@@ -265,8 +265,7 @@ export async function testReadings(run, server) {
     assert.equal((await server.ask("scenarios/A/setup")).parameters["material.friction_coefficient"], a);
     await page.click(".run");
     await until(() => server.ask("scenarios/B/state"), (s) => s.time_s > 6, "B runs", 90_000);
-    await page.click(".run");
-    await until(() => server.ask("scenarios/B/state"), (s) => s.status !== "running", "B pauses");
+    await pause(page, () => server.ask("scenarios/B/state"));
     await page.waitForTimeout(1500);
     const left = await run.colours(page, await viewClip(page, "A"));
     const right = await run.colours(page, await viewClip(page, "B"));
