@@ -27,14 +27,13 @@ GroundSample<double> level() {
     return {0, {0, 0, 1}};
 }
 
-TEST(VoellmyDrag, is_that_of_the_flow_below_and_above_the_particle) {
+TEST(VoellmyDrag, is_that_of_the_thickness_of_the_flow) {
     MaterialSpec material;
     material.turbulent_friction = 200;
     const Model model = model_of(material);
     const auto ground = ground_resistance(model, Vec3<double>{});
-    // 0.4 m above the ground and under the weight of 0.6 m more.
-    const double dt = 1e-4, pressure = model.gravity * 0.6;
-    const auto slower = slowed_by_drag(model, ground, level(), 0.4, pressure, {3, 4, -1}, dt);
+    const double dt = 1e-4;
+    const auto slower = slowed_by_drag(model, ground, level(), 0.4, 1.0, {3, 4, -1}, dt);
     const double deceleration = model.gravity * 25 / (200 * 1.0);
     EXPECT_NEAR((5 - std::hypot(slower.x, slower.y)) / dt, deceleration, 1e-3 * deceleration);
     EXPECT_NEAR(slower.x / slower.y, 0.75, 1e-9) << "against the motion";
@@ -49,9 +48,62 @@ TEST(VoellmyDrag, never_reverses_the_motion_and_leaves_what_flies_alone) {
     const auto slower = slowed_by_drag(model, ground, level(), 0.05, 1.0, {1e4, 0, 0}, 10.0);
     EXPECT_GT(slower.x, 0);
     EXPECT_LT(slower.x, 1e-2);
-    EXPECT_EQ(slowed_by_drag(model, ground, level(), 0.05, 0.0, {5, 0, 0}, 0.1).x, 5) << "no pressure: in the air";
+    EXPECT_LT(slowed_by_drag(model, ground, level(), 1.09, 1.0, {5, 0, 0}, 0.1).x, 5) << "on top of the flow";
+    EXPECT_EQ(slowed_by_drag(model, ground, level(), 1.11, 1.0, {5, 0, 0}, 0.1).x, 5) << "in the air above it";
     const double unknown = std::numeric_limits<double>::quiet_NaN();
     EXPECT_EQ(slowed_by_drag(model, ground, level(), unknown, 1.0, {5, 0, 0}, 0.1).x, 5);
+}
+
+TEST(VoellmyDrag, thickness_is_volume_over_area_at_right_angles_to_the_ground) {
+    const Model model = model_of({});
+    const double slope = 0.5;
+    const GroundSample<double> steep{0, {std::sin(slope), 0, std::cos(slope)}};
+    // Three layers of a lattice of 0.1 m: four particles each in a column twice as wide.
+    EXPECT_NEAR(flow_thickness(model, level(), 12.0), 0.3, 1e-9);
+    EXPECT_NEAR(flow_thickness(model, steep, 12.0), 0.3 * std::cos(slope), 1e-9);
+    EXPECT_NEAR(flow_thickness(model, level(), 0.1), 0.025, 1e-9) << "one alone is not thinner than this";
+}
+
+/// Speed after three seconds of the middle of a single layer, spread so far apart that no particle presses on another.
+double speed_of_thin_layer(double start, double apart, const MaterialSpec& material, double slope) {
+    constexpr double spacing = 0.1;
+    constexpr int side = 24;
+    const Terrain terrain = inclined_plane(slope * 180 / M_PI, 60, 8);
+    Model model = make_model(material, {}, terrain, {}, spacing);
+    std::vector<LocalPoint> points, velocities;
+    for (int i = 0; i < side; ++i) {
+        for (int j = 0; j < side; ++j) {
+            const double x = 3 + apart * std::cos(slope) * i, y = 2.4 + apart * j;
+            const double z = 200 - std::tan(slope) * x + model.contact_distance() / std::cos(slope);
+            points.push_back(terrain.frame().to_local({x, y, z}));
+            velocities.push_back({static_cast<float>(start * std::cos(slope)), 0,
+                                  static_cast<float>(-start * std::sin(slope))});
+        }
+    }
+    Simulation simulation(std::move(model), testing::state_of(points, velocities));
+    while (simulation.state().time < 3) EXPECT_FALSE(simulation.advance());
+    double sum = 0;
+    int inside = 0;
+    const State& state = simulation.state();
+    for (std::uint32_t k = 0; k < state.count; ++k) {
+        const std::uint32_t i = state.id[k] / side, j = state.id[k] % side;
+        if (i < side / 3 || i >= 2 * side / 3 || j < side / 3 || j >= 2 * side / 3) continue;
+        sum += std::hypot(state.velocity.x[k], state.velocity.z[k]);
+        ++inside;
+    }
+    return sum / inside;
+}
+
+TEST(VoellmyDrag, holds_for_debris_that_is_thinner_than_a_particle) {
+    constexpr double apart = 0.14, slope = M_PI / 6;
+    MaterialSpec material;
+    material.friction_coefficient = 0.2;
+    material.turbulent_friction = 150;
+    material.viscosity = 0;
+    const double thickness = 0.001 / (apart * apart);  // m, of particles of 0.1 m
+    const double law = std::sqrt(150 * thickness * (std::sin(slope) - 0.2 * std::cos(slope)));
+    EXPECT_NEAR(speed_of_thin_layer(0.7 * law, apart, material, slope), law, 0.06 * law);
+    EXPECT_NEAR(speed_of_thin_layer(1.3 * law, apart, material, slope), law, 0.06 * law);
 }
 
 TEST(ForestDrag, is_that_of_cylinders_across_the_flow) {

@@ -80,7 +80,8 @@ void Backend::count_columns(const Model& model, const State& state) {
     columns_.count(state.position, state.count, column_width(model));
     parallel_ranges(state.count, particle_grain, [&](std::size_t first, std::size_t last) {
         for (std::size_t i = first; i < last; ++i) {
-            work_.column_particles[i] = columns_.particles_at(state.position.x[i], state.position.y[i]);
+            const Vec3<float> p = state.position.at(i);
+            work_.column_particles[i] = columns_.particles_at(p.x, p.y) / open_share(model, p, grain_rank(state.id[i]));
         }
     });
 }

@@ -77,15 +77,26 @@ TALUS_STAGE void resist(const StageData& data, std::size_t first, std::size_t la
     State& state = data.state;
     Work& work = data.work;
     const L strength(strength_per_pascal(model, state.time_step));
+    const double before = state.previous_time_step;
+    const L pressure_scale(before > 0 ? -1 / (before * before) : 0);  // multipliers are still those of the last step
     for_each_lanes(first, last, [&](std::size_t i) {
         L share(1);
         for (int lane = 0; lane < lane_count; ++lane) {
             const std::uint32_t id = state.id[i + static_cast<std::size_t>(lane)];
             share.set(lane, static_cast<float>(effective_share(model, id, state.time)));
         }
-        const GroundResistance<L> ground = ground_resistance(model, load(state.position, i));
+        const V3 p = load(state.position, i), velocity = load(state.velocity, i);
+        const GroundResistance<L> ground = ground_resistance(model, p);
+        L friction = ground.friction_coefficient;
+        if (model.inertial_friction.on) {
+            const GroundSample<L> below = model.terrain.sample(p.x, p.y);
+            const L speed = length(velocity - below.normal * dot(velocity, below.normal));
+            friction = friction_beside_ground(model, friction, speed, (p.z - below.height) * below.normal.z,
+                                              load(state.multiplier, i) * pressure_scale * share);
+            store(shear_beside_ground(model, ground.friction_coefficient), work.ground_shear, i);
+        }
         store(share, work.effective_share, i);
-        store(ground.friction_coefficient * share, work.ground_friction, i);
+        store(friction * share, work.ground_friction, i);
         store(ground.cohesion * strength, work.ground_strength, i);
     });
 }

@@ -111,6 +111,7 @@ TALUS_STAGE void solve(const StageData& data, std::size_t first, std::size_t las
     const L cohesion(internal_strength(model, state.time_step));
     const bool by_particle = resists_by_particle(model), cohesive = model.cohesion > 0;
     const InertialFriction& inertial = model.inertial_friction;
+    const L grain_size(inertial.grain_size / model.kernel.gradient_moment);
     for_each_lanes(first, last, [&](std::size_t i) {
         const LaneLists lists(neighbours, i);
         const V3 moved = vector_of(load_high(work.motion, i));
@@ -123,12 +124,15 @@ TALUS_STAGE void solve(const StageData& data, std::size_t first, std::size_t las
         const L before = load(state.multiplier, i);
         const L after = next_multiplier(before, density - larger(L(0), start), load(work.gradient_square, i), factor);
         const Stress stress_before = load(state.stress, i);
+        if (inertial.on) {
+            add_ground_shear(deformation, moved, load(work.ground_normal, i), load(work.ground_slope, i),
+                             load(work.ground_shear, i));
+        }
         const Stress shear = deformation.shear();
         L friction = internal_friction, pressure = -after;
         if (by_particle) pressure = pressure * load(work.effective_share, i);
         if (inertial.on) {
-            friction = inertial_friction(friction, L(inertial.rise), L(inertial.half), L(inertial.grain_size), shear,
-                                         pressure);
+            friction = inertial_friction(friction, L(inertial.rise), L(inertial.half), grain_size, shear, pressure);
         }
         const L limit =
             cohesive ? strength_limit_square(friction, pressure, cohesion) : friction_limit_square(friction, pressure);

@@ -11,7 +11,7 @@ Work::Work(std::size_t capacity) : has_walls(capacity + array_padding), walls(ca
     for (std::vector<Oct>* array : {&motion, &stress}) array->resize(capacity + array_padding);
     for (std::vector<float>* array : {&column_particles, &mobile, &ground_distance, &ground_slope, &constraint_start, &surface_share,
                                       &gradient_square, &pair_square, &compression, &tolerated_compression,
-                                      &contact_normal, &ground_friction, &ground_strength, &effective_share}) {
+                                      &contact_normal, &ground_friction, &ground_strength, &effective_share, &ground_shear}) {
         array->resize(capacity + array_padding);
     }
 }

@@ -42,6 +42,7 @@ struct Work {
     std::vector<float> ground_friction;  ///< coefficient, lowered by pore pressure
     std::vector<float> ground_strength;  ///< m, where it touches (see Grip)
     std::vector<float> effective_share;  ///< 1 - r_u
+    std::vector<float> ground_shear;     ///< see shear_beside_ground; with inertial friction only
 
     // Contact with the ground in this step (see ContactMemory).
     std::vector<float> contact_normal;

@@ -5,6 +5,7 @@
 
 #include "core/geometry.hpp"
 #include "sim/model.hpp"
+#include "sim/physics/stress.hpp"
 
 /// What holds debris back beside Coulomb friction and viscosity: drag by speed, cohesion, pore pressure, zones.
 namespace talus {
@@ -23,7 +24,7 @@ inline bool has_pore_pressure(const Model& model) {
 
 /// Whether resistance is more than the model's three friction coefficients, and must be found for every particle.
 inline bool resists_by_particle(const Model& model) {
-    return !model.cover.empty() || model.cohesion > 0 || has_pore_pressure(model);
+    return !model.cover.empty() || model.cohesion > 0 || has_pore_pressure(model) || model.inertial_friction.on;
 }
 
 /// The share of the normal stress that the grains of a particle's release bear, 1 - r_u(t) (Hutchinson 1986, "A
@@ -60,6 +61,37 @@ GroundResistance<Real> ground_resistance(const Model& model, const Vec3<Real>& p
             known(Real(cell.y), result.inverse_turbulent_friction), Real(cell.w)};
 }
 
+/// Friction on ground as rough as it may be, of debris with the mu(I) law: no more than the debris itself bears where it
+/// shears between the ground, at rest, and the middle of a particle. Without this the lowest particles would stick to
+/// rough ground, and the flow begin half a spacing too high. `speed`: along the ground, m/s; `pressure`: of the grains,
+/// over density, m2/s2.
+template <class Real>
+Real friction_beside_ground(const Model& model, Real friction, Real speed, Real distance, Real pressure) {
+    const InertialFriction& inertial = model.inertial_friction;
+    if (!inertial.on) return friction;
+    Deviator<Real> shear;
+    shear.xz = speed / (larger(distance, Real(model.contact_distance() / 2)) * Real(2));
+    return smaller(friction, inertial_friction(Real(model.internal_friction_coefficient), Real(inertial.rise),
+                                               Real(inertial.half), Real(inertial.grain_size), shear,
+                                               larger(Real(0), pressure)));
+}
+
+/// By how much ground shears debris with the mu(I) law beside it, relative to ground that would follow the motion: ground
+/// that is rougher than the debris inside is an even shear that goes on below, where it moves backwards.
+template <class Real>
+Real shear_beside_ground(const Model& model, Real friction) {
+    return select(friction > Real(model.internal_friction_coefficient), Real(2), Real(0));
+}
+
+/// What ground adds to the gradient of a displacement `moved` beside it (see shear_beside_ground). `slope`: of the
+/// ground's share of the density.
+template <class Real>
+void add_ground_shear(DisplacementGradient<Real>& deformation, const Vec3<Real>& moved, const Vec3<Real>& normal,
+                      Real slope, Real ground_shear) {
+    const Vec3<Real> along = moved - normal * dot(moved, normal);
+    deformation.add(along * (Real(0) - ground_shear), normal * slope);
+}
+
 /// A shear strength, Pa, as a correction, m, of a particle that stands for a spacing squared of the ground.
 inline double strength_per_pascal(const Model& model, double time_step) {
     return time_step * time_step / (model.rest_density * model.particle_spacing);
@@ -84,9 +116,25 @@ inline double column_width(const Model& model) {
     return 2 * model.particle_spacing;
 }
 
-/// Thickness of the flow at right angles to the ground, m, where a column holds so many particles. Of what the depth
-/// is in depth-averaged laws: volume over area. A pressure would tell it too, but debris that is thinner than some
-/// particles bears none most of the time. A particle alone counts as a quarter of its width.
+/// The share of the columns around a particle that walls leave to debris. Interpolated between their middles, columns
+/// count what is near with the weight of a quadratic B-spline, one and a half of their widths to either side; a wall
+/// takes what is beyond it.
+template <class Real>
+Real open_share(const Model& model, const Vec3<Real>& p, float grain_rank) {
+    if (model.solids.empty()) return 1;
+    const auto beyond = [&](const SolidSample<Real>& wall) {
+        if (wall.building < 0 || wall.normal.z > Real(0.5)) return Real(0);
+        const Real s = std::clamp(wall.distance / Real(column_width(model)), Real(0), Real(1.5)), rest = Real(1.5) - s;
+        return s < Real(0.5) ? Real(0.5) - s * (Real(0.75) - s * s / 3) : rest * rest * rest / 6;
+    };
+    const SolidSample<Real> nearest = model.solids.nearest(p, grain_rank);
+    if (nearest.building < 0) return 1;
+    return (1 - beyond(nearest)) * (1 - beyond(model.solids.second_nearest(p, nearest, grain_rank)));
+}
+
+/// Thickness of the flow at right angles to the ground, m, where a column holds so many particles. What the depth is in
+/// depth-averaged laws, volume over area. A pressure would tell it too, but debris that is thinner than some particles
+/// bears none most of the time. A particle alone counts as a quarter of its width.
 template <class Real>
 Real flow_thickness(const Model& model, const GroundSample<Real>& below, Real particles) {
     const double width = column_width(model);

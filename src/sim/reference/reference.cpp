@@ -99,19 +99,28 @@ void Backend::predict_positions(const Model& model, State& state) {
         if (!p.held && slows_by_speed(model)) {
             const GroundSample<double> below = model.terrain.sample(p.position.x, p.position.y);
             const double distance = (p.position.z - below.height) * below.normal.z;
-            const double thickness = flow_thickness(model, below, particles_in_column(model, state, p.position));
+            const double particles =
+                particles_in_column(model, state, p.position) / open_share(model, p.position, rank_of(id));
+            const double thickness = flow_thickness(model, below, particles);
             p.velocity = slowed_by_drag(model, ground_resistance(model, p.position), below, distance, thickness,
                                         p.velocity, state.time_step);
         }
-        p.effective_share = effective_share(model, id, state.time);
-        const GroundResistance<double> ground = ground_resistance(model, p.position);
-        p.grip = {ground.friction_coefficient * p.effective_share,
-                  model.building_friction_coefficient * p.effective_share,
-                  ground.cohesion * strength_per_pascal(model, state.time_step)};
         if (!p.held) {
             p.velocity.z -= model.gravity * state.time_step;
             p.displacement = p.velocity * state.time_step;
         }
+        p.effective_share = effective_share(model, id, state.time);
+        const GroundResistance<double> ground = ground_resistance(model, p.position);
+        const GroundSample<double> below = model.terrain.sample(p.position.x, p.position.y);
+        const double speed = length(p.velocity - below.normal * dot(p.velocity, below.normal));
+        const double before = state.previous_time_step;
+        const double pressure = before > 0 ? -p.multiplier / (before * before) * p.effective_share : 0;
+        const double friction = friction_beside_ground(model, ground.friction_coefficient, speed,
+                                                       (p.position.z - below.height) * below.normal.z, pressure);
+        p.ground_shear = model.inertial_friction.on ? shear_beside_ground(model, ground.friction_coefficient) : 0;
+        p.grip = {friction * p.effective_share,
+                  model.building_friction_coefficient * p.effective_share,
+                  ground.cohesion * strength_per_pascal(model, state.time_step)};
         p.contacts = {};
     }
 }
@@ -191,16 +200,18 @@ void solve_stress(const Model& model, State& state) {
         p.multiplier_change = p.compression = 0;
         p.stress_change = {};
         if (p.held) continue;
-        const Sums sums = sums_at(model, state, point, i);
+        Sums sums = sums_at(model, state, point, i);
         const double density =
             p.constraint.start - sums.divergence + boundary_change(p.boundary.gradient, p.displacement);
         const double multiplier = next_multiplier(p.multiplier, density - std::max(0.0, p.constraint.start),
                                                   p.constraint.gradient_square, factor);
+        const BoundaryFace<double>& ground = p.boundary.faces[0];
+        add_ground_shear(sums.deformation, p.displacement, ground.normal, ground.slope, p.ground_shear);
         const Deviator<double> shear = sums.deformation.shear();
         const double pressure = -multiplier * p.effective_share;
         const InertialFriction& inertial = model.inertial_friction;
         const double friction = inertial_friction(model.internal_friction_coefficient, inertial.rise, inertial.half,
-                                                  inertial.grain_size, shear, pressure);
+                                                  inertial.grain_size / model.kernel.gradient_moment, shear, pressure);
         const double cohesion = internal_strength(model, state.time_step);
         const Deviator<double> stress = next_stress(
             p.stress, shear, strength_limit_square(friction, pressure, cohesion), p.constraint.pair_square, factor);

@@ -24,7 +24,7 @@ struct Particle {
     Boundary<double> boundary;
     ContactMemories<double> contacts;
     Grip<double> grip;
-    double effective_share = 1;
+    double effective_share = 1, ground_shear = 0;
     bool held = false;
 
     [[nodiscard]] Vector predicted() const { return position + displacement; }

@@ -152,9 +152,9 @@ export async function pause(page, state) {
   const ended = (s) => s.status !== "running";
   await until(async () => {
     // A button that is no longer Pause, or off because the run has ended, is not waited for: the server says how it is.
-    if (!ended(await state())) await page.click(".run[data-face=Pause]", { timeout: 2000 }).catch(() => {});
+    if (!ended(await state())) await page.click(".run[data-face=Pause]", { timeout: 10_000 }).catch(() => {});
     return state();
-  }, ended, "the pause");
+  }, ended, "the pause", 90_000);
 }
 export const shownTime = async (page) => Number((await page.textContent(".clock")).replace("−", "-").split(" ")[0]);
 export async function saved(page, click) {
