@@ -76,8 +76,8 @@ double speed_of_thin_layer(double start, double apart, const MaterialSpec& mater
             const double x = 3 + apart * std::cos(slope) * i, y = 2.4 + apart * j;
             const double z = 200 - std::tan(slope) * x + model.contact_distance() / std::cos(slope);
             points.push_back(terrain.frame().to_local({x, y, z}));
-            velocities.push_back({static_cast<float>(start * std::cos(slope)), 0,
-                                  static_cast<float>(-start * std::sin(slope))});
+            velocities.push_back(
+                {static_cast<float>(start * std::cos(slope)), 0, static_cast<float>(-start * std::sin(slope))});
         }
     }
     Simulation simulation(std::move(model), testing::state_of(points, velocities));

@@ -24,8 +24,8 @@ struct Bundles {
 };
 
 /// The stages of a step on all cores. Holds what lives within a step only; allocates nothing after construction, except
-/// when debris gets denser than ever before, and for the columns of drag by speed when it first slows debris. Every stage works on bundles of particles; those with formulas in them are
-/// compiled per instruction set (stages.hpp).
+/// when debris gets denser than ever before, and for the columns of drag by speed when it first slows debris. Every
+/// stage works on bundles of particles; those with formulas in them are compiled per instruction set (stages.hpp).
 ///
 /// Displacements of the step, not predicted positions, are what the iterations correct: a velocity is then a small
 /// number divided by dt, and not the difference of two large ones.

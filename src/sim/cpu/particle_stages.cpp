@@ -32,8 +32,7 @@ TALUS_STAGE void drag(const StageData& data, std::size_t first, std::size_t last
         const GroundSample<L> below = model.terrain.sample(p.x, p.y);
         const L distance = (p.z - below.height) * below.normal.z;
         const L thickness = flow_thickness(model, below, load(data.work.column_particles, i));
-        const V3 slower =
-            slowed_by_drag(model, ground_resistance(model, p), below, distance, thickness, velocity, dt);
+        const V3 slower = slowed_by_drag(model, ground_resistance(model, p), below, distance, thickness, velocity, dt);
         store(select(mobility(state, i) > L(0), slower, velocity), state.velocity, i);
     });
 }

@@ -9,9 +9,10 @@ Work::Work(std::size_t capacity) : has_walls(capacity + array_padding), walls(ca
         array->resize(capacity);
     }
     for (std::vector<Oct>* array : {&motion, &stress}) array->resize(capacity + array_padding);
-    for (std::vector<float>* array : {&column_particles, &mobile, &ground_distance, &ground_slope, &constraint_start, &surface_share,
-                                      &gradient_square, &pair_square, &compression, &tolerated_compression,
-                                      &contact_normal, &ground_friction, &ground_strength, &effective_share, &ground_shear}) {
+    for (std::vector<float>* array :
+         {&column_particles, &mobile, &ground_distance, &ground_slope, &constraint_start, &surface_share,
+          &gradient_square, &pair_square, &compression, &tolerated_compression, &contact_normal, &ground_friction,
+          &ground_strength, &effective_share, &ground_shear}) {
         array->resize(capacity + array_padding);
     }
 }

@@ -20,12 +20,12 @@ struct Work {
 
     std::vector<float> column_particles;  ///< before the step, in the column of the flow; with drag by speed only
     std::vector<float> mobile;            ///< 1, or 0 for debris that is held
-    VectorArray predicted;      ///< x*: before the step, for finding neighbours; after it, where it ends
-    std::vector<Oct> motion;    ///< x*, nothing; x* - x so far, the last change of lambda. At last x and v
-    std::vector<Oct> stress;    ///< xx, xy, xz, yy; yz, zz, nothing, pressure: what is applied to neighbours.
-                                ///< With pair friction, at first: x
-    VectorArray corrected;      ///< the displacement that contacts have yet to agree to
-    VectorArray shift;          ///< undoes overlaps, becomes no velocity
+    VectorArray predicted;                ///< x*: before the step, for finding neighbours; after it, where it ends
+    std::vector<Oct> motion;              ///< x*, nothing; x* - x so far, the last change of lambda. At last x and v
+    std::vector<Oct> stress;              ///< xx, xy, xz, yy; yz, zz, nothing, pressure: what is applied to neighbours.
+                                          ///< With pair friction, at first: x
+    VectorArray corrected;                ///< the displacement that contacts have yet to agree to
+    VectorArray shift;                    ///< undoes overlaps, becomes no velocity
 
     // The ground, taken to be plane within the step, and the share of ground and walls in the density.
     std::vector<float> ground_distance;  ///< m, of a particle that is not displaced; NaN where unknown

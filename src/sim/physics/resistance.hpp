@@ -61,23 +61,23 @@ GroundResistance<Real> ground_resistance(const Model& model, const Vec3<Real>& p
             known(Real(cell.y), result.inverse_turbulent_friction), Real(cell.w)};
 }
 
-/// Friction on ground as rough as it may be, of debris with the mu(I) law: no more than the debris itself bears where it
-/// shears between the ground, at rest, and the middle of a particle. Without this the lowest particles would stick to
-/// rough ground, and the flow begin half a spacing too high. `speed`: along the ground, m/s; `pressure`: of the grains,
-/// over density, m2/s2.
+/// Friction on ground as rough as it may be, of debris with the mu(I) law: no more than the debris itself bears where
+/// it shears between the ground, at rest, and the middle of a particle. Without this the lowest particles would stick
+/// to rough ground, and the flow begin half a spacing too high. `speed`: along the ground, m/s; `pressure`: of the
+/// grains, over density, m2/s2.
 template <class Real>
 Real friction_beside_ground(const Model& model, Real friction, Real speed, Real distance, Real pressure) {
     const InertialFriction& inertial = model.inertial_friction;
     if (!inertial.on) return friction;
     Deviator<Real> shear;
     shear.xz = speed / (larger(distance, Real(model.contact_distance() / 2)) * Real(2));
-    return smaller(friction, inertial_friction(Real(model.internal_friction_coefficient), Real(inertial.rise),
-                                               Real(inertial.half), Real(inertial.grain_size), shear,
-                                               larger(Real(0), pressure)));
+    return smaller(
+        friction, inertial_friction(Real(model.internal_friction_coefficient), Real(inertial.rise), Real(inertial.half),
+                                    Real(inertial.grain_size), shear, larger(Real(0), pressure)));
 }
 
-/// By how much ground shears debris with the mu(I) law beside it, relative to ground that would follow the motion: ground
-/// that is rougher than the debris inside is an even shear that goes on below, where it moves backwards.
+/// By how much ground shears debris with the mu(I) law beside it, relative to ground that would follow the motion:
+/// ground that is rougher than the debris inside is an even shear that goes on below, where it moves backwards.
 template <class Real>
 Real shear_beside_ground(const Model& model, Real friction) {
     return select(friction > Real(model.internal_friction_coefficient), Real(2), Real(0));
@@ -116,16 +116,17 @@ inline double column_width(const Model& model) {
     return 2 * model.particle_spacing;
 }
 
-/// The share of the columns around a particle that walls leave to debris. Interpolated between their middles, columns
-/// count what is near with the weight of a quadratic B-spline, one and a half of their widths to either side; a wall
+/// The share of the columns around a particle that walls leave to debris. Shared out to columns and interpolated
+/// between them, what is near counts with the weight of a cubic B-spline, two of their widths to either side; a wall
 /// takes what is beyond it.
 template <class Real>
 Real open_share(const Model& model, const Vec3<Real>& p, float grain_rank) {
     if (model.solids.empty()) return 1;
     const auto beyond = [&](const SolidSample<Real>& wall) {
         if (wall.building < 0 || wall.normal.z > Real(0.5)) return Real(0);
-        const Real s = std::clamp(wall.distance / Real(column_width(model)), Real(0), Real(1.5)), rest = Real(1.5) - s;
-        return s < Real(0.5) ? Real(0.5) - s * (Real(0.75) - s * s / 3) : rest * rest * rest / 6;
+        const Real s = std::clamp(wall.distance / Real(column_width(model)), Real(0), Real(2)), rest = Real(2) - s;
+        return s < Real(1) ? Real(0.5) - s * (Real(2.0 / 3) - s * s * (Real(1.0 / 3) - s / 8))
+                           : rest * rest * rest * rest / 24;
     };
     const SolidSample<Real> nearest = model.solids.nearest(p, grain_rank);
     if (nearest.building < 0) return 1;

@@ -73,8 +73,8 @@ Deviator<Real> limited(const Deviator<Real>& trial, Real limit_square) {
 
 /// The mu(I) law: mu_s + (mu_2 - mu_s) / (I_0 / I + 1), I = shear rate * d / sqrt(p / grain density) (Jop, Forterre &
 /// Pouliquen 2006, "A constitutive law for dense granular flows", eq. 2). `shear` is the strain of a step and
-/// `pressure` in the units of lambda, from which the step's length cancels; `grain_size` as of InertialFriction, over the
-/// kernel's gradient moment where the strain is a sum over neighbours, which falls short by it.
+/// `pressure` in the units of lambda, from which the step's length cancels; `grain_size` as of InertialFriction, over
+/// the kernel's gradient moment where the strain is a sum over neighbours, which falls short by it.
 template <class Real>
 Real inertial_friction(Real slow, Real rise, Real half, Real grain_size, const Deviator<Real>& shear, Real pressure) {
     using std::sqrt;

@@ -41,15 +41,21 @@ void for_each_neighbour(const Model& model, std::size_t count, std::size_t i, co
     }
 }
 
-/// Particles in the column at a place, between the middles of columns by bilinear interpolation.
+/// Particles in a column at a place: all are shared out between the middles of columns by bilinear interpolation, and
+/// read back in the same way.
 double particles_in_column(const Model& model, const State& state, const Vector& p) {
     const double width = column_width(model);
-    const auto share = [&](double along, double counted) {
-        return std::max(0.0, 1 - std::abs(std::floor(counted / width) + 0.5 - along / width));
+    const auto share = [&](double counted, double read) {
+        const double from = counted / width - 0.5, to = read / width - 0.5;
+        double sum = 0;
+        for (const double middle : {std::floor(to), std::floor(to) + 1}) {
+            sum += (1 - std::abs(to - middle)) * std::max(0.0, 1 - std::abs(from - middle));
+        }
+        return sum;
     };
     double sum = 0;
     for (const Particle& other : state.particles) {
-        sum += share(p.x, other.position.x) * share(p.y, other.position.y);
+        sum += share(other.position.x, p.x) * share(other.position.y, p.y);
     }
     return sum;
 }
@@ -118,8 +124,7 @@ void Backend::predict_positions(const Model& model, State& state) {
         const double friction = friction_beside_ground(model, ground.friction_coefficient, speed,
                                                        (p.position.z - below.height) * below.normal.z, pressure);
         p.ground_shear = model.inertial_friction.on ? shear_beside_ground(model, ground.friction_coefficient) : 0;
-        p.grip = {friction * p.effective_share,
-                  model.building_friction_coefficient * p.effective_share,
+        p.grip = {friction * p.effective_share, model.building_friction_coefficient * p.effective_share,
                   ground.cohesion * strength_per_pascal(model, state.time_step)};
         p.contacts = {};
     }
