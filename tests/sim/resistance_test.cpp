@@ -45,7 +45,7 @@ TEST(VoellmyDrag, never_reverses_the_motion_and_leaves_what_flies_alone) {
     material.turbulent_friction = 1;
     const Model model = model_of(material);
     const auto ground = ground_resistance(model, Vec3<double>{});
-    const auto slower = slowed_by_drag(model, ground, level(), 0.05, 1.0, {1e4, 0, 0}, 10.0);
+    const auto slower = slowed_by_drag(model, ground, level(), 0.05, 0.5, {1e4, 0, 0}, 10.0);
     EXPECT_GT(slower.x, 0);
     EXPECT_LT(slower.x, 1e-2);
     EXPECT_LT(slowed_by_drag(model, ground, level(), 1.09, 1.0, {5, 0, 0}, 0.1).x, 5) << "on top of the flow";
@@ -104,6 +104,58 @@ TEST(VoellmyDrag, holds_for_debris_that_is_thinner_than_a_particle) {
     const double law = std::sqrt(150 * thickness * (std::sin(slope) - 0.2 * std::cos(slope)));
     EXPECT_NEAR(speed_of_thin_layer(0.7 * law, apart, material, slope), law, 0.06 * law);
     EXPECT_NEAR(speed_of_thin_layer(1.3 * law, apart, material, slope), law, 0.06 * law);
+}
+
+TEST(VoellmyDrag, leaves_what_walls_take_out_of_the_area_of_a_column) {
+    const Terrain terrain = inclined_plane(0, 20, 20);
+    std::vector<Building> walls(1);
+    walls[0].footprint = {rectangle(10, 2, 18, 18)};
+    walls[0].height = 5;
+    place_buildings(terrain, walls);
+    const Model model = make_model({}, {}, terrain, walls, 0.5);
+    const auto open_at = [&](double x) {
+        const LocalPoint p = terrain.frame().to_local({x, 10, 200.25});
+        return open_share(model, Vec3<double>{p.x, p.y, p.z}, largest_grain);
+    };
+    EXPECT_NEAR(open_at(10), 0.5, 1e-4) << "on the wall half of a column is beyond it";
+    EXPECT_NEAR(open_at(9), 1 - 1.0 / 24, 1e-4) << "a column's width, two spacings, away";
+    EXPECT_EQ(open_at(7), 1);
+    for (double x = 9; x < 10; x += 0.1) EXPECT_GT(open_at(x), open_at(x + 0.05));
+}
+
+TEST(InertialFriction, limits_what_rough_ground_holds) {
+    MaterialSpec material;
+    material.internal_friction_coefficient = 0.4;
+    material.inertial_friction_coefficient = 0.7;
+    material.inertial_number = 0.3;
+    material.grain_diameter = 0.02;
+    material.grain_density = material.rest_density;
+    const Model model = model_of(material);
+    // Sheared at 20 per second under a pressure that makes the inertial number 0.3: half way up.
+    const double distance = 0.05, speed = 20 * distance, root = 20 * 0.02 / 0.3;
+    EXPECT_NEAR(friction_beside_ground(model, 5.0, speed, distance, root * root), 0.55, 1e-9);
+    EXPECT_NEAR(friction_beside_ground(model, 5.0, 0.0, distance, root * root), 0.4, 1e-9) << "slowly";
+    EXPECT_EQ(friction_beside_ground(model, 0.3, speed, distance, root * root), 0.3) << "smooth ground is slid on";
+    EXPECT_EQ(friction_beside_ground(model_of({}), 5.0, speed, distance, 1.0), 5) << "without the law";
+    EXPECT_EQ(shear_beside_ground(model, 0.3), 0) << "smooth ground shears nothing";
+
+    // Beside the ground the lattice sees half of an even shear; the ground makes up for what is missing.
+    DisplacementGradient<double> beside;
+    const double slope = model.boundary.at(distance).slope;
+    for (int i = -3; i <= 3; ++i) {
+        for (int j = -3; j <= 3; ++j) {
+            for (int k = 1; k <= 3; ++k) {
+                const Vec3<double> apart{0.1 * i, 0.1 * j, 0.1 * k};
+                const double q = length(apart) / model.support_radius, r = model.support_radius;
+                if (q >= 1) continue;
+                const double scale = kernels::WendlandC2::slope_over_q(q) * model.kernel.particle_volume;
+                beside.add({0.1 * k, 0, 0}, apart * (scale / (r * r * r * r * r)));
+            }
+        }
+    }
+    EXPECT_NEAR(beside.x.z, model.kernel.gradient_moment / 2, 1e-6);
+    add_ground_shear(beside, {distance, 0, 0}, {0, 0, 1}, slope, shear_beside_ground(model, 5.0));
+    EXPECT_NEAR(beside.x.z, model.kernel.gradient_moment, 1e-4);
 }
 
 TEST(ForestDrag, is_that_of_cylinders_across_the_flow) {

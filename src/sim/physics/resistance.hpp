@@ -76,11 +76,14 @@ Real friction_beside_ground(const Model& model, Real friction, Real speed, Real 
                                     Real(inertial.grain_size), shear, larger(Real(0), pressure)));
 }
 
-/// By how much ground shears debris with the mu(I) law beside it, relative to ground that would follow the motion:
-/// ground that is rougher than the debris inside is an even shear that goes on below, where it moves backwards.
+/// How many times its own displacement ground shears debris with the mu(I) law beside it: none if it is smoother than
+/// the debris inside. Past rougher ground an even shear goes on below, where it moves backwards: so many times that the
+/// lowest layer of a rest lattice sees all of the shear that it is in, as a layer inside does.
 template <class Real>
 Real shear_beside_ground(const Model& model, Real friction) {
-    return select(friction > Real(model.internal_friction_coefficient), Real(2), Real(0));
+    const double touching = model.contact_distance(), slope = model.boundary.at(touching).slope;
+    return select(friction > Real(model.internal_friction_coefficient),
+                  Real(model.kernel.gradient_moment / (-2 * touching * slope)), Real(0));
 }
 
 /// What ground adds to the gradient of a displacement `moved` beside it (see shear_beside_ground). `slope`: of the

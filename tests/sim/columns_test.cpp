@@ -1,0 +1,47 @@
+#include "sim/cpu/columns.hpp"
+
+#include <gtest/gtest.h>
+
+#include "sim_fixtures.hpp"
+
+namespace talus::cpu {
+namespace {
+
+VectorArray array_of(const std::vector<LocalPoint>& points) {
+    VectorArray array;
+    array.resize(points.size());
+    for (std::size_t i = 0; i < points.size(); ++i) array.set(i, points[i]);
+    return array;
+}
+
+TEST(Columns, hold_what_is_above_their_area_wherever_a_lattice_lies) {
+    constexpr float spacing = 0.5F;
+    for (const float shift : {0.0F, 0.1F, 0.25F, 0.4F}) {
+        std::vector<LocalPoint> points;
+        for (int i = 0; i < 20; ++i) {
+            for (int j = 0; j < 20; ++j) {
+                for (int k = 0; k < 3; ++k) {
+                    points.push_back({shift - 5 + i * spacing, 2 * shift - 5 + j * spacing, 7 + k * spacing});
+                }
+            }
+        }
+        Columns columns(points.size());
+        columns.count(array_of(points), points.size(), 2 * spacing);
+        // Two spacings wide: four particles in each of the three layers.
+        EXPECT_NEAR(columns.particles_at(0, 0), 12, 0.01);
+        EXPECT_NEAR(columns.particles_at(-0.37F, 0.81F), 12, 0.01);
+        EXPECT_EQ(columns.particles_at(40, 0), 0) << "nothing there";
+        columns.count(array_of({{3, 3, 0}}), 1, 2 * spacing);
+        EXPECT_EQ(columns.particles_at(0, 0), 0) << "each count begins anew";
+    }
+}
+
+TEST(Columns, have_room_for_particles_that_are_all_alone) {
+    const auto points = testing::random_points(5000, {-4e4F, -4e4F, 0}, {4e4F, 4e4F, 1}, 7);
+    Columns columns(points.size());
+    columns.count(array_of(points), points.size(), 0.1);
+    for (const LocalPoint& p : points) EXPECT_GE(columns.particles_at(p.x, p.y), 0.25F - 1e-3F);
+}
+
+}  // namespace
+}  // namespace talus::cpu
