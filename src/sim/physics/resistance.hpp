@@ -114,7 +114,8 @@ Real basal_share(const Model& model, Real distance) {
     return larger(Real(0), smaller(Real(1), Real(1) - above));
 }
 
-/// Width of the columns in which the thickness of the flow is counted, m: particles in one are some, and few.
+/// Width of the columns in which the thickness of the flow is counted, m: each holds several particles of a layer, and
+/// is still narrow beside the flow.
 inline double column_width(const Model& model) {
     return 2 * model.particle_spacing;
 }
