@@ -18,6 +18,13 @@ if(TALUS_SANITIZE)
   target_link_options(talus_options INTERFACE -fsanitize=${TALUS_SANITIZE})
 endif()
 
+# For what is compiled once per instruction set. SSSE3 alone is on no processor that anybody still has. Sanitized builds take
+# minutes per instruction set and look at AVX2, which is on all of them, and at the baseline that every build has.
+set(talus_disabled_instruction_sets HWY_SSSE3)
+if(TALUS_SANITIZE)
+  set(talus_disabled_instruction_sets "(HWY_SSSE3 | HWY_SSE4 | HWY_AVX3 | HWY_AVX3_DL)")
+endif()
+
 # talus_module(NAME DEPENDS... ): the library talus_NAME from every .cpp below the current folder.
 # A module without a .cpp is an interface library.
 function(talus_module name)

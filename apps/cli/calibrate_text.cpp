@@ -7,16 +7,13 @@
 #include <nlohmann/json.hpp>
 
 #include "calibrate/calibration_products.hpp"
+#include "core/number_or_null.hpp"
 #include "progress.hpp"
 
 namespace talus {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-Json number_json(double value) {
-    return std::isfinite(value) ? Json(value) : Json();
-}
 
 }  // namespace
 
@@ -67,8 +64,8 @@ std::string progress_json(const CalibrationProgress& p) {
                        {"runs_done", p.done},
                        {"runs_failed", p.failed},
                        {"runs_at_most", p.most},
-                       {"least_misfit", number_json(p.least_misfit)},
-                       {"wall_remaining_s", number_json(p.wall_remaining)}};
+                       {"least_misfit", number_or_null<Json>(p.least_misfit)},
+                       {"wall_remaining_s", number_or_null<Json>(p.wall_remaining)}};
     return json.dump();
 }
 

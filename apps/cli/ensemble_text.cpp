@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "core/number_or_null.hpp"
 #include "progress.hpp"
 
 namespace talus {
@@ -58,8 +59,7 @@ std::string progress_json(const EnsembleProgress& p) {
         {"runs", p.count},
         {"share_done", p.share_done},
         {"runs_per_minute", p.runs_per_minute},
-        {"wall_remaining_s",
-         std::isfinite(p.wall_remaining) ? nlohmann::ordered_json(p.wall_remaining) : nlohmann::ordered_json()},
+        {"wall_remaining_s", number_or_null<nlohmann::ordered_json>(p.wall_remaining)},
     };
     return json.dump();
 }

@@ -244,8 +244,8 @@ int talus_main(int argc, char** argv) {
     BenchArguments bench;
     std::string backend = "cpu";
     CLI::App* bench_app = app.add_subcommand("bench", "measure how fast talus steps standard scenes here");
-    const auto add_list = [bench_app](const std::string& name, auto& values, const std::string& help) {
-        return bench_app->add_option(name, values, help)->delimiter(',')->allow_extra_args(false);
+    const auto add_list = [bench_app](const std::string& name, auto& values, const std::string& text) {
+        return bench_app->add_option(name, values, text)->delimiter(',')->allow_extra_args(false);
     };
     add_list("--scene", bench.scenes, "scenes to step; left out: all")
         ->type_name("NAME,NAME")

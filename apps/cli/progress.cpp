@@ -11,6 +11,8 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "core/number_or_null.hpp"
+
 namespace talus {
 namespace {
 
@@ -58,19 +60,15 @@ void write(std::FILE* stream, const std::string& text) {
     (void)std::fflush(stream);
 }
 
-nlohmann::json number_or_null(double value) {
-    return std::isfinite(value) ? nlohmann::json(value) : nlohmann::json();
-}
-
 std::string json_text(const Progress& p, const std::optional<SeriesProgress>& series) {
     nlohmann::ordered_json event = {
         {"event", "progress"},
         {"time_s", p.time},
         {"end_time_s", p.end_time},
         {"share_done", p.share_done},
-        {"real_time_factor", number_or_null(p.real_time_factor)},
-        {"front_chainage_m", number_or_null(p.front_chainage)},
-        {"wall_remaining_s", number_or_null(p.wall_remaining)},
+        {"real_time_factor", number_or_null<nlohmann::json>(p.real_time_factor)},
+        {"front_chainage_m", number_or_null<nlohmann::json>(p.front_chainage)},
+        {"wall_remaining_s", number_or_null<nlohmann::json>(p.wall_remaining)},
         {"step", p.step},
         {"particles", p.particles},
     };
@@ -79,7 +77,7 @@ std::string json_text(const Progress& p, const std::optional<SeriesProgress>& se
         event["runs"] = series->count;
         event["variant"] = series->name;
         event["share_done_of_all_runs"] = series->share_done;
-        event["wall_remaining_of_all_runs_s"] = number_or_null(series->wall_remaining);
+        event["wall_remaining_of_all_runs_s"] = number_or_null<nlohmann::json>(series->wall_remaining);
     }
     return event.dump();
 }

@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/hash.hpp"
+#include "core/number_or_null.hpp"
 #include "products/results_json.hpp"
 #include "variant_plan.hpp"
 
@@ -69,10 +70,6 @@ std::string remedy(const SolverSpec& solver) {
 
 std::string line(const char* label, const std::string& text) {
     return fmt::format("  {:<16} {}\n", label, text);
-}
-
-nlohmann::ordered_json finite(double value) {
-    return std::isfinite(value) ? nlohmann::ordered_json(value) : nlohmann::ordered_json();
 }
 
 }  // namespace
@@ -143,14 +140,14 @@ std::string summary_json(const Scene& scene, const RunResult& result, const std:
         observations.push_back({{"name", observed.name},
                                 {"chainage_m", observed.chainage},
                                 {"observed_front_velocity_mps", observed.front_velocity},
-                                {"front_velocity_mps", finite(front.front_velocity)},
-                                {"particle_speed_mps", finite(front.particle_speed)},
-                                {"arrival_time_s", finite(front.arrival_time)}});
+                                {"front_velocity_mps", number_or_null<nlohmann::ordered_json>(front.front_velocity)},
+                                {"particle_speed_mps", number_or_null<nlohmann::ordered_json>(front.particle_speed)},
+                                {"arrival_time_s", number_or_null<nlohmann::ordered_json>(front.arrival_time)}});
     }
     auto buildings = nlohmann::ordered_json::array();
     for (const BuildingImpact* building : buildings_hit(seen)) {
         buildings.push_back({{"name", building->name},
-                             {"first_hit_s", finite(building->first_hit_time)},
+                             {"first_hit_s", number_or_null<nlohmann::ordered_json>(building->first_hit_time)},
                              {"peak_pressure_kPa", building->peak_pressure / 1000},
                              {"peak_depth_m", building->peak_depth}});
     }
@@ -175,10 +172,10 @@ std::string summary_json(const Scene& scene, const RunResult& result, const std:
         {"volume_deposited_m3", end.volume_deposited},
         {"volume_held_m3", end.volume_held},
         {"volume_left_m3", end.volume_left},
-        {"front_chainage_m", finite(seen.run_out.front_chainage)},
-        {"run_out_m", finite(seen.run_out.horizontal_distance)},
-        {"drop_m", finite(seen.run_out.drop)},
-        {"runout_angle_deg", finite(seen.run_out.runout_angle * degrees)},
+        {"front_chainage_m", number_or_null<nlohmann::ordered_json>(seen.run_out.front_chainage)},
+        {"run_out_m", number_or_null<nlohmann::ordered_json>(seen.run_out.horizontal_distance)},
+        {"drop_m", number_or_null<nlohmann::ordered_json>(seen.run_out.drop)},
+        {"runout_angle_deg", number_or_null<nlohmann::ordered_json>(seen.run_out.runout_angle * degrees)},
         {"observations", observations},
         {"buildings_hit", buildings},
         {"structures", structures_json(seen)},

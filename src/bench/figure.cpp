@@ -13,13 +13,14 @@
 namespace talus::bench {
 namespace {
 
-constexpr double width = 820, height = 400, left = 62, top = 20, plot_width = 500, plot_height = 320;
+constexpr double figure_width = 820, figure_height = 400, plot_left = 62, plot_top = 20, plot_width = 500,
+                 plot_height = 320;
 
 // Colours that colour-blind readers tell apart (Okabe & Ito 2008); dashes do it in print.
 constexpr std::array<std::string_view, 8> colours = {"#0072b2", "#d55e00", "#009e73", "#cc79a7",
                                                      "#e69f00", "#56b4e9", "#000000", "#8c6bb1"};
 
-struct Line {
+struct Curve {
     std::vector<double> x, y;
 };
 
@@ -45,11 +46,11 @@ std::string grouped(double count) {
 }  // namespace
 
 std::string scaling_svg(const std::vector<Row>& rows) {
-    std::map<std::string, Line> lines;
+    std::map<std::string, Curve> lines;
     report::ValueRange sizes{1e300, -1e300}, rates{0, 0};
     for (const Row& row : rows) {
         const double x = std::log10(row.particles), y = 1e-6 * row.particle_iterations_per_second();
-        Line& line =
+        Curve& line =
             lines[fmt::format("{}, {}, {} thread{}", row.scene, row.method, row.threads, row.threads == 1 ? "" : "s")];
         line.x.push_back(x);
         line.y.push_back(y);
@@ -58,7 +59,7 @@ std::string scaling_svg(const std::vector<Row>& rows) {
     }
     if (rows.empty()) sizes = {3, 6};
     sizes = {sizes.low - 0.1, sizes.high + 0.1};
-    report::Plot plot(left, top, plot_width, plot_height, sizes, rates);
+    report::Plot plot(plot_left, plot_top, plot_width, plot_height, sizes, rates);
     plot.axes("", "million particle-iterations per second");
     for (int decade = static_cast<int>(std::ceil(sizes.low)); decade <= sizes.high; ++decade) {
         plot.vertical(decade, "decade");
@@ -72,15 +73,15 @@ std::string scaling_svg(const std::vector<Row>& rows) {
         const std::string colour = fmt::format("c{}", i % colours.size());
         plot.line(line.x, line.y, "series " + colour);
         for (std::size_t k = 0; k < line.x.size(); ++k) plot.mark(line.x[k], line.y[k], "mark " + colour);
-        const double y = top + 14 + 24 * static_cast<double>(i);
+        const double y = plot_top + 14 + 24 * static_cast<double>(i);
         keys += fmt::format(R"(<line class="series {}" x1="{}" y1="{}" x2="{}" y2="{}"/><text x="{}" y="{}">{}</text>)",
-                            colour, left + plot_width + 14, y - 4, left + plot_width + 40, y - 4,
-                            left + plot_width + 46, y, name);
+                            colour, plot_left + plot_width + 14, y - 4, plot_left + plot_width + 40, y - 4,
+                            plot_left + plot_width + 46, y, name);
         ++i;
     }
     return fmt::format(R"(<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {} {}" role="img" )"
                        R"(aria-label="Particle-iterations per second against particles">{}{}{}</svg>)",
-                       width, height, style(), plot.svg(), keys) +
+                       figure_width, figure_height, style(), plot.svg(), keys) +
            "\n";
 }
 

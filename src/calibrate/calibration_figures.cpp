@@ -25,10 +25,6 @@ Colour misfit_colour(double misfit) {
     return ramp.at(1 - static_cast<double>(index) / (misfit_breaks.size() - 1));
 }
 
-std::string caption(int number, std::string_view title, std::string_view text) {
-    return fmt::format("<figcaption><b>Figure {}. {}</b> {}</figcaption>", number, title, text);
-}
-
 std::string circle(double x, double y, double radius, std::string_view css_class) {
     return fmt::format(R"(<circle class="{}" cx="{}" cy="{}" r="{}"/>)", css_class, coordinate(x), coordinate(y),
                        radius);

@@ -7,6 +7,7 @@
 
 #include "calibrate/calibration_figures.hpp"
 #include "core/hash.hpp"
+#include "core/number_or_null.hpp"
 #include "params/scene_text.hpp"
 #include "products/csv.hpp"
 #include "products/text_file.hpp"
@@ -20,11 +21,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-Json number_json(double value) {
-    return std::isfinite(value) ? Json(value) : Json();
-}
-
-std::string run_table(const Calibration& c) {
+std::string run_csv(const Calibration& c) {
     std::string header = "run,phase,status";
     for (const Factor& f : c.factors) header += "," + f.key;
     for (const ObservedValue& o : c.observed) header += "," + o.key;
@@ -42,7 +39,7 @@ std::string run_table(const Calibration& c) {
     return csv.text();
 }
 
-std::string factor_table(const Calibration& c, const CalibrationSummary& s) {
+std::string factor_csv(const Calibration& c, const CalibrationSummary& s) {
     std::string header =
         "factor,best,median,low_95,high_95,prior_low_95,prior_high_95,share_of_prior_width,r_hat,effective_draws";
     for (const Factor& f : c.factors) header += ",correlation_with_" + f.key;
@@ -59,7 +56,7 @@ std::string factor_table(const Calibration& c, const CalibrationSummary& s) {
     return csv.text();
 }
 
-std::string observation_table(const Calibration& c, const CalibrationSummary& s) {
+std::string observation_csv(const Calibration& c, const CalibrationSummary& s) {
     Csv csv(
         "observation,observed,uncertainty,best_run,deviation,posterior_median,posterior_low_95,posterior_high_95,"
         "emulator_rms_error,emulator_explained,run_noise,emulator_reach_told");
@@ -72,7 +69,7 @@ std::string observation_table(const Calibration& c, const CalibrationSummary& s)
     return csv.text();
 }
 
-std::string map_table(const Calibration& c, const MisfitMap& map) {
+std::string map_csv(const Calibration& c, const MisfitMap& map) {
     const bool plane = !map.y.empty();
     Csv csv(plane ? fmt::format("{},{},misfit", c.factors[0].key, c.factors[1].key)
                   : fmt::format("{},misfit", c.factors[0].key));
@@ -85,7 +82,7 @@ std::string map_table(const Calibration& c, const MisfitMap& map) {
     return csv.text();
 }
 
-std::string draw_table(const Calibration& c) {
+std::string draw_csv(const Calibration& c) {
     std::string header;
     for (const Factor& f : c.factors) header += (header.empty() ? "" : ",") + f.key;
     Csv csv(header);
@@ -147,7 +144,7 @@ Json calibration_json(const Calibration& c) {
                            {"interval_95", {f.low, f.high}},
                            {"prior_interval_95", {f.prior_low, f.prior_high}},
                            {"share_of_prior_width", f.kept},
-                           {"r_hat", number_json(f.r_hat)},
+                           {"r_hat", number_or_null<Json>(f.r_hat)},
                            {"effective_draws", f.effective}});
         Json row = Json::array();
         for (std::size_t other = 0; other < s.factors.size(); ++other) {
@@ -162,13 +159,13 @@ Json calibration_json(const Calibration& c) {
                                 {"unit", c.observed[j].unit},
                                 {"observed", c.observed[j].value},
                                 {"uncertainty", c.observed[j].uncertainty},
-                                {"best_run", number_json(o.best)},
-                                {"deviation", number_json(o.deviation)},
+                                {"best_run", number_or_null<Json>(o.best)},
+                                {"deviation", number_or_null<Json>(o.deviation)},
                                 {"posterior_median", o.median},
                                 {"posterior_95", {o.low, o.high}},
-                                {"emulator_rms_error", number_json(o.left_out)},
-                                {"emulator_explained", number_json(o.explained)},
-                                {"run_noise", number_json(o.noise)},
+                                {"emulator_rms_error", number_or_null<Json>(o.left_out)},
+                                {"emulator_explained", number_or_null<Json>(o.explained)},
+                                {"run_noise", number_or_null<Json>(o.noise)},
                                 {"emulator_reach_told", o.reach_told}});
     }
     return {{"runs", r.runs.size()},
@@ -185,7 +182,7 @@ Json calibration_json(const Calibration& c) {
               {"improvement_still_expected", r.improvement},
               {"emulator_share", r.emulator_share},
               {"accepted_steps", r.posterior.accepted},
-              {"checks_within_95", number_json(s.checks_within)},
+              {"checks_within_95", number_or_null<Json>(s.checks_within)},
               {"shift_by_checks", r.shift}}},
             {"warnings", s.warnings}};
 }
@@ -193,11 +190,11 @@ Json calibration_json(const Calibration& c) {
 Status write_calibration(const Calibration& c, const SceneSource& source, bool own_files, const fs::path& folder) {
     const CalibrationSummary s = summarise(c);
     const MisfitMap map = misfit_map(c);
-    if (Status w = write_text_file(folder / "runs.csv", run_table(c)); !w) return w;
-    if (Status w = write_text_file(folder / "factors.csv", factor_table(c, s)); !w) return w;
-    if (Status w = write_text_file(folder / "observations.csv", observation_table(c, s)); !w) return w;
-    if (Status w = write_text_file(folder / "misfit_map.csv", map_table(c, map)); !w) return w;
-    if (Status w = write_text_file(folder / "posterior.csv", draw_table(c)); !w) return w;
+    if (Status w = write_text_file(folder / "runs.csv", run_csv(c)); !w) return w;
+    if (Status w = write_text_file(folder / "factors.csv", factor_csv(c, s)); !w) return w;
+    if (Status w = write_text_file(folder / "observations.csv", observation_csv(c, s)); !w) return w;
+    if (Status w = write_text_file(folder / "misfit_map.csv", map_csv(c, map)); !w) return w;
+    if (Status w = write_text_file(folder / "posterior.csv", draw_csv(c)); !w) return w;
     if (Status w = write_text_file(folder / "misfit_map.svg", report::misfit_picture(c, map)); !w) return w;
     if (Status w = write_best_scene(c, source, own_files, folder); !w) return w;
     if (Status w = write_text_file(folder / "report.html", render_calibration_report(c)); !w) return w;

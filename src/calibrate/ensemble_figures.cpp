@@ -30,10 +30,6 @@ std::string rectangle(double x1, double x2, double y1, double y2, std::string_vi
                        coordinate(std::abs(y2 - y1)));
 }
 
-std::string caption(int number, std::string_view title, std::string_view text) {
-    return fmt::format("<figcaption><b>Figure {}. {}</b> {}</figcaption>", number, title, text);
-}
-
 /// Bars of a round width that hold the values, starting at a multiple of it.
 struct Histogram {
     double first = 0, width = 1;

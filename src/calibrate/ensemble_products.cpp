@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "core/number_or_null.hpp"
 #include "geo/raster.hpp"
 #include "products/csv.hpp"
 #include "products/text_file.hpp"
@@ -34,11 +35,7 @@ constexpr std::array<QuantityWords, 3> threshold_words = {{
     {"pressure", "peak pressure", "kPa", "kPa"},
 }};
 
-Json number_json(double value) {
-    return std::isfinite(value) ? Json(value) : Json();
-}
-
-std::string run_table(const EnsembleResult& result) {
+std::string run_csv(const EnsembleResult& result) {
     std::string header = "run,status";
     for (const Factor& f : result.runs->plan().factors) header += "," + f.key;
     for (const Measure& m : result.measures) header += "," + m.key;
@@ -54,7 +51,7 @@ std::string run_table(const EnsembleResult& result) {
     return csv.text();
 }
 
-std::string building_table(const EnsembleResult& result) {
+std::string building_csv(const EnsembleResult& result) {
     std::string header = "name,probability_hit";
     for (const double p : result.runs->plan().thresholds.pressure) header += fmt::format(",probability_above_{}kPa", p);
     Csv csv(header +
@@ -69,7 +66,7 @@ std::string building_table(const EnsembleResult& result) {
     return csv.text();
 }
 
-std::string distribution_table(const EnsembleResult& result) {
+std::string distribution_csv(const EnsembleResult& result) {
     std::string header = "result,runs,mean,standard_deviation,least,greatest";
     for (const double p : table_percentiles) header += fmt::format(",p{:02.0f}", p);
     Csv csv(header);
@@ -88,7 +85,7 @@ std::string distribution_table(const EnsembleResult& result) {
     return csv.text();
 }
 
-std::string sensitivity_table(const EnsembleResult& result) {
+std::string sensitivity_csv(const EnsembleResult& result) {
     const SensitivityKind kind = result.sensitivity.front().kind;
     Csv csv(kind == SensitivityKind::variance
                 ? "result,factor,first_order,first_order_low,first_order_high,total,total_low,total_high"
@@ -218,7 +215,7 @@ Json statistics_json(const EnsembleResult& result) {
         std::vector<double> values = result.values_of(m);
         Json entry = {{"result", result.measures[m].key}, {"runs", values.size()}};
         for (const double p : table_percentiles)
-            entry[fmt::format("p{:02.0f}", p)] = number_json(percentile(values, p));
+            entry[fmt::format("p{:02.0f}", p)] = number_or_null<Json>(percentile(values, p));
         entry["sensitivity"] = Json::array();
         const Sensitivity& s = result.sensitivity[m];
         for (std::size_t k = 0; k < s.effects.size(); ++k)
@@ -231,7 +228,7 @@ Json statistics_json(const EnsembleResult& result) {
                              {"probability_above_threshold", b.over_pressure},
                              {"peak_pressure_p50_kPa", b.median_pressure / 1e3},
                              {"peak_pressure_p95_kPa", b.high_pressure / 1e3},
-                             {"first_hit_p50_s", number_json(b.median_hit)}});
+                             {"first_hit_p50_s", number_or_null<Json>(b.median_hit)}});
     }
     const Thresholds& t = result.runs->plan().thresholds;
     return {{"runs", result.runs->count()},
@@ -245,10 +242,10 @@ Json statistics_json(const EnsembleResult& result) {
 
 Status write_ensemble(const EnsembleResult& result, const fs::path& folder) {
     if (Status s = write_maps(result, folder); !s) return s;
-    if (Status s = write_text_file(folder / "runs.csv", run_table(result)); !s) return s;
-    if (Status s = write_text_file(folder / "buildings.csv", building_table(result)); !s) return s;
-    if (Status s = write_text_file(folder / "distributions.csv", distribution_table(result)); !s) return s;
-    if (Status s = write_text_file(folder / "sensitivity.csv", sensitivity_table(result)); !s) return s;
+    if (Status s = write_text_file(folder / "runs.csv", run_csv(result)); !s) return s;
+    if (Status s = write_text_file(folder / "buildings.csv", building_csv(result)); !s) return s;
+    if (Status s = write_text_file(folder / "distributions.csv", distribution_csv(result)); !s) return s;
+    if (Status s = write_text_file(folder / "sensitivity.csv", sensitivity_csv(result)); !s) return s;
     const Result<std::string> report = render_ensemble_report(result);
     if (!report) return report.error();
     if (Status s = write_text_file(folder / "report.html", *report); !s) return s;

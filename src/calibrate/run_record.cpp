@@ -12,39 +12,36 @@
 #include <nlohmann/json.hpp>
 
 #include "calibrate/predict.hpp"
+#include "core/number_or_null.hpp"
 #include "products/text_file.hpp"
 
 namespace talus {
 namespace {
 
-using Json = nlohmann::json;
+using Json = nlohmann::ordered_json;
 
 static_assert(std::endian::native == std::endian::little, "records are written as the machine holds them");
 
 constexpr double degrees = 180 / std::numbers::pi;
 
-/// JSON has no NaN.
-Json number_json(double value) {
-    return std::isfinite(value) ? Json(value) : Json();
-}
 double number_of(const Json& json) {
     return json.is_number() ? json.get<double>() : never;
 }
 
 Json numbers_json(const std::vector<double>& values) {
     Json list = Json::array();
-    for (const double v : values) list.push_back(number_json(v));
+    for (const double v : values) list.push_back(number_or_null<Json>(v));
     return list;
 }
 
 Json building_json(const BuildingImpact& b) {
     return {b.name,
             b.hit,
-            number_json(b.first_hit_time),
-            number_json(b.peak_force),
-            number_json(b.peak_pressure),
-            number_json(b.peak_depth),
-            number_json(b.peak_dynamic_pressure)};
+            number_or_null<Json>(b.first_hit_time),
+            number_or_null<Json>(b.peak_force),
+            number_or_null<Json>(b.peak_pressure),
+            number_or_null<Json>(b.peak_depth),
+            number_or_null<Json>(b.peak_dynamic_pressure)};
 }
 
 BuildingImpact building_of(const Json& j) {

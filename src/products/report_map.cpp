@@ -26,7 +26,7 @@ struct Words {
 };
 
 /// In the order of hazard_maps().
-constexpr std::array<Words, 5> words = {{
+constexpr std::array<Words, 5> map_words = {{
     {"Peak depth", "Greatest vertical flow depth at each place during the run.", 2},
     {"Peak speed", "Greatest depth-averaged speed at each place during the run.", 1},
     {"Peak pressure", "Greatest impact pressure of the free flow at each place: density times the square of the speed.",
@@ -252,7 +252,7 @@ MapContent map_content(const Scene& scene, const RunResult& result) {
     for (std::size_t k = 0; k < hazard_maps().size(); ++k) {
         const HazardMap& map = hazard_maps()[k];
         content.layers.push_back(
-            {map, &(observation.maps.*map.grid), words.at(k).tab, words.at(k).caption, words.at(k).digits});
+            {map, &(observation.maps.*map.grid), map_words.at(k).tab, map_words.at(k).caption, map_words.at(k).digits});
     }
     if (!observation.erosion.depth.values.empty()) {
         content.layers.push_back({erosion_map(), &observation.erosion.depth, "Erosion",

@@ -52,10 +52,6 @@ std::string card(std::string_view name, const std::string& value, std::string_vi
         css_class, name, value, unit, below);
 }
 
-std::string row(std::string_view name, const std::string& value) {
-    return fmt::format("<tr><th scope=\"row\">{}</th><td>{}</td></tr>\n", name, value);
-}
-
 struct MassBalance {
     double entrained = 0, held = 0, moving = 0, deposited = 0, left = 0, residual = 0;
     bool closes = false;

@@ -15,10 +15,6 @@
 namespace talus::report {
 namespace {
 
-std::string row(std::string_view name, const std::string& value) {
-    return fmt::format("<tr><th scope=\"row\">{}</th><td>{}</td></tr>\n", name, value);
-}
-
 std::string items(const std::vector<std::string>& texts, std::string_view none) {
     if (texts.empty()) return fmt::format("<p>{}</p>", none);
     std::string html = "<ul>";

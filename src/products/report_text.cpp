@@ -71,6 +71,14 @@ std::string coordinate(double value) {
     return s == "-0" ? "0" : s;
 }
 
+std::string row(std::string_view name, const std::string& value) {
+    return fmt::format("<tr><th scope=\"row\">{}</th><td>{}</td></tr>\n", name, value);
+}
+
+std::string caption(int number, std::string_view title, std::string_view text) {
+    return fmt::format("<figcaption><b>Figure {}. {}</b> {}</figcaption>", number, title, text);
+}
+
 std::string fill(std::string_view text, std::initializer_list<std::pair<std::string_view, std::string_view>> values) {
     std::string out;
     while (true) {

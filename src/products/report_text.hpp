@@ -26,6 +26,12 @@ namespace talus::report {
 /// For coordinates in SVG: at most two decimals, "." as the point, no trailing zeros.
 [[nodiscard]] std::string coordinate(double value);
 
+/// A row of a table with the row's name as its head; `value` is HTML.
+[[nodiscard]] std::string row(std::string_view name, const std::string& value);
+
+/// Below a figure; `text` is HTML.
+[[nodiscard]] std::string caption(int number, std::string_view title, std::string_view text);
+
 /// Replaces every {{name}} of a template once; the values themselves are not looked at again. A name that is not given
 /// is a bug (asserted) and leaves nothing.
 [[nodiscard]] std::string fill(std::string_view text,

@@ -12,6 +12,7 @@
 
 #include "calibrate/calibration_products.hpp"
 #include "calibrate/ensemble_folder.hpp"
+#include "core/number_or_null.hpp"
 #include "params/fields.hpp"
 #include "twin/setup.hpp"
 
@@ -24,10 +25,6 @@ namespace fs = std::filesystem;
 constexpr int niceness = 10;  // a tenth of the live run's share where cores are short
 constexpr std::chrono::milliseconds tell_every{1000};
 constexpr std::size_t most_parameters = 6;
-
-json number_json(double value) {
-    return std::isfinite(value) ? json(value) : json();
-}
 
 /// Four digits are more than a colour shows, and make the message a third as long.
 double rounded(double value) {
@@ -279,7 +276,8 @@ void Calibrations::begin(const CalibrationPlan& plan, const std::string& by) {
 
 void Calibrations::take_run(const CalibrationRun& run) {
     const std::lock_guard lock(mutex_);
-    json made = {{"values", run.values}, {"phase", phase_name(run.phase)}, {"misfit", number_json(run.misfit)}};
+    json made = {
+        {"values", run.values}, {"phase", phase_name(run.phase)}, {"misfit", number_or_null<json>(run.misfit)}};
     if (std::isfinite(run.misfit)) {
         json& best = status_["best"];
         if (best.is_null() || run.misfit < best["misfit"].get<double>()) {
@@ -295,7 +293,7 @@ void Calibrations::take_run(const CalibrationRun& run) {
 void Calibrations::take_progress(const CalibrationProgress& now) {
     const std::lock_guard lock(mutex_);
     status_["phase"] = phase_name(now.phase);
-    status_["wall_remaining_s"] = number_json(now.wall_remaining);
+    status_["wall_remaining_s"] = number_or_null<json>(now.wall_remaining);
     if (Clock::now() - told_ >= tell_every) tell_now();
 }
 
@@ -303,14 +301,14 @@ void Calibrations::take_fit(const Calibration& now) {
     if (!now.result.best) return;
     const MisfitMap map = misfit_map(now);
     json misfit = json::array();
-    for (const double value : map.misfit) misfit.push_back(number_json(rounded(value)));
+    for (const double value : map.misfit) misfit.push_back(number_or_null<json>(rounded(value)));
     const std::vector<double>& predicted = now.result.runs[*now.result.best].predicted;
     const std::lock_guard lock(mutex_);
     status_["map"] = {{"columns", map.cells}, {"rows", map.misfit.size() / map.cells}, {"misfit", misfit}};
     for (std::size_t j = 0; j < observed_.size() && j < predicted.size(); ++j) {
         const double value = std::isfinite(predicted[j]) ? predicted[j] : observed_[j].unreached;
-        status_["observations"][j]["best"] = number_json(predicted[j]);
-        status_["observations"][j]["deviation"] = number_json(deviation_of(observed_[j], value));
+        status_["observations"][j]["best"] = number_or_null<json>(predicted[j]);
+        status_["observations"][j]["deviation"] = number_or_null<json>(deviation_of(observed_[j], value));
     }
     tell_now();
 }
@@ -329,7 +327,7 @@ void Calibrations::take_result(const Calibration& made) {
     }
     const std::lock_guard lock(mutex_);
     status_["result"] = {{"settled", made.result.settled},
-                         {"checks_within_95", number_json(summary.checks_within)},
+                         {"checks_within_95", number_or_null<json>(summary.checks_within)},
                          {"parameters", parameters},
                          {"warnings", summary.warnings}};
 }

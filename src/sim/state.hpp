@@ -10,6 +10,9 @@ namespace talus {
 
 /// Particles that are worked on together, side by side in vector registers or one register after another.
 inline constexpr std::size_t bundle_size = 16;
+constexpr std::size_t bundles_of(std::size_t particles) {
+    return (particles + bundle_size - 1) / bundle_size;
+}
 
 /// Arrays of particles are that much longer than asked for: the last bundle is read and written whole.
 inline constexpr std::size_t array_padding = bundle_size;

@@ -100,8 +100,4 @@ json to_json(const Polygon& polygon) {
     return rings;
 }
 
-json number_or_null(double value) {
-    return std::isfinite(value) ? json(value) : json();
-}
-
 }  // namespace talus::twin

@@ -48,7 +48,4 @@ namespace talus::twin {
 /// The outer ring, then holes.
 [[nodiscard]] nlohmann::json to_json(const Polygon& polygon);
 
-/// null where there is no finite number.
-[[nodiscard]] nlohmann::json number_or_null(double value);
-
 }  // namespace talus::twin

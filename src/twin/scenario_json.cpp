@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "core/hash.hpp"
+#include "core/number_or_null.hpp"
 #include "twin/intensity.hpp"
 #include "twin/json_keys.hpp"
 #include "twin/scenario_parts.hpp"
@@ -15,8 +16,8 @@ namespace {
 using nlohmann::json;
 
 json range_json(const Range& range) {
-    return {{"low", number_or_null(range.low)},
-            {"high", number_or_null(range.high)},
+    return {{"low", number_or_null<json>(range.low)},
+            {"high", number_or_null<json>(range.high)},
             {"low_included", range.low_included},
             {"high_included", range.high_included}};
 }
@@ -30,10 +31,10 @@ json levers_json(const Scene& scene, const Model& model, const MaterialSpec& now
         list.push_back({{"key", "material." + lever->key},
                         {"label", label_of(*lever)},
                         {"unit", lever->unit},
-                        {"default", number_or_null(value_in_force(scene.spec.material, *lever, scene_viscosity))},
+                        {"default", number_or_null<json>(value_in_force(scene.spec.material, *lever, scene_viscosity))},
                         {"range", range_json(lever->range)},
                         {"help", lever->help},
-                        {"value", number_or_null(value_in_force(now, *lever, model.viscosity))}});
+                        {"value", number_or_null<json>(value_in_force(now, *lever, model.viscosity))}});
     }
     return list;
 }
@@ -46,7 +47,7 @@ json flow_path_json(const Scene& scene) {
     const PlanPoint* before = nullptr;
     for (const PlanPoint& p : path.points()) {
         if (before != nullptr) chainage += std::hypot(p.x - before->x, p.y - before->y);
-        points.push_back({p.x, p.y, number_or_null(scene.terrain.elevation_at(p))});
+        points.push_back({p.x, p.y, number_or_null<json>(scene.terrain.elevation_at(p))});
         chainages.push_back(chainage);
         before = &p;
     }
@@ -70,18 +71,18 @@ json impact_json(const std::string& id, const BuildingImpact& impact, bool barri
     json row = {{"id", id},
                 {"name", impact.name},
                 {"hit", impact.hit},
-                {"first_hit_s", number_or_null(impact.first_hit_time)},
+                {"first_hit_s", number_or_null<json>(impact.first_hit_time)},
                 {"peak_force_kN", impact.peak_force / 1e3},
                 {"peak_pressure_kPa", impact.peak_pressure / 1e3},
                 {"peak_depth_m", impact.peak_depth},
                 {"peak_speed_mps", impact.peak_speed},
                 {"peak_dynamic_pressure_kPa", impact.peak_dynamic_pressure / 1e3},
                 {"impulse_kNs", impact.impulse / 1e3},
-                {"failed_s", number_or_null(impact.failure_time)},
+                {"failed_s", number_or_null<json>(impact.failure_time)},
                 {"intensity", intensity != nullptr ? json(intensity) : json()}};
     if (barrier) {
         row["overtopped_m3"] = impact.overtopped_volume;
-        row["first_overtopped_s"] = number_or_null(impact.first_overtopping_time);
+        row["first_overtopped_s"] = number_or_null<json>(impact.first_overtopping_time);
         row["passed_m3"] = impact.passed_volume;
         row["held_m3"] = impact.held_volume;
         row["peak_filling_height_m"] = impact.peak_filling_height;
@@ -154,11 +155,11 @@ json Scenario::state_json(bool with_hash) const {
                    {"volume_moving_m3", now.volume_moving},
                    {"volume_deposited_m3", now.volume_deposited},
                    {"volume_left_m3", now.volume_left},
-                   {"front_chainage_m", number_or_null(now.front_chainage)},
-                   {"front_velocity_mps", advances ? number_or_null(front.back().front_velocity) : json()},
-                   {"largest_speed_mps", number_or_null(state.largest_speed)},
-                   {"mean_compression", number_or_null(state.mean_compression)},
-                   {"max_compression", number_or_null(state.max_compression)},
+                   {"front_chainage_m", number_or_null<json>(now.front_chainage)},
+                   {"front_velocity_mps", advances ? number_or_null<json>(front.back().front_velocity) : json()},
+                   {"largest_speed_mps", number_or_null<json>(state.largest_speed)},
+                   {"mean_compression", number_or_null<json>(state.mean_compression)},
+                   {"max_compression", number_or_null<json>(state.max_compression)},
                    {"converged", !run.not_converged()},
                    {"recording",
                     {{"first_s", frames.empty() ? json() : json(frames.front()->time)},
@@ -174,7 +175,7 @@ json Scenario::series_json() const {
     json time = json::object();
     const auto column = [&](const char* name, double TimeSample::*member) {
         json& values = time[name] = json::array();
-        for (const TimeSample& row : observer.timeseries()) values.push_back(number_or_null(row.*member));
+        for (const TimeSample& row : observer.timeseries()) values.push_back(number_or_null<json>(row.*member));
     };
     column("time_s", &TimeSample::time);
     column("front_chainage_m", &TimeSample::front_chainage);
@@ -194,7 +195,7 @@ json Scenario::series_json() const {
     json front = json::object();
     const auto front_column = [&](const char* name, double FrontSample::*member) {
         json& values = front[name] = json::array();
-        for (const FrontSample& row : samples) values.push_back(number_or_null(row.*member));
+        for (const FrontSample& row : samples) values.push_back(number_or_null<json>(row.*member));
     };
     front_column("chainage_m", &FrontSample::chainage);
     front_column("arrival_time_s", &FrontSample::arrival_time);

@@ -2,6 +2,7 @@
 #include <numbers>
 #include <utility>
 
+#include "core/number_or_null.hpp"
 #include "terrain/barrier.hpp"
 #include "twin/hydrograph_json.hpp"
 #include "twin/json_keys.hpp"
@@ -43,7 +44,7 @@ json bed_json(const BedSetup& bed) {
     entry["name"] = bed.body->spec.name;
     entry["polygons"] = json::array();
     for (const BedLayer::Part& part : bed.body->parts) entry["polygons"].push_back(to_json(part.polygon));
-    entry["depth_m"] = number_or_null(depth_of(*bed.body));
+    entry["depth_m"] = number_or_null<json>(depth_of(*bed.body));
     entry["area_m2"] = bed.amount.area;
     entry["volume_m3"] = bed.amount.volume;
     entry["from_scene"] = bed.scene_index >= 0;
@@ -78,7 +79,7 @@ json Scenario::setup_json() const {
     json parameters = json::object(), releases = json::array(), barriers = json::array(), buildings = json::array();
     for (const Parameter* lever : levers()) {
         parameters["material." + lever->key] =
-            number_or_null(value_in_force(setup.material, *lever, p.run->model().viscosity));
+            number_or_null<json>(value_in_force(setup.material, *lever, p.run->model().viscosity));
     }
     for (const ReleaseSetup& release : setup.releases) {
         json polygons = json::array();
@@ -92,11 +93,11 @@ json Scenario::setup_json() const {
         releases.push_back({{"id", release.id},
                             {"name", body.name},
                             {"polygons", polygons},
-                            {"thickness_m", number_or_null(thickness)},
+                            {"thickness_m", number_or_null<json>(thickness)},
                             {"volume_m3", body.volume},
                             {"from_scene", release.scene_index >= 0},
                             {"status", released ? "released" : "held"},
-                            {"start_time_s", number_or_null(p.run->start_time_of(release.id))}});
+                            {"start_time_s", number_or_null<json>(p.run->start_time_of(release.id))}});
     }
     for (const BarrierSetup& barrier : setup.barriers) {
         barriers.push_back({{"id", barrier.id},
@@ -107,8 +108,8 @@ json Scenario::setup_json() const {
                             {"thickness_m", barrier.shape().thickness},
                             {"openings", openings_json(barrier.shape())},
                             {"passing_share", optional_json(barrier.shape().passing_share)},
-                            {"resistance_Npm", number_or_null(barrier.body->resistance.force_per_metre)},
-                            {"resistance_Pa", number_or_null(barrier.body->resistance.pressure)},
+                            {"resistance_Npm", number_or_null<json>(barrier.body->resistance.force_per_metre)},
+                            {"resistance_Pa", number_or_null<json>(barrier.body->resistance.pressure)},
                             {"crest_length_m", length_of(barrier.shape().line)},
                             {"from_scene", barrier.from_scene}});
     }
@@ -120,8 +121,8 @@ json Scenario::setup_json() const {
                              {"name", body.name},
                              {"footprint", footprint},
                              {"height_m", body.height},
-                             {"base_m", number_or_null(body.roof_elevation - body.height)},
-                             {"roof_m", number_or_null(body.roof_elevation)},
+                             {"base_m", number_or_null<json>(body.roof_elevation - body.height)},
+                             {"roof_m", number_or_null<json>(body.roof_elevation)},
                              {"from_scene", building.scene_index >= 0}});
     }
     json zones = json::array(), beds = json::array(), inflows = json::array();

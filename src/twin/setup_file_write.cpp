@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include "core/number_or_null.hpp"
 #include "params/fields.hpp"
 #include "twin/hydrograph_json.hpp"
 #include "twin/json_keys.hpp"
@@ -121,8 +122,8 @@ json write_setup(const Setup& setup) {
                                     {"thickness_m", barrier.shape().thickness},
                                     {"openings", openings_json(barrier.shape())},
                                     {"passing_share", optional_json(barrier.shape().passing_share)},
-                                    {"resistance_Npm", number_or_null(barrier.body->resistance.force_per_metre)},
-                                    {"resistance_Pa", number_or_null(barrier.body->resistance.pressure)},
+                                    {"resistance_Npm", number_or_null<json>(barrier.body->resistance.force_per_metre)},
+                                    {"resistance_Pa", number_or_null<json>(barrier.body->resistance.pressure)},
                                     {"from_scene", barrier.from_scene}});
     }
     for (const BuildingSetup& building : setup.buildings) {

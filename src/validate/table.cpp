@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "core/number_or_null.hpp"
 #include "products/report_text.hpp"
 #include "validate/suite.hpp"
 
@@ -24,10 +25,6 @@ std::size_t width_of(const std::string& text) {
 std::string number(double value) {
     if (!std::isfinite(value)) return "-";
     return fmt::format("{:.4g}", value);
-}
-
-nlohmann::ordered_json finite(double value) {
-    return std::isfinite(value) ? nlohmann::ordered_json(value) : nlohmann::ordered_json();
 }
 
 std::string name_of(Comparison comparison) {
@@ -155,9 +152,9 @@ std::string table_json(const std::vector<CaseResult>& results) {
             const bool judged = row.verdict != Verdict::shown && row.verdict != Verdict::skipped;
             list.push_back({{"case", row.case_name},
                             {"quantity", row.quantity},
-                            {"expected", finite(row.expected)},
-                            {"computed", finite(row.computed)},
-                            {"relative_error", finite(row.relative_error)},
+                            {"expected", number_or_null<nlohmann::ordered_json>(row.expected)},
+                            {"computed", number_or_null<nlohmann::ordered_json>(row.computed)},
+                            {"relative_error", number_or_null<nlohmann::ordered_json>(row.relative_error)},
                             {"tolerance", row.tolerance ? nlohmann::ordered_json(*row.tolerance) : nullptr},
                             {"pass", judged ? nlohmann::ordered_json(row.verdict == Verdict::pass) : nullptr},
                             {"source", row.source},

@@ -50,8 +50,16 @@ TEST(Measure, FillsARow) {
     EXPECT_LE(row->time_step, start.model.solver.largest_time_step * 1.0001);
     EXPECT_GT(row->relative_rate, 0);
     EXPECT_GT(row->stage_seconds[static_cast<std::size_t>(Stage::solve_density)], 0);
-    // A timer around nothing takes less than a ten-thousandth.
-    EXPECT_GT(row->stage_seconds[static_cast<std::size_t>(Stage::observe)], 1e-3 * row->step_seconds);
+}
+
+TEST(Measure, ObservingIsPartOfTheStep) {
+    Calibration calibration;
+    Start start = small_slab();
+    start.map_cell = 0.02;  // so fine that maps take a tenth of the time
+    const Result<Row> row = measure(start, short_task(), calibration);
+    ASSERT_TRUE(row) << row.error().message;
+    // A timer around nothing takes less than a ten-thousandth, and a busy machine makes steps some times longer.
+    EXPECT_GT(row->stage_seconds[static_cast<std::size_t>(Stage::observe)], 2e-3 * row->step_seconds);
 }
 
 TEST(Measure, RelatesTheRateToTheCalibrationBesideIt) {
@@ -65,7 +73,9 @@ TEST(Measure, RelatesTheRateToTheCalibrationBesideIt) {
 
 TEST(Measure, StagesMakeUpTheStep) {
     Calibration calibration;
-    const Result<Row> row = measure(small_slab(), short_task(), calibration);
+    Task task = short_task();
+    task.length.repeats = 1;  // medians of several need not add up
+    const Result<Row> row = measure(small_slab(), task, calibration);
     ASSERT_TRUE(row);
     const double stages = std::accumulate(row->stage_seconds.begin(), row->stage_seconds.end(), 0.0);
     EXPECT_GT(stages, 0.5 * row->step_seconds);

@@ -16,8 +16,8 @@ namespace {
 namespace fs = std::filesystem;
 using testing::HasSubstr;
 
-std::vector<std::string> command(const std::string& output, const std::vector<std::string>& more = {},
-                                 const std::string& runs = "8") {
+std::vector<std::string> calibrate_command(const std::string& output, const std::vector<std::string>& more = {},
+                                           const std::string& runs = "8") {
     std::vector<std::string> arguments = {"calibrate", "slope.toml",
                                           "--vary",    "material.friction_coefficient=0.1:0.6",
                                           "--vary",    "release.thickness_m=normal:0.3:0.05",
@@ -39,7 +39,7 @@ class FlowingScene : public SmallScene {
 TEST(Calibrate, WritesWhatItFoundAndASceneThatRunsIt) {
     const FlowingScene scene;
     const ProgramOptions here{.folder = scene.folder()};
-    const auto outcome = run_program(command("result", {"--json"}), here);
+    const auto outcome = run_program(calibrate_command("result", {"--json"}), here);
     ASSERT_EQ(outcome.exit_code, 0) << outcome.error;
     const auto event = nlohmann::json::parse(lines_of(outcome.out).back());
     EXPECT_EQ(event.at("event"), "result");
@@ -66,15 +66,15 @@ TEST(Calibrate, WritesWhatItFoundAndASceneThatRunsIt) {
 TEST(Calibrate, AnInterruptedOneGoesOnToTheSameResult) {
     const FlowingScene scene;
     const ProgramOptions here{.folder = scene.folder()};
-    ASSERT_EQ(run_program(command("whole", {"--quiet"}, "14"), here).exit_code, 0);
+    ASSERT_EQ(run_program(calibrate_command("whole", {"--quiet"}, "14"), here).exit_code, 0);
     ProgramOptions options = here;
     options.wait_for = "\"event\":\"progress\"";
     options.while_running = [](int process) { kill(process, SIGINT); };
-    const auto first = run_program(command("part", {"--json", "--threads", "1"}, "14"), options);
+    const auto first = run_program(calibrate_command("part", {"--json", "--threads", "1"}, "14"), options);
     ASSERT_EQ(first.exit_code, 130) << first.error;
     EXPECT_THAT(first.error, HasSubstr("the same command goes on from there"));
     EXPECT_FALSE(fs::exists(scene.folder() / "part/report.html"));
-    ASSERT_EQ(run_program(command("part", {"--quiet"}, "14"), here).exit_code, 0);
+    ASSERT_EQ(run_program(calibrate_command("part", {"--quiet"}, "14"), here).exit_code, 0);
     for (const char* file : {"factors.csv", "observations.csv", "posterior.csv", "calibration.json"}) {
         EXPECT_EQ(read_text(scene.folder() / "whole" / file), read_text(scene.folder() / "part" / file)) << file;
     }
@@ -83,7 +83,7 @@ TEST(Calibrate, AnInterruptedOneGoesOnToTheSameResult) {
 TEST(Calibrate, TriesItselfOnKnownValues) {
     const FlowingScene scene;
     const ProgramOptions here{.folder = scene.folder()};
-    const auto outcome = run_program(command("tried", {"--recover", "2", "--json"}), here);
+    const auto outcome = run_program(calibrate_command("tried", {"--recover", "2", "--json"}), here);
     ASSERT_EQ(outcome.exit_code, 0) << outcome.error;
     const auto event = nlohmann::json::parse(lines_of(outcome.out).back());
     ASSERT_EQ(event.at("seeds").size(), 2u);
@@ -102,15 +102,16 @@ TEST(Calibrate, BadInputIsOneLineAndLeavesNothing) {
     };
     expect({"calibrate", "slope.toml", "-o", "x"}, "there is nothing to vary");
     expect({"calibrate", "nix.toml", "--vary", "material.viscosity=0:0.1", "-o", "x"}, "nix.toml");
-    expect(command("x", {"--vary", "material.viscosity=0.2:0.2"}), "the range is empty");
-    expect(command("x", {"--vary", "material.viscosity=0.2:2"}), "material.viscosity = 2 is refused");
-    expect(command("x", {"--vary", "solver.kernel=spiky,cubic_spline"}), "a list has nothing between its values");
-    expect(command("x", {}, "7"), "runs = 7 is refused; it must be 8 to 2000 with 2 factors");
-    expect(command("x", {"--design", "9"}), "--design 9 with --checks 10 is refused");
-    expect(command("x", {"--set", "observation[0].chainage_m=5000"}),
+    expect(calibrate_command("x", {"--vary", "material.viscosity=0.2:0.2"}), "the range is empty");
+    expect(calibrate_command("x", {"--vary", "material.viscosity=0.2:2"}), "material.viscosity = 2 is refused");
+    expect(calibrate_command("x", {"--vary", "solver.kernel=spiky,cubic_spline"}),
+           "a list has nothing between its values");
+    expect(calibrate_command("x", {}, "7"), "runs = 7 is refused; it must be 8 to 2000 with 2 factors");
+    expect(calibrate_command("x", {"--design", "9"}), "--design 9 with --checks 10 is refused");
+    expect(calibrate_command("x", {"--set", "observation[0].chainage_m=5000"}),
            "observation[0].chainage_m = 5000 lies beyond the flow path");
     scene.replace("[[observation]]\nchainage_m = 5\nfront_velocity_mps = 3\n", "");
-    expect(command("x"), "has nothing to calibrate against");
+    expect(calibrate_command("x"), "has nothing to calibrate against");
     scene.write(SmallScene::text());
     EXPECT_EQ(scene.files(), before);
 }

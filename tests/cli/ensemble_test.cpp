@@ -16,8 +16,8 @@ namespace {
 namespace fs = std::filesystem;
 using testing::HasSubstr;
 
-std::vector<std::string> command(const std::string& output, const std::vector<std::string>& more = {},
-                                 const std::string& runs = "4") {
+std::vector<std::string> ensemble_command(const std::string& output, const std::vector<std::string>& more = {},
+                                          const std::string& runs = "4") {
     std::vector<std::string> arguments = {"ensemble",  "slope.toml",
                                           "--vary",    "material.friction_coefficient=0.1:0.5",
                                           "--vary",    "release.thickness_m=0.2:0.5",
@@ -31,12 +31,12 @@ std::vector<std::string> command(const std::string& output, const std::vector<st
 TEST(Ensemble, ShardsPutTogetherAreTheWholeByteForByte) {
     const SmallScene scene;
     const ProgramOptions here{.folder = scene.folder()};
-    const auto whole = run_program(command("whole"), here);
+    const auto whole = run_program(ensemble_command("whole"), here);
     ASSERT_EQ(whole.exit_code, 0) << whole.error;
     EXPECT_THAT(whole.out, HasSubstr("4 of 4 runs complete, 0 failed"));
     EXPECT_THAT(whole.out, HasSubstr("whole/report.html"));
-    ASSERT_EQ(run_program(command("first", {"--shard", "1/2"}), here).exit_code, 0);
-    ASSERT_EQ(run_program(command("second", {"--shard", "2/2", "--threads", "1"}), here).exit_code, 0);
+    ASSERT_EQ(run_program(ensemble_command("first", {"--shard", "1/2"}), here).exit_code, 0);
+    ASSERT_EQ(run_program(ensemble_command("second", {"--shard", "2/2", "--threads", "1"}), here).exit_code, 0);
     EXPECT_FALSE(fs::exists(scene.folder() / "first/report.html"));
     const auto merged = run_program({"ensemble", "merge", "first", "second", "-o", "both"}, here);
     ASSERT_EQ(merged.exit_code, 0) << merged.error;
@@ -49,7 +49,7 @@ TEST(Ensemble, ShardsPutTogetherAreTheWholeByteForByte) {
 TEST(Ensemble, CountsAgainWithOtherThresholds) {
     const SmallScene scene;
     const ProgramOptions here{.folder = scene.folder()};
-    ASSERT_EQ(run_program(command("result", {"--quiet"}), here).exit_code, 0);
+    ASSERT_EQ(run_program(ensemble_command("result", {"--quiet"}), here).exit_code, 0);
     const auto again = run_program({"ensemble", "merge", "result", "--depth-m", "0.25", "--json"}, here);
     ASSERT_EQ(again.exit_code, 0) << again.error;
     const auto event = nlohmann::json::parse(lines_of(again.out).back());
@@ -67,11 +67,11 @@ TEST(Ensemble, AnInterruptedOneGoesOn) {
     ProgramOptions options{.folder = scene.folder()};
     options.wait_for = "\"event\":\"progress\"";
     options.while_running = [](int process) { kill(process, SIGINT); };
-    const auto first = run_program(command("result", {"--json", "--threads", "1"}, "6"), options);
+    const auto first = run_program(ensemble_command("result", {"--json", "--threads", "1"}, "6"), options);
     ASSERT_EQ(first.exit_code, 130) << first.error;
     EXPECT_THAT(first.error, HasSubstr("the same command goes on from there"));
     EXPECT_FALSE(fs::exists(scene.folder() / "result/report.html"));
-    const auto rest = run_program(command("result", {"--quiet"}, "6"), {.folder = scene.folder()});
+    const auto rest = run_program(ensemble_command("result", {"--quiet"}, "6"), {.folder = scene.folder()});
     EXPECT_EQ(rest.exit_code, 0) << rest.error;
     EXPECT_TRUE(fs::exists(scene.folder() / "result/report.html"));
 }
@@ -87,12 +87,12 @@ TEST(Ensemble, BadInputIsOneLineAndLeavesNothing) {
     };
     expect({"ensemble", "slope.toml", "-o", "x"}, "there is nothing to vary");
     expect({"ensemble", "nix.toml", "--vary", "material.viscosity=0:0.1", "-o", "x"}, "nix.toml");
-    expect(command("x", {"--vary", "material.viscosity=0.2:0.1"}), "the range is empty");
-    expect(command("x", {"--vary", "material.viscosity=0.2:2"}), "material.viscosity = 2 is refused");
-    expect(command("x", {"--speed-mps", "1,half"}), "--speed-mps = \"1,half\" is refused");
-    expect(command("x", {"--shard", "3/2"}), "i from 1 to n");
-    expect(command("x", {"--design", "best"}), "must be one of monte_carlo, latin_hypercube");
-    expect(command("x", {"--plan", "nix.toml"}), "nix.toml");
+    expect(ensemble_command("x", {"--vary", "material.viscosity=0.2:0.1"}), "the range is empty");
+    expect(ensemble_command("x", {"--vary", "material.viscosity=0.2:2"}), "material.viscosity = 2 is refused");
+    expect(ensemble_command("x", {"--speed-mps", "1,half"}), "--speed-mps = \"1,half\" is refused");
+    expect(ensemble_command("x", {"--shard", "3/2"}), "i from 1 to n");
+    expect(ensemble_command("x", {"--design", "best"}), "must be one of monte_carlo, latin_hypercube");
+    expect(ensemble_command("x", {"--plan", "nix.toml"}), "nix.toml");
     expect({"ensemble", "merge", "nix"}, "is no ensemble of talus");
     EXPECT_EQ(scene.files(), before);
 }

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "geo/raster.hpp"
+#include "geo/rasters.hpp"
 #include "support/fixtures.hpp"
 
 namespace talus {
@@ -17,10 +18,6 @@ using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::Not;
 using testing::StartsWith;
-
-double pattern(int column, int row) {
-    return 100 + column + 0.01 * row;
-}
 
 /// The message of a refused file; it must be one line that begins with the file, and nothing may reach stderr.
 std::string refusal(const std::string& file, int band = 1) {

@@ -47,7 +47,7 @@ std::string box() {
 }
 
 /// `buffer`: its uri, as a member with a comma, or nothing.
-std::string house(const std::string& buffer) {
+std::string gltf_house(const std::string& buffer) {
     return R"({"asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0]}],
  "nodes": [{"translation": [824000, 50, -825000], "children": [1, 2]},
   {"name": "hut", "mesh": 0, "extras": {"resistance": 35000}},
@@ -61,7 +61,7 @@ std::string house(const std::string& buffer) {
 }
 
 std::string embedded() {
-    return house("\"uri\": \"data:application/octet-stream;base64," + base64(box()) + "\", ");
+    return gltf_house("\"uri\": \"data:application/octet-stream;base64," + base64(box()) + "\", ");
 }
 
 std::string word(std::uint32_t number) {
@@ -130,9 +130,9 @@ TEST_F(Gltf, ANodeWithAMeshIsABuildingWhereverItsBufferIs) {
     expect_hut_and_its_copy(read("a.gltf", embedded()));
     EXPECT_TRUE(more_files_.empty());
     write("my box.bin", box());
-    expect_hut_and_its_copy(read("b.gltf", house("\"uri\": \"my%20box.bin\", ")));
+    expect_hut_and_its_copy(read("b.gltf", gltf_house("\"uri\": \"my%20box.bin\", ")));
     EXPECT_THAT(more_files_, ElementsAre((folder_ / "my box.bin").string()));
-    expect_hut_and_its_copy(read("c.GLB", container(house(""), box())));
+    expect_hut_and_its_copy(read("c.GLB", container(gltf_house(""), box())));
 }
 
 TEST_F(Gltf, StripsFansAndRotationsAreRead) {
@@ -176,17 +176,17 @@ TEST_F(Gltf, BadFilesAreRefusedWithThePlace) {
     EXPECT_THAT(refusal("a.gltf", "hello"), HasSubstr("a.gltf: is no glTF file"));
     EXPECT_THAT(refusal("a.gltf", "{}"), HasSubstr("is no glTF file: it has no asset.version"));
     EXPECT_THAT(changed(R"("version": "2.0")", R"("version": "1.0")"), HasSubstr("asset.version is \"1.0\""));
-    EXPECT_THAT(refusal("a.gltf", house("\"uri\": \"gone.bin\", ")), HasSubstr("buffers[0]: "));
-    EXPECT_THAT(refusal("a.gltf", house("\"uri\": \"gone.bin\", ")), HasSubstr("gone.bin: no such file"));
+    EXPECT_THAT(refusal("a.gltf", gltf_house("\"uri\": \"gone.bin\", ")), HasSubstr("buffers[0]: "));
+    EXPECT_THAT(refusal("a.gltf", gltf_house("\"uri\": \"gone.bin\", ")), HasSubstr("gone.bin: no such file"));
     for (const char* uri : {"../a.bin", "/etc/passwd", "http://example.org/a.bin", "b/%2e%2e/%2e%2e/a.bin"}) {
-        EXPECT_THAT(refusal("a.gltf", house("\"uri\": \"" + std::string(uri) + "\", ")),
+        EXPECT_THAT(refusal("a.gltf", gltf_house("\"uri\": \"" + std::string(uri) + "\", ")),
                     HasSubstr("must be a file in the folder of the glTF file or below"));
     }
     write("short.bin", box().substr(1));
-    EXPECT_THAT(refusal("a.gltf", house("\"uri\": \"short.bin\", ")),
+    EXPECT_THAT(refusal("a.gltf", gltf_house("\"uri\": \"short.bin\", ")),
                 HasSubstr("buffers[0]: should have 156 bytes and has 155"));
-    EXPECT_THAT(refusal("a.gltf", house("")), HasSubstr("has no uri, and there is no binary chunk"));
-    EXPECT_THAT(refusal("a.gltf", house("\"uri\": \"data:;base64,A*==\", ")), HasSubstr("not written as base64"));
+    EXPECT_THAT(refusal("a.gltf", gltf_house("")), HasSubstr("has no uri, and there is no binary chunk"));
+    EXPECT_THAT(refusal("a.gltf", gltf_house("\"uri\": \"data:;base64,A*==\", ")), HasSubstr("not written as base64"));
     EXPECT_THAT(changed(R"("byteLength": 156)", R"("byteLength": 1000000000000)"),
                 HasSubstr("should have 1000000000000 bytes and has 156"));
     EXPECT_THAT(changed(R"("byteLength": 156)", R"("byteLength": -1)"), HasSubstr("must be a whole number of bytes"));
@@ -219,8 +219,8 @@ TEST_F(Gltf, BadFilesAreRefusedWithThePlace) {
     std::string bytes = box();
     const float nan = std::numeric_limits<float>::quiet_NaN();
     std::memcpy(bytes.data() + 48, &nan, 4);
-    EXPECT_THAT(refusal("a.glb", container(house(""), bytes)), HasSubstr("vertex 4 is not finite"));
-    const std::string whole = container(house(""), box());
+    EXPECT_THAT(refusal("a.glb", container(gltf_house(""), bytes)), HasSubstr("vertex 4 is not finite"));
+    const std::string whole = container(gltf_house(""), box());
     EXPECT_THAT(refusal("a.glb", whole.substr(0, 19)), HasSubstr("ends within its header"));
     EXPECT_THAT(refusal("a.glb", whole.substr(0, whole.size() - 8)), HasSubstr("is a damaged .glb file: it says that"));
     EXPECT_THAT(refusal("a.glb", whole.substr(0, 12) + word(1U << 31U) + whole.substr(16)), HasSubstr("chunk 0 says"));
@@ -242,7 +242,7 @@ TEST_F(Gltf, HostileFilesAreRefusedAndNothingElse) {
     EXPECT_THAT(changed("\"hut\"", deep), HasSubstr("(it was read)"));
     // Bytes changed at random: read or refused, never more than that.
     std::mt19937 random(12);
-    const std::string whole = container(house(""), box());
+    const std::string whole = container(gltf_house(""), box());
     for (int round = 0; round < 2000; ++round) {
         std::string bytes = whole;
         for (int k = 0; k < 3; ++k) bytes[random() % bytes.size()] = static_cast<char>(random() % 256);

@@ -36,7 +36,7 @@ class Mesh : public testing::Test {
 };
 
 /// A house of 10 x 6 m, its eaves at 56 and its ridge at 59 m, over ground at 50 m; vertices in centimetres.
-const char* const house = R"({"type": "CityJSON", "version": "2.0",
+const char* const city_house = R"({"type": "CityJSON", "version": "2.0",
  "metadata": {"referenceSystem": "https://www.opengis.net/def/crs/EPSG/0/2326"},
  "transform": {"scale": [0.01, 0.01, 0.01], "translate": [824000, 825000, 50]},
  "CityObjects": {
@@ -51,7 +51,7 @@ const char* const house = R"({"type": "CityJSON", "version": "2.0",
   [0, 600, 600], [0, 300, 900], [1000, 300, 900]]})";
 
 TEST_F(Mesh, CityJsonGivesTheRoofFacesOfTheMostDetailedGeometry) {
-    const auto buildings = read("a.city.json", house);
+    const auto buildings = read("a.city.json", city_house);
     ASSERT_TRUE(buildings) << buildings.error().message;
     ASSERT_EQ(buildings->size(), 1U);
     const MeshBuilding& hut = buildings->front();
@@ -97,7 +97,7 @@ TEST_F(Mesh, BadFilesAreRefusedWithThePlace) {
     EXPECT_THAT(refusal("a.obj", "hello\n"), HasSubstr("has no faces"));
     EXPECT_THAT(refusal("a.obj", "v 0 0 0\nv 1 0 0\nv 1 0 5\nf 1 2 3\n"), HasSubstr("has no roof"));
     const auto changed = [&](const std::string& from, const std::string& to) {
-        std::string text = house;
+        std::string text = city_house;
         text.replace(text.find(from), from.size(), to);
         return refusal("a.city.json", text);
     };
@@ -130,7 +130,7 @@ TEST_F(Mesh, HostileFilesAreRefusedAndNothingElse) {
     EXPECT_THAT(refusal("a.obj", faces), HasSubstr("there are more than 30000 faces"));
     // Bytes changed at random: read or refused, never more than that.
     for (int round = 0; round < 2000; ++round) {
-        std::string text = house;
+        std::string text = city_house;
         for (int k = 0; k < 3; ++k) text[random() % text.size()] = static_cast<char>(random() % 256);
         EXPECT_THAT(refusal("a.city.json", text), AnyOf("(it was read)", HasSubstr("a.city.json"))) << text;
     }

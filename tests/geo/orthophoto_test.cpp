@@ -5,6 +5,7 @@
 #include <gmock/gmock.h>
 
 #include "geo/raster.hpp"
+#include "geo/rasters.hpp"
 #include "support/fixtures.hpp"
 #include "support/photo.hpp"
 
@@ -14,11 +15,6 @@ namespace {
 using ::testing::HasSubstr;
 
 constexpr Extent ground{824000, 825000, 824100, 825080};
-
-Crs hong_kong() {
-    const TemporaryFolder folder;
-    return read_terrain_raster(write_plane(folder.file("dem.tif")), 1, std::nullopt)->crs;
-}
 
 /// Of the ground's extent.
 PhotoOptions whole() {

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "geo/raster.hpp"
+#include "geo/rasters.hpp"
 #include "support/fixtures.hpp"
 
 namespace talus {
@@ -14,10 +15,6 @@ using test::TemporaryFolder;
 using testing::HasSubstr;
 
 /// A value that tells column and row apart.
-double pattern(int column, int row) {
-    return 100 + column + 0.01 * row;
-}
-
 TEST(TerrainRaster, GivesCellsCountedFromTheSouthWest) {
     const TemporaryFolder folder;
     const std::string file = test::write_raster(folder.file("dem.tif"), {.columns = 7, .rows = 5}, pattern);

@@ -23,7 +23,7 @@ using testing::IsEmpty;
 using testing::Not;
 using testing::StartsWith;
 
-const Crs hong_kong{.wkt = "", .name = "Hong Kong 1980 Grid System", .epsg = 2326};
+const Crs without_wkt{.wkt = "", .name = "Hong Kong 1980 Grid System", .epsg = 2326};
 const std::string square = test::rectangle_wkt(824100, 825600, 824110, 825620);
 
 /// The origin of the Hong Kong 1980 Grid, 22 18 43.68 N 114 10 42.80 E on its own datum, and the same place on WGS 84
@@ -36,7 +36,7 @@ class Vectors : public testing::Test {
     /// The message of a refused file: one line that begins with the file; nothing may reach stderr.
     static std::string refusal(const std::string& file, const std::string& layer = "") {
         testing::internal::CaptureStderr();
-        const auto read = read_polygons(file, layer, hong_kong);
+        const auto read = read_polygons(file, layer, without_wkt);
         EXPECT_THAT(testing::internal::GetCapturedStderr(), IsEmpty());
         if (read.ok()) return "accepted";
         EXPECT_THAT(read.error().message, StartsWith(file + ": "));
@@ -62,7 +62,7 @@ TEST_F(Vectors, PolygonsWithHolesAndAttributesFromEveryFormat) {
              .fields = {{"name", OFTString}, {"thickness", OFTReal}, {"number", OFTInteger}},
              .type = wkbPolygon},
             name);
-        const auto layer = read_polygons(file, "", hong_kong);
+        const auto layer = read_polygons(file, "", without_wkt);
         ASSERT_TRUE(layer.ok()) << layer.error().message;
         ASSERT_EQ(layer->features.size(), 2U) << driver;
         EXPECT_EQ(layer->reprojection, "") << driver;
@@ -80,7 +80,7 @@ TEST_F(Vectors, PolygonsWithHolesAndAttributesFromEveryFormat) {
 
 TEST_F(Vectors, MultiPolygonsKeepTheirParts) {
     const auto layer =
-        read_polygons(write({{"MULTIPOLYGON (((0 0, 1 0, 1 1, 0 0)), ((5 5, 6 5, 6 6, 5 5)))"}}), "", hong_kong);
+        read_polygons(write({{"MULTIPOLYGON (((0 0, 1 0, 1 1, 0 0)), ((5 5, 6 5, 6 6, 5 5)))"}}), "", without_wkt);
     ASSERT_TRUE(layer.ok()) << layer.error().message;
     ASSERT_EQ(layer->features.size(), 1U);
     EXPECT_EQ(layer->features[0].parts.size(), 2U);
@@ -90,7 +90,7 @@ TEST_F(Vectors, CurvesHeightsAndMeasuresAreFlattened) {
     const std::string file = write({{"CURVEPOLYGON ZM (CIRCULARSTRING ZM (0 0 5 1, 10 0 5 1, 0 0 5 1))"},
                                     {"POLYGON Z ((0 0 9, 1 0 9, 1 1 9, 0 0 9))"}},
                                    {.driver = "GPKG"}, "curve.gpkg");
-    const auto layer = read_polygons(file, "", hong_kong);
+    const auto layer = read_polygons(file, "", without_wkt);
     ASSERT_TRUE(layer.ok()) << layer.error().message;
     EXPECT_NEAR(plan_area(layer->features[0].parts[0]), M_PI * 25, 0.1);
     EXPECT_DOUBLE_EQ(plan_area(layer->features[1].parts[0]), 0.5);
@@ -100,7 +100,7 @@ TEST_F(Vectors, GeoJsonWithoutCrsIsWgs84AndIsReprojected) {
     const std::string file = test::write_text(folder_.file("wgs84.geojson"), R"({"type": "FeatureCollection",
         "features": [{"type": "Feature", "properties": {}, "geometry": {"type": "Polygon", "coordinates":
         [[[114.181, 22.310606], [114.182, 22.310606], [114.182, 22.312], [114.181, 22.310606]]]}}]})");
-    const auto layer = read_polygons(file, "", hong_kong);
+    const auto layer = read_polygons(file, "", without_wkt);
     ASSERT_TRUE(layer.ok()) << layer.error().message;
     EXPECT_EQ(layer->reprojection, "reprojected from EPSG:4326 (WGS 84) to EPSG:2326 (Hong Kong 1980 Grid System)");
     const PlanPoint first = layer->features[0].parts[0].outer[0];
@@ -126,7 +126,7 @@ TEST_F(Vectors, AxesInTheOrderOfTheAuthorityAreTurned) {
     for (const auto& text : {gml(4326, latitude, longitude, 0.001), gml(2326, northing, easting, 100)}) {
         const std::string file = test::write_text(folder_.file("a.gml"), text);
         std::filesystem::remove(folder_.file("a.gfs"));
-        const auto layer = read_polygons(file, "", hong_kong);
+        const auto layer = read_polygons(file, "", without_wkt);
         ASSERT_TRUE(layer.ok()) << layer.error().message;
         EXPECT_NEAR(layer->features[0].parts[0].outer[0].x, easting, 5);
         EXPECT_NEAR(layer->features[0].parts[0].outer[0].y, northing, 5);
@@ -135,7 +135,7 @@ TEST_F(Vectors, AxesInTheOrderOfTheAuthorityAreTurned) {
 
 TEST_F(Vectors, ShapefileInTheTerrainsCrsIsNotReprojected) {
     const std::string file = write({{square}}, {.driver = "ESRI Shapefile", .type = wkbPolygon}, "same.shp");
-    const auto layer = read_polygons(file, "", hong_kong);
+    const auto layer = read_polygons(file, "", without_wkt);
     ASSERT_TRUE(layer.ok()) << layer.error().message;
     EXPECT_EQ(layer->reprojection, "");
     EXPECT_EQ(layer->features[0].parts[0].outer[0].x, 824100);
@@ -193,7 +193,7 @@ TEST_F(Vectors, NullAndEmptyGeometry) {
 TEST_F(Vectors, WrongGeometry) {
     EXPECT_THAT(refusal(write({{"POINT (1 2)"}})), HasSubstr("feature 1 (fid 0) is a Point, a polygon is needed"));
     EXPECT_THAT(refusal(write({{"LINESTRING (1 2, 3 4)"}})), HasSubstr("is a Line String, a polygon is needed"));
-    const auto line = read_line(write({{square}}), "", hong_kong);
+    const auto line = read_line(write({{square}}), "", without_wkt);
     ASSERT_FALSE(line.ok());
     EXPECT_THAT(line.error().message, HasSubstr("is a Polygon, a line is needed"));
 }
@@ -209,26 +209,26 @@ TEST_F(Vectors, SeveralLayersNeedAName) {
     test::write_vector(file, {.driver = "GPKG", .layer = "second", .append = true}, {{square}, {square}});
     EXPECT_THAT(refusal(file), HasSubstr("has 2 layers, say which one with layer = \"...\": first, second"));
     EXPECT_THAT(refusal(file, "third"), HasSubstr("has no layer \"third\"; its layers: first, second"));
-    const auto second = read_polygons(file, "second", hong_kong);
+    const auto second = read_polygons(file, "second", without_wkt);
     ASSERT_TRUE(second.ok()) << second.error().message;
     EXPECT_EQ(second->features.size(), 2U);
 }
 
 TEST_F(Vectors, LinePartsAreJoinedWhicheverWayTheyRun) {
     const auto line = read_line(
-        write({{"MULTILINESTRING Z ((20 0 1, 10 0 1, 10 0 1), (20 0 1, 30 5 1), (40 5 1, 30 5 1))"}}), "", hong_kong);
+        write({{"MULTILINESTRING Z ((20 0 1, 10 0 1, 10 0 1), (20 0 1, 30 5 1), (40 5 1, 30 5 1))"}}), "", without_wkt);
     ASSERT_TRUE(line.ok()) << line.error().message;
     std::vector<double> x;
     for (const PlanPoint& p : line->points) x.push_back(p.x);
     EXPECT_THAT(x, ElementsAre(10, 20, 30, 40));
-    const auto apart = read_line(write({{"MULTILINESTRING ((0 0, 1 0), (5 0, 6 0))"}}), "", hong_kong);
+    const auto apart = read_line(write({{"MULTILINESTRING ((0 0, 1 0), (5 0, 6 0))"}}), "", without_wkt);
     ASSERT_FALSE(apart.ok());
     EXPECT_THAT(apart.error().message, HasSubstr("parts that are not connected"));
 }
 
 TEST_F(Vectors, LineIsReprojected) {
     const auto line =
-        read_line(write({{"LINESTRING (114.181 22.310606, 114.182 22.312)"}}, {.epsg = 4326}), "", hong_kong);
+        read_line(write({{"LINESTRING (114.181 22.310606, 114.182 22.312)"}}, {.epsg = 4326}), "", without_wkt);
     ASSERT_TRUE(line.ok()) << line.error().message;
     EXPECT_NEAR(line->points[0].x, easting, 5);
     EXPECT_THAT(line->reprojection, StartsWith("reprojected from EPSG:4326"));

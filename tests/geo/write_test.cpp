@@ -9,6 +9,7 @@
 
 #include "geo/crs.hpp"
 #include "geo/raster.hpp"
+#include "geo/rasters.hpp"
 #include "geo/vector.hpp"
 #include "geo/versions.hpp"
 #include "support/fixtures.hpp"
@@ -19,11 +20,6 @@ namespace {
 using test::TemporaryFolder;
 using testing::HasSubstr;
 using testing::StartsWith;
-
-Crs hong_kong() {
-    const TemporaryFolder folder;
-    return read_terrain_raster(test::write_plane(folder.file("dem.tif")), 1, std::nullopt)->crs;
-}
 
 Grid<float> example(int columns, int rows) {
     Grid<float> grid({824001, 825002, 0.5, columns, rows});

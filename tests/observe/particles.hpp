@@ -4,6 +4,7 @@
 
 #include "sim/model.hpp"
 #include "sim/state.hpp"
+#include "terrain/flow_path.hpp"
 
 namespace talus::test {
 
@@ -16,6 +17,11 @@ inline Terrain ground(double slope = 0, double cell = 2) {
             grid.at(c, r) = static_cast<float>(50 + slope * (1100 - grid.geometry.centre(c, r).x));
     }
     return Terrain(grid);
+}
+
+/// Eastward along that ground's middle.
+inline FlowPath straight_path() {
+    return FlowPath({{910, 2000}, {1090, 2000}}, 40);
 }
 
 inline Model make_model(double spacing = 0.4, double slope = 0) {

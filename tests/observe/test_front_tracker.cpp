@@ -13,14 +13,10 @@ using test::advance;
 using test::block;
 
 /// Eastward through the middle of the ground; local x = chainage - 90.
-FlowPath straight_path() {
-    return FlowPath({{910, 2000}, {1090, 2000}}, 40);
-}
-
 TEST(FrontTracker, a_front_at_constant_speed_has_that_speed_everywhere) {
     const Model model = test::make_model(0.4);
     State state = block(0.4, -90, -4, 25, 20, 3, {7, 0, 0});  // front at chainage 10
-    FrontTracker front(model, state, straight_path(), 1, 10);
+    FrontTracker front(model, state, test::straight_path(), 1, 10);
     EXPECT_NEAR(front.current(), 9.8, 1e-4);
     for (int step = 0; step < 700; ++step) {
         advance(state, 0.013);
@@ -39,7 +35,7 @@ TEST(FrontTracker, a_front_at_constant_speed_has_that_speed_everywhere) {
 TEST(FrontTracker, velocity_follows_a_front_that_slows_down) {
     const Model model = test::make_model(0.4);
     State state = block(0.4, -90, -4, 25, 20, 3);
-    FrontTracker front(model, state, straight_path(), 0.5, 6);
+    FrontTracker front(model, state, test::straight_path(), 0.5, 6);
     const double time_step = 0.01;
     for (int step = 0; step < 900; ++step) {
         const double v = 12 - state.time;  // chainage 9.8 + 12 t - t^2 / 2
@@ -58,7 +54,7 @@ TEST(FrontTracker, one_stray_makes_no_front) {
     const Model model = test::make_model(0.4);
     State state = block(0.4, -90, -4, 25, 20, 3);
     for (int i = 0; i < 4; ++i) test::add_particle(state, {50, 0, 0});
-    FrontTracker front(model, state, straight_path(), 1, 10);
+    FrontTracker front(model, state, test::straight_path(), 1, 10);
     EXPECT_NEAR(front.current(), 9.8, 1e-4);
     EXPECT_EQ(front_particle_count(state), 5U);
     state.seeded = 20001;
@@ -70,7 +66,7 @@ TEST(FrontTracker, one_stray_makes_no_front) {
 TEST(FrontTracker, debris_outside_the_corridor_is_no_front) {
     const Model model = test::make_model(0.4);
     const State state = block(0.4, -90, 30, 25, 20, 3);
-    const FrontTracker front(model, state, straight_path(), 1, 10);
+    const FrontTracker front(model, state, test::straight_path(), 1, 10);
     EXPECT_TRUE(std::isnan(front.current()));
     EXPECT_TRUE(std::isnan(front.farthest()));
 }
@@ -80,7 +76,7 @@ TEST(FrontTracker, a_release_that_starts_ahead_of_the_front_is_no_arrival) {
     State state = block(0.4, -90, -4, 25, 20, 3, {5, 0, 0});
     const State second = block(0.4, -40, -4, 10, 20, 3);  // to chainage 54
     for (std::uint32_t i = 0; i < second.count; ++i) test::add_particle(state, second.position.at(i), {5, 0, 0}, true);
-    FrontTracker front(model, state, straight_path(), 1, 10);
+    FrontTracker front(model, state, test::straight_path(), 1, 10);
     for (int step = 0; step < 200; ++step) {
         if (step == 100) state.held.assign(state.count, 0);
         advance(state, 0.02);
@@ -96,7 +92,7 @@ TEST(FrontTracker, a_release_that_starts_ahead_of_the_front_is_no_arrival) {
 TEST(FrontTracker, the_farthest_chainage_stays_when_the_front_draws_back_or_leaves) {
     const Model model = test::make_model(0.4);
     State state = block(0.4, -90, -4, 25, 20, 3, {5, 0, 0});
-    FrontTracker front(model, state, straight_path(), 1, 10);
+    FrontTracker front(model, state, test::straight_path(), 1, 10);
     for (int step = 0; step < 100; ++step) {
         advance(state, 0.02);
         front.after_step(model, state);

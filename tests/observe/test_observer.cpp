@@ -16,10 +16,6 @@ namespace {
 using test::advance;
 using test::block;
 
-FlowPath straight_path() {
-    return FlowPath({{910, 2000}, {1090, 2000}}, 40);
-}
-
 /// A cloud that disperses eastward, some of it against a house.
 struct Cloud {
     Model model = test::make_model(0.4);
@@ -49,7 +45,7 @@ void add(StateHash& hash, const Grid<float>& map) {
 std::uint64_t hash_of_run(int threads) {
     const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads));
     Cloud cloud;
-    Observer observer(cloud.model, cloud.state, straight_path(), OutputSpec{}, 1);
+    Observer observer(cloud.model, cloud.state, test::straight_path(), OutputSpec{}, 1);
     for (int step = 0; step < 60; ++step) {
         cloud.step();
         observer.after_step(cloud.model, cloud.state, 0);
@@ -81,7 +77,7 @@ TEST(Observer, watching_a_step_allocates_nothing_once_debris_moves_where_it_was)
     Cloud cloud;
     OutputSpec outputs;
     outputs.sample_interval = 1000;
-    Observer observer(cloud.model, cloud.state, straight_path(), outputs, 1);
+    Observer observer(cloud.model, cloud.state, test::straight_path(), outputs, 1);
     for (int step = 0; step < 40; ++step) {
         cloud.step();
         observer.after_step(cloud.model, cloud.state, 0);
@@ -103,7 +99,7 @@ TEST(Observer, rows_come_at_the_interval_with_the_first_and_the_last) {
     Cloud cloud;
     OutputSpec outputs;
     outputs.sample_interval = 0.1;
-    Observer observer(cloud.model, cloud.state, straight_path(), outputs, 1);
+    Observer observer(cloud.model, cloud.state, test::straight_path(), outputs, 1);
     EXPECT_EQ(observer.latest().time, 0);
     for (int step = 0; step < 55; ++step) {
         cloud.step();
@@ -182,7 +178,7 @@ TEST(Observer, says_how_far_debris_was_compressed_and_when) {
 
 TEST(Observer, reports_the_front_as_it_goes) {
     Cloud cloud;
-    Observer observer(cloud.model, cloud.state, straight_path(), OutputSpec{}, 1);
+    Observer observer(cloud.model, cloud.state, test::straight_path(), OutputSpec{}, 1);
     const double start = observer.front_chainage();
     EXPECT_NEAR(start, 26, 0.5);
     for (int step = 0; step < 100; ++step) {

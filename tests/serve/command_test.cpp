@@ -21,8 +21,8 @@ namespace {
 namespace fs = std::filesystem;
 using ::testing::HasSubstr;
 
-constexpr const char* controller = "controller-token-of-tests";
-constexpr const char* viewer = "viewer-token-of-the-tests";
+constexpr const char* controller_token = "controller-token-of-tests";
+constexpr const char* viewer_token = "viewer-token-of-the-tests";
 
 /// A port of this machine that was free just now, held by nobody when this has gone.
 std::uint16_t free_port() {
@@ -44,7 +44,7 @@ ProgramOutcome serve(const SmallScene& scene, std::vector<std::string> arguments
     const std::uint16_t port = free_port();
     arguments.insert(arguments.begin(), "serve");
     for (const std::string& more : {std::string("--port"), std::to_string(port), std::string("--token"),
-                                    std::string(controller), std::string("--token"), std::string(viewer)}) {
+                                    std::string(controller_token), std::string("--token"), std::string(viewer_token)}) {
         arguments.push_back(more);
     }
     ProgramOptions options;
@@ -70,17 +70,17 @@ TEST(ServeCommand, begins_paused_prints_both_links_and_ends_by_ctrl_c) {
         scene, {"slope.toml"},
         [&](std::uint16_t port) {
             links = fmt::format("http://127.0.0.1:{}/#token=", port);
-            HttpClient client(port, viewer);
+            HttpClient client(port, viewer_token);
             const auto state = client.get("/api/scenarios/A/state").json();
             EXPECT_EQ(state["status"], "paused");
             EXPECT_EQ(state["time_s"], 0);
             EXPECT_EQ(client.get("/api/scenarios/A/exports/front.csv").status, 200);
-            EXPECT_EQ(HttpClient(port, controller).get("/api/session").json()["title"], "Plane");
+            EXPECT_EQ(HttpClient(port, controller_token).get("/api/session").json()["title"], "Plane");
         },
         "Ctrl-C");
     EXPECT_EQ(outcome.exit_code, 0) << outcome.error;
-    EXPECT_THAT(outcome.out, HasSubstr(links + controller));
-    EXPECT_THAT(outcome.out, HasSubstr(links + viewer));
+    EXPECT_THAT(outcome.out, HasSubstr(links + controller_token));
+    EXPECT_THAT(outcome.out, HasSubstr(links + viewer_token));
     EXPECT_THAT(outcome.out, HasSubstr("press Run"));
     EXPECT_EQ(outcome.error, "");
     EXPECT_EQ(files_in(scene.folder()), files) << "something temporary is left";
@@ -91,7 +91,7 @@ TEST(ServeCommand, runs_at_once_where_told_and_takes_values_of_the_scene) {
     const auto outcome =
         serve(scene, {"slope.toml", "--run", "--json", "--set", "solver.end_time_s=0.2", "--threads", "1"},
               [&](std::uint16_t port) {
-                  HttpClient client(port, viewer);
+                  HttpClient client(port, viewer_token);
                   nlohmann::json state;
                   for (int i = 0; i < 100 && state["status"] != "ended"; ++i) {
                       state = client.get("/api/scenarios/A/state").json();
@@ -100,14 +100,14 @@ TEST(ServeCommand, runs_at_once_where_told_and_takes_values_of_the_scene) {
                   EXPECT_EQ(state["status"], "ended");
                   EXPECT_NEAR(state["time_s"].get<double>(), 0.2, 0.05);
                   // Nothing is left to run; a restart shows the beginning.
-                  HttpClient hand(port, controller);
+                  HttpClient hand(port, controller_token);
                   EXPECT_EQ(hand.post("/api/scenarios/A/actions", {{"action", "run"}}).status, 400);
                   EXPECT_EQ(hand.post("/api/scenarios/A/actions", {{"action", "restart"}}).status, 200);
                   EXPECT_EQ(client.get("/api/scenarios/A/state").json()["status"], "paused");
               });
     EXPECT_EQ(outcome.exit_code, 0) << outcome.error;
     const auto links = nlohmann::json::parse(outcome.out);
-    EXPECT_THAT(links["controller_url"].get<std::string>(), HasSubstr(std::string("#token=") + controller));
+    EXPECT_THAT(links["controller_url"].get<std::string>(), HasSubstr(std::string("#token=") + controller_token));
 }
 
 TEST(ServeCommand, opens_the_built_in_scene_when_none_is_given) {
@@ -115,7 +115,7 @@ TEST(ServeCommand, opens_the_built_in_scene_when_none_is_given) {
     const auto outcome = serve(
         scene, {},
         [](std::uint16_t port) {
-            const auto session = HttpClient(port, viewer).get("/api/session").json();
+            const auto session = HttpClient(port, viewer_token).get("/api/session").json();
             EXPECT_THAT(session["title"].get<std::string>(), HasSubstr("Sham Tseng"));
         },
         "Ctrl-C");

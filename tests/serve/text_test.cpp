@@ -64,8 +64,8 @@ TEST(Pace, keeps_simulated_time_at_its_factor) {
     Pace pace;
     pace.set_factor(2);
     const Clock::time_point begin{std::chrono::seconds(100)};
-    const auto after = [&](double seconds) {
-        return begin + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(seconds));
+    const auto after = [&](double time) {
+        return begin + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(time));
     };
     EXPECT_EQ(pace.due(5, begin), begin);
     EXPECT_EQ(pace.due(5.125, after(0.01)), after(0.0625));

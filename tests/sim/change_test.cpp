@@ -12,14 +12,12 @@
 namespace talus::testing {
 namespace {
 
-constexpr double spacing = 0.5;
-
 /// A block on a plane steeper than its friction angle.
 struct Slide {
     Slide() {
         MaterialSpec material;
         material.friction_coefficient = 0.2;
-        Model model = make_model(material, {}, terrain, {}, spacing);
+        Model model = make_model(material, {}, terrain, {}, coarse_spacing);
         Result<State> state = seed_releases(model, {block(terrain, rectangle(8, 15, 14, 25), 1.5)});
         simulation.emplace(std::move(model), *std::move(state));
     }

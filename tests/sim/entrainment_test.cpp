@@ -12,8 +12,6 @@
 namespace talus::testing {
 namespace {
 
-constexpr double spacing = 0.5;
-
 BedMaterial growing(double rate) {
     BedMaterial material;
     material.name = "gravel";
@@ -44,7 +42,7 @@ Simulation slide(const BedMaterial& material, float depth) {
     const Terrain terrain = inclined_plane(25);
     MaterialSpec moving;
     moving.friction_coefficient = 0.2;
-    Model model = make_model(moving, {}, terrain, {}, spacing);
+    Model model = make_model(moving, {}, terrain, {}, coarse_spacing);
     Result<State> state = seed_releases(model, {block(terrain, rectangle(8, 15, 14, 25), 1.5)});
     lay(model, material, depth);
     return {std::move(model), *std::move(state)};
@@ -107,13 +105,14 @@ TEST(Entrainment, keeps_momentum_and_everybody_elses_speed) {
     for (std::uint32_t i = count; i < state.count; ++i) {
         EXPECT_EQ(length(state.velocity.at(i)), 0);
         const LocalPoint p = state.position.at(i);
-        EXPECT_NEAR(p.z, model.terrain.sample(p.x, p.y).height + spacing / 2, 0.2 * spacing) << "it lies on the ground";
+        EXPECT_NEAR(p.z, model.terrain.sample(p.x, p.y).height + coarse_spacing / 2, 0.2 * coarse_spacing)
+            << "it lies on the ground";
     }
 }
 
 TEST(Entrainment, makes_room_without_a_pop) {
     const Terrain level = terrain_of(30, 30, 1, [](double, double) { return 10; });
-    Model model = make_model({}, {}, level, {}, spacing);
+    Model model = make_model({}, {}, level, {}, coarse_spacing);
     Result<State> seeded = seed_releases(model, {block(level, rectangle(5, 5, 25, 25), 2)});
     // Debris that seems to move picks up its bed for a moment, and lies still again.
     lay(model, growing(0.02), 1);

@@ -14,15 +14,13 @@ namespace {
 
 using testing::inclined_plane;
 
-constexpr double spacing = 0.4;
-
 /// 6 m wide at x = 20, towards +x: down the plane of sim_fixtures.
 Inflow inflow(std::vector<InflowSample> hydrograph) {
     return {"gully", {20, 17}, {20, 23}, std::move(hydrograph)};
 }
 
 Model plane() {
-    return make_model({}, {}, inclined_plane(25), {}, spacing);
+    return make_model({}, {}, inclined_plane(25), {}, testing::fine_spacing);
 }
 
 void let_in(Simulation& simulation, InflowFeeder& feeder) {
@@ -78,7 +76,7 @@ TEST(AreaSource, brings_the_volume_to_the_particle_evenly_over_the_area) {
             EXPECT_TRUE(contains(source.area.front(), {p.x, p.y})) << p.x << " " << p.y;
             upper += p.x < 24 ? 1 : 0;
             for (std::uint32_t j = 0; j < i; ++j) {
-                EXPECT_GE(length(state.position.at(i) - state.position.at(j)), 0.999 * spacing);
+                EXPECT_GE(length(state.position.at(i) - state.position.at(j)), 0.999 * testing::fine_spacing);
             }
         }
         EXPECT_NEAR(upper / static_cast<double>(all), 16.0 / 35, 0.06);
@@ -108,7 +106,7 @@ TEST(AreaSource, does_not_pop_apart_even_where_debris_piles_up) {
     // 60 m3 onto 35 m2 in 4 s, with friction enough for it to stay: it lies in layers on top of each other.
     MaterialSpec rough;
     rough.friction_coefficient = 0.9;
-    const Model model = make_model(rough, {}, inclined_plane(25), {}, spacing);
+    const Model model = make_model(rough, {}, inclined_plane(25), {}, testing::fine_spacing);
     InflowFeeder feeder(model, {rain({{0, 15, 0}, {4, 15, 0}})});
     Simulation simulation(model, State{}, feeder.to_come());
     double worst = 0, fastest = 0;
@@ -192,7 +190,7 @@ TEST(InflowFeeder, new_debris_is_no_denser_than_at_rest_and_moves_with_the_inflo
             const LocalPoint v = simulation.state().velocity.at(i);
             const double x =
                 simulation.state().position.x[i] - simulation.model().terrain.frame().to_local({20, 0, 0}).x;
-            if (x < 2 * spacing) fastest = std::max<double>(fastest, length(v));
+            if (x < 2 * testing::fine_spacing) fastest = std::max<double>(fastest, length(v));
         }
     }
     EXPECT_GT(simulation.state().count, 500U);

@@ -10,8 +10,6 @@ namespace {
 
 using testing::rectangle;
 
-constexpr double spacing = 0.4;
-
 /// A heap on level ground, 3 m to a side and 1.2 m high, and a block of the same size `fall` metres above its middle
 /// that starts after `start` seconds.
 Simulation heap_and_block(double rest_duration, double start) {
@@ -22,7 +20,7 @@ Simulation heap_and_block(double rest_duration, double start) {
     material.friction_coefficient = 0.6;
     std::vector<Release> releases = {testing::block(terrain, rectangle(27, 27, 30, 30), 1.2)};
     if (start > 0) releases.push_back(testing::block(terrain, rectangle(34, 27, 37, 30), 1.2, start));
-    return testing::simulate(material, solver, terrain, releases, spacing);
+    return testing::simulate(material, solver, terrain, releases, testing::fine_spacing);
 }
 
 void advance_to(Simulation& simulation, double time) {
@@ -91,7 +89,7 @@ TEST(DebrisAtRest, wakes_when_something_moves_beside_it_and_ends_where_it_would_
         Simulation simulation = testing::simulate({}, solver, terrain,
                                                   {testing::block(terrain, rectangle(33, 12, 36, 18), 0.8),
                                                    testing::block(terrain, rectangle(8, 11, 18, 19), 1.2, 6.0)},
-                                                  spacing);
+                                                  testing::fine_spacing);
         advance_to(simulation, 5.9);
         const State& state = simulation.state();
         const std::uint32_t first = simulation.model().releases[0].last_particle;

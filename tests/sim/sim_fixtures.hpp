@@ -14,6 +14,8 @@
 /// Small worlds for tests of the solver.
 namespace talus::testing {
 
+inline constexpr double coarse_spacing = 0.5, fine_spacing = 0.4;  ///< m
+
 /// A terrain of `columns` x `rows` cells with elevations from a function of world x, y.
 inline Terrain terrain_of(int columns, int rows, double cell, const std::function<double(double, double)>& elevation) {
     Grid<float> grid(GridGeometry{0, 0, cell, columns, rows});

@@ -9,22 +9,10 @@
 #include <gtest/gtest.h>
 
 #include "terrain/flow_path.hpp"
+#include "terrain/grids.hpp"
 
 namespace talus {
 namespace {
-
-constexpr float nodata = std::numeric_limits<float>::quiet_NaN();
-
-Grid<float> make(const GridGeometry& g, const std::function<double(double, double)>& height) {
-    Grid<float> grid(g);
-    for (int r = 0; r < g.rows; ++r) {
-        for (int c = 0; c < g.columns; ++c) {
-            const PlanPoint p = g.centre(c, r);
-            grid.at(c, r) = static_cast<float>(height(p.x, p.y));
-        }
-    }
-    return grid;
-}
 
 TEST(FlowPath, chainage_and_offset_along_a_bend) {
     const FlowPath path({{1000, 2000}, {1100, 2000}, {1100, 2000}, {1100, 2050}}, 40);

@@ -4,12 +4,11 @@
 
 #include <gtest/gtest.h>
 
+#include "terrain/grids.hpp"
 #include "terrain/release.hpp"
 
 namespace talus {
 namespace {
-
-constexpr float nodata = std::numeric_limits<float>::quiet_NaN();
 
 /// A plane that rises eastward.
 Terrain plane(double slope, double cell = 5, int cells = 60) {

@@ -5,23 +5,11 @@
 
 #include <gtest/gtest.h>
 
+#include "terrain/grids.hpp"
 #include "terrain/terrain.hpp"
 
 namespace talus {
 namespace {
-
-constexpr float nodata = std::numeric_limits<float>::quiet_NaN();
-
-Grid<float> make(const GridGeometry& g, const std::function<double(double, double)>& height) {
-    Grid<float> grid(g);
-    for (int r = 0; r < g.rows; ++r) {
-        for (int c = 0; c < g.columns; ++c) {
-            const PlanPoint p = g.centre(c, r);
-            grid.at(c, r) = static_cast<float>(height(p.x, p.y));
-        }
-    }
-    return grid;
-}
 
 TEST(Terrain, a_plane_is_reproduced_exactly_everywhere_between_cell_centres) {
     const GridGeometry g{820000, 825000, 5, 40, 30};

@@ -23,10 +23,6 @@ float greater_or_unknown(float a, float b) {
     return std::isnan(a) || b <= a ? a : b;
 }
 
-std::size_t bundles_of(std::size_t particles) {
-    return (particles + bundle_size - 1) / bundle_size;
-}
-
 Bundles everything(const State& state) {
     return {0, bundles_of(state.count)};
 }

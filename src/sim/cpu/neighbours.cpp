@@ -18,10 +18,6 @@ constexpr std::size_t usual_neighbours = 48;      // per particle; debris at res
 constexpr std::size_t window = 16 * bundle_size;  // particles that change places with each other
 constexpr std::uint32_t longest_told_apart = 127;
 
-std::size_t bundles_of(std::size_t particles) {
-    return (particles + bundle_size - 1) / bundle_size;
-}
-
 }  // namespace
 
 NeighbourLists::NeighbourLists(std::size_t capacity)

@@ -11,7 +11,7 @@
 #include "validate/set_up.hpp"
 
 namespace talus::validate {
-namespace {
+namespace dam_break {
 
 constexpr double to_radians = std::numbers::pi / 180;
 
@@ -117,10 +117,11 @@ Computation prepare(Parameters& parameters, const Setting& setting) {
     return [spec, setting](const Watch& watch) { return compute(spec, setting, watch); };
 }
 
-}  // namespace
+}  // namespace dam_break
 
 Kind dam_break_kind() {
-    return {"dam_break", "a dam that breaks on a slope with Coulomb friction, as a thin slice", quantities, prepare};
+    return {"dam_break", "a dam that breaks on a slope with Coulomb friction, as a thin slice", dam_break::quantities,
+            dam_break::prepare};
 }
 
 }  // namespace talus::validate

@@ -10,7 +10,7 @@
 #include "validate/set_up.hpp"
 
 namespace talus::validate {
-namespace {
+namespace debris_flume {
 
 constexpr double to_radians = std::numbers::pi / 180;
 
@@ -234,10 +234,10 @@ Computation prepare(Parameters& parameters, const Setting& setting) {
     return [spec, setting](const Watch& watch) { return compute(spec, setting, watch); };
 }
 
-}  // namespace
+}  // namespace debris_flume
 
 Kind debris_flume_kind() {
-    return {"debris_flume", "wet debris is let go into a flume", quantities, prepare};
+    return {"debris_flume", "wet debris is let go into a flume", debris_flume::quantities, debris_flume::prepare};
 }
 
 }  // namespace talus::validate

@@ -11,7 +11,7 @@
 #include "validate/set_up.hpp"
 
 namespace talus::validate {
-namespace {
+namespace energy_line {
 
 constexpr double to_radians = std::numbers::pi / 180;
 
@@ -190,10 +190,11 @@ Computation prepare(Parameters& parameters, const Setting& setting) {
     return [spec, setting](const Watch& watch) { return compute(spec, setting, watch); };
 }
 
-}  // namespace
+}  // namespace energy_line
 
 Kind energy_line_kind() {
-    return {"energy_line", "energy of a mass that only Coulomb friction slows down", quantities, prepare};
+    return {"energy_line", "energy of a mass that only Coulomb friction slows down", energy_line::quantities,
+            energy_line::prepare};
 }
 
 }  // namespace talus::validate

@@ -8,7 +8,7 @@
 #include "validate/set_up.hpp"
 
 namespace talus::validate {
-namespace {
+namespace free_fall {
 
 constexpr Quantity quantities[] = {
     {"landing_distance", "m", true, Quantity::Site::none,
@@ -148,10 +148,10 @@ Computation prepare(Parameters& parameters, const Setting& setting) {
     return [spec, setting](const Watch& watch) { return compute(spec, setting, watch); };
 }
 
-}  // namespace
+}  // namespace free_fall
 
 Kind free_fall_kind() {
-    return {"free_fall", "debris that runs over a step falls freely", quantities, prepare};
+    return {"free_fall", "debris that runs over a step falls freely", free_fall::quantities, free_fall::prepare};
 }
 
 }  // namespace talus::validate

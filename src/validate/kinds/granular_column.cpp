@@ -12,7 +12,7 @@
 #include "validate/set_up.hpp"
 
 namespace talus::validate {
-namespace {
+namespace granular_column {
 
 constexpr double front_percentile = 0.99;
 constexpr double covered = 0.5;  // layers of particles that still cover the ground
@@ -216,10 +216,11 @@ Computation prepare(Parameters& parameters, const Setting& setting) {
     return [spec, setting](const Watch& watch) { return compute(spec, setting, watch); };
 }
 
-}  // namespace
+}  // namespace granular_column
 
 Kind granular_column_kind() {
-    return {"granular_column", "a column of granular material that collapses on a rough bed", quantities, prepare};
+    return {"granular_column", "a column of granular material that collapses on a rough bed",
+            granular_column::quantities, granular_column::prepare};
 }
 
 }  // namespace talus::validate

@@ -9,7 +9,7 @@
 #include "validate/set_up.hpp"
 
 namespace talus::validate {
-namespace {
+namespace growing_slab {
 
 constexpr Quantity quantities[] = {
     {"volume", "1", true, Quantity::Site::none, "of the debris over that at the start, at the end"},
@@ -131,10 +131,11 @@ Computation prepare(Parameters& parameters, const Setting& setting) {
     return [spec, setting](const Watch& watch) { return compute(spec, setting, watch); };
 }
 
-}  // namespace
+}  // namespace growing_slab
 
 Kind growing_slab_kind() {
-    return {"growing_slab", "a slab on an incline that picks up its bed", quantities, prepare};
+    return {"growing_slab", "a slab on an incline that picks up its bed", growing_slab::quantities,
+            growing_slab::prepare};
 }
 
 }  // namespace talus::validate

@@ -10,7 +10,7 @@
 #include "validate/set_up.hpp"
 
 namespace talus::validate {
-namespace {
+namespace inflow_plane {
 
 constexpr Quantity quantities[] = {
     {"thickness", "m", true, Quantity::Site::none, "mean of the steady part of the stream"},
@@ -111,10 +111,11 @@ Computation prepare(Parameters& parameters, const Setting& setting) {
     return [spec, setting](const Watch& watch) { return compute(spec, setting, watch); };
 }
 
-}  // namespace
+}  // namespace inflow_plane
 
 Kind inflow_plane_kind() {
-    return {"inflow_plane", "a constant inflow on an incline where friction balances gravity", quantities, prepare};
+    return {"inflow_plane", "a constant inflow on an incline where friction balances gravity", inflow_plane::quantities,
+            inflow_plane::prepare};
 }
 
 }  // namespace talus::validate

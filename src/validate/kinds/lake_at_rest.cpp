@@ -12,7 +12,7 @@
 #include "validate/set_up.hpp"
 
 namespace talus::validate {
-namespace {
+namespace lake_at_rest {
 
 constexpr Quantity quantities[] = {
     {"depth", "m", true, Quantity::Site::none, "mean depth of the lake; its volume over its area"},
@@ -154,10 +154,11 @@ Computation prepare(Parameters& parameters, const Setting& setting) {
     return [spec, setting](const Watch& watch) { return compute(spec, setting, watch); };
 }
 
-}  // namespace
+}  // namespace lake_at_rest
 
 Kind lake_at_rest_kind() {
-    return {"lake_at_rest", "a lake between walls on flat, stepped and curved ground", quantities, prepare};
+    return {"lake_at_rest", "a lake between walls on flat, stepped and curved ground", lake_at_rest::quantities,
+            lake_at_rest::prepare};
 }
 
 }  // namespace talus::validate

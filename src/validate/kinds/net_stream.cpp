@@ -11,7 +11,7 @@
 #include "validate/set_up.hpp"
 
 namespace talus::validate {
-namespace {
+namespace net_stream {
 
 constexpr Quantity quantities[] = {
     {"impulse", "N s/m", true, Quantity::Site::none,
@@ -144,10 +144,11 @@ Computation prepare(Parameters& parameters, const Setting& setting) {
     return [spec, setting](const Watch& watch) { return compute(spec, setting, watch); };
 }
 
-}  // namespace
+}  // namespace net_stream
 
 Kind net_stream_kind() {
-    return {"net_stream", "what a net holds of a stream, and what bears on it", quantities, prepare};
+    return {"net_stream", "what a net holds of a stream, and what bears on it", net_stream::quantities,
+            net_stream::prepare};
 }
 
 }  // namespace talus::validate

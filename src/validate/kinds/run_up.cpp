@@ -11,7 +11,7 @@
 #include "validate/set_up.hpp"
 
 namespace talus::validate {
-namespace {
+namespace run_up {
 
 constexpr Quantity quantities[] = {
     {"run_up", "1", true, Quantity::Site::none,
@@ -126,10 +126,10 @@ Computation prepare(Parameters& parameters, const Setting& setting) {
     return [spec, setting](const Watch& watch) { return compute(spec, setting, watch); };
 }
 
-}  // namespace
+}  // namespace run_up
 
 Kind run_up_kind() {
-    return {"run_up", "a stream runs up a wall and a ramp", quantities, prepare};
+    return {"run_up", "a stream runs up a wall and a ramp", run_up::quantities, run_up::prepare};
 }
 
 }  // namespace talus::validate

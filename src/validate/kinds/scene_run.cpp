@@ -11,7 +11,7 @@
 #include "validate/suite.hpp"
 
 namespace talus::validate {
-namespace {
+namespace scene_run {
 
 constexpr double to_degrees = 180 / std::numbers::pi;
 
@@ -125,10 +125,11 @@ Computation prepare(Parameters& parameters, const Setting& setting) {
     return [file, setting](const Watch& watch) { return compute(file, setting, watch); };
 }
 
-}  // namespace
+}  // namespace scene_run
 
 Kind scene_kind() {
-    return {"scene", "a scene file is run, and quantities of the run are compared", quantities, prepare};
+    return {"scene", "a scene file is run, and quantities of the run are compared", scene_run::quantities,
+            scene_run::prepare};
 }
 
 }  // namespace talus::validate

@@ -8,7 +8,7 @@
 #include "validate/set_up.hpp"
 
 namespace talus::validate {
-namespace {
+namespace shear_decay {
 
 constexpr Quantity quantities[] = {
     {"kinematic_viscosity", "m2/s", true, Quantity::Site::none, "from the decay of a shear mode, without gravity"},
@@ -126,10 +126,10 @@ Computation prepare(Parameters& parameters, const Setting& setting) {
     return [spec, setting](const Watch& watch) { return compute(spec, setting, watch); };
 }
 
-}  // namespace
+}  // namespace shear_decay
 
 Kind shear_decay_kind() {
-    return {"shear_decay", "a shear mode decays by viscosity alone", quantities, prepare};
+    return {"shear_decay", "a shear mode decays by viscosity alone", shear_decay::quantities, shear_decay::prepare};
 }
 
 }  // namespace talus::validate

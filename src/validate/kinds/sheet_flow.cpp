@@ -11,7 +11,7 @@
 #include "validate/set_up.hpp"
 
 namespace talus::validate {
-namespace {
+namespace sheet_flow {
 
 constexpr double to_radians = std::numbers::pi / 180;
 
@@ -171,10 +171,10 @@ Computation prepare(Parameters& parameters, const Setting& setting) {
     return [spec, setting](const Watch& watch) { return compute(spec, setting, watch); };
 }
 
-}  // namespace
+}  // namespace sheet_flow
 
 Kind sheet_flow_kind() {
-    return {"sheet_flow", "a sheet that flows steadily down a plane", quantities, prepare};
+    return {"sheet_flow", "a sheet that flows steadily down a plane", sheet_flow::quantities, sheet_flow::prepare};
 }
 
 }  // namespace talus::validate

@@ -9,7 +9,7 @@
 #include "validate/set_up.hpp"
 
 namespace talus::validate {
-namespace {
+namespace sliding_slab {
 
 constexpr double to_radians = std::numbers::pi / 180;
 
@@ -186,10 +186,11 @@ Computation prepare(Parameters& parameters, const Setting& setting) {
     return [spec, setting](const Watch& watch) { return compute(spec, setting, watch); };
 }
 
-}  // namespace
+}  // namespace sliding_slab
 
 Kind sliding_slab_kind() {
-    return {"sliding_slab", "a slab on an incline between frictionless walls", quantities, prepare};
+    return {"sliding_slab", "a slab on an incline between frictionless walls", sliding_slab::quantities,
+            sliding_slab::prepare};
 }
 
 }  // namespace talus::validate

@@ -11,7 +11,7 @@
 #include "validate/set_up.hpp"
 
 namespace talus::validate {
-namespace {
+namespace spreading_cap {
 
 constexpr double to_radians = std::numbers::pi / 180;
 
@@ -145,10 +145,11 @@ Computation prepare(Parameters& parameters, const Setting& setting) {
     return [spec, setting](const Watch& watch) { return compute(spec, setting, watch); };
 }
 
-}  // namespace
+}  // namespace spreading_cap
 
 Kind spreading_cap_kind() {
-    return {"spreading_cap", "a parabolic cap that slides and spreads on a plane", quantities, prepare};
+    return {"spreading_cap", "a parabolic cap that slides and spreads on a plane", spreading_cap::quantities,
+            spreading_cap::prepare};
 }
 
 }  // namespace talus::validate

@@ -11,7 +11,7 @@
 #include "validate/set_up.hpp"
 
 namespace talus::validate {
-namespace {
+namespace standing_heap {
 
 constexpr Quantity quantities[] = {
     {"height_loss", "1", false, Quantity::Site::none,
@@ -149,10 +149,11 @@ Computation prepare(Parameters& parameters, const Setting& setting) {
     return [spec, setting](const Watch& watch) { return compute(spec, setting, watch); };
 }
 
-}  // namespace
+}  // namespace standing_heap
 
 Kind standing_heap_kind() {
-    return {"standing_heap", "a cone near its friction angle that stands, or flows", quantities, prepare};
+    return {"standing_heap", "a cone near its friction angle that stands, or flows", standing_heap::quantities,
+            standing_heap::prepare};
 }
 
 }  // namespace talus::validate

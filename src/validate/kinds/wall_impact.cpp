@@ -10,7 +10,7 @@
 #include "validate/set_up.hpp"
 
 namespace talus::validate {
-namespace {
+namespace wall_impact {
 
 constexpr Quantity quantities[] = {
     {"impulse", "N s/m", true, Quantity::Site::none,
@@ -132,10 +132,11 @@ Computation prepare(Parameters& parameters, const Setting& setting) {
     return [spec, setting](const Watch& watch) { return compute(spec, setting, watch); };
 }
 
-}  // namespace
+}  // namespace wall_impact
 
 Kind wall_impact_kind() {
-    return {"wall_impact", "force and impulse of a stream on a rigid wall", quantities, prepare};
+    return {"wall_impact", "force and impulse of a stream on a rigid wall", wall_impact::quantities,
+            wall_impact::prepare};
 }
 
 }  // namespace talus::validate

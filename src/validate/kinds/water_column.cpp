@@ -10,7 +10,7 @@
 #include "validate/set_up.hpp"
 
 namespace talus::validate {
-namespace {
+namespace water_column {
 
 constexpr Quantity quantities[] = {
     {"front", "1", true, Quantity::Site::none,
@@ -99,10 +99,11 @@ Computation prepare(Parameters& parameters, const Setting& setting) {
     return [spec, setting](const Watch& watch) { return compute(spec, setting, watch); };
 }
 
-}  // namespace
+}  // namespace water_column
 
 Kind water_column_kind() {
-    return {"water_column", "a column of water that collapses on a smooth bed", quantities, prepare};
+    return {"water_column", "a column of water that collapses on a smooth bed", water_column::quantities,
+            water_column::prepare};
 }
 
 }  // namespace talus::validate
