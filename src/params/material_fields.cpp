@@ -9,6 +9,11 @@ void declare_resistance(Declaration<MaterialSpec>& s) {
           "Whether viscosity acts between debris and ground as well, which a viscous fluid sticks to.");
     s.optional_key("turbulent_friction_mps2", "m/s2", &MaterialSpec::turbulent_friction, above(0), "no such drag",
                    "Voellmy's xi: flow of thickness h is slowed by g v2 / (xi h) beside Coulomb friction.");
+    s.optional_key(
+        "turbulent_friction_thickness_m", "m", &MaterialSpec::turbulent_friction_thickness, above_to(0, 1000),
+        "xi is the same at every thickness",
+        "Thickness of the flow at which xi, here and in zones, is as given. It then grows with the cube root "
+        "of the thickness: Manning's law, with n = thickness^(1/6) / sqrt(xi).");
     s.key(
         "cohesion_Pa", "Pa", &MaterialSpec::cohesion, at_least(0),
         "Shear strength that needs no pressure, on the ground and inside: the yield stress of a mud where friction is "

@@ -123,6 +123,7 @@ struct MaterialSpec {
     std::optional<double> kinematic_viscosity;            ///< m2/s, in place of `viscosity`
     bool viscosity_on_ground = false;                     ///< viscosity also acts between debris and ground
     std::optional<double> turbulent_friction;             ///< xi, m/s2; absent: no such drag
+    std::optional<double> turbulent_friction_thickness;   ///< m, of flow with that xi; absent: the same at every one
     double cohesion = 0;                                  ///< Pa, shear strength without pressure
     double pore_pressure_ratio = 0;                       ///< r_u, at the start of the debris
     std::optional<double> pore_pressure_decay_time;       ///< s; absent: it stays

@@ -51,7 +51,10 @@ std::string resistance_rows(const Scene& scene) {
     std::string html;
     if (material.viscosity_on_ground) html += row("Viscosity on the ground", "the debris sticks to it");
     if (material.turbulent_friction) {
-        html += row("Turbulent friction", fmt::format("ξ = {} m/s²", plain(*material.turbulent_friction)));
+        const std::string at = material.turbulent_friction_thickness
+                                   ? fmt::format(" where {} m thick", plain(*material.turbulent_friction_thickness))
+                                   : "";
+        html += row("Turbulent friction", fmt::format("ξ = {} m/s²{}", plain(*material.turbulent_friction), at));
     }
     if (material.cohesion > 0) html += row("Cohesion", fmt::format("{} Pa", plain(material.cohesion)));
     for (const ReleaseSpec& release : scene.spec.releases) {
@@ -102,7 +105,13 @@ std::string resistance_laws(const Scene& scene) {
     if (turbulent) {
         html +=
             "<p><b>Turbulent friction.</b> Flow of thickness h and speed v is slowed by g v² / (ξ h) in all of its "
-            "depth, beside Coulomb friction on the ground (Voellmy 1955).</p>\n";
+            "depth, beside Coulomb friction on the ground (Voellmy 1955).";
+        if (material.turbulent_friction_thickness) {
+            html +=
+                fmt::format(" ξ grows with the cube root of h, as in Manning’s law, and is as given where h is {} m.",
+                            plain(*material.turbulent_friction_thickness));
+        }
+        html += "</p>\n";
     }
     if (material.cohesion > 0) {
         html +=

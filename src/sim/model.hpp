@@ -51,6 +51,7 @@ struct Model {
     double kinematic_viscosity = 0;  ///< m2/s, the same thing at this support radius
     bool viscosity_on_ground = false;
     double turbulent_friction = 0;        ///< xi, m/s2; 0: no such drag
+    double turbulent_thickness = 0;       ///< m, at which xi is as given; 0: at every one
     double cohesion = 0;                  ///< Pa, on the ground and inside
     double pore_pressure_ratio = 0;       ///< r_u, at the start of a release
     double pore_pressure_decay_time = 0;  ///< s; 0: it stays

@@ -128,6 +128,7 @@ void set_material(Model& model, const MaterialSpec& material) {
     model.kinematic_viscosity = kinematic_viscosity(model.viscosity, model.kernel.second_moment);
     model.viscosity_on_ground = material.viscosity_on_ground;
     model.turbulent_friction = material.turbulent_friction.value_or(0);
+    model.turbulent_thickness = material.turbulent_friction_thickness.value_or(0);
     model.cohesion = material.cohesion;
     model.pore_pressure_ratio = material.pore_pressure_ratio;
     model.pore_pressure_decay_time = material.pore_pressure_decay_time.value_or(0);

@@ -105,6 +105,7 @@ GroundCover half_and_half(const Terrain& terrain) {
 MaterialSpec everything() {
     MaterialSpec material;
     material.turbulent_friction = 300;
+    material.turbulent_friction_thickness = 0.7;
     material.cohesion = 200;
     material.pore_pressure_ratio = 0.4;
     material.pore_pressure_decay_time = 0.5;

@@ -40,6 +40,26 @@ TEST(VoellmyDrag, is_that_of_the_thickness_of_the_flow) {
     EXPECT_EQ(slower.z, -1) << "along the ground only";
 }
 
+TEST(VoellmyDrag, falls_with_the_cube_root_of_the_thickness_where_it_is_given_for_one) {
+    MaterialSpec material;
+    material.turbulent_friction = 200;
+    const Model same = model_of(material);
+    material.turbulent_friction_thickness = 0.15;
+    const Model manning = model_of(material);
+    const double dt = 1e-4;
+    const auto loss = [&](const Model& model, double thickness) {
+        const auto ground = ground_resistance(model, Vec3<double>{});
+        return 5 - slowed_by_drag(model, ground, level(), 0.05, thickness, {5, 0, 0}, dt).x;
+    };
+    EXPECT_NEAR(loss(manning, 0.15) / loss(same, 0.15), 1, 1e-3);
+    EXPECT_NEAR(loss(manning, 1.2) / loss(same, 1.2), 0.5, 1e-3) << "eight times as thick";
+    EXPECT_NEAR(loss(manning, 0.01875) / loss(same, 0.01875), 2, 2e-3);
+}
+
+TEST(CubeRoot, is_that_of_the_library_to_a_ten_thousandth) {
+    for (double x = 0.0025; x < 400; x *= 1.07) EXPECT_NEAR(cube_root(x) / std::cbrt(x), 1, 1e-4) << x;
+}
+
 TEST(VoellmyDrag, never_reverses_the_motion_and_leaves_what_flies_alone) {
     MaterialSpec material;
     material.turbulent_friction = 1;

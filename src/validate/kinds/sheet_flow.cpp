@@ -40,7 +40,8 @@ struct Measured {
 double law_velocity(const SheetSpec& spec, const SheetFlow& sheet, const Model& model, const MaterialSpec& material,
                     double height) {
     if (spec.law == "voellmy") {
-        return sheet.voellmy(model.friction_coefficient, material.turbulent_friction.value_or(0));
+        const double share = sheet.thickness / material.turbulent_friction_thickness.value_or(sheet.thickness);
+        return sheet.voellmy(model.friction_coefficient, material.turbulent_friction.value_or(0) * std::cbrt(share));
     }
     if (spec.law == "bingham") {
         return sheet.bingham(height, model.cohesion / model.rest_density, model.kinematic_viscosity);
