@@ -69,8 +69,8 @@ TEST(FieldTable, EveryMemberIsDeclared) {
         EXPECT_EQ(declared("flow_path"), 3U);
     }
     {
-        [[maybe_unused]] const auto [a, b, c, d, e, f, g, h, i, j, k, l, m, n, o] = MaterialSpec{};
-        EXPECT_EQ(declared("material"), 15U);
+        [[maybe_unused]] const auto [a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p] = MaterialSpec{};
+        EXPECT_EQ(declared("material"), 16U);
     }
     {
         [[maybe_unused]] const auto [a, b, c, d, e, f, g, h, i, j, k, l, m] = ZoneSpec{};
