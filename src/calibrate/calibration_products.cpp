@@ -1,6 +1,5 @@
 #include "calibrate/calibration_products.hpp"
 
-#include <cmath>
 #include <system_error>
 
 #include <fmt/format.h>
