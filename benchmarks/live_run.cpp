@@ -6,7 +6,7 @@
 #include <benchmark/benchmark.h>
 
 #include "observe/observer.hpp"
-#include "scene/stop_rule.hpp"
+#include "run/stop_rule.hpp"
 #include "sim/seed.hpp"
 #include "sim/simulation.hpp"
 #include "sizes.hpp"

@@ -4,8 +4,8 @@
 #include <optional>
 #include <string>
 
-#include "scene/run.hpp"
-#include "scene/variants.hpp"
+#include "run/run.hpp"
+#include "run/variants.hpp"
 
 namespace talus {
 

@@ -6,8 +6,8 @@
 
 #include "core/result.hpp"
 #include "interrupt.hpp"
+#include "run/variants.hpp"
 #include "scene/scene.hpp"
-#include "scene/variants.hpp"
 #include "temporary_folder.hpp"
 
 namespace talus {

@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "scene/comparison.hpp"
-#include "scene/run.hpp"
+#include "run/comparison.hpp"
+#include "run/run.hpp"
 #include "scene/scene.hpp"
 
 namespace talus {

@@ -6,8 +6,8 @@
 
 #include "commands.hpp"
 #include "progress.hpp"
-#include "scene/comparison.hpp"
-#include "scene/variants.hpp"
+#include "run/comparison.hpp"
+#include "run/variants.hpp"
 
 namespace talus {
 

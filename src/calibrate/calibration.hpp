@@ -14,8 +14,8 @@
 #include "calibrate/run_record.hpp"
 #include "calibrate/search.hpp"
 #include "core/result.hpp"
+#include "run/variants.hpp"
 #include "scene/scene.hpp"
-#include "scene/variants.hpp"
 
 /// Back-analysis: which values of a scene explain what was observed in the field, by runs of that scene.
 namespace talus {

@@ -14,7 +14,7 @@
 #include <fmt/format.h>
 
 #include "core/hash.hpp"
-#include "scene/run.hpp"
+#include "run/run.hpp"
 
 namespace talus {
 namespace {

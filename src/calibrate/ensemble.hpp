@@ -8,7 +8,7 @@
 #include "calibrate/ensemble_folder.hpp"
 #include "calibrate/plan.hpp"
 #include "core/result.hpp"
-#include "scene/variants.hpp"
+#include "run/variants.hpp"
 
 namespace talus {
 

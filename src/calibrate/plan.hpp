@@ -10,8 +10,8 @@
 #include "calibrate/design.hpp"
 #include "calibrate/distribution.hpp"
 #include "core/result.hpp"
+#include "run/variants.hpp"
 #include "scene/scene.hpp"
-#include "scene/variants.hpp"
 
 /// What an ensemble varies, how often it runs, and what it counts.
 namespace talus {

@@ -6,7 +6,7 @@
 #include "core/geometry.hpp"
 #include "observe/observation.hpp"
 #include "params/spec.hpp"
-#include "scene/run.hpp"
+#include "run/run.hpp"
 #include "scene/scene.hpp"
 #include "terrain/terrain.hpp"
 

@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "core/result.hpp"
-#include "scene/comparison.hpp"
-#include "scene/run.hpp"
+#include "run/comparison.hpp"
+#include "run/run.hpp"
 #include "scene/scene.hpp"
 
 namespace talus {

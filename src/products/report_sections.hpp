@@ -5,8 +5,8 @@
 
 #include "core/result.hpp"
 #include "products/report_map.hpp"
-#include "scene/comparison.hpp"
-#include "scene/run.hpp"
+#include "run/comparison.hpp"
+#include "run/run.hpp"
 #include "scene/scene.hpp"
 
 /// The parts of the report as HTML, each from the scene and the result alone. Names ending in _figure draw.

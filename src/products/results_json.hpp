@@ -2,7 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "scene/comparison.hpp"
+#include "run/comparison.hpp"
 
 /// Parts of a result as the manifest and `talus run --json` both give them. A value that does not exist is null.
 namespace talus {

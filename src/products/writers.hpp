@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "core/result.hpp"
-#include "scene/comparison.hpp"
-#include "scene/run.hpp"
+#include "run/comparison.hpp"
+#include "run/run.hpp"
 #include "scene/scene.hpp"
 
 /// The parts of write_products, one per kind of file. Lengths in m, times in s unless a suffix says otherwise.

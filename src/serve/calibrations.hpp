@@ -13,8 +13,8 @@
 
 #include "calibrate/calibration.hpp"
 #include "core/result.hpp"
+#include "run/variants.hpp"
 #include "scene/scene.hpp"
-#include "scene/variants.hpp"
 #include "serve/message.hpp"
 
 namespace talus::serve {

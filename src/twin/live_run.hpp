@@ -11,10 +11,10 @@
 
 #include "core/result.hpp"
 #include "observe/observer.hpp"
-#include "scene/rate_meter.hpp"
-#include "scene/run.hpp"
+#include "run/rate_meter.hpp"
+#include "run/run.hpp"
+#include "run/stop_rule.hpp"
 #include "scene/scene.hpp"
-#include "scene/stop_rule.hpp"
 #include "sim/inflow.hpp"
 #include "sim/simulation.hpp"
 #include "twin/erosion_history.hpp"

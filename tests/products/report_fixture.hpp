@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "scene/comparison.hpp"
-#include "scene/run.hpp"
+#include "run/comparison.hpp"
+#include "run/run.hpp"
 #include "scene/scene.hpp"
 
 /// A made-up valley with a made-up debris flow in it: everything a report shows, without a simulation.

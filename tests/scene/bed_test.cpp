@@ -5,7 +5,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "scene/run.hpp"
+#include "run/run.hpp"
 #include "scene/scene.hpp"
 #include "scene_folder.hpp"
 

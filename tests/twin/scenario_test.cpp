@@ -2,7 +2,7 @@
 
 #include <gmock/gmock.h>
 
-#include "scene/run.hpp"
+#include "run/run.hpp"
 #include "support/fixtures.hpp"
 #include "twin_fixtures.hpp"
 

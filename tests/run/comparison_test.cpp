@@ -1,4 +1,4 @@
-#include "scene/comparison.hpp"
+#include "run/comparison.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

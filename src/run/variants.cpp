@@ -1,4 +1,4 @@
-#include "scene/variants.hpp"
+#include "run/variants.hpp"
 
 #include <algorithm>
 #include <cmath>

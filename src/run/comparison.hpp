@@ -3,9 +3,9 @@
 #include <string>
 #include <vector>
 
-#include "scene/run.hpp"
+#include "run/run.hpp"
+#include "run/variants.hpp"
 #include "scene/scene.hpp"
-#include "scene/variants.hpp"
 
 /// What variants change in the results of a scene, in percent of its run as given (the base).
 namespace talus {

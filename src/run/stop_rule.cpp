@@ -1,4 +1,4 @@
-#include "scene/stop_rule.hpp"
+#include "run/stop_rule.hpp"
 
 #include <cmath>
 #include <cstdio>

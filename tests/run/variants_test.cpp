@@ -1,11 +1,11 @@
-#include "scene/variants.hpp"
+#include "run/variants.hpp"
 
 #include <atomic>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "scene_folder.hpp"
+#include "scene/scene_folder.hpp"
 #include "sim/seed.hpp"
 
 namespace talus {

@@ -1,4 +1,4 @@
-#include "scene/run.hpp"
+#include "run/run.hpp"
 
 #include <algorithm>
 #include <chrono>
@@ -11,8 +11,8 @@
 #include <tbb/task_arena.h>
 
 #include "observe/observer.hpp"
-#include "scene/rate_meter.hpp"
-#include "scene/stop_rule.hpp"
+#include "run/rate_meter.hpp"
+#include "run/stop_rule.hpp"
 #include "sim/change.hpp"
 #include "sim/inflow.hpp"
 #include "sim/seed.hpp"
