@@ -69,8 +69,7 @@ void plain_step(benchmark::State& run) {
     Observer observer(simulation.model(), simulation.state(), scene->flow_path, scene->spec.outputs,
                       default_map_cell(scene->terrain.cell(), spacing));
     const auto step = [&] {
-        (void)simulation.advance();
-        observer.after_step(simulation.model(), simulation.state(), 0);
+        (void)simulation.advance(&observer);
         benchmark::DoNotOptimize(total_momentum(simulation.model(), simulation.state()));
     };
     for (int k = 0; k < steps_before; ++k) step();

@@ -50,7 +50,7 @@ Model model_for(const Start& start, const Task& task) {
     return model;
 }
 
-/// A run with its observers, as scene/run.cpp steps it.
+/// A simulation with its observers.
 class Stepper {
   public:
     Stepper(const Start& start, const Task& task, const std::atomic<bool>* stop_requested)
@@ -61,9 +61,7 @@ class Stepper {
     Status take(int steps) {
         for (int i = 0; i < steps; ++i) {
             if (stop_requested_ && stop_requested_->load()) return Error{"stopped by the user"};
-            if (const auto fault = simulation_.advance()) return Error{*fault};
-            const StageTimer timer(simulation_.stage_times(), Stage::observe);
-            observer_.after_step(simulation_.model(), simulation_.state(), 0);
+            if (const auto fault = simulation_.advance(&observer_)) return Error{*fault};
         }
         return {};
     }

@@ -14,11 +14,6 @@ namespace {
 using Json = nlohmann::ordered_json;
 using Line = std::vector<std::string>;
 
-// As long as a number can be read in the table.
-constexpr std::array<std::string_view, stage_count> short_stage_names = {
-    "predict", "neighbours", "warm start", "density", "contacts", "overlaps",
-    "bounds",  "velocities", "viscosity",  "remove",  "entrain",  "observe"};
-
 /// Columns as wide as their widest entry, the first `left` of them with their text on the left.
 std::string aligned(const std::vector<Line>& lines, std::size_t left) {
     std::vector<std::size_t> width(lines.front().size());
@@ -67,13 +62,14 @@ std::string rates_text(const std::vector<Row>& rows) {
 
 std::string shares_text(const std::vector<Row>& rows) {
     std::vector<Line> lines = {{"scene", "method", "particles", "threads"}};
-    for (const std::string_view stage : short_stage_names) lines[0].emplace_back(stage);
-    for (const Row& row : rows) {
-        Line line = name_cells(row);
-        for (const double seconds : row.stage_seconds) {
-            line.push_back(fmt::format("{:.1f}", 100 * seconds / row.step_seconds));
+    for (const Row& row : rows) lines.push_back(name_cells(row));
+    for (std::size_t stage = 0; stage < stage_count; ++stage) {
+        const auto share = [stage](const Row& row) { return 100 * row.stage_seconds[stage] / row.step_seconds; };
+        if (std::none_of(rows.begin(), rows.end(), [&](const Row& row) { return share(row) >= 0.05; })) continue;
+        lines[0].emplace_back(step_stages[stage].short_name);
+        for (std::size_t row = 0; row < rows.size(); ++row) {
+            lines[row + 1].push_back(fmt::format("{:.1f}", share(rows[row])));
         }
-        lines.push_back(std::move(line));
     }
     return aligned(lines, 2);
 }
@@ -92,7 +88,7 @@ std::string table_text(const std::vector<Row>& rows) {
     if (rows.empty()) return "nothing was measured\n";
     return fmt::format(
         "backend {}, {}; iterations {}; time step {}; medians of {} repeats\n\n{}\n"
-        "share of each stage in a step, %\n{}",
+        "share of each stage in a step, %; stages below 0.05 % are omitted\n{}",
         distinct(rows, [](const Row& r) { return r.backend; }),
         distinct(rows, [](const Row& r) { return r.instruction_set; }),
         distinct(rows, [](const Row& r) { return r.iterations; }),
@@ -105,7 +101,7 @@ std::string table_json(const std::vector<Row>& rows) {
     for (const Row& row : rows) {
         Json stages = Json::object();
         for (std::size_t stage = 0; stage < stage_count; ++stage) {
-            stages[std::string(stage_names[stage])] = 1e3 * row.stage_seconds[stage];
+            stages[std::string(step_stages[stage].name)] = 1e3 * row.stage_seconds[stage];
         }
         list.push_back({
             {"scene", row.scene},

@@ -39,7 +39,7 @@ void ImpactRecorder::follow(const Model& model, const State& state) {
     last_touch_.resize(std::max({last_touch_.size(), std::size_t{state.seeded}, std::size_t{greatest} + 1}));
 }
 
-void ImpactRecorder::let_in(const State& state) {
+void ImpactRecorder::follow_inflow(const State& state) {
     if (impacts_.empty()) return;
     last_touch_.resize(std::max<std::size_t>(last_touch_.size(), state.seeded));
     for (const auto& crossings : crossings_) {

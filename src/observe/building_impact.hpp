@@ -26,7 +26,7 @@ class ImpactRecorder {
     /// Call when model or state were changed between two steps. Buildings keep their index; new ones come behind.
     void follow(const Model& model, const State& state);
     /// Call when particles came in between two steps and nothing else was changed.
-    void let_in(const State& state);
+    void follow_inflow(const State& state);
     /// Makes room for so many particles.
     void expect(std::uint32_t particles);
     /// Begins a building's record anew, as for one that was moved.

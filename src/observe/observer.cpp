@@ -8,6 +8,7 @@
 #include "observe/erosion.hpp"
 #include "observe/front_tracker.hpp"
 #include "observe/map_accumulator.hpp"
+#include "observe/rate_meter.hpp"
 #include "observe/run_out.hpp"
 #include "sim/cpu/parallel.hpp"
 #include "sim/particle_density.hpp"
@@ -100,7 +101,7 @@ struct Observer::Parts {
             for (std::uint32_t id = first; id < last; ++id) lay.position.set(lay.count++, start[id]);
         };
         for (const ReleaseGroup& release : model.releases) add(release.first_particle, release.last_particle);
-        for (const auto& [first, last] : let_in) add(first, last);
+        for (const auto& [first, last] : came_in) add(first, last);
         return measure_release(model, lay, front.flow_path());
     }
 
@@ -128,10 +129,11 @@ struct Observer::Parts {
     FrontTracker front;
     ImpactRecorder impact;
     ReleasedMass released;
-    std::vector<LocalPoint> start;                                ///< by particle id
-    std::vector<std::pair<std::uint32_t, std::uint32_t>> let_in;  ///< ids [first, last) that came in during the run
+    std::vector<LocalPoint> start;                                 ///< by particle id
+    std::vector<std::pair<std::uint32_t, std::uint32_t>> came_in;  ///< ids [first, last) that came in during the run
     std::vector<TimeSample> timeseries;
     std::uint64_t next_row = 1;  ///< due at next_row * sample_interval
+    RateMeter rate;
     double steps_per_second = 0;
     double worst_mean_compression = 0, worst_max_compression = 0;
     double worst_mean_time = never, worst_max_time = never;
@@ -146,6 +148,10 @@ Observer::Observer(const Model& model, const State& state, const FlowPath& flow_
 }
 
 Observer::~Observer() = default;
+
+void Observer::observe(const Model& model, const State& state) {
+    after_step(model, state, parts_->rate.update(state.step));
+}
 
 void Observer::after_step(const Model& model, const State& state, double steps_per_second) {
     Parts& p = *parts_;
@@ -172,18 +178,18 @@ void Observer::follow(const Model& model, const State& state, std::uint32_t firs
     p.impact.follow(model, state);
 }
 
-void Observer::let_in(const State& state, std::uint32_t first_new_id) {
+void Observer::follow_inflow(const State& state, std::uint32_t first_new_id) {
     Parts& p = *parts_;
     if (first_new_id == state.seeded) return;
     p.keep_starts(state, first_new_id);
-    if (!p.let_in.empty() && p.let_in.back().second == first_new_id) {
-        p.let_in.back().second = state.seeded;
+    if (!p.came_in.empty() && p.came_in.back().second == first_new_id) {
+        p.came_in.back().second = state.seeded;
     } else {
-        p.let_in.emplace_back(first_new_id, state.seeded);
+        p.came_in.emplace_back(first_new_id, state.seeded);
     }
     p.maps.make_room(state.count);
     p.front.follow(state);
-    p.impact.let_in(state);
+    p.impact.follow_inflow(state);
 }
 
 void Observer::expect(std::uint32_t particles) {
@@ -239,7 +245,7 @@ Observation Observer::finish(const Model& model, const State& state) const {
     Observation observation;
     observation.maps = p.maps.maps();
     observation.front = p.front.samples();
-    const ReleasedMass released = p.let_in.empty() ? p.released : p.measure_starts(model);
+    const ReleasedMass released = p.came_in.empty() ? p.released : p.measure_starts(model);
     observation.run_out = measure_run_out(model, state, p.front.flow_path(), released, p.front.farthest());
     observation.buildings = p.impact.complete(state);
     observation.timeseries = p.timeseries;

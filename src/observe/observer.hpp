@@ -11,35 +11,35 @@
 #include "params/spec.hpp"
 #include "sim/model.hpp"
 #include "sim/state.hpp"
+#include "sim/step_watcher.hpp"
 #include "terrain/flow_path.hpp"
 
 namespace talus {
 
 /// Watches a run: a stage of the step, so that peaks see every step. Its cost follows the particles, its result does
 /// not depend on the number of threads.
-class Observer {
+class Observer final : public StepWatcher {
   public:
     /// `flow_path` may be empty: then there is no front against chainage. `map_cell` in m.
     Observer(const Model& model, const State& state, const FlowPath& flow_path, const OutputSpec& outputs,
              double map_cell);
-    ~Observer();
-    Observer(const Observer&) = delete;
-    Observer& operator=(const Observer&) = delete;
+    ~Observer() override;
 
-    /// Call after every step. `steps_per_second` goes into the time series as it is.
+    /// As a stage of a step: after_step() with the steps per second of wall time.
+    void observe(const Model& model, const State& state) override;
+    void follow_inflow(const State& state, std::uint32_t first_new_id) override;
+    [[nodiscard]] const std::vector<std::size_t>& failed_buildings() const override;
+
+    /// Measures a step that was taken. `steps_per_second` goes into the time series as it is.
     void after_step(const Model& model, const State& state, double steps_per_second);
 
     /// Call when model or state were changed between two steps: particles with ids from `first_new_id` on are new.
     void follow(const Model& model, const State& state, std::uint32_t first_new_id);
-    /// Call when particles with ids from `first_new_id` on came in between two steps, and nothing else was changed.
-    void let_in(const State& state, std::uint32_t first_new_id);
-    /// Makes room for so many particles, so that letting them in allocates nothing.
+    /// Makes room for so many particles, so that their coming in allocates nothing.
     void expect(std::uint32_t particles);
     /// Begins what is known of a building anew, as for one that was moved.
     void forget_building(const Model& model, const State& state, std::size_t building);
 
-    /// Buildings whose resistance was exceeded in the last step: to be taken down.
-    [[nodiscard]] const std::vector<std::size_t>& failed_buildings() const;
     /// What has crossed a barrier's line; nullptr: not a barrier, or none that stands.
     [[nodiscard]] const Overtopping* overtopping(std::size_t building) const;
 

@@ -149,8 +149,8 @@ Json performance(const RunResult& result) {
                           {"per_step_ms", 1e3 * seconds * per_step},
                           {"share", seconds * per_wall}});
     };
-    for (std::size_t i = 0; i < stage_names.size(); ++i) {
-        add(stage_names[i], result.stage_times.seconds[i]);
+    for (std::size_t i = 0; i < stage_count; ++i) {
+        add(step_stages[i].name, result.stage_times.seconds[i]);
         rest -= result.stage_times.seconds[i];
     }
     add("other", std::max(0.0, rest));

@@ -287,10 +287,9 @@ std::string computation_table(const Scene& scene, const RunResult& result) {
     double total = 0;
     for (const double s : result.stage_times.seconds) total += s;
     std::string stages;
-    for (int k = 0; total > 0 && k < stage_count; ++k) {
-        const double share = 100 * result.stage_times.seconds[static_cast<std::size_t>(k)] / total;
-        stages += fmt::format("<span class=\"stage\">{} <b>{} %</b></span> ", stage_names[static_cast<std::size_t>(k)],
-                              fixed(share, 0));
+    for (std::size_t k = 0; total > 0 && k < stage_count; ++k) {
+        const double share = 100 * result.stage_times.seconds[k] / total;
+        stages += fmt::format("<span class=\"stage\">{} <b>{} %</b></span> ", step_stages[k].name, fixed(share, 0));
     }
     if (!stages.empty()) html += row("Time per stage", stages);
     return html;

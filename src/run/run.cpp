@@ -11,9 +11,7 @@
 #include <tbb/task_arena.h>
 
 #include "observe/observer.hpp"
-#include "run/rate_meter.hpp"
 #include "run/stop_rule.hpp"
-#include "sim/change.hpp"
 #include "sim/inflow.hpp"
 #include "sim/seed.hpp"
 #include "sim/simulation.hpp"
@@ -32,7 +30,7 @@ struct Run {
     const RunOptions& options;
     RunResult result;
 
-    void step_until_done(Simulation& simulation, Observer& observer, InflowFeeder& feeder);
+    void step_until_done(Simulation& simulation, Observer& observer);
     void report_progress(const Simulation& simulation, const Observer& observer, double wall_time) const;
 };
 
@@ -52,7 +50,7 @@ void Run::report_progress(const Simulation& simulation, const Observer& observer
     options.on_progress(progress);
 }
 
-void Run::step_until_done(Simulation& simulation, Observer& observer, InflowFeeder& feeder) {
+void Run::step_until_done(Simulation& simulation, Observer& observer) {
     const SolverSpec& solver = scene.spec.solver;
     const Model& model = simulation.model();
     const State& state = simulation.state();
@@ -64,7 +62,6 @@ void Run::step_until_done(Simulation& simulation, Observer& observer, InflowFeed
         next_frame += frame_interval;
     };
     RestDetector rest(solver);
-    RateMeter rate;
     result.smallest_time_step = solver.end_time;
     show_frame();
     const Clock::time_point start = Clock::now();
@@ -80,12 +77,11 @@ void Run::step_until_done(Simulation& simulation, Observer& observer, InflowFeed
             result.stop_reason = end_time_reason(solver);
             break;
         }
-        let_in(simulation, observer, feeder);
-        if (state.count == 0 && feeder.to_come() == 0) {
+        if (state.count == 0 && simulation.inflow().to_come() == 0) {
             result.stop_reason = no_debris_reason;
             break;
         }
-        const auto fault = simulation.advance();
+        const auto fault = simulation.advance(&observer);
         result.smallest_time_step = std::min(result.smallest_time_step, state.time_step);
         result.largest_time_step = std::max(result.largest_time_step, state.time_step);
         if (fault) {
@@ -93,15 +89,11 @@ void Run::step_until_done(Simulation& simulation, Observer& observer, InflowFeed
             result.stop_reason = *fault;
             break;
         }
-        {
-            const StageTimer timer(simulation.stage_times(), Stage::observe);
-            observer.after_step(model, state, rate.update(state.step));
-        }
-        if (take_failed_down(simulation, observer)) rest.stir(state.time);
+        if (!observer.failed_buildings().empty()) rest.stir(state.time);
         show_frame();
         report_progress(simulation, observer, seconds_since(start));
         if (rest.at_rest(state.time, total_momentum(model, state),
-                         still_waiting(model, state) || feeder.to_come() > 0)) {
+                         still_waiting(model, state) || simulation.inflow().to_come() > 0)) {
             result.stop_reason = rest.reason();
             break;
         }
@@ -131,10 +123,10 @@ Result<RunResult> run_in_arena(const Scene& scene, const RunOptions& options, in
     result.map_cell = spec.outputs.map_cell.value_or(default_map_cell(scene.terrain.cell(), spacing));
     result.thread_count = thread_count;
 
-    Simulation simulation(std::move(model), *std::move(seeded), feeder.to_come());
+    Simulation simulation(std::move(model), *std::move(seeded), std::move(feeder));
     Observer observer(simulation.model(), simulation.state(), scene.flow_path, spec.outputs, result.map_cell);
-    observer.expect(simulation.state().seeded + feeder.to_come());
-    run.step_until_done(simulation, observer, feeder);
+    observer.expect(simulation.state().seeded + simulation.inflow().to_come());
+    run.step_until_done(simulation, observer);
     result.particles = simulation.state().seeded;
     result.observation = observer.finish(simulation.model(), simulation.state());
     result.stage_times = simulation.stage_times();
@@ -147,13 +139,6 @@ Result<RunResult> run_in_arena(const Scene& scene, const RunOptions& options, in
 
 }  // namespace
 
-void let_in(Simulation& simulation, Observer& observer, InflowFeeder& feeder) {
-    if (!feeder.due(simulation.state().time)) return;
-    const std::uint32_t first = simulation.state().seeded;
-    simulation.change([&](Model& model, State& state) { feeder.feed(model, state); });
-    observer.let_in(simulation.state(), first);
-}
-
 Status check_particles(const Model& model, std::uint32_t seeded, const InflowFeeder& feeder) {
     const double particles = static_cast<double>(seeded) + feeder.to_come();
     if (particles <= model.solver.particle_limit) return {};
@@ -161,13 +146,6 @@ Status check_particles(const Model& model, std::uint32_t seeded, const InflowFee
         fmt::format("releases and inflows need {:.0f} particles of solver.particle_spacing_m = {:.4g}, more "
                     "than solver.particle_limit = {}; a larger spacing needs fewer",
                     particles, model.particle_spacing, model.solver.particle_limit)};
-}
-
-bool take_failed_down(Simulation& simulation, const Observer& observer) {
-    for (const std::size_t building : observer.failed_buildings()) {
-        simulation.change([&](Model& model, State& state) { take_down(model, state, building); });
-    }
-    return !observer.failed_buildings().empty();
 }
 
 int thread_count(const SolverSpec& solver) {

@@ -52,18 +52,9 @@ struct RunOptions {
 };
 
 class InflowFeeder;
-class Observer;
-class Simulation;
-
-/// Lets in what is due before the next step.
-void let_in(Simulation& simulation, Observer& observer, InflowFeeder& feeder);
 
 /// Error: more particles than solver.particle_limit, with those that will come in.
 [[nodiscard]] Status check_particles(const Model& model, std::uint32_t seeded, const InflowFeeder& feeder);
-
-/// Takes away the structures whose resistance was exceeded in the step that `observer` saw last; whether there were
-/// any.
-bool take_failed_down(Simulation& simulation, const Observer& observer);
 
 /// Threads to compute with: as the scene wants, or all cores.
 [[nodiscard]] int thread_count(const SolverSpec& solver);

@@ -23,6 +23,8 @@ namespace talus {
 /// What comes in over an area does so by an AreaSource.
 class InflowFeeder {
   public:
+    /// Of nothing.
+    InflowFeeder() = default;
     InflowFeeder(const Model& model, const std::vector<Inflow>& inflows);
 
     /// Particles that all inflows together have yet to bring.

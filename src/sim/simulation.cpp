@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/hash.hpp"
+#include "sim/change.hpp"
 #include "sim/cpu/parallel.hpp"
 #include "sim/fault.hpp"
 #include "sim/particle_density.hpp"
@@ -14,18 +15,41 @@
 
 namespace talus {
 
-Simulation::Simulation(Model model, State state, std::uint32_t expected)
+/// What a step of a run does beside moving particles.
+struct Simulation::OwnStages {
+    Simulation& self;
+    StepWatcher* watcher;
+
+    void inject_inflow() const { self.inject_inflow(watcher); }
+    void choose_time_step() const { self.state_.time_step = cpu::choose_time_step(self.model_, self.state_); }
+    [[nodiscard]] std::optional<std::string> check_faults() const {
+        return find_fault(self.model_, self.state_, self.highest_energy_head_);
+    }
+    [[nodiscard]] std::optional<std::string> entrain_bed() const { return self.entrain_bed(); }
+    void observe() const {
+        if (watcher != nullptr) watcher->observe(self.model_, self.state_);
+    }
+    void remove_failed() const {
+        if (watcher == nullptr) return;
+        for (const std::size_t building : watcher->failed_buildings()) {
+            self.change([building](Model& model, State& state) { take_down(model, state, building); });
+        }
+    }
+};
+
+Simulation::Simulation(Model model, State state, InflowFeeder inflow)
     : model_(std::move(model)),
       state_(std::move(state)),
-      expected_(expected),
-      capacity_(state_.count + expected),
+      inflow_(std::move(inflow)),
+      expected_(inflow_.to_come()),
+      capacity_(state_.count + expected_),
       highest_energy_head_(std::numeric_limits<double>::lowest()) {
-    if (expected > 0) state_.resize(capacity_);
+    if (expected_ > 0) state_.resize(capacity_);
     backend_.emplace(model_, capacity_);
-    take_energy_and_speed();
+    measure_energy_and_speed();
 }
 
-void Simulation::take_energy_and_speed() {
+void Simulation::measure_energy_and_speed() {
     for (std::uint32_t i = 0; i < state_.count; ++i) {
         const LocalPoint v = state_.velocity.at(i);
         highest_energy_head_ = std::max(highest_energy_head_, state_.position.z[i] + dot(v, v) / (2 * model_.gravity));
@@ -34,16 +58,19 @@ void Simulation::take_energy_and_speed() {
     state_.building_contacts.reserve((face_count - 1) * std::max(state_.count, capacity_));
 }
 
-std::optional<std::string> Simulation::advance() {
-    state_.time_step = cpu::choose_time_step(model_, state_);
-    step(*backend_, model_, state_, times_);
-    if (auto fault = find_fault(model_, state_, highest_energy_head_)) return fault;
-    return entrain();
+std::optional<std::string> Simulation::advance(StepWatcher* watcher) {
+    return step(*backend_, model_, state_, times_, OwnStages{*this, watcher});
 }
 
-std::optional<std::string> Simulation::entrain() {
+void Simulation::inject_inflow(StepWatcher* watcher) {
+    if (!inflow_.due(state_.time)) return;
+    const std::uint32_t first = state_.seeded;
+    change([this](const Model& model, State& state) { inflow_.feed(model, state); });
+    if (watcher != nullptr) watcher->follow_inflow(state_, first);
+}
+
+std::optional<std::string> Simulation::entrain_bed() {
     if (model_.bed.empty()) return std::nullopt;
-    const StageTimer timer(times_, Stage::entrain);
     const std::size_t loose = entrainment_.find(model_, state_);
     if (loose == 0) return std::nullopt;
     const std::size_t count = state_.count + loose, limit = static_cast<std::size_t>(model_.solver.particle_limit);
@@ -73,7 +100,7 @@ void Simulation::change(const std::function<void(Model&, State&)>& edit) {
     edit(model_, state_);
     state_.building_contacts.clear();
     if (state_.count > capacity_) make_room(state_.count + expected_);
-    take_energy_and_speed();
+    measure_energy_and_speed();
 }
 
 std::uint64_t hash_state(const State& state) {

@@ -7,20 +7,26 @@
 
 #include "sim/cpu/backend.hpp"
 #include "sim/entrainment.hpp"
+#include "sim/inflow.hpp"
 #include "sim/model.hpp"
 #include "sim/stage_times.hpp"
 #include "sim/state.hpp"
+#include "sim/step_watcher.hpp"
 
 namespace talus {
 
-/// A model, its state and the backend that moves it.
+/// A model, its state, what flows in, and the backend that moves it.
 class Simulation {
   public:
-    /// `expected`: particles that will come in while it runs; there is room for them from the beginning.
-    Simulation(Model model, State state, std::uint32_t expected = 0);
+    /// There is room from the beginning for what `inflow` will bring.
+    Simulation(Model model, State state, InflowFeeder inflow = {});
 
-    /// Takes one step. Returns why it cannot be trusted, if it cannot; the state is then as that step left it.
-    std::optional<std::string> advance();
+    /// Takes one step, in which `watcher` takes part if there is one. Returns why the step cannot be trusted, if it
+    /// cannot; the state is then as that step left it.
+    std::optional<std::string> advance(StepWatcher* watcher = nullptr);
+
+    /// Adds what inflows have brought by now. A step begins with it.
+    void inject_inflow(StepWatcher* watcher = nullptr);
 
     /// Lets `edit` change model and state between two steps. What it must leave as it is: terrain, particle spacing,
     /// kernel, time. The contacts of the last step are forgotten.
@@ -28,18 +34,21 @@ class Simulation {
 
     [[nodiscard]] const Model& model() const { return model_; }
     [[nodiscard]] const State& state() const { return state_; }
-    [[nodiscard]] StageTimes& stage_times() { return times_; }
+    [[nodiscard]] const InflowFeeder& inflow() const { return inflow_; }
     [[nodiscard]] const StageTimes& stage_times() const { return times_; }
     [[nodiscard]] const cpu::Backend& backend() const { return *backend_; }
 
   private:
-    void take_energy_and_speed();
+    struct OwnStages;
+
+    void measure_energy_and_speed();
     void make_room(std::uint32_t count);
-    [[nodiscard]] std::optional<std::string> entrain();
+    [[nodiscard]] std::optional<std::string> entrain_bed();
 
     Model model_;
     State state_;
-    std::uint32_t expected_ = 0;
+    InflowFeeder inflow_;
+    std::uint32_t expected_ = 0;           // particles that inflow brings in all
     std::uint32_t capacity_ = 0;           // particles that the backend has room for
     std::optional<cpu::Backend> backend_;  // anew when there are more
     Entrainment entrainment_;

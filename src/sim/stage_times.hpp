@@ -2,29 +2,56 @@
 
 #include <array>
 #include <chrono>
+#include <cstddef>
 #include <string_view>
 
 namespace talus {
 
+// clang-format off
+/// All that happens in a step, in order: X(name, short name for tables, what it does). The enumeration, the timings and
+/// the table in docs/tour.md follow from this list; step.hpp runs it.
+#define TALUS_STEP_STAGES(X)                                                                                            \
+    X(inject_inflow, "inflow", "adds the particles that inflows have brought by now, and leads the newest rows")          \
+    X(choose_time_step, "dt", "the longest time step in which nothing moves too far")                                     \
+    X(release_held, "release", "lets go the debris whose release starts")                                                 \
+    X(apply_drag, "drag", "counts the particles per column of the flow; takes from velocities what grows with speed")     \
+    X(predict_positions, "predict", "gravity, and where each particle would get to")                                      \
+    X(sort_particles, "sort", "sorts by cell; cost follows the particles, not the bounding box")                          \
+    X(find_neighbours, "neighbours", "lists pairs within the support radius; puts sleeping debris last: stages skip it")  \
+    X(prepare_particles, "prepare", "displacements of the step, empty contacts, how the ground holds each particle")      \
+    X(warm_start, "warm start", "density constraints, ground and walls; starts from the last step's pressure and stress") \
+    X(solve_density, "density", "an iteration: parts what is too dense, resists shear within internal friction")          \
+    X(solve_contacts, "contacts", "in the same iteration: ground and walls push back, with Coulomb friction")             \
+    X(measure_compression, "compression", "how much denser than at rest the iterations leave debris")                     \
+    X(undo_overlaps, "overlaps", "moves apart what is still too dense or too close to the ground, adds no velocity")      \
+    X(enforce_boundaries, "bounds", "the swept test: nobody ends below ground or inside a building, at any speed")        \
+    X(update_velocities, "velocities", "velocity is displacement over time step")                                         \
+    X(measure_impacts, "impacts", "the impulses that walls and roofs took")                                               \
+    X(apply_viscosity, "viscosity", "neighbours' velocities approach each other")                                         \
+    X(update_sleep, "sleep", "puts to sleep what has hardly moved for long, wakes what something moves beside")           \
+    X(remove_outflow, "outflow", "counts and removes what ran over the edge of the terrain")                              \
+    X(check_faults, "check", "ends the run if the step cannot be trusted")                                                \
+    X(entrain_bed, "entrain", "debris picks up its bed: ground becomes particles")                                        \
+    X(observe, "observe", "the observers read the state: peaks see every step")                                           \
+    X(remove_failed, "failed", "removes structures whose resistance was exceeded, wakes what they held")
+// clang-format on
+
 /// The stages of a step, in order.
 enum class Stage {
-    predict_positions,
-    find_neighbours,
-    warm_start,
-    solve_density,
-    solve_contacts,
-    undo_overlaps,
-    enforce_boundaries,
-    update_velocities,
-    apply_viscosity,
-    remove_left,
-    entrain,
-    observe,
+#define TALUS_STAGE_ENTRY(name, short_name, what) name,
+    TALUS_STEP_STAGES(TALUS_STAGE_ENTRY)
+#undef TALUS_STAGE_ENTRY
 };
-inline constexpr int stage_count = 12;
-inline constexpr std::array<std::string_view, stage_count> stage_names = {
-    "predict_positions",  "find_neighbours",   "warm_start",      "solve_density", "solve_contacts", "undo_overlaps",
-    "enforce_boundaries", "update_velocities", "apply_viscosity", "remove_left",   "entrain",        "observe"};
+
+struct StageDescription {
+    std::string_view name, short_name, what;
+};
+inline constexpr std::array step_stages = {
+#define TALUS_STAGE_ENTRY(name, short_name, what) StageDescription{#name, short_name, what},
+    TALUS_STEP_STAGES(TALUS_STAGE_ENTRY)
+#undef TALUS_STAGE_ENTRY
+};
+inline constexpr std::size_t stage_count = step_stages.size();
 
 /// Wall seconds spent per stage since the start.
 struct StageTimes {

@@ -1,20 +1,40 @@
 #pragma once
 
+#include <optional>
+#include <string>
+
 #include "sim/model.hpp"
 #include "sim/stage_times.hpp"
 
 namespace talus {
 
+/// What a step of a run does beside moving its particles (see Simulation). This one does nothing of it: particles alone
+/// are moved, by the time step that the state has.
+struct MotionAlone {
+    void inject_inflow() {}
+    void choose_time_step() {}
+    std::optional<std::string> check_faults() { return {}; }
+    std::optional<std::string> entrain_bed() { return {}; }
+    void observe() {}
+    void remove_failed() {}
+};
+
 /// One step of the method, a line per stage, for any backend: CPU, and the double-precision reference that checks it.
-/// The backend has chosen `state.time_step` beforehand.
-template <class Backend, class State>
-void step(Backend& backend, const Model& model, State& state, StageTimes& times) {
-    const auto timed = [&](Stage stage, auto&& run) {
+/// Returns why the step cannot be trusted, if it cannot; the state is then as it left it.
+template <class Backend, class State, class Run>
+std::optional<std::string> step(Backend& backend, const Model& model, State& state, StageTimes& times, Run&& run) {
+    const auto timed = [&](Stage stage, auto&& f) {
         const StageTimer timer(times, stage);
-        run();
+        return f();
     };
+    timed(Stage::inject_inflow, [&] { run.inject_inflow(); });
+    timed(Stage::choose_time_step, [&] { run.choose_time_step(); });
+    timed(Stage::release_held, [&] { backend.release_held(model, state); });
+    timed(Stage::apply_drag, [&] { backend.apply_drag(model, state); });
     timed(Stage::predict_positions, [&] { backend.predict_positions(model, state); });
+    timed(Stage::sort_particles, [&] { backend.sort_particles(model, state); });
     timed(Stage::find_neighbours, [&] { backend.find_neighbours(model, state); });
+    timed(Stage::prepare_particles, [&] { backend.prepare_particles(model, state); });
     timed(Stage::warm_start, [&] { backend.warm_start(model, state); });
     // The shear of the first iteration must already know what the ground holds back.
     timed(Stage::solve_contacts, [&] { backend.solve_contacts(model, state); });
@@ -22,13 +42,26 @@ void step(Backend& backend, const Model& model, State& state, StageTimes& times)
         timed(Stage::solve_density, [&] { backend.solve_density(model, state); });    // density and internal friction
         timed(Stage::solve_contacts, [&] { backend.solve_contacts(model, state); });  // ground, buildings, friction
     }
-    timed(Stage::undo_overlaps, [&] { backend.undo_overlaps(model, state); });  // moves particles, adds no velocity
+    timed(Stage::measure_compression, [&] { backend.measure_compression(model, state); });
+    timed(Stage::undo_overlaps, [&] { backend.undo_overlaps(model, state); });
     timed(Stage::enforce_boundaries, [&] { backend.enforce_boundaries(model, state); });
-    timed(Stage::update_velocities, [&] { backend.update_velocities(model, state); });  // v = (x* - x) / dt
+    timed(Stage::update_velocities, [&] { backend.update_velocities(model, state); });
+    timed(Stage::measure_impacts, [&] { backend.measure_impacts(model, state); });
     timed(Stage::apply_viscosity, [&] { backend.apply_viscosity(model, state); });
-    timed(Stage::remove_left, [&] { backend.remove_left(model, state); });
+    timed(Stage::update_sleep, [&] { backend.update_sleep(model, state); });
+    timed(Stage::remove_outflow, [&] { backend.remove_outflow(model, state); });
     state.time += state.time_step;
     ++state.step;
+    if (auto fault = timed(Stage::check_faults, [&] { return run.check_faults(); })) return fault;
+    if (auto fault = timed(Stage::entrain_bed, [&] { return run.entrain_bed(); })) return fault;
+    timed(Stage::observe, [&] { run.observe(); });
+    timed(Stage::remove_failed, [&] { run.remove_failed(); });
+    return std::nullopt;
+}
+
+template <class Backend, class State>
+void step(Backend& backend, const Model& model, State& state, StageTimes& times) {
+    step(backend, model, state, times, MotionAlone{});
 }
 
 }  // namespace talus

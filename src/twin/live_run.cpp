@@ -5,6 +5,7 @@
 #include <cmath>
 #include <utility>
 
+#include "sim/inflow.hpp"
 #include "sim/seed.hpp"
 
 namespace talus::twin {
@@ -24,14 +25,15 @@ Result<std::unique_ptr<LiveRun>> LiveRun::start(const Scene& scene, const Setup&
         model.bed = lay_bed(bodies_of(setup.beds), scene.terrain);
         Result<State> state = seed_releases(model, releases);
         if (!state) return state.error();
-        const InflowFeeder feeder(model, bodies_of(setup.inflows));
-        if (Status s = check_particles(model, state->count, feeder); !s) return s.error();
+        InflowFeeder inflow(model, bodies_of(setup.inflows));
+        if (Status s = check_particles(model, state->count, inflow); !s) return s.error();
         return std::unique_ptr<LiveRun>(
-            new LiveRun(scene, setup, options, std::move(model), *std::move(state), threads));
+            new LiveRun(scene, setup, options, std::move(model), *std::move(state), std::move(inflow), threads));
     });
 }
 
-LiveRun::LiveRun(const Scene& scene, Setup setup, const ScenarioOptions& options, Model model, State state, int threads)
+LiveRun::LiveRun(const Scene& scene, Setup setup, const ScenarioOptions& options, Model model, State state,
+                 InflowFeeder inflow, int threads)
     : scene_(scene),
       begun_with_(std::move(setup)),
       setup_(begun_with_),
@@ -39,8 +41,7 @@ LiveRun::LiveRun(const Scene& scene, Setup setup, const ScenarioOptions& options
                                                           static_cast<std::size_t>(threads))),
       arena_(threads),
       threads_(threads),
-      feeder_(model, bodies_of(setup_.inflows)),
-      simulation_(std::move(model), std::move(state), feeder_.to_come()),
+      simulation_(std::move(model), std::move(state), std::move(inflow)),
       recording_(options.frame_interval, options.recording_bytes),
       rest_(scene.spec.solver),
       smallest_time_step_(scene.spec.solver.end_time) {
@@ -51,9 +52,9 @@ LiveRun::LiveRun(const Scene& scene, Setup setup, const ScenarioOptions& options
     const double map_cell =
         outputs.map_cell.value_or(default_map_cell(scene.terrain.cell(), this->model().particle_spacing));
     observer_ = std::make_unique<Observer>(this->model(), this->state(), scene.flow_path, outputs, map_cell);
-    observer_->expect(this->state().seeded + feeder_.to_come());
+    observer_->expect(this->state().seeded + simulation_.inflow().to_come());
     slots_ = this->state().seeded;
-    if (this->state().count == 0 && feeder_.to_come() == 0) stop(Phase::at_rest, "there is no debris");
+    if (this->state().count == 0 && simulation_.inflow().to_come() == 0) stop(Phase::at_rest, "there is no debris");
     record();
 }
 
@@ -100,7 +101,7 @@ void LiveRun::stop(Phase phase, std::string why) {
 void LiveRun::advance() {
     if (phase_ != Phase::ready) return;
     if (reached_end_time(scene_.spec.solver, state())) return stop(Phase::ended, end_time_reason(scene_.spec.solver));
-    if (state().count == 0 && feeder_.to_come() == 0) return stop(Phase::at_rest, no_debris_reason);
+    if (state().count == 0 && simulation_.inflow().to_come() == 0) return stop(Phase::at_rest, no_debris_reason);
     const auto start = std::chrono::steady_clock::now();
     arena_.execute([&] { take_step(); });
     wall_time_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
@@ -110,24 +111,19 @@ void LiveRun::take_step() {
     for (std::size_t g = 0; g < groups_.size(); ++g) {
         groups_[g].begun = groups_[g].begun || model().releases[g].start_time <= state().time;
     }
-    let_in(simulation_, *observer_, feeder_);
-    const auto fault = simulation_.advance();
+    const auto fault = simulation_.advance(observer_.get());
     slots_ = std::max(slots_, state().seeded);  // debris came in, or was picked up from the bed
     smallest_time_step_ = std::min(smallest_time_step_, state().time_step);
     largest_time_step_ = std::max(largest_time_step_, state().time_step);
     if (fault) return stop(Phase::fault, *fault);
-    {
-        const StageTimer timer(simulation_.stage_times(), Stage::observe);
-        observer_->after_step(model(), state(), rate_.update(state().step));
-    }
-    take_failed_down();
+    mark_failed();
     record();
     if (rest_.at_rest(state().time, total_momentum(model(), state()),
-                      still_waiting(model(), state()) || feeder_.to_come() > 0)) {
+                      still_waiting(model(), state()) || simulation_.inflow().to_come() > 0)) {
         stop(Phase::at_rest, rest_.reason());
     } else if (reached_end_time(scene_.spec.solver, state())) {
         stop(Phase::ended, end_time_reason(scene_.spec.solver));
-    } else if (state().count == 0 && feeder_.to_come() == 0) {
+    } else if (state().count == 0 && simulation_.inflow().to_come() == 0) {
         stop(Phase::at_rest, no_debris_reason);
     }
 }
@@ -162,8 +158,8 @@ std::vector<LiveRun::Removed> LiveRun::removed() const {
     return removed;
 }
 
-void LiveRun::take_failed_down() {
-    if (!talus::take_failed_down(simulation_, *observer_)) return;
+void LiveRun::mark_failed() {
+    if (observer_->failed_buildings().empty()) return;
     for (const std::size_t k : observer_->failed_buildings()) {
         obstacles_[k].stands = false;
         obstacles_[k].failed = true;

@@ -11,11 +11,9 @@
 
 #include "core/result.hpp"
 #include "observe/observer.hpp"
-#include "run/rate_meter.hpp"
 #include "run/run.hpp"
 #include "run/stop_rule.hpp"
 #include "scene/scene.hpp"
-#include "sim/inflow.hpp"
 #include "sim/simulation.hpp"
 #include "twin/erosion_history.hpp"
 #include "twin/impact_history.hpp"
@@ -92,7 +90,8 @@ class LiveRun {
     };
     struct Change;
 
-    LiveRun(const Scene& scene, Setup setup, const ScenarioOptions& options, Model model, State state, int threads);
+    LiveRun(const Scene& scene, Setup setup, const ScenarioOptions& options, Model model, State state,
+            InflowFeeder inflow, int threads);
 
     [[nodiscard]] Result<Change> plan(const Setup& next) const;
     void plan_obstacles(const Setup& next, Change& change) const;
@@ -100,7 +99,7 @@ class LiveRun {
     void carry_out(Change& change, const Setup& next);
     void replace_releases(Model& model, State& state, Change& change);
     void set_start_times(Model& model, const State& state, const Setup& next, bool& let_go);
-    void take_failed_down();
+    void mark_failed();
     void take_step();
     void record();
     void record_impacts();
@@ -112,7 +111,6 @@ class LiveRun {
     std::unique_ptr<tbb::global_control> thread_limit_;
     mutable tbb::task_arena arena_;
     int threads_;
-    InflowFeeder feeder_;
     Simulation simulation_;
     std::unique_ptr<Observer> observer_;
     std::vector<Group> groups_;
@@ -122,7 +120,6 @@ class LiveRun {
     ImpactHistory impact_history_;
     ErosionHistory erosion_history_;
     RestDetector rest_;
-    RateMeter rate_;
     Phase phase_ = Phase::ready;
     std::string message_;
     double wall_time_ = 0, smallest_time_step_ = 0, largest_time_step_ = 0;

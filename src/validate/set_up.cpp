@@ -103,8 +103,8 @@ State state_under_weight(const Model& model, const std::vector<LocalPoint>& poin
     return state;
 }
 
-Trial::Trial(Model model, State state, const Watch& watch, OnFault on_fault, std::uint32_t expected)
-    : simulation_(std::move(model), std::move(state), expected), watch_(watch), on_fault_(on_fault) {}
+Trial::Trial(Model model, State state, const Watch& watch, OnFault on_fault, InflowFeeder inflow)
+    : simulation_(std::move(model), std::move(state), std::move(inflow)), watch_(watch), on_fault_(on_fault) {}
 
 bool Trial::advance_to(double time, const std::function<void()>& after_step) {
     while (!stopped_ && state().time < time - 1e-9) {

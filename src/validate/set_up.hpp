@@ -71,11 +71,10 @@ enum class OnFault {
 /// A simulation under test that stops at the first step that cannot be trusted.
 class Trial {
   public:
-    /// `expected`: particles that will come in.
-    Trial(Model model, State state, const Watch& watch, OnFault on_fault = OnFault::stop, std::uint32_t expected = 0);
+    Trial(Model model, State state, const Watch& watch, OnFault on_fault = OnFault::stop, InflowFeeder inflow = {});
 
-    /// As Simulation::change().
-    void change(const std::function<void(Model&, State&)>& edit) { simulation_.change(edit); }
+    /// As Simulation::inject_inflow().
+    void inject_inflow() { simulation_.inject_inflow(); }
 
     /// Steps until `time`, calling `after_step` after each. False when it stopped before: `problem` says why.
     bool advance_to(double time, const std::function<void()>& after_step = {});

@@ -189,7 +189,7 @@ TEST(Table, JsonHasWhatScriptsRead) {
     EXPECT_DOUBLE_EQ(row["particle_iterations_per_second"], 2e6);
     EXPECT_DOUBLE_EQ(row["ns_per_particle_iteration"], 500);
     EXPECT_DOUBLE_EQ(row["real_time_factor"], 5);
-    EXPECT_EQ(row["stages_ms"].size(), static_cast<std::size_t>(stage_count));
+    EXPECT_EQ(row["stages_ms"].size(), stage_count);
     EXPECT_DOUBLE_EQ(row["stages_ms"]["solve_density"], 1);
     EXPECT_EQ(row["hash"], "0000000000000abc");
     EXPECT_EQ(row["relative_rate"], 0.125);

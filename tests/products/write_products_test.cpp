@@ -55,7 +55,7 @@ class Products : public testing::Test {
         result_ = new RunResult(test::sample_result(*scene_));
         result_->simulated_time = 41.2;
         result_->wall_time = 1;  // beside the stages
-        for (std::size_t i = 0; i < stage_names.size(); ++i) {
+        for (std::size_t i = 0; i < stage_count; ++i) {
             result_->stage_times.seconds[i] = 0.5 * static_cast<double>(i + 1);
             result_->wall_time += result_->stage_times.seconds[i];
         }
@@ -340,7 +340,7 @@ TEST_F(Products, ManifestSaysWhatRanWhereAndHowFast) {
     }
     EXPECT_NEAR(share, 1, 1e-9) << "with what is not in a stage";
     EXPECT_NEAR(step, m["performance"]["step_ms"], 1e-9);
-    EXPECT_EQ(m["performance"]["stages"][2]["stage"], stage_names[2]);
+    EXPECT_EQ(m["performance"]["stages"][2]["stage"], step_stages[2].name);
     EXPECT_NEAR(m["performance"]["stages"][2]["total_s"], 1.5, 1e-9);
     EXPECT_NEAR(m["performance"]["stages"][2]["share"], 1.5 / result_->wall_time, 1e-9);
     EXPECT_EQ(m["resolved"]["particle_spacing_m"], 0.42);

@@ -23,11 +23,6 @@ Model plane() {
     return make_model({}, {}, inclined_plane(25), {}, testing::fine_spacing);
 }
 
-void let_in(Simulation& simulation, InflowFeeder& feeder) {
-    if (!feeder.due(simulation.state().time)) return;
-    simulation.change([&](Model& m, State& s) { feeder.feed(m, s); });
-}
-
 TEST(Inflow, integrates_the_hydrograph_exactly) {
     const Inflow surges = inflow({{1, 0, 2}, {3, 8, 4}, {4, 0, 4}, {6, 0, 1}, {7, 6, 1}});
     EXPECT_EQ(surges.volume_until(0.5), 0);
@@ -108,15 +103,14 @@ TEST(AreaSource, does_not_pop_apart_even_where_debris_piles_up) {
     rough.friction_coefficient = 0.9;
     const Model model = make_model(rough, {}, inclined_plane(25), {}, testing::fine_spacing);
     InflowFeeder feeder(model, {rain({{0, 15, 0}, {4, 15, 0}})});
-    Simulation simulation(model, State{}, feeder.to_come());
+    Simulation simulation(model, State{}, std::move(feeder));
     double worst = 0, fastest = 0;
     while (simulation.state().time < 4.5) {
-        let_in(simulation, feeder);
         simulation.advance();
         worst = std::max(worst, simulation.state().max_compression);
         fastest = std::max(fastest, simulation.state().largest_speed);
     }
-    EXPECT_EQ(feeder.to_come(), 0U);
+    EXPECT_EQ(simulation.inflow().to_come(), 0U);
     EXPECT_LT(worst, 0.1);
     EXPECT_LT(fastest, std::sqrt(2 * 9.81 * 1.7)) << "a fall from the top of the pile";
 }
@@ -180,10 +174,9 @@ TEST(InflowFeeder, new_debris_is_no_denser_than_at_rest_and_moves_with_the_inflo
     const double thickness = 1.2, velocity = 5;
     InflowFeeder feeder(model,
                         {inflow({{0, 6 * thickness * velocity, velocity}, {9, 6 * thickness * velocity, velocity}})});
-    Simulation simulation(model, State{}, feeder.to_come());
+    Simulation simulation(model, State{}, std::move(feeder));
     double worst = 0, fastest = 0;
     while (simulation.state().time < 2) {
-        let_in(simulation, feeder);
         simulation.advance();
         worst = std::max(worst, simulation.state().max_compression);
         for (std::uint32_t i = 0; i < simulation.state().count; ++i) {
@@ -201,15 +194,13 @@ TEST(InflowFeeder, new_debris_is_no_denser_than_at_rest_and_moves_with_the_inflo
 TEST(InflowFeeder, allocates_nothing_while_it_runs) {
     const Model model = plane();
     InflowFeeder feeder(model, {inflow({{0, 30, 5}, {5, 30, 5}})});
-    Simulation simulation(model, State{}, feeder.to_come());
+    Simulation simulation(model, State{}, std::move(feeder));
     while (simulation.state().time < 1.5) {
-        let_in(simulation, feeder);
         simulation.advance();
     }
     const long before = test::allocation_count();
     const std::uint32_t count = simulation.state().count;
     for (int k = 0; k < 40; ++k) {
-        let_in(simulation, feeder);
         simulation.advance();
     }
     EXPECT_GT(simulation.state().count, count + 50);

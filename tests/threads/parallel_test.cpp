@@ -22,8 +22,7 @@ TEST(ParallelStages, step_and_observe_on_four_threads) {
         const FlowPath path({{8, 16}, {55, 16}}, 30);
         Observer observer(simulation.model(), simulation.state(), path, {}, 1);
         for (int i = 0; i < 20; ++i) {
-            ASSERT_FALSE(simulation.advance());
-            observer.after_step(simulation.model(), simulation.state(), 60);
+            ASSERT_FALSE(simulation.advance(&observer));
         }
         EXPECT_FALSE(observer.finish(simulation.model(), simulation.state()).maps.peak_depth.values.empty());
     });

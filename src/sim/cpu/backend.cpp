@@ -63,12 +63,21 @@ void Backend::run(StageFunction stage, const Model& model, State& state) {
     run(stage, model, state, awake(state));
 }
 
+void Backend::release_held(const Model& model, State& state) {
+    parallel_ranges(state.count, particle_grain, [&](std::size_t first, std::size_t last) {
+        for (std::size_t i = first; i < last; ++i) {
+            if (state.held[i] && state.time >= start_time_of(model, state.id[i])) state.held[i] = 0;
+        }
+    });
+}
+
+void Backend::apply_drag(const Model& model, State& state) {
+    if (!slows_by_speed(model)) return;
+    count_columns(model, state);
+    run(particle_stages_.drag, model, state, everything(state));
+}
+
 void Backend::predict_positions(const Model& model, State& state) {
-    release_held(model, state);
-    if (slows_by_speed(model)) {
-        count_columns(model, state);
-        run(particle_stages_.drag, model, state, everything(state));
-    }
     run(particle_stages_.predict, model, state, everything(state));
 }
 
@@ -82,21 +91,19 @@ void Backend::count_columns(const Model& model, const State& state) {
     });
 }
 
-void Backend::release_held(const Model& model, State& state) {
-    parallel_ranges(state.count, particle_grain, [&](std::size_t first, std::size_t last) {
-        for (std::size_t i = first; i < last; ++i) {
-            if (state.held[i] && state.time >= start_time_of(model, state.id[i])) state.held[i] = 0;
-        }
-    });
+void Backend::sort_particles(const Model& model, State& state) {
+    by_cell_ = cell_sort_.sort(work_.predicted, state.count, model.support_radius, grid_);
 }
 
 void Backend::find_neighbours(const Model& model, State& state) {
-    const auto by_cell = cell_sort_.sort(work_.predicted, state.count, model.support_radius, grid_);
     const auto found =
-        search_.find(work_.predicted, by_cell, state.resting, grid_, static_cast<float>(model.support_radius));
+        search_.find(work_.predicted, by_cell_, state.resting, grid_, static_cast<float>(model.support_radius));
     reorder(state, found.order);
     state.awake = found.awake;
     search_.write(neighbours_);
+}
+
+void Backend::prepare_particles(const Model& model, State& state) {
     run(particle_stages_.begin, model, state, everything(state));
     if (resists_by_particle(model)) run(particle_stages_.resist, model, state);
 }
@@ -143,7 +150,6 @@ void Backend::solve_contacts(const Model& model, State& state) {
 }
 
 void Backend::undo_overlaps(const Model& model, State& state) {
-    measure_compression(state);
     if (keeps_stress(model)) {
         run(stress_stages_.find_spread, model, state);
         run(stress_stages_.spread, model, state);
@@ -155,7 +161,7 @@ void Backend::enforce_boundaries(const Model& model, State& state) {
     run(particle_stages_.enforce_boundaries, model, state);
 }
 
-void Backend::measure_compression(State& state) const {
+void Backend::measure_compression(const Model&, State& state) const {
     struct Sum {
         double sum = 0;
         float greatest = 0;
@@ -184,10 +190,9 @@ void Backend::update_velocities(const Model& model, State& state) {
             return greater_or_unknown(largest, particle_stages_.update_velocities(data, first, last));
         },
         greater_or_unknown);
-    find_building_contacts(model, state);
 }
 
-void Backend::find_building_contacts(const Model& model, State& state) const {
+void Backend::measure_impacts(const Model& model, State& state) const {
     state.building_contacts.clear();
     if (model.solids.empty()) return;
     for (std::uint32_t i = 0; i < state.awake; ++i) {
@@ -206,10 +211,13 @@ void Backend::find_building_contacts(const Model& model, State& state) const {
 
 void Backend::apply_viscosity(const Model& model, State& state) {
     if (model.viscosity > 0) run(particle_stages_.apply_viscosity, model, state);
+}
+
+void Backend::update_sleep(const Model& model, State& state) {
     if (model.solver.rest_duration > 0) run(particle_stages_.settle, model, state);
 }
 
-void Backend::remove_left(const Model& model, State& state) {
+void Backend::remove_outflow(const Model& model, State& state) {
     const bool any = reduce_ranges(
         state.count, 4096, false,
         [&](std::size_t first, std::size_t last, bool found) {

@@ -33,16 +33,23 @@ class Backend {
   public:
     Backend(const Model& model, std::size_t capacity);
 
+    void release_held(const Model& model, State& state);
+    void apply_drag(const Model& model, State& state);
     void predict_positions(const Model& model, State& state);
+    void sort_particles(const Model& model, State& state);
     void find_neighbours(const Model& model, State& state);
+    void prepare_particles(const Model& model, State& state);
     void warm_start(const Model& model, State& state);
     void solve_density(const Model& model, State& state);
     void solve_contacts(const Model& model, State& state);
+    void measure_compression(const Model& model, State& state) const;
     void undo_overlaps(const Model& model, State& state);
     void enforce_boundaries(const Model& model, State& state);
     void update_velocities(const Model& model, State& state);
+    void measure_impacts(const Model& model, State& state) const;
     void apply_viscosity(const Model& model, State& state);
-    void remove_left(const Model& model, State& state);
+    void update_sleep(const Model& model, State& state);
+    void remove_outflow(const Model& model, State& state);
 
     /// The lists of the last step, by the order it left the particles in (before any left the terrain).
     [[nodiscard]] const NeighbourLists& neighbours() const { return neighbours_; }
@@ -53,11 +60,8 @@ class Backend {
     static bool keeps_stress(const Model& model);
     void run(StageFunction stage, const Model& model, State& state, Bundles bundles);
     void run(StageFunction stage, const Model& model, State& state);  ///< on all that is not at rest
-    void release_held(const Model& model, State& state);
     void count_columns(const Model& model, const State& state);
     void reorder(State& state, std::span<const std::uint32_t> order);
-    void measure_compression(State& state) const;
-    void find_building_contacts(const Model& model, State& state) const;
 
     ParticleStages particle_stages_;
     StressStages stress_stages_;
@@ -65,6 +69,7 @@ class Backend {
     Columns columns_;
     CellSort cell_sort_;
     CellGrid grid_;
+    std::span<const std::uint32_t> by_cell_;  // what sort_particles() found
     NeighbourSearch search_;
     NeighbourLists neighbours_;
     Work work_;

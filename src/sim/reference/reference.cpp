@@ -94,27 +94,42 @@ Vector constraint_gradient(const Model& model, const std::vector<Vector>& points
     return gradient;
 }
 
-void Backend::predict_positions(const Model& model, State& state) {
+void Backend::release_held(const Model& model, State& state) {
     for (std::size_t id = 0; id < state.particles.size(); ++id) {
-        Particle& p = state.particles[id];
         for (const ReleaseGroup& release : model.releases) {
             const bool own = id >= release.first_particle && id < release.last_particle;
-            if (own && state.time >= release.start_time) p.held = false;
+            if (own && state.time >= release.start_time) state.particles[id].held = false;
         }
+    }
+}
+
+void Backend::apply_drag(const Model& model, State& state) {
+    if (!slows_by_speed(model)) return;
+    for (std::size_t id = 0; id < state.particles.size(); ++id) {
+        Particle& p = state.particles[id];
+        if (p.held) continue;
+        const GroundSample<double> below = model.terrain.sample(p.position.x, p.position.y);
+        const double distance = (p.position.z - below.height) * below.normal.z;
+        const double particles =
+            particles_in_column(model, state, p.position) / open_share(model, p.position, rank_of(id));
+        const double thickness = flow_thickness(model, below, particles);
+        p.velocity = slowed_by_drag(model, ground_resistance(model, p.position), below, distance, thickness, p.velocity,
+                                    state.time_step);
+    }
+}
+
+void Backend::predict_positions(const Model& model, State& state) {
+    for (Particle& p : state.particles) {
         p.displacement = {};
-        if (!p.held && slows_by_speed(model)) {
-            const GroundSample<double> below = model.terrain.sample(p.position.x, p.position.y);
-            const double distance = (p.position.z - below.height) * below.normal.z;
-            const double particles =
-                particles_in_column(model, state, p.position) / open_share(model, p.position, rank_of(id));
-            const double thickness = flow_thickness(model, below, particles);
-            p.velocity = slowed_by_drag(model, ground_resistance(model, p.position), below, distance, thickness,
-                                        p.velocity, state.time_step);
-        }
-        if (!p.held) {
-            p.velocity.z -= model.gravity * state.time_step;
-            p.displacement = p.velocity * state.time_step;
-        }
+        if (p.held) continue;
+        p.velocity.z -= model.gravity * state.time_step;
+        p.displacement = p.velocity * state.time_step;
+    }
+}
+
+void Backend::prepare_particles(const Model& model, State& state) {
+    for (std::size_t id = 0; id < state.particles.size(); ++id) {
+        Particle& p = state.particles[id];
         p.effective_share = effective_share(model, id, state.time);
         const GroundResistance<double> ground = ground_resistance(model, p.position);
         const GroundSample<double> below = model.terrain.sample(p.position.x, p.position.y);

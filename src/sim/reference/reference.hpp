@@ -51,16 +51,23 @@ struct State {
 /// tested against. Nobody's run uses it.
 class Backend {
   public:
+    void release_held(const Model& model, State& state);
+    void apply_drag(const Model& model, State& state);
     void predict_positions(const Model& model, State& state);
+    void sort_particles(const Model&, State&) {}
     void find_neighbours(const Model&, State&) {}
+    void prepare_particles(const Model& model, State& state);
     void warm_start(const Model& model, State& state);
     void solve_density(const Model& model, State& state);
     void solve_contacts(const Model& model, State& state);
+    void measure_compression(const Model&, State&) {}
     void undo_overlaps(const Model& model, State& state);
     void enforce_boundaries(const Model& model, State& state);
     void update_velocities(const Model& model, State& state);
+    void measure_impacts(const Model&, State&) {}
     void apply_viscosity(const Model& model, State& state);
-    void remove_left(const Model&, State&) {}
+    void update_sleep(const Model&, State&) {}
+    void remove_outflow(const Model&, State&) {}
 };
 
 }  // namespace talus::reference

@@ -43,23 +43,18 @@ Result<Outcome> compute(const PlaneSpec& spec, const Setting& setting, const Wat
     inflow.hydrograph = {{0, discharge, spec.velocity}, {spec.time, discharge, spec.velocity}};
     InflowFeeder feeder(model, {inflow});
     watch.say(fmt::format("{} particles", feeder.to_come()));
-    Trial trial(std::move(model), State{}, watch, OnFault::stop, feeder.to_come());
+    Trial trial(std::move(model), State{}, watch, OnFault::stop, std::move(feeder));
     const State& state = trial.state();
     double fastest = 0;
     Outcome outcome;
     while (trial.problem().empty() && state.time < spec.time - 1e-9) {
-        if (feeder.due(state.time)) {
-            trial.change([&](Model& m, State& s) { feeder.feed(m, s); });
-        }
         trial.advance_to(state.time + 1e-6);
         for (std::uint32_t i = 0; i < state.count; ++i) {
             const double beyond = incline.along(state.position.at(i)) + reach / 2;
             if (beyond < 4 * spec.spacing) fastest = std::max<double>(fastest, length(state.velocity.at(i)));
         }
     }
-    if (feeder.due(state.time)) {  // what had not filled a row yet
-        trial.change([&](Model& m, State& s) { feeder.feed(m, s); });
-    }
+    trial.inject_inflow();  // what had not filled a row yet
     if (!trial.problem().empty()) outcome.notes.push_back(trial.problem());
     const double volume = (state.count + state.left) * trial.model().particle_volume();
     outcome.measurements.push_back({"particles", "", volume, inflow.volume_until(state.time)});

@@ -1,0 +1,29 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "sim/model.hpp"
+#include "sim/state.hpp"
+
+namespace talus {
+
+/// Takes part in the steps of a Simulation from outside the solver: measures, and says which structures fail by what it
+/// measured.
+class StepWatcher {
+  public:
+    StepWatcher() = default;
+    StepWatcher(const StepWatcher&) = delete;
+    StepWatcher& operator=(const StepWatcher&) = delete;
+    virtual ~StepWatcher() = default;
+
+    /// Inflow brought the particles with ids from `first_new_id` on.
+    virtual void follow_inflow(const State& state, std::uint32_t first_new_id) = 0;
+    /// A step was taken.
+    virtual void observe(const Model& model, const State& state) = 0;
+    /// Buildings whose resistance was exceeded in the step that was observed last: they are removed.
+    [[nodiscard]] virtual const std::vector<std::size_t>& failed_buildings() const = 0;
+};
+
+}  // namespace talus
