@@ -1,15 +1,27 @@
 #pragma once
 
 #include <atomic>
+#include <optional>
 #include <string>
 #include <vector>
 
-#include "commands.hpp"
 #include "progress.hpp"
 #include "run/comparison.hpp"
 #include "run/variants.hpp"
 
 namespace talus {
+
+struct RunArguments {
+    std::string scene;   ///< a scene file; empty: the built-in scene
+    std::string output;  ///< a folder; empty: talus_out/<scene name>
+    bool force = false;
+    std::optional<int> threads;
+    std::vector<std::string> overrides;  ///< "section.key=value"
+    std::string data;                    ///< value of TALUS_DATA; empty: as in the environment
+    bool quiet = false, json = false;
+    bool convergence = false;             ///< run three refinements too and compare
+    std::vector<std::string> variations;  ///< "section.key=value,value": run with each value too and compare
+};
 
 /// The runs that the command line asks for beside the scene as given.
 class VariantPlan {

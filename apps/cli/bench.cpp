@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>
+#include <memory>
 #include <new>
 #include <string>
 #include <thread>
@@ -13,7 +14,7 @@
 #include "bench/measure.hpp"
 #include "bench/scenes.hpp"
 #include "bench/table.hpp"
-#include "commands.hpp"
+#include "command.hpp"
 #include "exit_code.hpp"
 #include "interrupt.hpp"
 #include "products/text_file.hpp"
@@ -25,6 +26,47 @@ namespace talus {
 namespace {
 
 namespace fs = std::filesystem;
+
+struct BenchArguments {
+    std::vector<std::string> scenes, methods;  ///< empty: all
+    std::vector<int> particles, threads;       ///< empty: the usual ones; all cores
+    bool full = false;                         ///< particles up to a million
+    int iterations = 4, repeats = 7;
+    std::optional<int> steps, warm_up;  ///< left out: by the number of particles
+    std::string backend = "cpu";
+    std::string json, svg;  ///< files to write; empty: none
+};
+
+constexpr const char* bench_help = R"(
+Steps standard scenes with a fixed number of iterations and everything that a run has: terrain, friction, viscosity,
+houses, maps, front and impact. Scenes:
+  slab         ten layers of debris that slide down a plane of raster terrain towards two houses
+  column       a block of debris, at most 24 layers high, that collapses on flat ground beside a house
+  sham_tseng   600 m3 on the scar of the built-in scene, with its terrain, houses and flow path
+The debris of slab and column grows with the number of particles, that of sham_tseng gets finer.
+Methods: stress (the default of a scene) and pair (the published friction per pair of particles).
+
+A row of the table is the median of the repeats:
+  ms/step      wall time of a step, observers included; the second table has the share of each stage in it, in %
+  ns/p-it      wall time per particle and iteration: ms/step over particles times iterations
+  Mp-it/s      particle-iterations per second, in millions
+  x real time  simulated seconds per second; the time step is chosen as in a run of the scene
+  neighbours   mean number of neighbours of a particle
+  relative     particle-iterations per unit of a calibration loop that is timed before and after every repeat: it
+               changes with the program, and hardly with how busy the machine is
+  hash         of the state after the last step: the same for any number of threads
+
+Examples:
+  talus bench --scene slab --particles 20000 --threads 1,2
+  talus bench --full --json bench.json      up to a million particles, some minutes and 2 GB of memory
+
+Exit codes:
+    0  complete
+    1  the machine failed: disk full, out of memory
+    2  bad input: nothing was computed
+    3  a step could not be trusted; nothing was written
+  130  interrupted by Ctrl-C; the table shows what was complete, no file was written
+)";
 
 const std::vector<int> usual_particles = {5000, 20000, 75000}, full_particles = {5000, 20000, 75000, 300000, 1000000};
 
@@ -87,8 +129,6 @@ Outcome measure_all(const Plan& plan, const fs::path& builtin_scene, const Inter
     return outcome;
 }
 
-}  // namespace
-
 int bench_command(const BenchArguments& arguments) {
     InterruptWatch watch;
     for (const std::string& file : {arguments.json, arguments.svg}) {
@@ -117,6 +157,48 @@ int bench_command(const BenchArguments& arguments) {
     if (!arguments.json.empty()) written = write_text_file(arguments.json, bench::table_json(outcome.rows));
     if (written && !arguments.svg.empty()) written = write_text_file(arguments.svg, bench::scaling_svg(outcome.rows));
     return written ? exit_code::success : fail(exit_code::failure, written.error().message);
+}
+
+}  // namespace
+
+void add_bench(CLI::App& program, std::vector<Command>& commands) {
+    CLI::App* app = program.add_subcommand("bench", "measure how fast talus steps standard scenes here");
+    const auto bench = std::make_shared<BenchArguments>();
+    const auto add_list = [app](const std::string& name, auto& values, const std::string& text) {
+        return app->add_option(name, values, text)->delimiter(',')->allow_extra_args(false);
+    };
+    add_list("--scene", bench->scenes, "scenes to step; default: all")
+        ->type_name("NAME,NAME")
+        ->check(CLI::IsMember(bench::scene_names()));
+    CLI::Option* particles = add_list("--particles", bench->particles, "particles; default: 5000,20000,75000")
+                                 ->type_name("N,N")
+                                 ->check(CLI::Range(bench::fewest_particles, bench::most_particles));
+    app->add_flag("--full", bench->full, "300000 and 1000000 particles too")->excludes(particles);
+    add_list("--method", bench->methods, "how internal friction is solved; default: both")
+        ->type_name("NAME,NAME")
+        ->check(CLI::IsMember(bench::method_names()));
+    app->add_option("--iterations", bench->iterations, "solver iterations of a step; default: 4")
+        ->type_name("N")
+        ->check(CLI::Range(1, 1000));
+    add_list("--threads", bench->threads, "numbers of threads; default: all cores")
+        ->type_name("N,N")
+        ->check(CLI::Range(1, 4096));
+    app->add_option("--backend", bench->backend, "what computes the steps; default: cpu")
+        ->type_name("NAME")
+        ->check(CLI::IsMember(std::vector<std::string>{"cpu"}));
+    app->add_option("--repeats", bench->repeats, "repeats to take the median of; default: 7")
+        ->type_name("N")
+        ->check(CLI::Range(1, 1000));
+    app->add_option("--steps", bench->steps, "steps per repeat; default: 10 to 2, by the number of particles")
+        ->type_name("N")
+        ->check(CLI::Range(1, 100000));
+    app->add_option("--warm-up", bench->warm_up, "steps before the first repeat; default: 10 to 3, likewise")
+        ->type_name("N")
+        ->check(CLI::Range(0, 100000));
+    app->add_option("--json", bench->json, "write the rows as a list of objects")->type_name("FILE");
+    app->add_option("--svg", bench->svg, "draw particle-iterations per second against particles")->type_name("FILE");
+    app->footer(bench_help);
+    commands.push_back({app, [bench] { return bench_command(*bench); }});
 }
 
 }  // namespace talus

@@ -1,5 +1,6 @@
 #include <cstdio>
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <string>
 #include <system_error>
@@ -7,7 +8,7 @@
 
 #include <fmt/format.h>
 
-#include "commands.hpp"
+#include "command.hpp"
 #include "exit_code.hpp"
 #include "interrupt.hpp"
 #include "params/fields.hpp"
@@ -23,6 +24,28 @@ namespace {
 namespace fs = std::filesystem;
 using validate::Case;
 using validate::CaseResult;
+
+struct ValidateArguments {
+    std::vector<std::string> cases;    ///< names or folders; empty: all cases of the program
+    bool quick = false, list = false;  ///< quick: only the cases that say so
+    bool known = false;                ///< failures that the case files announce are no reason to fail
+    std::string json, html, markdown;  ///< files to write; empty: none
+    std::optional<int> threads;
+    std::string data;  ///< value of TALUS_DATA; empty: as in the environment
+};
+
+constexpr const char* validate_help = R"(
+A case is a folder with a case.toml: what to compute, what to expect of it, and who says so. Without CASE all cases that
+travel inside the program are computed. The table shows every expectation; a failing one as FAIL, one that its case file
+announces as FAIL (known). Cases whose data are not here are listed as skipped.
+
+Exit codes:
+    0  every expectation holds (with --known: all but the announced ones)
+    1  the machine failed: disk full, out of memory
+    2  bad input: command line or a case file; nothing was computed
+    4  an expectation does not hold
+  130  interrupted by Ctrl-C; the table shows the cases that were complete
+)";
 
 /// Where a case lies: a folder as given, or of that name among the program's.
 Result<fs::path> find_case(const std::string& text, const fs::path& builtin) {
@@ -68,8 +91,6 @@ Status write_outputs(const ValidateArguments& arguments, const std::vector<CaseR
     return {};
 }
 
-}  // namespace
-
 int validate_command(const ValidateArguments& arguments) {
     if (!arguments.data.empty()) set_data_folder(arguments.data);
     InterruptWatch watch;
@@ -113,6 +134,30 @@ int validate_command(const ValidateArguments& arguments) {
     const validate::Tally tally = validate::count(results);
     return tally.failed > 0 || (tally.known_failures > 0 && !arguments.known) ? exit_code::case_failed
                                                                               : exit_code::success;
+}
+
+}  // namespace
+
+void add_validate(CLI::App& program, std::vector<Command>& commands) {
+    CLI::App* app = program.add_subcommand("validate", "compute cases whose results are known, print one table");
+    const auto validate = std::make_shared<ValidateArguments>();
+    app->add_option("cases", validate->cases, "names or folders of cases; default: all of the program's")
+        ->type_name("CASE");
+    app->add_flag("--quick", validate->quick, "only the quick cases: under two minutes on two cores");
+    app->add_flag("--list", validate->list, "list the cases instead of computing them");
+    app->add_flag("--known", validate->known, "announced failures are no reason for exit code 4");
+    app->add_option("--json", validate->json, "write the table as a list of objects")->type_name("FILE");
+    app->add_option("--html", validate->html, "write a page with the table and a plot for each case")
+        ->type_name("FILE");
+    app->add_option("--markdown", validate->markdown, "write the same as Markdown, its plots into a folder beside it")
+        ->type_name("FILE");
+    app->add_option("--threads", validate->threads, "number of threads; default: all cores")
+        ->type_name("N")
+        ->check(CLI::Range(1, 4096));
+    app->add_option("--data", validate->data, "folder that TALUS_DATA names, for cases on real terrain")
+        ->type_name("DIR");
+    app->footer(validate_help);
+    commands.push_back({app, [validate] { return validate_command(*validate); }});
 }
 
 }  // namespace talus

@@ -9,7 +9,7 @@
 
 #include <fmt/format.h>
 
-#include "commands.hpp"
+#include "command.hpp"
 #include "exit_code.hpp"
 #include "interrupt.hpp"
 #include "scene/builtin.hpp"
@@ -21,6 +21,27 @@ namespace talus {
 namespace {
 
 constexpr std::string_view builtin_prefix = "built-in:";
+
+struct ReplayArguments {
+    std::string journal;
+    std::string scene;  ///< in place of the journal's; empty: that one
+    std::optional<int> threads;
+    std::string data;
+    bool quiet = false;
+};
+
+constexpr const char* replay_help = R"(
+A journal is what a live session can save (the page's menu, or GET /api/scenarios/A/journal): the scene, and everything
+that people did with the step before which they did it. The same actions at the same steps give the same result, to the
+last bit, on any number of threads.
+
+Exit codes:
+    0  the same result: the hash of the last step is that of the session
+    1  the machine failed: out of memory
+    2  bad input: the journal, its scene or a file it names
+    3  the result is another
+  130  interrupted by Ctrl-C
+)";
 
 Result<std::string> read_file(const std::string& path) {
     std::ifstream file(path, std::ios::binary);
@@ -40,8 +61,6 @@ Result<Scene> load_scene_of(const ReplayArguments& arguments, const twin::Journa
     if (unpacked.path().empty()) return Error{"cannot make a temporary folder for the built-in scene; set TMPDIR"};
     return load_builtin_scene(unpacked.path(), overrides);
 }
-
-}  // namespace
 
 int replay_command(const ReplayArguments& arguments) {
     if (!arguments.data.empty()) set_data_folder(arguments.data);
@@ -83,6 +102,23 @@ int replay_command(const ReplayArguments& arguments) {
                           static_cast<unsigned long long>(replayed->steps), replayed->time, replayed->hash.c_str());
     }
     return exit_code::success;
+}
+
+}  // namespace
+
+void add_replay(CLI::App& program, std::vector<Command>& commands) {
+    CLI::App* app = program.add_subcommand("replay", "run the journal of a live session again and compare the result");
+    const auto replay = std::make_shared<ReplayArguments>();
+    app->add_option("journal", replay->journal, "journal of a session")->required()->type_name("JOURNAL");
+    app->add_option("--scene", replay->scene, "scene file; default: the one that the journal names")
+        ->type_name("SCENE");
+    app->add_option("--threads", replay->threads, "number of threads; default: as in the scene")
+        ->type_name("N")
+        ->check(CLI::Range(1, 4096));
+    add_data_folder(*app, replay->data);
+    app->add_flag("--quiet", replay->quiet, "print nothing but errors and what has changed");
+    app->footer(replay_help);
+    commands.push_back({app, [replay] { return replay_command(*replay); }});
 }
 
 }  // namespace talus

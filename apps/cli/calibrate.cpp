@@ -1,7 +1,6 @@
-#include "calibrate_command.hpp"
-
 #include <algorithm>
 #include <filesystem>
+#include <memory>
 #include <thread>
 
 #include <fmt/format.h>
@@ -10,7 +9,7 @@
 #include "calibrate/calibration_products.hpp"
 #include "calibrate/recovery.hpp"
 #include "calibrate_text.hpp"
-#include "commands.hpp"
+#include "command.hpp"
 #include "exit_code.hpp"
 #include "interrupt.hpp"
 #include "products/text_file.hpp"
@@ -22,7 +21,20 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* help = R"(
+struct CalibrateArguments {
+    std::string scene;                 ///< a scene file; empty: the built-in scene
+    std::string output;                ///< a folder; empty: talus_out/<scene name>_calibration
+    std::vector<std::string> factors;  ///< "section.key=distribution"
+    std::optional<std::size_t> runs, design, checks;
+    std::optional<std::uint64_t> seed;
+    std::optional<std::size_t> recover;  ///< so many times with known values
+    std::vector<std::string> overrides;  ///< "section.key=value"
+    std::string data;                    ///< value of TALUS_DATA; empty: as in the environment
+    std::optional<int> threads;
+    bool retry_failed = false, quiet = false, json = false;
+};
+
+constexpr const char* calibrate_help = R"(
 Finds the values of a scene that explain what was observed in the field ([[observation]], [[run_up]], [[deposit_depth]]
 and the rest, each with its uncertainty), and says how sure that is: a space-filling design, emulators of what runs
 predict, runs where they help most, the posterior, and runs that check it. What is free is given like a factor of talus
@@ -111,44 +123,6 @@ int run_calibration(const CalibrateArguments& arguments, const CalibrationPlan& 
     return exit_code::success;
 }
 
-}  // namespace
-
-CLI::App* add_calibrate(CLI::App& app, CalibrateArguments& arguments) {
-    CLI::App* command =
-        app.add_subcommand("calibrate", "find the values of a scene that explain field observations, and how surely");
-    command->add_option("scene", arguments.scene, "scene file; left out: the built-in scene")->type_name("SCENE");
-    command->add_option("-o,--output", arguments.output, "folder; left out: talus_out/<scene name>_calibration")
-        ->type_name("DIR");
-    command->add_option("--vary", arguments.factors, "a free value with its range or prior; may be given many times")
-        ->type_name("SECTION.KEY=DISTRIBUTION")
-        ->allow_extra_args(false);
-    command->add_option("--runs", arguments.runs, "at most so many; left out: 100")->type_name("N");
-    command->add_option("--design", arguments.design, "of them in the design; left out: ten per factor")
-        ->type_name("N")
-        ->check(CLI::Range(3, 2000));
-    command->add_option("--checks", arguments.checks, "runs that check the result; left out: 10")
-        ->type_name("N")
-        ->check(CLI::Range(0, 1000));
-    command->add_option("--seed", arguments.seed, "of the design and the chains; left out: 1")->type_name("N");
-    command->add_option("--recover", arguments.recover, "so many times with observations made by runs of known values")
-        ->type_name("N")
-        ->check(CLI::Range(1, 1000));
-    command->add_option("--set", arguments.overrides, "set a value of the scene; may be given many times")
-        ->type_name("SECTION.KEY=VALUE")
-        ->allow_extra_args(false);
-    command->add_option("--data", arguments.data, "folder that ${TALUS_DATA} in a scene's paths stands for")
-        ->type_name("DIR");
-    command->add_option("--threads", arguments.threads, "runs side by side, a thread each; left out: all cores")
-        ->type_name("N")
-        ->check(CLI::Range(1, 4096));
-    command->add_flag("--retry-failed", arguments.retry_failed, "run again what failed in an earlier call");
-    CLI::Option* quiet = command->add_flag("--quiet", arguments.quiet, "print nothing but errors");
-    command->add_flag("--json", arguments.json, "progress and result as one JSON object per line on stdout")
-        ->excludes(quiet);
-    command->footer(help);
-    return command;
-}
-
 int calibrate_command(const CalibrateArguments& arguments) {
     if (!arguments.data.empty()) set_data_folder(arguments.data);
     InterruptWatch watch;
@@ -172,6 +146,45 @@ int calibrate_command(const CalibrateArguments& arguments) {
     Teller teller(arguments.quiet, arguments.json);
     return arguments.recover ? run_recovery(arguments, *plan, *runs, *input, path, options, teller)
                              : run_calibration(arguments, *plan, *runs, *input, path, options, teller);
+}
+
+}  // namespace
+
+void add_calibrate(CLI::App& program, std::vector<Command>& commands) {
+    CLI::App* app = program.add_subcommand(
+        "calibrate", "find the values of a scene that explain field observations, and how surely");
+    const auto arguments = std::make_shared<CalibrateArguments>();
+    app->add_option("scene", arguments->scene, "scene file; default: the built-in scene")->type_name("SCENE");
+    app->add_option("-o,--output", arguments->output, "folder; default: talus_out/<scene name>_calibration")
+        ->type_name("DIR");
+    app->add_option("--vary", arguments->factors, "a free value with its range or prior; may be given many times")
+        ->type_name("SECTION.KEY=DISTRIBUTION")
+        ->allow_extra_args(false);
+    app->add_option("--runs", arguments->runs, "maximum number of runs; default: 100")->type_name("N");
+    app->add_option("--design", arguments->design, "of them in the design; default: ten per factor")
+        ->type_name("N")
+        ->check(CLI::Range(3, 2000));
+    app->add_option("--checks", arguments->checks, "runs that check the result; default: 10")
+        ->type_name("N")
+        ->check(CLI::Range(0, 1000));
+    app->add_option("--seed", arguments->seed, "of the design and the chains; default: 1")->type_name("N");
+    app->add_option("--recover", arguments->recover, "so many times with observations made by runs of known values")
+        ->type_name("N")
+        ->check(CLI::Range(1, 1000));
+    app->add_option("--set", arguments->overrides, "set a value of the scene; may be given many times")
+        ->type_name("SECTION.KEY=VALUE")
+        ->allow_extra_args(false);
+    app->add_option("--data", arguments->data, "folder that ${TALUS_DATA} in a scene's paths stands for")
+        ->type_name("DIR");
+    app->add_option("--threads", arguments->threads, "runs side by side, a thread each; default: all cores")
+        ->type_name("N")
+        ->check(CLI::Range(1, 4096));
+    app->add_flag("--retry-failed", arguments->retry_failed, "run again what failed in an earlier call");
+    CLI::Option* quiet = app->add_flag("--quiet", arguments->quiet, "print nothing but errors");
+    app->add_flag("--json", arguments->json, "progress and result as one JSON object per line on stdout")
+        ->excludes(quiet);
+    app->footer(calibrate_help);
+    commands.push_back({app, [arguments] { return calibrate_command(*arguments); }});
 }
 
 }  // namespace talus

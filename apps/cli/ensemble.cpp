@@ -1,6 +1,9 @@
+#include "calibrate/ensemble.hpp"
+
 #include <algorithm>
 #include <charconv>
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <string>
 #include <thread>
@@ -8,9 +11,8 @@
 
 #include <fmt/format.h>
 
-#include "calibrate/ensemble.hpp"
 #include "calibrate/ensemble_products.hpp"
-#include "commands.hpp"
+#include "command.hpp"
 #include "ensemble_text.hpp"
 #include "exit_code.hpp"
 #include "interrupt.hpp"
@@ -22,6 +24,50 @@ namespace talus {
 namespace {
 
 namespace fs = std::filesystem;
+
+struct EnsembleArguments {
+    std::string scene;                 ///< a scene file; empty: the built-in scene
+    std::string output;                ///< a folder; empty: talus_out/<scene name>_ensemble
+    std::string plan;                  ///< a plan file; empty: options alone
+    std::vector<std::string> factors;  ///< "section.key=distribution"
+    std::optional<std::string> design;
+    std::optional<std::size_t> runs, levels;
+    std::optional<std::uint64_t> seed;
+    std::string depths, speeds, pressures;  ///< thresholds "0.5,1"; empty: the plan's
+    std::vector<std::string> overrides;     ///< "section.key=value"
+    std::string data;                       ///< value of TALUS_DATA; empty: as in the environment
+    std::optional<int> threads;
+    std::string shard;  ///< "i/n"; empty: all runs
+    bool retry_failed = false, quiet = false, json = false;
+};
+
+struct MergeArguments {
+    std::vector<std::string> folders;
+    std::string output;  ///< empty: the only folder itself
+    std::string scene;   ///< where the scene lies now; empty: where it lay
+    std::string depths, speeds, pressures;
+    std::string data;
+    bool quiet = false, json = false;
+};
+
+constexpr const char* ensemble_help = R"(
+Runs the scene once per point of a design over the factors, several runs side by side, and counts: probability and
+percentile maps, run-out, odds of every building, sensitivity; with a report. A factor is any value of a scene:
+  --vary material.friction_coefficient=0.2:0.5        uniform between
+  --vary release.volume_m3=log:300:1200               log-uniform
+  --vary material.viscosity=normal:0.1:0.02           normal, cut to what the key allows; or normal:MEAN:DEV:LOW:HIGH
+  --vary release.volume_m3=triangular:400:600:900     low, mode, high
+  --vary solver.kernel=spiky,cubic_spline             one of a list
+or [[factor]] in a plan file (docs/ensembles.md). Designs:
+  latin_hypercube, monte_carlo, sobol   --runs points; percentiles and rank correlation
+  grid                                  every combination of --levels values per factor, or of a list's entries
+  saltelli                              first-order and total Sobol indices; factors + 2 runs per block
+  morris                                elementary effects; factors + 1 runs per trajectory
+Run 17 is the same on any machine: the same command again goes on where an earlier one stopped, mpirun -n N spreads runs
+over ranks, and --shard i/n with talus ensemble merge does so without MPI, with the same results.
+
+Exit codes: as talus run. A run that fails is listed with its fault, and the ensemble goes on; 3: no run was complete.
+)";
 
 Status set_thresholds(Thresholds& thresholds, const std::string& depths, const std::string& speeds,
                       const std::string& pressures) {
@@ -35,6 +81,14 @@ Status set_thresholds(Thresholds& thresholds, const std::string& depths, const s
     if (Status s = set(thresholds.depth, depths, "--depth-m"); !s) return s;
     if (Status s = set(thresholds.speed, speeds, "--speed-mps"); !s) return s;
     return set(thresholds.pressure, pressures, "--pressure-kPa");
+}
+
+void add_thresholds(CLI::App& command, std::string& depths, std::string& speeds, std::string& pressures) {
+    command.add_option("--depth-m", depths, "peak depths to map the probability of; default: 0.1,0.5,1")
+        ->type_name("M,M");
+    command.add_option("--speed-mps", speeds, "likewise peak speeds; default: 5,10")->type_name("MPS,MPS");
+    command.add_option("--pressure-kPa", pressures, "likewise pressures, on buildings too; default: 15,30")
+        ->type_name("KPA,KPA");
 }
 
 /// The plan file, then the options over it.
@@ -109,8 +163,6 @@ void share_threads(const EnsembleArguments& arguments, const PlannedRuns& runs, 
     options.runs_at_once = std::min(threads, share);
     options.threads_per_run = std::max(1, threads / options.runs_at_once);
 }
-
-}  // namespace
 
 int ensemble_command(const EnsembleArguments& arguments) {
     if (!arguments.data.empty()) set_data_folder(arguments.data);
@@ -222,6 +274,58 @@ int merge_command(const MergeArguments& arguments) {
     }
     Teller teller(arguments.quiet, arguments.json);
     return write_results(*source, *runs, {path}, path, arguments.quiet, arguments.json, teller);
+}
+
+}  // namespace
+
+void add_ensemble(CLI::App& program, std::vector<Command>& commands) {
+    CLI::App* app =
+        program.add_subcommand("ensemble", "run a scene many times with varied values: probability maps, sensitivity");
+    const auto ensemble = std::make_shared<EnsembleArguments>();
+    app->require_subcommand(0, 1);
+    app->add_option("scene", ensemble->scene, "scene file; default: the built-in scene")->type_name("SCENE");
+    app->add_option("-o,--output", ensemble->output, "folder; default: talus_out/<scene name>_ensemble")
+        ->type_name("DIR");
+    app->add_option("--plan", ensemble->plan, "plan file with factors, design and thresholds; options override it")
+        ->type_name("FILE");
+    app->add_option("--vary", ensemble->factors, "a factor; may be given many times")
+        ->type_name("SECTION.KEY=DISTRIBUTION")
+        ->allow_extra_args(false);
+    app->add_option("--design", ensemble->design, "default: latin_hypercube")->type_name("NAME");
+    app->add_option("--runs", ensemble->runs, "maximum number of runs; default: 64")->type_name("N");
+    app->add_option("--levels", ensemble->levels, "values per factor of a grid; default: 5")->type_name("N");
+    app->add_option("--seed", ensemble->seed, "of the design; default: 1")->type_name("N");
+    add_thresholds(*app, ensemble->depths, ensemble->speeds, ensemble->pressures);
+    add_overrides(*app, ensemble->overrides);
+    add_data_folder(*app, ensemble->data);
+    app->add_option("--threads", ensemble->threads, "runs side by side, a thread each; default: all cores, 1 per rank")
+        ->type_name("N")
+        ->check(CLI::Range(1, 4096));
+    app->add_option("--shard", ensemble->shard, "only every n-th run, from the i-th; each shard in its own folder")
+        ->type_name("I/N");
+    app->add_flag("--retry-failed", ensemble->retry_failed, "run again what failed in an earlier call");
+    CLI::Option* quiet = app->add_flag("--quiet", ensemble->quiet, "print nothing but errors");
+    app->add_flag("--json", ensemble->json, "progress and result as one JSON object per line on stdout")
+        ->excludes(quiet);
+    app->footer(ensemble_help);
+
+    CLI::App* merge_app = app->add_subcommand("merge", "put shards together, or count again with other thresholds");
+    const auto merge = std::make_shared<MergeArguments>();
+    merge_app->add_option("folders", merge->folders, "folders of an ensemble or its shards")
+        ->required()
+        ->type_name("DIR");
+    merge_app->add_option("-o,--output", merge->output, "folder for all; default: the only folder given")
+        ->type_name("DIR");
+    merge_app->add_option("--scene", merge->scene, "where the scene lies now; default: where it lay")
+        ->type_name("SCENE");
+    add_thresholds(*merge_app, merge->depths, merge->speeds, merge->pressures);
+    add_data_folder(*merge_app, merge->data);
+    CLI::Option* merge_quiet = merge_app->add_flag("--quiet", merge->quiet, "print nothing but errors");
+    merge_app->add_flag("--json", merge->json, "the result as one JSON object on stdout")->excludes(merge_quiet);
+    merge_app->footer("");
+
+    commands.push_back({merge_app, [merge] { return merge_command(*merge); }});
+    commands.push_back({app, [ensemble] { return ensemble_command(*ensemble); }});
 }
 
 }  // namespace talus

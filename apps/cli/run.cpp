@@ -1,6 +1,9 @@
+#include "run/run.hpp"
+
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <string>
 #include <system_error>
@@ -8,13 +11,13 @@
 
 #include <fmt/format.h>
 
-#include "commands.hpp"
+#include "command.hpp"
 #include "exit_code.hpp"
 #include "interrupt.hpp"
+#include "params/scene_text.hpp"
 #include "products/particle_series.hpp"
 #include "products/products.hpp"
 #include "progress.hpp"
-#include "run/run.hpp"
 #include "scene/builtin.hpp"
 #include "scene/scene.hpp"
 #include "summary.hpp"
@@ -25,6 +28,15 @@ namespace talus {
 namespace {
 
 namespace fs = std::filesystem;
+
+constexpr const char* run_help = R"(
+Every value of the scene can be set with --set section.key=value. The result folder holds maps (GeoTIFF with QGIS
+styles), front.csv, timeseries.csv, buildings.csv, results.gpkg, manifest.json and report.html.
+
+--convergence and --vary compare front velocity at every observation, arrival (first building hit; where none is, the
+front at 90 % of its way) and run-out with the scene as given: on the terminal, in convergence.csv and variants.csv, in
+the report, the manifest and --json. --convergence passes where nothing changes by more than 5 %.
+)";
 
 /// talus_out in the current folder, made when needed and removed again if nothing came to lie in it.
 class DefaultParent {
@@ -110,8 +122,6 @@ int run_loaded(const RunArguments& arguments, const Scene& scene, VariantPlan& p
                                               result->stop_reason, shown.string()));
 }
 
-}  // namespace
-
 int run_command(const RunArguments& arguments) {
     if (!arguments.data.empty()) set_data_folder(arguments.data);
     InterruptWatch watch;
@@ -151,6 +161,29 @@ int run_command(const RunArguments& arguments) {
     watch.remove_at_once(output->path());
 
     return run_loaded(arguments, *scene, *plan, *output, folder, watch);
+}
+
+}  // namespace
+
+void add_run(CLI::App& program, std::vector<Command>& commands) {
+    CLI::App* app = program.add_subcommand("run", "run a scene and write maps, tables and a report");
+    const auto run = std::make_shared<RunArguments>();
+    app->add_option("scene", run->scene, "scene file; default: the built-in scene")->type_name("SCENE");
+    app->add_option("-o,--output", run->output, "result folder; default: talus_out/<scene name>")->type_name("DIR");
+    app->add_flag("--force", run->force, "replace the result folder if it is already there");
+    app->add_option("--threads", run->threads, "number of threads; default: all cores; the result is the same")
+        ->type_name("N");
+    add_overrides(*app, run->overrides);
+    app->add_flag("--convergence", run->convergence,
+                  "run again with half the time step, double the iterations, three times the particles; compare");
+    app->add_option("--vary", run->variations, "run again with each of the values; compare; may be given many times")
+        ->type_name("SECTION.KEY=VALUE,VALUE")
+        ->allow_extra_args(false);
+    add_data_folder(*app, run->data);
+    CLI::Option* quiet = app->add_flag("--quiet", run->quiet, "print nothing but errors");
+    app->add_flag("--json", run->json, "progress and result as one JSON object per line on stdout")->excludes(quiet);
+    app->footer([] { return run_help + scene_reference_text(); });
+    commands.push_back({app, [run] { return run_command(*run); }});
 }
 
 }  // namespace talus

@@ -11,7 +11,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "commands.hpp"
+#include "command.hpp"
 #include "exit_code.hpp"
 #include "interrupt.hpp"
 #include "scene/builtin.hpp"
@@ -23,6 +23,42 @@ namespace talus {
 namespace {
 
 namespace fs = std::filesystem;
+
+struct ServeArguments {
+    std::string scene;  ///< a scene file; empty: the built-in scene
+    std::string host = "127.0.0.1";
+    int port = 8123;
+    std::vector<std::string> allowed_hosts;
+    std::vector<std::string> tokens;  ///< the controllers', then the viewers'; left out: random ones
+    std::optional<int> threads;
+    std::vector<std::string> overrides;  ///< "section.key=value"
+    std::string data;                    ///< value of TALUS_DATA; empty: as in the environment
+    std::string calibrations;            ///< a folder that keeps calibrations; empty: they are not kept
+    std::vector<std::string> ensembles;  ///< folders of finished ensembles whose maps are shown
+    bool run = false;                    ///< begin at once
+    bool quiet = false, json = false;
+};
+
+constexpr const char* serve_help = R"(
+Opens the scene as a live twin in the browser: press Run in the page, change parameters, releases, barriers and buildings
+while debris moves, look at every moment again, compare two scenarios, take maps and report away. It prints two links.
+Who has the first can steer (one at a time), who has the second can look; both carry a secret, so pass on the right one.
+Ctrl-C ends it.
+
+Only this computer can reach it. To share it in a network, let it listen on all addresses and name those by which
+browsers will know it; connections are not encrypted, so put a web server with TLS before it where that matters:
+  talus serve my_scene.toml --host 0.0.0.0 --allow-host twin.example.org
+
+The page's whole interface is open to programs: docs/protocol.md, or /api/openapi.json of the running server.
+  talus serve my_scene.toml --run --json
+  curl -H "Authorization: Bearer TOKEN" http://127.0.0.1:8123/api/scenarios/A/state
+
+Exit codes:
+    0  ended by Ctrl-C
+    1  the machine failed: port in use, out of memory
+    2  bad input: command line, scene or a file it names
+  130  ended at once by a second Ctrl-C
+)";
 
 bool is_address(const std::string& text) {
     in6_addr ignored{};
@@ -64,8 +100,6 @@ void print_links(const ServeArguments& arguments, const Scene& scene, const serv
     (void)std::fputs(text.c_str(), stdout);
     (void)std::fflush(stdout);
 }
-
-}  // namespace
 
 int serve_command(const ServeArguments& arguments) {
     if (!arguments.data.empty()) set_data_folder(arguments.data);
@@ -138,6 +172,46 @@ int serve_command(const ServeArguments& arguments) {
     const std::lock_guard lock(mutex);
     if (!failure.empty()) return fail(exit_code::failure, "the simulation cannot go on: " + failure);
     return exit_code::success;
+}
+
+}  // namespace
+
+void add_serve(CLI::App& program, std::vector<Command>& commands) {
+    CLI::App* app = program.add_subcommand("serve", "open a scene live in the browser: watch, steer and share it");
+    const auto serve = std::make_shared<ServeArguments>();
+    app->add_option("scene", serve->scene, "scene file; default: the built-in scene")->type_name("SCENE");
+    app->add_option("--port", serve->port, "port to listen on; default: 8123; 0: any that is free")
+        ->type_name("N")
+        ->check(CLI::Range(0, 65535));
+    app->add_option("--host", serve->host,
+                    "address to listen on; default: 127.0.0.1, this computer alone; 0.0.0.0: all")
+        ->type_name("ADDRESS");
+    app->add_option("--allow-host", serve->allowed_hosts,
+                    "a name that browsers know this server by; may be given many times")
+        ->type_name("NAME")
+        ->allow_extra_args(false);
+    app->add_option("--token", serve->tokens,
+                    "secret of the links, once for controllers, again for viewers; default: new ones each time")
+        ->type_name("TOKEN")
+        ->allow_extra_args(false);
+    app->add_option("--calibrations", serve->calibrations,
+                    "folder that keeps the runs and the report of calibrations started in the page; default: deleted "
+                    "when the program ends")
+        ->type_name("DIR");
+    app->add_option("--ensemble", serve->ensembles,
+                    "folder of a finished talus ensemble of this scene, whose maps the page shows; may be given many "
+                    "times")
+        ->type_name("DIR")
+        ->allow_extra_args(false);
+    app->add_flag("--run", serve->run, "begin at once instead of paused at time 0");
+    app->add_option("--threads", serve->threads, "number of threads; default: all cores; the result is the same")
+        ->type_name("N");
+    add_overrides(*app, serve->overrides);
+    add_data_folder(*app, serve->data);
+    CLI::Option* quiet = app->add_flag("--quiet", serve->quiet, "print nothing but errors");
+    app->add_flag("--json", serve->json, "print the links as one JSON object on stdout")->excludes(quiet);
+    app->footer(serve_help);
+    commands.push_back({app, [serve] { return serve_command(*serve); }});
 }
 
 }  // namespace talus

@@ -1,3 +1,5 @@
+#include "command.hpp"
+
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
@@ -6,8 +8,6 @@
 #include <system_error>
 
 #include <fmt/format.h>
-
-#include "commands.hpp"
 
 namespace talus {
 
@@ -27,6 +27,16 @@ Status check_output_file(const std::string& file) {
         return Error{fmt::format("{}: there is no folder {}", file, parent.string())};
     }
     return {};
+}
+
+void add_overrides(CLI::App& command, std::vector<std::string>& overrides) {
+    command.add_option("--set", overrides, "set a value of the scene; may be given many times")
+        ->type_name("SECTION.KEY=VALUE")
+        ->allow_extra_args(false);
+}
+
+void add_data_folder(CLI::App& command, std::string& data) {
+    command.add_option("--data", data, "folder that ${TALUS_DATA} in a scene's paths stands for")->type_name("DIR");
 }
 
 void set_data_folder(const std::string& folder) {

@@ -1,0 +1,113 @@
+#include "scene/scene.hpp"
+
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <system_error>
+
+#include <fmt/format.h>
+
+#include "command.hpp"
+#include "exit_code.hpp"
+#include "params/scene_text.hpp"
+#include "scene/builtin.hpp"
+#include "scene/check.hpp"
+#include "scene/new_scene.hpp"
+
+namespace talus {
+namespace {
+
+struct CheckArguments {
+    std::string scene;
+    std::vector<std::string> overrides;
+    std::string data;
+};
+
+struct ExportArguments {
+    std::string folder;
+    bool force = false;
+};
+
+/// On a full disk or a closed pipe the text is lost; a script must be able to tell.
+int print_all(const std::string& text) {
+    if (std::fputs(text.c_str(), stdout) >= 0 && std::fflush(stdout) == 0) return exit_code::success;
+    return fail(exit_code::failure, "cannot write to standard output");
+}
+
+int check_command(const CheckArguments& arguments) {
+    if (!arguments.data.empty()) set_data_folder(arguments.data);
+    const auto scene = load_scene(arguments.scene, arguments.overrides);
+    if (!scene) return fail(exit_code::bad_input, scene.error().message);
+    return print_all(describe_scene(*scene));
+}
+
+int new_command(const NewSceneOptions& options) {
+    const auto created = write_new_scene(options);
+    if (!created) return fail(exit_code::bad_input, created.error().message);
+    std::string text = fmt::format("wrote {}\n", created->file.string());
+    for (const std::string& note : created->notes) text += fmt::format("note: {}\n", note);
+    return print_all(text + fmt::format("run it: talus run {}\n", created->file.string()));
+}
+
+int export_builtin_command(const ExportArguments& arguments) {
+    std::error_code error;
+    if (!arguments.force && std::filesystem::exists(arguments.folder, error)) {
+        return fail(exit_code::bad_input, fmt::format("{}: is already there; name another folder, or write into it "
+                                                      "with --force",
+                                                      arguments.folder));
+    }
+    const auto file = unpack_builtin_scene(arguments.folder);
+    if (!file) return fail(exit_code::bad_input, file.error().message);
+    return print_all(fmt::format("wrote {}\nrun it: talus run {}\n", file->string(), file->string()));
+}
+
+int reference_command(bool markdown) {
+    return print_all(markdown ? scene_reference_markdown() : scene_reference_text());
+}
+
+}  // namespace
+
+void add_scene(CLI::App& program, std::vector<Command>& commands) {
+    CLI::App* app = program.add_subcommand("scene", "make, check and explain scene files");
+    app->require_subcommand(1);
+
+    CLI::App* check_app = app->add_subcommand("check", "read a scene with all its inputs and say what it means");
+    const auto check = std::make_shared<CheckArguments>();
+    check_app->add_option("scene", check->scene, "scene file")->required()->type_name("SCENE");
+    add_overrides(*check_app, check->overrides);
+    add_data_folder(*check_app, check->data);
+    commands.push_back({check_app, [check] { return check_command(*check); }});
+
+    CLI::App* new_app = app->add_subcommand("new", "write a commented scene for your own terrain");
+    const auto create = std::make_shared<NewSceneOptions>();
+    new_app->add_option("--dem", create->dem, "terrain raster in a projected metric CRS")
+        ->required()
+        ->type_name("FILE");
+    new_app->add_option("--release", create->release, "polygons of the failing ground")->required()->type_name("FILE");
+    new_app->add_option("--buildings", create->buildings, "polygons of the buildings")->type_name("FILE");
+    CLI::Option* thickness =
+        new_app->add_option("--thickness-m", create->thickness, "thickness of the release normal to the slope, m")
+            ->type_name("M");
+    new_app->add_option("--volume-m3", create->volume, "volume of the release instead, m3")
+        ->type_name("M3")
+        ->excludes(thickness);
+    new_app->add_option("-o,--output", create->folder, "folder to make for the scene")->required()->type_name("DIR");
+    new_app->add_option("--particles", create->target_particle_count, "particles to aim for; more are finer and slower")
+        ->type_name("N");
+    commands.push_back({new_app, [create] { return new_command(*create); }});
+
+    CLI::App* export_app = app->add_subcommand("export-builtin", "write the built-in scene with its data");
+    const auto exported = std::make_shared<ExportArguments>();
+    export_app->add_option("-o,--output", exported->folder, "folder to write it to")->required()->type_name("DIR");
+    export_app->add_flag("--force", exported->force, "write into a folder that is already there");
+    commands.push_back({export_app, [exported] { return export_builtin_command(*exported); }});
+
+    CLI::App* reference_app =
+        app->add_subcommand("reference", "every key of a scene file with unit, default and range");
+    const auto markdown = std::make_shared<bool>(false);
+    reference_app->add_flag("--markdown", *markdown, "as a Markdown document");
+    commands.push_back({reference_app, [markdown] { return reference_command(*markdown); }});
+}
+
+}  // namespace talus
