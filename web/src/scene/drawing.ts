@@ -181,9 +181,9 @@ export class Drawing {
         this.draft.value = moved;
         this.redraw(!isLine);
       },
-      drop: (moved) => {
-        const by: Point = [moved[0][0] - points[0][0], moved[0][1] - points[0][1]];
-        void change(twin, item, whole && !isLine ? { move_m: by } : { points: moved }).then((fine) => {
+      drop: (moved, by) => {
+        if (by === null) this.reselect();
+        else void change(twin, item, whole && !isLine ? { move_m: by } : { points: moved }).then((fine) => {
           if (!fine) this.reselect();
         });
       },

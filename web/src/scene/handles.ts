@@ -6,10 +6,10 @@ import { h } from "../ui/dom";
 import type { Stage } from "./stage";
 
 export interface HandleEvents {
-  /** The points while a corner is dragged. */
+  /** The points while a corner is dragged, or an arrow key is down. */
   move(points: Point[]): void;
-  /** The points when a corner was let go. */
-  drop(points: Point[]): void;
+  /** The points when the corner or the key was let go, and how far the first of them was moved; null: nothing was. */
+  drop(points: Point[], moved_m: Point | null): void;
 }
 
 const nudge_m = 1;
@@ -19,18 +19,19 @@ export class Handles {
   private points: Point[] = [];
   private scenario: ScenarioName = "A";
   private first = 0; // the corner that the first button moves
-  private dragging = false;
+  /** The points when the drag or key press that goes on began: until it ends, what the server says is not shown. */
+  private before: Point[] | null = null;
 
   constructor(private readonly stage: Stage) {
     stage.onPicture(() => this.place());
   }
   get busy(): boolean {
-    return this.dragging;
+    return this.before !== null;
   }
 
   /** Shows corners, one handle in the middle that moves the whole, or both. */
   show(name: string, points: readonly Point[], scenario: ScenarioName, grips: "corners" | "whole" | "all", events: HandleEvents): void {
-    if (this.dragging) return;
+    if (this.busy) return;
     const focused = this.buttons.indexOf(document.activeElement as HTMLButtonElement);
     this.clear();
     this.points = points.map(([x, y]) => [x, y]);
@@ -50,13 +51,15 @@ export class Handles {
         if (!by) return;
         event.preventDefault();
         event.stopPropagation();
+        this.before ??= this.points;
         this.shift(k, by);
         events.move(this.points);
         this.place();
       });
       button.addEventListener("keyup", (event) => {
-        if (event.key.startsWith("Arrow")) events.drop(this.points);
+        if (event.key.startsWith("Arrow")) this.end(events);
       });
+      button.addEventListener("blur", () => this.end(events));
       this.buttons.push(button);
       pane?.append(button);
     }
@@ -69,6 +72,13 @@ export class Handles {
     this.buttons = [];
   }
 
+  private end(events: HandleEvents): void {
+    const { before, points } = this;
+    if (before === null) return;
+    this.before = null;
+    const moved = points.some((point, i) => point[0] !== before[i][0] || point[1] !== before[i][1]);
+    events.drop(points, moved ? [points[0][0] - before[0][0], points[0][1] - before[0][1]] : null);
+  }
   private shift(k: number, by: Point): void {
     const all = k === this.points.length;
     this.points = this.points.map(([x, y], i) => (all || i === k ? [x + by[0], y + by[1]] : [x, y]));
@@ -78,9 +88,10 @@ export class Handles {
     event.preventDefault();
     button.focus();
     button.setPointerCapture(event.pointerId);
-    this.dragging = true;
+    this.before = this.points;
     const all = k === this.points.length;
     const move = (moved: PointerEvent): void => {
+      if (!this.busy) return; // ended by a key or by losing the focus
       const hit = this.stage.hit(moved.clientX, moved.clientY);
       if (!hit || hit.scenario !== this.scenario) return;
       const from = all ? middle(this.points) : this.points[k];
@@ -88,11 +99,9 @@ export class Handles {
       events.move(this.points);
       this.place();
     };
-    const before = JSON.stringify(this.points);
     const end = (): void => {
       button.removeEventListener("pointermove", move);
-      this.dragging = false;
-      if (JSON.stringify(this.points) !== before) events.drop(this.points);
+      this.end(events);
     };
     button.addEventListener("pointermove", move);
     button.addEventListener("pointerup", end, { once: true });
@@ -106,7 +115,8 @@ export class Handles {
       const k = this.first + i;
       const [x, y] = k === this.points.length ? middle(this.points) : this.points[k];
       const at = this.stage.seenAt(this.stage.reliefOf(this.scenario).local(x, y, 0.3), this.scenario);
-      button.hidden = at === null || at.x < pane.left || at.x > pane.right || at.y < pane.top || at.y > pane.bottom;
+      // One that is hidden gets no keys: who moves a corner out of the view by arrow keys can move it back.
+      button.hidden = button !== document.activeElement && (at === null || at.x < pane.left || at.x > pane.right || at.y < pane.top || at.y > pane.bottom);
       if (at) button.style.transform = `translate(${at.x - pane.left}px, ${at.y - pane.top}px) translate(-50%, -50%)`;
     });
   }

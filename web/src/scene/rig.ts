@@ -17,8 +17,14 @@ export class Rig {
   private flight: { from: Viewpoint; to: Viewpoint; begun_ms: number; lasts_ms: number } | null = null;
   private followed: Vector3 | null = null;
   private last_ms = 0;
+  private readonly changed: () => void;
 
-  constructor(canvas: HTMLElement, private readonly relief: Relief, private readonly changed: () => void) {
+  constructor(canvas: HTMLElement, private readonly relief: Relief, changed: () => void) {
+    this.changed = () => {
+      // Clicks and keys ask where things are seen before the next picture is drawn, which may take long.
+      this.camera.updateMatrixWorld();
+      changed();
+    };
     this.camera.up.set(0, 0, 1);
     this.controls = new OrbitControls(this.camera, canvas);
     this.controls.enableDamping = !matchMedia("(prefers-reduced-motion: reduce)").matches;
@@ -28,7 +34,7 @@ export class Rig {
     this.controls.minDistance = 4;
     this.controls.maxDistance = 6 * Math.max(relief.width, relief.height);
     this.controls.mouseButtons = { LEFT: MOUSE.ROTATE, MIDDLE: MOUSE.DOLLY, RIGHT: MOUSE.PAN };
-    this.controls.addEventListener("change", changed);
+    this.controls.addEventListener("change", this.changed);
     this.controls.addEventListener("start", () => (this.flight = null));
     canvas.addEventListener("keydown", (event) => this.key(event));
     canvas.addEventListener("keyup", (event) => void this.held.delete(event.code));
