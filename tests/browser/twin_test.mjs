@@ -1,6 +1,6 @@
 // The page of the live twin in Chromium, with real clicks and keys.
 // Usage: node twin_test.mjs OUTPUT_FOLDER SERVER [ARGUMENT ...]: the server prints a line of JSON with its links, as
-// `talus serve --json --port 0 SCENE` and `node web/dev/serve.mjs` do. TALUS_PARTS=PART,... runs those parts alone, TALUS_ONLY=PATTERN
+// `talus serve --json --port 0 SCENE` does. TALUS_PARTS=PART,... runs those parts alone, TALUS_ONLY=PATTERN
 // the checks whose name matches.
 // Exit code 77: skipped, the browser or its driver is missing.
 import { resolve } from "node:path";
