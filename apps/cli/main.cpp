@@ -10,6 +10,7 @@
 
 #include "command.hpp"
 #include "exit_code.hpp"
+#include "sim/cpu/dispatch.hpp"
 
 namespace talus {
 namespace {
@@ -73,6 +74,9 @@ int talus_main(int argc, char** argv) {
         return fail(exit_code::bad_input, fmt::format("{}; see {} --help", error.what(), deepest_command(app)));
     }
 
+    if (const Status chosen = cpu::choose_instruction_set_of_environment(); !chosen) {
+        return fail(exit_code::bad_input, chosen.error().message);
+    }
     for (const Command& command : commands) {
         if (*command.app) return command.run();
     }

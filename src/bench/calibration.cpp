@@ -98,7 +98,6 @@ HWY_AFTER_NAMESPACE();
 #include <chrono>
 #include <numeric>
 
-#include "sim/cpu/dispatch.hpp"
 #include "sim/cpu/parallel.hpp"
 
 namespace talus::bench {
@@ -113,7 +112,7 @@ constexpr double duration = 0.015;                          // s
 HWY_EXPORT(make_kernel);
 
 Calibration::Calibration()
-    : kernel_(cpu::with_wanted_instructions([] { return HWY_DYNAMIC_DISPATCH(make_kernel)(); })),
+    : kernel_(HWY_DYNAMIC_DISPATCH(make_kernel)()),
       rows_(row_count),
       index_(unit_count * rows_per_unit),
       sums_(rounds * unit_count) {

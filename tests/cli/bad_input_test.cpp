@@ -21,6 +21,7 @@ struct BadInput {
     std::function<void(const SmallScene&)> spoil;
     std::vector<std::string> said;  ///< what the line must name
     std::vector<std::string> arguments = {"run", "slope.toml", "-o", "result"};
+    std::vector<std::string> environment = {};
 };
 
 void PrintTo(const BadInput& input, std::ostream* stream) {
@@ -33,7 +34,8 @@ TEST_P(BadInputTest, IsSaidInOneLineAndNothingIsLeft) {
     const SmallScene scene;
     GetParam().spoil(scene);
     const auto before = scene.files();
-    const auto outcome = run_program(GetParam().arguments, {.folder = scene.folder()});
+    const auto outcome =
+        run_program(GetParam().arguments, {.folder = scene.folder(), .environment = GetParam().environment});
     EXPECT_EQ(outcome.exit_code, 2);
     EXPECT_EQ(outcome.out, "");
     const auto lines = lines_of(outcome.error);
@@ -206,6 +208,11 @@ const std::vector<BadInput> bad_inputs = {
     {"ResultIsAFile", [](const SmallScene& s) { write_text(s.input("result"), "precious"); }, {"result"}},
     {"ResultBelowAFile", nothing_spoiled, {"terrain.tif/result"}, {"run", "slope.toml", "-o", "terrain.tif/result"}},
     {"ResultNotWritable", nothing_spoiled, {"/proc/result"}, {"run", "slope.toml", "-o", "/proc/result"}},
+    {"UnknownInstructionSet",
+     nothing_spoiled,
+     {"TALUS_SIMD", "\"AVX9\"", "this processor and this build have"},
+     {"run", "slope.toml", "-o", "result"},
+     {"TALUS_SIMD=AVX9"}},
 };
 
 INSTANTIATE_TEST_SUITE_P(Item, BadInputTest, testing::ValuesIn(bad_inputs),

@@ -213,6 +213,20 @@ TEST_F(Interrupted, TwiceEndsAtOnceAndLeavesNothing) {
     EXPECT_EQ(scene_.files(), before);
 }
 
+TEST(Run, SaysOnWhichInstructionSetItRan) {
+    const SmallScene scene;
+    std::vector<std::string> hashes;
+    for (const std::string set : {"SSE4", "AVX2"}) {
+        const auto outcome = run_program({"run", "slope.toml", "--quiet", "-o", "result", "--force"},
+                                         {.folder = scene.folder(), .environment = {"TALUS_SIMD=" + set}});
+        if (outcome.exit_code == 2) GTEST_SKIP() << outcome.error;
+        const auto manifest = nlohmann::json::parse(read_text(scene.input("result/manifest.json")));
+        EXPECT_THAT(manifest.dump(), HasSubstr("\"instruction_set\":\"" + set + "\""));
+        hashes.push_back(manifest.at("result_hash"));
+    }
+    EXPECT_EQ(hashes.at(0), hashes.at(1));
+}
+
 TEST(BuiltinScene, RunsWithoutAnyFileAndLeavesNoTemporaryFolder) {
     const TemporaryFolder folder;
     fs::create_directory(folder.path() / "tmp");

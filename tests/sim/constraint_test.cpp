@@ -1,13 +1,14 @@
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <limits>
 #include <numeric>
 #include <string>
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include "sim/cpu/backend.hpp"
+#include "sim/cpu/dispatch.hpp"
 #include "sim/reference/reference.hpp"
 #include "sim/step.hpp"
 #include "sim_fixtures.hpp"
@@ -163,11 +164,15 @@ void expect_agreement(InternalFriction friction, KernelChoice kernel, int steps,
         << "the net was never touched";
 }
 
-/// One that the processor lacks falls back to its best.
 class InstructionSet : public ::testing::TestWithParam<const char*> {
   protected:
-    void SetUp() override { setenv("TALUS_SIMD", GetParam(), 1); }
-    void TearDown() override { unsetenv("TALUS_SIMD"); }
+    void SetUp() override {
+        const Status chosen = cpu::choose_instruction_set(GetParam());
+        if (!chosen) GTEST_SKIP() << chosen.error().message;
+        const Model model = make_model({}, {}, testing::inclined_plane(25), {}, 0.4);
+        ASSERT_EQ(cpu::Backend(model, 1).instruction_set(), GetParam());
+    }
+    void TearDown() override { ASSERT_TRUE(cpu::choose_instruction_set(cpu::instruction_sets().front())); }
 };
 
 TEST_P(InstructionSet, agrees_with_the_double_precision_reference) {
@@ -192,10 +197,14 @@ TEST_P(InstructionSet, agrees_with_the_reference_for_a_net) {
     expect_agreement(InternalFriction::pair, KernelChoice::poly6_spiky, 4, 2e-4, {}, false, true);
 }
 
-TEST_P(InstructionSet, gives_the_same_bits_as_the_baseline) {
-    const auto hash_after = [](const char* set, InternalFriction friction, const MaterialSpec& material = {},
+/// Beyond that which every build has and every processor can.
+using FasterInstructionSet = InstructionSet;
+
+TEST_P(FasterInstructionSet, gives_the_same_bits_as_the_baseline) {
+    const std::string baseline = cpu::instruction_sets().back();
+    const auto hash_after = [](const std::string& set, InternalFriction friction, const MaterialSpec& material = {},
                                bool net = false) {
-        setenv("TALUS_SIMD", set, 1);
+        EXPECT_TRUE(cpu::choose_instruction_set(set));
         SolverSpec solver;
         solver.internal_friction = friction;
         const Terrain terrain = testing::terrain_of(
@@ -210,21 +219,41 @@ TEST_P(InstructionSet, gives_the_same_bits_as_the_baseline) {
         Result<State> seeded =
             seed_releases(model, {testing::block(terrain, testing::rectangle(17.5, 18.5, 20.5, 21.5), 1.2)});
         Simulation simulation(std::move(model), *std::move(seeded));
+        EXPECT_EQ(simulation.backend().instruction_set(), set);
         for (int i = 0; i < 30; ++i) simulation.advance();
         return hash_state(simulation.state());
     };
     for (const InternalFriction friction : {InternalFriction::stress, InternalFriction::pair}) {
-        EXPECT_EQ(hash_after(GetParam(), friction), hash_after("SCALAR", friction));
-        EXPECT_EQ(hash_after(GetParam(), friction, {}, true), hash_after("SCALAR", friction, {}, true));
+        EXPECT_EQ(hash_after(GetParam(), friction), hash_after(baseline, friction));
+        EXPECT_EQ(hash_after(GetParam(), friction, {}, true), hash_after(baseline, friction, {}, true));
     }
     EXPECT_EQ(hash_after(GetParam(), InternalFriction::stress, everything()),
-              hash_after("SCALAR", InternalFriction::stress, everything()));
+              hash_after(baseline, InternalFriction::stress, everything()));
     EXPECT_NE(hash_after(GetParam(), InternalFriction::stress, everything()),
               hash_after(GetParam(), InternalFriction::stress));
 }
 
-INSTANTIATE_TEST_SUITE_P(CpuBackend, InstructionSet, ::testing::Values("SSE2", "SSE4", "AVX2", "AVX3"),
-                         [](const auto& set) { return std::string(set.param); });
+const auto name_of_set = [](const auto& set) { return std::string(set.param); };
+INSTANTIATE_TEST_SUITE_P(CpuBackend, InstructionSet, ::testing::Values("SCALAR", "SSE4", "AVX2", "AVX3"), name_of_set);
+INSTANTIATE_TEST_SUITE_P(CpuBackend, FasterInstructionSet, ::testing::Values("SSE4", "AVX2", "AVX3"), name_of_set);
+
+TEST(InstructionSets, that_are_not_there_are_refused_by_name) {
+    const Model model = make_model({}, {}, testing::inclined_plane(25), {}, 0.4);
+    const std::string baseline = cpu::instruction_sets().back();
+    ASSERT_TRUE(cpu::choose_instruction_set(baseline));
+    for (const char* name : {"", "avx2", "AVX4"}) {
+        const Status chosen = cpu::choose_instruction_set(name);
+        ASSERT_FALSE(chosen);
+        EXPECT_EQ(chosen.error().message.find(fmt::format("the instruction set \"{}\" is refused", name)), 0U);
+        EXPECT_NE(chosen.error().message.find(baseline), std::string::npos) << "what there is";
+        EXPECT_EQ(cpu::Backend(model, 1).instruction_set(), baseline) << "as before";
+    }
+    for (const std::string& name : cpu::instruction_sets()) {
+        ASSERT_TRUE(cpu::choose_instruction_set(name));
+        EXPECT_EQ(cpu::Backend(model, 1).instruction_set(), name);
+    }
+    ASSERT_TRUE(cpu::choose_instruction_set(cpu::instruction_sets().front()));
+}
 
 }  // namespace
 }  // namespace talus

@@ -1,25 +1,21 @@
 #pragma once
 
-#include <cstdlib>
-#include <hwy/highway.h>
-#include <string_view>
+#include <string>
+#include <vector>
 
+#include "core/result.hpp"
+
+/// Which instruction set HWY_DYNAMIC_DISPATCH chooses.
 namespace talus::cpu {
 
-/// Calls f(), which dispatches by HWY_DYNAMIC_DISPATCH, with the instruction set that TALUS_SIMD names if this
-/// processor has it, else with its best.
-template <class F>
-auto with_wanted_instructions(const F& f) {
-    if (const char* wanted = std::getenv("TALUS_SIMD")) {
-        for (const std::int64_t target : hwy::SupportedAndGeneratedTargets()) {
-            if (std::string_view(wanted) != hwy::TargetName(target)) continue;
-            hwy::SetSupportedTargetsForTest(target);
-            const auto result = f();
-            hwy::SetSupportedTargetsForTest(0);
-            return result;
-        }
-    }
-    return f();
-}
+/// Those that both this processor and this build have, best first.
+[[nodiscard]] std::vector<std::string> instruction_sets();
+
+/// Backends and calibration loops that are made from now on run on the set of this name. Before the first choice they
+/// run on the best. Errors: none of instruction_sets().
+[[nodiscard]] Status choose_instruction_set(const std::string& name);
+
+/// Chooses the set that the environment variable TALUS_SIMD names, if it names one. For the beginning of a program.
+[[nodiscard]] Status choose_instruction_set_of_environment();
 
 }  // namespace talus::cpu

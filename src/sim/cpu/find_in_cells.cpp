@@ -137,14 +137,12 @@ NeighbourSearch::FindInCells make_find_in_cells() {
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
-#include "sim/cpu/dispatch.hpp"
-
 namespace talus::cpu {
 
 HWY_EXPORT(make_find_in_cells);
 
 NeighbourSearch::FindInCells find_in_cells_function() {
-    return with_wanted_instructions([] { return HWY_DYNAMIC_DISPATCH(make_find_in_cells)(); });
+    return HWY_DYNAMIC_DISPATCH(make_find_in_cells)();
 }
 
 }  // namespace talus::cpu

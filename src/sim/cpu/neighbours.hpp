@@ -80,7 +80,7 @@ class NeighbourSearch {
     std::vector<SearchScratch> scratch_;  // one per thread of the arena
 };
 
-/// The best of this processor, or that which TALUS_SIMD names.
+/// On the instruction set that was chosen (dispatch.hpp).
 [[nodiscard]] NeighbourSearch::FindInCells find_in_cells_function();
 
 }  // namespace talus::cpu

@@ -321,14 +321,12 @@ ParticleStages make_stages(KernelChoice kernel) {
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
-#include "sim/cpu/dispatch.hpp"
-
 namespace talus::cpu {
 
 HWY_EXPORT(make_stages);
 
 ParticleStages particle_stages_for(KernelChoice kernel) {
-    return with_wanted_instructions([&] { return HWY_DYNAMIC_DISPATCH(make_stages)(kernel); });
+    return HWY_DYNAMIC_DISPATCH(make_stages)(kernel);
 }
 
 }  // namespace talus::cpu

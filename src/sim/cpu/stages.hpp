@@ -46,8 +46,7 @@ struct PairStages {
     StageFunction apply;               ///< eqs. (3) and (4)
 };
 
-/// The stages for a kernel on the best instruction set of this processor, or on that which the environment variable
-/// TALUS_SIMD names (an unknown or unavailable name is ignored).
+/// The stages for a kernel on the instruction set that was chosen (dispatch.hpp).
 [[nodiscard]] ParticleStages particle_stages_for(KernelChoice kernel);
 [[nodiscard]] StressStages stress_stages_for(KernelChoice kernel);
 [[nodiscard]] PairStages pair_stages_for(KernelChoice kernel);
