@@ -48,7 +48,7 @@ Row judge_one(const Case& validation_case, const Expectation& e, const Measureme
     // Not std::max: what was not computed must stay so.
     if (e.comparison == Comparison::at_most && row.relative_error < 0) row.relative_error = 0;
     if (e.comparison == Comparison::at_least && row.relative_error > 0) row.relative_error = 0;
-    const bool pass = row.tolerance && std::abs(row.relative_error) <= *row.tolerance;
+    const bool pass = row.tolerance && std::isfinite(row.computed) && std::abs(row.relative_error) <= *row.tolerance;
     // Coarser resolutions show the trend, unless the case file speaks of one by name.
     const bool trend = measured != nullptr && measured->coarse && e.where.empty();
     row.verdict = !e.gate || trend          ? Verdict::shown

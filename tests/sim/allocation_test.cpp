@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include "sim/inflow.hpp"
 #include "sim_fixtures.hpp"
 #include "support/allocations.hpp"
 
@@ -11,13 +12,65 @@ using testing::inclined_plane;
 using testing::rectangle;
 using testing::simulate;
 
+/// Allocations of `steps` steps after `warm_up` of them.
+long allocations_of(Simulation& simulation, int warm_up, int steps) {
+    for (int i = 0; i < warm_up; ++i) EXPECT_FALSE(simulation.advance());
+    const long before = test::allocation_count();
+    for (int i = 0; i < steps; ++i) EXPECT_FALSE(simulation.advance());
+    return test::allocation_count() - before;
+}
+
 TEST(Step, allocates_nothing_once_it_runs) {
     const Terrain terrain = inclined_plane(30, 60, 40);
     Simulation simulation = simulate({}, {}, terrain, {block(terrain, rectangle(6, 12, 16, 24), 1)}, 0.4);
-    for (int i = 0; i < 30; ++i) simulation.advance();
-    const long before = test::allocation_count();
-    for (int i = 0; i < 10; ++i) simulation.advance();
-    EXPECT_EQ(test::allocation_count(), before);
+    EXPECT_EQ(allocations_of(simulation, 30, 10), 0);
+}
+
+TEST(Step, allocates_nothing_while_debris_presses_on_a_wall) {
+    const Terrain terrain = inclined_plane(30, 60, 40);
+    Building house;
+    house.footprint = {rectangle(16.5, 14, 20, 22)};
+    house.height = 3;
+    Simulation simulation = simulate({}, {}, terrain, {block(terrain, rectangle(6, 12, 16, 24), 1)}, 0.4, {house});
+    EXPECT_EQ(allocations_of(simulation, 100, 20), 0);
+    EXPECT_GT(simulation.state().building_contacts.size(), 20U) << "the wall was hardly touched";
+}
+
+TEST(Step, allocates_nothing_while_debris_flows_in) {
+    const Inflow gully{"gully", {20, 17}, {20, 23}, {{0, 30, 4}, {60, 30, 4}}};
+    const Inflow spring{"spring", {}, {}, {{0, 10, 1}, {60, 10, 1}}, {rectangle(30, 17, 36, 23)}};
+    const Model model = make_model({}, {}, inclined_plane(25), {}, testing::fine_spacing);
+    Simulation simulation(model, State{}, InflowFeeder(model, {gully, spring}));
+    EXPECT_EQ(allocations_of(simulation, 100, 0), 0);
+    const std::uint32_t before = simulation.state().count;
+    EXPECT_EQ(allocations_of(simulation, 0, 50), 0);
+    EXPECT_GT(simulation.state().count, before + 50) << "hardly anything came in";
+}
+
+TEST(Step, allocates_nothing_while_debris_picks_up_its_bed) {
+    const Terrain terrain = inclined_plane(25);
+    MaterialSpec moving;
+    moving.friction_coefficient = 0.2;
+    Model model = make_model(moving, {}, terrain, {}, testing::coarse_spacing);
+    Result<State> state = seed_releases(model, {block(terrain, rectangle(8, 15, 14, 25), 1.5)});
+    BedMaterial growing, sheared;
+    growing.growth_rate = 0.02;
+    sheared.law = EntrainmentLaw::shear;
+    sheared.critical_shear_stress = 1000;
+    sheared.erosion_rate = 0.1;
+    sheared.depth_per_shear = 1e-5;
+    const std::size_t cells = terrain.elevation().values.size();
+    model.bed = {{growing, sheared},
+                 std::vector<std::uint8_t>(cells, 1),
+                 std::vector<float>(cells, 1),
+                 std::vector<float>(cells, 0)};
+    for (std::size_t cell = 0; cell < cells; cell += 2) model.bed.material_at[cell] = 2;
+    Simulation simulation(std::move(model), *std::move(state));
+    EXPECT_EQ(allocations_of(simulation, 120, 0), 0);
+    const std::uint32_t before = simulation.state().entrained;
+    // Its lists grow when more comes loose in a step than ever before, not in every step.
+    EXPECT_LT(allocations_of(simulation, 0, 40), 4);
+    EXPECT_GT(simulation.state().entrained, before + 10) << "hardly anything came loose";
 }
 
 }  // namespace

@@ -10,17 +10,31 @@ namespace {
 
 using testing::rectangle;
 
-/// A heap on level ground, 3 m to a side and 1.2 m high, and a block of the same size `fall` metres above its middle
-/// that starts after `start` seconds.
-Simulation heap_and_block(double rest_duration, double start) {
+/// A heap on level ground, 3 m to a side and 1.2 m high.
+Simulation heap(double rest_duration) {
     const Terrain terrain = testing::terrain_of(60, 60, 1, [](double, double) { return 0; });
     SolverSpec solver;
     solver.rest_duration = rest_duration;
     MaterialSpec material;
     material.friction_coefficient = 0.6;
-    std::vector<Release> releases = {testing::block(terrain, rectangle(27, 27, 30, 30), 1.2)};
-    if (start > 0) releases.push_back(testing::block(terrain, rectangle(34, 27, 37, 30), 1.2, start));
-    return testing::simulate(material, solver, terrain, releases, testing::fine_spacing);
+    return testing::simulate(material, solver, terrain, {testing::block(terrain, rectangle(27, 27, 30, 30), 1.2)},
+                             testing::fine_spacing);
+}
+
+/// 2.4 m of debris in a pit.
+Simulation filled_pit(double rest_duration) {
+    const Terrain terrain = testing::terrain_of(
+        20, 20, 1, [](double x, double y) { return std::max(std::abs(x - 10), std::abs(y - 10)) < 2.6 ? 0 : 4; });
+    SolverSpec solver;
+    solver.rest_duration = rest_duration;
+    return testing::simulate({}, solver, terrain, {testing::block(terrain, rectangle(8, 8, 12, 12), 2.4)},
+                             testing::fine_spacing);
+}
+
+double mean_height(const State& state) {
+    double sum = 0;
+    for (std::uint32_t i = 0; i < state.count; ++i) sum += state.position.z[i];
+    return sum / state.count;
 }
 
 void advance_to(Simulation& simulation, double time) {
@@ -28,7 +42,7 @@ void advance_to(Simulation& simulation, double time) {
 }
 
 TEST(DebrisAtRest, falls_asleep_and_stays_where_it_is) {
-    Simulation simulation = heap_and_block(0.5, 0);
+    Simulation simulation = heap(0.5);
     advance_to(simulation, 12);
     const State& state = simulation.state();
     ASSERT_LT(state.awake, state.count / 5) << "little should still move after 12 s";
@@ -50,21 +64,34 @@ TEST(DebrisAtRest, falls_asleep_and_stays_where_it_is) {
 }
 
 TEST(DebrisAtRest, never_falls_asleep_where_the_scene_says_so) {
-    Simulation simulation = heap_and_block(0, 0);
-    advance_to(simulation, 6);
-    EXPECT_EQ(simulation.state().awake, simulation.state().count);
+    for (const bool sleeps : {false, true}) {
+        Simulation simulation = heap(sleeps ? 0.5 : 0);
+        advance_to(simulation, 6);
+        const State& state = simulation.state();
+        const auto asleep = std::count(state.resting.begin(), state.resting.begin() + state.count, 1);
+        EXPECT_EQ(state.count - state.awake, asleep);
+        if (sleeps)
+            EXPECT_GT(asleep, 0.3 * state.count) << "by then it would have";
+        else
+            EXPECT_EQ(asleep, 0);
+    }
 }
 
 TEST(DebrisAtRest, presses_as_it_did_on_what_is_awake) {
-    Simulation simulation = heap_and_block(0.5, 0);
-    double least = 1e9;
-    advance_to(simulation, 4);
-    // Were a sleeping neighbour's pressure missing, what lies on it would sink into it.
-    for (double time = 4; time < 12; time += 0.5) {
-        advance_to(simulation, time);
-        least = std::min(least, 1 - simulation.state().max_compression);
+    Simulation simulation = filled_pit(0.2), sleepless = filled_pit(0);
+    const State& state = simulation.state();
+    double worst = 0;
+    int beside = 0;
+    while (state.time < 6) {
+        ASSERT_FALSE(simulation.advance());
+        if (state.awake < state.count / 20 || state.awake > state.count / 2) continue;
+        ++beside;
+        worst = std::max(worst, state.max_compression);
     }
-    EXPECT_GT(least, 0.95);
+    EXPECT_GT(beside, 20) << "steps with debris asleep beside debris awake";
+    EXPECT_LT(worst, 0.05);
+    advance_to(sleepless, 6);
+    EXPECT_NEAR(mean_height(state), mean_height(sleepless.state()), 0.005);
 }
 
 /// Particles of the first release that rest: the mean of their distances from where they were.
