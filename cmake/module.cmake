@@ -41,7 +41,9 @@ endfunction()
 # talus_test(NAME LABEL DEPENDS...): the program test_NAME from every .cpp in the current folder, its tests labelled. With
 # `talus_test_processors` set in the folder, each of them has so many processors for itself; those that match the googletest
 # pattern `talus_long_tests` are minutes of arithmetic and left out of sanitized programs, in which others run the same code.
-# What is labelled `physics` is also tested in the release build (target physics_tests).
+# What is labelled `physics` is also tested in the release build (target physics_tests). Tests that match the pattern
+# `talus_thread_tests` are what the thread sanitizer looks at: in its build they alone are found, labelled `threads` (target
+# thread_tests).
 function(talus_test name label)
   file(GLOB sources CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/*.cpp)
   if(NOT sources)
@@ -53,8 +55,14 @@ function(talus_test name label)
   target_compile_definitions(test_${name} PRIVATE TALUS_SOURCE_DIR="${PROJECT_SOURCE_DIR}"
                              TALUS_PROGRAM="${CMAKE_BINARY_DIR}/bin/talus")
   set(filter "")
-  if(TALUS_SANITIZE AND talus_long_tests)
+  if(TALUS_SANITIZE STREQUAL "thread" AND talus_thread_tests)
+    set(label threads)
+    set(filter TEST_FILTER "${talus_thread_tests}")
+  elseif(TALUS_SANITIZE AND talus_long_tests)
     set(filter TEST_FILTER "-${talus_long_tests}")
+  endif()
+  if(label STREQUAL threads)
+    add_dependencies(thread_tests test_${name})
   endif()
   if(label STREQUAL physics OR label STREQUAL threads)
     add_dependencies(physics_tests test_${name})

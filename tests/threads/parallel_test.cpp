@@ -1,32 +1,94 @@
+#include <functional>
+
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
 #include <tbb/task_arena.h>
 
 #include "observe/observer.hpp"
+#include "sim/inflow.hpp"
 #include "sim/sim_fixtures.hpp"
 
 /// Everything that runs in parallel, small and on more threads than cores: what the thread sanitizer looks at.
 namespace talus {
 namespace {
 
-TEST(ParallelStages, step_and_observe_on_four_threads) {
-    const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, 4);
-    tbb::task_arena arena(4);
-    arena.execute([] {
+struct Setting {
+    const char* name;
+    std::function<void(MaterialSpec&, SolverSpec&)> spec = [](MaterialSpec&, SolverSpec&) {};
+    bool bed = false, inflow = false;
+};
+
+void PrintTo(const Setting& setting, std::ostream* stream) {
+    *stream << setting.name;
+}
+
+/// Runs down a slope onto a house, observed; the hash of the end and of the observed peak depths.
+std::pair<std::uint64_t, std::vector<float>> run_on(int threads, const Setting& setting) {
+    const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads));
+    tbb::task_arena arena(threads);
+    return arena.execute([&] {
         const Terrain terrain = testing::inclined_plane(30, 60, 40);
-        Building house;
-        house.footprint = {testing::rectangle(17, 12, 22, 20)};
-        house.height = 3;
-        Simulation simulation = testing::simulate(
-            {}, {}, terrain, {testing::block(terrain, testing::rectangle(6, 10, 16, 22), 1)}, 0.5, {house});
+        std::vector<Building> houses(1);
+        houses[0].footprint = {testing::rectangle(17, 12, 22, 20)};
+        houses[0].height = 3;
+        place_buildings(terrain, houses);
+        MaterialSpec material;
+        SolverSpec solver;
+        setting.spec(material, solver);
+        Model model = make_model(material, solver, terrain, houses, 0.5);
+        if (setting.bed) {
+            BedMaterial gravel;
+            gravel.growth_rate = 0.1;
+            const std::size_t cells = terrain.elevation().values.size();
+            model.bed = {{gravel},
+                         std::vector<std::uint8_t>(cells, 1),
+                         std::vector<float>(cells, 1),
+                         std::vector<float>(cells, 0)};
+        }
+        std::vector<Inflow> inflows;
+        if (setting.inflow) inflows = {{"gully", {5, 8}, {5, 12}, {{0, 20, 4}, {9, 20, 4}}}};
+        Result<State> state = seed_releases(model, {testing::block(terrain, testing::rectangle(6, 10, 16, 22), 1)});
+        InflowFeeder feeder(model, inflows);
+        Simulation simulation(std::move(model), *std::move(state), std::move(feeder));
         const FlowPath path({{8, 16}, {55, 16}}, 30);
         Observer observer(simulation.model(), simulation.state(), path, {}, 1);
-        for (int i = 0; i < 20; ++i) {
-            ASSERT_FALSE(simulation.advance(&observer));
-        }
-        EXPECT_FALSE(observer.finish(simulation.model(), simulation.state()).maps.peak_depth.values.empty());
+        for (int i = 0; i < 20; ++i) EXPECT_FALSE(simulation.advance(&observer));
+        EXPECT_EQ(simulation.state().entrained > 0, setting.bed);
+        return std::pair(hash_state(simulation.state()),
+                         observer.finish(simulation.model(), simulation.state()).maps.peak_depth.values);
     });
 }
+
+class ParallelStages : public ::testing::TestWithParam<Setting> {};
+
+TEST_P(ParallelStages, step_and_observe_alike_on_one_thread_and_on_four) {
+    const auto [one, depths_of_one] = run_on(1, GetParam());
+    const auto [four, depths_of_four] = run_on(4, GetParam());
+    EXPECT_EQ(one, four);
+    ASSERT_FALSE(depths_of_one.empty());
+    ASSERT_EQ(depths_of_one.size(), depths_of_four.size());
+    for (std::size_t i = 0; i < depths_of_one.size(); ++i) {
+        ASSERT_TRUE(depths_of_one[i] == depths_of_four[i] ||
+                    (std::isnan(depths_of_one[i]) && std::isnan(depths_of_four[i])))
+            << i;
+    }
+}
+
+const std::vector<Setting> settings = {
+    {"stress"},
+    {"pair", [](MaterialSpec&, SolverSpec& solver) { solver.internal_friction = InternalFriction::pair; }},
+    {"drag_and_rest",
+     [](MaterialSpec& material, SolverSpec& solver) {
+         material.turbulent_friction = 300;
+         material.viscosity = 0.2;
+         material.cohesion = 200;
+         solver.rest_duration = 0.05;
+     }},
+    {"bed", [](MaterialSpec&, SolverSpec&) {}, true},
+    {"inflow", [](MaterialSpec&, SolverSpec&) {}, false, true},
+};
+INSTANTIATE_TEST_SUITE_P(Solver, ParallelStages, ::testing::ValuesIn(settings),
+                         [](const auto& setting) { return std::string(setting.param.name); });
 
 }  // namespace
 }  // namespace talus
