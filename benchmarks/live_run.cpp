@@ -5,10 +5,7 @@
 
 #include <benchmark/benchmark.h>
 
-#include "observe/observer.hpp"
-#include "run/stop_rule.hpp"
-#include "sim/seed.hpp"
-#include "sim/simulation.hpp"
+#include "run/run.hpp"
 #include "sizes.hpp"
 #include "twin/scenario.hpp"
 
@@ -61,19 +58,9 @@ BENCHMARK(live_step)->Apply(sizes)->UseRealTime();
 
 /// The same step of the same debris in a plain run.
 void plain_step(benchmark::State& run) {
-    const auto scene = plane_scene(run.range(0));
-    const double spacing = choose_particle_spacing(scene->spec.solver, scene->releases[0].volume);
-    Model model = make_model(scene->spec.material, scene->spec.solver, scene->terrain, {}, spacing);
-    State state = *seed_releases(model, scene->releases);
-    Simulation simulation(std::move(model), std::move(state));
-    Observer observer(simulation.model(), simulation.state(), scene->flow_path, scene->spec.outputs,
-                      default_map_cell(scene->terrain.cell(), spacing));
-    const auto step = [&] {
-        (void)simulation.advance(&observer);
-        benchmark::DoNotOptimize(total_momentum(simulation.model(), simulation.state()));
-    };
-    for (int k = 0; k < steps_before; ++k) step();
-    for (auto _ : run) step();
+    const auto plain = std::move(*Run::start(*plane_scene(run.range(0))));
+    for (int k = 0; k < steps_before; ++k) (void)plain->advance();
+    for (auto _ : run) benchmark::DoNotOptimize(plain->advance());
 }
 BENCHMARK(plain_step)->Apply(sizes)->UseRealTime();
 

@@ -70,7 +70,7 @@ BENCHMARK(write_neighbours)->Apply(sizes)->UseRealTime();
 void observe(benchmark::State& run) {
     const Debris& debris = debris_of(run.range(0));
     Observer observer(debris.model(), debris.state(), debris.start.flow_path, debris.start.outputs,
-                      debris.start.map_cell);
+                      default_map_cell(debris.model().terrain.cell(), debris.model().particle_spacing));
     for (auto _ : run) observer.after_step(debris.model(), debris.state(), 0);
     per_particle(run, debris);
 }

@@ -52,7 +52,7 @@ std::string calibration_line(const Calibration& c, const std::filesystem::path& 
 }
 
 std::string progress_text(const CalibrationProgress& p) {
-    std::string text = fmt::format("{}: {} of at most {} runs", phase_name(p.phase), p.done + p.failed, p.most);
+    std::string text = fmt::format("{}: {} of at most {} runs", search_phase_name(p.phase), p.done + p.failed, p.most);
     if (p.failed > 0) text += fmt::format(", {} failed", p.failed);
     if (std::isfinite(p.least_misfit)) text += fmt::format(", least misfit {:.3g}", p.least_misfit);
     return text + fmt::format(", at most about {} left", clock_text(p.wall_remaining));
@@ -60,7 +60,7 @@ std::string progress_text(const CalibrationProgress& p) {
 
 std::string progress_json(const CalibrationProgress& p) {
     const Json json = {{"event", "progress"},
-                       {"phase", phase_name(p.phase)},
+                       {"phase", search_phase_name(p.phase)},
                        {"runs_done", p.done},
                        {"runs_failed", p.failed},
                        {"runs_at_most", p.most},

@@ -4,7 +4,7 @@
 #include <optional>
 #include <string>
 
-#include "run/run.hpp"
+#include "run/run_scene.hpp"
 #include "run/variants.hpp"
 
 namespace talus {

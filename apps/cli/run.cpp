@@ -1,5 +1,3 @@
-#include "run/run.hpp"
-
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>
@@ -8,6 +6,7 @@
 #include <string>
 #include <system_error>
 #include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -18,10 +17,11 @@
 #include "products/particle_series.hpp"
 #include "products/products.hpp"
 #include "progress.hpp"
+#include "run/run_scene.hpp"
 #include "scene/builtin.hpp"
 #include "scene/scene.hpp"
+#include "scene_input.hpp"
 #include "summary.hpp"
-#include "temporary_folder.hpp"
 #include "variant_plan.hpp"
 
 namespace talus {
@@ -56,111 +56,122 @@ class DefaultParent {
     bool made_;
 };
 
-/// The folder's name for a file called scene.toml, the file's name without its ending for another.
-std::string scene_name(const fs::path& file) {
-    const std::string stem = file.stem().string();
-    const std::string folder = fs::absolute(file).parent_path().filename().string();
-    return stem == "scene" && !folder.empty() ? folder : stem;
-}
-
 void print(const std::string& text) {
     (void)std::fputs(text.c_str(), stdout);
     (void)std::fflush(stdout);
 }
 
-/// `shown`: the output folder as the user wrote it.
-int run_loaded(const RunArguments& arguments, const Scene& scene, VariantPlan& plan, OutputFolder& output,
-               const fs::path& shown, InterruptWatch& watch) {
-    ProgressReporter progress(progress_style(arguments.quiet, arguments.json));
-    Status series_status;
-    std::optional<ParticleSeries> series;
-    RunOptions options;
-    bool notes_said = arguments.quiet || arguments.json;
-    options.on_progress = [&](const Progress& now) {
-        // Not before: an input that cannot be run is refused with one line alone.
-        if (!std::exchange(notes_said, true)) {
-            for (const std::string& note : scene.notes) print(fmt::format("note: {}\n", note));
-        }
-        plan.report_base(progress, now);
-    };
-    options.stop_requested = &watch.stop_requested();
-    if (scene.spec.outputs.particle_series_interval > 0) {
-        series.emplace(output.path() / "particles");
-        options.on_frame = [&](const Model& model, const State& state) {
-            if (series_status) series_status = series->write_frame(model, state);
-            if (!series_status) watch.request_stop();
+/// What can be refused before anything runs: the scene, its variants, the output folder.
+struct Job {
+    SceneInput input;
+    VariantPlan plan;
+    std::unique_ptr<DefaultParent> parent;  ///< of the output folder, unless the user named that
+    fs::path shown;                         ///< the output folder as the user wrote it
+    OutputFolder output;
+};
+
+Result<Job> open_job(const RunArguments& arguments, InterruptWatch& watch) {
+    std::vector<std::string> overrides = arguments.overrides;
+    if (arguments.threads) overrides.push_back(fmt::format("solver.thread_count={}", *arguments.threads));
+    auto input = open_scene(arguments.scene, overrides, watch);
+    if (!input) return input.error();
+    auto plan = VariantPlan::make(arguments, input->source, input->scene);
+    if (!plan) return plan.error();
+    if (input->unpacked) name_builtin_files(input->scene, input->unpacked->path());
+
+    std::unique_ptr<DefaultParent> parent;
+    if (arguments.output.empty()) parent = std::make_unique<DefaultParent>();
+    const fs::path shown = parent ? fs::path(DefaultParent::name) / input->short_name : fs::path(arguments.output);
+    auto output = OutputFolder::create(shown, arguments.force);
+    if (!output) return output.error();
+    watch.remove_at_once(output->path());
+    return Job{*std::move(input), *std::move(plan), std::move(parent), shown, *std::move(output)};
+}
+
+/// Looks on while the scene runs: progress, Ctrl-C, and the particle series where the scene wants one.
+class Onlooker {
+  public:
+    Onlooker(const RunArguments& arguments, const Job& job, ProgressReporter& progress, InterruptWatch& watch)
+        : job_(job), progress_(progress), watch_(watch), notes_said_(arguments.quiet || arguments.json) {
+        options_.stop_requested = &watch.stop_requested();
+        options_.on_progress = [this](const Progress& now) { report(now); };
+        if (job.input.scene.spec.outputs.particle_series_interval <= 0) return;
+        series_.emplace(job.output.path() / "particles");
+        options_.on_frame = [this](const Model& model, const State& state) {
+            if (series_status_) series_status_ = series_->write_frame(model, state);
+            if (!series_status_) watch_.request_stop();
         };
     }
+    Onlooker(const Onlooker&) = delete;
+    Onlooker& operator=(const Onlooker&) = delete;
 
-    auto result = run_scene(scene, options);
+    [[nodiscard]] const RunOptions& options() const { return options_; }
+    /// The run has ended. Errors: the particle series cannot be written.
+    [[nodiscard]] Status finish() {
+        if (series_ && series_status_) series_status_ = series_->finish();
+        return series_status_;
+    }
+
+  private:
+    void report(const Progress& now) {
+        // Notes not before: an input that cannot be run is refused with one line alone.
+        if (!std::exchange(notes_said_, true)) {
+            for (const std::string& note : job_.input.scene.notes) print(fmt::format("note: {}\n", note));
+        }
+        job_.plan.report_base(progress_, now);
+    }
+
+    const Job& job_;
+    ProgressReporter& progress_;
+    InterruptWatch& watch_;
+    bool notes_said_;
+    RunOptions options_;
+    std::optional<ParticleSeries> series_;
+    Status series_status_;
+};
+
+Status write_report(Job& job, const RunResult& result, const std::vector<Comparison>& comparisons,
+                    InterruptWatch& watch) {
+    if (Status s = write_products(job.input.scene, result, job.output.path(), comparisons); !s) return s;
+    // Replacing an earlier result takes two renames; a second Ctrl-C must not fall between them.
+    const auto lock = watch.hold();
+    return job.output.commit();
+}
+
+/// From scene file to report.
+int run_command(const RunArguments& arguments) {
+    if (!arguments.data.empty()) set_data_folder(arguments.data);
+    InterruptWatch watch;
+    ProgressReporter progress(progress_style(arguments.quiet, arguments.json));
+
+    auto job = open_job(arguments, watch);  // load
+    if (!job) return fail(exit_code::bad_input, job.error().message);
+    if (watch.stop_requested()) return fail(exit_code::interrupted, "interrupted before the run began");
+    const Scene& scene = job->input.scene;
+
+    Onlooker onlooker(arguments, *job, progress, watch);
+    const auto result = run_scene(scene, onlooker.options());  // run; its observer measures every step
     progress.clear();
     if (!result) return fail(exit_code::bad_input, result.error().message);
-    if (series && series_status) series_status = series->finish();
-    if (!series_status) return fail(exit_code::failure, series_status.error().message);
+    if (Status s = onlooker.finish(); !s) return fail(exit_code::failure, s.error().message);
 
-    const auto comparisons = plan.run(scene, *result, progress, watch.stop_requested());
+    const auto comparisons = job->plan.run(scene, *result, progress, watch.stop_requested());
     const bool interrupted = result->status == RunStatus::interrupted ||
                              (watch.stop_requested() && !std::all_of(comparisons.begin(), comparisons.end(),
                                                                      [](const Comparison& c) { return c.all_ran(); }));
     progress.say(interrupted ? "interrupted: writing what there is" : "writing maps, tables and report");
-    Status written = write_products(scene, *result, output.path(), comparisons);
-    if (written) {
-        // Replacing an earlier result takes two renames; a second Ctrl-C must not fall between them.
-        const auto lock = watch.hold();
-        written = output.commit();
-    }
+    const Status written = write_report(*job, *result, comparisons, watch);  // report
     progress.clear();
     if (!written) return fail(exit_code::failure, written.error().message);
 
     if (arguments.json) {
-        print(summary_json(scene, *result, comparisons, output.final_path()) + "\n");
+        print(summary_json(scene, *result, comparisons, job->output.final_path()) + "\n");
     } else if (!arguments.quiet) {
-        print(summary_text(scene, *result, comparisons, shown));
+        print(summary_text(scene, *result, comparisons, job->shown));
     }
     if (result->status != RunStatus::fault) return interrupted ? exit_code::interrupted : exit_code::success;
     return fail(exit_code::fault, fmt::format("{}; what was computed until then is in {}, marked partial",
-                                              result->stop_reason, shown.string()));
-}
-
-int run_command(const RunArguments& arguments) {
-    if (!arguments.data.empty()) set_data_folder(arguments.data);
-    InterruptWatch watch;
-
-    std::optional<TemporaryFolder> unpacked;
-    fs::path file = arguments.scene;
-    std::string name;
-    if (arguments.scene.empty()) {
-        unpacked.emplace();
-        if (unpacked->path().empty()) {
-            return fail(exit_code::failure, "cannot make a temporary folder for the built-in scene; set TMPDIR");
-        }
-        watch.remove_at_once(unpacked->path());
-        auto scene_file = unpack_builtin_scene(unpacked->path());
-        if (!scene_file) return fail(exit_code::failure, scene_file.error().message);
-        file = *scene_file;
-        name = builtin_scene_name;
-    } else {
-        name = scene_name(file);
-    }
-
-    std::vector<std::string> overrides = arguments.overrides;
-    if (arguments.threads) overrides.push_back(fmt::format("solver.thread_count={}", *arguments.threads));
-    const SceneSource source{file, overrides};
-    auto scene = load_scene(source.file, source.overrides);
-    if (!scene) return fail(exit_code::bad_input, scene.error().message);
-    auto plan = VariantPlan::make(arguments, source, *scene);
-    if (!plan) return fail(exit_code::bad_input, plan.error().message);
-    if (unpacked) name_builtin_files(*scene, unpacked->path());
-    if (watch.stop_requested()) return fail(exit_code::interrupted, "interrupted before the run began");
-
-    std::optional<DefaultParent> parent;
-    if (arguments.output.empty()) parent.emplace();
-    const fs::path folder = parent ? fs::path(DefaultParent::name) / name : fs::path(arguments.output);
-    auto output = OutputFolder::create(folder, arguments.force);
-    if (!output) return fail(exit_code::bad_input, output.error().message);
-    watch.remove_at_once(output->path());
-
-    return run_loaded(arguments, *scene, *plan, *output, folder, watch);
+                                              result->stop_reason, job->shown.string()));
 }
 
 }  // namespace

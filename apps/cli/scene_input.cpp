@@ -33,7 +33,8 @@ Result<SceneInput> open_scene(const std::string& scene, const std::vector<std::s
         s.source.file = scene;
         s.name = fs::absolute(scene).lexically_normal().string();
         const std::string stem = s.source.file.stem().string();
-        s.short_name = stem == "scene" ? fs::absolute(scene).parent_path().filename().string() : stem;
+        const std::string folder = fs::absolute(scene).parent_path().filename().string();
+        s.short_name = stem == "scene" && !folder.empty() ? folder : stem;
     }
     Result<Scene> loaded = load_scene(s.source.file, overrides);
     if (!loaded) return loaded.error();

@@ -12,11 +12,11 @@
 
 namespace talus {
 
-/// The scene of many runs, on disk and loaded.
+/// The scene of a command, on disk and loaded.
 struct SceneInput {
     std::unique_ptr<TemporaryFolder> unpacked;  ///< of the built-in scene
     SceneSource source;
-    std::string name;        ///< as the definition of its runs has it
+    std::string name;        ///< as the definition of many runs has it
     std::string short_name;  ///< for the default output folder
     Scene scene;
 };

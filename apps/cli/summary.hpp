@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "run/comparison.hpp"
-#include "run/run.hpp"
+#include "run/run_result.hpp"
 #include "scene/scene.hpp"
 
 namespace talus {

@@ -3,18 +3,16 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include <fmt/format.h>
-#include <tbb/global_control.h>
-#include <tbb/task_arena.h>
 
 #if defined(__GLIBC__)
 #include <malloc.h>
 #endif
 
-#include "observe/observer.hpp"
-#include "sim/simulation.hpp"
+#include "run/run.hpp"
 
 namespace talus::bench {
 namespace {
@@ -43,36 +41,25 @@ double mean_neighbours(const Simulation& simulation) {
     return count > 0 ? pairs / count : 0;
 }
 
-Model model_for(const Start& start, const Task& task) {
-    Model model = start.model;
-    model.solver.internal_friction = task.method;
-    model.solver.iteration_count = task.iterations;
-    return model;
+/// The start with the task's solver. It is measured for as many steps as asked for, whatever debris does.
+RunStart start_of(const Start& start, const Task& task) {
+    RunStart changed = start;
+    SolverSpec& solver = changed.model.solver;
+    solver.internal_friction = task.method;
+    solver.iteration_count = task.iterations;
+    solver.thread_count = task.threads;
+    solver.stop_momentum_fraction = 0;
+    solver.end_time = std::numeric_limits<double>::infinity();
+    return changed;
 }
 
-/// A simulation with its observers.
-class Stepper {
-  public:
-    Stepper(const Start& start, const Task& task, const std::atomic<bool>* stop_requested)
-        : simulation_(model_for(start, task), start.state),
-          observer_(simulation_.model(), simulation_.state(), start.flow_path, start.outputs, start.map_cell),
-          stop_requested_(stop_requested) {}
-
-    Status take(int steps) {
-        for (int i = 0; i < steps; ++i) {
-            if (stop_requested_ && stop_requested_->load()) return Error{"stopped by the user"};
-            if (const auto fault = simulation_.advance(&observer_)) return Error{*fault};
-        }
-        return {};
+Status take_steps(Run& run, int steps, const std::atomic<bool>* stop_requested) {
+    for (int i = 0; i < steps; ++i) {
+        if (stop_requested && stop_requested->load()) return Error{"stopped by the user"};
+        if (!run.advance()) return Error{run.stop_reason()};
     }
-
-    [[nodiscard]] Simulation& simulation() { return simulation_; }
-
-  private:
-    Simulation simulation_;
-    Observer observer_;
-    const std::atomic<bool>* stop_requested_;
-};
+    return {};
+}
 
 /// What the repeats took, each with the calibration before and after it.
 struct Repeats {
@@ -80,8 +67,8 @@ struct Repeats {
     std::array<std::vector<double>, stage_count> stage_seconds;
 };
 
-Status run_repeats(Stepper& stepper, Row& row, Calibration& calibration) {
-    Simulation& simulation = stepper.simulation();
+Status run_repeats(Run& run, Row& row, Calibration& calibration, const std::atomic<bool>* stop_requested) {
+    const Simulation& simulation = run.simulation();
     Repeats repeats;
     const double start_time = simulation.state().time;
     (void)calibration.measure();  // wakes the threads
@@ -89,7 +76,7 @@ Status run_repeats(Stepper& stepper, Row& row, Calibration& calibration) {
     for (int repeat = 0; repeat < row.repeats; ++repeat) {
         const StageTimes before = simulation.stage_times();
         const Clock::time_point start = Clock::now();
-        if (Status s = stepper.take(row.steps); !s) return s;
+        if (Status s = take_steps(run, row.steps, stop_requested); !s) return s;
         const double step_seconds = seconds_since(start) / row.steps;
         const double rate_after = calibration.measure();
         const double rate = (rate_before + rate_after) / 2;
@@ -126,17 +113,17 @@ Result<Row> measure_in_arena(const Start& start, const Task& task, Calibration& 
     row.fixed_time_step = start.model.solver.time_step.has_value();
 
     const double bytes_before = allocated_bytes();
-    Stepper stepper(start, task, stop_requested);
-    Status status = stepper.take(row.warm_up);
+    Run run(start_of(start, task));
+    Status status = take_steps(run, row.warm_up, stop_requested);
     row.bytes_per_particle = std::max(0.0, allocated_bytes() - bytes_before) / std::max(1U, row.particles);
-    if (status) status = run_repeats(stepper, row, calibration);
+    if (status) status = run_repeats(run, row, calibration, stop_requested);
     if (!status) {
         return Error{fmt::format("scene {}, method {}, {} particles: {}", row.scene, row.method, row.particles,
                                  status.error().message)};
     }
-    row.instruction_set = stepper.simulation().backend().instruction_set();
-    row.neighbours = mean_neighbours(stepper.simulation());
-    row.hash = hash_state(stepper.simulation().state());
+    row.instruction_set = run.simulation().backend().instruction_set();
+    row.neighbours = mean_neighbours(run.simulation());
+    row.hash = hash_state(run.state());
     return row;
 }
 
@@ -165,10 +152,7 @@ int usual_warm_up(std::uint32_t particles) {
 
 Result<Row> measure(const Start& start, const Task& task, Calibration& calibration,
                     const std::atomic<bool>* stop_requested) {
-    const tbb::global_control limit(tbb::global_control::max_allowed_parallelism,
-                                    static_cast<std::size_t>(task.threads));
-    tbb::task_arena arena(task.threads);
-    return arena.execute([&] { return measure_in_arena(start, task, calibration, stop_requested); });
+    return Threads(task.threads).execute([&] { return measure_in_arena(start, task, calibration, stop_requested); });
 }
 
 double median(std::vector<double> values) {

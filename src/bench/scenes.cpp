@@ -8,7 +8,6 @@
 
 #include <fmt/format.h>
 
-#include "observe/observer.hpp"
 #include "scene/scene.hpp"
 #include "sim/seed.hpp"
 #include "terrain/buildings.hpp"
@@ -176,7 +175,6 @@ Start fill(std::string_view scene, World world, int particles) {
     start.scene = scene;
     start.flow_path = std::move(world.flow_path);
     start.outputs = world.outputs;
-    start.map_cell = world.outputs.map_cell.value_or(default_map_cell(world.terrain.cell(), world.spacing));
     place_buildings(world.terrain, world.buildings);
     start.model =
         make_model(world.material, world.solver, std::move(world.terrain), std::move(world.buildings), world.spacing);

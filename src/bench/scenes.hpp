@@ -6,10 +6,7 @@
 #include <vector>
 
 #include "core/result.hpp"
-#include "params/spec.hpp"
-#include "sim/model.hpp"
-#include "sim/state.hpp"
-#include "terrain/flow_path.hpp"
+#include "run/run.hpp"
 
 namespace talus::bench {
 
@@ -23,13 +20,8 @@ namespace talus::bench {
 inline constexpr int fewest_particles = 500, most_particles = 4000000;
 
 /// What a measurement begins with: the same for every method and number of threads.
-struct Start {
+struct Start : RunStart {
     std::string scene;
-    Model model;
-    State state;
-    FlowPath flow_path;
-    OutputSpec outputs;
-    double map_cell = 0;  ///< m
 };
 
 /// A scene with about `particles` particles. Debris lies on the ground without having been brought to rest, which for a

@@ -34,7 +34,7 @@ class SceneModel {
           records_(records),
           observed_(observed) {}
 
-    Result<std::optional<Points>> predict(const Points& points, Phase phase) {
+    Result<std::optional<Points>> predict(const Points& points, SearchPhase phase) {
         runs_.set_points(points);
         EnsembleOptions options;
         options.runs_at_once = options_.runs_at_once;
@@ -71,7 +71,7 @@ class SceneModel {
         return values;
     }
 
-    void tell_run(const RunRecord& record, const Points& points, Phase phase) const {
+    void tell_run(const RunRecord& record, const Points& points, SearchPhase phase) const {
         CalibrationRun made{record.run, phase, {}, never};
         const std::vector<Factor>& factors = runs_.plan().factors;
         const std::vector<double>& point = points[record.run];
@@ -86,7 +86,7 @@ class SceneModel {
         options_.on_run(made);
     }
 
-    void tell(const EnsembleProgress& now, Phase phase) const {
+    void tell(const EnsembleProgress& now, SearchPhase phase) const {
         if (!options_.on_progress) return;
         CalibrationProgress p;
         p.phase = phase;
@@ -173,7 +173,7 @@ ForwardModel scene_model(PlannedRuns& runs, const SceneSource& source, const std
                          const EnsembleFolder& folder, std::size_t most, const CalibrationOptions& options,
                          std::vector<RunRecord>& records) {
     auto model = std::make_shared<SceneModel>(runs, source, observed, folder, most, options, records);
-    return [model](const Points& points, Phase phase) { return model->predict(points, phase); };
+    return [model](const Points& points, SearchPhase phase) { return model->predict(points, phase); };
 }
 
 Result<Calibration> calibrate(const CalibrationPlan& plan, PlannedRuns runs, const SceneSource& source,

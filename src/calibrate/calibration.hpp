@@ -26,7 +26,7 @@ struct CalibrationPlan {
 };
 
 struct CalibrationProgress {
-    Phase phase = Phase::design;
+    SearchPhase phase = SearchPhase::design;
     std::size_t done = 0, failed = 0, most = 0;  ///< runs, and at most so many
     double least_misfit = never;
     double wall_remaining = 0;  ///< s, an estimate; NaN: not known yet
@@ -35,7 +35,7 @@ struct CalibrationProgress {
 /// A run that has just been made.
 struct CalibrationRun {
     std::size_t run = 0;
-    Phase phase = Phase::design;
+    SearchPhase phase = SearchPhase::design;
     std::vector<double> values;  ///< of the factors
     double misfit = never;       ///< as SearchRun::misfit
 };

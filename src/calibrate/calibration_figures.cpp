@@ -37,8 +37,8 @@ std::string cell(double x1, double x2, double y1, double y2, const std::string& 
                        coordinate(std::abs(y2 - y1) + 0.4), colour);
 }
 
-const char* dot_class(Phase phase) {
-    return phase == Phase::design ? "dot-design" : phase == Phase::search ? "dot-search" : "dot-check";
+const char* dot_class(SearchPhase phase) {
+    return phase == SearchPhase::design ? "dot-design" : phase == SearchPhase::search ? "dot-search" : "dot-check";
 }
 
 double value_of(const Calibration& c, std::size_t factor, const std::vector<double>& point) {

@@ -28,7 +28,9 @@ std::string run_csv(const Calibration& c) {
     for (std::size_t i = 0; i < c.result.runs.size(); ++i) {
         const SearchRun& run = c.result.runs[i];
         const RunRecord& record = c.records[i];
-        csv.number(static_cast<double>(i)).word(phase_name(run.phase)).word(record.complete() ? "complete" : "failed");
+        csv.number(static_cast<double>(i))
+            .word(search_phase_name(run.phase))
+            .word(record.complete() ? "complete" : "failed");
         for (const std::string& value : record.values) csv.word(value);
         for (std::size_t j = 0; j < c.observed.size(); ++j)
             csv.number(j < run.predicted.size() ? run.predicted[j] : never);

@@ -47,7 +47,8 @@ ObservationResult summarise_observation(const Calibration& c, std::size_t j) {
     o.deviation = deviation_of(observed, filled(observed, o.best));
     std::vector<double> design, expected;
     for (const SearchRun& run : result.runs) {
-        if (run.phase == Phase::design && !run.predicted.empty()) design.push_back(filled(observed, run.predicted[j]));
+        if (run.phase == SearchPhase::design && !run.predicted.empty())
+            design.push_back(filled(observed, run.predicted[j]));
     }
     o.prior_low = percentile(design, 5);
     o.prior_high = percentile(design, 95);

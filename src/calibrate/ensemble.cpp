@@ -14,7 +14,7 @@
 #include <fmt/format.h>
 
 #include "core/hash.hpp"
-#include "run/run.hpp"
+#include "run/run_scene.hpp"
 
 namespace talus {
 namespace {

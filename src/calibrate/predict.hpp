@@ -6,7 +6,7 @@
 #include "core/geometry.hpp"
 #include "observe/observation.hpp"
 #include "params/spec.hpp"
-#include "run/run.hpp"
+#include "run/run_result.hpp"
 #include "scene/scene.hpp"
 #include "terrain/terrain.hpp"
 

@@ -69,7 +69,7 @@ Result<Recovery> recover(const CalibrationPlan& plan, const PlannedRuns& runs, c
                             points.size(), usable.size())};
         }
         points = sample_points(DesignKind::monte_carlo, points.size() + seeds, made.factors.size(), plan.search.seed);
-        const auto predicted = model(points, Phase::design);
+        const auto predicted = model(points, SearchPhase::design);
         if (!predicted) return predicted.error();
         if (!*predicted) {
             made.interrupted = true;

@@ -9,7 +9,7 @@
 #include "core/grid.hpp"
 #include "core/result.hpp"
 #include "observe/observation.hpp"
-#include "run/run.hpp"
+#include "run/run_result.hpp"
 #include "scene/scene.hpp"
 
 /// What an ensemble keeps of each run: a small file with a line of JSON (values, scalar results, buildings) and the

@@ -31,7 +31,7 @@ class Searcher {
 
   private:
     /// Runs the model at more places; false: interrupted.
-    Result<bool> run(const Points& points, Phase phase, const std::vector<double>& improvements = {});
+    Result<bool> run(const Points& points, SearchPhase phase, const std::vector<double>& improvements = {});
     /// Emulators of all complete runs.
     void fit();
     /// The same with what is expected of failed runs, so that their places are not chosen again.
@@ -59,7 +59,7 @@ Points Searcher::run_points() const {
     return points;
 }
 
-Result<bool> Searcher::run(const Points& points, Phase phase, const std::vector<double>& improvements) {
+Result<bool> Searcher::run(const Points& points, SearchPhase phase, const std::vector<double>& improvements) {
     Points all = run_points();
     all.insert(all.end(), points.begin(), points.end());
     const auto predicted = model_(all, phase);
@@ -181,7 +181,7 @@ void Searcher::choose(Points& points, std::vector<double>& improvements) {
 void Searcher::judge_checks(const Fit& before) {
     for (std::size_t i = 0; i < result_.runs.size(); ++i) {
         const SearchRun& run = result_.runs[i];
-        if (run.phase != Phase::check || run.predicted.empty()) continue;
+        if (run.phase != SearchPhase::check || run.predicted.empty()) continue;
         for (std::size_t j = 0; j < observed_.size(); ++j) {
             const PredictionEmulator::Estimate e = before.emulators[j].at(run.point);
             const double deviation = std::sqrt(e.value.variance + e.value.noise);
@@ -195,7 +195,7 @@ Result<SearchResult> Searcher::work() {
     const std::size_t checks = std::min(options_.checks, options_.runs / 4);
     const std::size_t wanted = options_.design > 0 ? options_.design : 10 * factors;
     const std::size_t design = std::max(factors + 2, std::min(wanted, (options_.runs - checks) * 2 / 3));
-    auto went = run(sample_points(DesignKind::latin_hypercube, design, factors, options_.seed), Phase::design);
+    auto went = run(sample_points(DesignKind::latin_hypercube, design, factors, options_.seed), SearchPhase::design);
     if (!went) return went.error();
     if (!*went) return result_;
     if (!result_.best) return Error{"no run of the design is complete, so there is nothing to search by"};
@@ -212,7 +212,7 @@ Result<SearchResult> Searcher::work() {
             result_.settled = true;
             break;
         }
-        went = run(points, Phase::search, improvements);
+        went = run(points, SearchPhase::search, improvements);
         if (!went) return went.error();
         if (!*went) return result_;
         fit();
@@ -227,7 +227,7 @@ Result<SearchResult> Searcher::work() {
     for (std::size_t i = 1; i < checks; ++i) {
         points.push_back(found.draws[i * found.draws.size() / checks]);
     }
-    went = run(points, Phase::check);
+    went = run(points, SearchPhase::check);
     if (!went) return went.error();
     if (!*went) return result_;
     judge_checks(before);
@@ -252,8 +252,8 @@ bool Check::expected() const {
     return reached > 0.05 && std::abs(computed - mean) <= 1.96 * deviation;
 }
 
-const char* phase_name(Phase phase) {
-    return phase == Phase::design ? "design" : phase == Phase::search ? "search" : "check";
+const char* search_phase_name(SearchPhase phase) {
+    return phase == SearchPhase::design ? "design" : phase == SearchPhase::search ? "search" : "check";
 }
 
 std::size_t fewest_runs(std::size_t factors) {

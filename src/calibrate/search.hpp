@@ -11,9 +11,9 @@
 /// Finds what factors explain observations, with few runs of a model that is dear.
 namespace talus {
 
-enum class Phase { design, search, check };
+enum class SearchPhase { design, search, check };
 /// "design", "search", "check".
-[[nodiscard]] const char* phase_name(Phase phase);
+[[nodiscard]] const char* search_phase_name(SearchPhase phase);
 
 struct SearchOptions {
     std::size_t runs = 100;   ///< at most, all together
@@ -29,7 +29,7 @@ struct SearchOptions {
 /// One run of a search.
 struct SearchRun {
     std::vector<double> point;  ///< of the unit cube
-    Phase phase = Phase::design;
+    SearchPhase phase = SearchPhase::design;
     std::vector<double> predicted;  ///< as the observations; NaN: nothing came there; empty: the run failed
     double misfit = 0;              ///< of observations and priors; NaN: failed
     double improvement = 0;         ///< that was expected of it when it was chosen; 0 where it was not chosen so
@@ -60,7 +60,7 @@ struct SearchResult {
 
 /// Computes runs at `points` and returns all their predictions, one row per point; empty rows: failed. It is called
 /// with the same points and more at the end. Nothing: interrupted.
-using ForwardModel = std::function<Result<std::optional<Points>>(const Points& points, Phase phase)>;
+using ForwardModel = std::function<Result<std::optional<Points>>(const Points& points, SearchPhase phase)>;
 
 /// What a search knows after a round: runs, best and emulators; no posterior yet.
 using FitReader = std::function<void(const SearchResult& so_far)>;

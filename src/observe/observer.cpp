@@ -8,8 +8,8 @@
 #include "observe/erosion.hpp"
 #include "observe/front_tracker.hpp"
 #include "observe/map_accumulator.hpp"
-#include "observe/rate_meter.hpp"
 #include "observe/run_out.hpp"
+#include "observe/step_rate.hpp"
 #include "sim/cpu/parallel.hpp"
 #include "sim/particle_density.hpp"
 
@@ -133,7 +133,7 @@ struct Observer::Parts {
     std::vector<std::pair<std::uint32_t, std::uint32_t>> came_in;  ///< ids [first, last) that came in during the run
     std::vector<TimeSample> timeseries;
     std::uint64_t next_row = 1;  ///< due at next_row * sample_interval
-    RateMeter rate;
+    StepRate rate;
     double steps_per_second = 0;
     double worst_mean_compression = 0, worst_max_compression = 0;
     double worst_mean_time = never, worst_max_time = never;

@@ -6,7 +6,7 @@
 
 #include "core/result.hpp"
 #include "run/comparison.hpp"
-#include "run/run.hpp"
+#include "run/run_result.hpp"
 #include "scene/scene.hpp"
 
 namespace talus {

@@ -8,7 +8,7 @@
 #include "core/grid.hpp"
 #include "core/result.hpp"
 #include "products/hazard_map.hpp"
-#include "run/run.hpp"
+#include "run/run_result.hpp"
 #include "scene/scene.hpp"
 
 /// The report's maps: rasters as PNG, everything else as SVG on top, in the same coordinates.

@@ -6,7 +6,7 @@
 #include "core/result.hpp"
 #include "products/report_map.hpp"
 #include "run/comparison.hpp"
-#include "run/run.hpp"
+#include "run/run_result.hpp"
 #include "scene/scene.hpp"
 
 /// The parts of the report as HTML, each from the scene and the result alone. Names ending in _figure draw.

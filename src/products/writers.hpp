@@ -6,7 +6,7 @@
 
 #include "core/result.hpp"
 #include "run/comparison.hpp"
-#include "run/run.hpp"
+#include "run/run_result.hpp"
 #include "scene/scene.hpp"
 
 /// The parts of write_products, one per kind of file. Lengths in m, times in s unless a suffix says otherwise.

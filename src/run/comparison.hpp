@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "run/run.hpp"
+#include "run/run_result.hpp"
 #include "run/variants.hpp"
 #include "scene/scene.hpp"
 

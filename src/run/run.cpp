@@ -2,145 +2,17 @@
 
 #include <algorithm>
 #include <chrono>
-#include <cmath>
-#include <cstdio>
-#include <thread>
+#include <utility>
 
 #include <fmt/format.h>
-#include <tbb/global_control.h>
-#include <tbb/task_arena.h>
 
-#include "observe/observer.hpp"
-#include "run/stop_rule.hpp"
-#include "sim/inflow.hpp"
 #include "sim/seed.hpp"
-#include "sim/simulation.hpp"
 
 namespace talus {
 namespace {
 
-using Clock = std::chrono::steady_clock;
-
-double seconds_since(Clock::time_point start) {
-    return std::chrono::duration<double>(Clock::now() - start).count();
-}
-
-struct Run {
-    const Scene& scene;
-    const RunOptions& options;
-    RunResult result;
-
-    void step_until_done(Simulation& simulation, Observer& observer);
-    void report_progress(const Simulation& simulation, const Observer& observer, double wall_time) const;
-};
-
-void Run::report_progress(const Simulation& simulation, const Observer& observer, double wall_time) const {
-    if (!options.on_progress) return;
-    const State& state = simulation.state();
-    const double end_time = scene.spec.solver.end_time;
-    Progress progress{};
-    progress.time = state.time;
-    progress.end_time = end_time;
-    progress.real_time_factor = wall_time > 0 ? state.time / wall_time : 0;
-    progress.front_chainage = observer.front_chainage();
-    progress.share_done = std::min(1.0, state.time / end_time);
-    progress.wall_remaining = progress.real_time_factor > 0 ? (end_time - state.time) / progress.real_time_factor : 0;
-    progress.step = state.step;
-    progress.particles = state.count;
-    options.on_progress(progress);
-}
-
-void Run::step_until_done(Simulation& simulation, Observer& observer) {
-    const SolverSpec& solver = scene.spec.solver;
-    const Model& model = simulation.model();
-    const State& state = simulation.state();
-    const double frame_interval = scene.spec.outputs.particle_series_interval;
-    double next_frame = 0;
-    const auto show_frame = [&] {
-        if (!options.on_frame || frame_interval <= 0 || state.time < next_frame - 1e-9) return;
-        options.on_frame(model, state);
-        next_frame += frame_interval;
-    };
-    RestDetector rest(solver);
-    result.smallest_time_step = solver.end_time;
-    show_frame();
-    const Clock::time_point start = Clock::now();
-    char text[160];
-    while (true) {
-        if (options.stop_requested && options.stop_requested->load()) {
-            result.status = RunStatus::interrupted;
-            std::snprintf(text, sizeof text, "stopped by the user at t = %.4g s", state.time);
-            result.stop_reason = text;
-            break;
-        }
-        if (reached_end_time(solver, state)) {
-            result.stop_reason = end_time_reason(solver);
-            break;
-        }
-        if (state.count == 0 && simulation.inflow().to_come() == 0) {
-            result.stop_reason = no_debris_reason;
-            break;
-        }
-        const auto fault = simulation.advance(&observer);
-        result.smallest_time_step = std::min(result.smallest_time_step, state.time_step);
-        result.largest_time_step = std::max(result.largest_time_step, state.time_step);
-        if (fault) {
-            result.status = RunStatus::fault;
-            result.stop_reason = *fault;
-            break;
-        }
-        if (!observer.failed_buildings().empty()) rest.stir(state.time);
-        show_frame();
-        report_progress(simulation, observer, seconds_since(start));
-        if (rest.at_rest(state.time, total_momentum(model, state),
-                         still_waiting(model, state) || simulation.inflow().to_come() > 0)) {
-            result.stop_reason = rest.reason();
-            break;
-        }
-    }
-    result.wall_time = seconds_since(start);
-}
-
-Result<RunResult> run_in_arena(const Scene& scene, const RunOptions& options, int thread_count) {
-    const SceneSpec& spec = scene.spec;
-    const double spacing = choose_particle_spacing(spec.solver, total_volume(scene));
-    Model model = make_model(spec.material, spec.solver, scene.terrain, scene.buildings, spacing);
-    model.cover = scene.cover;
-    model.bed = scene.bed;
-    Result<State> seeded = seed_releases(model, scene.releases);
-    if (!seeded) return Error{scene.file.string() + ": " + seeded.error().message};
-    InflowFeeder feeder(model, scene.inflows);
-    if (Status s = check_particles(model, seeded->count, feeder); !s) {
-        return Error{scene.file.string() + ": " + s.error().message};
-    }
-
-    Run run{scene, options, {}};
-    RunResult& result = run.result;
-    result.particle_spacing = spacing;
-    result.support_radius = model.support_radius;
-    result.viscosity = model.viscosity;
-    result.kinematic_viscosity = model.kinematic_viscosity;
-    result.map_cell = spec.outputs.map_cell.value_or(default_map_cell(scene.terrain.cell(), spacing));
-    result.thread_count = thread_count;
-
-    Simulation simulation(std::move(model), *std::move(seeded), std::move(feeder));
-    Observer observer(simulation.model(), simulation.state(), scene.flow_path, spec.outputs, result.map_cell);
-    observer.expect(simulation.state().seeded + simulation.inflow().to_come());
-    run.step_until_done(simulation, observer);
-    result.particles = simulation.state().seeded;
-    result.observation = observer.finish(simulation.model(), simulation.state());
-    result.stage_times = simulation.stage_times();
-    result.instruction_set = simulation.backend().instruction_set();
-    result.hash = hash_state(simulation.state());
-    result.steps = simulation.state().step;
-    result.simulated_time = simulation.state().time;
-    return std::move(result);
-}
-
-}  // namespace
-
-Status check_particles(const Model& model, std::uint32_t seeded, const InflowFeeder& feeder) {
-    const double particles = static_cast<double>(seeded) + feeder.to_come();
+Status check_particle_count(const Model& model, std::uint32_t seeded, std::uint32_t to_come) {
+    const double particles = static_cast<double>(seeded) + to_come;
     if (particles <= model.solver.particle_limit) return {};
     return Error{
         fmt::format("releases and inflows need {:.0f} particles of solver.particle_spacing_m = {:.4g}, more "
@@ -148,21 +20,106 @@ Status check_particles(const Model& model, std::uint32_t seeded, const InflowFee
                     particles, model.particle_spacing, model.solver.particle_limit)};
 }
 
-int thread_count(const SolverSpec& solver) {
-    if (solver.thread_count > 0) return solver.thread_count;
-    return static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+}  // namespace
+
+Result<std::unique_ptr<Run>> Run::start(const Scene& scene, std::optional<double> particle_spacing) {
+    const SceneSpec& spec = scene.spec;
+    const double spacing = particle_spacing.value_or(choose_particle_spacing(spec.solver, total_volume(scene)));
+    return Threads(spec.solver.thread_count).execute([&]() -> Result<std::unique_ptr<Run>> {
+        Model model =
+            make_model(spec.material, spec.solver, scene.terrain, scene.buildings, spacing, scene.cover, scene.bed);
+        Result<State> state = seed_releases(model, scene.releases);
+        if (!state) return state.error();
+        InflowFeeder inflow(model, scene.inflows);
+        if (Status s = check_particle_count(model, state->count, inflow.to_come()); !s) return s.error();
+        return std::make_unique<Run>(
+            RunStart{std::move(model), *std::move(state), std::move(inflow), scene.flow_path, spec.outputs});
+    });
 }
 
-Result<RunResult> run_scene(const Scene& scene, const RunOptions& options) {
-    const int threads = thread_count(scene.spec.solver);
-    // It is for more threads than cores, which an arena alone does not get. Of several such limits in a program the
-    // least holds: with fewer threads the arena must do, or this run would slow another one beside it.
-    std::optional<tbb::global_control> limit;
-    if (static_cast<unsigned>(threads) > std::thread::hardware_concurrency()) {
-        limit.emplace(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads));
+Run::Run(RunStart start)
+    : threads_(start.model.solver.thread_count),
+      simulation_(std::move(start.model), std::move(start.state), std::move(start.inflow)),
+      observer_(model(), state(), start.flow_path, start.outputs,
+                start.outputs.map_cell.value_or(default_map_cell(model().terrain.cell(), model().particle_spacing))),
+      rest_(model().solver),
+      smallest_time_step_(model().solver.end_time) {
+    observer_.expect(state().seeded + simulation_.inflow().to_come());
+    if (no_debris()) stop(RunPhase::at_rest, "there is no debris");
+}
+
+void Run::stop(RunPhase phase, std::string why) {
+    phase_ = phase;
+    stop_reason_ = std::move(why);
+}
+
+bool Run::advance() {
+    if (phase_ != RunPhase::ready || over()) return false;
+    const auto start = std::chrono::steady_clock::now();
+    threads_.execute([&] { take_step(); });
+    wall_time_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    return phase_ != RunPhase::fault;
+}
+
+bool Run::over() {
+    if (reached_end_time(model().solver, state())) {
+        stop(RunPhase::ended, end_time_reason(model().solver));
+    } else if (no_debris()) {
+        stop(RunPhase::at_rest, no_debris_reason);
     }
-    tbb::task_arena arena(threads);
-    return arena.execute([&] { return run_in_arena(scene, options, threads); });
+    return phase_ != RunPhase::ready;
+}
+
+void Run::take_step() {
+    const auto fault = simulation_.advance(&observer_);
+    smallest_time_step_ = std::min(smallest_time_step_, state().time_step);
+    largest_time_step_ = std::max(largest_time_step_, state().time_step);
+    if (fault) return stop(RunPhase::fault, *fault);
+    if (!observer_.failed_buildings().empty()) rest_.stir(state().time);
+    const bool waiting = still_waiting(model(), state()) || simulation_.inflow().to_come() > 0;
+    if (rest_.at_rest(state().time, total_momentum(model(), state()), waiting)) {
+        stop(RunPhase::at_rest, rest_.reason());
+    } else {
+        (void)over();
+    }
+}
+
+void Run::change(const std::function<Change(Model&, State&)>& edit) {
+    Change change{};
+    simulation_.change([&](Model& model, State& state) { change = edit(model, state); });
+    observer_.follow(model(), state(), change.first_new_id);
+    if (change.released) {
+        rest_.begin_anew(state().time);
+    } else {
+        rest_.stir(state().time);
+    }
+    if (phase_ == RunPhase::at_rest) stop(RunPhase::ready, "");
+}
+
+RunResult Run::result(const std::string& unfinished) const {
+    RunResult result;
+    result.status = phase_ == RunPhase::fault   ? RunStatus::fault
+                    : phase_ == RunPhase::ready ? RunStatus::interrupted
+                                                : RunStatus::complete;
+    result.stop_reason =
+        phase_ == RunPhase::ready ? fmt::format("{} at t = {:.4g} s", unfinished, state().time) : stop_reason_;
+    result.observation = threads_.execute([&] { return observer_.finish(model(), state()); });
+    result.stage_times = simulation_.stage_times();
+    result.hash = hash_state(state());
+    result.particles = state().released();
+    result.steps = state().step;
+    result.simulated_time = state().time;
+    result.wall_time = wall_time_;
+    result.smallest_time_step = std::min(smallest_time_step_, largest_time_step_);
+    result.largest_time_step = largest_time_step_;
+    result.particle_spacing = model().particle_spacing;
+    result.support_radius = model().support_radius;
+    result.map_cell = observer_.maps().geometry().cell;
+    result.viscosity = model().viscosity;
+    result.kinematic_viscosity = model().kinematic_viscosity;
+    result.thread_count = threads_.count();
+    result.instruction_set = simulation_.backend().instruction_set();
+    return result;
 }
 
 }  // namespace talus

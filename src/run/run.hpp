@@ -1,66 +1,84 @@
 #pragma once
 
-#include <atomic>
 #include <cstdint>
 #include <functional>
+#include <memory>
+#include <optional>
 #include <string>
 
 #include "core/result.hpp"
-#include "observe/observation.hpp"
+#include "observe/observer.hpp"
+#include "run/run_result.hpp"
+#include "run/stop_rule.hpp"
+#include "run/threads.hpp"
 #include "scene/scene.hpp"
-#include "sim/model.hpp"
-#include "sim/stage_times.hpp"
-#include "sim/state.hpp"
+#include "sim/inflow.hpp"
+#include "sim/simulation.hpp"
 
 namespace talus {
 
-enum class RunStatus { complete, interrupted, fault };
-
-struct RunResult {
-    RunStatus status = RunStatus::complete;
-    std::string stop_reason;  ///< "debris came to rest (momentum below 2 % of its peak for 3 s)", the fault, ...
-    Observation observation;
-    StageTimes stage_times;
-    std::uint64_t hash = 0;  ///< of time, ids, positions and velocities at the end, in id order
-    std::uint32_t particles = 0;
-    std::uint64_t steps = 0;
-    double simulated_time = 0, wall_time = 0;  ///< s; wall time of the stepping alone
-    double smallest_time_step = 0, largest_time_step = 0;
-    double particle_spacing = 0, support_radius = 0, map_cell = 0;
-    double viscosity = 0, kinematic_viscosity = 0;  ///< smoothing per 1/60 s; the same thing in m2/s
-    int thread_count = 0;
-    std::string instruction_set;  ///< that the sums over neighbours ran on
-
-    [[nodiscard]] double real_time_factor() const { return wall_time > 0 ? simulated_time / wall_time : 0; }
+/// What a run begins with.
+struct RunStart {
+    Model model;
+    State state;
+    InflowFeeder inflow = {};
+    FlowPath flow_path = {};  ///< empty: no front against chainage
+    OutputSpec outputs = {};
 };
 
-/// What a watcher is told after a step.
-struct Progress {
-    double time, end_time;  ///< s
-    double real_time_factor;
-    double front_chainage;  ///< m; NaN: none
-    double share_done;      ///< 0 to 1
-    double wall_remaining;  ///< s, estimate
-    std::uint64_t step;
-    std::uint32_t particles;
+/// A run: a simulation, the observer that measures it, and the rule that says when it is over. Whoever runs anything
+/// does so by this class: `talus run`, ensembles, the live twin, validation, benchmarks.
+class Run {
+  public:
+    /// With the threads of `start.model.solver`.
+    explicit Run(RunStart start);
+
+    /// Everything that a loaded scene says, its releases seeded. `particle_spacing`, m: absent, the scene's own.
+    /// Errors: a release smaller than a particle, more particles than solver.particle_limit with those that will come
+    /// in.
+    [[nodiscard]] static Result<std::unique_ptr<Run>> start(const Scene& scene,
+                                                            std::optional<double> particle_spacing = {});
+
+    /// Takes a step and measures it. False: the run was over before, or the step cannot be trusted; see phase().
+    bool advance();
+
+    /// What was done to a run between two steps.
+    struct Change {
+        std::uint32_t first_new_id;  ///< particles with ids from this on are new
+        bool released;               ///< debris was set free: what moved before no longer counts for coming to rest
+    };
+    /// Lets `edit` change model and state, as Simulation::change() does; a run at rest is ready again.
+    void change(const std::function<Change(Model&, State&)>& edit);
+    /// Begins what is known of a building anew, as for one that was moved.
+    void forget_building(std::size_t building) { observer_.forget_building(model(), state(), building); }
+
+    [[nodiscard]] RunPhase phase() const { return phase_; }
+    /// Why it is at rest, ended or at fault; empty while ready.
+    [[nodiscard]] const std::string& stop_reason() const { return stop_reason_; }
+    [[nodiscard]] const Model& model() const { return simulation_.model(); }
+    [[nodiscard]] const State& state() const { return simulation_.state(); }
+    [[nodiscard]] const Simulation& simulation() const { return simulation_; }
+    [[nodiscard]] const Observer& observer() const { return observer_; }
+    /// Work on the run that computes in parallel belongs in them.
+    [[nodiscard]] const Threads& threads() const { return threads_; }
+    [[nodiscard]] double wall_time() const { return wall_time_; }  ///< s, of the stepping alone
+
+    /// What the run comes to if it ends here. `unfinished`: how a run that could go on was stopped.
+    [[nodiscard]] RunResult result(const std::string& unfinished = "stopped by the user") const;
+
+  private:
+    [[nodiscard]] bool over();
+    void take_step();
+    void stop(RunPhase phase, std::string why);
+    [[nodiscard]] bool no_debris() const { return state().count == 0 && simulation_.inflow().to_come() == 0; }
+
+    Threads threads_;
+    Simulation simulation_;
+    Observer observer_;
+    RestDetector rest_;
+    RunPhase phase_ = RunPhase::ready;
+    std::string stop_reason_;
+    double wall_time_ = 0, smallest_time_step_, largest_time_step_ = 0;
 };
-
-struct RunOptions {
-    std::function<void(const Progress&)> on_progress;          ///< called after every step
-    std::function<void(const Model&, const State&)> on_frame;  ///< called every particle_series_interval
-    const std::atomic<bool>* stop_requested = nullptr;         ///< ends the run as interrupted
-};
-
-class InflowFeeder;
-
-/// Error: more particles than solver.particle_limit, with those that will come in.
-[[nodiscard]] Status check_particles(const Model& model, std::uint32_t seeded, const InflowFeeder& feeder);
-
-/// Threads to compute with: as the scene wants, or all cores.
-[[nodiscard]] int thread_count(const SolverSpec& solver);
-
-/// Seeds the releases and steps until debris rests, end_time, a fault, or stop_requested.
-/// Errors (before anything ran): more particles than the limit, an empty release.
-[[nodiscard]] Result<RunResult> run_scene(const Scene& scene, const RunOptions& options);
 
 }  // namespace talus

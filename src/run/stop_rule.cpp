@@ -1,7 +1,8 @@
 #include "run/stop_rule.hpp"
 
 #include <cmath>
-#include <cstdio>
+
+#include <fmt/format.h>
 
 #include "core/lanes.hpp"
 #include "sim/cpu/parallel.hpp"
@@ -9,10 +10,8 @@
 namespace talus {
 
 std::string RestDetector::reason() const {
-    char text[160];
-    std::snprintf(text, sizeof text, "debris came to rest (momentum below %.3g %% of its peak for %.3g s)",
-                  100 * fraction_, duration_);
-    return text;
+    return fmt::format("debris came to rest (momentum below {:.3g} % of its peak for {:.3g} s)", 100 * fraction_,
+                       duration_);
 }
 
 /// Floats side by side over a group of particles, doubles over the groups.
@@ -44,9 +43,7 @@ bool still_waiting(const Model& model, const State& state) {
 }
 
 std::string end_time_reason(const SolverSpec& solver) {
-    char text[160];
-    std::snprintf(text, sizeof text, "reached solver.end_time_s = %.4g", solver.end_time);
-    return text;
+    return fmt::format("reached solver.end_time_s = {:.4g}", solver.end_time);
 }
 
 }  // namespace talus

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "core/result.hpp"
-#include "run/run.hpp"
+#include "run/run_scene.hpp"
 #include "scene/scene.hpp"
 
 /// Runs of a scene with some of its values set differently, beside its run as given (the base).

@@ -266,7 +266,7 @@ void Calibrations::begin(const CalibrationPlan& plan, const std::string& by) {
     status_["message"] = "";
     status_["observations"] = observations_json(observed_);
     status_["parameters"] = parameters;
-    status_["phase"] = phase_name(Phase::design);
+    status_["phase"] = search_phase_name(SearchPhase::design);
     status_["runs_at_most"] = plan.search.runs;
     status_["runs_failed"] = 0;
     status_["runs"] = json::array();
@@ -277,7 +277,7 @@ void Calibrations::begin(const CalibrationPlan& plan, const std::string& by) {
 void Calibrations::take_run(const CalibrationRun& run) {
     const std::lock_guard lock(mutex_);
     json made = {
-        {"values", run.values}, {"phase", phase_name(run.phase)}, {"misfit", number_or_null<json>(run.misfit)}};
+        {"values", run.values}, {"phase", search_phase_name(run.phase)}, {"misfit", number_or_null<json>(run.misfit)}};
     if (std::isfinite(run.misfit)) {
         json& best = status_["best"];
         if (best.is_null() || run.misfit < best["misfit"].get<double>()) {
@@ -292,7 +292,7 @@ void Calibrations::take_run(const CalibrationRun& run) {
 
 void Calibrations::take_progress(const CalibrationProgress& now) {
     const std::lock_guard lock(mutex_);
-    status_["phase"] = phase_name(now.phase);
+    status_["phase"] = search_phase_name(now.phase);
     status_["wall_remaining_s"] = number_or_null<json>(now.wall_remaining);
     if (Clock::now() - told_ >= tell_every) tell_now();
 }

@@ -1,28 +1,15 @@
 #include "serve/loop.hpp"
 
-#include <algorithm>
 #include <exception>
 #include <pthread.h>
 #include <utility>
 
-#include <tbb/global_control.h>
-#include <tbb/task_arena.h>
-
 namespace talus::serve {
-
-struct Loop::Threads {
-    explicit Threads(int count)
-        : limit(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(count)), arena(count) {}
-    tbb::global_control limit;
-    tbb::task_arena arena;
-};
 
 Result<std::unique_ptr<Loop>> Loop::start(std::shared_ptr<const Scene> scene, twin::ScenarioOptions options,
                                           Watcher& watcher, std::function<void(std::string)> failed) {
-    const int wanted = scene->spec.solver.thread_count;
-    const int count = wanted > 0 ? wanted : static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
-    auto threads = std::make_unique<Threads>(count);
-    auto first = threads->arena.execute([&] { return twin::Scenario::open(std::move(scene), std::move(options)); });
+    auto threads = std::make_unique<Threads>(scene->spec.solver.thread_count);
+    auto first = threads->execute([&] { return twin::Scenario::open(std::move(scene), std::move(options)); });
     if (!first) return first.error();
     return std::unique_ptr<Loop>(new Loop(std::move(threads), std::move(*first), watcher, std::move(failed)));
 }
@@ -54,7 +41,7 @@ void Loop::post(Task task) {
 void Loop::run() {
     pthread_setname_np(pthread_self(), "loop");  // as tools that watch threads show it
     try {
-        threads_->arena.execute([this] { work_until_done(); });
+        threads_->execute([this] { work_until_done(); });
     } catch (const std::exception& error) {
         failed_(error.what());
     }

@@ -9,6 +9,7 @@
 #include <thread>
 
 #include "core/result.hpp"
+#include "run/threads.hpp"
 #include "serve/scenarios.hpp"
 
 namespace talus::serve {
@@ -33,7 +34,6 @@ class Loop {
     void post(Task task);
 
   private:
-    struct Threads;
     Loop(std::unique_ptr<Threads> threads, std::unique_ptr<twin::Scenario> first, Watcher& watcher,
          std::function<void(std::string)> failed);
     void run();

@@ -142,7 +142,7 @@ void set_material(Model& model, const MaterialSpec& material) {
 }
 
 Model make_model(const MaterialSpec& material, const SolverSpec& solver, Terrain terrain,
-                 std::vector<Building> buildings, double particle_spacing) {
+                 std::vector<Building> buildings, double particle_spacing, GroundCover cover, Bed bed) {
     Model model;
     model.particle_spacing = particle_spacing;
     model.support_radius = solver.support_ratio * particle_spacing;
@@ -153,6 +153,8 @@ Model make_model(const MaterialSpec& material, const SolverSpec& solver, Terrain
     model.solids = BuildingSolids(terrain, buildings, model.support_radius);
     model.buildings = std::move(buildings);
     model.terrain = std::move(terrain);
+    model.cover = std::move(cover);
+    model.bed = std::move(bed);
     return model;
 }
 

@@ -18,7 +18,8 @@ void set_material(Model& model, const MaterialSpec& material);
 
 /// Everything constant, from the scene's material and solver sections.
 [[nodiscard]] Model make_model(const MaterialSpec& material, const SolverSpec& solver, Terrain terrain,
-                               std::vector<Building> buildings, double particle_spacing);
+                               std::vector<Building> buildings, double particle_spacing, GroundCover cover = {},
+                               Bed bed = {});
 
 /// Fills the releases with particles at rest, and the model's release groups.
 ///

@@ -163,7 +163,7 @@ Result<Replayed> replay(const Journal& journal, std::shared_ptr<const Scene> sce
     bool stopped = false;
     const auto go_to = [&](std::uint64_t step) -> Status {
         while (scenario.step() < step && !stopped) {
-            if (scenario.phase() != Phase::ready) {
+            if (scenario.phase() != RunPhase::ready) {
                 return Error{
                     fmt::format("step = {}: the run ended at step {} ({})", step, scenario.step(), scenario.message())};
             }

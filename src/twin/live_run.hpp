@@ -6,15 +6,9 @@
 #include <string>
 #include <vector>
 
-#include <tbb/global_control.h>
-#include <tbb/task_arena.h>
-
 #include "core/result.hpp"
-#include "observe/observer.hpp"
 #include "run/run.hpp"
-#include "run/stop_rule.hpp"
 #include "scene/scene.hpp"
-#include "sim/simulation.hpp"
 #include "twin/erosion_history.hpp"
 #include "twin/impact_history.hpp"
 #include "twin/recording.hpp"
@@ -23,10 +17,10 @@
 
 namespace talus::twin {
 
-/// The simulation of a setup, from time 0, and what watches it; between two steps it can be brought to another setup.
+/// The run of a setup, from time 0, with its recording; between two steps it can be brought to another setup.
 class LiveRun {
   public:
-    /// `scene` must live as long. `spacing`: of the particles, m. Errors: as run_scene's.
+    /// `spacing`: of the particles, m. Errors: as of Run::start().
     [[nodiscard]] static Result<std::unique_ptr<LiveRun>> start(const Scene& scene, const Setup& setup, double spacing,
                                                                 const ScenarioOptions& options);
 
@@ -45,14 +39,16 @@ class LiveRun {
     /// s; infinity: it waits for its trigger.
     [[nodiscard]] double start_time_of(const std::string& release_id) const;
 
-    [[nodiscard]] Phase phase() const { return phase_; }
-    [[nodiscard]] const std::string& message() const { return message_; }
-    [[nodiscard]] const Model& model() const { return simulation_.model(); }
-    [[nodiscard]] const State& state() const { return simulation_.state(); }
-    [[nodiscard]] const Observer& observer() const { return *observer_; }
+    [[nodiscard]] RunPhase phase() const { return run_->phase(); }
+    [[nodiscard]] const std::string& message() const { return run_->stop_reason(); }
+    [[nodiscard]] const Model& model() const { return run_->model(); }
+    [[nodiscard]] const State& state() const { return run_->state(); }
+    [[nodiscard]] const Observer& observer() const { return run_->observer(); }
     [[nodiscard]] const Recording& recording() const { return recording_; }
     [[nodiscard]] bool not_converged() const;
-    [[nodiscard]] std::string instruction_set() const { return std::string(simulation_.backend().instruction_set()); }
+    [[nodiscard]] std::string instruction_set() const {
+        return std::string(run_->simulation().backend().instruction_set());
+    }
     [[nodiscard]] FramePtr frame(unsigned stride, unsigned flags) const;
 
     /// What an obstacle of the setup has met, until now or until a time of the recording.
@@ -69,8 +65,8 @@ class LiveRun {
     };
     [[nodiscard]] std::vector<Removed> removed() const;
 
-    /// As run_scene would return it if the run ended here; buildings are those that stand, in the setup's order,
-    /// then barriers, then removed().
+    /// As Run::result() if the run ended here; buildings are those that stand, in the setup's order, then barriers,
+    /// then removed().
     [[nodiscard]] RunResult result() const;
 
   private:
@@ -90,8 +86,7 @@ class LiveRun {
     };
     struct Change;
 
-    LiveRun(const Scene& scene, Setup setup, const ScenarioOptions& options, Model model, State state,
-            InflowFeeder inflow, int threads);
+    LiveRun(std::unique_ptr<Run> run, Setup setup, const ScenarioOptions& options);
 
     [[nodiscard]] Result<Change> plan(const Setup& next) const;
     void plan_obstacles(const Setup& next, Change& change) const;
@@ -99,30 +94,19 @@ class LiveRun {
     void carry_out(Change& change, const Setup& next);
     void replace_releases(Model& model, State& state, Change& change);
     void set_start_times(Model& model, const State& state, const Setup& next, bool& let_go);
-    void mark_failed();
-    void take_step();
+    void note_failed();
     void record();
     void record_impacts();
     [[nodiscard]] BuildingImpact impact_now(std::size_t obstacle) const;
-    void stop(Phase phase, std::string why);
 
-    const Scene& scene_;
+    std::unique_ptr<Run> run_;
     Setup begun_with_, setup_;
-    std::unique_ptr<tbb::global_control> thread_limit_;
-    mutable tbb::task_arena arena_;
-    int threads_;
-    Simulation simulation_;
-    std::unique_ptr<Observer> observer_;
     std::vector<Group> groups_;
     std::vector<Obstacle> obstacles_;
     std::uint32_t slots_ = 0;
     Recording recording_;
     ImpactHistory impact_history_;
     ErosionHistory erosion_history_;
-    RestDetector rest_;
-    Phase phase_ = Phase::ready;
-    std::string message_;
-    double wall_time_ = 0, smallest_time_step_ = 0, largest_time_step_ = 0;
 };
 
 }  // namespace talus::twin

@@ -151,7 +151,7 @@ Result<LiveRun::Change> LiveRun::plan(const Setup& next) const {
     Change change;
     plan_obstacles(next, change);
     if (!same_shapes(setup_.zones, next.zones)) {
-        change.cover = lay_zones(bodies_of(next.zones), scene_.terrain).cover;
+        change.cover = lay_zones(bodies_of(next.zones), model().terrain).cover;
     }
     if (Status s = plan_releases(next, change); !s) return s.error();
     return change;
@@ -219,15 +219,14 @@ void LiveRun::set_start_times(Model& model, const State& state, const Setup& nex
 void LiveRun::carry_out(Change& change, const Setup& next) {
     const auto held_back = holding_back(model());
     const WorldPoint origin = model().terrain.frame().origin;
-    std::uint32_t first_new = 0;
-    bool let_go = false;
-    simulation_.change([&](Model& model, State& state) {
+    run_->change([&](Model& model, State& state) -> Run::Change {
+        bool let_go = false;
         set_material(model, next.material);
         if (change.buildings) model.buildings = std::move(*change.buildings);
         if (change.solids) model.solids = std::move(*change.solids);
         replace_releases(model, state, change);
         set_start_times(model, state, next, let_go);
-        first_new = state.seeded;
+        std::uint32_t first_new = state.seeded;
         for (const Change::Seed& seed : change.seeds) first_new -= seed.state.seeded;
         for (const Extent& e : change.touched) {
             const Extent local{e.x_min - origin.x, e.y_min - origin.y, e.x_max - origin.x, e.y_max - origin.y};
@@ -236,28 +235,22 @@ void LiveRun::carry_out(Change& change, const Setup& next) {
         }
         if (change.cover) model.cover = std::move(*change.cover);
         if (change.cover || held_back != holding_back(model)) wake(state, {-infinity, -infinity, infinity, infinity});
+        return {first_new, let_go || !change.seeds.empty()};
     });
     slots_ = std::max(slots_, state().seeded);
     obstacles_ = std::move(change.obstacles);
-    observer_->follow(model(), state(), first_new);
     for (const std::size_t k : change.renewed) {
-        observer_->forget_building(model(), state(), k);
+        run_->forget_building(k);
         impact_history_.forget(k);
-    }
-    if (let_go || !change.seeds.empty()) {
-        rest_.begin_anew(state().time);
-    } else {
-        rest_.stir(state().time);
     }
 }
 
 Status LiveRun::bring_to(const Setup& next) {
-    return arena_.execute([&]() -> Status {
+    return run_->threads().execute([&]() -> Status {
         Result<Change> change = plan(next);
         if (!change) return change.error();
         carry_out(*change, next);
         setup_ = next;
-        if (phase_ == Phase::at_rest) stop(Phase::ready, "");
         return {};
     });
 }

@@ -36,18 +36,6 @@ std::vector<std::string> obstacle_notes(const LiveRun& run) {
     return notes;
 }
 
-/// What follows from a scene's zones and beds.
-void lay_ground(Scene& scene) {
-    LaidZones laid = lay_zones(scene.zones, scene.terrain);
-    scene.cover = std::move(laid.cover);
-    scene.zone_at = std::move(laid.zone_at);
-    scene.spec.zones.clear();
-    for (const Zone& zone : scene.zones) scene.spec.zones.push_back(zone.spec);
-    scene.bed = lay_bed(scene.bed_layers, scene.terrain);
-    scene.spec.beds.clear();
-    for (const BedLayer& layer : scene.bed_layers) scene.spec.beds.push_back(layer.spec);
-}
-
 /// Whether a setup's releases wait again, as they do at time 0.
 Setup held_again(Setup setup) {
     for (ReleaseSetup& release : setup.releases) release.triggered = false;
@@ -56,15 +44,15 @@ Setup held_again(Setup setup) {
 
 }  // namespace
 
-std::string_view phase_name(Phase phase) {
+std::string_view phase_name(RunPhase phase) {
     switch (phase) {
-        case Phase::ready:
+        case RunPhase::ready:
             return "ready";
-        case Phase::at_rest:
+        case RunPhase::at_rest:
             return "at_rest";
-        case Phase::ended:
+        case RunPhase::ended:
             return "ended";
-        case Phase::fault:
+        case RunPhase::fault:
             return "fault";
     }
     return "";
@@ -194,7 +182,7 @@ Status Scenario::follow(const JournalEntry& entry) {
     return {};
 }
 
-Phase Scenario::phase() const {
+RunPhase Scenario::phase() const {
     return parts_->run->phase();
 }
 std::string Scenario::message() const {
@@ -280,23 +268,15 @@ bool Scenario::has_erosion() const {
 
 std::function<Status(const std::filesystem::path&)> Scenario::products() const {
     const Parts& p = *parts_;
-    Scene scene = *p.scene;
-    scene.spec.material = p.setup().material;
-    scene.releases.clear();
-    for (const ReleaseSetup& release : p.setup().releases) {
-        scene.releases.push_back(*release.body);
-        scene.releases.back().start_time = p.run->start_time_of(release.id);
+    // Beds and inflows as they were for all of the run, the rest as it is now.
+    Setup setup = p.setup();
+    setup.beds = p.run->begun_with().beds;
+    setup.inflows = p.run->begun_with().inflows;
+    Scene scene = scene_of(*p.scene, setup);
+    for (std::size_t k = 0; k < setup.releases.size(); ++k) {
+        scene.releases[k].start_time = p.run->start_time_of(setup.releases[k].id);
     }
-    scene.buildings.clear();
-    for (const BuildingSetup& building : p.setup().buildings) scene.buildings.push_back(*building.body);
-    for (const BarrierSetup& barrier : p.setup().barriers) scene.buildings.push_back(*barrier.body);
     for (const LiveRun::Removed& removed : p.run->removed()) scene.buildings.push_back(*removed.body);
-    // Zones as they are now, beds and inflows as they were for all of the run.
-    const Setup& first = p.run->begun_with();
-    scene.zones = bodies_of(p.setup().zones);
-    scene.bed_layers = bodies_of(first.beds);
-    scene.inflows = bodies_of(first.inflows);
-    lay_ground(scene);
     for (std::string& note : obstacle_notes(*p.run)) scene.notes.push_back(std::move(note));
     for (const JournalEntry& entry : p.entries) {
         scene.notes.push_back(fmt::format("before step {}, by {}: {}", entry.step, entry.by, entry.action.dump()));

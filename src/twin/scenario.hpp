@@ -14,6 +14,7 @@
 
 #include "core/grid.hpp"
 #include "core/result.hpp"
+#include "run/run_result.hpp"
 #include "scene/scene.hpp"
 #include "twin/frame.hpp"
 
@@ -22,15 +23,8 @@ namespace talus::twin {
 struct Journal;
 struct JournalEntry;
 
-enum class Phase {
-    ready,    ///< advance() would take a step
-    at_rest,  ///< debris came to rest, or none is left; a change of the setup makes it ready again
-    ended,    ///< solver.end_time is reached; only restart goes on
-    fault,    ///< the last step cannot be trusted; only restart goes on
-};
-
 /// "ready", "at_rest", "ended", "fault".
-[[nodiscard]] std::string_view phase_name(Phase phase);
+[[nodiscard]] std::string_view phase_name(RunPhase phase);
 
 struct ScenarioOptions {
     std::vector<std::string> overrides;         ///< that the scene was loaded with, for the journal
@@ -51,7 +45,7 @@ inline constexpr unsigned frame_running = 1, frame_not_converged = 2, frame_reco
 /// docs/protocol.md the JSON of actions and answers.
 class Scenario {
   public:
-    /// Errors: as run_scene's before the first step.
+    /// Errors: as of Run::start().
     [[nodiscard]] static Result<std::unique_ptr<Scenario>> open(std::shared_ptr<const Scene> scene,
                                                                 ScenarioOptions options = {});
     /// At the beginning of a session that a journal tells of.
@@ -73,7 +67,7 @@ class Scenario {
     /// Does again what an entry of a journal tells of. Errors: as apply().
     [[nodiscard]] Status follow(const JournalEntry& entry);
 
-    [[nodiscard]] Phase phase() const;
+    [[nodiscard]] RunPhase phase() const;
     [[nodiscard]] std::string message() const;  ///< why it is at rest, ended or at fault; empty while ready
     [[nodiscard]] double time() const;          ///< s
     [[nodiscard]] std::uint64_t step() const;

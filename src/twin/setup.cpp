@@ -72,6 +72,26 @@ Setup setup_of(const Scene& scene, NextNumbers& next) {
     return setup;
 }
 
+Scene scene_of(const Scene& scene, const Setup& setup) {
+    Scene changed = scene;
+    changed.spec.material = setup.material;
+    changed.releases = bodies_of(setup.releases);
+    changed.buildings = bodies_of(setup.buildings);
+    for (const BarrierSetup& barrier : setup.barriers) changed.buildings.push_back(*barrier.body);
+    changed.inflows = bodies_of(setup.inflows);
+    changed.zones = bodies_of(setup.zones);
+    LaidZones laid = lay_zones(changed.zones, changed.terrain);
+    changed.cover = std::move(laid.cover);
+    changed.zone_at = std::move(laid.zone_at);
+    changed.spec.zones.clear();
+    for (const Zone& zone : changed.zones) changed.spec.zones.push_back(zone.spec);
+    changed.bed_layers = bodies_of(setup.beds);
+    changed.bed = lay_bed(changed.bed_layers, changed.terrain);
+    changed.spec.beds.clear();
+    for (const BedLayer& layer : changed.bed_layers) changed.spec.beds.push_back(layer.spec);
+    return changed;
+}
+
 bool same_shape(const std::shared_ptr<const Release>& a, const std::shared_ptr<const Release>& b) {
     if (a == b) return true;
     const auto same_patch = [](const ReleasePatch& p, const ReleasePatch& q) {

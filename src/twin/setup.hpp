@@ -85,6 +85,9 @@ struct NextNumbers {
 /// The scene as it was loaded; `next` is set to what comes behind it.
 [[nodiscard]] Setup setup_of(const Scene& scene, NextNumbers& next);
 
+/// The scene with what a setup has instead of its own.
+[[nodiscard]] Scene scene_of(const Scene& scene, const Setup& setup);
+
 /// The entry of that id; nullptr: none.
 template <class Entry>
 [[nodiscard]] auto* find_id(Entry& entries, const std::string& id) {

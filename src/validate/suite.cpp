@@ -4,12 +4,10 @@
 #include <chrono>
 #include <cmath>
 #include <cstdlib>
-#include <thread>
 
 #include <fmt/format.h>
-#include <tbb/global_control.h>
-#include <tbb/task_arena.h>
 
+#include "run/threads.hpp"
 #include "validate/kind.hpp"
 
 namespace talus::validate {
@@ -118,12 +116,9 @@ CaseResult run_case(const Case& validation_case, const Watch& watch) {
             result.rows.push_back(skipped_row(validation_case, e));
         return result;
     }
-    const int threads = watch.thread_count > 0 ? watch.thread_count
-                                               : static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
-    const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads));
-    tbb::task_arena arena(threads);
+    const Threads threads(watch.thread_count);
     const auto start = std::chrono::steady_clock::now();
-    Result<Outcome> outcome = arena.execute([&] { return validation_case.compute(watch); });
+    Result<Outcome> outcome = threads.execute([&] { return validation_case.compute(watch); });
     result.wall_time = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     if (!outcome) {
         result.notes.push_back(outcome.error().message);

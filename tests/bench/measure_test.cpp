@@ -55,7 +55,7 @@ TEST(Measure, FillsARow) {
 TEST(Measure, ObservingIsPartOfTheStep) {
     Calibration calibration;
     Start start = small_slab();
-    start.map_cell = 0.02;  // so fine that maps take a tenth of the time
+    start.outputs.map_cell = 0.02;  // so fine that maps take a tenth of the time
     const Result<Row> row = measure(start, short_task(), calibration);
     ASSERT_TRUE(row) << row.error().message;
     // A timer around nothing takes less than a ten-thousandth, and a busy machine makes steps some times longer.

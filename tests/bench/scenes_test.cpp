@@ -38,7 +38,6 @@ TEST_P(Scenes, HasAllThatARunHas) {
     EXPECT_FALSE(start->model.buildings.empty());
     EXPECT_FALSE(start->model.solids.empty());
     EXPECT_FALSE(start->flow_path.empty());
-    EXPECT_GT(start->map_cell, 0);
     EXPECT_GT(start->model.friction_coefficient, 0);
     EXPECT_GT(start->model.viscosity, 0);
     EXPECT_FALSE(start->model.solver.time_step) << "docs and table say that the step is adaptive";

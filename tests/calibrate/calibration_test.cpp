@@ -40,7 +40,7 @@ class CalibrationTest : public SceneFolder {
     }
 
     void search_with(const std::function<std::vector<double>(const std::vector<double>&)>& run) {
-        const ForwardModel model = [&](const Points& points, Phase) -> Result<std::optional<Points>> {
+        const ForwardModel model = [&](const Points& points, SearchPhase) -> Result<std::optional<Points>> {
             Points all;
             for (const auto& p : points) all.push_back(run(p));
             return std::optional(all);
@@ -99,7 +99,7 @@ TEST_F(CalibrationTest, TheMapIsLowWhereTheRunsFit) {
 
 TEST_F(CalibrationTest, SaysAfterEachRoundWhatItKnows) {
     made.factors.push_back({"material.rest_density_kgpm3", *parse_distribution("1500:2500")});
-    const ForwardModel model = [](const Points& points, Phase) -> Result<std::optional<Points>> {
+    const ForwardModel model = [](const Points& points, SearchPhase) -> Result<std::optional<Points>> {
         Points all;
         for (const auto& p : points) all.push_back({16 - 16 * p[0], 12});
         return std::optional(all);

@@ -42,7 +42,7 @@ std::vector<ObservedValue> observed_as(const std::vector<double>& values) {
 }
 
 ForwardModel model_of(double wobble = 0) {
-    return [wobble](const Points& points, Phase) -> Result<std::optional<Points>> {
+    return [wobble](const Points& points, SearchPhase) -> Result<std::optional<Points>> {
         Points predicted;
         for (const auto& p : points) predicted.push_back(slide(p, wobble));
         return std::optional(predicted);
@@ -156,7 +156,7 @@ TEST(Search, FindsWhatMadeTheObservations) {
         EXPECT_LT(found->posterior.r_hat[k], 1.05);
     }
     EXPECT_LT(found->posterior.quantile(0, 97.5) - found->posterior.quantile(0, 2.5), 0.6);
-    EXPECT_EQ(found->runs.back().phase, Phase::check);
+    EXPECT_EQ(found->runs.back().phase, SearchPhase::check);
     int within = 0;
     for (const Check& c : found->checks) within += c.expected() ? 1 : 0;
     EXPECT_EQ(found->checks.size(), 20u);
@@ -213,7 +213,7 @@ TEST(Search, ReturnsTheTruthWithinItsIntervalInNineOfTenSeeds) {
 }
 
 TEST(Search, GoesOnAroundRunsThatFail) {
-    const ForwardModel fails = [](const Points& points, Phase) -> Result<std::optional<Points>> {
+    const ForwardModel fails = [](const Points& points, SearchPhase) -> Result<std::optional<Points>> {
         Points predicted;
         for (const auto& p : points) predicted.push_back(p[0] < 0.2 ? std::vector<double>{} : slide(p));
         return std::optional(predicted);
@@ -222,7 +222,7 @@ TEST(Search, GoesOnAroundRunsThatFail) {
     ASSERT_TRUE(found);
     EXPECT_LT(found->runs[*found->best].misfit, 0.1);
     EXPECT_TRUE(std::isnan(found->runs[0].misfit) == found->runs[0].predicted.empty());
-    const ForwardModel broken = [](const Points& points, Phase) -> Result<std::optional<Points>> {
+    const ForwardModel broken = [](const Points& points, SearchPhase) -> Result<std::optional<Points>> {
         return std::optional(Points(points.size()));
     };
     EXPECT_FALSE(search(priors, observed_as({1, 1}), broken, {}));
@@ -230,9 +230,9 @@ TEST(Search, GoesOnAroundRunsThatFail) {
 
 TEST(Search, EndsWhereItIsInterrupted) {
     std::size_t calls = 0;
-    const ForwardModel model = [&](const Points& points, Phase) -> Result<std::optional<Points>> {
+    const ForwardModel model = [&](const Points& points, SearchPhase) -> Result<std::optional<Points>> {
         if (++calls == 3) return std::optional<Points>();
-        return model_of()(points, Phase::design);
+        return model_of()(points, SearchPhase::design);
     };
     const auto found = search(priors, observed_as(slide({0.4, 0.3})), model, {});
     ASSERT_TRUE(found);

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "run/comparison.hpp"
-#include "run/run.hpp"
+#include "run/run_result.hpp"
 #include "scene/scene.hpp"
 
 /// A made-up valley with a made-up debris flow in it: everything a report shows, without a simulation.

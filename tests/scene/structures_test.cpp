@@ -5,7 +5,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "run/run.hpp"
+#include "run/run_scene.hpp"
 #include "scene/scene.hpp"
 #include "scene_folder.hpp"
 

@@ -3,6 +3,9 @@
 
 #include <gmock/gmock.h>
 
+#include "products/products.hpp"
+#include "run/run_scene.hpp"
+#include "support/fixtures.hpp"
 #include "twin/erosion_history.hpp"
 #include "twin/live_run.hpp"
 #include "twin_fixtures.hpp"
@@ -101,6 +104,28 @@ TEST(ErosionLayer, is_one_empty_cell_where_nothing_was_picked_up) {
     EXPECT_FALSE(scenario->has_erosion());
     EXPECT_TRUE(holds_nothing(layer(*scenario, "erosion_depth")));
     EXPECT_TRUE(holds_nothing((*scenario->layer("erosion_depth", 4.0))())) << "the recording began anew";
+}
+
+TEST(Export, of_a_run_on_a_bed_is_counted_as_the_run_of_the_scene) {
+    Scene scene = gravel_scene();
+    scene.bed = lay_bed(scene.bed_layers, scene.terrain);
+    scene.spec.solver.end_time = 4;
+    const auto run = run_scene(scene, {});
+    ASSERT_TRUE(run);
+    const auto scenario = open(scene);
+    run_until(*scenario, 100);
+    ASSERT_TRUE(scenario->has_erosion());
+    const talus::test::TemporaryFolder folder, exported;
+    ASSERT_TRUE(write_products(scene, *run, folder.path()));
+    ASSERT_TRUE(scenario->products()(exported.path()));
+    const auto manifest_in = [](const talus::test::TemporaryFolder& written) {
+        return json::parse(talus::test::read_text(written.file("manifest.json")));
+    };
+    const json plain = manifest_in(folder), live = manifest_in(exported);
+    EXPECT_EQ(live["resolved"]["particle_count"], plain["resolved"]["particle_count"]);
+    EXPECT_EQ(live["resolved"]["particle_count"].get<double>(),
+              std::round(scene.releases[0].volume / std::pow(run->particle_spacing, 3)));
+    EXPECT_EQ(live["result_hash"], plain["result_hash"]);
 }
 
 TEST(ErosionHistory, holds_each_cell_as_it_was_last) {

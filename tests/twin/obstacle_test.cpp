@@ -52,7 +52,7 @@ TEST(Barrier, higher_than_the_flow_keeps_all_of_it) {
     const auto scenario = open(channel_scene());
     act(*scenario, barrier(55, 6));
     run_until(*scenario, 14);
-    ASSERT_NE(scenario->phase(), Phase::fault) << scenario->message();
+    ASSERT_NE(scenario->phase(), RunPhase::fault) << scenario->message();
     const json impact = barrier_impact(*scenario);
     EXPECT_EQ(impact["hit"], true);
     EXPECT_GT(impact["peak_force_kN"], 10);
@@ -69,7 +69,7 @@ TEST(Barrier, lower_than_the_flow_is_overtopped_by_what_lies_beyond_it) {
     const auto scenario = open(channel_scene());
     act(*scenario, barrier(52, 0.7));
     run_until(*scenario, 14);
-    ASSERT_NE(scenario->phase(), Phase::fault) << scenario->message();
+    ASSERT_NE(scenario->phase(), RunPhase::fault) << scenario->message();
     const json impact = barrier_impact(*scenario);
     const double over = impact["overtopped_m3"];
     EXPECT_GT(over, 2);
@@ -106,7 +106,7 @@ TEST(Barrier, put_into_moving_debris_gives_it_no_energy) {
         for (int k = 0; k < 60; ++k) {
             scenario->advance();
             free->advance();
-            ASSERT_EQ(scenario->phase(), Phase::ready) << scenario->message();
+            ASSERT_EQ(scenario->phase(), RunPhase::ready) << scenario->message();
             run_until(*free, scenario->time());
             ASSERT_LT(kinetic_energy(*scenario), 1.01 * kinetic_energy(*free)) << "step " << k;
             ASSERT_LT(number(*scenario, "largest_speed_mps"), 1.1 * number(*free, "largest_speed_mps")) << "step " << k;
@@ -248,7 +248,7 @@ TEST(Building, is_put_moved_and_removed_also_one_of_the_scene) {
     impacts = scenario->impacts_json()["buildings"];
     ASSERT_EQ(impacts.size(), 1U);
     EXPECT_EQ(impacts[0]["hit"], true);
-    ASSERT_EQ(scenario->phase(), Phase::ready) << scenario->message();
+    ASSERT_EQ(scenario->phase(), RunPhase::ready) << scenario->message();
     // Back again, with what had hit it.
     act(*scenario, {{"action", "undo"}});
     act(*scenario, {{"action", "undo"}});

@@ -2,7 +2,7 @@
 
 #include <gmock/gmock.h>
 
-#include "run/run.hpp"
+#include "run/run_scene.hpp"
 #include "support/fixtures.hpp"
 #include "twin_fixtures.hpp"
 
@@ -18,7 +18,7 @@ TEST(Scenario, without_actions_is_the_run_of_the_scene) {
     ASSERT_TRUE(run);
     const auto scenario = open(scene);
     run_until(*scenario, 100);
-    EXPECT_EQ(scenario->phase(), Phase::ended);
+    EXPECT_EQ(scenario->phase(), RunPhase::ended);
     EXPECT_EQ(scenario->message(), run->stop_reason);
     EXPECT_EQ(scenario->step(), run->steps);
     EXPECT_EQ(scenario->hash(), run->hash);
@@ -32,14 +32,14 @@ TEST(Scenario, comes_to_rest_as_the_run_does_and_goes_on_when_something_changes)
     const auto run = run_scene(scene, {});
     const auto scenario = open(scene);
     run_until(*scenario, 100);
-    ASSERT_EQ(scenario->phase(), Phase::at_rest) << scenario->message();
+    ASSERT_EQ(scenario->phase(), RunPhase::at_rest) << scenario->message();
     EXPECT_EQ(scenario->hash(), run->hash);
     const std::uint64_t step = scenario->step();
     scenario->advance();
     EXPECT_EQ(scenario->step(), step);
 
     act(*scenario, {{"action", "set_parameter"}, {"key", "material.friction_coefficient"}, {"value", 0.2}});
-    EXPECT_EQ(scenario->phase(), Phase::ready);
+    EXPECT_EQ(scenario->phase(), RunPhase::ready);
     EXPECT_EQ(scenario->message(), "");
     EXPECT_LT(number(*scenario, "largest_speed_mps"), 0.1);
     run_until(*scenario, scenario->time() + 1);

@@ -44,7 +44,7 @@ TEST(SceneBarrier, is_shown_edited_and_removed_like_a_drawn_one) {
 TEST(SceneBarrier, lets_through_its_slot_what_is_counted_as_passed) {
     const auto scenario = open(dammed_scene());
     run_until(*scenario, 10);
-    ASSERT_NE(scenario->phase(), Phase::fault) << scenario->message();
+    ASSERT_NE(scenario->phase(), RunPhase::fault) << scenario->message();
     const json dam = scenario->impacts_json()["barriers"][0];
     EXPECT_EQ(dam["hit"], true);
     EXPECT_GT(dam["impulse_kNs"], 0);
@@ -57,7 +57,7 @@ TEST(Resistance, exceeded_takes_the_dam_away_once_and_replays_to_the_same_hash) 
     const double weak = 500;  // N/m
     const auto scenario = open(dammed_scene(weak));
     run_until(*scenario, 6);
-    ASSERT_NE(scenario->phase(), Phase::fault) << scenario->message();
+    ASSERT_NE(scenario->phase(), RunPhase::fault) << scenario->message();
     const json dam = scenario->impacts_json()["barriers"][0];
     ASSERT_NE(dam["failed_s"], nullptr);
     EXPECT_GE(dam["failed_s"], dam["first_hit_s"]);
@@ -119,7 +119,7 @@ TEST(Net, lets_through_and_holds_in_the_live_twin_and_replays_to_the_same_hash) 
                     {"thickness_m", 1},
                     {"passing_share", 0.2}});
     run_until(*scenario, 10);
-    ASSERT_NE(scenario->phase(), Phase::fault) << scenario->message();
+    ASSERT_NE(scenario->phase(), RunPhase::fault) << scenario->message();
     expect_balance(*scenario);
     const json net = scenario->impacts_json()["barriers"][0];
     EXPECT_EQ(net["hit"], true);
@@ -141,7 +141,7 @@ TEST(Inflow, over_an_area_with_a_density_runs_live_and_again_after_a_restart) {
     scene.inflows.push_back(rain);
     const auto scenario = open(std::move(scene));
     run_until(*scenario, 3);
-    ASSERT_NE(scenario->phase(), Phase::fault) << scenario->message();
+    ASSERT_NE(scenario->phase(), RunPhase::fault) << scenario->message();
     EXPECT_NEAR(number(*scenario, "volume_released_m3"), 36, 3);
     expect_balance(*scenario);
     bool any = false;
@@ -165,7 +165,7 @@ TEST(Inflow, runs_live_and_again_after_a_restart) {
     scene.inflows.push_back({"gully", {west + 20, south + 27}, {west + 20, south + 33}, {{0, 12, 4}, {5, 12, 4}}});
     const auto scenario = open(std::move(scene));
     run_until(*scenario, 3);
-    ASSERT_NE(scenario->phase(), Phase::fault) << scenario->message();
+    ASSERT_NE(scenario->phase(), RunPhase::fault) << scenario->message();
     const double volume = number(*scenario, "volume_released_m3");
     EXPECT_NEAR(volume, 36, 3);
     expect_balance(*scenario);

@@ -72,7 +72,7 @@ inline std::unique_ptr<Scenario> open(Scene scene, ScenarioOptions options = {})
 
 /// Until a time, or until it is not ready.
 inline void run_until(Scenario& scenario, double time) {
-    while (scenario.phase() == Phase::ready && scenario.time() < time) scenario.advance();
+    while (scenario.phase() == RunPhase::ready && scenario.time() < time) scenario.advance();
 }
 
 inline Done act(Scenario& scenario, const json& action) {

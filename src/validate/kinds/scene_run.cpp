@@ -5,7 +5,7 @@
 #include <fmt/format.h>
 
 #include "products/report_sections.hpp"
-#include "run/run.hpp"
+#include "run/run_scene.hpp"
 #include "scene/scene.hpp"
 #include "validate/kinds/kinds.hpp"
 #include "validate/suite.hpp"

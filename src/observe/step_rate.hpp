@@ -6,7 +6,7 @@
 namespace talus {
 
 /// Steps per second of wall time, over the last half second.
-class RateMeter {
+class StepRate {
   public:
     double update(std::uint64_t steps) {
         const double elapsed = std::chrono::duration<double>(Clock::now() - start_).count();

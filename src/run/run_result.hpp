@@ -1,0 +1,38 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "observe/observation.hpp"
+#include "sim/stage_times.hpp"
+
+namespace talus {
+
+enum class RunPhase {
+    ready,    ///< advance() would take a step
+    at_rest,  ///< debris came to rest, or none is left; a change makes it ready again
+    ended,    ///< solver.end_time is reached
+    fault,    ///< the last step cannot be trusted
+};
+
+enum class RunStatus { complete, interrupted, fault };
+
+struct RunResult {
+    RunStatus status = RunStatus::complete;
+    std::string stop_reason;  ///< "debris came to rest (momentum below 2 % of its peak for 3 s)", the fault, ...
+    Observation observation;
+    StageTimes stage_times;
+    std::uint64_t hash = 0;       ///< of time, ids, positions and velocities at the end, in id order
+    std::uint32_t particles = 0;  ///< that releases and inflows brought, without what was removed again or entrained
+    std::uint64_t steps = 0;
+    double simulated_time = 0, wall_time = 0;  ///< s; wall time of the stepping alone
+    double smallest_time_step = 0, largest_time_step = 0;
+    double particle_spacing = 0, support_radius = 0, map_cell = 0;
+    double viscosity = 0, kinematic_viscosity = 0;  ///< smoothing per 1/60 s; the same thing in m2/s
+    int thread_count = 0;
+    std::string instruction_set;  ///< that the sums over neighbours ran on
+
+    [[nodiscard]] double real_time_factor() const { return wall_time > 0 ? simulated_time / wall_time : 0; }
+};
+
+}  // namespace talus

@@ -1,0 +1,47 @@
+#include "run/run_scene.hpp"
+
+#include <algorithm>
+
+#include "run/run.hpp"
+
+namespace talus {
+namespace {
+
+Progress progress_of(const Run& run) {
+    const State& state = run.state();
+    Progress progress{};
+    progress.time = state.time;
+    progress.end_time = run.model().solver.end_time;
+    progress.real_time_factor = run.wall_time() > 0 ? state.time / run.wall_time() : 0;
+    progress.front_chainage = run.observer().front_chainage();
+    progress.share_done = std::min(1.0, state.time / progress.end_time);
+    progress.wall_remaining =
+        progress.real_time_factor > 0 ? (progress.end_time - state.time) / progress.real_time_factor : 0;
+    progress.step = state.step;
+    progress.particles = state.count;
+    return progress;
+}
+
+}  // namespace
+
+Result<RunResult> run_scene(const Scene& scene, const RunOptions& options) {
+    const auto started = Run::start(scene);
+    if (!started) return Error{scene.file.string() + ": " + started.error().message};
+    Run& run = **started;
+    const double frame_interval = scene.spec.outputs.particle_series_interval;
+    double next_frame = 0;
+    const auto show_frame = [&] {
+        if (!options.on_frame || frame_interval <= 0 || run.state().time < next_frame - 1e-9) return;
+        options.on_frame(run.model(), run.state());
+        next_frame += frame_interval;
+    };
+    const auto stopped = [&] { return options.stop_requested && options.stop_requested->load(); };
+    show_frame();
+    while (!stopped() && run.advance()) {
+        show_frame();
+        if (options.on_progress) options.on_progress(progress_of(run));
+    }
+    return run.result();
+}
+
+}  // namespace talus

@@ -1,0 +1,36 @@
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <functional>
+
+#include "core/result.hpp"
+#include "run/run_result.hpp"
+#include "scene/scene.hpp"
+#include "sim/model.hpp"
+#include "sim/state.hpp"
+
+namespace talus {
+
+/// What a watcher is told after a step.
+struct Progress {
+    double time, end_time;  ///< s
+    double real_time_factor;
+    double front_chainage;  ///< m; NaN: none
+    double share_done;      ///< 0 to 1
+    double wall_remaining;  ///< s, estimate
+    std::uint64_t step;
+    std::uint32_t particles;
+};
+
+struct RunOptions {
+    std::function<void(const Progress&)> on_progress;          ///< called after every step
+    std::function<void(const Model&, const State&)> on_frame;  ///< called every particle_series_interval
+    const std::atomic<bool>* stop_requested = nullptr;         ///< ends the run as interrupted
+};
+
+/// Runs a scene from beginning to end: until debris rests, end_time, a fault, or stop_requested.
+/// Errors (before anything ran): as Run::start(), with the scene's file.
+[[nodiscard]] Result<RunResult> run_scene(const Scene& scene, const RunOptions& options);
+
+}  // namespace talus

@@ -1,0 +1,106 @@
+#include "run/run.hpp"
+
+#include <atomic>
+#include <cmath>
+#include <stdexcept>
+#include <utility>
+
+#include <gmock/gmock.h>
+
+#include "run/run_scene.hpp"
+#include "scene/scene_folder.hpp"
+
+namespace talus {
+namespace {
+
+using testing::HasSubstr;
+using testing::StartsWith;
+
+class RunOfAScene : public SceneFolder {
+  protected:
+    [[nodiscard]] Scene loaded(const std::string& more, const std::vector<std::string>& overrides = {}) const {
+        write_valley(more);
+        std::vector<std::string> all{"solver.target_particle_count=400", "solver.end_time_s=3"};
+        all.insert(all.end(), overrides.begin(), overrides.end());
+        auto scene = load_scene(folder / "scene.toml", all);
+        if (!scene) throw std::runtime_error(scene.error().message);
+        return std::move(*scene);
+    }
+};
+
+TEST_F(RunOfAScene, StepByStepIsTheWholeOne) {
+    const Scene scene = loaded("");
+    auto run = talus::Run::start(scene);
+    ASSERT_TRUE(run) << run.error().message;
+    EXPECT_EQ((*run)->phase(), RunPhase::ready);
+    std::uint64_t steps = 0;
+    while ((*run)->advance()) ++steps;
+    EXPECT_EQ((*run)->phase(), RunPhase::ended);
+    EXPECT_EQ((*run)->state().step, steps);
+    EXPECT_FALSE((*run)->advance());
+    EXPECT_EQ((*run)->state().step, steps) << "a step after the end";
+    const auto whole = run_scene(scene, {});
+    ASSERT_TRUE(whole);
+    const RunResult result = (*run)->result();
+    EXPECT_EQ(result.status, RunStatus::complete);
+    EXPECT_EQ(result.stop_reason, "reached solver.end_time_s = 3");
+    EXPECT_EQ(result.stop_reason, whole->stop_reason);
+    EXPECT_EQ(result.hash, whole->hash);
+    EXPECT_EQ(result.steps, whole->steps);
+    EXPECT_EQ(result.observation.timeseries.size(), whole->observation.timeseries.size());
+}
+
+TEST_F(RunOfAScene, TakesWhatTheSceneHas) {
+    const Scene scene = loaded(
+        "[[bed]]\ndepth_m = 0.4\ngrowth_rate_per_m = 0.01\n[[zone]]\nname = \"fan\"\n"
+        "polygon = \"824100 825050, 824150 825050, 824150 825100, 824100 825100\"\nfriction_coefficient = 0.9\n");
+    const auto run = talus::Run::start(scene);
+    ASSERT_TRUE(run) << run.error().message;
+    EXPECT_FALSE((*run)->model().bed.empty());
+    EXPECT_FALSE((*run)->model().cover.empty());
+}
+
+TEST_F(RunOfAScene, CountsTheParticlesOfReleasesNotThoseOfTheBed) {
+    const auto result = run_scene(loaded("[[bed]]\ndepth_m = 0.5\ngrowth_rate_per_m = 0.01\n"), {});
+    ASSERT_TRUE(result);
+    ASSERT_GT(result->observation.timeseries.back().volume_entrained, 0);
+    const double particle = std::pow(result->particle_spacing, 3);
+    EXPECT_NEAR(result->particles * particle, result->observation.volume_released, particle);
+}
+
+TEST_F(RunOfAScene, StopsWhenAsked) {
+    std::atomic<bool> stop{false};
+    RunOptions options;
+    options.stop_requested = &stop;
+    options.on_progress = [&](const Progress& now) { stop = now.step == 3; };
+    const auto result = run_scene(loaded(""), options);
+    ASSERT_TRUE(result);
+    EXPECT_EQ(result->status, RunStatus::interrupted);
+    EXPECT_EQ(result->steps, 3U);
+    EXPECT_THAT(result->stop_reason, StartsWith("stopped by the user at t = 0.0"));
+}
+
+TEST_F(RunOfAScene, AChangeBringsItBackFromRest) {
+    auto started = talus::Run::start(
+        loaded("", {"material.friction_coefficient=3", "solver.stop_duration_s=0.2", "solver.end_time_s=60"}));
+    ASSERT_TRUE(started);
+    auto& run = **started;
+    while (run.advance()) continue;
+    ASSERT_EQ(run.phase(), RunPhase::at_rest) << run.stop_reason();
+    EXPECT_THAT(run.stop_reason(), StartsWith("debris came to rest (momentum below "));
+    run.change([](Model&, State& state) -> talus::Run::Change { return {state.seeded, false}; });
+    EXPECT_EQ(run.phase(), RunPhase::ready);
+    EXPECT_EQ(run.stop_reason(), "");
+    EXPECT_EQ(run.result().status, RunStatus::interrupted);
+    EXPECT_TRUE(run.advance());
+}
+
+TEST_F(RunOfAScene, TooManyParticlesAreRefused) {
+    const auto result = run_scene(loaded("", {"solver.particle_limit=100"}), {});
+    ASSERT_FALSE(result);
+    EXPECT_THAT(result.error().message, HasSubstr("scene.toml: "));
+    EXPECT_THAT(result.error().message, HasSubstr("solver.particle_limit = 100"));
+}
+
+}  // namespace
+}  // namespace talus

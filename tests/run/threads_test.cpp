@@ -1,0 +1,46 @@
+#include "run/threads.hpp"
+
+#include <thread>
+
+#include <gtest/gtest.h>
+#include <tbb/global_control.h>
+#include <tbb/task_arena.h>
+
+namespace talus {
+namespace {
+
+std::size_t allowed_in_all() {
+    return tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);
+}
+
+int processor_threads() {
+    return static_cast<int>(std::thread::hardware_concurrency());
+}
+
+TEST(Threads, AreAsManyAsAskedFor) {
+    for (const int wanted : {1, 2, processor_threads() + 3}) {
+        const Threads threads(wanted);
+        EXPECT_EQ(threads.count(), wanted);
+        EXPECT_EQ(threads.execute([] { return tbb::this_task_arena::max_concurrency(); }), wanted);
+    }
+}
+
+TEST(Threads, AreThoseOfTheProcessorUnlessAskedFor) {
+    EXPECT_EQ(Threads().count(), processor_threads());
+}
+
+TEST(Threads, LeaveOthersTheirs) {
+    const std::size_t before = allowed_in_all();
+    const Threads one(1);
+    EXPECT_EQ(allowed_in_all(), before);
+    EXPECT_EQ(Threads(processor_threads()).execute([] { return tbb::this_task_arena::max_concurrency(); }),
+              processor_threads());
+}
+
+TEST(Threads, CanBeMoreThanTheProcessorHas) {
+    const Threads many(processor_threads() + 3);
+    EXPECT_GE(allowed_in_all(), static_cast<std::size_t>(processor_threads()) + 3);
+}
+
+}  // namespace
+}  // namespace talus
