@@ -14,7 +14,7 @@
 #include "interrupt.hpp"
 #include "products/text_file.hpp"
 #include "scene_input.hpp"
-#include "teller.hpp"
+#include "throttled_progress.hpp"
 
 namespace talus {
 namespace {
@@ -75,16 +75,18 @@ int say_interrupted(const fs::path& path) {
 }
 
 int run_recovery(const CalibrateArguments& arguments, const CalibrationPlan& plan, const PlannedRuns& runs,
-                 const SceneInput& input, const fs::path& path, CalibrationOptions options, Teller& teller) {
+                 const SceneInput& input, const fs::path& path, CalibrationOptions options,
+                 ThrottledProgress& reporter) {
     const std::size_t seeds = *arguments.recover;
     std::size_t seed = 0;
     options.on_progress = [&](const CalibrationProgress& progress) {
         const std::string where = seed == 0 ? "runs with known values" : fmt::format("seed {} of {}", seed, seeds);
-        teller.tell([&] { return where + ", " + progress_text(progress); }, [&] { return progress_json(progress); });
+        reporter.report([&] { return where + ", " + progress_text(progress); },
+                        [&] { return progress_json(progress); });
     };
     const auto recovery = recover(plan, runs, input.source, input.scene, input.name, path, seeds, options,
                                   [&](std::size_t now) { seed = now + 1; });
-    teller.clear();
+    reporter.clear();
     if (!recovery) return fail(exit_code::bad_input, recovery.error().message);
     if (recovery->interrupted) return say_interrupted(path);
     if (Status s = write_text_file(path / "recovery.csv", recovery_table(*recovery)); !s) {
@@ -99,21 +101,22 @@ int run_recovery(const CalibrateArguments& arguments, const CalibrationPlan& pla
 }
 
 int run_calibration(const CalibrateArguments& arguments, const CalibrationPlan& plan, const PlannedRuns& runs,
-                    const SceneInput& input, const fs::path& path, CalibrationOptions options, Teller& teller) {
+                    const SceneInput& input, const fs::path& path, CalibrationOptions options,
+                    ThrottledProgress& reporter) {
     const std::vector<ObservedValue> observed = observed_values(input.scene);
     const auto folder = EnsembleFolder::open(
         path, calibration_definition("calibration", plan, runs, input.source, input.scene, observed, input.name));
     if (!folder) return fail(exit_code::bad_input, folder.error().message);
     options.on_progress = [&](const CalibrationProgress& progress) {
-        teller.tell([&] { return progress_text(progress); }, [&] { return progress_json(progress); });
+        reporter.report([&] { return progress_text(progress); }, [&] { return progress_json(progress); });
     };
     const auto made = calibrate(plan, runs, input.source, input.scene, observed, *folder, options);
-    teller.clear();
+    reporter.clear();
     if (!made) return fail(exit_code::fault, made.error().message);
     if (made->result.interrupted) return say_interrupted(path);
-    teller.say("writing tables and report");
+    reporter.say("writing tables and report");
     const Status written = write_calibration(*made, input.source, input.unpacked != nullptr, path);
-    teller.clear();
+    reporter.clear();
     if (!written) return fail(exit_code::failure, written.error().message);
     if (arguments.json) {
         print(calibration_line(*made, path) + "\n");
@@ -143,9 +146,9 @@ int calibrate_command(const CalibrateArguments& arguments) {
     options.threads_per_run = std::max(1, threads / options.runs_at_once);
     options.retry_failed = arguments.retry_failed;
     options.stop_requested = &watch.stop_requested();
-    Teller teller(arguments.quiet, arguments.json);
-    return arguments.recover ? run_recovery(arguments, *plan, *runs, *input, path, options, teller)
-                             : run_calibration(arguments, *plan, *runs, *input, path, options, teller);
+    ThrottledProgress reporter(arguments.quiet, arguments.json);
+    return arguments.recover ? run_recovery(arguments, *plan, *runs, *input, path, options, reporter)
+                             : run_calibration(arguments, *plan, *runs, *input, path, options, reporter);
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-#include "calibrate/ensemble.hpp"
+#include "ensemble/ensemble.hpp"
 
 #include <algorithm>
 #include <charconv>
@@ -11,14 +11,14 @@
 
 #include <fmt/format.h>
 
-#include "calibrate/ensemble_products.hpp"
 #include "command.hpp"
+#include "ensemble/ensemble_products.hpp"
 #include "ensemble_text.hpp"
 #include "exit_code.hpp"
 #include "interrupt.hpp"
 #include "ranks.hpp"
 #include "scene_input.hpp"
-#include "teller.hpp"
+#include "throttled_progress.hpp"
 
 namespace talus {
 namespace {
@@ -132,12 +132,12 @@ Result<std::pair<std::size_t, std::size_t>> parse_shard(const std::string& text)
 
 /// Counts the runs of the folders and writes what they say into `folder`.
 int write_results(const SceneInput& source, const PlannedRuns& runs, const std::vector<fs::path>& folders,
-                  const fs::path& folder, bool quiet, bool json, Teller& teller) {
-    teller.say("counting the runs, writing maps, tables and report");
+                  const fs::path& folder, bool quiet, bool json, ThrottledProgress& reporter) {
+    reporter.say("counting the runs, writing maps, tables and report");
     Result<Reduction> reduction = reduce(folders, runs.count(), runs.plan().thresholds);
     if (!reduction) return fail(exit_code::failure, reduction.error().message);
     if (reduction->complete == 0) {
-        teller.clear();
+        reporter.clear();
         const std::string fault = reduction->runs.empty() ? "none was run" : reduction->runs.front().fault;
         return fail(exit_code::fault,
                     fmt::format("no run of {} is complete, so there is nothing to count; the first: {}",
@@ -145,7 +145,7 @@ int write_results(const SceneInput& source, const PlannedRuns& runs, const std::
     }
     const EnsembleResult result = summarise(source.scene, runs, *std::move(reduction));
     const Status written = write_ensemble(result, folder);
-    teller.clear();
+    reporter.clear();
     if (!written) return fail(exit_code::failure, written.error().message);
     if (json) {
         print(ensemble_json(result, folder) + "\n");
@@ -195,19 +195,19 @@ int ensemble_command(const EnsembleArguments& arguments) {
         folder.emplace(EnsembleFolder::join(path));
     }
 
-    Teller teller(arguments.quiet || !ranks.first(), arguments.json && ranks.first());
+    ThrottledProgress reporter(arguments.quiet || !ranks.first(), arguments.json && ranks.first());
     EnsembleOptions options;
     options.shard_count = shard->second * static_cast<std::size_t>(ranks.count());
     options.shard = shard->first + shard->second * static_cast<std::size_t>(ranks.rank());
     options.retry_failed = arguments.retry_failed;
     options.stop_requested = &watch.stop_requested();
     options.on_progress = [&](const EnsembleProgress& progress) {
-        teller.tell([&] { return progress_text(progress); }, [&] { return progress_json(progress); });
+        reporter.report([&] { return progress_text(progress); }, [&] { return progress_json(progress); });
     };
     share_threads(arguments, *runs, ranks.count(), options);
 
     const Result<EnsembleOutcome> outcome = run_ensemble(*runs, source->source, *folder, options);
-    teller.clear();
+    reporter.clear();
     if (!outcome) (void)fail(exit_code::failure, outcome.error().message);
     const long broken = ranks.sum(outcome ? 0 : 1);
     const long interrupted = ranks.sum(outcome && outcome->interrupted ? 1 : 0);
@@ -226,7 +226,7 @@ int ensemble_command(const EnsembleArguments& arguments) {
         if (arguments.json) print(fmt::format("{{\"event\":\"shard\",\"runs_done\":{}}}\n", done));
         return exit_code::success;
     }
-    return write_results(*source, *runs, {path}, path, arguments.quiet, arguments.json, teller);
+    return write_results(*source, *runs, {path}, path, arguments.quiet, arguments.json, reporter);
 }
 
 int merge_command(const MergeArguments& arguments) {
@@ -272,8 +272,8 @@ int merge_command(const MergeArguments& arguments) {
         if (Status s = take_runs(from, *folder, runs->count()); !s)
             return fail(exit_code::bad_input, s.error().message);
     }
-    Teller teller(arguments.quiet, arguments.json);
-    return write_results(*source, *runs, {path}, path, arguments.quiet, arguments.json, teller);
+    ThrottledProgress reporter(arguments.quiet, arguments.json);
+    return write_results(*source, *runs, {path}, path, arguments.quiet, arguments.json, reporter);
 }
 
 }  // namespace

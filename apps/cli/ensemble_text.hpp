@@ -3,8 +3,8 @@
 #include <filesystem>
 #include <string>
 
-#include "calibrate/ensemble.hpp"
-#include "calibrate/ensemble_products.hpp"
+#include "ensemble/ensemble.hpp"
+#include "ensemble/ensemble_products.hpp"
 
 namespace talus {
 

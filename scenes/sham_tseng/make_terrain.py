@@ -115,7 +115,7 @@ CHANNEL_ROUGHNESS = 0.2  # share of it on the bed
 
 # The scar, by chainage: its upper edge lies where the published profile passes 149 mPD.
 SCAR = {"start": 14.0, "end": 41.0, "width": 18.0}
-# Other shapes of the same plan area, to see how much hangs on the scar's: (metres farther down, times as long and narrow).
+# Other shapes of the same plan area, to see how much depends on the scar's: (metres farther down, times as long and narrow).
 OTHER_SCARS = {"lower": (10.0, 1.0), "long": (0.0, 1.5), "wide": (0.0, 1 / 1.5)}
 
 # Village houses: name, height m, centre E and N, bearing of the long side in degrees north of east, length and width m.

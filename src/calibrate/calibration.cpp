@@ -8,7 +8,7 @@
 
 #include <fmt/format.h>
 
-#include "calibrate/ensemble.hpp"
+#include "ensemble/ensemble.hpp"
 
 namespace talus {
 namespace {

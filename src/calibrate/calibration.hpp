@@ -8,10 +8,10 @@
 
 #include <nlohmann/json.hpp>
 
-#include "calibrate/ensemble_folder.hpp"
-#include "calibrate/plan.hpp"
-#include "calibrate/predict.hpp"
-#include "calibrate/run_record.hpp"
+#include "ensemble/ensemble_folder.hpp"
+#include "ensemble/plan.hpp"
+#include "ensemble/predict.hpp"
+#include "ensemble/run_record.hpp"
 #include "calibrate/search.hpp"
 #include "core/result.hpp"
 #include "run/variants.hpp"

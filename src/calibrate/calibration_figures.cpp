@@ -6,7 +6,7 @@
 
 #include <fmt/format.h>
 
-#include "calibrate/reduction.hpp"
+#include "ensemble/reduction.hpp"
 #include "calibration_report_files.hpp"
 #include "params/fields.hpp"
 #include "products/report_colour.hpp"

@@ -4,7 +4,7 @@
 #include <fmt/format.h>
 
 #include "calibrate/calibration_products.hpp"
-#include "calibrate/reduction.hpp"
+#include "ensemble/reduction.hpp"
 
 namespace talus {
 namespace {

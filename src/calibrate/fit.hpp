@@ -3,10 +3,10 @@
 #include <string>
 #include <vector>
 
-#include "calibrate/distribution.hpp"
-#include "calibrate/predict.hpp"
-#include "calibrate/prediction_emulator.hpp"
-#include "calibrate/sampler.hpp"
+#include "stats/distribution.hpp"
+#include "ensemble/predict.hpp"
+#include "stats/prediction_emulator.hpp"
+#include "stats/sampler.hpp"
 
 /// How well predictions fit what was observed, by runs and by emulators of them.
 namespace talus {

@@ -6,7 +6,7 @@
 #include <fmt/format.h>
 
 #include "calibrate/calibration_products.hpp"
-#include "calibrate/ensemble.hpp"
+#include "ensemble/ensemble.hpp"
 #include "products/csv.hpp"
 
 namespace talus {

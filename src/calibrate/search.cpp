@@ -6,7 +6,7 @@
 
 #include <fmt/format.h>
 
-#include "calibrate/optimise.hpp"
+#include "stats/optimise.hpp"
 #include "observe/observation.hpp"
 
 namespace talus {

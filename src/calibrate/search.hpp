@@ -8,7 +8,7 @@
 #include "calibrate/fit.hpp"
 #include "core/result.hpp"
 
-/// Finds what factors explain observations, with few runs of a model that is dear.
+/// Finds what factors explain observations, with few runs of a model that is expensive.
 namespace talus {
 
 enum class SearchPhase { design, search, check };
@@ -66,7 +66,7 @@ using ForwardModel = std::function<Result<std::optional<Points>>(const Points& p
 using FitReader = std::function<void(const SearchResult& so_far)>;
 
 /// A design, then rounds of runs where the most improvement is expected and where the posterior is least certain of the
-/// emulators, then draws from the posterior as a check, which count in the end. The runs hang on the model, the
+/// emulators, then draws from the posterior as a check, which count in the end. The runs depend on the model, the
 /// observations and the options alone. `priors` without lists. Errors: of the model, all runs of the design failed.
 [[nodiscard]] Result<SearchResult> search(const std::vector<Distribution>& priors,
                                           const std::vector<ObservedValue>& observed, const ForwardModel& model,

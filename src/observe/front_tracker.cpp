@@ -114,7 +114,7 @@ std::uint32_t FrontTracker::find_front(const Model& model, const State& state) {
 
 double FrontTracker::speed_behind(double front, const State& state) {
     const auto from = static_cast<float>(std::max(0.0, front - head_length_));
-    // Always in the same order: the sum would hang on it.
+    // Always in the same order: the sum would depend on it.
     const auto end = candidates_.begin() + candidate_count_;
     std::sort(candidates_.begin(), end, [](const Candidate& a, const Candidate& b) { return a.particle < b.particle; });
     double sum = 0;

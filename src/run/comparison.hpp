@@ -33,7 +33,7 @@ enum class Verdict {
 /// One quantity of one variant.
 struct Change {
     double value = never;
-    double percent = never;  ///< of the base's value; NaN: one of the two is not known, or the base's is nought
+    double percent = never;  ///< of the base's value; NaN: one of the two is not known, or the base's is zero
     Verdict verdict = Verdict::missing;
 };
 

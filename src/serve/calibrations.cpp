@@ -11,7 +11,7 @@
 #include <fmt/format.h>
 
 #include "calibrate/calibration_products.hpp"
-#include "calibrate/ensemble_folder.hpp"
+#include "ensemble/ensemble_folder.hpp"
 #include "core/number_or_null.hpp"
 #include "params/fields.hpp"
 #include "twin/setup.hpp"

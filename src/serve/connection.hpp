@@ -20,7 +20,7 @@ namespace beast = boost::beast;
 namespace http = boost::beast::http;
 
 /// What a connection needs to answer. One for all; outlives them.
-struct Desk {
+struct ServerContext {
     Access access;
     Router router;
     Session& session;
@@ -35,11 +35,11 @@ inline constexpr std::size_t largest_header = 16 * 1024, largest_body = 1024 * 1
 using HttpRequest = http::request<http::string_body>;
 
 /// Serves HTTP on a new connection until it ends or becomes a WebSocket.
-void serve_http(asio::ip::tcp::socket socket, Desk& desk);
+void serve_http(asio::ip::tcp::socket socket, ServerContext& context);
 
 /// Goes on with `request`, which asks for a WebSocket and has passed all checks.
-void serve_websocket(beast::tcp_stream stream, HttpRequest request, Desk& desk, Role role, const std::string& name,
-                     const std::string& former);
+void serve_websocket(beast::tcp_stream stream, HttpRequest request, ServerContext& context, Role role,
+                     const std::string& name, const std::string& former);
 
 /// Counts an open connection for as long as it lives.
 class ConnectionCount {

@@ -6,7 +6,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "calibrate/finished_ensemble.hpp"
+#include "ensemble/finished_ensemble.hpp"
 #include "core/result.hpp"
 #include "scene/scene.hpp"
 #include "serve/message.hpp"

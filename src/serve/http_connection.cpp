@@ -30,8 +30,8 @@ std::string text_of(beast::string_view text) {
 
 class HttpConnection : public std::enable_shared_from_this<HttpConnection> {
   public:
-    HttpConnection(asio::ip::tcp::socket socket, Desk& desk)
-        : desk_(desk), count_(desk.connections), stream_(std::move(socket)) {}
+    HttpConnection(asio::ip::tcp::socket socket, ServerContext& context)
+        : context_(context), count_(context.connections), stream_(std::move(socket)) {}
 
     void read_header();
 
@@ -50,7 +50,7 @@ class HttpConnection : public std::enable_shared_from_this<HttpConnection> {
     void linger();
     [[nodiscard]] std::string header(http::field name) const { return text_of(parser_->get()[name]); }
 
-    Desk& desk_;
+    ServerContext& context_;
     ConnectionCount count_;
     beast::tcp_stream stream_;
     beast::flat_buffer buffer_{64 * 1024};
@@ -71,7 +71,7 @@ void HttpConnection::read_header() {
     request_ = {};
     route_ = nullptr;
     close_ = false;
-    stream_.expires_after(desk_.patience);
+    stream_.expires_after(context_.patience);
     http::async_read_header(
         stream_, buffer_, *parser_,
         [self = shared_from_this()](beast::error_code error, std::size_t) { self->on_header(error); });
@@ -116,11 +116,11 @@ void HttpConnection::on_header(beast::error_code error) {
 std::optional<Response> HttpConnection::refusal() {
     const auto& message = parser_->get();
     const std::string host = header(http::field::host), origin = header(http::field::origin);
-    if (message.count(http::field::host) != 1 || !desk_.access.host_allowed(host)) {
+    if (message.count(http::field::host) != 1 || !context_.access.host_allowed(host)) {
         return error_response(403,
                               "this server is not known by the host name of the request; start it with --allow-host");
     }
-    if (message.count(http::field::origin) > 1 || (!origin.empty() && !desk_.access.origin_allowed(origin, host))) {
+    if (message.count(http::field::origin) > 1 || (!origin.empty() && !context_.access.origin_allowed(origin, host))) {
         return error_response(403, "the request comes from a page of another origin");
     }
     if (parser_->content_length().value_or(0) > largest_body) {
@@ -140,7 +140,7 @@ std::optional<Response> HttpConnection::refusal() {
     }
     Role needs = Role::viewer;
     if (!websocket) {
-        auto match = desk_.router.find(request_.method, request_.path);
+        auto match = context_.router.find(request_.method, request_.path);
         if (match.route == nullptr) {
             if (match.allow.empty()) return error_response(404, "there is no such route; see /api/openapi.json");
             Response wrong =
@@ -160,7 +160,7 @@ std::optional<Response> HttpConnection::refusal() {
         const std::string authorization = header(http::field::authorization);
         if (authorization.starts_with(scheme)) token = authorization.substr(scheme.size());
     }
-    request_.role = desk_.access.role_of(token);
+    request_.role = context_.access.role_of(token);
     if (request_.role >= needs) return {};
     if (request_.role == Role::nobody) {
         return error_response(
@@ -170,7 +170,7 @@ std::optional<Response> HttpConnection::refusal() {
 }
 
 void HttpConnection::read_body() {
-    stream_.expires_after(desk_.patience);
+    stream_.expires_after(context_.patience);
     http::async_read(stream_, buffer_, *parser_, [self = shared_from_this()](beast::error_code error, std::size_t) {
         if (error) {
             self->on_error(error);
@@ -207,17 +207,17 @@ void HttpConnection::upgrade() {
         respond(error_response(400, "/ws speaks WebSocket; this was an ordinary request"));
         return;
     }
-    if (desk_.session.people().count() >= desk_.people_limit) {
-        respond(error_response(503, fmt::format("{} people are here, the most there can be", desk_.people_limit)));
+    if (context_.session.people().count() >= context_.people_limit) {
+        respond(error_response(503, fmt::format("{} people are here, the most there can be", context_.people_limit)));
         return;
     }
     stream_.expires_never();
-    serve_websocket(std::move(stream_), parser_->release(), desk_, request_.role, request_.query["name"],
+    serve_websocket(std::move(stream_), parser_->release(), context_, request_.role, request_.query["name"],
                     request_.query["person"]);
 }
 
 void HttpConnection::give_file() {
-    const Site::File* file = desk_.site.find(request_.path);
+    const Site::File* file = context_.site.find(request_.path);
     if (file == nullptr) {
         respond(error_response(404, "there is no such file"));
         return;
@@ -266,7 +266,7 @@ void HttpConnection::write(http::response<http::span_body<const char>> message) 
     message.content_length(body_->size());
     if (request_.method != "HEAD") message.body() = beast::span<const char>(body_->data(), body_->size());
     message_ = std::move(message);
-    stream_.expires_after(desk_.patience + seconds(body_->size() / slowest_reader));
+    stream_.expires_after(context_.patience + seconds(body_->size() / slowest_reader));
     http::async_write(stream_, *message_,
                       [self = shared_from_this()](beast::error_code error, std::size_t) { self->on_written(error); });
 }
@@ -299,8 +299,8 @@ void HttpConnection::linger() {
 
 }  // namespace
 
-void serve_http(asio::ip::tcp::socket socket, Desk& desk) {
-    std::make_shared<HttpConnection>(std::move(socket), desk)->read_header();
+void serve_http(asio::ip::tcp::socket socket, ServerContext& context) {
+    std::make_shared<HttpConnection>(std::move(socket), context)->read_header();
 }
 
 }  // namespace talus::serve

@@ -66,8 +66,8 @@ void People::leave(const std::string& id, Time now) {
     who->away = true;
     who->left = now;
     who->mark.reset();
-    if (plea_ && plea_->id == id) plea_.reset();
-    if (holder_ == id && plea_) pass_control();
+    if (request_ && request_->id == id) request_.reset();
+    if (holder_ == id && request_) pass_control();
 }
 
 void People::rename(const std::string& id, const std::string& name) {
@@ -84,8 +84,8 @@ void People::set_mark(const std::string& id, std::optional<std::array<double, 3>
 void People::pass_control() {
     const std::string former = holder_;
     holder_.clear();
-    if (plea_) {
-        holder_ = plea_->id;
+    if (request_) {
+        holder_ = request_->id;
     } else {
         for (const Member& m : members_) {
             if (m.role == Role::controller && !m.away && m.id != former) {
@@ -94,7 +94,7 @@ void People::pass_control() {
             }
         }
     }
-    plea_.reset();
+    request_.reset();
 }
 
 Status People::control(const std::string& what, const std::string& id, Time now) {
@@ -108,13 +108,13 @@ Status People::control(const std::string& what, const std::string& id, Time now)
             holder_ = id;
             return {};
         }
-        if (plea_ && plea_->id != id) return Error{find(plea_->id)->name + " has already asked for control"};
-        if (!plea_) plea_ = Plea{id, now};
+        if (request_ && request_->id != id) return Error{find(request_->id)->name + " has already asked for control"};
+        if (!request_) request_ = ControlRequest{id, now};
         return {};
     }
     if (holder_ != id) return Error{who->name + " does not have control"};
     if (what == "release") {
-        const bool asked = plea_.has_value();
+        const bool asked = request_.has_value();
         if (asked) {
             pass_control();
         } else {
@@ -122,11 +122,11 @@ Status People::control(const std::string& what, const std::string& id, Time now)
         }
         return {};
     }
-    if (!plea_) return Error{"nobody has asked for control"};
+    if (!request_) return Error{"nobody has asked for control"};
     if (what == "grant") {
         pass_control();
     } else if (what == "decline") {
-        plea_.reset();
+        request_.reset();
     } else {
         return Error{fmt::format("do = \"{}\"; it is request, release, grant or decline", what)};
     }
@@ -143,7 +143,7 @@ Status People::may_act(const std::string& id) const {
 
 bool People::tick(Time now) {
     bool changed = false;
-    if (plea_ && now - plea_->since >= answer_time) {
+    if (request_ && now - request_->since >= answer_time) {
         pass_control();
         changed = true;
     }
@@ -162,7 +162,8 @@ bool People::tick(Time now) {
 }
 
 bool People::waiting() const {
-    return plea_.has_value() || std::any_of(members_.begin(), members_.end(), [](const Member& m) { return m.away; });
+    return request_.has_value() ||
+           std::any_of(members_.begin(), members_.end(), [](const Member& m) { return m.away; });
 }
 
 nlohmann::json People::to_json() const {
@@ -177,7 +178,7 @@ nlohmann::json People::to_json() const {
                           {"mark", m.mark ? json(*m.mark) : json()}});
     }
     json request;
-    if (plea_) request = {{"id", plea_->id}, {"name", find(plea_->id)->name}};
+    if (request_) request = {{"id", request_->id}, {"name", find(request_->id)->name}};
     return {{"people", people}, {"controller", find(holder_) ? json(holder_) : json()}, {"request", request}};
 }
 

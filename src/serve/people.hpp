@@ -56,7 +56,7 @@ class People {
     struct Member : Person {
         Time left{};
     };
-    struct Plea {
+    struct ControlRequest {
         std::string id;
         Time since;
     };
@@ -66,7 +66,7 @@ class People {
 
     std::list<Member> members_;  // in the order of joining; a list: references last
     std::string holder_;         // id; empty: nobody
-    std::optional<Plea> plea_;
+    std::optional<ControlRequest> request_;
     std::uint64_t joined_ = 0;
 };
 

@@ -65,7 +65,7 @@ struct Server::Parts {
     std::optional<Session> session;
     std::optional<Exports> exports;
     std::optional<Calibrations> calibrations;
-    std::optional<Desk> desk;
+    std::optional<ServerContext> context;
     asio::io_context io{1};
     tcp::acceptor acceptor;
     asio::steady_timer retry, ticker;
@@ -115,7 +115,7 @@ void Server::Parts::accept() {
             retry.async_wait([this](boost::system::error_code) { accept(); });
             return;
         }
-        if (desk->connections < connection_limit) serve_http(std::move(socket), *desk);
+        if (context->connections < connection_limit) serve_http(std::move(socket), *context);
         accept();
     });
 }
@@ -157,10 +157,10 @@ Status Server::serve(std::shared_ptr<const Scene> scene) {
                                [&parts](nlohmann::json status) { parts.session->calibration(std::move(status)); });
     parts.session->calibration(parts.calibrations->describe());
     parts.connection_limit = raise_connection_limit();
-    parts.desk.emplace(
-        Desk{Access(options.tokens, bracketed(parts.bound.address()), parts.bound.port(), options.allowed_hosts),
-             make_api(*parts.session, *parts.exports, parts.ensembles, *parts.calibrations), *parts.session, Site(),
-             options.patience, 0, parts.connection_limit / 2});
+    parts.context.emplace(ServerContext{
+        Access(options.tokens, bracketed(parts.bound.address()), parts.bound.port(), options.allowed_hosts),
+        make_api(*parts.session, *parts.exports, parts.ensembles, *parts.calibrations), *parts.session, Site(),
+        options.patience, 0, parts.connection_limit / 2});
     if (options.run) {
         parts.session->loop().post([](Scenarios& all) { (void)all.act(0, {{"action", "run"}}, ""); });
     }
@@ -183,7 +183,7 @@ std::string Server::link(Role role) const {
 }
 
 const std::vector<Route>& Server::routes() const {
-    return parts_->desk->router.routes();
+    return parts_->context->router.routes();
 }
 
 }  // namespace talus::serve

@@ -27,9 +27,9 @@ constexpr int unsent_bytes = 256 * 1024;
 
 class WebSocketViewer final : public Viewer, public std::enable_shared_from_this<WebSocketViewer> {
   public:
-    WebSocketViewer(beast::tcp_stream stream, Desk& desk, Role role, std::string name, std::string former)
-        : desk_(desk),
-          count_(desk.connections),
+    WebSocketViewer(beast::tcp_stream stream, ServerContext& context, Role role, std::string name, std::string former)
+        : context_(context),
+          count_(context.connections),
           socket_(std::move(stream)),
           timer_(socket_.get_executor()),
           role_(role),
@@ -57,7 +57,7 @@ class WebSocketViewer final : public Viewer, public std::enable_shared_from_this
     void end();
     void end_politely(websocket::close_code code);
 
-    Desk& desk_;
+    ServerContext& context_;
     ConnectionCount count_;
     websocket::stream<beast::tcp_stream> socket_;
     asio::steady_timer timer_;
@@ -77,7 +77,7 @@ class WebSocketViewer final : public Viewer, public std::enable_shared_from_this
 void WebSocketViewer::accept(HttpRequest request) {
     websocket::stream_base::timeout timeout{};
     timeout.handshake_timeout = seconds(10);
-    timeout.idle_timeout = desk_.patience / 2;  // half of that in silence, and it is asked whether it is still there
+    timeout.idle_timeout = context_.patience / 2;  // half of that in silence, and it is asked whether it is still there
     timeout.keep_alive_pings = true;
     socket_.set_option(timeout);
     socket_.read_message_max(largest_message);
@@ -90,7 +90,7 @@ void WebSocketViewer::accept(HttpRequest request) {
     socket_.async_accept(*kept, [self = shared_from_this(), kept](beast::error_code error) {
         if (error) return;
         self->joined_ = true;
-        self->desk_.session.join(*self, self->role_, self->name_, self->former_);
+        self->context_.session.join(*self, self->role_, self->name_, self->former_);
         self->read();
     });
 }
@@ -113,7 +113,7 @@ void WebSocketViewer::on_message() {
     }
     const auto data = buffer_.cdata();
     const bool welcome = ++messages_ <= most_messages && socket_.got_text() &&
-                         desk_.session.receive(*this, {static_cast<const char*>(data.data()), data.size()});
+                         context_.session.receive(*this, {static_cast<const char*>(data.data()), data.size()});
     buffer_.consume(buffer_.size());
     if (!welcome) {
         end_politely(websocket::close_code::policy_error);
@@ -215,16 +215,16 @@ void WebSocketViewer::end() {
     timer_.cancel();
     texts_.clear();
     slots_ = {};
-    if (std::exchange(joined_, false)) desk_.session.leave(*this);
+    if (std::exchange(joined_, false)) context_.session.leave(*this);
     beast::error_code ignored;
     beast::get_lowest_layer(socket_).socket().close(ignored);
 }
 
 }  // namespace
 
-void serve_websocket(beast::tcp_stream stream, HttpRequest request, Desk& desk, Role role, const std::string& name,
-                     const std::string& former) {
-    std::make_shared<WebSocketViewer>(std::move(stream), desk, role, name, former)->accept(std::move(request));
+void serve_websocket(beast::tcp_stream stream, HttpRequest request, ServerContext& context, Role role,
+                     const std::string& name, const std::string& former) {
+    std::make_shared<WebSocketViewer>(std::move(stream), context, role, name, former)->accept(std::move(request));
 }
 
 }  // namespace talus::serve

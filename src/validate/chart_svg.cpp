@@ -41,7 +41,7 @@ report::ValueRange range_of(const Chart& chart, std::vector<double> Series::*val
     }
     if (!(range.high >= range.low)) return {0, 1};
     const double margin = 0.04 * (range.high - range.low);
-    // From nought where that costs little: ratios are read against it.
+    // From zero where that costs little: ratios are read against it.
     const double low = range.low >= 0 && range.low < 0.5 * range.high ? 0 : range.low - margin;
     return {low, range.high + margin};
 }

@@ -8,8 +8,8 @@ import pathlib
 import re
 import sys
 
-# A layer may include those named here and itself; sim and geo do not know each other, nor do calibrate, validate,
-# bench and twin, which stand beside each other on products.
+# A layer may include those named here and itself; sim and geo do not know each other, nor do
+# ensemble, validate, bench and twin, which stand beside each other on products.
 BELOW = {
     "core": [],
     "params": ["core"],
@@ -20,13 +20,16 @@ BELOW = {
     "scene": ["core", "params", "terrain", "sim", "geo", "observe"],
     "run": ["core", "params", "terrain", "sim", "geo", "observe", "scene"],
     "products": ["core", "params", "terrain", "sim", "geo", "observe", "scene", "run"],
-    "calibrate": ["core", "params", "terrain", "sim", "geo", "observe", "scene", "run", "products"],
+    "stats": ["core"],
+    "ensemble": ["core", "params", "terrain", "sim", "geo", "observe", "scene", "run", "products", "stats"],
+    "calibrate": ["core", "params", "terrain", "sim", "geo", "observe", "scene", "run", "products", "stats", "ensemble"],
     "validate": ["core", "params", "terrain", "sim", "geo", "observe", "scene", "run", "products"],
     "bench": ["core", "params", "terrain", "sim", "geo", "observe", "scene", "run", "products"],
     "twin": ["core", "params", "terrain", "sim", "geo", "observe", "scene", "run", "products"],
-    "serve": ["core", "params", "terrain", "sim", "geo", "observe", "scene", "run", "products", "calibrate", "twin"],
-    "apps": ["core", "params", "terrain", "sim", "geo", "observe", "scene", "run", "products", "calibrate", "validate",
-             "bench", "twin", "serve"],
+    "serve": ["core", "params", "terrain", "sim", "geo", "observe", "scene", "run", "products", "stats", "ensemble",
+              "calibrate", "twin"],
+    "apps": ["core", "params", "terrain", "sim", "geo", "observe", "scene", "run", "products", "stats", "ensemble",
+             "calibrate", "validate", "bench", "twin", "serve"],
 }
 INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]')
 GDAL = re.compile(r"^(gdal|ogr|cpl_|proj\b|proj\.h)")
@@ -86,7 +89,7 @@ def self_test():
                 ("run", "products/products.hpp"), ("scene", "products/products.hpp"),
                 ("products", "gdal_priv.h"), ("apps", "ogrsf_frmts.h"), ("scene", "cpl_conv.h"), ("products", "proj.h"),
                 ("sim", "gtest/gtest.h"), ("scene", "support/fixtures.hpp"), ("sim", "../core/grid.hpp"),
-                ("products", "calibrate/plan.hpp"), ("calibrate", "validate/suite.hpp"),
+                ("products", "ensemble/plan.hpp"), ("calibrate", "validate/suite.hpp"),
                 ("products", "validate/suite.hpp"), ("validate", "calibrate/misfit.hpp"),
                 ("bench", "validate/set_up.hpp"), ("twin", "serve/loop.hpp"), ("apps", "boost/asio.hpp"),
                 ("serve", "gdal_priv.h"), ("scene", "bench/measure.hpp"), ("products", "twin/scenario.hpp"),

@@ -65,7 +65,7 @@ TEST(Journal, replays_to_the_same_hash_on_any_number_of_threads) {
         EXPECT_EQ(again->steps, scenario->step());
         EXPECT_EQ(last, scenario->step());
     }
-    // It does hang on what people did.
+    // It does depend on what people did.
     Journal other = *journal;
     other.entries[0].action["value"] = 0.31;
     EXPECT_NE(replay(other, std::make_shared<const Scene>(scene_with_threads(2)))->hash, journal->hash);

@@ -1,0 +1,47 @@
+#pragma once
+
+#include <chrono>
+#include <cstdio>
+#include <string>
+
+#include "progress.hpp"
+
+namespace talus {
+
+/// Text on stdout, at once.
+inline void print(const std::string& text) {
+    (void)std::fputs(text.c_str(), stdout);
+    (void)std::fflush(stdout);
+}
+
+/// The progress of many runs, for a person or a program, not too often.
+class ThrottledProgress {
+  public:
+    ThrottledProgress(bool quiet, bool json) : style_(progress_style(quiet, json)), reporter_(style_) {
+        if (style_ == ProgressStyle::lines) next_ += std::chrono::seconds(1);  // the first estimates are poor
+    }
+
+    /// `text` and `json` make the line, when one is due.
+    template <class Text, class Json>
+    void report(const Text& text, const Json& json) {
+        const auto now = std::chrono::steady_clock::now();
+        if (now < next_) return;
+        if (style_ == ProgressStyle::json) {
+            print(json() + "\n");
+        } else {
+            reporter_.say(text());
+        }
+        next_ = now + std::chrono::milliseconds(style_ == ProgressStyle::lines  ? 5000
+                                                : style_ == ProgressStyle::json ? 500
+                                                                                : 200);
+    }
+    void say(const std::string& what) { reporter_.say(what); }
+    void clear() { reporter_.clear(); }
+
+  private:
+    ProgressStyle style_;
+    ProgressReporter reporter_;
+    std::chrono::steady_clock::time_point next_ = std::chrono::steady_clock::now();
+};
+
+}  // namespace talus

@@ -1,0 +1,198 @@
+#include "ensemble/ensemble.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <exception>
+#include <filesystem>
+#include <mutex>
+#include <optional>
+#include <system_error>
+#include <thread>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "core/hash.hpp"
+#include "run/run_scene.hpp"
+
+namespace talus {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+/// The runs of one process, taken one after the other by its threads.
+class Crew {
+  public:
+    Crew(const PlannedRuns& runs, const SceneSource& source, const EnsembleFolder& folder,
+         const EnsembleOptions& options)
+        : runs_(runs), source_(source), folder_(folder), options_(options) {}
+
+    Result<EnsembleOutcome> work();
+
+  private:
+    void find_work();
+    void take_runs(std::size_t worker);
+    [[nodiscard]] bool stopped() const {
+        return failed_ || (options_.stop_requested && options_.stop_requested->load());
+    }
+    /// Nothing where the run was interrupted.
+    [[nodiscard]] std::optional<std::pair<RunRecord, HazardMaps>> compute(std::size_t run, std::size_t worker);
+    void finish(const RunRecord& record, const HazardMaps& maps, std::size_t worker);
+    void report(std::size_t worker, double share);
+
+    const PlannedRuns& runs_;
+    const SceneSource& source_;
+    const EnsembleFolder& folder_;
+    const EnsembleOptions& options_;
+
+    std::vector<std::size_t> todo_;
+    std::atomic<std::size_t> next_{0};
+    std::atomic<bool> failed_{false};
+    std::mutex loading_;  // inputs are read by one at a time: it takes little, and not every driver minds its threads
+    std::mutex mutex_;    // guards what follows
+    EnsembleOutcome outcome_;
+    Status status_;
+    std::vector<double> under_way_;  // per thread, share done of its run
+    std::size_t computed_ = 0;
+    Clock::time_point start_ = Clock::now();
+};
+
+void Crew::find_work() {
+    for (std::size_t run = options_.shard; run < runs_.count(); run += options_.shard_count) {
+        ++outcome_.count;
+        const auto file = folder_.run_file(run);
+        std::error_code error;
+        if (std::filesystem::exists(file, error)) {
+            const Result<RunRecord> record = read_run_record(file);
+            if (record && (record->complete() || !options_.retry_failed)) {
+                ++outcome_.resumed;
+                record->complete() ? ++outcome_.done : ++outcome_.failed;
+                continue;
+            }
+        }
+        todo_.push_back(run);
+    }
+}
+
+std::optional<std::pair<RunRecord, HazardMaps>> Crew::compute(std::size_t run, std::size_t worker) {
+    const PlannedRun planned = runs_.at(run);
+    std::vector<std::string> overrides = source_.overrides;
+    overrides.insert(overrides.end(), planned.overrides.begin(), planned.overrides.end());
+    overrides.push_back(fmt::format("solver.thread_count={}", options_.threads_per_run));
+
+    std::pair<RunRecord, HazardMaps> made;
+    RunRecord& record = made.first;
+    record.run = run;
+    record.values = planned.values;
+    const Result<Scene> scene = [&] {
+        const std::lock_guard lock(loading_);
+        return load_scene(source_.file, overrides);
+    }();
+    if (!scene) {
+        record.fault = scene.error().message;
+        return made;
+    }
+    RunOptions run_options;
+    run_options.stop_requested = options_.stop_requested;
+    run_options.on_progress = [&](const Progress& now) { report(worker, now.share_done); };
+    Result<RunResult> result = run_scene(*scene, run_options);
+    if (!result) {
+        record.fault = result.error().message;
+        return made;
+    }
+    if (result->status == RunStatus::interrupted) return std::nullopt;
+    record.simulated_time = result->simulated_time;
+    record.wall_time = result->wall_time;
+    record.particles = result->particles;
+    record.hash = to_hex(result->hash);
+    if (result->status == RunStatus::fault) {
+        record.fault = result->stop_reason;
+        return made;
+    }
+    record.results = measure(*scene, *result);
+    record.buildings = std::move(result->observation.buildings);
+    for (BuildingImpact& building : record.buildings) building.history.clear();
+    record.geometry = result->observation.maps.peak_depth.geometry;
+    made.second = std::move(result->observation.maps);
+    return made;
+}
+
+void Crew::report(std::size_t worker, double share) {
+    if (!options_.on_progress) return;
+    const std::lock_guard lock(mutex_);
+    under_way_[worker] = share;
+    EnsembleProgress p;
+    p.done = outcome_.done;
+    p.failed = outcome_.failed;
+    p.count = outcome_.count;
+    // A run mostly ends before solver.end_time_s, so shares of it are a lower bound.
+    double part = 0;
+    for (const double s : under_way_) part += s;
+    const double before = static_cast<double>(outcome_.done + outcome_.failed);
+    p.share_done = p.count > 0 ? (before + part) / static_cast<double>(p.count) : 1;
+    const double wall = std::chrono::duration<double>(Clock::now() - start_).count();
+    const double computed = static_cast<double>(computed_);
+    p.runs_per_minute = wall > 0 ? 60 * computed / wall : 0;
+    const double left = static_cast<double>(p.count) - before - part;
+    p.wall_remaining = computed + part > 0 ? wall / (computed + part) * left : never;
+    options_.on_progress(p);
+}
+
+void Crew::finish(const RunRecord& record, const HazardMaps& maps, std::size_t worker) {
+    const Status written = write_run_record(folder_.run_file(record.run), record, maps);
+    {
+        const std::lock_guard lock(mutex_);
+        under_way_[worker] = 0;
+        if (!written) {
+            status_ = written;
+            failed_ = true;
+            return;
+        }
+        ++computed_;
+        record.complete() ? ++outcome_.done : ++outcome_.failed;
+        if (options_.on_run) options_.on_run(record);
+    }
+    report(worker, 0);
+}
+
+void Crew::take_runs(std::size_t worker) {
+    while (!stopped()) {
+        const std::size_t k = next_++;
+        if (k >= todo_.size()) return;
+        try {
+            const auto made = compute(todo_[k], worker);
+            if (!made) return;
+            finish(made->first, made->second, worker);
+        } catch (const std::exception& error) {  // out of memory in one run is no reason to lose the rest
+            RunRecord record;
+            record.run = todo_[k];
+            record.values = runs_.at(todo_[k]).values;
+            record.fault = error.what();
+            finish(record, {}, worker);
+        }
+    }
+}
+
+Result<EnsembleOutcome> Crew::work() {
+    find_work();
+    const std::size_t workers = std::min(todo_.size(), static_cast<std::size_t>(std::max(1, options_.runs_at_once)));
+    under_way_.assign(workers, 0);
+    start_ = Clock::now();
+    std::vector<std::thread> threads;
+    for (std::size_t w = 0; w < workers; ++w) threads.emplace_back([this, w] { take_runs(w); });
+    for (std::thread& thread : threads) thread.join();
+    if (!status_) return status_.error();
+    outcome_.wall_time = std::chrono::duration<double>(Clock::now() - start_).count();
+    outcome_.interrupted = outcome_.done + outcome_.failed < outcome_.count;
+    return outcome_;
+}
+
+}  // namespace
+
+Result<EnsembleOutcome> run_ensemble(const PlannedRuns& runs, const SceneSource& source, const EnsembleFolder& folder,
+                                     const EnsembleOptions& options) {
+    return Crew(runs, source, folder, options).work();
+}
+
+}  // namespace talus

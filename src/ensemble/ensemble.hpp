@@ -1,0 +1,45 @@
+#pragma once
+
+#include <atomic>
+#include <cstddef>
+#include <functional>
+#include <string>
+
+#include "ensemble/ensemble_folder.hpp"
+#include "ensemble/plan.hpp"
+#include "core/result.hpp"
+#include "run/variants.hpp"
+
+namespace talus {
+
+/// How far an ensemble is.
+struct EnsembleProgress {
+    std::size_t done = 0, failed = 0, count = 0;  ///< runs of this process, earlier ones included
+    double share_done = 0;                        ///< 0 to 1, runs under way counted by their simulated time
+    double runs_per_minute = 0;                   ///< of this process so far
+    double wall_remaining = 0;                    ///< s, an estimate; NaN: not known yet
+};
+
+struct EnsembleOptions {
+    int runs_at_once = 1;                               ///< each on its own thread
+    int threads_per_run = 1;                            ///< several where runs_at_once is 1
+    std::size_t shard = 0, shard_count = 1;             ///< this process computes runs shard, shard + shard_count, ...
+    bool retry_failed = false;                          ///< runs that failed before are run again
+    const std::atomic<bool>* stop_requested = nullptr;  ///< runs under way are dropped, those that are done stay
+    std::function<void(const EnsembleProgress&)> on_progress = {};  ///< from any of the runs' threads, one at a time
+    std::function<void(const RunRecord&)> on_run = {};  ///< likewise, when one that this call made is recorded
+};
+
+struct EnsembleOutcome {
+    std::size_t done = 0, failed = 0, count = 0;  ///< of this process's share
+    std::size_t resumed = 0;                      ///< of those, done before
+    bool interrupted = false;
+    double wall_time = 0;  ///< s, of this call
+};
+
+/// Computes what the folder lacks of this process's share of the runs. A run that fails is recorded with its fault and
+/// the rest go on. Errors: a record cannot be written.
+[[nodiscard]] Result<EnsembleOutcome> run_ensemble(const PlannedRuns& runs, const SceneSource& source,
+                                                   const EnsembleFolder& folder, const EnsembleOptions& options);
+
+}  // namespace talus

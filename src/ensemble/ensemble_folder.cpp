@@ -1,0 +1,178 @@
+#include "ensemble/ensemble_folder.hpp"
+
+#include <cerrno>
+#include <cstring>
+#include <fcntl.h>
+#include <fstream>
+#include <sys/file.h>
+#include <system_error>
+#include <unistd.h>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "products/text_file.hpp"
+
+namespace talus {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr int format_version = 1;  // of the files of runs
+
+/// What may differ without making another ensemble: where the scene lay, who wrote it, and what is counted.
+bool is_incidental(const std::string& key) {
+    return key == "scene" || key == "program_version" || key == "thresholds";
+}
+
+std::string shortened(const Json& value) {
+    std::string text = value.dump();
+    return text.size() > 120 ? text.substr(0, 117) + "..." : text;
+}
+
+}  // namespace
+
+Json ensemble_definition(const PlannedRuns& runs, const SceneSource& source, const Scene& base,
+                         const std::string& scene_name) {
+    const EnsemblePlan& plan = runs.plan();
+    Json inputs = Json::array();
+    for (const InputFile& input : base.inputs) inputs.push_back({{"role", input.role}, {"hash", input.hash}});
+    Json factors = Json::array();
+    for (const Factor& f : plan.factors)
+        factors.push_back({{"key", f.key}, {"distribution", f.distribution.written()}});
+    return {{"program", "talus"},
+            {"kind", "ensemble"},
+            {"program_version", TALUS_VERSION},
+            {"format", format_version},
+            {"scene", scene_name},
+            {"inputs", inputs},
+            {"overrides", source.overrides},
+            {"fixed", runs.fixed()},
+            {"design", design_name(plan.design)},
+            {"seed", plan.seed},
+            {"runs", runs.count()},
+            {"levels", plan.levels},
+            {"factors", factors},
+            {"thresholds",
+             {{"depth_m", plan.thresholds.depth},
+              {"speed_mps", plan.thresholds.speed},
+              {"pressure_kPa", plan.thresholds.pressure}}}};
+}
+
+std::string difference(const Json& there, const Json& wanted) {
+    for (const auto& [key, value] : wanted.items()) {
+        if (is_incidental(key)) continue;
+        const Json found = there.contains(key) ? there[key] : Json();
+        if (found != value) return fmt::format("{}: {}, not {}", key, shortened(found), shortened(value));
+    }
+    return "";
+}
+
+Result<Json> read_definition(const fs::path& folder, const std::string& kind) {
+    std::ifstream in(folder / "ensemble.json");
+    Json json = Json::parse(in, nullptr, false);
+    if (!json.is_object() || json.value("program", Json()) != "talus" || json.value("kind", Json()) != kind) {
+        return Error{fmt::format("{}: is no {} of talus (no ensemble.json of its own)", folder.string(), kind)};
+    }
+    return json;
+}
+
+Result<EnsemblePlan> plan_of(const Json& definition) {
+    EnsemblePlan plan;
+    try {
+        const auto design = design_of(definition.at("design").get<std::string>());
+        plan.design = design.value_or(DesignKind::latin_hypercube);
+        plan.runs = definition.at("runs").get<std::size_t>();
+        plan.levels = definition.at("levels").get<std::size_t>();
+        plan.seed = definition.at("seed").get<std::uint64_t>();
+        const Json& thresholds = definition.at("thresholds");
+        plan.thresholds = {thresholds.at("depth_m").get<std::vector<double>>(),
+                           thresholds.at("speed_mps").get<std::vector<double>>(),
+                           thresholds.at("pressure_kPa").get<std::vector<double>>()};
+        for (const Json& f : definition.at("factors")) {
+            const auto text = f.at("key").get<std::string>() + "=" + f.at("distribution").get<std::string>();
+            if (Status s = add_factor(plan, text); !s) return s.error();
+        }
+    } catch (const Json::exception& error) {
+        return Error{fmt::format("ensemble.json: is not as talus writes it: {}", error.what())};
+    }
+    return plan;
+}
+
+Result<EnsembleFolder> EnsembleFolder::open(const fs::path& path, const Json& definition) {
+    std::error_code error;
+    if (fs::exists(path, error) && !fs::is_directory(path, error)) {
+        return Error{path.string() + ": is a file, not a folder; name another output folder"};
+    }
+    const bool fresh = !fs::exists(path, error) || fs::is_empty(path, error);
+    if (!fresh && !fs::exists(path / "ensemble.json", error) && !fs::exists(path / "lock", error)) {
+        return Error{path.string() + ": is there and holds no ensemble; name another output folder"};
+    }
+    fs::create_directories(path / "runs", error);
+    if (error) return Error{fmt::format("{}: cannot be made: {}", path.string(), error.message())};
+
+    EnsembleFolder folder;
+    folder.path_ = path;
+    folder.lock_ = ::open((path / "lock").c_str(), O_CREAT | O_RDWR | O_CLOEXEC, 0666);
+    if (folder.lock_ < 0) return Error{fmt::format("{}: cannot be written: {}", path.string(), std::strerror(errno))};
+    if (flock(folder.lock_, LOCK_EX | LOCK_NB) != 0) {
+        return Error{errno == EWOULDBLOCK
+                         ? fmt::format("{}: another process computes this ensemble; wait for it, or give every shard a "
+                                       "folder of its own",
+                                       path.string())
+                         : fmt::format("{}: cannot be locked: {}", path.string(), std::strerror(errno))};
+    }
+    if (fs::exists(path / "ensemble.json", error)) {
+        const Result<Json> there = read_definition(path, definition.value("kind", "ensemble"));
+        if (!there) return there.error();
+        if (const std::string differs = difference(*there, definition); !differs.empty()) {
+            return Error{
+                fmt::format("{}: holds another ensemble ({}); name another output folder", path.string(), differs)};
+        }
+    } else if (Status s = write_text_file(path / "ensemble.json", definition.dump(2) + "\n"); !s) {
+        return s.error();
+    }
+    return Result<EnsembleFolder>(std::move(folder));
+}
+
+EnsembleFolder EnsembleFolder::join(const fs::path& path) {
+    EnsembleFolder folder;
+    folder.path_ = path;
+    return folder;
+}
+
+EnsembleFolder::EnsembleFolder(EnsembleFolder&& other) noexcept
+    : path_(std::move(other.path_)), lock_(std::exchange(other.lock_, -1)) {}
+
+EnsembleFolder::~EnsembleFolder() {
+    if (lock_ >= 0) close(lock_);
+}
+
+fs::path EnsembleFolder::run_file(std::size_t run) const {
+    return path_ / "runs" / fmt::format("{:06}.run", run);
+}
+
+Status take_runs(const fs::path& from, const EnsembleFolder& to, std::size_t count) {
+    for (std::size_t run = 0; run < count; ++run) {
+        const fs::path target = to.run_file(run), source = from / "runs" / target.filename();
+        std::error_code error;
+        if (!fs::exists(source, error) || fs::equivalent(source, target, error)) continue;
+        if (fs::exists(target, error)) {
+            const Result<RunRecord> here = read_run_record(target), there = read_run_record(source);
+            if (!here) return here.error();
+            if (!there) return there.error();
+            if (here->hash == there->hash && here->fault == there->fault) continue;
+            return Error{
+                fmt::format("run {}: {} and {} hold different results", run, source.string(), target.string())};
+        }
+        fs::create_hard_link(source, target, error);
+        if (error) fs::copy_file(source, target, error);
+        if (error) return Error{fmt::format("{}: cannot be made: {}", target.string(), error.message())};
+    }
+    return {};
+}
+
+}  // namespace talus

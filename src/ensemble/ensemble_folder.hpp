@@ -1,0 +1,60 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include <nlohmann/json.hpp>
+
+#include "ensemble/plan.hpp"
+#include "ensemble/run_record.hpp"
+#include "core/result.hpp"
+
+namespace talus {
+
+/// What makes an ensemble this one: inputs by checksum, overrides, design, seed, factors. Runs of two folders belong
+/// together where `difference` finds none; thresholds are in it, but only count.
+[[nodiscard]] nlohmann::ordered_json ensemble_definition(const PlannedRuns& runs, const SceneSource& source,
+                                                         const Scene& base, const std::string& scene_name);
+
+/// The plan that a definition was made from. Errors: not as ensemble_definition writes it.
+[[nodiscard]] Result<EnsemblePlan> plan_of(const nlohmann::ordered_json& definition);
+
+/// A folder with ensemble.json and a file per run that is done, held by one process at a time.
+class EnsembleFolder {
+  public:
+    /// Makes the folder, or opens the one of an interrupted ensemble with the same definition. The lock ends with the
+    /// process, however that ends. Errors: held by another process, holds something else or another ensemble (names the
+    /// first difference), cannot be made or written.
+    [[nodiscard]] static Result<EnsembleFolder> open(const std::filesystem::path& path,
+                                                     const nlohmann::ordered_json& definition);
+    /// The same without a lock, for the other processes of a holder: its folder is there.
+    [[nodiscard]] static EnsembleFolder join(const std::filesystem::path& path);
+
+    EnsembleFolder(EnsembleFolder&& other) noexcept;
+    EnsembleFolder& operator=(EnsembleFolder&&) = delete;
+    EnsembleFolder(const EnsembleFolder&) = delete;
+    EnsembleFolder& operator=(const EnsembleFolder&) = delete;
+    ~EnsembleFolder();
+
+    [[nodiscard]] const std::filesystem::path& path() const { return path_; }
+    /// FOLDER/runs/000012.run
+    [[nodiscard]] std::filesystem::path run_file(std::size_t run) const;
+
+  private:
+    EnsembleFolder() = default;
+    std::filesystem::path path_;
+    int lock_ = -1;
+};
+
+/// Puts the runs of `from` into `to` as well (as links where the file system has them). Errors: a run that both have
+/// with different results, a file that cannot be made.
+[[nodiscard]] Status take_runs(const std::filesystem::path& from, const EnsembleFolder& to, std::size_t count);
+
+/// ensemble.json of a folder. Errors: not there, not of that kind.
+[[nodiscard]] Result<nlohmann::ordered_json> read_definition(const std::filesystem::path& folder,
+                                                             const std::string& kind = "ensemble");
+
+/// Why the runs of two ensembles do not belong together: "seed: 2, not 1"; empty if they do.
+[[nodiscard]] std::string difference(const nlohmann::ordered_json& there, const nlohmann::ordered_json& wanted);
+
+}  // namespace talus

@@ -1,0 +1,255 @@
+#include "ensemble/ensemble_products.hpp"
+
+#include <array>
+#include <cmath>
+#include <set>
+#include <system_error>
+
+#include <fmt/format.h>
+
+#include "core/number_or_null.hpp"
+#include "geo/raster.hpp"
+#include "products/csv.hpp"
+#include "products/text_file.hpp"
+
+namespace talus {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr std::array<double, 9> table_percentiles = {1, 5, 10, 25, 50, 75, 90, 95, 99};
+
+/// Kept by all maps of one quantity, and the words of a threshold.
+struct QuantityWords {
+    const char* file;
+    const char* name;
+    const char* unit;       ///< of thresholds
+    const char* file_unit;  ///< the same in a file's name
+};
+constexpr std::array<QuantityWords, 3> threshold_words = {{
+    {"depth", "peak depth", "m", "m"},
+    {"speed", "peak speed", "m/s", "mps"},
+    {"pressure", "peak pressure", "kPa", "kPa"},
+}};
+
+std::string run_csv(const EnsembleResult& result) {
+    std::string header = "run,status";
+    for (const Factor& f : result.runs->plan().factors) header += "," + f.key;
+    for (const Measure& m : result.measures) header += "," + m.key;
+    Csv csv(header + ",simulated_time_s,wall_time_s,particles,hash,fault");
+    for (const RunRecord& run : result.reduction.runs) {
+        csv.number(static_cast<double>(run.run)).word(run.complete() ? "complete" : "failed");
+        for (const std::string& value : run.values) csv.word(value);
+        for (std::size_t m = 0; m < result.measures.size(); ++m)
+            csv.number(m < run.results.size() ? run.results[m] : never);
+        csv.number(run.simulated_time).number(run.wall_time).number(run.particles).word(run.hash).word(run.fault);
+        csv.end_row();
+    }
+    return csv.text();
+}
+
+std::string building_csv(const EnsembleResult& result) {
+    std::string header = "name,probability_hit";
+    for (const double p : result.runs->plan().thresholds.pressure) header += fmt::format(",probability_above_{}kPa", p);
+    Csv csv(header +
+            ",peak_pressure_p50_kPa,peak_pressure_p95_kPa,peak_depth_p50_m,peak_depth_p95_m,first_hit_p05_s,first_hit_"
+            "p50_s");
+    for (const BuildingOdds& b : result.reduction.buildings) {
+        csv.word(b.name).number(b.hit);
+        for (const double share : b.over_pressure) csv.number(share);
+        csv.number(b.median_pressure / 1e3).number(b.high_pressure / 1e3).number(b.median_depth).number(b.high_depth);
+        csv.number(b.early_hit).number(b.median_hit).end_row();
+    }
+    return csv.text();
+}
+
+std::string distribution_csv(const EnsembleResult& result) {
+    std::string header = "result,runs,mean,standard_deviation,least,greatest";
+    for (const double p : table_percentiles) header += fmt::format(",p{:02.0f}", p);
+    Csv csv(header);
+    for (std::size_t m = 0; m < result.measures.size(); ++m) {
+        std::vector<double> values = result.values_of(m);
+        double mean = 0, square = 0;
+        const auto n = static_cast<double>(values.size());
+        for (const double v : values) mean += v / n;
+        for (const double v : values) square += (v - mean) * (v - mean);
+        csv.word(result.measures[m].key).number(n).number(values.empty() ? never : mean);
+        csv.number(values.size() > 1 ? std::sqrt(square / (n - 1)) : never);
+        csv.number(percentile(values, 0)).number(percentile(values, 100));
+        for (const double p : table_percentiles) csv.number(percentile(values, p));
+        csv.end_row();
+    }
+    return csv.text();
+}
+
+std::string sensitivity_csv(const EnsembleResult& result) {
+    const SensitivityKind kind = result.sensitivity.front().kind;
+    Csv csv(kind == SensitivityKind::variance
+                ? "result,factor,first_order,first_order_low,first_order_high,total,total_low,total_high"
+            : kind == SensitivityKind::screening ? "result,factor,mean_absolute_effect,mean_effect,standard_deviation"
+                                                 : "result,factor,rank_correlation");
+    for (std::size_t m = 0; m < result.measures.size(); ++m) {
+        const Sensitivity& s = result.sensitivity[m];
+        for (std::size_t k = 0; k < s.effects.size(); ++k) {
+            const FactorEffect& e = s.effects[k];
+            csv.word(result.measures[m].key).word(result.runs->plan().factors[k].key);
+            if (kind == SensitivityKind::variance) {
+                csv.row({e.first.value, e.first.low, e.first.high, e.total.value, e.total.low, e.total.high});
+            } else if (kind == SensitivityKind::screening) {
+                csv.row({e.mean_size, e.mean, e.deviation});
+            } else {
+                csv.row({e.correlation});
+            }
+        }
+    }
+    return csv.text();
+}
+
+Json effect_json(SensitivityKind kind, const std::string& factor, const FactorEffect& e) {
+    const auto interval = [](const Estimate& v) { return Json{v.value, v.low, v.high}; };
+    Json json = {{"factor", factor}};
+    if (kind == SensitivityKind::variance) {
+        json["first_order"] = interval(e.first);
+        json["total"] = interval(e.total);
+    } else if (kind == SensitivityKind::screening) {
+        json["mean_absolute_effect"] = e.mean_size;
+        json["mean_effect"] = e.mean;
+        json["standard_deviation"] = e.deviation;
+    } else {
+        json["rank_correlation"] = e.correlation;
+    }
+    return json;
+}
+
+/// Maps of thresholds that are counted no more must not lie beside those that are.
+void remove_old_maps(const fs::path& folder, const std::set<std::string>& wanted) {
+    std::error_code error;
+    for (const fs::directory_entry& entry : fs::directory_iterator(folder, error)) {
+        const fs::path& file = entry.path();
+        const std::string stem = file.stem().string();
+        const bool ours =
+            stem.starts_with("probability_") && (file.extension() == ".tif" || file.extension() == ".qml");
+        if (ours && wanted.count(stem) == 0) fs::remove(file, error);
+    }
+}
+
+Status write_maps(const EnsembleResult& result, const fs::path& folder) {
+    std::set<std::string> written;
+    for (const EnsembleMap& map : result.reduction.maps) {
+        const HazardMap style = style_of(map);
+        written.insert(style.file);
+        if (map.grid.values.empty()) continue;  // no run came anywhere
+        const Grid<float> grid = in_unit(map.grid, style.factor);
+        const std::string note = result.scene->spec.scene.reconstruction ? " (reconstruction)" : "";
+        const RasterBand band{&grid, fmt::format("{} of {} runs{}", style.description, result.reduction.complete, note),
+                              style.unit};
+        const std::string stem = (folder / style.file).string();
+        if (Status s = write_cog(stem + ".tif", band, result.scene->crs); !s) return s;
+        if (Status s = write_text_file(stem + ".qml", qgis_style(style, greatest(grid))); !s) return s;
+    }
+    remove_old_maps(folder, written);
+    return {};
+}
+
+}  // namespace
+
+std::vector<double> EnsembleResult::values_of(std::size_t measure) const {
+    std::vector<double> values;
+    for (const RunRecord& run : reduction.runs) {
+        if (run.complete() && measure < run.results.size() && std::isfinite(run.results[measure])) {
+            values.push_back(run.results[measure]);
+        }
+    }
+    return values;
+}
+
+EnsembleResult summarise(const Scene& scene, const PlannedRuns& runs, Reduction reduction) {
+    EnsembleResult result;
+    result.scene = &scene;
+    result.runs = &runs;
+    result.reduction = std::move(reduction);
+    result.measures = measures_of(scene);
+    for (std::size_t m = 0; m < result.measures.size(); ++m) {
+        std::vector<double> values(runs.count(), never);
+        for (const RunRecord& run : result.reduction.runs) {
+            if (run.complete() && m < run.results.size()) values[run.run] = run.results[m];
+        }
+        result.sensitivity.push_back(sensitivity_of(runs.plan().design, runs.points(), values));
+    }
+    return result;
+}
+
+HazardMap style_of(const EnsembleMap& map) {
+    if (map.kind == EnsembleMap::Kind::percentile) {
+        HazardMap style = hazard_maps().at(map.map);
+        style.grid = nullptr;
+        style.file += fmt::format("_p{:02.0f}", map.level);
+        style.title += fmt::format(", {:.0f}th percentile", map.level);
+        style.description = fmt::format("{}: {:.0f}th percentile", style.description, map.level);
+        return style;
+    }
+    const QuantityWords& words = threshold_words.at(map.map);
+    HazardMap style;
+    style.file = fmt::format("probability_{}_{}{}", words.file, map.level, words.file_unit);
+    style.title = fmt::format("Probability of {} over {} {}", words.name, map.level, words.unit);
+    style.description = fmt::format("share of runs with {} over {} {}, in", words.name, map.level, words.unit);
+    style.unit = "%";
+    style.factor = 100;
+    style.breaks = {1, 5, 10, 25, 50, 75, 90, 95};
+    style.full_scale = 100;
+    style.ramp = {300, 0.05, 262, 0.13, 0.94, 0.26};
+    return style;
+}
+
+Json statistics_json(const EnsembleResult& result) {
+    const Reduction& r = result.reduction;
+    const std::vector<Factor>& factors = result.runs->plan().factors;
+    Json failed = Json::array(), measures = Json::array(), buildings = Json::array();
+    for (const RunRecord& run : r.runs) {
+        if (!run.complete()) failed.push_back({{"run", run.run}, {"values", run.values}, {"fault", run.fault}});
+    }
+    for (std::size_t m = 0; m < result.measures.size(); ++m) {
+        std::vector<double> values = result.values_of(m);
+        Json entry = {{"result", result.measures[m].key}, {"runs", values.size()}};
+        for (const double p : table_percentiles)
+            entry[fmt::format("p{:02.0f}", p)] = number_or_null<Json>(percentile(values, p));
+        entry["sensitivity"] = Json::array();
+        const Sensitivity& s = result.sensitivity[m];
+        for (std::size_t k = 0; k < s.effects.size(); ++k)
+            entry["sensitivity"].push_back(effect_json(s.kind, factors[k].key, s.effects[k]));
+        measures.push_back(entry);
+    }
+    for (const BuildingOdds& b : r.buildings) {
+        buildings.push_back({{"name", b.name},
+                             {"probability_hit", b.hit},
+                             {"probability_above_threshold", b.over_pressure},
+                             {"peak_pressure_p50_kPa", b.median_pressure / 1e3},
+                             {"peak_pressure_p95_kPa", b.high_pressure / 1e3},
+                             {"first_hit_p50_s", number_or_null<Json>(b.median_hit)}});
+    }
+    const Thresholds& t = result.runs->plan().thresholds;
+    return {{"runs", result.runs->count()},
+            {"complete", r.complete},
+            {"failed", failed},
+            {"missing", r.missing},
+            {"thresholds", {{"depth_m", t.depth}, {"speed_mps", t.speed}, {"pressure_kPa", t.pressure}}},
+            {"results", measures},
+            {"buildings", buildings}};
+}
+
+Status write_ensemble(const EnsembleResult& result, const fs::path& folder) {
+    if (Status s = write_maps(result, folder); !s) return s;
+    if (Status s = write_text_file(folder / "runs.csv", run_csv(result)); !s) return s;
+    if (Status s = write_text_file(folder / "buildings.csv", building_csv(result)); !s) return s;
+    if (Status s = write_text_file(folder / "distributions.csv", distribution_csv(result)); !s) return s;
+    if (Status s = write_text_file(folder / "sensitivity.csv", sensitivity_csv(result)); !s) return s;
+    const Result<std::string> report = render_ensemble_report(result);
+    if (!report) return report.error();
+    if (Status s = write_text_file(folder / "report.html", *report); !s) return s;
+    return write_text_file(folder / "statistics.json", statistics_json(result).dump(2) + "\n");
+}
+
+}  // namespace talus

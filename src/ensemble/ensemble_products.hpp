@@ -1,0 +1,46 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+#include "ensemble/plan.hpp"
+#include "ensemble/reduction.hpp"
+#include "stats/sensitivity.hpp"
+#include "core/result.hpp"
+#include "products/hazard_map.hpp"
+#include "scene/scene.hpp"
+
+namespace talus {
+
+/// An ensemble's runs, counted; what its products say.
+struct EnsembleResult {
+    const Scene* scene = nullptr;  ///< as given, before factors
+    const PlannedRuns* runs = nullptr;
+    Reduction reduction;
+    std::vector<Measure> measures;
+    std::vector<Sensitivity> sensitivity;  ///< per measure
+
+    /// The values of one measure over the complete runs; NaN left out.
+    [[nodiscard]] std::vector<double> values_of(std::size_t measure) const;
+};
+
+/// Adds measures and sensitivity. `scene` and `runs` must outlive the result.
+[[nodiscard]] EnsembleResult summarise(const Scene& scene, const PlannedRuns& runs, Reduction reduction);
+
+/// How a map of an ensemble is called and coloured: "probability_depth_0.1m", "peak_depth_p95".
+[[nodiscard]] HazardMap style_of(const EnsembleMap& map);
+
+/// Maps (.tif + .qml), runs.csv, buildings.csv, distributions.csv, sensitivity.csv, statistics.json and report.html
+/// into the folder, over those of an earlier call. Errors name the file and the cause.
+[[nodiscard]] Status write_ensemble(const EnsembleResult& result, const std::filesystem::path& folder);
+
+/// Counts, percentiles of every measure, odds of every building, sensitivity. A value that does not exist is null.
+[[nodiscard]] nlohmann::ordered_json statistics_json(const EnsembleResult& result);
+
+/// The self-contained page. Errors: a picture could not be encoded.
+[[nodiscard]] Result<std::string> render_ensemble_report(const EnsembleResult& result);
+
+}  // namespace talus

@@ -1,0 +1,38 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "ensemble/plan.hpp"
+#include "ensemble/reduction.hpp"
+#include "core/result.hpp"
+#include "products/hazard_map.hpp"
+
+namespace talus {
+
+/// A map of an ensemble, as it lies in the folder.
+struct FinishedMap {
+    EnsembleMap::Kind kind = EnsembleMap::Kind::probability;
+    std::size_t map = 0;  ///< index into recorded_maps
+    double level = 0;     ///< the threshold in the map's unit, or the percentile in %
+    HazardMap style;      ///< name, title, unit
+    std::filesystem::path file;
+};
+
+/// What the folder of an ensemble says once all its runs are counted.
+struct FinishedEnsemble {
+    std::string name;  ///< of the folder
+    std::size_t complete = 0, failed = 0;
+    std::vector<Factor> factors;
+    std::string terrain_hash;  ///< checksum of the terrain that it was computed on; empty: not told
+    std::vector<FinishedMap> maps;
+};
+
+/// Reads what `talus ensemble` has written there, without the maps' cells. Errors: no ensemble, not finished, runs that
+/// are missing, nothing mapped.
+[[nodiscard]] Result<FinishedEnsemble> read_finished_ensemble(const std::filesystem::path& folder);
+
+}  // namespace talus

@@ -1,0 +1,182 @@
+#include "ensemble/run_record.hpp"
+
+#include <bit>
+#include <cmath>
+#include <cstring>
+#include <fstream>
+#include <numbers>
+#include <system_error>
+#include <unistd.h>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "core/number_or_null.hpp"
+#include "ensemble/predict.hpp"
+#include "products/text_file.hpp"
+
+namespace talus {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+static_assert(std::endian::native == std::endian::little, "records are written as the machine holds them");
+
+constexpr double degrees = 180 / std::numbers::pi;
+
+double number_of(const Json& json) {
+    return json.is_number() ? json.get<double>() : never;
+}
+
+Json numbers_json(const std::vector<double>& values) {
+    Json list = Json::array();
+    for (const double v : values) list.push_back(number_or_null<Json>(v));
+    return list;
+}
+
+Json building_json(const BuildingImpact& b) {
+    return {b.name,
+            b.hit,
+            number_or_null<Json>(b.first_hit_time),
+            number_or_null<Json>(b.peak_force),
+            number_or_null<Json>(b.peak_pressure),
+            number_or_null<Json>(b.peak_depth),
+            number_or_null<Json>(b.peak_dynamic_pressure)};
+}
+
+BuildingImpact building_of(const Json& j) {
+    return {j.at(0).get<std::string>(), j.at(1).get<bool>(), number_of(j.at(2)), number_of(j.at(3)),
+            number_of(j.at(4)),         number_of(j.at(5)),  number_of(j.at(6))};
+}
+
+Json header_json(const RunRecord& r) {
+    Json buildings = Json::array();
+    for (const BuildingImpact& b : r.buildings) buildings.push_back(building_json(b));
+    const GridGeometry& g = r.geometry;
+    return {{"run", r.run},
+            {"fault", r.fault},
+            {"values", r.values},
+            {"results", numbers_json(r.results)},
+            {"buildings", buildings},
+            {"simulated_time_s", r.simulated_time},
+            {"wall_time_s", r.wall_time},
+            {"particles", r.particles},
+            {"hash", r.hash},
+            {"map", {g.x_min, g.y_min, g.cell, g.columns, g.rows}}};
+}
+
+RunRecord record_of(const Json& j) {
+    RunRecord r;
+    r.run = j.at("run").get<std::size_t>();
+    r.fault = j.at("fault").get<std::string>();
+    r.values = j.at("values").get<std::vector<std::string>>();
+    for (const Json& v : j.at("results")) r.results.push_back(number_of(v));
+    for (const Json& b : j.at("buildings")) r.buildings.push_back(building_of(b));
+    r.simulated_time = j.at("simulated_time_s").get<double>();
+    r.wall_time = j.at("wall_time_s").get<double>();
+    r.particles = j.at("particles").get<std::uint32_t>();
+    r.hash = j.at("hash").get<std::string>();
+    const Json& map = j.at("map");
+    r.geometry = {map.at(0).get<double>(), map.at(1).get<double>(), map.at(2).get<double>(), map.at(3).get<int>(),
+                  map.at(4).get<int>()};
+    return r;
+}
+
+/// Ground that debris reached, m2.
+double reached_area(const HazardMaps& maps) {
+    std::size_t cells = 0;
+    for (const float v : maps.peak_depth.values) cells += std::isnan(v) ? 0 : 1;
+    const double cell = maps.peak_depth.geometry.cell;
+    return static_cast<double>(cells) * cell * cell;
+}
+
+double greatest_of(const Grid<float>& grid) {
+    double most = 0;
+    for (const float v : grid.values) {
+        if (v > most) most = v;
+    }
+    return most;
+}
+
+}  // namespace
+
+std::vector<Measure> measures_of(const Scene& scene) {
+    std::vector<Measure> list = {{"run_out_m", "Run-out (chainage of the front)", "m"},
+                                 {"drop_m", "Drop from crown to toe", "m"},
+                                 {"runout_angle_deg", "Runout angle", "deg"},
+                                 {"travel_angle_deg", "Travel angle of the centres of mass", "deg"},
+                                 {"reached_area_m2", "Area reached", "m2"},
+                                 {"largest_depth_m", "Largest peak depth", "m"},
+                                 {"largest_speed_mps", "Largest peak speed", "m/s"},
+                                 {"duration_s", "Time until the run ended", "s"}};
+    if (!scene.buildings.empty()) list.push_back({"buildings_hit", "Buildings hit", ""});
+    for (const ObservedValue& o : observed_values(scene)) list.push_back({o.key, o.name, o.unit});
+    return list;
+}
+
+std::vector<double> measure(const Scene& scene, const RunResult& result) {
+    const Observation& o = result.observation;
+    std::vector<double> values = {
+        o.run_out.front_chainage,         o.run_out.drop,       o.run_out.runout_angle * degrees,
+        o.run_out.travel_angle * degrees, reached_area(o.maps), greatest_of(o.maps.peak_depth),
+        greatest_of(o.maps.peak_speed),   result.simulated_time};
+    if (!scene.buildings.empty()) {
+        double hit = 0;
+        for (const BuildingImpact& b : o.buildings) hit += b.hit ? 1 : 0;
+        values.push_back(hit);
+    }
+    for (const double predicted : predicted_values(scene, o)) values.push_back(predicted);
+    return values;
+}
+
+Status write_run_record(const std::filesystem::path& file, const RunRecord& record, const HazardMaps& maps) {
+    std::string text = header_json(record).dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
+    for (const auto map : recorded_maps) {
+        const std::vector<float>& values = (maps.*map).values;
+        if (values.size() != record.geometry.size()) continue;  // a run that failed has none
+        const std::size_t at = text.size();
+        text.resize(at + values.size() * sizeof(float));
+        std::memcpy(text.data() + at, values.data(), values.size() * sizeof(float));
+    }
+    const std::filesystem::path unfinished =
+        file.parent_path() / fmt::format(".{}.{}", file.filename().string(), getpid());
+    if (Status s = write_text_file(unfinished, text); !s) return s;
+    std::error_code error;
+    std::filesystem::rename(unfinished, file, error);
+    if (error) return Error{fmt::format("{}: cannot be given its name: {}", file.string(), error.message())};
+    return {};
+}
+
+Result<RunRecord> read_run_record(const std::filesystem::path& file) {
+    std::ifstream in(file, std::ios::binary);
+    std::string line;
+    if (!in || !std::getline(in, line)) return Error{file.string() + ": cannot be read; delete it to run it again"};
+    const Json json = Json::parse(line, nullptr, false);
+    try {
+        RunRecord record = record_of(json);
+        std::error_code error;
+        const auto bytes = std::filesystem::file_size(file, error);
+        const std::size_t maps = record.complete() ? recorded_maps.size() * record.geometry.size() * sizeof(float) : 0;
+        if (!error && bytes == line.size() + 1 + maps) return record;
+    } catch (const Json::exception&) {  // falls through to the message below
+    }
+    return Error{file.string() + ": is no record of a run, or cut off; delete it to run it again"};
+}
+
+Result<std::vector<float>> read_map_rows(const std::filesystem::path& file, const RunRecord& record, std::size_t map,
+                                         int first, int last) {
+    std::ifstream in(file, std::ios::binary);
+    std::string line;
+    const std::size_t columns = static_cast<std::size_t>(record.geometry.columns);
+    std::vector<float> rows(columns * static_cast<std::size_t>(std::max(0, last - first)));
+    if (rows.empty()) return rows;
+    if (in && std::getline(in, line)) {
+        const std::size_t cells = map * record.geometry.size() + columns * static_cast<std::size_t>(first);
+        in.seekg(static_cast<std::streamoff>(line.size() + 1 + cells * sizeof(float)));
+        in.read(reinterpret_cast<char*>(rows.data()), static_cast<std::streamsize>(rows.size() * sizeof(float)));
+    }
+    if (!in) return Error{file.string() + ": cannot be read"};
+    return rows;
+}
+
+}  // namespace talus

@@ -1,0 +1,66 @@
+#include "stats/prediction_emulator.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace talus {
+
+namespace {
+
+constexpr double label_doubt = 0.5;  // standard deviation half way between the labels
+
+}  // namespace
+
+PredictionEmulator PredictionEmulator::fit(const Points& points, const std::vector<double>& values, double unreached) {
+    PredictionEmulator made;
+    made.unreached_ = unreached;
+    Points reached;
+    std::vector<double> given, labels;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        labels.push_back(std::isfinite(values[i]) ? 1 : -1);
+        if (!std::isfinite(values[i])) continue;
+        reached.push_back(points[i]);
+        given.push_back(values[i]);
+    }
+    if (!reached.empty()) made.value_ = Emulator::fit(std::move(reached), given);
+    if (!given.empty() && given.size() < points.size()) made.reach_ = Emulator::fit(points, labels);
+    return made;
+}
+
+double PredictionEmulator::reached_at(const std::vector<double>& point) const {
+    if (!reach_) return value_ ? 1 : 0;
+    // Least-squares classification (Rasmussen & Williams 2006, section 6.5), read as a probability. A smooth function
+    // is too sure of itself beside a step: where it says neither 1 nor -1 clearly, nothing is clear.
+    const Emulator::Estimate label = reach_->at(point);
+    const double doubt = label_doubt * label_doubt * std::max(0.0, 1 - label.mean * label.mean);
+    const double deviation = std::sqrt(label.variance + label.noise + doubt);
+    return 0.5 * std::erfc(-label.mean / deviation / std::numbers::sqrt2);
+}
+
+PredictionEmulator::Estimate PredictionEmulator::at(const std::vector<double>& point) const {
+    return {reached_at(point), value_ ? value_->at(point) : Emulator::Estimate{unreached_, 0, 0}};
+}
+
+double PredictionEmulator::mean_at(const std::vector<double>& point) const {
+    return value_ ? value_->mean_at(point) : unreached_;
+}
+
+PredictionEmulator PredictionEmulator::believing(const std::vector<double>& point) const {
+    PredictionEmulator more = *this;
+    if (value_ && reached_at(point) > 0.5) more.value_ = value_->with(point, value_->mean_at(point));
+    if (reach_) more.reach_ = reach_->with(point, reach_->mean_at(point));
+    return more;
+}
+
+double PredictionEmulator::reach_told() const {
+    if (!reach_) return 1;
+    double right = 0, count = 0;
+    for (const Emulator::LeftOut& run : reach_->leave_one_out()) {
+        right += run.computed * run.mean > 0 ? 1 : 0;
+        ++count;
+    }
+    return right / count;
+}
+
+}  // namespace talus

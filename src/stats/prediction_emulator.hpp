@@ -1,0 +1,44 @@
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "stats/emulator.hpp"
+
+namespace talus {
+
+/// What runs would predict for one observation: whether their debris comes there at all, and what follows if it does.
+/// A front that stops in a bend leaves no value behind it, not a small one, so that one smooth function over both would
+/// invent values in between.
+class PredictionEmulator {
+  public:
+    struct Estimate {
+        double reached = 1;  ///< probability
+        Emulator::Estimate value;
+    };
+
+    /// `values`: one per point, NaN where the run gives none; `unreached` stands for those.
+    [[nodiscard]] static PredictionEmulator fit(const Points& points, const std::vector<double>& values,
+                                                double unreached);
+
+    [[nodiscard]] Estimate at(const std::vector<double>& point) const;
+    /// Mean of the value, if there is one.
+    [[nodiscard]] double mean_at(const std::vector<double>& point) const;
+    [[nodiscard]] double reached_at(const std::vector<double>& point) const;
+    /// As if a run there had given what is expected of it.
+    [[nodiscard]] PredictionEmulator believing(const std::vector<double>& point) const;
+
+    [[nodiscard]] double unreached() const { return unreached_; }
+    /// Of runs that give a value; none where no run does.
+    [[nodiscard]] const std::optional<Emulator>& value() const { return value_; }
+    /// The share of runs of which the others tell rightly whether they give a value.
+    [[nodiscard]] double reach_told() const;
+
+  private:
+    PredictionEmulator() = default;
+    std::optional<Emulator> value_;
+    std::optional<Emulator> reach_;  // of 1 and -1; none where all or no runs give a value
+    double unreached_ = 0;
+};
+
+}  // namespace talus

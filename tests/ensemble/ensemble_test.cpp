@@ -1,0 +1,216 @@
+#include "ensemble/ensemble.hpp"
+
+#include <atomic>
+#include <optional>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "ensemble/ensemble_products.hpp"
+#include "scene/scene_folder.hpp"
+
+namespace talus {
+namespace {
+
+using testing::HasSubstr;
+
+class EnsembleTest : public SceneFolder {
+  protected:
+    EnsembleTest() {
+        write_valley(
+            "[solver]\nparticle_spacing_m = 3\nend_time_s = 2\nstop_momentum_fraction = 0\n[[observation]]\n"
+            "chainage_m = 20\nfront_velocity_mps = 5\n");
+        source.file = folder / "scene.toml";
+        plan.runs = 6;
+        plan.factors.clear();
+        EXPECT_TRUE(add_factor(plan, "material.friction_coefficient=0.1:0.4"));
+        EXPECT_TRUE(add_factor(plan, "release.volume_m3=600:1200"));
+        scene.emplace(*load_scene(source.file));
+    }
+
+    [[nodiscard]] PlannedRuns planned() const {
+        auto runs = PlannedRuns::make(plan, source, *scene);
+        EXPECT_TRUE(runs) << (runs ? "" : runs.error().message);
+        return *std::move(runs);
+    }
+    [[nodiscard]] Result<EnsembleFolder> opened(const std::string& name) const {
+        return EnsembleFolder::open(folder / name, ensemble_definition(planned(), source, *scene, "valley"));
+    }
+    EnsembleOutcome run(const std::string& name, const EnsembleOptions& options) const {
+        auto made = opened(name);
+        EXPECT_TRUE(made) << (made ? "" : made.error().message);
+        const auto outcome = run_ensemble(planned(), source, *made, options);
+        EXPECT_TRUE(outcome) << (outcome ? "" : outcome.error().message);
+        return *outcome;
+    }
+    [[nodiscard]] std::vector<std::string> hashes(const std::vector<std::string>& names) const {
+        std::vector<std::filesystem::path> folders;
+        for (const auto& name : names) folders.push_back(folder / name);
+        const auto reduction = reduce(folders, plan.runs, plan.thresholds);
+        EXPECT_TRUE(reduction) << (reduction ? "" : reduction.error().message);
+        std::vector<std::string> list;
+        for (const RunRecord& r : reduction->runs) list.push_back(r.hash + r.fault);
+        return list;
+    }
+
+    SceneSource source;
+    EnsemblePlan plan;
+    std::optional<Scene> scene;
+};
+
+TEST_F(EnsembleTest, IsTheSameSideBySideOneAfterTheOtherAndInShards) {
+    run("one", {.runs_at_once = 1});
+    run("two", {.runs_at_once = 2});
+    run("first", {.runs_at_once = 1, .shard = 0, .shard_count = 2});
+    run("second", {.runs_at_once = 2, .shard = 1, .shard_count = 2});
+    const auto expected = hashes({"one"});
+    ASSERT_EQ(expected.size(), 6u);
+    EXPECT_NE(expected[0], expected[1]);
+    EXPECT_EQ(hashes({"two"}), expected);
+    EXPECT_EQ(hashes({"first"}).size(), 3u);
+    EXPECT_EQ(hashes({"first", "second"}), expected);
+}
+
+TEST_F(EnsembleTest, GoesOnWhereItStopped) {
+    std::atomic<bool> stop = false;
+    EnsembleOptions options;
+    options.stop_requested = &stop;
+    options.on_progress = [&](const EnsembleProgress& p) { stop = p.done >= 2; };
+    const EnsembleOutcome first = run("part", options);
+    EXPECT_TRUE(first.interrupted);
+    EXPECT_EQ(first.done, 2u);
+    const EnsembleOutcome rest = run("part", {});
+    EXPECT_FALSE(rest.interrupted);
+    EXPECT_EQ(rest.resumed, 2u);
+    EXPECT_EQ(rest.done, 6u);
+    run("whole", {});
+    EXPECT_EQ(hashes({"part"}), hashes({"whole"}));
+}
+
+TEST_F(EnsembleTest, ARunThatFailsIsRecordedAndTheRestGoOn) {
+    plan.factors.clear();
+    ASSERT_TRUE(add_factor(plan, "solver.particle_limit=10,100000"));
+    const EnsembleOutcome outcome = run("some", {});
+    EXPECT_EQ(outcome.done + outcome.failed, 6u);
+    EXPECT_EQ(outcome.failed, 3u);
+    const auto reduction = reduce({folder / "some"}, 6, plan.thresholds);
+    ASSERT_TRUE(reduction);
+    for (const RunRecord& r : reduction->runs) {
+        EXPECT_EQ(r.complete(), r.values[0] == "100000");
+        if (!r.complete()) {
+            EXPECT_THAT(r.fault, HasSubstr("particle_limit"));
+        }
+    }
+    EXPECT_EQ(run("some", {}).resumed, 6u);  // it would fail again
+    const EnsembleOutcome again = run("some", {.retry_failed = true});
+    EXPECT_EQ(again.resumed, 3u);
+}
+
+TEST_F(EnsembleTest, AFolderBelongsToOneEnsembleAndOneProcess) {
+    {
+        const auto held = opened("mine");
+        ASSERT_TRUE(held);
+        const auto second = opened("mine");
+        ASSERT_FALSE(second);
+        EXPECT_THAT(second.error().message, HasSubstr("another process computes this ensemble"));
+    }
+    EXPECT_TRUE(opened("mine"));
+    plan.seed = 2;
+    const auto other = opened("mine");
+    ASSERT_FALSE(other);
+    EXPECT_THAT(other.error().message, HasSubstr("holds another ensemble (seed: 1, not 2)"));
+    write("notes.txt", "mine");
+    std::filesystem::create_directories(folder / "full");
+    write("full/notes.txt", "mine");
+    EXPECT_FALSE(opened("full"));
+    EXPECT_FALSE(opened("notes.txt"));
+}
+
+TEST_F(EnsembleTest, AllRunsHaveTheSpacingAndTheMapOfTheScene) {
+    const PlannedRun planned_run = planned().at(0);
+    const auto loaded = load_scene(source.file, planned_run.overrides);
+    ASSERT_TRUE(loaded) << loaded.error().message;
+    EXPECT_DOUBLE_EQ(*loaded->spec.solver.particle_spacing, 3);
+    EXPECT_TRUE(loaded->spec.outputs.map_cell);
+    EXPECT_FALSE(loaded->spec.releases[0].thickness);  // the factor takes the place of the scene's thickness
+    EXPECT_EQ(fmt::format("{:.9g}", *loaded->spec.releases[0].volume), planned_run.values[1]);
+}
+
+TEST_F(EnsembleTest, WritesMapsTablesAndAReport) {
+    run("done", {.runs_at_once = 2});
+    const PlannedRuns runs = planned();
+    auto reduction = reduce({folder / "done"}, 6, plan.thresholds);
+    ASSERT_TRUE(reduction);
+    const EnsembleResult result = summarise(*scene, runs, *std::move(reduction));
+    const Status written = write_ensemble(result, folder / "done");
+    ASSERT_TRUE(written) << written.error().message;
+    const auto raster = read_value_raster(path("done/probability_depth_0.5m.tif"), scene->crs);
+    ASSERT_TRUE(raster) << raster.error().message;
+    float most = 0;
+    for (const float v : raster->grid.values) most = std::max(most, v);
+    EXPECT_EQ(most, 100);  // in percent; all runs cover the release
+    for (const char* file : {"peak_depth_p95.tif", "peak_depth_p95.qml", "probability_pressure_15kPa.qml", "runs.csv",
+                             "buildings.csv", "distributions.csv", "sensitivity.csv", "statistics.json"}) {
+        EXPECT_TRUE(std::filesystem::exists(folder / "done" / file)) << file;
+    }
+    const auto page = render_ensemble_report(result);
+    ASSERT_TRUE(page) << page.error().message;
+    for (const char* part : {"6</strong> <span class=\"unit\">of 6", "material.friction_coefficient", "Latin hypercube",
+                             "Run-out of all runs", "Share of the complete runs", "Front velocity at 20 m"}) {
+        EXPECT_THAT(*page, HasSubstr(part));
+    }
+    EXPECT_EQ(page->find("{{"), std::string::npos);
+    EXPECT_EQ(page->find("nan"), std::string::npos);
+}
+
+TEST_F(EnsembleTest, BadPlansAreRefusedBeforeAnythingRuns) {
+    const auto why = [&](const std::string& factor) {
+        EnsemblePlan bad;
+        EXPECT_TRUE(add_factor(bad, factor));
+        const auto runs = PlannedRuns::make(bad, source, *scene);
+        return runs ? std::string("(accepted)") : runs.error().message;
+    };
+    EXPECT_THAT(why("material.friction_coefficent=0:1"), HasSubstr("nearest known key: friction_coefficient"));
+    EXPECT_THAT(why("material.friction_coefficient=0:11"), HasSubstr("from 0 to 10"));
+    EXPECT_THAT(why("solver.kernel=0:1"), HasSubstr("is not a number; give a list"));
+    EXPECT_THAT(why("solver.kernel=spiky,soft"), HasSubstr("must be one of"));
+    EXPECT_EQ(why("material.friction_coefficient=normal:0.1:0.5"), "(accepted)");  // cut at 0
+    EnsemblePlan none;
+    EXPECT_FALSE(PlannedRuns::make(none, source, *scene));
+    EXPECT_FALSE(parse_thresholds("1,0.5", "--depth-m"));
+    EXPECT_FALSE(parse_thresholds("1,", "--depth-m"));
+    EXPECT_EQ(*parse_thresholds("0.5,1", "--depth-m"), (std::vector<double>{0.5, 1}));
+}
+
+TEST_F(EnsembleTest, APlanFileSaysTheSame) {
+    write("plan.toml",
+          "[ensemble]\ndesign = \"saltelli\"\nruns = 40\nseed = 9\n[thresholds]\ndepth_m = [0.2, 2]\n[[factor]]\n"
+          "key = \"material.friction_coefficient\"\nlow = 0.2\nhigh = 0.5\n[[factor]]\nkey = \"material.viscosity\"\n"
+          "distribution = \"normal\"\nmean = 0.1\ndeviation = 0.02\n[[factor]]\nkey = \"solver.kernel\"\n"
+          "values = [\"spiky\", \"cubic_spline\"]\n");
+    const auto read = read_plan(folder / "plan.toml");
+    ASSERT_TRUE(read) << read.error().message;
+    EXPECT_EQ(read->design, DesignKind::saltelli);
+    EXPECT_EQ(read->seed, 9u);
+    EXPECT_EQ(read->thresholds.depth, (std::vector<double>{0.2, 2}));
+    ASSERT_EQ(read->factors.size(), 3u);
+    EXPECT_EQ(read->factors[0].distribution.written(), "0.2:0.5");
+    EXPECT_EQ(read->factors[1].distribution.written(), "normal:0.1:0.02");
+    EXPECT_EQ(read->factors[2].distribution.written(), "spiky,cubic_spline");
+    EXPECT_EQ(PlannedRuns::make(*read, source, *scene)->count(), 40u);  // 8 blocks of 5
+
+    const auto why = [&](const std::string& text) {
+        write("bad.toml", text);
+        const auto bad = read_plan(folder / "bad.toml");
+        return bad ? std::string("(accepted)") : bad.error().message;
+    };
+    EXPECT_THAT(why("[ensemble]\nrun = 3\n"), HasSubstr("bad.toml:2: unknown key \"run\"; nearest known key: runs"));
+    EXPECT_THAT(why("[ensemble]\ndesign = \"lhs\"\n"), HasSubstr("must be one of monte_carlo"));
+    EXPECT_THAT(why("[[factor]]\nkey = \"a.b\"\nlow = 2\nhigh = 1\n"), HasSubstr("the range is empty"));
+    EXPECT_THAT(why("[[factor]]\nkey = \"a.b\"\nlow = 2\n"), HasSubstr("low and high must be given"));
+    EXPECT_THAT(why("[thresholds]\ndepth_m = [1, 0.5]\n"), HasSubstr("must be ascending"));
+    EXPECT_THAT(why("[factors]\n"), HasSubstr("is unknown"));
+}
+
+}  // namespace
+}  // namespace talus

@@ -1,0 +1,170 @@
+#include "ensemble/reduction.hpp"
+
+#include <cmath>
+#include <limits>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "scene/scene_folder.hpp"
+
+namespace talus {
+namespace {
+
+using testing::HasSubstr;
+
+constexpr float nan_value = std::numeric_limits<float>::quiet_NaN();
+
+class ReductionTest : public SceneFolder {
+  protected:
+    ReductionTest() { std::filesystem::create_directories(folder / "runs"); }
+
+    /// A run whose maps have one row of cells from `first_column` on: depths; speeds twice, pressures 1000 times,
+    /// arrivals 10 times as much; deposits half.
+    void write_run(std::size_t run, int first_column, const std::vector<float>& depths, double pressure = 0) const {
+        const GridGeometry g{100 + 2.0 * first_column, 50, 2, static_cast<int>(depths.size()), 1};
+        HazardMaps maps;
+        for (const auto map : recorded_maps) maps.*map = Grid<float>(g, nan_value);
+        for (std::size_t i = 0; i < depths.size(); ++i) {
+            maps.peak_depth.values[i] = depths[i];
+            maps.peak_speed.values[i] = 2 * depths[i];
+            maps.peak_pressure.values[i] = 1000 * depths[i];
+            maps.arrival_time.values[i] = 10 * depths[i];
+            maps.deposit_depth.values[i] = depths[i] / 2;
+        }
+        RunRecord record;
+        record.run = run;
+        record.values = {"0.3"};
+        record.results = {10.0 * static_cast<double>(run), never};
+        record.buildings = {{"shed", pressure > 0, pressure > 0 ? 4.0 : never, 1, pressure, 0.5, 0}};
+        record.geometry = g;
+        ASSERT_TRUE(write_run_record(file(run), record, maps));
+    }
+    void write_failed(std::size_t run) const {
+        RunRecord record;
+        record.run = run;
+        record.fault = "time step too small";
+        record.values = {"0.9"};
+        ASSERT_TRUE(write_run_record(file(run), record, {}));
+    }
+    [[nodiscard]] std::filesystem::path file(std::size_t run) const {
+        return folder / "runs" / fmt::format("{:06}.run", run);
+    }
+    static const EnsembleMap& find(const Reduction& r, EnsembleMap::Kind kind, std::size_t map, double level) {
+        for (const EnsembleMap& m : r.maps) {
+            if (m.kind == kind && m.map == map && m.level == level) return m;
+        }
+        ADD_FAILURE() << "no such map";
+        return r.maps.front();
+    }
+};
+
+TEST_F(ReductionTest, CountsRunsAboveThresholdsWhereverTheirMapsLie) {
+    write_run(0, 0, {1, 2, nan_value});
+    write_run(1, 1, {3, 0.4F});
+    write_run(2, -1, {0.2F, 0.5F});
+    write_failed(3);
+    const auto r = reduce({folder}, 5, {{0.5}, {1}, {1.5}});
+    ASSERT_TRUE(r) << r.error().message;
+    EXPECT_EQ(r->complete, 3u);
+    EXPECT_EQ(r->failed, 1u);
+    EXPECT_EQ(r->missing, std::vector<std::size_t>{4});
+    const Grid<float>& depth = find(*r, EnsembleMap::Kind::probability, 0, 0.5).grid;
+    EXPECT_EQ(depth.geometry, (GridGeometry{98, 50, 2, 4, 1}));
+    // Columns from x = 98 m: run 2; runs 0 and 2; runs 0 and 1; run 1. Equal to the threshold is not above it.
+    const float third = 1.0F / 3;
+    EXPECT_EQ(depth.values, (std::vector<float>{0, third, 2 * third, 0}));
+    const Grid<float>& pressure = find(*r, EnsembleMap::Kind::probability, 2, 1.5).grid;  // kPa
+    EXPECT_EQ(pressure.values, (std::vector<float>{0, 0, 2 * third, 0}));
+}
+
+TEST_F(ReductionTest, PercentilesCountRunsThatNeverCameAsNothingAndInArrivalAsNever) {
+    write_run(0, 0, {1});
+    write_run(1, 0, {3});
+    write_run(2, 0, {2});
+    write_run(3, 5, {9});
+    const auto r = reduce({folder}, 4, {});
+    ASSERT_TRUE(r);
+    const auto at = [&](std::size_t map, double level, int column) {
+        return find(*r, EnsembleMap::Kind::percentile, map, level).grid.at(column, 0);
+    };
+    EXPECT_EQ(at(0, 50, 0), 1);  // of 0, 1, 2, 3
+    EXPECT_EQ(at(0, 95, 0), 3);
+    EXPECT_TRUE(std::isnan(at(0, 5, 0)));
+    EXPECT_EQ(at(3, 5, 0), 10);  // of 10, 20, 30, never
+    EXPECT_EQ(at(3, 50, 0), 20);
+    EXPECT_TRUE(std::isnan(at(3, 95, 0)));
+    EXPECT_EQ(at(0, 95, 5), 9);  // the only run there
+    EXPECT_TRUE(std::isnan(at(0, 50, 5)));
+    EXPECT_TRUE(std::isnan(at(0, 95, 3)));  // nobody came there
+}
+
+TEST_F(ReductionTest, HangsNeitherOnTheMemoryNorOnTheFoldersOfTheRuns) {
+    for (std::size_t run = 0; run < 20; ++run) {
+        write_run(run, static_cast<int>(run % 5),
+                  {0.1F * static_cast<float>(run), 2.0F - 0.1F * static_cast<float>(run)});
+    }
+    const auto one = reduce({folder}, 20, {});
+    const auto other = folder / "other";
+    std::filesystem::create_directories(other / "runs");
+    for (std::size_t run = 1; run < 20; run += 2)
+        std::filesystem::rename(file(run), other / "runs" / file(run).filename());
+    const auto two = reduce({folder, other}, 20, {}, 1);  // a byte: one row at a time
+    ASSERT_TRUE(one && two);
+    ASSERT_EQ(one->maps.size(), two->maps.size());
+    for (std::size_t m = 0; m < one->maps.size(); ++m) {
+        const auto &a = one->maps[m].grid.values, &b = two->maps[m].grid.values;
+        ASSERT_EQ(a.size(), b.size());
+        for (std::size_t i = 0; i < a.size(); ++i) EXPECT_TRUE(a[i] == b[i] || (std::isnan(a[i]) && std::isnan(b[i])));
+    }
+}
+
+TEST_F(ReductionTest, BuildingsHaveOdds) {
+    for (std::size_t run = 0; run < 10; ++run)
+        write_run(run, 0, {1}, run < 4 ? 10e3 * static_cast<double>(run + 1) : 0);
+    const auto r = reduce({folder}, 10, {{1}, {1}, {15, 30}});
+    ASSERT_TRUE(r);
+    ASSERT_EQ(r->buildings.size(), 1u);
+    const BuildingOdds& b = r->buildings[0];
+    EXPECT_EQ(b.name, "shed");
+    EXPECT_DOUBLE_EQ(b.hit, 0.4);
+    ASSERT_EQ(b.over_pressure.size(), 2u);
+    EXPECT_DOUBLE_EQ(b.over_pressure[0], 0.3);
+    EXPECT_DOUBLE_EQ(b.over_pressure[1], 0.1);
+    EXPECT_EQ(b.median_pressure, 0);
+    EXPECT_EQ(b.high_pressure, 40e3);
+    EXPECT_EQ(b.early_hit, 4);
+    EXPECT_TRUE(std::isnan(b.median_hit));
+}
+
+TEST_F(ReductionTest, ARecordComesBackAsItWasAndACutOneIsRefused) {
+    write_run(2, 3, {1, nan_value, 5});
+    const auto record = read_run_record(file(2));
+    ASSERT_TRUE(record) << record.error().message;
+    EXPECT_EQ(record->run, 2u);
+    EXPECT_EQ(record->results[0], 20);
+    EXPECT_TRUE(std::isnan(record->results[1]));
+    const auto row = read_map_rows(file(2), *record, 4, 0, 1);
+    ASSERT_TRUE(row);
+    EXPECT_EQ((*row)[2], 2.5F);
+    EXPECT_TRUE(std::isnan((*row)[1]));
+
+    std::filesystem::resize_file(file(2), std::filesystem::file_size(file(2)) - 1);
+    const auto cut = reduce({folder}, 3, {});
+    ASSERT_FALSE(cut);
+    EXPECT_THAT(cut.error().message, HasSubstr("000002.run: is no record of a run, or cut off"));
+}
+
+TEST_F(ReductionTest, PercentilesAreNearestRanks) {
+    std::vector<double> values = {40, 15, 50, 20, 35};
+    EXPECT_EQ(percentile(values, 5), 15);
+    EXPECT_EQ(percentile(values, 30), 20);
+    EXPECT_EQ(percentile(values, 40), 20);
+    EXPECT_EQ(percentile(values, 50), 35);
+    EXPECT_EQ(percentile(values, 100), 50);
+    values.clear();
+    EXPECT_TRUE(std::isnan(percentile(values, 50)));
+}
+
+}  // namespace
+}  // namespace talus

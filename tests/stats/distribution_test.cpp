@@ -1,0 +1,73 @@
+#include "stats/distribution.hpp"
+
+#include <cmath>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace talus {
+namespace {
+
+using testing::HasSubstr;
+
+Distribution parsed(const std::string& text) {
+    const auto d = parse_distribution(text);
+    EXPECT_TRUE(d) << (d ? "" : d.error().message);
+    return d ? *d : Distribution{};
+}
+
+TEST(Distribution, QuantilesAreThoseOfItsKind) {
+    EXPECT_DOUBLE_EQ(parsed("0.2:0.6").quantile(0.25), 0.3);
+    EXPECT_NEAR(parsed("log:0.01:100").quantile(0.5), 1, 1e-12);
+    const Distribution normal = parsed("normal:10:2");
+    EXPECT_NEAR(normal.quantile(0.5), 10, 1e-9);
+    EXPECT_NEAR(normal.quantile(0.975), 10 + 2 * 1.959963985, 1e-6);
+    const Distribution triangular = parsed("triangular:0:1:4");
+    EXPECT_NEAR(triangular.quantile(0.25), 1, 1e-12);  // a quarter of the area lies left of the mode
+    EXPECT_NEAR(triangular.quantile(0.0625), 0.5, 1e-12);
+    EXPECT_NEAR(triangular.quantile(1), 4, 1e-12);
+}
+
+TEST(Distribution, ACutNormalStaysWithinItsLimitsAndKeepsItsShape) {
+    const Distribution d = parsed("normal:0:1:-1:1");
+    EXPECT_DOUBLE_EQ(d.quantile(0), -1);
+    EXPECT_DOUBLE_EQ(d.quantile(1), 1);
+    EXPECT_NEAR(d.quantile(0.5), 0, 1e-9);
+    // Half of the 68.27 % within one deviation, and of that half again: 17.07 % between 0 and this.
+    EXPECT_NEAR(std::erf(d.quantile(0.75) / std::sqrt(2.0)) / 2, 0.6826894921 / 4, 1e-9);
+}
+
+TEST(Distribution, AListGivesItsEntriesEquallyOften) {
+    const Distribution d = parsed("a,b,c");
+    int count[3] = {};
+    for (int i = 0; i < 300; ++i) ++count[d.entry((i + 0.5) / 300)[0] - 'a'];
+    for (const int c : count) EXPECT_EQ(c, 100);
+    EXPECT_EQ(d.entry(1), "c");
+}
+
+TEST(Distribution, WhatIsWrittenReadsBackTheSame) {
+    for (const char* text : {"0.1:0.3", "log:0.001:7", "normal:0.4:0.05", "normal:0.4:0.05:0.2:0.6", "triangular:1:2:3",
+                             "spiky,cubic_spline"}) {
+        EXPECT_EQ(parsed(text).written(), text);
+    }
+}
+
+TEST(Distribution, BadOnesAreRefusedWithTheReason) {
+    const auto why = [](const std::string& text) {
+        const auto d = parse_distribution(text);
+        return d ? std::string("(accepted)") : d.error().message;
+    };
+    EXPECT_THAT(why("0.5:0.2"), HasSubstr("the range is empty"));
+    EXPECT_THAT(why("0.5:0.5"), HasSubstr("the range is empty"));
+    EXPECT_THAT(why("0.5:x"), HasSubstr("\"x\" is not a number"));
+    EXPECT_THAT(why("log:0:1"), HasSubstr("must be above 0"));
+    EXPECT_THAT(why("normal:1:0"), HasSubstr("must be above 0"));
+    EXPECT_THAT(why("triangular:0:5:4"), HasSubstr("must lie from 0 to 4"));
+    EXPECT_THAT(why("gauss:0:5"), HasSubstr("write low:high"));
+    EXPECT_THAT(why("1:2:3"), HasSubstr("write low:high"));
+    EXPECT_THAT(why("a,,b"), HasSubstr("empty"));
+    EXPECT_THAT(why("0:inf"), HasSubstr("not a number"));
+}
+
+}  // namespace
+}  // namespace talus
