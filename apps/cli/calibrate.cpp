@@ -10,6 +10,7 @@
 #include "calibrate/recovery.hpp"
 #include "calibrate_text.hpp"
 #include "command.hpp"
+#include "core/try.hpp"
 #include "exit_code.hpp"
 #include "interrupt.hpp"
 #include "products/text_file.hpp"
@@ -53,7 +54,7 @@ Exit codes: as talus run. A run that fails is left out; 3: no run of the design 
 Result<CalibrationPlan> read_arguments(const CalibrateArguments& arguments) {
     EnsemblePlan factors;
     for (const std::string& factor : arguments.factors) {
-        if (Status s = add_factor(factors, factor); !s) return s.error();
+        TALUS_TRY(add_factor(factors, factor));
     }
     CalibrationPlan plan;
     plan.factors = std::move(factors.factors);

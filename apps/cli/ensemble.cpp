@@ -12,6 +12,7 @@
 #include <fmt/format.h>
 
 #include "command.hpp"
+#include "core/try.hpp"
 #include "ensemble/ensemble_products.hpp"
 #include "ensemble_text.hpp"
 #include "exit_code.hpp"
@@ -73,13 +74,11 @@ Status set_thresholds(Thresholds& thresholds, const std::string& depths, const s
                       const std::string& pressures) {
     const auto set = [](std::vector<double>& values, const std::string& text, const char* option) -> Status {
         if (text.empty()) return {};
-        Result<std::vector<double>> parsed = parse_thresholds(text, option);
-        if (!parsed) return parsed.error();
-        values = *std::move(parsed);
+        TALUS_ASSIGN(values, parse_thresholds(text, option));
         return {};
     };
-    if (Status s = set(thresholds.depth, depths, "--depth-m"); !s) return s;
-    if (Status s = set(thresholds.speed, speeds, "--speed-mps"); !s) return s;
+    TALUS_TRY(set(thresholds.depth, depths, "--depth-m"));
+    TALUS_TRY(set(thresholds.speed, speeds, "--speed-mps"));
     return set(thresholds.pressure, pressures, "--pressure-kPa");
 }
 
@@ -100,7 +99,7 @@ Result<EnsemblePlan> read_arguments(const EnsembleArguments& arguments) {
         plan = *std::move(read);
     }
     for (const std::string& factor : arguments.factors) {
-        if (Status s = add_factor(plan, factor); !s) return s.error();
+        TALUS_TRY(add_factor(plan, factor));
     }
     if (arguments.design) {
         const auto design = design_of(*arguments.design);
@@ -112,8 +111,7 @@ Result<EnsemblePlan> read_arguments(const EnsembleArguments& arguments) {
     plan.runs = arguments.runs.value_or(plan.runs);
     plan.levels = arguments.levels.value_or(plan.levels);
     plan.seed = arguments.seed.value_or(plan.seed);
-    if (Status s = set_thresholds(plan.thresholds, arguments.depths, arguments.speeds, arguments.pressures); !s)
-        return s.error();
+    TALUS_TRY(set_thresholds(plan.thresholds, arguments.depths, arguments.speeds, arguments.pressures));
     return plan;
 }
 

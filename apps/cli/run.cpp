@@ -11,6 +11,7 @@
 #include <fmt/format.h>
 
 #include "command.hpp"
+#include "core/try.hpp"
 #include "exit_code.hpp"
 #include "interrupt.hpp"
 #include "params/scene_text.hpp"
@@ -73,19 +74,16 @@ struct Job {
 Result<Job> open_job(const RunArguments& arguments, InterruptWatch& watch) {
     std::vector<std::string> overrides = arguments.overrides;
     if (arguments.threads) overrides.push_back(fmt::format("solver.thread_count={}", *arguments.threads));
-    auto input = open_scene(arguments.scene, overrides, watch);
-    if (!input) return input.error();
-    auto plan = VariantPlan::make(arguments, input->source, input->scene);
-    if (!plan) return plan.error();
-    if (input->unpacked) name_builtin_files(input->scene, input->unpacked->path());
+    TALUS_ASSIGN(auto input, open_scene(arguments.scene, overrides, watch));
+    TALUS_ASSIGN(auto plan, VariantPlan::make(arguments, input.source, input.scene));
+    if (input.unpacked) name_builtin_files(input.scene, input.unpacked->path());
 
     std::unique_ptr<DefaultParent> parent;
     if (arguments.output.empty()) parent = std::make_unique<DefaultParent>();
-    const fs::path shown = parent ? fs::path(DefaultParent::name) / input->short_name : fs::path(arguments.output);
-    auto output = OutputFolder::create(shown, arguments.force);
-    if (!output) return output.error();
-    watch.remove_at_once(output->path());
-    return Job{*std::move(input), *std::move(plan), std::move(parent), shown, *std::move(output)};
+    const fs::path shown = parent ? fs::path(DefaultParent::name) / input.short_name : fs::path(arguments.output);
+    TALUS_ASSIGN(auto output, OutputFolder::create(shown, arguments.force));
+    watch.remove_at_once(output.path());
+    return Job{std::move(input), std::move(plan), std::move(parent), shown, std::move(output)};
 }
 
 /// Looks on while the scene runs: progress, Ctrl-C, and the particle series where the scene wants one.
@@ -132,7 +130,7 @@ class Onlooker {
 
 Status write_report(Job& job, const RunResult& result, const std::vector<Comparison>& comparisons,
                     InterruptWatch& watch) {
-    if (Status s = write_products(job.input.scene, result, job.output.path(), comparisons); !s) return s;
+    TALUS_TRY(write_products(job.input.scene, result, job.output.path(), comparisons));
     // Replacing an earlier result takes two renames; a second Ctrl-C must not fall between them.
     const auto lock = watch.hold();
     return job.output.commit();

@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <utility>
 
+#include "core/try.hpp"
 #include "scene/builtin.hpp"
 
 namespace talus {
@@ -24,9 +25,7 @@ Result<SceneInput> open_scene(const std::string& scene, const std::vector<std::s
         if (s.unpacked->path().empty())
             return Error{"cannot make a temporary folder for the built-in scene; set TMPDIR"};
         watch.remove_at_once(s.unpacked->path());
-        const auto file = unpack_builtin_scene(s.unpacked->path());
-        if (!file) return file.error();
-        s.source.file = *file;
+        TALUS_ASSIGN(s.source.file, unpack_builtin_scene(s.unpacked->path()));
         s.short_name = builtin_scene_name;
         s.name = builtin_prefix + s.short_name;
     } else {
@@ -36,9 +35,7 @@ Result<SceneInput> open_scene(const std::string& scene, const std::vector<std::s
         const std::string folder = fs::absolute(scene).parent_path().filename().string();
         s.short_name = stem == "scene" && !folder.empty() ? folder : stem;
     }
-    Result<Scene> loaded = load_scene(s.source.file, overrides);
-    if (!loaded) return loaded.error();
-    s.scene = *std::move(loaded);
+    TALUS_ASSIGN(s.scene, load_scene(s.source.file, overrides));
     return Result<SceneInput>(std::move(s));
 }
 

@@ -12,6 +12,7 @@
 #include <nlohmann/json.hpp>
 
 #include "command.hpp"
+#include "core/try.hpp"
 #include "exit_code.hpp"
 #include "interrupt.hpp"
 #include "scene/builtin.hpp"
@@ -72,9 +73,8 @@ Result<serve::Tokens> choose_tokens(const std::vector<std::string>& given) {
     serve::Tokens tokens;
     std::string* const wanted[] = {&tokens.controller, &tokens.viewer};
     for (std::size_t i = 0; i < 2; ++i) {
-        auto token = i < given.size() ? Result<std::string>(given[i]) : serve::random_token();
-        if (!token) return token.error();
-        *wanted[i] = std::move(*token);
+        TALUS_ASSIGN(auto token, i < given.size() ? Result<std::string>(given[i]) : serve::random_token());
+        *wanted[i] = std::move(token);
     }
     if (Status good = serve::check_tokens(tokens); !good) return Error{"--token: " + good.error().message};
     return tokens;

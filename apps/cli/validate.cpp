@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "command.hpp"
+#include "core/try.hpp"
 #include "exit_code.hpp"
 #include "interrupt.hpp"
 #include "params/fields.hpp"
@@ -61,11 +62,9 @@ Result<std::vector<Case>> load_cases(const ValidateArguments& arguments, const f
     if (names.empty()) names = validate::builtin_case_names();
     std::vector<Case> cases;
     for (const std::string& name : names) {
-        const Result<fs::path> folder = find_case(name, builtin);
-        if (!folder) return folder.error();
-        Result<Case> loaded = validate::load_case(*folder);
-        if (!loaded) return loaded.error();
-        if (loaded->quick || !arguments.quick) cases.push_back(*std::move(loaded));
+        TALUS_ASSIGN(const fs::path folder, find_case(name, builtin));
+        TALUS_ASSIGN(Case loaded, validate::load_case(folder));
+        if (loaded.quick || !arguments.quick) cases.push_back(std::move(loaded));
     }
     if (cases.empty()) return Error{"none of these cases is quick; leave out --quick"};
     return cases;
@@ -82,10 +81,10 @@ std::string list_text(const std::vector<Case>& cases) {
 
 Status write_outputs(const ValidateArguments& arguments, const std::vector<CaseResult>& results) {
     if (!arguments.json.empty()) {
-        if (Status s = write_text_file(arguments.json, validate::table_json(results)); !s) return s;
+        TALUS_TRY(write_text_file(arguments.json, validate::table_json(results)));
     }
     if (!arguments.html.empty()) {
-        if (Status s = write_text_file(arguments.html, validate::page_html(results)); !s) return s;
+        TALUS_TRY(write_text_file(arguments.html, validate::page_html(results)));
     }
     if (!arguments.markdown.empty()) return validate::write_markdown(results, arguments.markdown);
     return {};

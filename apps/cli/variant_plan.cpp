@@ -6,6 +6,8 @@
 
 #include <fmt/format.h>
 
+#include "core/try.hpp"
+
 namespace talus {
 
 VariantPlan::VariantPlan(SceneSource source, std::vector<Variant> variants, std::size_t refinement_count)
@@ -19,13 +21,11 @@ Result<VariantPlan> VariantPlan::make(const RunArguments& arguments, const Scene
     if (arguments.convergence) wanted = refinements(scene);
     const std::size_t refinement_count = wanted.size();
     for (const std::string& text : arguments.variations) {
-        const auto more = variations(text);
-        if (!more) return more.error();
-        wanted.insert(wanted.end(), more->begin(), more->end());
+        TALUS_ASSIGN(const auto more, variations(text));
+        wanted.insert(wanted.end(), more.begin(), more.end());
     }
-    auto prepared = prepare_variants(source, scene, std::move(wanted));
-    if (!prepared) return prepared.error();
-    return VariantPlan(source, *std::move(prepared), refinement_count);
+    TALUS_ASSIGN(auto prepared, prepare_variants(source, scene, std::move(wanted)));
+    return VariantPlan(source, std::move(prepared), refinement_count);
 }
 
 void VariantPlan::report_base(ProgressReporter& reporter, const Progress& now) const {

@@ -12,6 +12,7 @@
 #include <malloc.h>
 #endif
 
+#include "core/try.hpp"
 #include "run/run.hpp"
 
 namespace talus::bench {
@@ -76,7 +77,7 @@ Status run_repeats(Run& run, Row& row, Calibration& calibration, const std::atom
     for (int repeat = 0; repeat < row.repeats; ++repeat) {
         const StageTimes before = simulation.stage_times();
         const Clock::time_point start = Clock::now();
-        if (Status s = take_steps(run, row.steps, stop_requested); !s) return s;
+        TALUS_TRY(take_steps(run, row.steps, stop_requested));
         const double step_seconds = seconds_since(start) / row.steps;
         const double rate_after = calibration.measure();
         const double rate = (rate_before + rate_after) / 2;

@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include "core/try.hpp"
 #include "scene/scene.hpp"
 #include "sim/seed.hpp"
 #include "terrain/buildings.hpp"
@@ -96,16 +97,15 @@ World column(int particles) {
 }
 
 Result<World> sham_tseng(int particles, const std::filesystem::path& builtin_scene) {
-    Result<Scene> scene = load_scene(builtin_scene);
-    if (!scene) return scene.error();
+    TALUS_ASSIGN(Scene scene, load_scene(builtin_scene));
     World world;
-    world.terrain = std::move(scene->terrain);
-    world.buildings = std::move(scene->buildings);
-    world.releases = std::move(scene->releases);
-    world.flow_path = std::move(scene->flow_path);
-    world.material = scene->spec.material;
-    world.solver = scene->spec.solver;
-    world.outputs = scene->spec.outputs;
+    world.terrain = std::move(scene.terrain);
+    world.buildings = std::move(scene.buildings);
+    world.releases = std::move(scene.releases);
+    world.flow_path = std::move(scene.flow_path);
+    world.material = scene.spec.material;
+    world.solver = scene.spec.solver;
+    world.outputs = scene.spec.outputs;
     world.speed = usual_speed;
     double volume = 0;
     for (const Release& release : world.releases) volume += release.volume;
@@ -204,9 +204,8 @@ Result<Start> make_start(std::string_view scene, int particles, const std::files
     if (scene == "slab") return fill(scene, slab(particles), particles);
     if (scene == "column") return fill(scene, column(particles), particles);
     if (scene == "sham_tseng") {
-        Result<World> world = sham_tseng(particles, builtin_scene);
-        if (!world) return world.error();
-        return fill(scene, *std::move(world), particles);
+        TALUS_ASSIGN(World world, sham_tseng(particles, builtin_scene));
+        return fill(scene, std::move(world), particles);
     }
     return Error{fmt::format("no scene is called '{}'; there are slab, column and sham_tseng", scene)};
 }

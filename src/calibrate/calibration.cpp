@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include "core/try.hpp"
 #include "ensemble/ensemble.hpp"
 
 namespace talus {
@@ -43,20 +44,18 @@ class SceneModel {
         options.stop_requested = options_.stop_requested;
         options.on_progress = [&](const EnsembleProgress& now) { tell(now, phase); };
         if (options_.on_run) options.on_run = [&](const RunRecord& record) { tell_run(record, points, phase); };
-        const Result<EnsembleOutcome> outcome = run_ensemble(runs_, source_, folder_, options);
-        if (!outcome) return outcome.error();
-        if (outcome->interrupted) return std::optional<Points>();
+        TALUS_ASSIGN(const EnsembleOutcome outcome, run_ensemble(runs_, source_, folder_, options));
+        if (outcome.interrupted) return std::optional<Points>();
         Points predicted;
         records_.clear();
         for (std::size_t run = 0; run < points.size(); ++run) {
-            Result<RunRecord> record = read_run_record(folder_.run_file(run));
-            if (!record) return record.error();
-            if (record->values != runs_.at(run).values) {
+            TALUS_ASSIGN(RunRecord record, read_run_record(folder_.run_file(run)));
+            if (record.values != runs_.at(run).values) {
                 return Error{fmt::format("{}: is of other values than this program would choose; name another folder",
                                          folder_.run_file(run).string())};
             }
-            predicted.push_back(predictions_of(*record));
-            records_.push_back(*std::move(record));
+            predicted.push_back(predictions_of(record));
+            records_.push_back(std::move(record));
         }
         return std::optional(std::move(predicted));
     }

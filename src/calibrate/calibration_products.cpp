@@ -7,6 +7,7 @@
 #include "calibrate/calibration_figures.hpp"
 #include "core/hash.hpp"
 #include "core/number_or_null.hpp"
+#include "core/try.hpp"
 #include "params/scene_text.hpp"
 #include "products/csv.hpp"
 #include "products/text_file.hpp"
@@ -102,24 +103,21 @@ Status write_best_scene(const Calibration& c, const SceneSource& source, bool ow
     if (error) return Error{fmt::format("{}: cannot be made: {}", to.string(), error.message())};
     fs::path file = source.file;
     if (own_files) {
-        const Result<fs::path> unpacked = unpack_builtin_scene(to);
-        if (!unpacked) return unpacked.error();
-        file = *unpacked;
+        TALUS_ASSIGN(file, unpack_builtin_scene(to));
     }
     std::vector<std::string> overrides = source.overrides;
     const std::vector<std::string>& best = c.best_overrides;
     overrides.insert(overrides.end(), best.begin(), best.end());
-    Result<SceneSpec> spec = parse_scene(file, overrides);
-    if (!spec) return spec.error();
+    TALUS_ASSIGN(SceneSpec spec, parse_scene(file, overrides));
     for (const Section& section : scene_sections()) {
-        for (std::size_t i = 0; i < section.count(*spec); ++i) {
+        for (std::size_t i = 0; i < section.count(spec); ++i) {
             for (const Parameter& parameter : section.parameters) {
                 if (parameter.kind != ParameterKind::path) continue;
-                const ParameterValue value = parameter.get(*spec, i);
+                const ParameterValue value = parameter.get(spec, i);
                 const auto* path = std::get_if<std::string>(&value);
                 if (path == nullptr) continue;
                 const std::string place = fs::absolute(*path).lexically_normal().string(), here = to.string() + "/";
-                parameter.set(*spec, i, place.starts_with(here) ? place.substr(here.size()) : place);
+                parameter.set(spec, i, place.starts_with(here) ? place.substr(here.size()) : place);
             }
         }
     }
@@ -127,7 +125,7 @@ Status write_best_scene(const Calibration& c, const SceneSource& source, bool ow
     const std::string header =
         fmt::format("The best fit of talus calibrate: run {} of {}, misfit {:.4g}. Running this gives hash {}.",
                     record.run, c.records.size(), c.result.runs[record.run].misfit, record.hash);
-    return write_text_file(to / "scene.toml", write_scene(*spec, header));
+    return write_text_file(to / "scene.toml", write_scene(spec, header));
 }
 
 }  // namespace
@@ -191,14 +189,14 @@ Json calibration_json(const Calibration& c) {
 Status write_calibration(const Calibration& c, const SceneSource& source, bool own_files, const fs::path& folder) {
     const CalibrationSummary s = summarise(c);
     const MisfitMap map = misfit_map(c);
-    if (Status w = write_text_file(folder / "runs.csv", run_csv(c)); !w) return w;
-    if (Status w = write_text_file(folder / "factors.csv", factor_csv(c, s)); !w) return w;
-    if (Status w = write_text_file(folder / "observations.csv", observation_csv(c, s)); !w) return w;
-    if (Status w = write_text_file(folder / "misfit_map.csv", map_csv(c, map)); !w) return w;
-    if (Status w = write_text_file(folder / "posterior.csv", draw_csv(c)); !w) return w;
-    if (Status w = write_text_file(folder / "misfit_map.svg", report::misfit_picture(c, map)); !w) return w;
-    if (Status w = write_best_scene(c, source, own_files, folder); !w) return w;
-    if (Status w = write_text_file(folder / "report.html", render_calibration_report(c)); !w) return w;
+    TALUS_TRY(write_text_file(folder / "runs.csv", run_csv(c)));
+    TALUS_TRY(write_text_file(folder / "factors.csv", factor_csv(c, s)));
+    TALUS_TRY(write_text_file(folder / "observations.csv", observation_csv(c, s)));
+    TALUS_TRY(write_text_file(folder / "misfit_map.csv", map_csv(c, map)));
+    TALUS_TRY(write_text_file(folder / "posterior.csv", draw_csv(c)));
+    TALUS_TRY(write_text_file(folder / "misfit_map.svg", report::misfit_picture(c, map)));
+    TALUS_TRY(write_best_scene(c, source, own_files, folder));
+    TALUS_TRY(write_text_file(folder / "report.html", render_calibration_report(c)));
     return write_text_file(folder / "calibration.json", calibration_json(c).dump(2) + "\n");
 }
 

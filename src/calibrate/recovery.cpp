@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "calibrate/calibration_products.hpp"
+#include "core/try.hpp"
 #include "ensemble/ensemble.hpp"
 #include "products/csv.hpp"
 
@@ -53,12 +54,12 @@ Result<Recovery> recover(const CalibrationPlan& plan, const PlannedRuns& runs, c
     made.factors = runs.plan().factors;
 
     PlannedRuns truths = runs;
-    const auto all = EnsembleFolder::open(
-        folder / "truths", calibration_definition("set of known runs", plan, runs, source, base, observed, scene_name));
-    if (!all) return all.error();
+    TALUS_ASSIGN(const auto all,
+                 EnsembleFolder::open(folder / "truths", calibration_definition("set of known runs", plan, runs, source,
+                                                                                base, observed, scene_name)));
     std::vector<RunRecord> records;
     const ForwardModel model =
-        scene_model(truths, source, observed, *all, most_draws_per_seed * seeds, options, records);
+        scene_model(truths, source, observed, all, most_draws_per_seed * seeds, options, records);
     std::vector<std::size_t> usable;
     Points points;
     while (usable.size() < seeds) {
@@ -69,9 +70,8 @@ Result<Recovery> recover(const CalibrationPlan& plan, const PlannedRuns& runs, c
                             points.size(), usable.size())};
         }
         points = sample_points(DesignKind::monte_carlo, points.size() + seeds, made.factors.size(), plan.search.seed);
-        const auto predicted = model(points, SearchPhase::design);
-        if (!predicted) return predicted.error();
-        if (!*predicted) {
+        TALUS_ASSIGN(const auto predicted, model(points, SearchPhase::design));
+        if (!predicted) {
             made.interrupted = true;
             return made;
         }
@@ -86,20 +86,18 @@ Result<Recovery> recover(const CalibrationPlan& plan, const PlannedRuns& runs, c
         CalibrationPlan one = plan;
         one.search.seed = plan.search.seed + i;
         const std::vector<ObservedValue> seen = observe(records[usable[i]], observed, one.search.seed);
-        const auto place =
-            EnsembleFolder::open(folder / fmt::format("seed_{:02}", i + 1),
-                                 calibration_definition("calibration", one, runs, source, base, seen, scene_name));
-        if (!place) return place.error();
-        const auto found = calibrate(one, runs, source, base, seen, *place, options);
-        if (!found) return found.error();
-        if (found->result.interrupted) {
+        TALUS_ASSIGN(const auto place, EnsembleFolder::open(folder / fmt::format("seed_{:02}", i + 1),
+                                                            calibration_definition("calibration", one, runs, source,
+                                                                                   base, seen, scene_name)));
+        TALUS_ASSIGN(const auto found, calibrate(one, runs, source, base, seen, place, options));
+        if (found.result.interrupted) {
             made.interrupted = true;
             return made;
         }
-        const CalibrationSummary summary = summarise(*found);
+        const CalibrationSummary summary = summarise(found);
         RecoverySeed& seed = made.seeds.emplace_back();
         seed.seed = one.search.seed;
-        seed.runs = found->result.runs.size();
+        seed.runs = found.result.runs.size();
         for (std::size_t k = 0; k < made.factors.size(); ++k) {
             seed.truth.push_back(made.factors[k].distribution.quantile(points[usable[i]][k]));
             seed.low.push_back(summary.factors[k].low);

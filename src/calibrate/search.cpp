@@ -6,8 +6,9 @@
 
 #include <fmt/format.h>
 
-#include "stats/optimise.hpp"
+#include "core/try.hpp"
 #include "observe/observation.hpp"
+#include "stats/optimise.hpp"
 
 namespace talus {
 namespace {
@@ -62,9 +63,8 @@ Points Searcher::run_points() const {
 Result<bool> Searcher::run(const Points& points, SearchPhase phase, const std::vector<double>& improvements) {
     Points all = run_points();
     all.insert(all.end(), points.begin(), points.end());
-    const auto predicted = model_(all, phase);
-    if (!predicted) return predicted.error();
-    if (!*predicted) {
+    TALUS_ASSIGN(const auto predicted, model_(all, phase));
+    if (!predicted) {
         result_.interrupted = true;
         return false;
     }
@@ -72,7 +72,7 @@ Result<bool> Searcher::run(const Points& points, SearchPhase phase, const std::v
         SearchRun made;
         made.point = points[i];
         made.phase = phase;
-        made.predicted = (**predicted)[result_.runs.size()];
+        made.predicted = (*predicted)[result_.runs.size()];
         made.improvement = i < improvements.size() ? improvements[i] : 0;
         made.misfit = never;
         if (!made.predicted.empty()) {
@@ -195,9 +195,10 @@ Result<SearchResult> Searcher::work() {
     const std::size_t checks = std::min(options_.checks, options_.runs / 4);
     const std::size_t wanted = options_.design > 0 ? options_.design : 10 * factors;
     const std::size_t design = std::max(factors + 2, std::min(wanted, (options_.runs - checks) * 2 / 3));
-    auto went = run(sample_points(DesignKind::latin_hypercube, design, factors, options_.seed), SearchPhase::design);
-    if (!went) return went.error();
-    if (!*went) return result_;
+    bool went_on = false;
+    TALUS_ASSIGN(went_on,
+                 run(sample_points(DesignKind::latin_hypercube, design, factors, options_.seed), SearchPhase::design));
+    if (!went_on) return result_;
     if (!result_.best) return Error{"no run of the design is complete, so there is nothing to search by"};
     fit();
 
@@ -212,9 +213,8 @@ Result<SearchResult> Searcher::work() {
             result_.settled = true;
             break;
         }
-        went = run(points, SearchPhase::search, improvements);
-        if (!went) return went.error();
-        if (!*went) return result_;
+        TALUS_ASSIGN(went_on, run(points, SearchPhase::search, improvements));
+        if (!went_on) return result_;
         fit();
     }
 
@@ -227,9 +227,8 @@ Result<SearchResult> Searcher::work() {
     for (std::size_t i = 1; i < checks; ++i) {
         points.push_back(found.draws[i * found.draws.size() / checks]);
     }
-    went = run(points, SearchPhase::check);
-    if (!went) return went.error();
-    if (!*went) return result_;
+    TALUS_ASSIGN(went_on, run(points, SearchPhase::check));
+    if (!went_on) return result_;
     judge_checks(before);
     fit();
     result_.posterior = sample_posterior(result_.fit, run_points(), seeded(long_chains));

@@ -14,6 +14,7 @@
 #include <fmt/format.h>
 
 #include "core/hash.hpp"
+#include "core/try.hpp"
 #include "run/run_scene.hpp"
 
 namespace talus {
@@ -182,7 +183,7 @@ Result<EnsembleOutcome> Crew::work() {
     std::vector<std::thread> threads;
     for (std::size_t w = 0; w < workers; ++w) threads.emplace_back([this, w] { take_runs(w); });
     for (std::thread& thread : threads) thread.join();
-    if (!status_) return status_.error();
+    TALUS_TRY(std::move(status_));
     outcome_.wall_time = std::chrono::duration<double>(Clock::now() - start_).count();
     outcome_.interrupted = outcome_.done + outcome_.failed < outcome_.count;
     return outcome_;

@@ -11,6 +11,7 @@
 
 #include <fmt/format.h>
 
+#include "core/try.hpp"
 #include "products/text_file.hpp"
 
 namespace talus {
@@ -94,7 +95,7 @@ Result<EnsemblePlan> plan_of(const Json& definition) {
                            thresholds.at("pressure_kPa").get<std::vector<double>>()};
         for (const Json& f : definition.at("factors")) {
             const auto text = f.at("key").get<std::string>() + "=" + f.at("distribution").get<std::string>();
-            if (Status s = add_factor(plan, text); !s) return s.error();
+            TALUS_TRY(add_factor(plan, text));
         }
     } catch (const Json::exception& error) {
         return Error{fmt::format("ensemble.json: is not as talus writes it: {}", error.what())};
@@ -126,14 +127,13 @@ Result<EnsembleFolder> EnsembleFolder::open(const fs::path& path, const Json& de
                          : fmt::format("{}: cannot be locked: {}", path.string(), std::strerror(errno))};
     }
     if (fs::exists(path / "ensemble.json", error)) {
-        const Result<Json> there = read_definition(path, definition.value("kind", "ensemble"));
-        if (!there) return there.error();
-        if (const std::string differs = difference(*there, definition); !differs.empty()) {
+        TALUS_ASSIGN(const Json there, read_definition(path, definition.value("kind", "ensemble")));
+        if (const std::string differs = difference(there, definition); !differs.empty()) {
             return Error{
                 fmt::format("{}: holds another ensemble ({}); name another output folder", path.string(), differs)};
         }
-    } else if (Status s = write_text_file(path / "ensemble.json", definition.dump(2) + "\n"); !s) {
-        return s.error();
+    } else {
+        TALUS_TRY(write_text_file(path / "ensemble.json", definition.dump(2) + "\n"));
     }
     return Result<EnsembleFolder>(std::move(folder));
 }
@@ -161,10 +161,9 @@ Status take_runs(const fs::path& from, const EnsembleFolder& to, std::size_t cou
         std::error_code error;
         if (!fs::exists(source, error) || fs::equivalent(source, target, error)) continue;
         if (fs::exists(target, error)) {
-            const Result<RunRecord> here = read_run_record(target), there = read_run_record(source);
-            if (!here) return here.error();
-            if (!there) return there.error();
-            if (here->hash == there->hash && here->fault == there->fault) continue;
+            TALUS_ASSIGN(const RunRecord here, read_run_record(target));
+            TALUS_ASSIGN(const RunRecord there, read_run_record(source));
+            if (here.hash == there.hash && here.fault == there.fault) continue;
             return Error{
                 fmt::format("run {}: {} and {} hold different results", run, source.string(), target.string())};
         }

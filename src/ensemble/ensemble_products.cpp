@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "core/number_or_null.hpp"
+#include "core/try.hpp"
 #include "geo/raster.hpp"
 #include "products/csv.hpp"
 #include "products/text_file.hpp"
@@ -147,8 +148,8 @@ Status write_maps(const EnsembleResult& result, const fs::path& folder) {
         const RasterBand band{&grid, fmt::format("{} of {} runs{}", style.description, result.reduction.complete, note),
                               style.unit};
         const std::string stem = (folder / style.file).string();
-        if (Status s = write_cog(stem + ".tif", band, result.scene->crs); !s) return s;
-        if (Status s = write_text_file(stem + ".qml", qgis_style(style, greatest(grid))); !s) return s;
+        TALUS_TRY(write_cog(stem + ".tif", band, result.scene->crs));
+        TALUS_TRY(write_text_file(stem + ".qml", qgis_style(style, greatest(grid))));
     }
     remove_old_maps(folder, written);
     return {};
@@ -241,14 +242,13 @@ Json statistics_json(const EnsembleResult& result) {
 }
 
 Status write_ensemble(const EnsembleResult& result, const fs::path& folder) {
-    if (Status s = write_maps(result, folder); !s) return s;
-    if (Status s = write_text_file(folder / "runs.csv", run_csv(result)); !s) return s;
-    if (Status s = write_text_file(folder / "buildings.csv", building_csv(result)); !s) return s;
-    if (Status s = write_text_file(folder / "distributions.csv", distribution_csv(result)); !s) return s;
-    if (Status s = write_text_file(folder / "sensitivity.csv", sensitivity_csv(result)); !s) return s;
-    const Result<std::string> report = render_ensemble_report(result);
-    if (!report) return report.error();
-    if (Status s = write_text_file(folder / "report.html", *report); !s) return s;
+    TALUS_TRY(write_maps(result, folder));
+    TALUS_TRY(write_text_file(folder / "runs.csv", run_csv(result)));
+    TALUS_TRY(write_text_file(folder / "buildings.csv", building_csv(result)));
+    TALUS_TRY(write_text_file(folder / "distributions.csv", distribution_csv(result)));
+    TALUS_TRY(write_text_file(folder / "sensitivity.csv", sensitivity_csv(result)));
+    TALUS_ASSIGN(const std::string report, render_ensemble_report(result));
+    TALUS_TRY(write_text_file(folder / "report.html", report));
     return write_text_file(folder / "statistics.json", statistics_json(result).dump(2) + "\n");
 }
 

@@ -8,6 +8,7 @@
 #include <fmt/chrono.h>
 #include <fmt/format.h>
 
+#include "core/try.hpp"
 #include "ensemble/ensemble_figures.hpp"
 #include "ensemble/ensemble_products.hpp"
 #include "ensemble/predict.hpp"
@@ -308,8 +309,7 @@ Result<std::string> render_ensemble_report(const EnsembleResult& result) {
     const Scene& scene = *result.scene;
     const SceneInfo& info = scene.spec.scene;
     const Reduction& r = result.reduction;
-    const auto maps = render_maps(scene, content_of(result));
-    if (!maps) return maps.error();
+    TALUS_ASSIGN(const auto maps, render_maps(scene, content_of(result)));
     const bool partial = !r.missing.empty();
     const std::string date = fmt::format("{:%d %B %Y, %H:%M} UTC", fmt::gmtime(std::time(nullptr)));
     std::string banners;
@@ -330,8 +330,8 @@ Result<std::string> render_ensemble_report(const EnsembleResult& result) {
             "see <a href=\"#failed\">Failed runs</a>.</div>\n",
             r.failed, result.runs->count());
     }
-    const std::string scatter = scatter_figure(result, maps->count + 2);
-    const std::string sensitivity = scatter + sensitivity_figure(result, maps->count + (scatter.empty() ? 2 : 3));
+    const std::string scatter = scatter_figure(result, maps.count + 2);
+    const std::string sensitivity = scatter + sensitivity_figure(result, maps.count + (scatter.empty() ? 2 : 3));
     std::string style(ensemble_report_files::report_css);
     style += ensemble_report_files::ensemble_css;
     const std::string description =
@@ -350,12 +350,12 @@ Result<std::string> render_ensemble_report(const EnsembleResult& result) {
                  {"key_results", key_results(result)},
                  {"factor_table", factor_table(result)},
                  {"design_text", design_text(result)},
-                 {"map_definitions", maps->definitions},
-                 {"map_figures", maps->figures},
-                 {"map_read_out", maps->read_out},
+                 {"map_definitions", maps.definitions},
+                 {"map_figures", maps.figures},
+                 {"map_read_out", maps.read_out},
                  {"crs", escape(scene.crs.label())},
                  {"complete", fmt::format("{}", r.complete)},
-                 {"run_out_figure", run_out_figure(result, maps->count + 1)},
+                 {"run_out_figure", run_out_figure(result, maps.count + 1)},
                  {"building_table", building_table(result)},
                  {"result_table", result_table(result)},
                  {"sensitivity", sensitivity},

@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "core/try.hpp"
 #include "ensemble/ensemble_folder.hpp"
 #include "ensemble/ensemble_products.hpp"
 
@@ -41,9 +42,8 @@ void add_map(FinishedEnsemble& ensemble, const fs::path& folder, EnsembleMap::Ki
 Result<FinishedEnsemble> read_finished_ensemble(const fs::path& folder) {
     std::error_code error;
     if (!fs::is_directory(folder, error)) return Error{folder.string() + ": is no folder"};
-    const Result<Json> definition = read_definition(folder);
-    if (!definition) return definition.error();
-    const Result<EnsemblePlan> plan = plan_of(*definition);
+    TALUS_ASSIGN(const Json definition, read_definition(folder));
+    const Result<EnsemblePlan> plan = plan_of(definition);
     if (!plan) return Error{fmt::format("{}: {}", folder.string(), plan.error().message)};
     // It is written last, so maps are whole where it is.
     std::ifstream in(folder / "statistics.json");
@@ -61,7 +61,7 @@ Result<FinishedEnsemble> read_finished_ensemble(const fs::path& folder) {
     try {
         made.complete = statistics.at("complete").get<std::size_t>();
         made.failed = statistics.at("failed").size();
-        made.terrain_hash = terrain_hash_of(*definition);
+        made.terrain_hash = terrain_hash_of(definition);
         if (const std::size_t missing = statistics.at("missing").size(); missing > 0) {
             return Error{
                 fmt::format("{}: is not finished, {} of its {} runs are missing; run talus ensemble on it "

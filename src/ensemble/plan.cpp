@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "core/try.hpp"
 #include "observe/observer.hpp"
 #include "params/fields.hpp"
 #include "sim/seed.hpp"
@@ -178,7 +179,7 @@ Result<PlannedRuns> PlannedRuns::make(const EnsemblePlan& plan, const SceneSourc
         }
         runs.whole_.push_back(parameter != nullptr && parameter->kind == ParameterKind::integer);
         if (parameter != nullptr && number) cut_to_range(factor.distribution, parameter->range);
-        if (Status s = check_factor(factor, runs.whole_.back(), source); !s) return s.error();
+        TALUS_TRY(check_factor(factor, runs.whole_.back(), source));
         own_spacing =
             own_spacing || factor.key == "solver.particle_spacing_m" || factor.key == "solver.target_particle_count";
         runs.levels_.push_back(factor.distribution.kind == DistributionKind::list ? factor.distribution.entries.size()
@@ -187,9 +188,7 @@ Result<PlannedRuns> PlannedRuns::make(const EnsemblePlan& plan, const SceneSourc
     if (plan.levels < 2 || plan.levels > 1000) {
         return Error{fmt::format("levels = {} is refused; it must be 2 to 1000", plan.levels)};
     }
-    Result<Points> points = make_points(plan, runs.levels_);
-    if (!points) return points.error();
-    runs.points_ = *std::move(points);
+    TALUS_ASSIGN(runs.points_, make_points(plan, runs.levels_));
 
     const double spacing = choose_particle_spacing(base.spec.solver, total_volume(base));
     const double cell = base.spec.outputs.map_cell.value_or(default_map_cell(base.terrain.cell(), spacing));

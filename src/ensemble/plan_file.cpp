@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "core/try.hpp"
 #include "ensemble/plan.hpp"
 #include "params/fields.hpp"
 #include "scene/parse.hpp"
@@ -19,20 +20,18 @@ class PlanReader {
 
     Result<EnsemblePlan> read(const toml::table& root) {
         for (const auto& [key, node] : root) {
-            Status s;
             if (key.str() == "ensemble" && node.is_table()) {
-                s = read_ensemble(*node.as_table());
+                TALUS_TRY(read_ensemble(*node.as_table()));
             } else if (key.str() == "thresholds" && node.is_table()) {
-                s = read_thresholds(*node.as_table());
+                TALUS_TRY(read_thresholds(*node.as_table()));
             } else if (key.str() == "factor" && node.is_array_of_tables()) {
                 for (const toml::node& entry : *node.as_array()) {
-                    if (s = read_factor(*entry.as_table()); !s) break;
+                    TALUS_TRY(read_factor(*entry.as_table()));
                 }
             } else {
-                s = refused(key.source(), std::string(key.str()),
-                            "is unknown; a plan has [ensemble], [thresholds] and [[factor]]");
+                return refused(key.source(), std::string(key.str()),
+                               "is unknown; a plan has [ensemble], [thresholds] and [[factor]]");
             }
-            if (!s) return s.error();
         }
         return plan_;
     }
@@ -169,9 +168,8 @@ class PlanReader {
 }  // namespace
 
 Result<EnsemblePlan> read_plan(const std::filesystem::path& file) {
-    const Result<toml::table> root = read_toml_file(file, "plan");
-    if (!root) return root.error();
-    return PlanReader(file.string()).read(*root);
+    TALUS_ASSIGN(const toml::table root, read_toml_file(file, "plan"));
+    return PlanReader(file.string()).read(root);
 }
 
 }  // namespace talus

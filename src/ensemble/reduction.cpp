@@ -7,6 +7,8 @@
 
 #include <fmt/format.h>
 
+#include "core/try.hpp"
+
 namespace talus {
 
 namespace fs = std::filesystem;
@@ -51,7 +53,7 @@ Result<Stack> stack_of(const std::vector<RunRecord>& runs, const std::vector<fs:
             x_max = e.x_max;
             y_max = e.y_max;
         }
-        if (Status s = check_grid(stack.geometry, g, runs[i].run); !s) return s.error();
+        TALUS_TRY(check_grid(stack.geometry, g, runs[i].run));
         stack.geometry.x_min = std::min(stack.geometry.x_min, g.x_min);
         stack.geometry.y_min = std::min(stack.geometry.y_min, g.y_min);
         x_max = std::max(x_max, e.x_max);
@@ -76,7 +78,7 @@ class MapReducer {
         const int band = static_cast<int>(std::clamp<std::size_t>(memory / std::max<std::size_t>(1, row_bytes), 1,
                                                                   static_cast<std::size_t>(stack_.geometry.rows)));
         for (int first = 0; first < stack_.geometry.rows; first += band) {
-            if (Status s = reduce_rows(first, std::min(stack_.geometry.rows, first + band)); !s) return s;
+            TALUS_TRY(reduce_rows(first, std::min(stack_.geometry.rows, first + band)));
         }
         return {};
     }
@@ -94,14 +96,13 @@ class MapReducer {
             const int up = offset_of(g.y_min, stack_.geometry.y_min, g.cell);
             const int from = std::max(0, first - up), to = std::min(g.rows, last - up);
             if (from >= to) continue;
-            const auto rows = read_map_rows(file, *record, map_, from, to);
-            if (!rows) return rows.error();
+            TALUS_ASSIGN(const auto rows, read_map_rows(file, *record, map_, from, to));
             for (int r = from; r < to; ++r) {
                 const std::size_t source = static_cast<std::size_t>(r - from) * static_cast<std::size_t>(g.columns);
                 const std::size_t target =
                     static_cast<std::size_t>(r + up - first) * columns + static_cast<std::size_t>(right);
                 for (std::size_t c = 0; c < static_cast<std::size_t>(g.columns); ++c) {
-                    const float v = (*rows)[source + c];
+                    const float v = rows[source + c];
                     if (std::isnan(v)) continue;
                     values_[(target + c) * stack_.layers.size() + counts_[target + c]++] = v;
                 }
@@ -218,22 +219,20 @@ Result<Reduction> reduce(const std::vector<fs::path>& folders, std::size_t count
             out.missing.push_back(run);
             continue;
         }
-        Result<RunRecord> record = read_run_record(*there / name);
-        if (!record) return record.error();
-        record->complete() ? ++out.complete : ++out.failed;
-        out.runs.push_back(*std::move(record));
+        TALUS_ASSIGN(RunRecord record, read_run_record(*there / name));
+        record.complete() ? ++out.complete : ++out.failed;
+        out.runs.push_back(std::move(record));
         files.push_back(*there / name);
     }
-    const Result<Stack> stack = stack_of(out.runs, files);
-    if (!stack) return stack.error();
+    TALUS_ASSIGN(const Stack stack, stack_of(out.runs, files));
     out.maps = wanted_maps(thresholds);
-    for (EnsembleMap& map : out.maps) map.grid = Grid<float>(stack->geometry, not_there);
-    for (std::size_t map = 0; map < recorded_maps.size() && !stack->layers.empty(); ++map) {
+    for (EnsembleMap& map : out.maps) map.grid = Grid<float>(stack.geometry, not_there);
+    for (std::size_t map = 0; map < recorded_maps.size() && !stack.layers.empty(); ++map) {
         std::vector<EnsembleMap*> made;
         for (EnsembleMap& m : out.maps) {
             if (m.map == map) made.push_back(&m);
         }
-        if (Status s = MapReducer(*stack, map, out.complete, made).reduce(memory); !s) return s.error();
+        TALUS_TRY(MapReducer(stack, map, out.complete, made).reduce(memory));
     }
     std::size_t buildings = 0;
     for (const RunRecord& run : out.runs) buildings = std::max(buildings, run.buildings.size());

@@ -12,6 +12,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/number_or_null.hpp"
+#include "core/try.hpp"
 #include "ensemble/predict.hpp"
 #include "products/text_file.hpp"
 
@@ -140,7 +141,7 @@ Status write_run_record(const std::filesystem::path& file, const RunRecord& reco
     }
     const std::filesystem::path unfinished =
         file.parent_path() / fmt::format(".{}.{}", file.filename().string(), getpid());
-    if (Status s = write_text_file(unfinished, text); !s) return s;
+    TALUS_TRY(write_text_file(unfinished, text));
     std::error_code error;
     std::filesystem::rename(unfinished, file, error);
     if (error) return Error{fmt::format("{}: cannot be given its name: {}", file.string(), error.message())};

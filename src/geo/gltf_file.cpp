@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "core/try.hpp"
 #include "geo/mesh_faces.hpp"
 
 namespace talus {
@@ -150,17 +151,15 @@ bool GltfAccessor::holds_indices() const {
 Result<GltfFile> GltfFile::open(const std::string& file) {
     GltfFile gltf;
     gltf.file_ = file;
-    Result<std::string> text = read_mesh_text(file);
-    if (!text) return text.error();
-    gltf.text_ = std::move(*text);
-    if (Status s = gltf.split_container(); !s) return s.error();
+    TALUS_ASSIGN(gltf.text_, read_mesh_text(file));
+    TALUS_TRY(gltf.split_container());
     const auto begin = gltf.text_.begin() + static_cast<std::ptrdiff_t>(gltf.json_begin_);
     gltf.root_ = std::make_unique<const json>(
         json::parse(begin, begin + static_cast<std::ptrdiff_t>(gltf.json_size_), nullptr, false));
     if (gltf.root_->is_discarded()) return Error{file + ": is no glTF file; what it says is not valid JSON"};
-    if (Status s = gltf.check_version(); !s) return s.error();
-    if (Status s = gltf.check_extensions(); !s) return s.error();
-    if (Status s = gltf.read_buffers(); !s) return s.error();
+    TALUS_TRY(gltf.check_version());
+    TALUS_TRY(gltf.check_extensions());
+    TALUS_TRY(gltf.read_buffers());
     return Result<GltfFile>(std::move(gltf));
 }
 
@@ -225,7 +224,7 @@ Status GltfFile::read_buffers() {
     const json& list = gltf_member(*root_, "buffers");
     for (std::size_t index = 0; list.is_array() && index < list.size(); ++index) {
         const std::string at = fmt::format("{}: buffers[{}]", file_, index);
-        if (Status s = read_buffer(list[index], index, at); !s) return s;
+        TALUS_TRY(read_buffer(list[index], index, at));
     }
     return {};
 }
@@ -331,20 +330,19 @@ Result<GltfAccessor> GltfFile::accessor(std::size_t index) const {
         return Error{at + ": must be scalars or vectors of a component type that glTF knows"};
     }
     if (!gltf_size(gltf_member(*entry, "bufferView"), view_index)) return Error{at + ": has no bufferView"};
-    const Result<std::string_view> bytes = view(view_index, numbers.stride);
-    if (!bytes) return bytes.error();
+    TALUS_ASSIGN(const std::string_view bytes, view(view_index, numbers.stride));
     const std::size_t element = numbers.width * component->bytes;
     if (numbers.stride == 0) numbers.stride = element;
     const json& offset_value = gltf_member(*entry, "byteOffset");
     const bool sizes =
         (offset_value.is_null() || gltf_size(offset_value, offset)) && gltf_size(gltf_member(*entry, "count"), number);
     if (!sizes || number == 0 || numbers.stride < element ||
-        offset + (number - 1) * numbers.stride + element > bytes->size()) {
+        offset + (number - 1) * numbers.stride + element > bytes.size()) {
         return Error{
-            fmt::format("{}: does not lie within the {} bytes of bufferViews[{}]", at, bytes->size(), view_index)};
+            fmt::format("{}: does not lie within the {} bytes of bufferViews[{}]", at, bytes.size(), view_index)};
     }
     numbers.count = number;
-    numbers.data = bytes->data() + offset;
+    numbers.data = bytes.data() + offset;
     numbers.component = component->number;
     numbers.normalized = gltf_member(*entry, "normalized") == true && component->greatest > 0;
     return numbers;

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "core/try.hpp"
 #include "geo/mesh_faces.hpp"
 
 namespace talus {
@@ -88,7 +89,7 @@ class CityReader {
             std::string owner = id;
             const json& parents = member(object, "parents");
             if (part && parents.is_array() && !parents.empty() && parents[0].is_string()) owner = parents[0];
-            if (Status s = read_geometry(id, object, faces[owner]); !s) return s.error();
+            TALUS_TRY(read_geometry(id, object, faces[owner]));
         }
         std::vector<MeshBuilding> buildings;
         for (const auto& [id, own] : faces) {
@@ -177,13 +178,12 @@ class CityReader {
 }  // namespace
 
 Result<std::vector<MeshBuilding>> read_city_json(const std::string& file, const Crs& terrain_crs) {
-    const Result<std::string> text = read_mesh_text(file);
-    if (!text) return text.error();
-    const json city = json::parse(*text, nullptr, false);
+    TALUS_ASSIGN(const std::string text, read_mesh_text(file));
+    const json city = json::parse(text, nullptr, false);
     if (city.is_discarded()) return Error{file + ": is not valid JSON"};
     CityReader reader(file, city);
-    if (Status s = reader.check(terrain_crs); !s) return s.error();
-    if (Status s = reader.read_vertices(); !s) return s.error();
+    TALUS_TRY(reader.check(terrain_crs));
+    TALUS_TRY(reader.read_vertices());
     return reader.read_buildings();
 }
 

@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "core/try.hpp"
 #include "geo/gltf_file.hpp"
 #include "geo/mesh_faces.hpp"
 
@@ -78,11 +79,11 @@ class GltfReader {
     GltfReader(std::string file, const GltfFile& gltf) : file_(std::move(file)), gltf_(gltf) {}
 
     Result<std::vector<MeshBuilding>> read() {
-        if (Status s = find_roots(); !s) return s.error();
+        TALUS_TRY(find_roots());
         while (!open_.empty()) {
             const Placed placed = open_.back();
             open_.pop_back();
-            if (Status s = read_node(placed); !s) return s.error();
+            TALUS_TRY(read_node(placed));
         }
         if (buildings_.empty()) return Error{file_ + ": has no node with a mesh of triangles"};
         return std::move(buildings_);
@@ -158,7 +159,7 @@ class GltfReader {
         const json& primitives = gltf_member(*shape, "primitives");
         for (std::size_t k = 0; primitives.is_array() && k < primitives.size(); ++k) {
             const std::string at = fmt::format("{}: meshes[{}].primitives[{}]", file_, index, k);
-            if (Status s = read_primitive(primitives[k], matrix, at, faces); !s) return s;
+            TALUS_TRY(read_primitive(primitives[k], matrix, at, faces));
         }
         return close_building(node, *shape, faces);
     }
@@ -177,18 +178,16 @@ class GltfReader {
         if (!gltf_size(gltf_member(gltf_member(primitive, "attributes"), "POSITION"), place)) {
             return Error{at + ": has no POSITION"};
         }
-        const Result<GltfAccessor> positions = gltf_.accessor(place);
-        if (!positions) return positions.error();
-        if (positions->width != 3) return Error{at + ": its POSITION must be of three numbers per vertex"};
+        TALUS_ASSIGN(const GltfAccessor positions, gltf_.accessor(place));
+        if (positions.width != 3) return Error{at + ": its POSITION must be of three numbers per vertex"};
         std::optional<GltfAccessor> indices;
         if (const json& list = gltf_member(primitive, "indices"); !list.is_null()) {
             if (!gltf_size(list, place)) return Error{at + ": its indices name no accessor"};
-            Result<GltfAccessor> read = gltf_.accessor(place);
-            if (!read) return read.error();
-            if (!read->holds_indices()) return Error{at + ": its indices must be whole numbers, not negative"};
-            indices = *read;
+            TALUS_ASSIGN(GltfAccessor read, gltf_.accessor(place));
+            if (!read.holds_indices()) return Error{at + ": its indices must be whole numbers, not negative"};
+            indices = read;
         }
-        const std::size_t corners = indices ? indices->count : positions->count;
+        const std::size_t corners = indices ? indices->count : positions.count;
         const std::size_t count = mode == 4 ? corners / 3 : corners < 3 ? 0 : corners - 2;
         if (count > most_mesh_faces - face_count_) {
             return Error{
@@ -204,10 +203,10 @@ class GltfReader {
             std::vector<WorldPoint> ring;
             for (const std::size_t corner : {first, next, next + 1}) {
                 const std::size_t vertex = indices ? static_cast<std::size_t>(indices->at(corner, 0)) : corner;
-                if (vertex >= positions->count) {
-                    return Error{fmt::format("{}: names vertex {}; there are {}", at, vertex, positions->count)};
+                if (vertex >= positions.count) {
+                    return Error{fmt::format("{}: names vertex {}; there are {}", at, vertex, positions.count)};
                 }
-                ring.push_back(world_point(*positions, vertex, matrix));
+                ring.push_back(world_point(positions, vertex, matrix));
                 if (!std::isfinite(ring.back().x) || !std::isfinite(ring.back().y) || !std::isfinite(ring.back().z)) {
                     return Error{fmt::format("{}: vertex {} is not finite", at, vertex)};
                 }
@@ -256,10 +255,9 @@ class GltfReader {
 }  // namespace
 
 Result<std::vector<MeshBuilding>> read_gltf(const std::string& file, std::vector<std::string>& more_files) {
-    const Result<GltfFile> gltf = GltfFile::open(file);
-    if (!gltf) return gltf.error();
-    more_files = gltf->buffer_files();
-    return GltfReader(file, *gltf).read();
+    TALUS_ASSIGN(const GltfFile gltf, GltfFile::open(file));
+    more_files = gltf.buffer_files();
+    return GltfReader(file, gltf).read();
 }
 
 }  // namespace talus

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include "core/try.hpp"
 #include "geo/mesh_faces.hpp"
 
 namespace talus {
@@ -19,20 +20,18 @@ class ObjReader {
             std::istringstream words(line);
             std::string word;
             if (!(words >> word)) continue;
-            Status s;
             if (word == "v") {
-                s = read_vertex(words);
+                TALUS_TRY(read_vertex(words));
             } else if (word == "f") {
-                s = read_face(words);
+                TALUS_TRY(read_face(words));
             } else if (word == "o" || word == "g") {
-                s = close_building();
+                TALUS_TRY(close_building());
                 name_.clear();
                 std::getline(words >> std::ws, name_);
                 while (!name_.empty() && (name_.back() == '\r' || name_.back() == ' ')) name_.pop_back();
             }
-            if (!s) return s.error();
         }
-        if (Status s = close_building(); !s) return s.error();
+        TALUS_TRY(close_building());
         if (buildings_.empty()) return Error{file_ + ": has no faces; it is no OBJ file, or an empty one"};
         return std::move(buildings_);
     }
@@ -96,9 +95,8 @@ class ObjReader {
 }  // namespace
 
 Result<std::vector<MeshBuilding>> read_obj(const std::string& file) {
-    const Result<std::string> text = read_mesh_text(file);
-    if (!text) return text.error();
-    return ObjReader(file).read(*text);
+    TALUS_ASSIGN(const std::string text, read_mesh_text(file));
+    return ObjReader(file).read(text);
 }
 
 }  // namespace talus

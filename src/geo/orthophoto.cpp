@@ -12,6 +12,7 @@
 #include <fmt/format.h>
 #include <gdal_utils.h>
 
+#include "core/try.hpp"
 #include "geo/gdal.hpp"
 #include "geo/spatial_reference.hpp"
 
@@ -102,11 +103,9 @@ Result<std::vector<std::string>> band_choice(const std::string& file, GDALDatase
 }
 
 Result<Picture> open_picture(const std::string& file, const Crs& crs, const Extent& extent) {
-    auto opened = open_dataset(file, GDAL_OF_RASTER, "picture");
-    if (!opened) return opened.error();
-    GdalMessages messages;
     Picture picture;
-    picture.file = std::move(*opened);
+    TALUS_ASSIGN(picture.file, open_dataset(file, GDAL_OF_RASTER, "picture"));
+    GdalMessages messages;
     GDALDataset& data = *picture.file;
     if (data.GetRasterCount() == 0) return Error{fmt::format("{}: holds no raster band", file)};
     std::array<double, 6> place{};
@@ -121,12 +120,11 @@ Result<Picture> open_picture(const std::string& file, const Crs& crs, const Exte
     if (const OGRSpatialReference* stated = data.GetSpatialRef()) own = *stated;
     picture.target_crs = wkt_of(target);
 
-    auto words = band_choice(file, data);
-    if (!words) return words.error();
-    words->insert(words->end(), {"-of", "VRT"});
-    if (own.IsEmpty() && !target.IsEmpty()) words->insert(words->end(), {"-a_srs", picture.target_crs});
+    TALUS_ASSIGN(auto words, band_choice(file, data));
+    words.insert(words.end(), {"-of", "VRT"});
+    if (own.IsEmpty() && !target.IsEmpty()) words.insert(words.end(), {"-a_srs", picture.target_crs});
     picture.name = memory_name("vrt");
-    picture.view = translated(data, picture.name, *words);
+    picture.view = translated(data, picture.name, words);
     if (!picture.view) return Error{fmt::format("{}: {}", file, messages.failure_or("cannot be read as a picture"))};
 
     // Where it lies, and how fine it is, in the terrain's system.
@@ -169,16 +167,15 @@ std::string encoded(GDALDataset& data, const char* driver_name, const std::vecto
 }  // namespace
 
 Status check_orthophoto(const std::string& file, const Crs& crs, const Extent& extent) {
-    const auto picture = open_picture(file, crs, extent);
-    return picture ? Status() : picture.error();
+    TALUS_TRY(open_picture(file, crs, extent));
+    return {};
 }
 
 Result<Orthophoto> read_orthophoto(const std::string& file, const Crs& crs, const Extent& extent, int most_pixels) {
-    auto picture = open_picture(file, crs, extent);
-    if (!picture) return picture.error();
+    TALUS_ASSIGN(auto picture, open_picture(file, crs, extent));
     const GdalMessages messages;
     const double width = extent.x_max - extent.x_min, height = extent.y_max - extent.y_min;
-    const double pixel = std::max(picture->pixel, std::max(width, height) / most_pixels);
+    const double pixel = std::max(picture.pixel, std::max(width, height) / most_pixels);
     Orthophoto photo;
     photo.columns = std::clamp(static_cast<int>(std::lround(width / pixel)), 1, most_pixels);
     photo.rows = std::clamp(static_cast<int>(std::lround(height / pixel)), 1, most_pixels);
@@ -196,8 +193,8 @@ Result<Orthophoto> read_orthophoto(const std::string& file, const Crs& crs, cons
                                    "-r",
                                    "bilinear",
                                    "-dstalpha"};
-    if (!picture->target_crs.empty()) words.insert(words.end(), {"-t_srs", picture->target_crs});
-    const GDALDatasetUniquePtr cut = warped(*picture->view, words);
+    if (!picture.target_crs.empty()) words.insert(words.end(), {"-t_srs", picture.target_crs});
+    const GDALDatasetUniquePtr cut = warped(*picture.view, words);
     if (!cut || messages.has_failure()) {
         return Error{fmt::format("{}: {}", file, messages.failure_or("its pixels cannot be read"))};
     }

@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "core/try.hpp"
 #include "geo/gdal.hpp"
 #include "geo/raster.hpp"
 #include "geo/raster_source.hpp"
@@ -165,52 +166,48 @@ enum class Kind { elevations, values, map };
 
 Result<Raster> read_cells(const std::string& file, const RasterSource& source, const std::optional<Extent>& extent,
                           Kind kind) {
-    auto window = window_of(file, source, extent);
-    if (!window) return window.error();
+    TALUS_ASSIGN(auto window, window_of(file, source, extent));
     Raster raster;
     raster.crs = source.crs;
     raster.vertical_unit = source.value_unit;
     raster.nodata_value = source.nodata;
-    raster.grid = Grid<float>({.x_min = source.x_min + window->column * source.cell,
-                               .y_min = source.y_min + window->row * source.cell,
+    raster.grid = Grid<float>({.x_min = source.x_min + window.column * source.cell,
+                               .y_min = source.y_min + window.row * source.cell,
                                .cell = source.cell,
-                               .columns = window->columns,
-                               .rows = window->rows},
+                               .columns = window.columns,
+                               .rows = window.rows},
                               std::numeric_limits<float>::quiet_NaN());
-    auto range = read_window(file, source, *window, raster.grid);
-    if (!range) return range.error();
-    if (range->valid == 0 && kind != Kind::map) {
+    TALUS_ASSIGN(auto range, read_window(file, source, window, raster.grid));
+    if (range.valid == 0 && kind != Kind::map) {
         return Error{fmt::format("{}: {} no cell holds data, all {} x {} are nodata", file,
-                                 extent ? "within the extent" : "in the whole raster", window->columns, window->rows)};
+                                 extent ? "within the extent" : "in the whole raster", window.columns, window.rows)};
     }
     if (kind == Kind::elevations) {
-        if (Status s = check_elevations(file, source, *range); !s) return s.error();
+        TALUS_TRY(check_elevations(file, source, range));
     }
-    raster.nodata_share = 1 - static_cast<double>(range->valid) / static_cast<double>(raster.grid.values.size());
+    raster.nodata_share = 1 - static_cast<double>(range.valid) / static_cast<double>(raster.grid.values.size());
     return Result<Raster>(std::move(raster));
 }
 
 /// A raster that has to be in the CRS of the terrain.
 Result<Raster> read_over_terrain(const std::string& file, const Crs& terrain_crs, Kind kind) {
-    auto source = open_raster(file, 1);
-    if (!source) return source.error();
-    if (!same_crs(to_spatial_reference(source->crs), to_spatial_reference(terrain_crs))) {
+    TALUS_ASSIGN(auto source, open_raster(file, 1));
+    if (!same_crs(to_spatial_reference(source.crs), to_spatial_reference(terrain_crs))) {
         const std::string target = terrain_crs.epsg != 0 ? fmt::format("EPSG:{}", terrain_crs.epsg) : "EPSG:nnnn";
         return Error{
             fmt::format("{}: is in {}, the terrain in {}: gdalwarp -t_srs {} -r bilinear -ot Float32 "
                         "-dstnodata -9999 {} {}",
-                        file, source->crs.label(), terrain_crs.label(), target, shell_quoted(file),
+                        file, source.crs.label(), terrain_crs.label(), target, shell_quoted(file),
                         mended_name(file, "_terrain_crs", ".tif"))};
     }
-    return read_cells(file, *source, std::nullopt, kind);
+    return read_cells(file, source, std::nullopt, kind);
 }
 
 }  // namespace
 
 Result<Raster> read_terrain_raster(const std::string& file, int band, const std::optional<Extent>& extent) {
-    auto source = open_raster(file, band);
-    if (!source) return source.error();
-    return read_cells(file, *source, extent, Kind::elevations);
+    TALUS_ASSIGN(auto source, open_raster(file, band));
+    return read_cells(file, source, extent, Kind::elevations);
 }
 
 Result<Raster> read_value_raster(const std::string& file, const Crs& terrain_crs) {

@@ -9,6 +9,7 @@
 #include <cpl_vsi.h>
 #include <fmt/format.h>
 
+#include "core/try.hpp"
 #include "geo/gdal.hpp"
 #include "geo/spatial_reference.hpp"
 
@@ -221,11 +222,9 @@ std::string declare_nodata_command(const std::string& file, const std::string& d
 }
 
 Result<RasterSource> open_raster(const std::string& file, int band) {
-    auto opened = open_dataset(file, GDAL_OF_RASTER, "raster");
-    if (!opened) return opened.error();
-    const GdalMessages messages;
     RasterSource source;
-    source.data = std::move(opened).value();
+    TALUS_ASSIGN(source.data, open_dataset(file, GDAL_OF_RASTER, "raster"));
+    const GdalMessages messages;
     GDALDataset& data = *source.data;
     const std::string driver = data.GetDriver() != nullptr ? data.GetDriver()->GetDescription() : "";
 
@@ -247,7 +246,7 @@ Result<RasterSource> open_raster(const std::string& file, int band) {
         return Error{fmt::format("{}: band {} holds complex numbers", file, band)};
     }
 
-    if (Status s = check_raw_size(file, driver, data); !s) return s.error();
+    TALUS_TRY(check_raw_size(file, driver, data));
 
     OGRSpatialReference reference;
     if (const OGRSpatialReference* stated = data.GetSpatialRef()) reference = *stated;
@@ -263,13 +262,11 @@ Result<RasterSource> open_raster(const std::string& file, int band) {
                         file, shell_quoted(file), mended_name(file, "_placed", ".tif"))};
     }
     const PlanPoint centre = position.at(source.columns / 2.0, source.rows / 2.0);
-    if (Status s = check_crs(file, driver, reference, centre); !s) return s.error();
-    if (Status s = check_cells(file, position, source.columns, source.rows); !s) return s.error();
+    TALUS_TRY(check_crs(file, driver, reference, centre));
+    TALUS_TRY(check_cells(file, position, source.columns, source.rows));
 
     source.crs = to_crs(reference);
-    auto unit = value_unit_of(file, band, *source.band, reference, source.crs);
-    if (!unit) return unit.error();
-    source.value_unit = *unit;
+    TALUS_ASSIGN(source.value_unit, value_unit_of(file, band, *source.band, reference, source.crs));
 
     const auto& g = position.g;
     source.cell = std::abs(g[1]);

@@ -7,6 +7,7 @@
 #include <ogr_geometry.h>
 #include <ogrsf_frmts.h>
 
+#include "core/try.hpp"
 #include "geo/gdal.hpp"
 #include "geo/spatial_reference.hpp"
 #include "geo/vector.hpp"
@@ -89,14 +90,10 @@ Status find_transformation(const std::string& file, const Crs& terrain_crs, Sour
 }
 
 Result<Source> open_layer(const std::string& file, const std::string& layer, const Crs& terrain_crs) {
-    auto opened = open_dataset(file, GDAL_OF_VECTOR, "vector file");
-    if (!opened) return opened.error();
-    GdalMessages messages;
     Source source;
-    source.data = std::move(opened).value();
-    auto found = find_layer(file, layer, *source.data);
-    if (!found) return found.error();
-    source.layer = *found;
+    TALUS_ASSIGN(source.data, open_dataset(file, GDAL_OF_VECTOR, "vector file"));
+    GdalMessages messages;
+    TALUS_ASSIGN(source.layer, find_layer(file, layer, *source.data));
 
     source.feature_count = source.layer->GetFeatureCount(TRUE);
     if (messages.has_failure()) {
@@ -116,7 +113,7 @@ Result<Source> open_layer(const std::string& file, const std::string& layer, con
                         file, source.layer->GetName(), mended_name(file, "_crs", ".gpkg"), shell_quoted(file))};
     }
     source.crs = to_crs(*reference);
-    if (Status s = find_transformation(file, terrain_crs, source); !s) return s.error();
+    TALUS_TRY(find_transformation(file, terrain_crs, source));
     return Result<Source>(std::move(source));
 }
 
@@ -301,51 +298,46 @@ Result<std::vector<PlanPoint>> join(const std::string& file, const std::string& 
 }  // namespace
 
 Result<PolygonLayer> read_polygons(const std::string& file, const std::string& layer, const Crs& terrain_crs) {
-    auto source = open_layer(file, layer, terrain_crs);
-    if (!source) return source.error();
+    TALUS_ASSIGN(auto source, open_layer(file, layer, terrain_crs));
     PolygonLayer result;
-    result.reprojection = source->reprojection;
-    source->layer->ResetReading();
+    result.reprojection = source.reprojection;
+    source.layer->ResetReading();
     for (GIntBig number = 1;; ++number) {
-        auto read = next_feature(file, *source, number);
-        if (!read) return read.error();
-        if (!read->feature) break;
-        read->geometry->closeRings();
+        TALUS_ASSIGN(auto read, next_feature(file, source, number));
+        if (!read.feature) break;
+        read.geometry->closeRings();
         PolygonFeature feature;
-        if (!collect_polygons(*read->geometry, feature.parts) || feature.parts.empty()) {
-            return wrong_geometry(file, *read, "a polygon");
+        if (!collect_polygons(*read.geometry, feature.parts) || feature.parts.empty()) {
+            return wrong_geometry(file, read, "a polygon");
         }
-        if (Status s = check_valid(file, *source, *read); !s) return s.error();
-        if (Status s = transform(file, *source, *read); !s) return s.error();
+        TALUS_TRY(check_valid(file, source, read));
+        TALUS_TRY(transform(file, source, read));
         feature.parts.clear();
-        collect_polygons(*read->geometry, feature.parts);
-        feature.attributes = attributes_of(*read->feature);
+        collect_polygons(*read.geometry, feature.parts);
+        feature.attributes = attributes_of(*read.feature);
         result.features.push_back(std::move(feature));
     }
     if (result.features.empty()) {
-        return Error{fmt::format("{}: layer \"{}\" has no features", file, source->layer->GetName())};
+        return Error{fmt::format("{}: layer \"{}\" has no features", file, source.layer->GetName())};
     }
     return result;
 }
 
 Result<LineLayer> read_line(const std::string& file, const std::string& layer, const Crs& terrain_crs) {
-    auto source = open_layer(file, layer, terrain_crs);
-    if (!source) return source.error();
-    source->layer->ResetReading();
-    auto read = next_feature(file, *source, 1);
-    if (!read) return read.error();
-    if (!read->feature) {
-        return Error{fmt::format("{}: layer \"{}\" has no features", file, source->layer->GetName())};
+    TALUS_ASSIGN(auto source, open_layer(file, layer, terrain_crs));
+    source.layer->ResetReading();
+    TALUS_ASSIGN(auto read, next_feature(file, source, 1));
+    if (!read.feature) {
+        return Error{fmt::format("{}: layer \"{}\" has no features", file, source.layer->GetName())};
     }
-    if (Status s = transform(file, *source, *read); !s) return s.error();
+    TALUS_TRY(transform(file, source, read));
     std::vector<std::vector<PlanPoint>> parts;
-    if (!collect_lines(*read->geometry, parts) || parts.empty()) return wrong_geometry(file, *read, "a line");
-    auto line = join(file, read->label, std::move(parts));
-    if (!line) return line.error();
-    if (line->size() < 2) {
-        return Error{fmt::format("{}: {} has a single point, a line needs two", file, read->label)};
+    if (!collect_lines(*read.geometry, parts) || parts.empty()) return wrong_geometry(file, read, "a line");
+    TALUS_ASSIGN(auto line, join(file, read.label, std::move(parts)));
+    if (line.size() < 2) {
+        return Error{fmt::format("{}: {} has a single point, a line needs two", file, read.label)};
     }
-    return LineLayer{std::move(line).value(), source->reprojection};
+    return LineLayer{std::move(line), source.reprojection};
 }
 
 }  // namespace talus

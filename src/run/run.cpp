@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "core/try.hpp"
 #include "sim/seed.hpp"
 
 namespace talus {
@@ -28,12 +29,11 @@ Result<std::unique_ptr<Run>> Run::start(const Scene& scene, std::optional<double
     return Threads(spec.solver.thread_count).execute([&]() -> Result<std::unique_ptr<Run>> {
         Model model =
             make_model(spec.material, spec.solver, scene.terrain, scene.buildings, spacing, scene.cover, scene.bed);
-        Result<State> state = seed_releases(model, scene.releases);
-        if (!state) return state.error();
+        TALUS_ASSIGN(State state, seed_releases(model, scene.releases));
         InflowFeeder inflow(model, scene.inflows);
-        if (Status s = check_particle_count(model, state->count, inflow.to_come()); !s) return s.error();
+        TALUS_TRY(check_particle_count(model, state.count, inflow.to_come()));
         return std::make_unique<Run>(
-            RunStart{std::move(model), *std::move(state), std::move(inflow), scene.flow_path, spec.outputs});
+            RunStart{std::move(model), std::move(state), std::move(inflow), scene.flow_path, spec.outputs});
     });
 }
 

@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "core/try.hpp"
 #include "sim/physics/viscosity.hpp"
 #include "sim/seed.hpp"
 
@@ -116,14 +117,13 @@ Result<std::vector<Variant>> variations(std::string_view text) {
 Result<std::vector<Variant>> prepare_variants(const SceneSource& source, const Scene& base,
                                               std::vector<Variant> variants) {
     for (Variant& variant : variants) {
-        const Result<Scene> scene = load_variant(source, variant);
-        if (!scene) return scene.error();
-        const auto limit = static_cast<double>(scene->spec.solver.particle_limit);
-        if (particles_of(*scene) > limit) {
+        TALUS_ASSIGN(const Scene scene, load_variant(source, variant));
+        const auto limit = static_cast<double>(scene.spec.solver.particle_limit);
+        if (particles_of(scene) > limit) {
             return Error{fmt::format("variant {}: about {:.0f} particles, more than solver.particle_limit = {:.0f}",
-                                     variant.name, particles_of(*scene), limit)};
+                                     variant.name, particles_of(scene), limit)};
         }
-        variant.effort = effort_of(*scene) / effort_of(base);
+        variant.effort = effort_of(scene) / effort_of(base);
     }
     return variants;
 }

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "core/try.hpp"
 #include "serve/api.hpp"
 #include "serve/json_text.hpp"
 
@@ -98,9 +99,8 @@ void layer(Session& session, const Request& request, const Respond& respond) {
     }
     take(session, request, respond,
          [time = *time, name = request.parameters.at("name")](Scenarios& all, int index) -> Result<Work> {
-             auto grid = all.at(index).layer(name, time);
-             if (!grid) return grid.error();
-             return Work([grid = std::move(*grid)] { return binary_response(twin::encode_grid(grid())); });
+             TALUS_ASSIGN(auto grid, all.at(index).layer(name, time));
+             return Work([grid = std::move(grid)] { return binary_response(twin::encode_grid(grid())); });
          });
 }
 

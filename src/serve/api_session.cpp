@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "core/try.hpp"
 #include "geo/orthophoto.hpp"
 #include "openapi_file.hpp"
 #include "serve/api.hpp"
@@ -103,10 +104,9 @@ void add_orthophoto(Router& router, Session& session) {
 
 /// The scenario that `{"copy_of": "A"}` names. Error: it names none.
 Result<std::string> read_copy_of(const std::string& body) {
-    const auto wanted = parse_json(body);
-    if (!wanted) return wanted.error();
-    const auto name = wanted->is_object() ? wanted->find("copy_of") : wanted->end();
-    if (name == wanted->end() || !name->is_string())
+    TALUS_ASSIGN(const auto wanted, parse_json(body));
+    const auto name = wanted.is_object() ? wanted.find("copy_of") : wanted.end();
+    if (name == wanted.end() || !name->is_string())
         return Error{"the body is an object with copy_of, a scenario's name"};
     return name->get<std::string>();
 }

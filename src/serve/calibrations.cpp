@@ -11,8 +11,9 @@
 #include <fmt/format.h>
 
 #include "calibrate/calibration_products.hpp"
-#include "ensemble/ensemble_folder.hpp"
 #include "core/number_or_null.hpp"
+#include "core/try.hpp"
+#include "ensemble/ensemble_folder.hpp"
 #include "params/fields.hpp"
 #include "twin/setup.hpp"
 
@@ -71,12 +72,11 @@ Result<CalibrationPlan> read_plan(const json& wanted) {
             fmt::format("parameters: must be a list of 1 to {}, each with key, low and high", most_parameters)};
     }
     for (const json& entry : *list) {
-        auto factor = read_factor(entry);
-        if (!factor) return factor.error();
+        TALUS_ASSIGN(auto factor, read_factor(entry));
         for (const Factor& other : plan.factors) {
-            if (other.key == factor->key) return Error{fmt::format("parameters: {} is there twice", other.key)};
+            if (other.key == factor.key) return Error{fmt::format("parameters: {} is there twice", other.key)};
         }
-        plan.factors.push_back(std::move(*factor));
+        plan.factors.push_back(std::move(factor));
     }
     if (const auto runs = wanted.find("runs"); runs != wanted.end()) {
         if (!runs->is_number_unsigned() || runs->get<std::uint64_t>() > 2000) {

@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "core/try.hpp"
 #include "geo/raster.hpp"
 #include "twin/scenario.hpp"
 
@@ -34,10 +35,8 @@ json number_or_null(bool there, double value) {
 }  // namespace
 
 Result<Ensembles::Ensemble> Ensembles::read_one(const fs::path& folder, const Scene& scene) {
-    auto about = read_finished_ensemble(folder);
-    if (!about) return about.error();
     Ensemble made;
-    made.about = std::move(*about);
+    TALUS_ASSIGN(made.about, read_finished_ensemble(folder));
     for (const InputFile& input : scene.inputs) {
         if (input.role == "terrain" && !made.about.terrain_hash.empty()) {
             made.same_terrain = input.hash == made.about.terrain_hash;
@@ -45,14 +44,11 @@ Result<Ensembles::Ensemble> Ensembles::read_one(const fs::path& folder, const Sc
     }
     const Extent terrain = scene.terrain.elevation().geometry.extent();
     for (FinishedMap& map : made.about.maps) {
-        const auto raster = read_map_raster(map.file.string(), scene.crs);
-        if (!raster) return raster.error();
-        const GridGeometry& grid = raster->grid.geometry;
-        if (Status s = check_extent(map.file, grid.extent(), terrain, std::max(grid.cell, scene.terrain.cell())); !s) {
-            return s.error();
-        }
-        made.maps.push_back({std::move(map), std::make_shared<const std::string>(twin::encode_grid(raster->grid)),
-                             greatest(raster->grid)});
+        TALUS_ASSIGN(const auto raster, read_map_raster(map.file.string(), scene.crs));
+        const GridGeometry& grid = raster.grid.geometry;
+        TALUS_TRY(check_extent(map.file, grid.extent(), terrain, std::max(grid.cell, scene.terrain.cell())));
+        made.maps.push_back({std::move(map), std::make_shared<const std::string>(twin::encode_grid(raster.grid)),
+                             greatest(raster.grid)});
     }
     made.about.maps.clear();
     return Result<Ensemble>(std::move(made));
@@ -61,9 +57,8 @@ Result<Ensembles::Ensemble> Ensembles::read_one(const fs::path& folder, const Sc
 Result<Ensembles> Ensembles::read(const std::vector<fs::path>& folders, const Scene& scene) {
     Ensembles all;
     for (const fs::path& folder : folders) {
-        auto ensemble = read_one(folder, scene);
-        if (!ensemble) return ensemble.error();
-        all.ensembles_.push_back(std::move(*ensemble));
+        TALUS_ASSIGN(auto ensemble, read_one(folder, scene));
+        all.ensembles_.push_back(std::move(ensemble));
     }
     return Result<Ensembles>(std::move(all));
 }

@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "core/try.hpp"
 #include "serve/api.hpp"
 #include "serve/json_text.hpp"
 
@@ -84,7 +85,7 @@ struct Exports::Snapshot {
         fs::remove_all(folder, error);  // of a former try
         fs::create_directories(folder, error);
         if (error) return Error{fmt::format("{}: {}", folder.string(), error.message())};
-        if (Status status = products(folder); !status) return status;
+        TALUS_TRY(products(folder));
         products = nullptr;
         return {};
     }

@@ -4,14 +4,16 @@
 #include <pthread.h>
 #include <utility>
 
+#include "core/try.hpp"
+
 namespace talus::serve {
 
 Result<std::unique_ptr<Loop>> Loop::start(std::shared_ptr<const Scene> scene, twin::ScenarioOptions options,
                                           Watcher& watcher, std::function<void(std::string)> failed) {
     auto threads = std::make_unique<Threads>(scene->spec.solver.thread_count);
-    auto first = threads->execute([&] { return twin::Scenario::open(std::move(scene), std::move(options)); });
-    if (!first) return first.error();
-    return std::unique_ptr<Loop>(new Loop(std::move(threads), std::move(*first), watcher, std::move(failed)));
+    TALUS_ASSIGN(auto first,
+                 threads->execute([&] { return twin::Scenario::open(std::move(scene), std::move(options)); }));
+    return std::unique_ptr<Loop>(new Loop(std::move(threads), std::move(first), watcher, std::move(failed)));
 }
 
 Loop::Loop(std::unique_ptr<Threads> threads, std::unique_ptr<twin::Scenario> first, Watcher& watcher,

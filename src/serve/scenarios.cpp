@@ -5,6 +5,8 @@
 
 #include <fmt/format.h>
 
+#include "core/try.hpp"
+
 namespace talus::serve {
 namespace {
 
@@ -158,10 +160,9 @@ Result<std::string> Scenarios::copy(int from) {
     for (int i = 0; i < most; ++i) {
         Slot& slot = slots_[i];
         if (slot.scenario) continue;
-        auto made = slots_[static_cast<std::size_t>(from)].scenario->copy();
-        if (!made) return made.error();
+        TALUS_ASSIGN(auto made, slots_[static_cast<std::size_t>(from)].scenario->copy());
         slot = Slot();
-        slot.scenario = std::move(*made);
+        slot.scenario = std::move(made);
         set_running(running_);
         tell_names();
         return std::string(name_of(i));

@@ -15,6 +15,7 @@
 
 #include <fmt/format.h>
 
+#include "core/try.hpp"
 #include "serve/api.hpp"
 #include "serve/connection.hpp"
 #include "serve/ensembles.hpp"
@@ -136,9 +137,9 @@ Server::Server(std::unique_ptr<Parts> parts) : parts_(std::move(parts)) {}
 Server::~Server() = default;
 
 Result<std::unique_ptr<Server>> Server::listen(ServerOptions options) {
-    if (Status good = check_tokens(options.tokens); !good) return good.error();
+    TALUS_TRY(check_tokens(options.tokens));
     auto parts = std::make_unique<Parts>();
-    if (Status bound = parts->bind(options.host, options.port); !bound) return bound.error();
+    TALUS_TRY(parts->bind(options.host, options.port));
     parts->options = std::move(options);
     return std::unique_ptr<Server>(new Server(std::move(parts)));
 }
@@ -146,12 +147,10 @@ Result<std::unique_ptr<Server>> Server::listen(ServerOptions options) {
 Status Server::serve(std::shared_ptr<const Scene> scene) {
     Parts& parts = *parts_;
     const ServerOptions& options = parts.options;
-    auto ensembles = Ensembles::read(options.ensembles, *scene);
-    if (!ensembles) return ensembles.error();
-    parts.ensembles = std::move(*ensembles);
+    TALUS_ASSIGN(parts.ensembles, Ensembles::read(options.ensembles, *scene));
     parts.session.emplace(parts.thread_of_session(), scene, options.tokens);
     const auto on_failure = options.on_failure ? options.on_failure : [](const std::string&) {};
-    if (Status opened = parts.session->open(options.scenario, on_failure); !opened) return opened;
+    TALUS_TRY(parts.session->open(options.scenario, on_failure));
     parts.exports.emplace(*parts.session, options.export_folder);
     parts.calibrations.emplace(std::move(scene), options.calibration,
                                [&parts](nlohmann::json status) { parts.session->calibration(std::move(status)); });

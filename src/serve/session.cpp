@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "core/try.hpp"
 #include "serve/json_text.hpp"
 
 namespace talus::serve {
@@ -52,9 +53,7 @@ void Session::close() {
 }
 
 Status Session::open(twin::ScenarioOptions options, std::function<void(std::string)> failed) {
-    auto loop = Loop::start(scene_, std::move(options), *this, std::move(failed));
-    if (!loop) return loop.error();
-    loop_ = std::move(*loop);
+    TALUS_ASSIGN(loop_, Loop::start(scene_, std::move(options), *this, std::move(failed)));
     return {};
 }
 

@@ -5,6 +5,8 @@
 
 #include <fmt/format.h>
 
+#include "core/try.hpp"
+
 namespace talus {
 namespace {
 
@@ -123,17 +125,16 @@ std::vector<double> find_cuts(const BarrierShape& shape, double from, double to,
 
 Result<Building> make_barrier(const Terrain& terrain, const std::string& name, const BarrierShape& shape) {
     const std::vector<PlanPoint>& line = shape.line;
-    if (Status s = check_line(terrain, line); !s) return s.error();
-    if (Status s = check_openings(shape); !s) return s.error();
-    const Result<std::vector<PlanPoint>> mitres = find_mitres(line, shape.thickness);
-    if (!mitres) return mitres.error();
+    TALUS_TRY(check_line(terrain, line));
+    TALUS_TRY(check_openings(shape));
+    TALUS_ASSIGN(const std::vector<PlanPoint> mitres, find_mitres(line, shape.thickness));
     Building barrier;
     barrier.name = name;
     barrier.barrier = shape;
     const double part_length = std::max(usual_part, length_of(line) / most_parts);
     double roofs = 0, heights = 0, chainage = 0, highest = 0;
     for (std::size_t k = 0; k + 1 < line.size(); ++k) {
-        const PlanPoint &a = line[k], &b = line[k + 1], &ma = (*mitres)[k], &mb = (*mitres)[k + 1];
+        const PlanPoint &a = line[k], &b = line[k + 1], &ma = mitres[k], &mb = mitres[k + 1];
         const PlanPoint left_a{a.x + ma.x, a.y + ma.y}, left_b{b.x + mb.x, b.y + mb.y};
         const PlanPoint right_a{a.x - ma.x, a.y - ma.y}, right_b{b.x - mb.x, b.y - mb.y};
         const double length = distance(a, b);

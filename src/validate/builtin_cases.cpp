@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "builtin_case_files.hpp"
+#include "core/try.hpp"
 #include "scene/builtin.hpp"
 #include "validate/suite.hpp"
 
@@ -32,7 +33,7 @@ Result<std::filesystem::path> unpack_builtin_cases(const std::filesystem::path& 
         stream.close();
         if (!stream) return Error{fmt::format("{}: cannot write this file; is the disk full?", path.string())};
     }
-    if (auto scene = unpack_builtin_scene(folder / "scenes" / builtin_scene_name); !scene) return scene.error();
+    TALUS_TRY(unpack_builtin_scene(folder / "scenes" / builtin_scene_name));
     return folder / "validation";
 }
 

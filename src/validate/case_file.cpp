@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "core/try.hpp"
 #include "scene/parse.hpp"
 #include "scene/toml_file.hpp"
 #include "validate/kind.hpp"
@@ -144,20 +145,19 @@ class CaseReader {
     }
 
     Result<Case> read() {
-        const Result<toml::table> root = read_toml_file(file_, "case");
-        if (!root) return root.error();
-        if (Status s = check_sections(*root); !s) return s.error();
-        if (Status s = read_case(*root); !s) return s.error();
+        TALUS_ASSIGN(const toml::table root, read_toml_file(file_, "case"));
+        TALUS_TRY(check_sections(root));
+        TALUS_TRY(read_case(root));
         spec_.solver.rest_duration = 0;  // whether heaps stand is what many cases are about
-        if (Status s = read_scene_section(*root, "material"); !s) return s.error();
-        if (Status s = read_scene_section(*root, "solver"); !s) return s.error();
-        if (Status s = read_expectations(*root); !s) return s.error();
-        Parameters parameters(file_, parameter_entries(*root));
+        TALUS_TRY(read_scene_section(root, "material"));
+        TALUS_TRY(read_scene_section(root, "solver"));
+        TALUS_TRY(read_expectations(root));
+        Parameters parameters(file_, parameter_entries(root));
         setting_.expectations = case_.expectations;
         setting_.material = spec_.material;
         setting_.solver = spec_.solver;
         case_.compute = kind_->prepare(parameters, setting_);
-        if (Status s = parameters.check(); !s) return s.error();
+        TALUS_TRY(parameters.check());
         return Result<Case>(std::move(case_));
     }
 
@@ -195,7 +195,7 @@ class CaseReader {
         case_.description = reader.text("description", true);
         case_.quick = reader.boolean("quick", false);
         case_.needs_data = reader.text("needs_data", false);
-        if (Status s = reader.check(); !s) return s.error();
+        TALUS_TRY(reader.check());
         for (const Kind& kind : kinds()) {
             if (kind.name == case_.kind) kind_ = &kind;
         }
@@ -228,7 +228,7 @@ class CaseReader {
 
     Status read_expectations(const toml::table& root) {
         for (const toml::node& node : *root.get_as<toml::array>("expect")) {
-            if (Status s = read_expectation(*node.as_table()); !s) return s.error();
+            TALUS_TRY(read_expectation(*node.as_table()));
         }
         return {};
     }

@@ -7,6 +7,7 @@
 #include <fmt/chrono.h>
 #include <fmt/format.h>
 
+#include "core/try.hpp"
 #include "products/report_text.hpp"
 #include "products/text_file.hpp"
 #include "validation_page_files.hpp"
@@ -155,7 +156,7 @@ Status write_markdown(const std::vector<CaseResult>& results, const std::filesys
         if (!list.empty()) text += "\n" + list;
         for (const Chart& chart : result.charts) {
             const std::string name = fmt::format("{}_{}.svg", c.name, chart.name);
-            if (Status s = write_text_file(folder / name, chart_svg(chart, true) + "\n"); !s) return s;
+            TALUS_TRY(write_text_file(folder / name, chart_svg(chart, true) + "\n"));
             text += fmt::format("\n![{}]({}/{})\n", markdown_text(chart.title), folder.filename().string(), name);
         }
     }

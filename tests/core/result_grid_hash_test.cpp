@@ -6,7 +6,7 @@
 
 #include "core/grid.hpp"
 #include "core/hash.hpp"
-#include "core/result.hpp"
+#include "core/try.hpp"
 
 namespace talus {
 namespace {
@@ -34,6 +34,27 @@ TEST(Status, is_success_unless_given_an_error) {
     const Status failed = Error{"disk full"};
     EXPECT_FALSE(failed);
     EXPECT_EQ(failed.error().message, "disk full");
+}
+
+Status is_even(int n) {
+    TALUS_TRY(half(n));
+    return {};
+}
+
+Result<int> sum_of_halves(int a, int b) {
+    TALUS_TRY(is_even(a));
+    int sum = 0;
+    TALUS_ASSIGN(sum, half(a));
+    TALUS_ASSIGN(const int other, half(b));
+    return sum + other;
+}
+
+TEST(Result, is_passed_on) {
+    EXPECT_TRUE(is_even(2));
+    EXPECT_EQ(is_even(7).error().message, "odd: 7");
+    EXPECT_EQ(*sum_of_halves(2, 6), 4);
+    EXPECT_EQ(sum_of_halves(3, 6).error().message, "odd: 3");
+    EXPECT_EQ(sum_of_halves(2, 5).error().message, "odd: 5");
 }
 
 TEST(Grid, row_zero_is_the_southernmost) {

@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "core/try.hpp"
 #include "scene/scene.hpp"
 #include "sim/seed.hpp"
 #include "terrain/release.hpp"
@@ -49,9 +50,8 @@ Release block_at(const Terrain& terrain, double x, double side, double thickness
 
 Result<World> make_world(const EnergySpec& spec) {
     if (spec.ground == Ground::scene) {
-        Result<Scene> scene = load_scene(spec.scene);
-        if (!scene) return scene.error();
-        return World{scene->terrain, scene->releases};
+        TALUS_ASSIGN(Scene scene, load_scene(spec.scene));
+        return World{scene.terrain, scene.releases};
     }
     World world;
     if (spec.ground == Ground::plane) {
@@ -126,12 +126,10 @@ class Ways {
 };
 
 Result<Outcome> compute(const EnergySpec& spec, const Setting& setting, const Watch& watch) {
-    Result<World> world = make_world(spec);
-    if (!world) return world.error();
-    Model model = make_model(setting.material, setting.solver, world->terrain, {}, spec.spacing);
-    Result<State> seeded = seed_releases(model, world->releases);
-    if (!seeded) return seeded.error();
-    Trial trial(std::move(model), *std::move(seeded), watch);
+    TALUS_ASSIGN(World world, make_world(spec));
+    Model model = make_model(setting.material, setting.solver, world.terrain, {}, spec.spacing);
+    TALUS_ASSIGN(State seeded, seed_releases(model, world.releases));
+    Trial trial(std::move(model), std::move(seeded), watch);
     const State& state = trial.state();
     const double friction = setting.material.friction_coefficient;
 

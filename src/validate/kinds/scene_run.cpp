@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "core/try.hpp"
 #include "products/report_sections.hpp"
 #include "run/run_scene.hpp"
 #include "scene/scene.hpp"
@@ -88,29 +89,27 @@ double measure(const Expectation& e, const Scene& scene, const Observation& obse
 Result<Outcome> compute(const std::filesystem::path& file, const Setting& setting, const Watch& watch) {
     std::vector<std::string> overrides = setting.overrides;
     if (watch.thread_count > 0) overrides.push_back(fmt::format("solver.thread_count={}", watch.thread_count));
-    const Result<Scene> scene = load_scene(file, overrides);
-    if (!scene) return scene.error();
+    TALUS_ASSIGN(const Scene scene, load_scene(file, overrides));
     RunOptions options;
     options.stop_requested = watch.stop_requested;
     options.on_progress = [&](const Progress& progress) {
         if (progress.step % 50 == 0) watch.say(fmt::format("t {:.1f} s", progress.time));
     };
-    const Result<RunResult> run = run_scene(*scene, options);
-    if (!run) return run.error();
-    const Observation& observation = run->observation;
+    TALUS_ASSIGN(const RunResult run, run_scene(scene, options));
+    const Observation& observation = run.observation;
 
     Outcome outcome;
-    outcome.notes.push_back(fmt::format("{} particles of {:.3g} m, {:.1f} s: {}", run->particles, run->particle_spacing,
-                                        run->simulated_time, run->stop_reason));
+    outcome.notes.push_back(fmt::format("{} particles of {:.3g} m, {:.1f} s: {}", run.particles, run.particle_spacing,
+                                        run.simulated_time, run.stop_reason));
     Series front{"computed", Series::Style::line, {}, {}}, observed{"observed", Series::Style::marks, {}, {}};
     for (const FrontSample& sample : observation.front) {
         front.x.push_back(sample.chainage);
         front.y.push_back(sample.front_velocity);
     }
-    const bool trusted = run->status != RunStatus::fault;
+    const bool trusted = run.status != RunStatus::fault;
     for (const Expectation& e : setting.expectations) {
         outcome.measurements.push_back(
-            {e.quantity, place_text(e), trusted ? measure(e, *scene, observation) : not_computed, {}});
+            {e.quantity, place_text(e), trusted ? measure(e, scene, observation) : not_computed, {}});
         if (e.quantity != "front_velocity") continue;
         observed.x.push_back(*e.chainage);
         observed.y.push_back(*e.expected);
