@@ -47,7 +47,7 @@ Stages::Stages(const Model& model) {
              {"spread", stress.spread}});
     } else {
         const cpu::PairStages pair = cpu::pair_stages_for(model.kernel.choice);
-        add({{"pack_start", pair.pack_start},
+        add({{"pack_motion", particle.pack_motion},
              {"find_tolerated", pair.find_tolerated},
              {"contacts", particle.contacts},
              {"update_multipliers", pair.update_multipliers},
@@ -57,7 +57,7 @@ Stages::Stages(const Model& model) {
          {"enforce_boundaries", particle.enforce_boundaries},
          update_velocities,
          {"apply_viscosity", particle.apply_viscosity},
-         {"settle", particle.settle}});
+         {"update_sleep", particle.update_sleep}});
 }
 
 Step::Step(const Debris& debris, InternalFriction method)
@@ -78,20 +78,10 @@ void Step::find_neighbours() {
     cpu::CellGrid grid;
     cpu::NeighbourSearch search(state_.count);
     const auto by_cell = cell_sort.sort(work_.predicted, state_.count, radius, grid);
-    const auto [order, awake] = search.find(work_.predicted, by_cell, state_.resting, grid, radius);
+    const auto [order, awake] = search.find(work_.predicted, by_cell, state_.asleep, grid, radius);
     const State before = state_;
     state_.awake = awake;
-    for (std::size_t i = 0; i < order.size(); ++i) {
-        const std::uint32_t from = order[i];
-        state_.position.set(i, before.position.at(from));
-        state_.velocity.set(i, before.velocity.at(from));
-        state_.stress.set(i, before.stress.at(from));
-        state_.multiplier[i] = before.multiplier[from];
-        state_.id[i] = before.id[from];
-        state_.held[i] = before.held[from];
-        state_.calm_time[i] = before.calm_time[from];
-        state_.resting[i] = before.resting[from];
-    }
+    for (std::size_t i = 0; i < order.size(); ++i) state_.set_particle(i, before.particle(order[i]));
     search.write(neighbours_);
 }
 
@@ -100,19 +90,20 @@ void Step::run_until(std::size_t place) {
 }
 
 void Step::run(const Stage& stage) {
-    stage.run({model_, state_, work_, neighbours_}, 0, (state_.count + bundle_size - 1) / bundle_size);
+    stage.run({model_, state_, work_, neighbours_}, 0, (state_.count + block_size - 1) / block_size);
 }
 
 void Step::remember() {
-    memory_ = {work_.motion,      work_.predicted,        state_.position, state_.velocity,
-               work_.shift,       work_.contact_friction, work_.corrected, state_.stress,
-               state_.multiplier, work_.contact_normal,   state_.calm_time};
+    memory_ = {work_.displaced, work_.motion,           state_.position,      state_.velocity,
+               work_.shift,     work_.contact_friction, work_.corrected,      work_.end,
+               state_.stress,   state_.multiplier,      work_.contact_normal, state_.still_time};
 }
 
 void Step::restore() {
+    work_.displaced = memory_.displaced;
     work_.motion = memory_.motion;
     work_.corrected = memory_.corrected;
-    work_.predicted = memory_.predicted;
+    work_.end = memory_.end;
     state_.position = memory_.position;
     state_.velocity = memory_.velocity;
     work_.shift = memory_.shift;
@@ -120,8 +111,8 @@ void Step::restore() {
     state_.stress = memory_.stress;
     state_.multiplier = memory_.multiplier;
     work_.contact_normal = memory_.contact_normal;
-    state_.calm_time = memory_.calm_time;
-    std::fill(state_.resting.begin(), state_.resting.end(), std::uint8_t{0});
+    state_.still_time = memory_.still_time;
+    std::fill(state_.asleep.begin(), state_.asleep.end(), std::uint8_t{0});
 }
 
 }  // namespace talus::benchmarks

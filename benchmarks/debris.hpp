@@ -27,7 +27,7 @@ struct Debris {
 };
 [[nodiscard]] const Debris& debris_of(std::int64_t particles);
 
-/// A stage of a step that is compiled per instruction set; it works on bundles.
+/// A stage of a step that is compiled per instruction set; it works on blocks.
 struct Stage {
     std::string name;
     std::function<void(const cpu::StageData&, std::size_t first, std::size_t last)> run;
@@ -67,10 +67,11 @@ class Step {
     cpu::NeighbourLists neighbours_;
     Stages stages_;
     struct Memory {
-        std::vector<Oct> motion;
-        VectorArray predicted, position, velocity, shift, contact_friction, corrected;
+        std::vector<cpu::DisplacedRow> displaced;
+        std::vector<cpu::MotionRow> motion;
+        VectorArray position, velocity, shift, contact_friction, corrected, end;
         DeviatorArray stress;
-        std::vector<float> multiplier, contact_normal, calm_time;
+        std::vector<float> multiplier, contact_normal, still_time;
     };
     Memory memory_;
 };

@@ -15,8 +15,8 @@ namespace talus::cpu {
 namespace {
 
 struct Limits {
-    float (*gather_quads)(const std::vector<Oct>&, const std::vector<std::uint32_t>&);
-    float (*gather_octs)(const std::vector<Oct>&, const std::vector<std::uint32_t>&);
+    float (*gather_quads)(const std::vector<simd::Oct>&, const std::vector<std::uint32_t>&);
+    float (*gather_octs)(const std::vector<simd::Oct>&, const std::vector<std::uint32_t>&);
     float (*stream)(const std::vector<float>&);
     float (*arithmetic)(std::int64_t);
     int lanes;
@@ -37,7 +37,7 @@ HWY_INLINE float total(const L& lanes) {
 }
 
 /// Rows of 16 bytes by index, transposed and added up.
-TALUS_STAGE float gather_quads(const std::vector<Oct>& rows, const std::vector<std::uint32_t>& index) {
+TALUS_STAGE float gather_quads(const std::vector<simd::Oct>& rows, const std::vector<std::uint32_t>& index) {
     L sum(0);
     for (std::size_t i = 0; i + lane_count <= index.size(); i += lane_count) {
         const Quads<L> row = quads_at<lane_count, 0>(rows.data(), &index[i]);
@@ -47,7 +47,7 @@ TALUS_STAGE float gather_quads(const std::vector<Oct>& rows, const std::vector<s
 }
 
 /// Rows of 32 bytes.
-TALUS_STAGE float gather_octs(const std::vector<Oct>& rows, const std::vector<std::uint32_t>& index) {
+TALUS_STAGE float gather_octs(const std::vector<simd::Oct>& rows, const std::vector<std::uint32_t>& index) {
     L sum(0);
     for (std::size_t i = 0; i + lane_count <= index.size(); i += lane_count) {
         const Octs<L> row = octs_at<lane_count>(rows.data(), &index[i]);
@@ -96,8 +96,6 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 #include <benchmark/benchmark.h>
 
-#include "sim/cpu/dispatch.hpp"
-
 namespace talus::cpu {
 
 HWY_EXPORT(make_limits);
@@ -105,13 +103,13 @@ HWY_EXPORT(make_limits);
 namespace {
 
 auto limits() {
-    return with_wanted_instructions([] { return HWY_DYNAMIC_DISPATCH(make_limits)(); });
+    return HWY_DYNAMIC_DISPATCH(make_limits)();
 }
 
 /// As in a sum over neighbours: near each other, in no order. `rows` of them lie in a cache, or do not.
 void gather(benchmark::State& run, bool wide) {
     const auto row_count = static_cast<std::uint32_t>(run.range(0));
-    const std::vector<Oct> rows(row_count);
+    const std::vector<simd::Oct> rows(row_count);
     std::vector<std::uint32_t> index(1 << 16);
     for (std::uint32_t i = 0; i < index.size(); ++i) {
         const std::uint64_t scattered = (i / 32) * (row_count / 2048) + i * 2654435761U % 1024;

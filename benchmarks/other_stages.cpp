@@ -42,7 +42,7 @@ void find_neighbours(benchmark::State& run) {
     cpu::NeighbourSearch search(debris.state().count);
     for (auto _ : run) {
         benchmark::DoNotOptimize(search
-                                     .find(debris.state().position, sorted.by_cell, debris.state().resting, sorted.grid,
+                                     .find(debris.state().position, sorted.by_cell, debris.state().asleep, sorted.grid,
                                            static_cast<float>(debris.model().support_radius))
                                      .awake);
     }
@@ -55,7 +55,7 @@ void write_neighbours(benchmark::State& run) {
     const Sorted sorted(debris);
     cpu::NeighbourSearch search(debris.state().count);
     cpu::NeighbourLists lists(debris.state().count);
-    (void)search.find(debris.state().position, sorted.by_cell, debris.state().resting, sorted.grid,
+    (void)search.find(debris.state().position, sorted.by_cell, debris.state().asleep, sorted.grid,
                       static_cast<float>(debris.model().support_radius));
     for (auto _ : run) {
         search.write(lists);

@@ -10,7 +10,7 @@
 
 #include "command.hpp"
 #include "exit_code.hpp"
-#include "sim/cpu/dispatch.hpp"
+#include "simd/dispatch.hpp"
 
 namespace talus {
 namespace {
@@ -74,7 +74,7 @@ int talus_main(int argc, char** argv) {
         return fail(exit_code::bad_input, fmt::format("{}; see {} --help", error.what(), deepest_command(app)));
     }
 
-    if (const Status chosen = cpu::choose_instruction_set_of_environment(); !chosen) {
+    if (const Status chosen = simd::choose_instruction_set_of_environment(); !chosen) {
         return fail(exit_code::bad_input, chosen.error().message);
     }
     for (const Command& command : commands) {

@@ -98,7 +98,7 @@ HWY_AFTER_NAMESPACE();
 #include <chrono>
 #include <numeric>
 
-#include "sim/cpu/parallel.hpp"
+#include "simd/parallel.hpp"
 
 namespace talus::bench {
 namespace {
@@ -140,7 +140,7 @@ double Calibration::measure() {
     std::size_t units = 0;
     double elapsed = 0;
     do {
-        cpu::parallel_ranges(rounds, 1, [this](std::size_t first, std::size_t last) {
+        simd::parallel_ranges(rounds, 1, [this](std::size_t first, std::size_t last) {
             for (std::size_t round = first; round < last; ++round) {
                 kernel_.sum_units(rows_.data(), index_.data(), 0, unit_count, sums_.data() + round * unit_count);
             }

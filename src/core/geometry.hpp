@@ -3,7 +3,7 @@
 #include <cmath>
 #include <vector>
 
-#include "core/lanes.hpp"
+#include "core/number.hpp"
 
 namespace talus {
 

@@ -7,7 +7,7 @@
 #include <functional>
 #include <utility>
 
-#include "sim/cpu/parallel.hpp"
+#include "simd/parallel.hpp"
 
 namespace talus {
 namespace {
@@ -73,7 +73,7 @@ std::uint32_t FrontTracker::find_candidates(const Model& model, const State& sta
         std::copy_n(found.begin(), count, candidates_.begin() + place);
     };
     candidate_count_ = 0;
-    return cpu::reduce_ranges(
+    return simd::reduce_ranges(
         state.count, 4096, std::uint32_t{0},
         [&](std::size_t first, std::size_t last, std::uint32_t held) {
             for (std::size_t begin = first; begin < last; begin += group) {

@@ -7,8 +7,8 @@
 #include <limits>
 #include <mutex>
 
-#include "core/lanes.hpp"
-#include "sim/cpu/parallel.hpp"
+#include "simd/lanes.hpp"
+#include "simd/parallel.hpp"
 
 namespace talus {
 namespace {
@@ -21,7 +21,7 @@ constexpr double margin = 20;        ///< m around the reached cells
 constexpr std::size_t grain = 2048;  ///< particles per task
 constexpr float not_a_number = std::numeric_limits<float>::quiet_NaN();
 
-using L = Lanes<4>;
+using L = simd::Lanes<4>;
 constexpr std::size_t chunk = 16;  ///< particles whose shares are worked out at once
 static_assert(chunk <= array_padding);
 
@@ -266,14 +266,14 @@ void MapAccumulator::update_peaks(Tile& tile, double time) const {
 void MapAccumulator::spread_all(const State& state, bool densities) {
     ++adds_;
     active_count_ = 0;
-    cpu::parallel_ranges(state.count, grain,
-                         [&](std::size_t first, std::size_t last) { spread(state, densities, first, last); });
+    simd::parallel_ranges(state.count, grain,
+                          [&](std::size_t first, std::size_t last) { spread(state, densities, first, last); });
 }
 
 void MapAccumulator::take_densities(const State& state) {
     keep_pressures();
     spread_all(state, true);
-    cpu::parallel_ranges(active_count_, 16, [&](std::size_t first, std::size_t last) {
+    simd::parallel_ranges(active_count_, 16, [&](std::size_t first, std::size_t last) {
         for (std::size_t k = first; k < last; ++k) {
             Tile& tile = *active_[k];
             tile.density.resize(tile_cells);
@@ -290,7 +290,7 @@ void MapAccumulator::add(const State& state) {
     make_room(state.count);
     if (!state.density_of_id.empty()) take_densities(state);
     spread_all(state, false);
-    cpu::parallel_ranges(active_count_, 16, [&](std::size_t first, std::size_t last) {
+    simd::parallel_ranges(active_count_, 16, [&](std::size_t first, std::size_t last) {
         for (std::size_t k = first; k < last; ++k) update_peaks(*active_[k], state.time);
     });
 }

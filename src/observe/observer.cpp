@@ -10,8 +10,8 @@
 #include "observe/map_accumulator.hpp"
 #include "observe/run_out.hpp"
 #include "observe/step_rate.hpp"
-#include "sim/cpu/parallel.hpp"
 #include "sim/particle_density.hpp"
+#include "simd/parallel.hpp"
 
 namespace talus {
 namespace {
@@ -25,7 +25,7 @@ struct Totals {
 
 Totals sum_up(const Model& model, const State& state, double deposited_speed) {
     const bool own_densities = !state.density_of_id.empty();
-    return cpu::reduce_ranges(
+    return simd::reduce_ranges(
         state.count, 1024, Totals{},
         [&](std::size_t first, std::size_t last, Totals sum) {
             for (std::size_t i = first; i < last; ++i) {
@@ -61,10 +61,10 @@ TimeSample make_sample(const Model& model, const State& state, double deposited_
     sample.volume_held = totals.held * model.particle_volume();
     sample.volume_moving = totals.moving * model.particle_volume();
     sample.volume_deposited = totals.deposited * model.particle_volume();
-    sample.volume_left = state.left * model.particle_volume();
+    sample.volume_left = state.outflow * model.particle_volume();
     sample.kinetic_energy = 0.5 * model.particle_mass() * totals.speed_squared;
     sample.potential_energy = model.particle_mass() * model.gravity * totals.height;
-    sample.largest_speed = state.largest_speed;
+    sample.largest_speed = state.max_speed;
     sample.mean_compression = state.mean_compression;
     sample.max_compression = state.max_compression;
     sample.time_step = state.time_step;

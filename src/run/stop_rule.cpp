@@ -4,8 +4,8 @@
 
 #include <fmt/format.h>
 
-#include "core/lanes.hpp"
-#include "sim/cpu/parallel.hpp"
+#include "simd/lanes.hpp"
+#include "simd/parallel.hpp"
 
 namespace talus {
 
@@ -16,7 +16,7 @@ std::string RestDetector::reason() const {
 
 /// Floats side by side over a group of particles, doubles over the groups.
 double total_momentum(const Model& model, const State& state) {
-    using L = Lanes<4>;
+    using L = simd::Lanes<4>;
     constexpr std::size_t group = 64;
     const VectorArray& v = state.velocity;
     const auto add_speeds = [&](std::size_t first, std::size_t last, double sum) {
@@ -33,7 +33,7 @@ double total_momentum(const Model& model, const State& state) {
         return sum;
     };
     return model.particle_mass() *
-           cpu::reduce_ranges(state.count, 8192, 0.0, add_speeds, [](double a, double b) { return a + b; });
+           simd::reduce_ranges(state.count, 8192, 0.0, add_speeds, [](double a, double b) { return a + b; });
 }
 
 bool still_waiting(const Model& model, const State& state) {

@@ -66,8 +66,8 @@ void AreaSource::place_sites(const LocalFrame& frame) {
 }
 
 bool AreaSource::due(double time) const {
-    if (fed_ == total_ || time < inflow_.hydrograph.front().time) return false;
-    return time >= inflow_.hydrograph.back().time || inflow_.volume_until(time) >= (fed_ + 0.5) * particle_volume_;
+    if (injected_ == total_ || time < inflow_.hydrograph.front().time) return false;
+    return time >= inflow_.hydrograph.back().time || inflow_.volume_until(time) >= (injected_ + 0.5) * particle_volume_;
 }
 
 bool AreaSource::near_sites(float x, float y) const {
@@ -135,7 +135,7 @@ LocalPoint AreaSource::velocity_at(const Model& model, const LocalPoint& p, doub
     return {static_cast<float>(along.x), static_cast<float>(along.y), static_cast<float>(along.z)};
 }
 
-void AreaSource::feed(const Model& model, State& state) {
+void AreaSource::inject(const Model& model, State& state) {
     if (!due(state.time)) return;
     find_tops(state);
     const double density = inflow_.has_density() ? inflow_.density_between(last_time_, state.time) : 0;
@@ -144,7 +144,7 @@ void AreaSource::feed(const Model& model, State& state) {
         const std::uint32_t i = add_particle(state, place, velocity_at(model, place, state.time), 0);
         if (density > 0) set_density(state, i, density);
         if (near_sites(place.x, place.y)) add_top(place);
-        ++fed_;
+        ++injected_;
     }
     last_time_ = state.time;
 }

@@ -9,19 +9,19 @@
 
 namespace talus {
 
-/// Lets debris in all over an area: a particle whenever the volume that came in has grown by its own, each at the next
+/// Injects debris all over an area: a particle whenever the volume that came in has grown by its own, each at the next
 /// of many sites that lie a spacing apart and take their turns all over the area, so that every part of it gets as
 /// much. A particle appears on the ground, or on top of what debris is there, where it is a spacing away from any
-/// other: nothing is let in denser than at rest, so nothing pops apart.
+/// other: nothing comes in denser than at rest, so nothing pops apart.
 class AreaSource {
   public:
     AreaSource(const Model& model, Inflow inflow);
 
     /// Particles that it has yet to bring.
-    [[nodiscard]] std::uint32_t to_come() const { return total_ - fed_; }
+    [[nodiscard]] std::uint32_t to_come() const { return total_ - injected_; }
     [[nodiscard]] bool due(double time) const;
-    /// Lets in what is due at the state's time; the state's arrays have room.
-    void feed(const Model& model, State& state);
+    /// Injects what is due at the state's time; the state's arrays have room.
+    void inject(const Model& model, State& state);
 
   private:
     struct Top {  ///< of a particle that lies where one may be let in
@@ -41,7 +41,7 @@ class AreaSource {
 
     Inflow inflow_;
     double spacing_ = 0, particle_volume_ = 0;
-    std::uint32_t total_ = 0, fed_ = 0;
+    std::uint32_t total_ = 0, injected_ = 0;
     double last_time_ = 0;  ///< s, when it last let some in
     std::vector<LocalPoint> sites_;
     std::size_t site_ = 0, stride_ = 1;  ///< the next site, and how far it is to the one after it

@@ -17,34 +17,29 @@ void append_particles(State& state, const State& more, std::uint32_t first_id) {
     const auto scale = static_cast<float>(ratio * ratio);
     const std::uint32_t count = state.count + more.count;
     // Never less room than the arrays have: the backend relies on it.
-    state.resize(std::max<std::size_t>(count, state.id.size() - std::min(state.id.size(), array_padding)));
+    state.resize(std::max<std::size_t>(count, state.room()));
     for (std::uint32_t k = 0; k < more.count; ++k) {
-        const std::uint32_t i = state.count + k;
-        const Deviator<float> s = more.stress.at(k);
-        state.position.set(i, more.position.at(k));
-        state.velocity.set(i, more.velocity.at(k));
-        state.stress.set(i, {s.xx * scale, s.yy * scale, s.xy * scale, s.xz * scale, s.yz * scale});
-        state.multiplier[i] = more.multiplier[k] * scale;
-        state.id[i] = more.id[k] + first_id;
-        state.held[i] = more.held[k];
-        state.calm_time[i] = 0;
-        state.resting[i] = 0;
+        Particle p = more.particle(k);
+        p.multiplier *= scale;
+        p.stress = p.stress * scale;
+        p.id += first_id;
+        p.still_time = 0;
+        p.asleep = 0;
+        state.set_particle(state.count + k, p);
     }
     state.count = count;
     state.seeded += more.seeded;
-    state.left += more.left;
+    state.outflow += more.outflow;
 }
 
 std::uint32_t add_particle(State& state, const LocalPoint& position, const LocalPoint& velocity, float multiplier) {
-    const std::uint32_t i = state.count++;
-    state.position.set(i, position);
-    state.velocity.set(i, velocity);
-    state.stress.set(i, {});
-    state.multiplier[i] = multiplier;
-    state.id[i] = state.seeded++;
-    state.held[i] = state.resting[i] = 0;
-    state.calm_time[i] = 0;
-    return i;
+    Particle added;
+    added.position = position;
+    added.velocity = velocity;
+    added.multiplier = multiplier;
+    added.id = state.seeded++;
+    state.set_particle(state.count, added);
+    return state.count++;
 }
 
 void set_density(State& state, std::uint32_t particle, double density) {
@@ -56,22 +51,16 @@ void set_density(State& state, std::uint32_t particle, double density) {
     state.density_of_id[id] = static_cast<float>(density);
 }
 
-void take_away(State& state, std::uint32_t first, std::uint32_t last) {
-    std::uint32_t kept = 0;
-    for (std::uint32_t i = 0; i < state.count; ++i) {
-        if (state.id[i] >= first && state.id[i] < last) continue;
-        for_each_array(state, state, [&](auto& array, auto&) { array[kept] = array[i]; });
-        ++kept;
-    }
-    state.taken += state.count - kept;
-    state.count = kept;
+void remove_particles(State& state, std::uint32_t first, std::uint32_t last) {
+    state.removed += state.remove_if([&](std::uint32_t i) { return state.id[i] >= first && state.id[i] < last; },
+                                     [](std::uint32_t, std::uint32_t) {});
 }
 
 void wake(State& state, const Extent& local) {
     for (std::uint32_t i = 0; i < state.count; ++i) {
         if (!local.contains({state.position.x[i], state.position.y[i]})) continue;
-        state.resting[i] = 0;
-        state.calm_time[i] = 0;
+        state.asleep[i] = 0;
+        state.still_time[i] = 0;
     }
 }
 
@@ -120,11 +109,11 @@ void clear_solids(const Model& model, State& state, const Extent& local) {
         if (part.held[k] != 0) continue;
         const std::uint32_t i = source_of_id.at(part.id[k]);
         state.position.set(i, part.position.at(k));
-        state.resting[i] = 0;
+        state.asleep[i] = 0;
     }
 }
 
-void take_down(Model& model, State& state, std::size_t building) {
+void remove_building(Model& model, State& state, std::size_t building) {
     const WorldPoint& origin = model.terrain.frame().origin;
     const Extent e = extent_of(model.buildings[building]);
     model.buildings[building] = without_solid(std::move(model.buildings[building]));

@@ -19,10 +19,10 @@ std::uint32_t add_particle(State& state, const LocalPoint& position, const Local
 /// Gives a particle a density of its own, kg/m3; see density_of().
 void set_density(State& state, std::uint32_t particle, double density);
 
-/// Takes the particles with ids [first, last) away; those that have left the terrain stay counted as left.
-void take_away(State& state, std::uint32_t first, std::uint32_t last);
+/// Removes the particles with ids [first, last); those that ran over the terrain's edge stay counted as outflow.
+void remove_particles(State& state, std::uint32_t first, std::uint32_t last);
 
-/// Wakes debris at rest that lies in a rectangle of local plan coordinates: it moves if anything moves it.
+/// Wakes sleeping debris that lies in a rectangle of local plan coordinates: it moves if anything moves it.
 void wake(State& state, const Extent& local);
 
 /// Moves debris out of solids that came to stand where it lies, within a rectangle of local plan coordinates. Nothing
@@ -30,7 +30,7 @@ void wake(State& state, const Extent& local);
 /// particles stay.
 void clear_solids(const Model& model, State& state, const Extent& local);
 
-/// Takes a building's solid away; debris that rested on it or against it wakes.
-void take_down(Model& model, State& state, std::size_t building);
+/// Removes a building's solid; debris that rested on it or against it wakes.
+void remove_building(Model& model, State& state, std::size_t building);
 
 }  // namespace talus

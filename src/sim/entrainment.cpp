@@ -73,9 +73,9 @@ void Entrainment::find_shear_rates(const Model& model, const State& state) {
         const double cosine = model.terrain.slope_cosine_of(cell);
         const double sine = std::sqrt(std::max(0.0, 1 - cosine * cosine));
         const double shear_stress = model.rest_density * model.gravity * depth * cosine * sine;
-        const double most = material.depth_per_shear * (shear_stress - material.critical_shear_stress);
-        const double left = most - bed.eroded[cell] - loose_[cell] / area;
-        const double loose = std::clamp(left, 0.0, material.erosion_rate * state.time_step) * area;
+        const double max_depth = material.depth_per_shear * (shear_stress - material.critical_shear_stress);
+        const double remaining = max_depth - bed.eroded[cell] - loose_[cell] / area;
+        const double loose = std::clamp(remaining, 0.0, material.erosion_rate * state.time_step) * area;
         rate_[cell] = static_cast<float>(loose / count_[cell]);
         count_[cell] = 0;
     }
@@ -105,7 +105,7 @@ std::size_t Entrainment::find(const Model& model, const State& state) {
         const std::size_t cell = model.terrain.cell_at(p.x, p.y);
         if (bed.material_at[cell] == 0) continue;
         const double ahead = head_start(g, cell);
-        if ((bed.eroded[cell] - bed.depth[cell]) * area + volume > ahead * volume) continue;  // nothing is left
+        if ((bed.eroded[cell] - bed.depth[cell]) * area + volume > ahead * volume) continue;  // nothing remains
         const BedMaterial& material = bed.materials[bed.material_at[cell] - 1];
         loose_[cell] += material.law == EntrainmentLaw::growth
                             ? material.growth_rate * volume * std::sqrt(square) * state.time_step
@@ -209,8 +209,8 @@ void Entrainment::make_room(const Model& model, State& state, std::size_t index)
         put_out_of_solids(model, p, grain_rank(state.id[i]), [](const LocalPoint&) {});
         state.position.set(i, p);
         if (distance > 2 * spacing) continue;
-        state.resting[i] = 0;
-        state.calm_time[i] = 0;
+        state.asleep[i] = 0;
+        state.still_time[i] = 0;
     }
 }
 

@@ -17,7 +17,7 @@ std::optional<std::string> find_fault(const Model& model, const State& state, do
         std::snprintf(text, sizeof text, format, state.time, values...);
         return std::optional<std::string>(text);
     };
-    if (!std::isfinite(state.largest_speed) || !std::isfinite(state.mean_compression)) {
+    if (!std::isfinite(state.max_speed) || !std::isfinite(state.mean_compression)) {
         return fault(
             "at t = %.4g s positions are no longer finite numbers: lower solver.largest_time_step_s or "
             "solver.under_relaxation");
@@ -30,20 +30,20 @@ std::optional<std::string> find_fault(const Model& model, const State& state, do
     }
     if (!model.solver.time_step) {
         const double smallest = model.solver.smallest_time_step;
-        const double moved = smallest * (state.largest_speed + model.gravity * smallest);
+        const double moved = smallest * (state.max_speed + model.gravity * smallest);
         if (moved > model.solver.displacement_limit * model.particle_spacing) {
             return fault(
                 "at t = %.4g s a particle at %.4g m/s moves more than solver.displacement_limit = %.3g of a spacing in "
                 "the smallest step: lower solver.smallest_time_step_s = %.3g or raise solver.particle_spacing_m",
-                state.largest_speed, model.solver.displacement_limit, smallest);
+                state.max_speed, model.solver.displacement_limit, smallest);
         }
     }
     const double bound = speed_bound(model, highest_energy_head);
-    if (state.largest_speed > bound) {
+    if (state.max_speed > bound) {
         return fault(
             "at t = %.4g s a particle moves at %.4g m/s, more than its fall can explain (%.4g m/s): lower "
             "solver.largest_time_step_s or solver.under_relaxation",
-            state.largest_speed, bound);
+            state.max_speed, bound);
     }
     return std::nullopt;
 }

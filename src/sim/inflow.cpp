@@ -27,7 +27,7 @@ InflowFeeder::InflowFeeder(const Model& model, const std::vector<Inflow>& inflow
 
 std::uint32_t InflowFeeder::to_come() const {
     std::uint32_t count = 0;
-    for (const Source& source : sources_) count += source.total - source.fed;
+    for (const Source& source : sources_) count += source.total - source.injected;
     for (const AreaSource& area : areas_) count += area.to_come();
     return count;
 }
@@ -43,7 +43,7 @@ bool InflowFeeder::Source::leads() const {
 }
 
 bool InflowFeeder::Source::due(double time) const {
-    if (fed == total) return false;
+    if (injected == total) return false;
     return time >= end() || inflow.way_until(time) >= static_cast<double>(rows + 1) * spacing;
 }
 
@@ -58,9 +58,8 @@ double InflowFeeder::Source::next_time(double time) const {
     return late;
 }
 
-void InflowFeeder::feed(const Model& model, State& state) {
-    const std::size_t room = state.id.size() - std::min(state.id.size(), array_padding);
-    if (room < state.count + to_come()) state.resize(state.count + to_come());
+void InflowFeeder::inject(const Model& model, State& state) {
+    if (state.room() < state.count + to_come()) state.resize(state.count + to_come());
     for (Source& source : sources_) {
         source.lead(model, state);
         while (source.due(state.time)) {
@@ -74,7 +73,7 @@ void InflowFeeder::feed(const Model& model, State& state) {
             for (std::uint32_t i = first; i < state.count; ++i) set_density(state, i, density);
         }
     }
-    for (AreaSource& area : areas_) area.feed(model, state);
+    for (AreaSource& area : areas_) area.inject(model, state);
 }
 
 void InflowFeeder::Source::lead(const Model& model, State& state) {
@@ -121,7 +120,7 @@ void InflowFeeder::Source::lead(const Model& model, State& state) {
             state.position.set(i, led_to);
             state.velocity.set(i, {static_cast<float>(v.x + lacks * along.x), static_cast<float>(v.y + lacks * along.y),
                                    static_cast<float>(v.z + lacks * along.z)});
-            state.resting[i] = 0;
+            state.asleep[i] = 0;
         }
     }
 }
@@ -130,7 +129,7 @@ void InflowFeeder::Source::lead(const Model& model, State& state) {
 void InflowFeeder::Source::add_row(const Model& model, State& state, double since) {
     const double in = inflow.volume_until(last_time) / particle_volume;
     const std::uint32_t reached = last_time >= end() ? total : static_cast<std::uint32_t>(std::lround(in));
-    const std::uint32_t count = std::min(reached, total) - std::min(fed, reached);
+    const std::uint32_t count = std::min(reached, total) - std::min(injected, reached);
     led[rows % led_rows] = {state.seeded, state.seeded + count};
     if (count == 0) return;
     const WorldPoint& origin = model.terrain.frame().origin;
@@ -169,7 +168,7 @@ void InflowFeeder::Source::add_row(const Model& model, State& state, double sinc
                          {static_cast<float>(along.x * velocity), static_cast<float>(along.y * velocity),
                           static_cast<float>(along.z * velocity)},
                          static_cast<float>(-model.gravity * ground.normal.z * above * previous * previous));
-            ++fed;
+            ++injected;
         }
     }
 }

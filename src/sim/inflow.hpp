@@ -11,10 +11,10 @@
 
 namespace talus {
 
-/// Lets debris in while a run goes on. Whenever the inflow has moved on by a particle spacing, a row of particles
+/// Injects debris while a run goes on. Whenever the inflow has moved on by a particle spacing, a row of particles
 /// appears at its line: as many as make the volume that came in meanwhile, to the nearest whole one of all so far,
 /// stacked in columns on a lattice of rest density, moving at the inflow velocity along the ground, and under the
-/// pressure of what lies above them. Nothing is let in denser than at rest, so nothing pops apart.
+/// pressure of what lies above them. Nothing comes in denser than at rest, so nothing pops apart.
 ///
 /// Over the first three spacings beyond the line rows are led: between steps their way and velocity along the inflow
 /// become those of the hydrograph, across it they are as the solver leaves them. Without that, the newest row would be
@@ -31,9 +31,9 @@ class InflowFeeder {
     [[nodiscard]] std::uint32_t to_come() const;
     /// Whether there is anything to do at a time, s: a row is due, or rows are led.
     [[nodiscard]] bool due(double time) const;
-    /// Leads what came in lately and lets in what is due at the state's time, within Simulation::change(). Allocates
+    /// Leads what came in lately and injects what is due at the state's time, within Simulation::change(). Allocates
     /// nothing if the state's arrays have room.
-    void feed(const Model& model, State& state);
+    void inject(const Model& model, State& state);
 
   private:
     static constexpr std::uint64_t led_rows = 3;
@@ -43,8 +43,8 @@ class InflowFeeder {
     struct Source {
         Inflow inflow;
         double spacing = 0, particle_volume = 0;
-        std::uint32_t total = 0, fed = 0;
-        std::uint64_t rows = 0;           ///< that have been let in
+        std::uint32_t total = 0, injected = 0;
+        std::uint64_t rows = 0;           ///< that have come in
         double last_time = 0;             ///< s, of the last row
         std::array<Row, led_rows> led{};  ///< row k in place k % led_rows; empty: none, or no longer led
 

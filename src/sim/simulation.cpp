@@ -8,10 +8,10 @@
 
 #include "core/hash.hpp"
 #include "sim/change.hpp"
-#include "sim/cpu/parallel.hpp"
 #include "sim/fault.hpp"
 #include "sim/particle_density.hpp"
 #include "sim/step.hpp"
+#include "simd/parallel.hpp"
 
 namespace talus {
 
@@ -32,7 +32,7 @@ struct Simulation::OwnStages {
     void remove_failed() const {
         if (watcher == nullptr) return;
         for (const std::size_t building : watcher->failed_buildings()) {
-            self.change([building](Model& model, State& state) { take_down(model, state, building); });
+            self.change([building](Model& model, State& state) { remove_building(model, state, building); });
         }
     }
 };
@@ -53,7 +53,7 @@ void Simulation::measure_energy_and_speed() {
     for (std::uint32_t i = 0; i < state_.count; ++i) {
         const LocalPoint v = state_.velocity.at(i);
         highest_energy_head_ = std::max(highest_energy_head_, state_.position.z[i] + dot(v, v) / (2 * model_.gravity));
-        state_.largest_speed = std::max<double>(state_.largest_speed, length(v));
+        state_.max_speed = std::max<double>(state_.max_speed, length(v));
     }
     state_.building_contacts.reserve((face_count - 1) * std::max(state_.count, capacity_));
 }
@@ -65,7 +65,7 @@ std::optional<std::string> Simulation::advance(StepWatcher* watcher) {
 void Simulation::inject_inflow(StepWatcher* watcher) {
     if (!inflow_.due(state_.time)) return;
     const std::uint32_t first = state_.seeded;
-    change([this](const Model& model, State& state) { inflow_.feed(model, state); });
+    change([this](const Model& model, State& state) { inflow_.inject(model, state); });
     if (watcher != nullptr) watcher->follow_inflow(state_, first);
 }
 
@@ -120,7 +120,7 @@ std::uint64_t hash_state(const State& state) {
 
 double kinetic_energy(const Model& model, const State& state) {
     return model.particle_volume() / 2 *
-           cpu::reduce_ranges(
+           simd::reduce_ranges(
                state.count, 4096, 0.0,
                [&](std::size_t first, std::size_t last, double sum) {
                    for (std::size_t i = first; i < last; ++i) {
@@ -134,7 +134,7 @@ double kinetic_energy(const Model& model, const State& state) {
 
 double potential_energy(const Model& model, const State& state) {
     return model.particle_volume() * model.gravity *
-           cpu::reduce_ranges(
+           simd::reduce_ranges(
                state.count, 4096, 0.0,
                [&](std::size_t first, std::size_t last, double sum) {
                    for (std::size_t i = first; i < last; ++i) sum += state.position.z[i] * density_of(model, state, i);

@@ -9,13 +9,13 @@
 namespace talus {
 
 /// Particles that are worked on together, side by side in vector registers or one register after another.
-inline constexpr std::size_t bundle_size = 16;
-constexpr std::size_t bundles_of(std::size_t particles) {
-    return (particles + bundle_size - 1) / bundle_size;
+inline constexpr std::size_t block_size = 16;
+constexpr std::size_t blocks_of(std::size_t particles) {
+    return (particles + block_size - 1) / block_size;
 }
 
-/// Arrays of particles are that much longer than asked for: the last bundle is read and written whole.
-inline constexpr std::size_t array_padding = bundle_size;
+/// Arrays of particles are that much longer than asked for: the last block is read and written whole.
+inline constexpr std::size_t array_padding = block_size;
 
 /// Three arrays of one coordinate each.
 struct VectorArray {
@@ -49,6 +49,58 @@ struct DeviatorArray {
     }
 };
 
+// What the arrays of particles have in common, whatever an element is made of.
+inline void resize(VectorArray& array, std::size_t n) {
+    array.resize(n);
+}
+inline void resize(DeviatorArray& array, std::size_t n) {
+    array.resize(n);
+}
+template <class T>
+void resize(std::vector<T>& array, std::size_t n) {
+    array.resize(n + array_padding);
+}
+template <class F>
+void for_each_component(VectorArray& a, VectorArray& b, const F& f) {
+    f(a.x, b.x);
+    f(a.y, b.y);
+    f(a.z, b.z);
+}
+template <class F>
+void for_each_component(DeviatorArray& a, DeviatorArray& b, const F& f) {
+    f(a.xx, b.xx);
+    f(a.yy, b.yy);
+    f(a.xy, b.xy);
+    f(a.xz, b.xz);
+    f(a.yz, b.yz);
+}
+template <class T, class F>
+void for_each_component(std::vector<T>& a, std::vector<T>& b, const F& f) {
+    f(a, b);
+}
+
+// clang-format off
+/// Everything that a state holds per particle: X(array, element, name). All that goes through the arrays (resize, copy,
+/// reorder, append, remove) comes from this list.
+#define TALUS_PARTICLE_ARRAYS(X)                                                                                      \
+    X(VectorArray, LocalPoint, position)                    /* local, m */                                              \
+    X(VectorArray, LocalPoint, velocity)                    /* m/s */                                                   \
+    X(std::vector<float>, float, multiplier)                /* lambda of the density constraint in the last step, */    \
+                                                            /* <= 0, m2 (scales with dt^2) */                           \
+    X(DeviatorArray, Deviator<float>, stress)               /* deviatoric part, in the units of lambda */               \
+    X(std::vector<std::uint32_t>, std::uint32_t, id)        /* names the particle for good */                           \
+    X(std::vector<std::uint8_t>, std::uint8_t, held)        /* 1: its release has not started */                        \
+    X(std::vector<float>, float, still_time)                /* s, for how long it has hardly moved; 0 asleep */         \
+    X(std::vector<std::uint8_t>, std::uint8_t, asleep)      /* 1: it stays where it is until something moves beside */
+// clang-format on
+
+/// What a state holds of one particle.
+struct Particle {
+#define TALUS_MEMBER(array, element, name) element name{};
+    TALUS_PARTICLE_ARRAYS(TALUS_MEMBER)
+#undef TALUS_MEMBER
+};
+
 /// What a wall or roof took from a particle in the last step; a particle in a corner has two.
 struct BuildingContact {
     std::uint32_t particle;  ///< sorted index
@@ -57,7 +109,7 @@ struct BuildingContact {
 };
 
 /// Everything that changes during a run, as a structure of arrays in an order that every step finds anew: neighbours
-/// lie near each other. `id` names a particle for good.
+/// lie near each other.
 struct State {
     double time = 0;                ///< s
     double time_step = 0;           ///< s, of the last step
@@ -65,56 +117,84 @@ struct State {
     std::uint64_t step = 0;
 
     std::uint32_t count = 0;      ///< particles present, including those of releases that have not started
-    std::uint32_t awake = 0;      ///< the first of them, which a step works on; the others are at rest
+    std::uint32_t awake = 0;      ///< the first of them, which a step works on; the others are asleep
     std::uint32_t seeded = 0;     ///< particles that were ever there
     std::uint32_t entrained = 0;  ///< of them, those that debris picked up from the bed
-    std::uint32_t left = 0;       ///< particles that left the terrain; seeded = count + left + taken, always
-    std::uint32_t taken = 0;      ///< particles that were taken away between two steps (take_away())
-    /// Of all that were ever there, those that releases brought and that nobody took away again.
-    [[nodiscard]] std::uint32_t released() const { return seeded - entrained - taken; }
-    VectorArray position;           ///< local, m
-    VectorArray velocity;           ///< m/s
-    std::vector<float> multiplier;  ///< lambda of the density constraint in the last step, <= 0, m2 (scales with dt^2)
-    DeviatorArray stress;           ///< deviatoric part, in the units of lambda
-    std::vector<std::uint32_t> id;
-    std::vector<std::uint8_t> held;     ///< 1: its release has not started
-    std::vector<float> calm_time;       ///< s, for how long the particle has hardly moved; 0 at rest
-    std::vector<float> density_of_id;   ///< kg/m3, by id; 0 and beyond its end: the rest density
-    std::vector<std::uint8_t> resting;  ///< 1: it stays where it is until something moves beside it
+    std::uint32_t outflow = 0;    ///< particles that ran over the terrain's edge; seeded = count + outflow + removed
+    std::uint32_t removed = 0;    ///< particles that were removed between two steps (remove_particles())
+    /// Of all that were ever there, those that releases brought and that nobody removed again.
+    [[nodiscard]] std::uint32_t released() const { return seeded - entrained - removed; }
 
-    void resize(std::size_t n) {
-        position.resize(n);
-        velocity.resize(n);
-        stress.resize(n);
-        multiplier.resize(n + array_padding);
-        id.resize(n + array_padding);
-        held.resize(n + array_padding);
-        calm_time.resize(n + array_padding);
-        resting.resize(n + array_padding);
-    }
+#define TALUS_MEMBER(array, element, name) array name;
+    TALUS_PARTICLE_ARRAYS(TALUS_MEMBER)
+#undef TALUS_MEMBER
+    std::vector<float> density_of_id;  ///< kg/m3, by id; 0 and beyond its end: the rest density
 
     // Measured by the last step.
     double mean_compression = 0, max_compression = 0;  ///< of max(0, density / rest density - 1)
-    double largest_speed = 0;                          ///< m/s
+    double max_speed = 0;                              ///< m/s
     std::vector<BuildingContact> building_contacts;
+
+    void resize(std::size_t n) {
+#define TALUS_RESIZE(array, element, name) talus::resize(name, n);
+        TALUS_PARTICLE_ARRAYS(TALUS_RESIZE)
+#undef TALUS_RESIZE
+    }
+    /// Particles that the arrays have room for.
+    [[nodiscard]] std::size_t room() const {
+        return id.size() < array_padding ? 0 : id.size() - array_padding;
+    }
+
+    [[nodiscard]] Particle particle(std::size_t i) const;
+    void set_particle(std::size_t i, const Particle& values);
+
+    /// Removes the particles of which gone(i) says so; the others keep their order. `on_kept(i, k)` is told that
+    /// particle i is now k. Returns how many were removed.
+    template <class Gone, class OnKept>
+    std::uint32_t remove_if(const Gone& gone, const OnKept& on_kept);
 };
 
-/// Calls f(array of a, the same of b) for everything that a state holds per particle.
+/// Calls f(array of a, the same of b) for everything that a state holds per particle, number by number.
 template <class F>
 void for_each_array(State& a, State& b, const F& f) {
-    for (auto array : {&VectorArray::x, &VectorArray::y, &VectorArray::z}) {
-        f(a.position.*array, b.position.*array);
-        f(a.velocity.*array, b.velocity.*array);
+#define TALUS_EACH(array, element, name) for_each_component(a.name, b.name, f);
+    TALUS_PARTICLE_ARRAYS(TALUS_EACH)
+#undef TALUS_EACH
+}
+
+inline Particle State::particle(std::size_t i) const {
+    Particle result;
+#define TALUS_GET(array, element, name) result.name = name.at(i);
+    TALUS_PARTICLE_ARRAYS(TALUS_GET)
+#undef TALUS_GET
+    return result;
+}
+
+inline void State::set_particle(std::size_t i, const Particle& values) {
+    const auto set = [i](auto& array, const auto& value) {
+        if constexpr (requires { array.set(i, value); }) {
+            array.set(i, value);
+        } else {
+            array[i] = value;
+        }
+    };
+#define TALUS_SET(array, element, name) set(name, values.name);
+    TALUS_PARTICLE_ARRAYS(TALUS_SET)
+#undef TALUS_SET
+}
+
+template <class Gone, class OnKept>
+std::uint32_t State::remove_if(const Gone& gone, const OnKept& on_kept) {
+    std::uint32_t kept = 0;
+    for (std::uint32_t i = 0; i < count; ++i) {
+        if (gone(i)) continue;
+        on_kept(i, kept);
+        for_each_array(*this, *this, [&](auto& array, auto&) { array[kept] = array[i]; });
+        ++kept;
     }
-    for (auto array :
-         {&DeviatorArray::xx, &DeviatorArray::yy, &DeviatorArray::xy, &DeviatorArray::xz, &DeviatorArray::yz}) {
-        f(a.stress.*array, b.stress.*array);
-    }
-    f(a.multiplier, b.multiplier);
-    f(a.id, b.id);
-    f(a.held, b.held);
-    f(a.calm_time, b.calm_time);
-    f(a.resting, b.resting);
+    const std::uint32_t gone_count = count - kept;
+    count = kept;
+    return gone_count;
 }
 
 }  // namespace talus

@@ -6,7 +6,7 @@
 
 #include "core/geometry.hpp"
 #include "core/grid.hpp"
-#include "core/lanes.hpp"
+#include "core/number.hpp"
 
 namespace talus {
 

@@ -168,9 +168,9 @@ void LiveRun::replace_releases(Model& model, State& state, Change& change) {
         for (std::size_t g = 0; g < groups_.size(); ++g) {
             const ReleaseGroup group = model.releases[g];
             if (done[g] || !change.gone[g] || groups_[g].begun || group.last_particle != state.seeded) continue;
-            const std::uint32_t taken = state.taken;
-            take_away(state, group.first_particle, group.last_particle);
-            state.taken = taken;
+            const std::uint32_t taken = state.removed;
+            remove_particles(state, group.first_particle, group.last_particle);
+            state.removed = taken;
             state.seeded = group.first_particle;
             done[g] = given_back = true;
         }
@@ -183,7 +183,7 @@ void LiveRun::replace_releases(Model& model, State& state, Change& change) {
             if (state.id[i] < group.first_particle || state.id[i] >= group.last_particle) continue;
             lay.include({state.position.x[i], state.position.y[i]});
         }
-        take_away(state, group.first_particle, group.last_particle);
+        remove_particles(state, group.first_particle, group.last_particle);
         wake(state, lay.grown(2 * model.support_radius));
     }
     std::vector<Group> groups;

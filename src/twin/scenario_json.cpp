@@ -157,7 +157,7 @@ json Scenario::state_json(bool with_hash) const {
                    {"volume_left_m3", now.volume_left},
                    {"front_chainage_m", number_or_null<json>(now.front_chainage)},
                    {"front_velocity_mps", advances ? number_or_null<json>(front.back().front_velocity) : json()},
-                   {"largest_speed_mps", number_or_null<json>(state.largest_speed)},
+                   {"largest_speed_mps", number_or_null<json>(state.max_speed)},
                    {"mean_compression", number_or_null<json>(state.mean_compression)},
                    {"max_compression", number_or_null<json>(state.max_compression)},
                    {"converged", !run.not_converged()},

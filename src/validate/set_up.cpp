@@ -115,7 +115,7 @@ bool Trial::advance_to(double time, const std::function<void()>& after_step) {
         }
         if (const auto fault = simulation_.advance()) {
             if (problem_.empty()) problem_ = *fault;
-            stopped_ = on_fault_ == OnFault::stop || !std::isfinite(state().largest_speed);
+            stopped_ = on_fault_ == OnFault::stop || !std::isfinite(state().max_speed);
         }
         if (!stopped_ && after_step) after_step();
     }

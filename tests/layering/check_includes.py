@@ -8,27 +8,28 @@ import pathlib
 import re
 import sys
 
-# A layer may include those named here and itself; sim and geo do not know each other, nor do
-# ensemble, validate, bench and twin, which stand beside each other on products.
+# A layer may include those named here and itself; terrain and simd, sim and geo do not know each
+# other, nor do ensemble, validate, bench and twin, which stand beside each other on products.
 BELOW = {
     "core": [],
     "params": ["core"],
     "terrain": ["core", "params"],
-    "sim": ["core", "params", "terrain"],
+    "simd": ["core"],
+    "sim": ["core", "params", "terrain", "simd"],
     "geo": ["core", "params", "terrain"],
-    "observe": ["core", "params", "terrain", "sim", "geo"],
-    "scene": ["core", "params", "terrain", "sim", "geo", "observe"],
-    "run": ["core", "params", "terrain", "sim", "geo", "observe", "scene"],
-    "products": ["core", "params", "terrain", "sim", "geo", "observe", "scene", "run"],
+    "observe": ["core", "params", "terrain", "simd", "sim", "geo"],
+    "scene": ["core", "params", "terrain", "simd", "sim", "geo", "observe"],
+    "run": ["core", "params", "terrain", "simd", "sim", "geo", "observe", "scene"],
+    "products": ["core", "params", "terrain", "simd", "sim", "geo", "observe", "scene", "run"],
     "stats": ["core"],
-    "ensemble": ["core", "params", "terrain", "sim", "geo", "observe", "scene", "run", "products", "stats"],
-    "calibrate": ["core", "params", "terrain", "sim", "geo", "observe", "scene", "run", "products", "stats", "ensemble"],
-    "validate": ["core", "params", "terrain", "sim", "geo", "observe", "scene", "run", "products"],
-    "bench": ["core", "params", "terrain", "sim", "geo", "observe", "scene", "run", "products"],
-    "twin": ["core", "params", "terrain", "sim", "geo", "observe", "scene", "run", "products"],
-    "serve": ["core", "params", "terrain", "sim", "geo", "observe", "scene", "run", "products", "stats", "ensemble",
+    "ensemble": ["core", "params", "terrain", "simd", "sim", "geo", "observe", "scene", "run", "products", "stats"],
+    "calibrate": ["core", "params", "terrain", "simd", "sim", "geo", "observe", "scene", "run", "products", "stats", "ensemble"],
+    "validate": ["core", "params", "terrain", "simd", "sim", "geo", "observe", "scene", "run", "products"],
+    "bench": ["core", "params", "terrain", "simd", "sim", "geo", "observe", "scene", "run", "products"],
+    "twin": ["core", "params", "terrain", "simd", "sim", "geo", "observe", "scene", "run", "products"],
+    "serve": ["core", "params", "terrain", "simd", "sim", "geo", "observe", "scene", "run", "products", "stats", "ensemble",
               "calibrate", "twin"],
-    "apps": ["core", "params", "terrain", "sim", "geo", "observe", "scene", "run", "products", "stats", "ensemble",
+    "apps": ["core", "params", "terrain", "simd", "sim", "geo", "observe", "scene", "run", "products", "stats", "ensemble",
              "calibrate", "validate", "bench", "twin", "serve"],
 }
 INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]')
@@ -85,7 +86,7 @@ def check(root):
 
 def self_test():
     rejected = [("core", "params/spec.hpp"), ("core", "fmt/format.h"), ("sim", "geo/raster.hpp"),
-                ("geo", "sim/state.hpp"), ("observe", "run/run.hpp"), ("scene", "run/run.hpp"),
+                ("geo", "sim/state.hpp"), ("core", "simd/lanes.hpp"), ("terrain", "simd/lanes.hpp"), ("observe", "run/run.hpp"), ("scene", "run/run.hpp"),
                 ("run", "products/products.hpp"), ("scene", "products/products.hpp"),
                 ("products", "gdal_priv.h"), ("apps", "ogrsf_frmts.h"), ("scene", "cpl_conv.h"), ("products", "proj.h"),
                 ("sim", "gtest/gtest.h"), ("scene", "support/fixtures.hpp"), ("sim", "../core/grid.hpp"),

@@ -1,3 +1,5 @@
+#include "observe/observer.hpp"
+
 #include <cmath>
 #include <random>
 #include <vector>
@@ -6,7 +8,6 @@
 #include <tbb/global_control.h>
 
 #include "core/hash.hpp"
-#include "observe/observer.hpp"
 #include "observe/particles.hpp"
 #include "support/allocations.hpp"
 
@@ -135,7 +136,7 @@ TEST(Observer, volumes_and_energies_are_those_of_the_particles) {
     test::add_particle(state, {2, 0, 1}, {0, 0, 0});
     test::add_particle(state, {3, 0, 0}, {0, 0, 0}, true);
     state.seeded = 9;
-    state.left = 5;
+    state.outflow = 5;
     state.mean_compression = 0.01;
     Observer observer(model, state, {}, OutputSpec{}, 1);
     const TimeSample& row = observer.latest();

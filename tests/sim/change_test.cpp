@@ -65,7 +65,7 @@ TEST(Change, adds_more_particles_than_there_was_room_for) {
     }
     slide.simulation->change([&](Model& model, State& s) { model.releases.back().start_time = s.time; });
     slide.run(40);
-    EXPECT_GT(slide.simulation->state().largest_speed, 1);
+    EXPECT_GT(slide.simulation->state().max_speed, 1);
     EXPECT_EQ(std::count(slide.simulation->state().held.begin(),
                          slide.simulation->state().held.begin() + slide.simulation->state().count, 1),
               0);
@@ -75,11 +75,11 @@ TEST(Change, takes_particles_away_and_keeps_the_balance) {
     Slide slide;
     slide.run(20);
     const std::uint32_t before = slide.simulation->state().count;
-    slide.simulation->change([&](Model&, State& state) { take_away(state, 100, 500); });
+    slide.simulation->change([&](Model&, State& state) { remove_particles(state, 100, 500); });
     const State& state = slide.simulation->state();
     EXPECT_EQ(state.count, before - 400);
-    EXPECT_EQ(state.taken, 400U);
-    EXPECT_EQ(state.seeded, state.count + state.left + state.taken);
+    EXPECT_EQ(state.removed, 400U);
+    EXPECT_EQ(state.seeded, state.count + state.outflow + state.removed);
     EXPECT_EQ(with_ids_from(state, 100), before - 500);
     slide.run(20);
     // What was taken makes room for others, up to what there was.
@@ -102,11 +102,11 @@ TEST(Change, without_any_leaves_the_run_as_it_is) {
 
 TEST(Change, wakes_what_lies_within) {
     State state = state_of({{0, 0, 0}, {5, 0, 0}, {10, 0, 0}});
-    std::fill(state.resting.begin(), state.resting.end(), 1);
+    std::fill(state.asleep.begin(), state.asleep.end(), 1);
     wake(state, {4, -1, 6, 1});
-    EXPECT_EQ(state.resting[0], 1);
-    EXPECT_EQ(state.resting[1], 0);
-    EXPECT_EQ(state.resting[2], 1);
+    EXPECT_EQ(state.asleep[0], 1);
+    EXPECT_EQ(state.asleep[1], 0);
+    EXPECT_EQ(state.asleep[2], 1);
 }
 
 TEST(Change, clears_solids_without_giving_speed_or_packing_debris) {

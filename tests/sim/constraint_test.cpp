@@ -8,10 +8,10 @@
 #include <gtest/gtest.h>
 
 #include "sim/cpu/backend.hpp"
-#include "sim/cpu/dispatch.hpp"
 #include "sim/reference/reference.hpp"
 #include "sim/step.hpp"
 #include "sim_fixtures.hpp"
+#include "simd/dispatch.hpp"
 #include "terrain/barrier.hpp"
 
 namespace talus {
@@ -167,12 +167,12 @@ void expect_agreement(InternalFriction friction, KernelChoice kernel, int steps,
 class InstructionSet : public ::testing::TestWithParam<const char*> {
   protected:
     void SetUp() override {
-        const Status chosen = cpu::choose_instruction_set(GetParam());
+        const Status chosen = simd::choose_instruction_set(GetParam());
         if (!chosen) GTEST_SKIP() << chosen.error().message;
         const Model model = make_model({}, {}, testing::inclined_plane(25), {}, 0.4);
         ASSERT_EQ(cpu::Backend(model, 1).instruction_set(), GetParam());
     }
-    void TearDown() override { ASSERT_TRUE(cpu::choose_instruction_set(cpu::instruction_sets().front())); }
+    void TearDown() override { ASSERT_TRUE(simd::choose_instruction_set(simd::instruction_sets().front())); }
 };
 
 TEST_P(InstructionSet, agrees_with_the_double_precision_reference) {
@@ -201,10 +201,10 @@ TEST_P(InstructionSet, agrees_with_the_reference_for_a_net) {
 using FasterInstructionSet = InstructionSet;
 
 TEST_P(FasterInstructionSet, gives_the_same_bits_as_the_baseline) {
-    const std::string baseline = cpu::instruction_sets().back();
+    const std::string baseline = simd::instruction_sets().back();
     const auto hash_after = [](const std::string& set, InternalFriction friction, const MaterialSpec& material = {},
                                bool net = false) {
-        EXPECT_TRUE(cpu::choose_instruction_set(set));
+        EXPECT_TRUE(simd::choose_instruction_set(set));
         SolverSpec solver;
         solver.internal_friction = friction;
         const Terrain terrain = testing::terrain_of(
@@ -239,20 +239,20 @@ INSTANTIATE_TEST_SUITE_P(CpuBackend, FasterInstructionSet, ::testing::Values("SS
 
 TEST(InstructionSets, that_are_not_there_are_refused_by_name) {
     const Model model = make_model({}, {}, testing::inclined_plane(25), {}, 0.4);
-    const std::string baseline = cpu::instruction_sets().back();
-    ASSERT_TRUE(cpu::choose_instruction_set(baseline));
+    const std::string baseline = simd::instruction_sets().back();
+    ASSERT_TRUE(simd::choose_instruction_set(baseline));
     for (const char* name : {"", "avx2", "AVX4"}) {
-        const Status chosen = cpu::choose_instruction_set(name);
+        const Status chosen = simd::choose_instruction_set(name);
         ASSERT_FALSE(chosen);
         EXPECT_EQ(chosen.error().message.find(fmt::format("the instruction set \"{}\" is refused", name)), 0U);
         EXPECT_NE(chosen.error().message.find(baseline), std::string::npos) << "what there is";
         EXPECT_EQ(cpu::Backend(model, 1).instruction_set(), baseline) << "as before";
     }
-    for (const std::string& name : cpu::instruction_sets()) {
-        ASSERT_TRUE(cpu::choose_instruction_set(name));
+    for (const std::string& name : simd::instruction_sets()) {
+        ASSERT_TRUE(simd::choose_instruction_set(name));
         EXPECT_EQ(cpu::Backend(model, 1).instruction_set(), name);
     }
-    ASSERT_TRUE(cpu::choose_instruction_set(cpu::instruction_sets().front()));
+    ASSERT_TRUE(simd::choose_instruction_set(simd::instruction_sets().front()));
 }
 
 }  // namespace

@@ -72,7 +72,7 @@ TEST(Entrainment, grows_by_the_law_and_takes_it_from_the_ground) {
         }
     }
     ASSERT_GT(state.entrained, 50U);
-    EXPECT_EQ(state.count + state.left, released + state.entrained);
+    EXPECT_EQ(state.count + state.outflow, released + state.entrained);
     EXPECT_EQ(state.released(), released);
     EXPECT_NEAR(state.entrained, expected, 0.1 * expected) << "but for what has come loose and is no particle yet";
     const double gained = state.entrained * model.particle_volume();

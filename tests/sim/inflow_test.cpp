@@ -61,7 +61,7 @@ TEST(AreaSource, brings_the_volume_to_the_particle_evenly_over_the_area) {
         State state;
         state.resize(all);
         for (state.time = 0; state.time < 4; state.time += step) {
-            if (feeder.due(state.time)) feeder.feed(model, state);
+            if (feeder.due(state.time)) feeder.inject(model, state);
             EXPECT_EQ(state.count, std::floor(source.volume_until(state.time) / model.particle_volume() + 0.5));
         }
         EXPECT_EQ(state.count, all) << step;
@@ -86,7 +86,7 @@ TEST(AreaSource, debris_moves_down_the_slope_or_where_it_is_told) {
         State state;
         state.resize(feeder.to_come());
         state.time = 0.5;
-        feeder.feed(model, state);
+        feeder.inject(model, state);
         ASSERT_GT(state.count, 50U);
         for (std::uint32_t i = 0; i < state.count; ++i) {
             const LocalPoint v = state.velocity.at(i);
@@ -108,7 +108,7 @@ TEST(AreaSource, does_not_pop_apart_even_where_debris_piles_up) {
     while (simulation.state().time < 4.5) {
         simulation.advance();
         worst = std::max(worst, simulation.state().max_compression);
-        fastest = std::max(fastest, simulation.state().largest_speed);
+        fastest = std::max(fastest, simulation.state().max_speed);
     }
     EXPECT_EQ(simulation.inflow().to_come(), 0U);
     EXPECT_LT(worst, 0.1);
@@ -123,7 +123,7 @@ TEST(AreaSource, an_area_smaller_than_a_particle_still_brings_its_volume) {
     State state;
     state.resize(feeder.to_come());
     state.time = 3;
-    feeder.feed(model, state);
+    feeder.inject(model, state);
     EXPECT_EQ(state.count, std::lround(4 / model.particle_volume()));
 }
 
@@ -136,7 +136,7 @@ TEST(InflowFeeder, gives_particles_the_density_of_the_hydrograph) {
         State state;
         state.resize(feeder.to_come());
         for (state.time = 0; state.time < 2.5; state.time += 0.01) {
-            if (feeder.due(state.time)) feeder.feed(model, state);
+            if (feeder.due(state.time)) feeder.inject(model, state);
         }
         double mass = 0;
         for (std::uint32_t i = 0; i < state.count; ++i) mass += density_of(model, state, i) * model.particle_volume();
@@ -158,7 +158,7 @@ TEST(InflowFeeder, brings_the_volume_to_the_particle_whatever_the_steps) {
         State state;
         state.resize(all);
         for (state.time = 0; state.time < 4; state.time += step) {
-            if (feeder.due(state.time)) feeder.feed(model, state);
+            if (feeder.due(state.time)) feeder.inject(model, state);
             EXPECT_EQ(state.count, state.seeded);
             // What has not filled a row yet is still outside.
             const double in = surges.volume_until(state.time) / model.particle_volume();

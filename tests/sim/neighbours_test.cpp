@@ -19,7 +19,7 @@ void expect_all_pairs_found(const std::vector<LocalPoint>& points, float radius)
     const double cell = double(radius) * (1 + 1e-7);
     const auto by_cell = sort.sort(state.position, points.size(), cell, grid);
     cpu::NeighbourSearch search(points.size());
-    const auto order = search.find(state.position, by_cell, state.resting, grid, radius).order;
+    const auto order = search.find(state.position, by_cell, state.asleep, grid, radius).order;
     ASSERT_EQ(std::set<std::uint32_t>(order.begin(), order.end()).size(), points.size()) << "not a permutation";
     cpu::NeighbourLists lists(points.size());
     search.write(lists);
@@ -30,7 +30,7 @@ void expect_all_pairs_found(const std::vector<LocalPoint>& points, float radius)
             const LocalPoint d = points[order[j]] - points[order[i]];
             if (j != i && d.x * d.x + d.y * d.y + d.z * d.z < radius * radius) expected.push_back(j);
         }
-        const std::uint32_t length = lists.length[i / bundle_size];
+        const std::uint32_t length = lists.length[i / block_size];
         ASSERT_LE(lists.count_of(i), length);
         for (std::uint32_t k = 0; k < length; ++k) {
             if (k < lists.count_of(i)) {
@@ -77,7 +77,7 @@ TEST(NeighbourLists, grow_when_debris_is_denser_than_the_buffer_expects) {
     expect_all_pairs_found(testing::random_points(400, {0, 0, 0}, {0.3F, 0.3F, 0.3F}, 4), 0.5F);
 }
 
-TEST(NeighbourLists, of_a_bundle_are_about_equally_long) {
+TEST(NeighbourLists, of_a_block_are_about_equally_long) {
     // A block has as many particles on its faces, with short lists, as inside.
     std::vector<LocalPoint> points;
     for (int x = 0; x < 20; ++x) {
@@ -90,12 +90,12 @@ TEST(NeighbourLists, of_a_bundle_are_about_equally_long) {
     cpu::CellGrid grid;
     const auto by_cell = sort.sort(state.position, points.size(), 1.1, grid);
     cpu::NeighbourSearch search(points.size());
-    search.find(state.position, by_cell, state.resting, grid, 1.1F);
+    search.find(state.position, by_cell, state.asleep, grid, 1.1F);
     cpu::NeighbourLists lists(points.size());
     search.write(lists);
     double neighbours = 0, entries = 0;
     for (std::size_t i = 0; i < points.size(); ++i) neighbours += lists.count_of(i);
-    for (std::size_t b = 0; b < points.size() / bundle_size; ++b) entries += double(bundle_size) * lists.length[b];
+    for (std::size_t b = 0; b < points.size() / block_size; ++b) entries += double(block_size) * lists.length[b];
     EXPECT_LT(entries, 1.15 * neighbours);
 }
 

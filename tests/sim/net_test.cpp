@@ -117,7 +117,7 @@ TEST(Net, holds_its_share_of_a_run_and_lets_some_of_the_rest_through) {
         for (int step = 0; step < 300; ++step) {
             simulation.advance();
             const State& state = simulation.state();
-            ASSERT_EQ(state.count + state.left, state.seeded);
+            ASSERT_EQ(state.count + state.outflow, state.seeded);
             for (const BuildingContact& contact : state.building_contacts) {
                 ASSERT_GE(grain_rank(state.id[contact.particle]), 0.5F) << "a grain that passes bears on the net";
                 impulse += contact.impulse;

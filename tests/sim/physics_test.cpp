@@ -28,7 +28,7 @@ TEST(MechanicalEnergy, never_grows_on_rough_ground) {
     };
     const double drop = energy();  // above the lowest ground: what there is to lose
     double previous = drop, least = drop;
-    while (simulation.state().time < 6 && simulation.state().left == 0) {
+    while (simulation.state().time < 6 && simulation.state().outflow == 0) {
         ASSERT_FALSE(simulation.advance());
         const double now = energy();
         EXPECT_LT(now - previous, 2e-5 * drop) << "in one step, at t = " << simulation.state().time;
@@ -67,7 +67,7 @@ TEST(Boundaries, particles_thrown_at_100_mps_never_get_through) {
                     << "particle " << state.id[k] << " in step " << i << " of " << time_step << " s";
             }
         }
-        EXPECT_EQ(simulation.state().count + simulation.state().left, simulation.state().seeded);
+        EXPECT_EQ(simulation.state().count + simulation.state().outflow, simulation.state().seeded);
     }
 }
 
@@ -196,9 +196,9 @@ TEST(MassBalance, counts_what_leaves_the_terrain) {
     while (simulation.state().count > 0 && simulation.state().time < 10) {
         const auto fault = simulation.advance();
         ASSERT_FALSE(fault) << *fault;
-        ASSERT_EQ(simulation.state().count + simulation.state().left, seeded);
+        ASSERT_EQ(simulation.state().count + simulation.state().outflow, seeded);
     }
-    EXPECT_EQ(simulation.state().left, seeded);
+    EXPECT_EQ(simulation.state().outflow, seeded);
 }
 
 std::uint64_t hash_on_threads(int threads) {
@@ -230,7 +230,7 @@ TEST(TimeStep, keeps_a_particle_from_moving_more_than_the_displacement_limit) {
             simulate(material, solver, terrain, {block(terrain, rectangle(5, 15, 11, 21), 0.8)}, 0.4);
         while (simulation.state().time < 2.5) {
             ASSERT_FALSE(simulation.advance());
-            EXPECT_LE(simulation.state().largest_speed * simulation.state().time_step, limit * 0.4 * 1.1);
+            EXPECT_LE(simulation.state().max_speed * simulation.state().time_step, limit * 0.4 * 1.1);
         }
         EXPECT_LT(simulation.state().time_step, 1.0 / 60) << "never fast enough to matter";
     }
@@ -241,13 +241,13 @@ TEST(Fault, names_the_time_and_the_parameter_to_change) {
     State state = testing::state_of({{0, 0, 5}});
     state.time = 3.25;
     EXPECT_FALSE(find_fault(model, state, 6));
-    state.largest_speed = std::nan("");
+    state.max_speed = std::nan("");
     EXPECT_NE(find_fault(model, state, 6)->find("t = 3.25 s"), std::string::npos);
-    state.largest_speed = 0;
+    state.max_speed = 0;
     state.mean_compression = 0.9;
     EXPECT_NE(find_fault(model, state, 6)->find("solver.iteration_count"), std::string::npos);
     state.mean_compression = 0;
-    state.largest_speed = 60;
+    state.max_speed = 60;
     EXPECT_NE(find_fault(model, state, 6)->find("more than its fall can explain"), std::string::npos);
 }
 

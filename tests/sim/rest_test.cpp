@@ -50,12 +50,12 @@ TEST(DebrisAtRest, falls_asleep_and_stays_where_it_is) {
     std::vector<bool> rested(state.count);
     for (std::uint32_t i = 0; i < state.count; ++i) {
         before[state.id[i]] = state.position.at(i);
-        rested[state.id[i]] = state.resting[i] != 0;
+        rested[state.id[i]] = state.asleep[i] != 0;
     }
     advance_to(simulation, 12.2);
     int still = 0;
     for (std::uint32_t i = 0; i < state.count; ++i) {
-        if (!state.resting[i] || !rested[state.id[i]]) continue;
+        if (!state.asleep[i] || !rested[state.id[i]]) continue;
         ++still;
         EXPECT_EQ(length(state.position.at(i) - before[state.id[i]]), 0);
         EXPECT_EQ(length(state.velocity.at(i)), 0);
@@ -68,7 +68,7 @@ TEST(DebrisAtRest, never_falls_asleep_where_the_scene_says_so) {
         Simulation simulation = heap(sleeps ? 0.5 : 0);
         advance_to(simulation, 6);
         const State& state = simulation.state();
-        const auto asleep = std::count(state.resting.begin(), state.resting.begin() + state.count, 1);
+        const auto asleep = std::count(state.asleep.begin(), state.asleep.begin() + state.count, 1);
         EXPECT_EQ(state.count - state.awake, asleep);
         if (sleeps)
             EXPECT_GT(asleep, 0.3 * state.count) << "by then it would have";
@@ -125,7 +125,7 @@ TEST(DebrisAtRest, wakes_when_something_moves_beside_it_and_ends_where_it_would_
         for (std::uint32_t i = 0; i < state.count; ++i) {
             if (state.id[i] >= first) continue;
             before[state.id[i]] = state.position.at(i);
-            asleep += state.resting[i];
+            asleep += state.asleep[i];
         }
         EXPECT_TRUE(!sleeps || asleep > first / 2) << asleep;
         advance_to(simulation, 14);

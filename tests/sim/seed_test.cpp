@@ -33,7 +33,7 @@ TEST(Seeding, starts_at_rest_without_jumping_apart) {
     for (int i = 0; i < 20; ++i) {
         ASSERT_FALSE(simulation.advance());
         highest = std::max(highest, potential_energy(simulation.model(), simulation.state()));
-        fastest = std::max(fastest, simulation.state().largest_speed);
+        fastest = std::max(fastest, simulation.state().max_speed);
     }
     EXPECT_LT(highest, before * 1.001);
     EXPECT_LT(fastest, 9.81 * simulation.state().time) << "m/s: the rim may crumble, nothing may fly";
@@ -96,7 +96,7 @@ TEST(Seeding, a_release_waits_for_its_start_time) {
     };
     while (simulation.state().time < 0.48) ASSERT_FALSE(simulation.advance());
     EXPECT_EQ(fastest_of_second(), 0);
-    EXPECT_GT(simulation.state().largest_speed, 0.5);
+    EXPECT_GT(simulation.state().max_speed, 0.5);
     while (simulation.state().time < 1.0) ASSERT_FALSE(simulation.advance());
     EXPECT_GT(fastest_of_second(), 0.5);
 }

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "sim/cpu/parallel.hpp"
 #include "sim/particle_density.hpp"
 #include "sim/physics/contact.hpp"
+#include "simd/parallel.hpp"
 
 namespace talus::cpu {
 namespace {
@@ -23,15 +23,15 @@ float greater_or_unknown(float a, float b) {
     return std::isnan(a) || b <= a ? a : b;
 }
 
-Bundles everything(const State& state) {
-    return {0, bundles_of(state.count)};
+Blocks everything(const State& state) {
+    return {0, blocks_of(state.count)};
 }
-/// The last bundle may begin with debris at rest: no stage moves it.
-Bundles awake(const State& state) {
-    return {0, bundles_of(state.awake)};
+/// The last block may begin with sleeping debris: no stage moves it.
+Blocks awake(const State& state) {
+    return {0, blocks_of(state.awake)};
 }
-Bundles at_rest(const State& state) {
-    return {bundles_of(state.awake), bundles_of(state.count)};
+Blocks asleep(const State& state) {
+    return {blocks_of(state.awake), blocks_of(state.count)};
 }
 
 }  // namespace
@@ -52,10 +52,10 @@ Backend::Backend(const Model& model, std::size_t capacity)
     grid_.start.reserve(capacity + 1);
 }
 
-void Backend::run(StageFunction stage, const Model& model, State& state, Bundles bundles) {
+void Backend::run(StageFunction stage, const Model& model, State& state, Blocks blocks) {
     const StageData data{model, state, work_, neighbours_};
-    parallel_ranges(bundles.last - bundles.first, bundle_grain, [&](std::size_t first, std::size_t last) {
-        stage(data, bundles.first + first, bundles.first + last);
+    simd::parallel_ranges(blocks.last - blocks.first, block_grain, [&](std::size_t first, std::size_t last) {
+        stage(data, blocks.first + first, blocks.first + last);
     });
 }
 
@@ -64,7 +64,7 @@ void Backend::run(StageFunction stage, const Model& model, State& state) {
 }
 
 void Backend::release_held(const Model& model, State& state) {
-    parallel_ranges(state.count, particle_grain, [&](std::size_t first, std::size_t last) {
+    simd::parallel_ranges(state.count, particle_grain, [&](std::size_t first, std::size_t last) {
         for (std::size_t i = first; i < last; ++i) {
             if (state.held[i] && state.time >= start_time_of(model, state.id[i])) state.held[i] = 0;
         }
@@ -83,7 +83,7 @@ void Backend::predict_positions(const Model& model, State& state) {
 
 void Backend::count_columns(const Model& model, const State& state) {
     columns_.count(state.position, state.count, column_width(model));
-    parallel_ranges(state.count, particle_grain, [&](std::size_t first, std::size_t last) {
+    simd::parallel_ranges(state.count, particle_grain, [&](std::size_t first, std::size_t last) {
         for (std::size_t i = first; i < last; ++i) {
             const Vec3<float> p = state.position.at(i);
             work_.column_particles[i] = columns_.particles_at(p.x, p.y) / open_share(model, p, grain_rank(state.id[i]));
@@ -97,7 +97,7 @@ void Backend::sort_particles(const Model& model, State& state) {
 
 void Backend::find_neighbours(const Model& model, State& state) {
     const auto found =
-        search_.find(work_.predicted, by_cell_, state.resting, grid_, static_cast<float>(model.support_radius));
+        search_.find(work_.predicted, by_cell_, state.asleep, grid_, static_cast<float>(model.support_radius));
     reorder(state, found.order);
     state.awake = found.awake;
     search_.write(neighbours_);
@@ -105,11 +105,13 @@ void Backend::find_neighbours(const Model& model, State& state) {
 
 void Backend::prepare_particles(const Model& model, State& state) {
     run(particle_stages_.begin, model, state, everything(state));
+    // Of what is awake the positions at the step's start matter to pair friction alone; then the step's end is packed.
+    run(particle_stages_.pack_motion, model, state, keeps_stress(model) ? asleep(state) : everything(state));
     if (resists_by_particle(model)) run(particle_stages_.resist, model, state);
 }
 
 void Backend::reorder(State& state, std::span<const std::uint32_t> order) {
-    parallel_ranges(order.size(), 1024, [&](std::size_t first, std::size_t last) {
+    simd::parallel_ranges(order.size(), 1024, [&](std::size_t first, std::size_t last) {
         const auto gather = [&](const auto& from, auto& to) {
             for (std::size_t i = first; i < last; ++i) to[i] = from[order[i]];
         };
@@ -125,11 +127,10 @@ bool Backend::keeps_stress(const Model& model) {
 void Backend::warm_start(const Model& model, State& state) {
     if (keeps_stress(model)) {
         run(stress_stages_.linearise, model, state);
-        run(stress_stages_.press, model, state, at_rest(state));
+        run(stress_stages_.press_asleep, model, state, asleep(state));
         run(stress_stages_.apply, model, state);
-        run(stress_stages_.hush, model, state, at_rest(state));
+        run(stress_stages_.clear_asleep, model, state, asleep(state));
     } else {
-        run(pair_stages_.pack_start, model, state, everything(state));
         run(pair_stages_.find_tolerated, model, state);
     }
     state.previous_time_step = state.time_step;
@@ -164,30 +165,30 @@ void Backend::enforce_boundaries(const Model& model, State& state) {
 void Backend::measure_compression(const Model&, State& state) const {
     struct Sum {
         double sum = 0;
-        float greatest = 0;
+        float max = 0;
     };
-    const Sum compression = reduce_ranges(
+    const Sum compression = simd::reduce_ranges(
         state.awake, 4096, Sum{},
         [&](std::size_t first, std::size_t last, Sum s) {
             for (std::size_t i = first; i < last; ++i) {
                 s.sum += work_.compression[i];
-                s.greatest = std::max(s.greatest, work_.compression[i]);
+                s.max = std::max(s.max, work_.compression[i]);
             }
             return s;
         },
         [](const Sum& a, const Sum& b) {
-            return Sum{a.sum + b.sum, std::max(a.greatest, b.greatest)};
+            return Sum{a.sum + b.sum, std::max(a.max, b.max)};
         });
     state.mean_compression = state.count > 0 ? compression.sum / state.count : 0;
-    state.max_compression = compression.greatest;
+    state.max_compression = compression.max;
 }
 
 void Backend::update_velocities(const Model& model, State& state) {
     const StageData data{model, state, work_, neighbours_};
-    state.largest_speed = reduce_ranges(
-        awake(state).last, bundle_grain, 0.0f,
-        [&](std::size_t first, std::size_t last, float largest) {
-            return greater_or_unknown(largest, particle_stages_.update_velocities(data, first, last));
+    state.max_speed = simd::reduce_ranges(
+        awake(state).last, block_grain, 0.0f,
+        [&](std::size_t first, std::size_t last, float max) {
+            return greater_or_unknown(max, particle_stages_.update_velocities(data, first, last));
         },
         greater_or_unknown);
 }
@@ -198,7 +199,7 @@ void Backend::measure_impacts(const Model& model, State& state) const {
     for (std::uint32_t i = 0; i < state.awake; ++i) {
         if (!work_.has_walls[i]) continue;
         const double mass = density_of(model, state, i) * model.particle_volume();
-        const Work::Walls& walls = work_.walls[i];
+        const WallContacts& walls = work_.walls[i];
         for (std::size_t f = 0; f < walls.faces.size(); ++f) {
             const BoundaryFace<float>& wall = walls.faces[f];
             if (wall.building < 0) break;
@@ -214,11 +215,11 @@ void Backend::apply_viscosity(const Model& model, State& state) {
 }
 
 void Backend::update_sleep(const Model& model, State& state) {
-    if (model.solver.rest_duration > 0) run(particle_stages_.settle, model, state);
+    if (model.solver.rest_duration > 0) run(particle_stages_.update_sleep, model, state);
 }
 
 void Backend::remove_outflow(const Model& model, State& state) {
-    const bool any = reduce_ranges(
+    const bool any = simd::reduce_ranges(
         state.count, 4096, false,
         [&](std::size_t first, std::size_t last, bool found) {
             for (std::size_t i = first; i < last; ++i) {
@@ -230,17 +231,10 @@ void Backend::remove_outflow(const Model& model, State& state) {
         [](bool a, bool b) { return a || b; });
     if (!any) return;
     std::vector<std::uint32_t>& moved_to = new_index_;
-    std::uint32_t kept = 0;
-    for (std::uint32_t i = 0; i < state.count; ++i) {
-        moved_to[i] = kept;
-        if (gone_[i]) continue;
-        for_each_array(state, state, [&](auto& array, auto&) { array[kept] = array[i]; });
-        ++kept;
-    }
+    state.outflow += state.remove_if([&](std::uint32_t i) { return gone_[i] != 0; },
+                                     [&](std::uint32_t i, std::uint32_t k) { moved_to[i] = k; });
     std::erase_if(state.building_contacts, [&](const BuildingContact& c) { return gone_[c.particle] != 0; });
     for (BuildingContact& contact : state.building_contacts) contact.particle = moved_to[contact.particle];
-    state.left += state.count - kept;
-    state.count = kept;
 }
 
 double choose_time_step(const Model& model, const State& state) {
@@ -257,7 +251,7 @@ double choose_time_step(const Model& model, const State& state) {
     // In steps of an eighth of an octave: with longer ones debris that is just too fast for a step would take one of
     // half the length, with shorter ones the step would change, and multipliers with it, whenever the speed does.
     const double shorter = std::exp2(-0.125);
-    const auto too_long = [&] { return dt * (state.largest_speed + model.gravity * dt) > reach; };
+    const auto too_long = [&] { return dt * (state.max_speed + model.gravity * dt) > reach; };
     while (dt > model.solver.smallest_time_step && too_long())
         dt = std::max(shorter * dt, model.solver.smallest_time_step);
     return dt;

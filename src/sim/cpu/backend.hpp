@@ -16,16 +16,16 @@
 namespace talus::cpu {
 
 /// How many particles a task takes at least.
-inline constexpr std::size_t particle_grain = 256, bundle_grain = particle_grain / bundle_size;
+inline constexpr std::size_t particle_grain = 256, block_grain = particle_grain / block_size;
 
-/// Bundles [first, last).
-struct Bundles {
+/// Blocks [first, last).
+struct Blocks {
     std::size_t first, last;
 };
 
 /// The stages of a step on all cores. Holds what lives within a step only; allocates nothing after construction, except
 /// when debris gets denser than ever before, and for the columns of drag by speed when it first slows debris. Every
-/// stage works on bundles of particles; those with formulas in them are compiled per instruction set (stages.hpp).
+/// stage works on blocks of particles; those with formulas in them are compiled per instruction set (stages.hpp).
 ///
 /// Displacements of the step, not predicted positions, are what the iterations correct: a velocity is then a small
 /// number divided by dt, and not the difference of two large ones.
@@ -51,15 +51,15 @@ class Backend {
     void update_sleep(const Model& model, State& state);
     void remove_outflow(const Model& model, State& state);
 
-    /// The lists of the last step, by the order it left the particles in (before any left the terrain).
+    /// The lists of the last step, by the order it left the particles in (before any was removed).
     [[nodiscard]] const NeighbourLists& neighbours() const { return neighbours_; }
     /// The instruction set that the stages run on.
     [[nodiscard]] std::string_view instruction_set() const { return particle_stages_.instruction_set; }
 
   private:
     static bool keeps_stress(const Model& model);
-    void run(StageFunction stage, const Model& model, State& state, Bundles bundles);
-    void run(StageFunction stage, const Model& model, State& state);  ///< on all that is not at rest
+    void run(StageFunction stage, const Model& model, State& state, Blocks blocks);
+    void run(StageFunction stage, const Model& model, State& state);  ///< on all that is awake
     void count_columns(const Model& model, const State& state);
     void reorder(State& state, std::span<const std::uint32_t> order);
 

@@ -3,14 +3,14 @@
 #include <algorithm>
 #include <limits>
 
-#include "sim/cpu/parallel.hpp"
+#include "simd/parallel.hpp"
 
 namespace talus::cpu {
 namespace {
 
 constexpr int digit_bits = 11;
 constexpr std::size_t digit_count = std::size_t{1} << digit_bits;
-constexpr std::size_t block_size =
+constexpr std::size_t histogram_span =
     16384;  // particles per histogram; fixed, so the work is the same on any thread count
 
 struct Bounds {
@@ -24,7 +24,7 @@ Bounds bounds_of(const VectorArray& points, std::size_t count) {
         return Bounds{std::min(a.x_min, b.x_min), std::min(a.y_min, b.y_min), std::min(a.z_min, b.z_min),
                       std::max(a.x_max, b.x_max), std::max(a.y_max, b.y_max), std::max(a.z_max, b.z_max)};
     };
-    return reduce_ranges(
+    return simd::reduce_ranges(
         count, 4096, Bounds{},
         [&](std::size_t first, std::size_t last, Bounds b) {
             for (std::size_t i = first; i < last; ++i) {
@@ -47,7 +47,7 @@ CellSort::CellSort(std::size_t capacity)
       key_swap_(capacity),
       order_(capacity),
       order_swap_(capacity),
-      histogram_((capacity / block_size + 1) * digit_count) {}
+      histogram_((capacity / histogram_span + 1) * digit_count) {}
 
 std::span<const std::uint32_t> CellSort::sort(const VectorArray& points, std::size_t count, double cell,
                                               CellGrid& grid) {
@@ -66,7 +66,7 @@ std::span<const std::uint32_t> CellSort::sort(const VectorArray& points, std::si
     grid.rows = cells_along(box.y_min, box.y_max);
     const std::uint64_t layers = cells_along(box.z_min, box.z_max);
 
-    parallel_ranges(count, 4096, [&](std::size_t first, std::size_t last) {
+    simd::parallel_ranges(count, 4096, [&](std::size_t first, std::size_t last) {
         for (std::size_t i = first; i < last; ++i) {
             const auto cx = static_cast<std::uint64_t>((points.x[i] - grid.x_min) * grid.inverse_cell);
             const auto cy = static_cast<std::uint64_t>((points.y[i] - grid.y_min) * grid.inverse_cell);
@@ -89,34 +89,34 @@ std::span<const std::uint32_t> CellSort::sort(const VectorArray& points, std::si
     return {order_.data(), count};
 }
 
-void CellSort::radix_sort(std::size_t count, std::uint64_t greatest_key) {
-    const std::size_t blocks = (count + block_size - 1) / block_size;
-    for (int shift = 0; shift < 64 && (greatest_key >> shift) != 0; shift += digit_bits) {
+void CellSort::radix_sort(std::size_t count, std::uint64_t max_key) {
+    const std::size_t histograms = (count + histogram_span - 1) / histogram_span;
+    for (int shift = 0; shift < 64 && (max_key >> shift) != 0; shift += digit_bits) {
         const auto digit = [shift](std::uint64_t key) {
             return static_cast<std::size_t>(key >> shift) & (digit_count - 1);
         };
-        parallel_ranges(blocks, 1, [&](std::size_t first, std::size_t last) {
-            for (std::size_t block = first; block < last; ++block) {
-                std::uint32_t* histogram = histogram_.data() + block * digit_count;
+        simd::parallel_ranges(histograms, 1, [&](std::size_t first, std::size_t last) {
+            for (std::size_t h = first; h < last; ++h) {
+                std::uint32_t* histogram = histogram_.data() + h * digit_count;
                 std::fill_n(histogram, digit_count, 0);
-                const std::size_t end = std::min(count, (block + 1) * block_size);
-                for (std::size_t i = block * block_size; i < end; ++i) ++histogram[digit(key_[i])];
+                const std::size_t end = std::min(count, (h + 1) * histogram_span);
+                for (std::size_t i = h * histogram_span; i < end; ++i) ++histogram[digit(key_[i])];
             }
         });
         std::uint32_t sum = 0;
         for (std::size_t d = 0; d < digit_count; ++d) {
-            for (std::size_t block = 0; block < blocks; ++block) {
-                std::uint32_t& entry = histogram_[block * digit_count + d];
+            for (std::size_t h = 0; h < histograms; ++h) {
+                std::uint32_t& entry = histogram_[h * digit_count + d];
                 const std::uint32_t here = entry;
                 entry = sum;
                 sum += here;
             }
         }
-        parallel_ranges(blocks, 1, [&](std::size_t first, std::size_t last) {
-            for (std::size_t block = first; block < last; ++block) {
-                std::uint32_t* next = histogram_.data() + block * digit_count;
-                const std::size_t end = std::min(count, (block + 1) * block_size);
-                for (std::size_t i = block * block_size; i < end; ++i) {
+        simd::parallel_ranges(histograms, 1, [&](std::size_t first, std::size_t last) {
+            for (std::size_t h = first; h < last; ++h) {
+                std::uint32_t* next = histogram_.data() + h * digit_count;
+                const std::size_t end = std::min(count, (h + 1) * histogram_span);
+                for (std::size_t i = h * histogram_span; i < end; ++i) {
                     const std::uint32_t to = next[digit(key_[i])]++;
                     key_swap_[to] = key_[i];
                     order_swap_[to] = order_[i];

@@ -28,7 +28,7 @@ class CellSort {
     std::span<const std::uint32_t> sort(const VectorArray& points, std::size_t count, double cell, CellGrid& grid);
 
   private:
-    void radix_sort(std::size_t count, std::uint64_t greatest_key);
+    void radix_sort(std::size_t count, std::uint64_t max_key);
 
     std::vector<std::uint64_t> key_, key_swap_;
     std::vector<std::uint32_t> order_, order_swap_;

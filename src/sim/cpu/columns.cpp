@@ -3,7 +3,7 @@
 #include <bit>
 #include <cmath>
 
-#include "sim/cpu/parallel.hpp"
+#include "simd/parallel.hpp"
 
 namespace talus::cpu {
 namespace {
@@ -35,13 +35,13 @@ void Columns::for_each_column(float x, float y, const F& f) const {
 void Columns::count(const VectorArray& points, std::size_t count, double width) {
     if (slots_.empty()) slots_ = std::vector<Slot>(std::bit_ceil(5 * capacity_ + 1));
     inverse_width_ = 1 / width;
-    parallel_ranges(slots_.size(), 16384, [&](std::size_t first, std::size_t last) {
+    simd::parallel_ranges(slots_.size(), 16384, [&](std::size_t first, std::size_t last) {
         for (std::size_t k = first; k < last; ++k) {
             slots_[k].key.store(0, std::memory_order_relaxed);
             slots_[k].sum.store(0, std::memory_order_relaxed);
         }
     });
-    parallel_ranges(count, 4096, [&](std::size_t first, std::size_t last) {
+    simd::parallel_ranges(count, 4096, [&](std::size_t first, std::size_t last) {
         for (std::size_t i = first; i < last; ++i) {
             for_each_column(points.x[i], points.y[i], [&](std::uint64_t key, float share) {
                 add(key, static_cast<std::uint32_t>(std::lround(share * one)));

@@ -90,7 +90,7 @@ std::size_t collect_candidates(const VectorArray& sorted, RowSweep& sweep, std::
     return count;
 }
 
-void find_in_cells(const VectorArray& sorted, const std::uint8_t* resting, const CellGrid& grid, std::size_t first,
+void find_in_cells(const VectorArray& sorted, const std::uint8_t* asleep, const CellGrid& grid, std::size_t first,
                    std::size_t last, float square_radius, SearchScratch& scratch, std::uint32_t* count) {
     constexpr D d;
     constexpr DU du;
@@ -101,13 +101,13 @@ void find_in_cells(const VectorArray& sorted, const std::uint8_t* resting, const
     for (std::size_t cell = first; cell < last; ++cell) {
         const std::uint32_t begin = grid.start[cell], end = grid.start[cell + 1];
         std::fill(count + begin, count + end, 0);
-        if (std::all_of(resting + begin, resting + end, [](std::uint8_t rests) { return rests != 0; })) continue;
+        if (std::all_of(asleep + begin, asleep + end, [](std::uint8_t sleeps) { return sleeps != 0; })) continue;
         const std::size_t candidates = collect_candidates(sorted, sweep, cell, scratch);
         const std::uint32_t particles = end - begin;
         const std::size_t room = size + particles * candidates + lanes;
         if (scratch.found.size() < room) scratch.found.resize(2 * room);
         for (std::uint32_t i = begin; i < end; ++i) {
-            if (resting[i]) continue;
+            if (asleep[i]) continue;
             const auto px = hn::Set(d, sorted.x[i]), py = hn::Set(d, sorted.y[i]), pz = hn::Set(d, sorted.z[i]);
             const auto own = hn::Set(du, i);
             const std::size_t before = size;

@@ -6,10 +6,11 @@
 #define TALUS_LANES_INL
 #endif
 
+#include <concepts>
 #include <hwy/highway.h>
 
-#include "core/lanes.hpp"
 #include "sim/cpu/work.hpp"
+#include "simd/lanes.hpp"
 
 /// Everything that a stage calls becomes part of it: formulas of any header turn into its instruction set.
 #define TALUS_STAGE [[gnu::flatten]]
@@ -18,19 +19,19 @@ HWY_BEFORE_NAMESPACE();
 namespace talus::cpu::HWY_NAMESPACE {
 
 constexpr int lane_count = HWY_MAX_BYTES >= 64 ? 16 : HWY_MAX_BYTES >= 32 ? 8 : 4;
-static_assert(bundle_size % lane_count == 0);
-using L = Lanes<lane_count>;
+static_assert(block_size % lane_count == 0);
+using L = simd::Lanes<lane_count>;
 using V3 = Vec3<L>;
 using Stress = Deviator<L>;
-using Mask = LaneMask<lane_count>;
+using Mask = simd::LaneMask<lane_count>;
 
-/// Calls f(i) for the first of every lane_count particles of the bundles.
+/// Calls f(i) for the first of every lane_count particles of the blocks.
 template <class F>
-HWY_INLINE void for_each_lanes(std::size_t first_bundle, std::size_t last_bundle, const F& f) {
-    for (std::size_t i = first_bundle * bundle_size; i < last_bundle * bundle_size; i += lane_count) f(i);
+HWY_INLINE void for_each_lanes(std::size_t first_block, std::size_t last_block, const F& f) {
+    for (std::size_t i = first_block * block_size; i < last_block * block_size; i += lane_count) f(i);
 }
 
-/// The last bundle may be longer than the particles are many.
+/// The last block may be longer than the particles are many.
 HWY_INLINE Mask is_present(const State& state, std::size_t i) {
     L place;
     for (int lane = 0; lane < lane_count; ++lane) place.set(lane, static_cast<float>(lane));
@@ -69,20 +70,25 @@ HWY_INLINE L flags(const std::vector<std::uint8_t>& from, std::size_t i, float s
     }
     return result;
 }
-HWY_INLINE Octs<L> load(const std::vector<Oct>& from, std::size_t i) {
-    return load_octs<lane_count>(from.data() + i);
+template <std::derived_from<simd::Oct> Row>
+HWY_INLINE Octs<L> load(const std::vector<Row>& from, std::size_t i) {
+    return simd::load_octs<lane_count>(from.data() + i);
 }
-HWY_INLINE Quads<L> load_low(const std::vector<Oct>& from, std::size_t i) {
-    return load_quads<lane_count, 0>(from.data() + i);
+template <std::derived_from<simd::Oct> Row>
+HWY_INLINE Quads<L> load_low(const std::vector<Row>& from, std::size_t i) {
+    return simd::load_quads<lane_count, 0>(from.data() + i);
 }
-HWY_INLINE Quads<L> load_high(const std::vector<Oct>& from, std::size_t i) {
-    return load_quads<lane_count, 1>(from.data() + i);
+template <std::derived_from<simd::Oct> Row>
+HWY_INLINE Quads<L> load_high(const std::vector<Row>& from, std::size_t i) {
+    return simd::load_quads<lane_count, 1>(from.data() + i);
 }
-HWY_INLINE void store_low(const Quads<L>& quads, std::vector<Oct>& to, std::size_t i) {
-    store_quads<lane_count, 0>(quads, to.data() + i);
+template <std::derived_from<simd::Oct> Row>
+HWY_INLINE void store_low(const Quads<L>& quads, std::vector<Row>& to, std::size_t i) {
+    simd::store_quads<lane_count, 0>(quads, to.data() + i);
 }
-HWY_INLINE void store_high(const Quads<L>& quads, std::vector<Oct>& to, std::size_t i) {
-    store_quads<lane_count, 1>(quads, to.data() + i);
+template <std::derived_from<simd::Oct> Row>
+HWY_INLINE void store_high(const Quads<L>& quads, std::vector<Row>& to, std::size_t i) {
+    simd::store_quads<lane_count, 1>(quads, to.data() + i);
 }
 /// A vector and one number more.
 HWY_INLINE Quads<L> with(const V3& v, const L& w) {
@@ -100,48 +106,51 @@ struct LaneLists {
     L count;
 
     HWY_INLINE LaneLists(NeighbourLists& lists, std::size_t i)
-        : length(lists.length[i / bundle_size]), count(load(lists.count, i)) {
-        const std::size_t at = lists.start[i / bundle_size] + i % bundle_size;
+        : length(lists.length[i / block_size]), count(load(lists.count, i)) {
+        const std::size_t at = lists.start[i / block_size] + i % block_size;
         neighbour = lists.neighbour.data() + at;
         gradient_x = lists.gradient.x.data() + at;
         gradient_y = lists.gradient.y.data() + at;
         gradient_z = lists.gradient.z.data() + at;
     }
-    /// Calls f(k, left) for every entry; `left` is 0 or less where a list is over that is shorter than its bundle's
-    /// longest, and goes on with the particle itself.
+    /// Calls f(k, remaining) for every entry; `remaining` is 0 or less where a list is over that is shorter than its
+    /// block's longest, and goes on with the particle itself.
     template <class F>
     HWY_INLINE void for_each(const F& f) const {
-        L left = count;
+        L remaining = count;
         const L one(1);
         for (std::uint32_t k = 0; k < length; ++k) {
-            f(k, left);
-            left = left - one;
+            f(k, remaining);
+            remaining = remaining - one;
         }
     }
     /// Whose entry is `first` or a particle behind it.
     HWY_INLINE Mask from_on(std::uint32_t k, std::uint32_t first) const {
         Mask::Ints entry;
-        __builtin_memcpy(&entry, neighbour + k * bundle_size, sizeof entry);
+        __builtin_memcpy(&entry, neighbour + k * block_size, sizeof entry);
         return Mask(Mask::Ints(entry >= static_cast<std::int32_t>(first)));
     }
     HWY_INLINE V3 gradient(std::uint32_t k) const {
-        const std::size_t at = k * bundle_size;
+        const std::size_t at = k * block_size;
         return {L::load(gradient_x + at), L::load(gradient_y + at), L::load(gradient_z + at)};
     }
     HWY_INLINE void keep(std::uint32_t k, const V3& gradient) const {
-        const std::size_t at = k * bundle_size;
+        const std::size_t at = k * block_size;
         gradient.x.store(gradient_x + at);
         gradient.y.store(gradient_y + at);
         gradient.z.store(gradient_z + at);
     }
-    HWY_INLINE Octs<L> gather(const std::vector<Oct>& from, std::uint32_t k) const {
-        return octs_at<lane_count>(from.data(), neighbour + k * bundle_size);
+    template <std::derived_from<simd::Oct> Row>
+    HWY_INLINE Octs<L> gather(const std::vector<Row>& from, std::uint32_t k) const {
+        return simd::octs_at<lane_count>(from.data(), neighbour + k * block_size);
     }
-    HWY_INLINE Quads<L> gather_low(const std::vector<Oct>& from, std::uint32_t k) const {
-        return quads_at<lane_count, 0>(from.data(), neighbour + k * bundle_size);
+    template <std::derived_from<simd::Oct> Row>
+    HWY_INLINE Quads<L> gather_low(const std::vector<Row>& from, std::uint32_t k) const {
+        return simd::quads_at<lane_count, 0>(from.data(), neighbour + k * block_size);
     }
-    HWY_INLINE Quads<L> gather_high(const std::vector<Oct>& from, std::uint32_t k) const {
-        return quads_at<lane_count, 1>(from.data(), neighbour + k * bundle_size);
+    template <std::derived_from<simd::Oct> Row>
+    HWY_INLINE Quads<L> gather_high(const std::vector<Row>& from, std::uint32_t k) const {
+        return simd::quads_at<lane_count, 1>(from.data(), neighbour + k * block_size);
     }
 };
 

@@ -6,22 +6,22 @@
 
 #include <tbb/task_arena.h>
 
-#include "sim/cpu/parallel.hpp"
+#include "simd/parallel.hpp"
 
 namespace talus::cpu {
 namespace {
 
 constexpr std::size_t cells_per_task = 64;
-constexpr std::size_t usual_task_size = 65536;    // entries of lists; debris at rest density needs about half
-constexpr std::size_t usual_candidates = 4096;    // debris at rest density has some 290 around a cell
-constexpr std::size_t usual_neighbours = 48;      // per particle; debris at rest density has some 40
-constexpr std::size_t window = 16 * bundle_size;  // particles that change places with each other
-constexpr std::uint32_t longest_told_apart = 127;
+constexpr std::size_t usual_task_size = 65536;   // entries of lists; debris at rest density needs about half
+constexpr std::size_t usual_candidates = 4096;   // debris at rest density has some 290 around a cell
+constexpr std::size_t usual_neighbours = 48;     // per particle; debris at rest density has some 40
+constexpr std::size_t window = 16 * block_size;  // particles that change places with each other
+constexpr std::uint32_t max_counted = 127;
 
 }  // namespace
 
 NeighbourLists::NeighbourLists(std::size_t capacity)
-    : start(bundles_of(capacity)), length(bundles_of(capacity)), count(capacity + array_padding) {
+    : start(blocks_of(capacity)), length(blocks_of(capacity)), count(capacity + array_padding) {
     neighbour.resize(capacity * usual_neighbours);
     gradient.resize(neighbour.size());
 }
@@ -35,18 +35,18 @@ NeighbourSearch::NeighbourSearch(std::size_t capacity)
       source_(capacity),
       window_(capacity),
       order_(capacity) {
-    resting_.resize(capacity);
+    asleep_.resize(capacity);
     sorted_.resize(capacity);
 }
 
 NeighbourSearch::Found NeighbourSearch::find(const VectorArray& points, std::span<const std::uint32_t> by_cell,
-                                             const std::vector<std::uint8_t>& resting, const CellGrid& grid,
+                                             const std::vector<std::uint8_t>& asleep, const CellGrid& grid,
                                              float radius) {
     particles_ = by_cell.size();
-    parallel_ranges(particles_, 4096, [&](std::size_t first, std::size_t last) {
+    simd::parallel_ranges(particles_, 4096, [&](std::size_t first, std::size_t last) {
         for (std::size_t i = first; i < last; ++i) {
             sorted_.set(i, points.at(by_cell[i]));
-            resting_[i] = resting[by_cell[i]];
+            asleep_[i] = asleep[by_cell[i]];
         }
     });
     // For every thread that may come, before it comes: a thread's first task must not have to allocate.
@@ -59,23 +59,23 @@ NeighbourSearch::Found NeighbourSearch::find(const VectorArray& points, std::spa
     }
     // Growing is rare: debris denser than ever before. Room to spare, so that it stays rare.
     while (!try_find(grid, radius)) found_.resize(used_.load() + used_.load() / 2);
-    part_from_resting();
+    move_sleeping_last();
     balance();
-    parallel_ranges(particles_, 4096, [&](std::size_t first, std::size_t last) {
+    simd::parallel_ranges(particles_, 4096, [&](std::size_t first, std::size_t last) {
         for (std::size_t i = first; i < last; ++i) order_[i] = by_cell[source_[i]];
     });
     return {{order_.data(), particles_}, static_cast<std::uint32_t>(awake_)};
 }
 
-/// Debris at rest goes to the end, so that what is awake is one range.
-void NeighbourSearch::part_from_resting() {
+/// Sleeping debris goes to the end, so that what is awake is one range.
+void NeighbourSearch::move_sleeping_last() {
     awake_ = 0;
     for (std::uint32_t i = 0; i < particles_; ++i) {
-        if (!resting_[i]) window_[awake_++] = i;
+        if (!asleep_[i]) window_[awake_++] = i;
     }
     std::size_t next = awake_;
     for (std::uint32_t i = 0; next < particles_; ++i) {
-        if (!resting_[i]) continue;
+        if (!asleep_[i]) continue;
         source_[next] = i;
         place_[i] = static_cast<std::uint32_t>(next++);
     }
@@ -84,12 +84,12 @@ void NeighbourSearch::part_from_resting() {
 bool NeighbourSearch::try_find(const CellGrid& grid, float radius) {
     used_.store(0);
     const std::size_t tasks = (grid.cell_count() + cells_per_task - 1) / cells_per_task;
-    parallel_ranges(tasks, 1, [&](std::size_t first_task, std::size_t last_task) {
+    simd::parallel_ranges(tasks, 1, [&](std::size_t first_task, std::size_t last_task) {
         SearchScratch& scratch = scratch_[static_cast<std::size_t>(tbb::this_task_arena::current_thread_index())];
         for (std::size_t task = first_task; task < last_task; ++task) {
             const std::size_t first_cell = task * cells_per_task;
             const std::size_t last_cell = std::min(grid.cell_count(), first_cell + cells_per_task);
-            find_in_cells_(sorted_, resting_.data(), grid, first_cell, last_cell, radius * radius, scratch,
+            find_in_cells_(sorted_, asleep_.data(), grid, first_cell, last_cell, radius * radius, scratch,
                            count_.data());
             const auto size = static_cast<std::uint32_t>(scratch.found_count);
             std::uint32_t at = used_.fetch_add(size);
@@ -104,17 +104,15 @@ bool NeighbourSearch::try_find(const CellGrid& grid, float radius) {
     return used_.load() <= found_.size();
 }
 
-/// Puts the particles of a window in the order of how many neighbours they have: those of a bundle then go through
+/// Puts the particles of a window in the order of how many neighbours they have: those of a block then go through
 /// lists of about one length. A stable counting sort, so that the result does not depend on threads.
 void NeighbourSearch::balance() {
     const std::size_t windows = (awake_ + window - 1) / window;
-    parallel_ranges(windows, 4, [&](std::size_t first_window, std::size_t last_window) {
+    simd::parallel_ranges(windows, 4, [&](std::size_t first_window, std::size_t last_window) {
         for (std::size_t w = first_window; w < last_window; ++w) {
             const std::size_t first = w * window, last = std::min(awake_, first + window);
-            std::array<std::uint32_t, longest_told_apart + 1> next{};
-            const auto key = [&](std::size_t i) {
-                return longest_told_apart - std::min(count_[i], longest_told_apart);
-            };
+            std::array<std::uint32_t, max_counted + 1> next{};
+            const auto key = [&](std::size_t i) { return max_counted - std::min(count_[i], max_counted); };
             for (std::size_t i = first; i < last; ++i) ++next[key(window_[i])];
             auto sum = static_cast<std::uint32_t>(first);
             for (std::uint32_t& n : next) sum += std::exchange(n, sum);
@@ -128,30 +126,30 @@ void NeighbourSearch::balance() {
 }
 
 void NeighbourSearch::write(NeighbourLists& lists) {
-    const std::size_t bundles = bundles_of(awake_);
+    const std::size_t blocks = blocks_of(awake_);
     std::uint32_t size = 0;
-    for (std::size_t b = 0; b < bundles; ++b) {
+    for (std::size_t b = 0; b < blocks; ++b) {
         std::uint32_t longest = 0;
-        for (std::size_t i = b * bundle_size; i < std::min(awake_, (b + 1) * bundle_size); ++i) {
+        for (std::size_t i = b * block_size; i < std::min(awake_, (b + 1) * block_size); ++i) {
             longest = std::max(longest, count_[source_[i]]);
         }
         lists.start[b] = size;
         lists.length[b] = longest;
-        size += longest * bundle_size;
+        size += longest * block_size;
     }
     if (lists.neighbour.size() < size) {
         lists.neighbour.resize(size + size / 2);
         lists.gradient.resize(lists.neighbour.size());
     }
-    parallel_ranges(bundles, 16, [&](std::size_t first, std::size_t last) {
-        for (std::size_t i = first * bundle_size; i < last * bundle_size; ++i) {
+    simd::parallel_ranges(blocks, 16, [&](std::size_t first, std::size_t last) {
+        for (std::size_t i = first * block_size; i < last * block_size; ++i) {
             const bool listed = i < awake_;
             const std::size_t from = listed ? source_[i] : 0;
-            const std::uint32_t count = listed ? count_[from] : 0, length = lists.length[i / bundle_size];
+            const std::uint32_t count = listed ? count_[from] : 0, length = lists.length[i / block_size];
             const std::uint32_t* found = found_.data() + start_[from];
-            std::uint32_t* to = lists.neighbour.data() + lists.start[i / bundle_size] + i % bundle_size;
-            for (std::uint32_t k = 0; k < count; ++k) to[k * bundle_size] = place_[found[k]];
-            for (std::uint32_t k = count; k < length; ++k) to[k * bundle_size] = static_cast<std::uint32_t>(i);
+            std::uint32_t* to = lists.neighbour.data() + lists.start[i / block_size] + i % block_size;
+            for (std::uint32_t k = 0; k < count; ++k) to[k * block_size] = place_[found[k]];
+            for (std::uint32_t k = count; k < length; ++k) to[k * block_size] = static_cast<std::uint32_t>(i);
             lists.count[i] = static_cast<float>(count);
         }
     });

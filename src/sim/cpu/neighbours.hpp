@@ -10,20 +10,20 @@
 
 namespace talus::cpu {
 
-/// For every particle the particles nearer than the support radius, itself left out. The lists of a bundle lie side by
-/// side, entry after entry, so that its particles go through theirs together; a list that is shorter than the bundle's
+/// For every particle the particles nearer than the support radius, without itself. The lists of a block lie side by
+/// side, entry after entry, so that its particles go through theirs together; a list that is shorter than the block's
 /// longest goes on with the particle itself, which is at distance zero and so adds nothing but density.
 struct NeighbourLists {
     explicit NeighbourLists(std::size_t capacity);
 
-    std::vector<std::uint32_t> start, length;  ///< per bundle: where its lists begin, how many entries its longest has
+    std::vector<std::uint32_t> start, length;  ///< per block: where its lists begin, how many entries its longest has
     std::vector<float> count;                  ///< per particle: entries that are neighbours
-    std::vector<std::uint32_t> neighbour;      ///< of particle i, entry k: at start + k * bundle_size + i % bundle_size
+    std::vector<std::uint32_t> neighbour;      ///< of particle i, entry k: at start + k * block_size + i % block_size
     VectorArray gradient;                      ///< V grad W per entry, kept from one sum over pairs to the next
 
     [[nodiscard]] std::uint32_t count_of(std::size_t i) const { return static_cast<std::uint32_t>(count[i]); }
     [[nodiscard]] std::uint32_t neighbour_of(std::size_t i, std::size_t k) const {
-        return neighbour[start[i / bundle_size] + k * bundle_size + i % bundle_size];
+        return neighbour[start[i / block_size] + k * block_size + i % block_size];
     }
 };
 
@@ -34,7 +34,7 @@ struct SearchScratch {
     std::size_t found_count = 0;  ///< of `found`, which is longer
 };
 
-/// Finds the neighbours of particles sorted by cell, and an order in which the lists of a bundle are about equally
+/// Finds the neighbours of particles sorted by cell, and an order in which the lists of a block are about equally
 /// long.
 class NeighbourSearch {
   public:
@@ -48,28 +48,28 @@ class NeighbourSearch {
     };
 
     /// `points` in any order, `by_cell` what sorts them by `grid`, whose cells are at least `radius` wide. Those that
-    /// are `resting` (1 or 0, like `points`) are neighbours of others and have no lists themselves.
+    /// are `asleep` (1 or 0, like `points`) are neighbours of others and have no lists themselves.
     Found find(const VectorArray& points, std::span<const std::uint32_t> by_cell,
-               const std::vector<std::uint8_t>& resting, const CellGrid& grid, float radius);
+               const std::vector<std::uint8_t>& asleep, const CellGrid& grid, float radius);
     /// Writes what find() found, by the new order.
     void write(NeighbourLists& lists);
 
-    /// Finds the neighbours of the particles in cells [first, last) that are not resting: put into `scratch.found`,
+    /// Finds the neighbours of the particles in cells [first, last) that are not asleep: put into `scratch.found`,
     /// their numbers into `count`. Compiled per instruction set.
-    using FindInCells = void (*)(const VectorArray& sorted, const std::uint8_t* resting, const CellGrid& grid,
+    using FindInCells = void (*)(const VectorArray& sorted, const std::uint8_t* asleep, const CellGrid& grid,
                                  std::size_t first, std::size_t last, float square_radius, SearchScratch& scratch,
                                  std::uint32_t* count);
 
   private:
     bool try_find(const CellGrid& grid, float radius);
-    void part_from_resting();
+    void move_sleeping_last();
     void balance();
 
     FindInCells find_in_cells_;
     std::size_t particles_ = 0;
     std::size_t awake_ = 0;
     VectorArray sorted_;                        // points by cell
-    std::vector<std::uint8_t> resting_;         // by cell
+    std::vector<std::uint8_t> asleep_;          // by cell
     std::vector<std::uint32_t> start_, count_;  // by cell
     std::vector<std::uint32_t> found_;          // indices by cell
     std::vector<std::uint32_t> place_;          // by cell: the new index

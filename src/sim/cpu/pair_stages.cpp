@@ -13,12 +13,6 @@ HWY_BEFORE_NAMESPACE();
 namespace talus::cpu::HWY_NAMESPACE {
 namespace {
 
-TALUS_STAGE void pack_start(const StageData& data, std::size_t first, std::size_t last) {
-    State& state = data.state;
-    Work& work = data.work;
-    for_each_lanes(first, last, [&](std::size_t i) { store_low(with(load(state.position, i), L(0)), work.stress, i); });
-}
-
 /// What a step starts with compressed may be undone only slowly, since a correction turns into velocity: the density
 /// constraint tolerates the rest.
 template <class Kernel>
@@ -31,18 +25,18 @@ TALUS_STAGE void find_tolerated(const StageData& data, std::size_t first, std::s
     const PairScale scale(model.kernel);
     for_each_lanes(first, last, [&](std::size_t i) {
         const LaneLists lists(neighbours, i);
-        const V3 p = vector_of(load_low(work.stress, i));
+        const V3 p = vector_of(load_low(work.motion, i));
         L density;
-        lists.for_each([&](std::uint32_t k, const L& left) {
-            const L q = scale.quotient(length(p - vector_of(lists.gather_low(work.stress, k))));
-            density += select(left > L(0), Kernel::value(q), L(0));
+        lists.for_each([&](std::uint32_t k, const L& remaining) {
+            const L q = scale.quotient(length(p - vector_of(lists.gather_low(work.motion, k))));
+            density += select(remaining > L(0), Kernel::value(q), L(0));
         });
         density = L(scale.value_scale) * (density + Kernel::value(L(0)));
         const L start = density + sample_boundary_at(model, state, work, i, p, V3{}).density - L(1);
         store(larger(L(0), start - undone), work.tolerated_compression, i);
         store(L(0), state.multiplier, i);
         // The first contacts come before the first iteration.
-        const auto [predicted, moved] = load(work.motion, i);
+        const auto [predicted, moved] = load(work.displaced, i);
         sample_boundary_at(model, state, work, i, vector_of(predicted), vector_of(moved));
     });
 }
@@ -64,15 +58,15 @@ TALUS_STAGE void update_multipliers(const StageData& data, std::size_t first, st
     const PairScale scale(model.kernel);
     for_each_lanes(first, last, [&](std::size_t i) {
         const LaneLists lists(neighbours, i);
-        auto [point, moved] = load(work.motion, i);
+        auto [point, moved] = load(work.displaced, i);
         const V3 p = vector_of(point);
         PairSums sums;
-        lists.for_each([&](std::uint32_t k, const L& left) {
-            const V3 separation = p - vector_of(lists.gather_low(work.motion, k));
+        lists.for_each([&](std::uint32_t k, const L& remaining) {
+            const V3 separation = p - vector_of(lists.gather_low(work.displaced, k));
             const L square = dot(separation, separation);
             const L q = scale.quotient(sqrt(square));
             const L slope = Kernel::slope_over_q(q) * L(-scale.gradient_scale);
-            sums.density += select(left > L(0), Kernel::value(q), L(0));
+            sums.density += select(remaining > L(0), Kernel::value(q), L(0));
             sums.square += slope * slope * square;
             sums.gradient += separation * slope;
         });
@@ -86,7 +80,7 @@ TALUS_STAGE void update_multipliers(const StageData& data, std::size_t first, st
         moved.w = (after - before) * mobile;
         store(select(mobile > L(0), after, before), state.multiplier, i);
         store(larger(L(0), compression) * mobile, work.compression, i);
-        store_high(moved, work.motion, i);
+        store_high(moved, work.displaced, i);
     });
 }
 
@@ -100,11 +94,11 @@ TALUS_STAGE void apply(const StageData& data, std::size_t first, std::size_t las
     const PairScale scale(model.kernel);
     for_each_lanes(first, last, [&](std::size_t i) {
         const LaneLists lists(neighbours, i);
-        const auto [point, moved] = load(work.motion, i);
+        const auto [point, moved] = load(work.displaced, i);
         const V3 p = vector_of(point);
         V3 correction = boundary_correction(load(work.boundary_gradient, i), moved.w);
         for (std::uint32_t k = 0; k < lists.length; ++k) {
-            const auto [place, other] = lists.gather(work.motion, k);
+            const auto [place, other] = lists.gather(work.displaced, k);
             const V3 separation = p - vector_of(place);
             const L square = dot(separation, separation), distance = sqrt(square);
             const L q = scale.quotient(distance);
@@ -120,7 +114,7 @@ TALUS_STAGE void apply(const StageData& data, std::size_t first, std::size_t las
 PairStages make_stages(KernelChoice kernel) {
     return with_kernel(kernel, [&](auto k) {
         using Kernel = decltype(k);
-        return PairStages{pack_start, find_tolerated<Kernel>, update_multipliers<Kernel>, apply<Kernel>};
+        return PairStages{find_tolerated<Kernel>, update_multipliers<Kernel>, apply<Kernel>};
     });
 }
 

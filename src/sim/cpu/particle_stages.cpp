@@ -17,9 +17,9 @@ HWY_BEFORE_NAMESPACE();
 namespace talus::cpu::HWY_NAMESPACE {
 namespace {
 
-/// 1 for particles that may move, 0 for those that are held or at rest.
+/// 1 for particles that may move, 0 for those that are held or asleep.
 HWY_INLINE L mobility(const State& state, std::size_t i) {
-    return flags(state.held, i, 0, 1) * flags(state.resting, i, 0, 1);
+    return flags(state.held, i, 0, 1) * flags(state.asleep, i, 0, 1);
 }
 
 /// Drag by speed, with the thickness of the flow before the step.
@@ -61,13 +61,20 @@ TALUS_STAGE void begin(const StageData& data, std::size_t first, std::size_t las
         const V3 displacement = select(mobile > L(0), load(state.velocity, i) * dt, V3{});
         const V3 predicted = load(state.position, i) + displacement;
         store(mobile, work.mobile, i);
-        store_low(with(predicted, L(0)), work.motion, i);
-        store_high(with(displacement, L(0)), work.motion, i);
+        store_low(with(predicted, L(0)), work.displaced, i);
+        store_high(with(displacement, L(0)), work.displaced, i);
         store(displacement, work.corrected, i);
         store(L(0), work.contact_normal, i);
         store(V3{}, work.contact_friction, i);
         if (model.solids.empty()) return;
         for (std::size_t lane = 0; lane < lane_count; ++lane) work.walls[i + lane].contacts = {};
+    });
+}
+
+TALUS_STAGE void pack_motion(const StageData& data, std::size_t first, std::size_t last) {
+    for_each_lanes(first, last, [&](std::size_t i) {
+        store_low(with(load(data.state.position, i), L(0)), data.work.motion, i);
+        store_high(with(load(data.state.velocity, i), L(0)), data.work.motion, i);
     });
 }
 
@@ -132,8 +139,8 @@ TALUS_STAGE void contacts(const StageData& data, std::size_t first, std::size_t 
             after.z.set(l, end.z);
         }
         after = select(mobile > L(0), after, displacement);
-        store_low(with(load(state.position, i) + after, L(0)), work.motion, i);
-        store_high(with(after, L(0)), work.motion, i);
+        store_low(with(load(state.position, i) + after, L(0)), work.displaced, i);
+        store_high(with(after, L(0)), work.displaced, i);
     });
 }
 
@@ -143,19 +150,19 @@ TALUS_STAGE void undo_overlaps(const StageData& data, std::size_t first, std::si
     const Model& model = data.model;
     Work& work = data.work;
     const bool spread = model.solver.internal_friction == InternalFriction::stress;
-    const L most(model.particle_spacing / 4), touching(model.contact_distance());
+    const L max_shift(model.particle_spacing / 4), touching(model.contact_distance());
     for_each_lanes(first, last, [&](std::size_t i) {
-        const V3 p = vector_of(load_low(work.motion, i));
+        const V3 p = vector_of(load_low(work.displaced, i));
         const GroundSample<L> ground = model.terrain.sample(p.x, p.y);
         const L overlap = touching - (p.z - ground.height) * ground.normal.z;
         // Not so for the NaN of unknown ground.
-        V3 shift = ground.normal * select(overlap > L(0), smaller(overlap, most), L(0));
+        V3 shift = ground.normal * select(overlap > L(0), smaller(overlap, max_shift), L(0));
         const Mask near = near_walls(model, p);
         if (any(near)) {
             for (int l = 0; l < lane_count; ++l) {
                 if (!near.at(l)) continue;
                 const Vec3<float> one = undo_overlap_near_walls(model, data.state, i + static_cast<std::size_t>(l),
-                                                                {p.x.at(l), p.y.at(l), p.z.at(l)}, most.at(l));
+                                                                {p.x.at(l), p.y.at(l), p.z.at(l)}, max_shift.at(l));
                 shift.x.set(l, one.x);
                 shift.y.set(l, one.y);
                 shift.z.set(l, one.z);
@@ -163,7 +170,7 @@ TALUS_STAGE void undo_overlaps(const StageData& data, std::size_t first, std::si
         }
         if (spread) shift += load(work.shift, i);
         const L size = length(shift);
-        shift = shift * select(size > most, most / size, L(1));
+        shift = shift * select(size > max_shift, max_shift / size, L(1));
         store(select(load(work.mobile, i) > L(0), shift, V3{}), work.shift, i);
     });
 }
@@ -174,17 +181,17 @@ TALUS_STAGE void enforce_boundaries(const StageData& data, std::size_t first, st
     const Model& model = data.model;
     State& state = data.state;
     Work& work = data.work;
-    constexpr int most_parts = 4;
-    const L longest_part(model.particle_spacing / 4);
+    constexpr int max_parts = 4;
+    const L max_part(model.particle_spacing / 4);
     const auto below_ground = [&](const V3& p) { return p.z < model.terrain.sample(p.x, p.y).height; };
     for_each_lanes(first, last, [&](std::size_t i) {
-        const V3 start = load(state.position, i), displacement = vector_of(load_high(work.motion, i));
+        const V3 start = load(state.position, i), displacement = vector_of(load_high(work.displaced, i));
         const V3 end = start + displacement, shift = load(work.shift, i);
         const L distance = length(displacement);
-        const L parts = select(distance > longest_part,
-                               from_index<L>(truncated(smaller(L(most_parts), distance / longest_part))) + L(1), L(1));
-        Mask doubtful = (parts > L(most_parts)) | (length(shift) > longest_part) | !(distance == distance);
-        for (int part = 1; part <= most_parts; ++part) {
+        const L parts = select(distance > max_part,
+                               from_index<L>(truncated(smaller(L(max_parts), distance / max_part))) + L(1), L(1));
+        Mask doubtful = (parts > L(max_parts)) | (length(shift) > max_part) | !(distance == distance);
+        for (int part = 1; part <= max_parts; ++part) {
             const Mask on_the_way = L(part) <= parts;
             if (!any(on_the_way)) break;
             const V3 p = start + displacement * (L(part) / parts);
@@ -194,7 +201,7 @@ TALUS_STAGE void enforce_boundaries(const StageData& data, std::size_t first, st
         doubtful = doubtful | below_ground(shifted) | near_walls(model, end);
         const L mobile = load(work.mobile, i);
         doubtful = doubtful & (mobile > L(0));
-        store(select(mobile > L(0), shifted, start), work.predicted, i);
+        store(select(mobile > L(0), shifted, start), work.end, i);
         if (!any(doubtful)) return;
         for (int lane = 0; lane < lane_count; ++lane) {
             if (doubtful.at(lane)) enforce_particle(model, state, work, i + static_cast<std::size_t>(lane));
@@ -206,23 +213,24 @@ TALUS_STAGE float update_velocities(const StageData& data, std::size_t first, st
     State& state = data.state;
     Work& work = data.work;
     const L inverse_dt(1 / state.time_step);
-    L largest(0), unknown(0);
+    L max_square(0), unknown(0);
     for_each_lanes(first, last, [&](std::size_t i) {
         const Mask moves = load(work.mobile, i) > L(0);
-        const V3 velocity = select(moves, vector_of(load_high(work.motion, i)) * inverse_dt, load(state.velocity, i));
-        const V3 position = load(work.predicted, i);
+        const V3 velocity =
+            select(moves, vector_of(load_high(work.displaced, i)) * inverse_dt, load(state.velocity, i));
+        const V3 position = load(work.end, i);
         store(velocity, state.velocity, i);
         store(position, state.position, i);
         store_low(with(position, L(0)), work.motion, i);
         store_high(with(velocity, L(0)), work.motion, i);
         const L square = select(is_present(state, i), dot(velocity, velocity), L(0));
-        largest = larger(largest, square);
+        max_square = larger(max_square, square);
         unknown = select(square == square, unknown, L(1));
     });
     float result = 0;
     for (int lane = 0; lane < lane_count; ++lane) {
         if (unknown.at(lane) > 0) return std::numeric_limits<float>::quiet_NaN();
-        result = std::max(result, largest.at(lane));
+        result = std::max(result, max_square.at(lane));
     }
     return std::sqrt(result);
 }
@@ -256,33 +264,33 @@ TALUS_STAGE void apply_viscosity(const StageData& data, std::size_t first, std::
     });
 }
 
-/// Debris that has hardly moved for the rest duration stays where it is, pressing as it does, until something moves
-/// beside it. Hardly: a hundredth of the speed of a fall through its own size; twice that wakes, so that nothing falls
-/// asleep and wakes in turns. Debris against walls stays awake: what presses on them is measured.
-TALUS_STAGE void settle(const StageData& data, std::size_t first, std::size_t last) {
+/// Debris that has hardly moved for the rest duration sleeps: it stays where it is, pressing as it does, until
+/// something moves beside it. Hardly: a hundredth of the speed of a fall through its own size; twice that wakes, so
+/// that nothing falls asleep and wakes in turns. Debris against walls stays awake: what presses on them is measured.
+TALUS_STAGE void update_sleep(const StageData& data, std::size_t first, std::size_t last) {
     const Model& model = data.model;
     State& state = data.state;
     Work& work = data.work;
     NeighbourLists& neighbours = data.neighbours;
-    const double calm_speed = 0.01 * std::sqrt(model.gravity * model.particle_spacing), waking_speed = 2 * calm_speed;
+    const double sleep_speed = 0.01 * std::sqrt(model.gravity * model.particle_spacing), wake_speed = 2 * sleep_speed;
     const L dt(state.time_step), rest_duration(model.solver.rest_duration);
     for_each_lanes(first, last, [&](std::size_t i) {
         const V3 velocity = load(state.velocity, i);
         const L square = dot(velocity, velocity);
         const Mask moves = load(work.mobile, i) > L(0);
-        const L calm = select(moves & (square < L(calm_speed * calm_speed)), load(state.calm_time, i) + dt, L(0));
-        store(calm, state.calm_time, i);
-        const Mask rests = moves & (calm > rest_duration);
-        if (any(rests)) {
+        const L still = select(moves & (square < L(sleep_speed * sleep_speed)), load(state.still_time, i) + dt, L(0));
+        store(still, state.still_time, i);
+        const Mask sleeps = moves & (still > rest_duration);
+        if (any(sleeps)) {
             for (int l = 0; l < lane_count; ++l) {
                 const std::size_t particle = i + static_cast<std::size_t>(l);
-                if (!rests.at(l) || work.has_walls[particle]) continue;
-                state.resting[particle] = 1;
-                state.calm_time[particle] = 0;
+                if (!sleeps.at(l) || work.has_walls[particle]) continue;
+                state.asleep[particle] = 1;
+                state.still_time[particle] = 0;
                 state.velocity.set(particle, {});
             }
         }
-        const Mask wakes = moves & (square > L(waking_speed * waking_speed));
+        const Mask wakes = moves & (square > L(wake_speed * wake_speed));
         if (state.awake == state.count || !any(wakes)) return;
         const LaneLists lists(neighbours, i);
         Mask finds;
@@ -294,7 +302,7 @@ TALUS_STAGE void settle(const StageData& data, std::size_t first, std::size_t la
                 const std::uint32_t j = neighbours.neighbour_of(particle, k);
                 if (j < state.awake) continue;
                 // Many may wake the same one at once, all in the same way.
-                std::atomic_ref(state.resting[j]).store(0, std::memory_order_relaxed);
+                std::atomic_ref(state.asleep[j]).store(0, std::memory_order_relaxed);
             }
         }
     });
@@ -304,13 +312,14 @@ ParticleStages make_stages(KernelChoice kernel) {
     ParticleStages stages{drag,
                           predict,
                           begin,
+                          pack_motion,
                           resist,
                           contacts,
                           undo_overlaps,
                           enforce_boundaries,
                           update_velocities,
                           nullptr,
-                          settle,
+                          update_sleep,
                           hwy::TargetName(HWY_TARGET)};
     with_kernel(kernel, [&](auto k) { stages.apply_viscosity = apply_viscosity<decltype(k)>; });
     return stages;

@@ -30,15 +30,15 @@ template <class Kernel>
 HWY_INLINE PairSums sum_pairs(const PairScale& scale, const LaneLists& lists, const Work& work, const V3& p,
                               const V3& moved) {
     PairSums sums;
-    lists.for_each([&](std::uint32_t k, const L& left) {
-        const Octs<L> other = lists.gather(work.motion, k);
+    lists.for_each([&](std::uint32_t k, const L& remaining) {
+        const Octs<L> other = lists.gather(work.displaced, k);
         const V3 separation = p - vector_of(other.low);
         const L square = dot(separation, separation);
         const L q = scale.quotient(sqrt(square));
         const L slope = Kernel::slope_over_q(q) * L(-scale.gradient_scale);
         const V3 gradient = separation * slope;
         lists.keep(k, gradient);
-        sums.density += select(left > L(0), Kernel::value(q), L(0));
+        sums.density += select(remaining > L(0), Kernel::value(q), L(0));
         sums.square += slope * slope * square;
         sums.gradient += gradient;
         sums.divergence += dot(vector_of(other.high) - moved, gradient);
@@ -63,14 +63,14 @@ HWY_INLINE L warm_start_scale(const State& state) {
     return L(ratio * ratio);
 }
 
-TALUS_STAGE void press(const StageData& data, std::size_t first, std::size_t last) {
+TALUS_STAGE void press_asleep(const StageData& data, std::size_t first, std::size_t last) {
     State& state = data.state;
     Work& work = data.work;
     const L scale = warm_start_scale(state);
     for_each_lanes(first, last, [&](std::size_t i) { warm_start(state, work, i, scale); });
 }
 
-TALUS_STAGE void hush(const StageData& data, std::size_t first, std::size_t last) {
+TALUS_STAGE void clear_asleep(const StageData& data, std::size_t first, std::size_t last) {
     Work& work = data.work;
     for_each_lanes(first, last, [&](std::size_t i) {
         store_low({}, work.stress, i);
@@ -88,8 +88,8 @@ TALUS_STAGE void linearise(const StageData& data, std::size_t first, std::size_t
     const L softness(model.solver.constraint_relaxation * model.kernel.rest_gradient_sum);
     const PairScale scale(model.kernel);
     for_each_lanes(first, last, [&](std::size_t i) {
-        const Octs<L> motion = load(work.motion, i);
-        const V3 p = vector_of(motion.low), moved = vector_of(motion.high);
+        const Octs<L> displaced = load(work.displaced, i);
+        const V3 p = vector_of(displaced.low), moved = vector_of(displaced.high);
         const PairSums sums = sum_pairs<Kernel>(scale, LaneLists(neighbours, i), work, p, moved);
         const BoundaryShare boundary = sample_boundary_at(model, state, work, i, p, moved);
         const DensityConstraint<L> constraint = linearise_density(model, sums, boundary, moved, softness);
@@ -114,10 +114,10 @@ TALUS_STAGE void solve(const StageData& data, std::size_t first, std::size_t las
     const L grain_size(inertial.grain_size / model.kernel.gradient_moment);
     for_each_lanes(first, last, [&](std::size_t i) {
         const LaneLists lists(neighbours, i);
-        const V3 moved = vector_of(load_high(work.motion, i));
+        const V3 moved = vector_of(load_high(work.displaced, i));
         DisplacementGradient<L> deformation;
         for (std::uint32_t k = 0; k < lists.length; ++k) {
-            deformation.add(vector_of(lists.gather_high(work.motion, k)) - moved, lists.gradient(k));
+            deformation.add(vector_of(lists.gather_high(work.displaced, k)) - moved, lists.gradient(k));
         }
         const L start = load(work.constraint_start, i);
         const L density = start - deformation.divergence() + boundary_change(load(work.boundary_gradient, i), moved);
@@ -166,7 +166,7 @@ TALUS_STAGE void apply(const StageData& data, std::size_t first, std::size_t las
                            dot({xz, yz, own_rest.y + rest.y}, gradient)};
         }
         correction += boundary_correction(load(work.boundary_gradient, i), own_rest.w);
-        store(vector_of(load_high(work.motion, i)) + correction * load(work.mobile, i), work.corrected, i);
+        store(vector_of(load_high(work.displaced, i)) + correction * load(work.mobile, i), work.corrected, i);
     });
 }
 
@@ -179,7 +179,7 @@ TALUS_STAGE void find_spread(const StageData& data, std::size_t first, std::size
     for_each_lanes(first, last, [&](std::size_t i) {
         const L excess = spread_in_step(load(work.compression, i), share);
         const L multiplier = next_multiplier(L(0), excess, load(work.gradient_square, i), factor);
-        store_high(with(V3{}, multiplier), work.stress, i);
+        store_high(with(vector_of(load_high(work.displaced, i)), multiplier), work.displaced, i);
     });
 }
 
@@ -188,17 +188,17 @@ TALUS_STAGE void spread(const StageData& data, std::size_t first, std::size_t la
     NeighbourLists& neighbours = data.neighbours;
     for_each_lanes(first, last, [&](std::size_t i) {
         const LaneLists lists(neighbours, i);
-        const L own = load_high(work.stress, i).w;
+        const L own = load_high(work.displaced, i).w;
         V3 shift = boundary_correction(load(work.boundary_gradient, i), own);
         for (std::uint32_t k = 0; k < lists.length; ++k) {
-            shift += lists.gradient(k) * (own + lists.gather_high(work.stress, k).w);
+            shift += lists.gradient(k) * (own + lists.gather_high(work.displaced, k).w);
         }
         store(shift, work.shift, i);
     });
 }
 
 StressStages make_stages(KernelChoice kernel) {
-    StressStages stages{nullptr, press, hush, solve, apply, find_spread, spread};
+    StressStages stages{nullptr, press_asleep, clear_asleep, solve, apply, find_spread, spread};
     with_kernel(kernel, [&](auto k) { stages.linearise = linearise<decltype(k)>; });
     return stages;
 }

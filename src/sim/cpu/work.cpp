@@ -4,17 +4,10 @@
 
 namespace talus::cpu {
 
-Work::Work(std::size_t capacity) : has_walls(capacity + array_padding), walls(capacity + array_padding) {
-    for (VectorArray* array : {&predicted, &corrected, &shift, &ground_normal, &boundary_gradient, &contact_friction}) {
-        array->resize(capacity);
-    }
-    for (std::vector<Oct>* array : {&motion, &stress}) array->resize(capacity + array_padding);
-    for (std::vector<float>* array :
-         {&column_particles, &mobile, &ground_distance, &ground_slope, &constraint_start, &surface_share,
-          &gradient_square, &pair_square, &compression, &tolerated_compression, &contact_normal, &ground_friction,
-          &ground_strength, &effective_share, &ground_shear}) {
-        array->resize(capacity + array_padding);
-    }
+Work::Work(std::size_t capacity) {
+#define TALUS_RESIZE(array, name) resize(name, capacity);
+    TALUS_WORK_ARRAYS(TALUS_RESIZE)
+#undef TALUS_RESIZE
 }
 
 float sample_walls(const Model& model, const State& state, Work& work, std::size_t i, const Vec3<float>& p,
@@ -27,7 +20,7 @@ float sample_walls(const Model& model, const State& state, Work& work, std::size
     work.boundary_gradient.set(i, boundary.gradient);
     work.has_walls[i] = boundary.faces[1].building >= 0;
     if (work.has_walls[i]) {
-        Work::Walls& walls = work.walls[i];
+        WallContacts& walls = work.walls[i];
         for (std::size_t f = 0; f < walls.faces.size(); ++f) {
             walls.faces[f] = boundary.faces[f + 1];
             walls.faces[f].distance -= dot(displacement, walls.faces[f].normal);
@@ -38,7 +31,7 @@ float sample_walls(const Model& model, const State& state, Work& work, std::size
 
 Vec3<float> resolve_wall_contacts(const Model& model, Work& work, std::size_t i, float multiplier,
                                   Vec3<float> displacement) {
-    Work::Walls& walls = work.walls[i];
+    WallContacts& walls = work.walls[i];
     const float effective = resists_by_particle(model) ? work.effective_share[i] : 1;
     const float friction = static_cast<float>(model.building_friction_coefficient) * effective;
     for (std::size_t f = 0; f < walls.faces.size(); ++f) {
@@ -51,25 +44,25 @@ Vec3<float> resolve_wall_contacts(const Model& model, Work& work, std::size_t i,
 }
 
 Vec3<float> undo_overlap_near_walls(const Model& model, const State& state, std::size_t i, const Vec3<float>& p,
-                                    float most) {
-    return undo_overlap(model, p, most, grain_rank(state.id[i]));
+                                    float max_shift) {
+    return undo_overlap(model, p, max_shift, grain_rank(state.id[i]));
 }
 
 void enforce_particle(const Model& model, const State& state, Work& work, std::size_t i) {
-    std::array<float, 8>& motion = work.motion[i].v;
-    const Vec3<float> start = state.position.at(i), displacement{motion[4], motion[5], motion[6]};
+    std::array<float, 8>& displaced = work.displaced[i].v;
+    const Vec3<float> start = state.position.at(i), displacement{displaced[4], displaced[5], displaced[6]};
     const Vec3<float> wanted = start + displacement;
     const float rank = grain_rank(state.id[i]);
     const Vec3<float> end = free_end(model, start, displacement, rank);
-    work.predicted.set(i, free_end(model, end, work.shift.at(i), rank));
+    work.end.set(i, free_end(model, end, work.shift.at(i), rank));
     if (end.x == wanted.x && end.y == wanted.y && end.z == wanted.z) return;
     // What puts a particle back above ground must not speed it up.
     const Vec3<float> reached = end - start;
     const float before = dot(displacement, displacement), after = dot(reached, reached);
     const Vec3<float> slowed = after > before ? reached * std::sqrt(before / after) : reached;
-    motion[4] = slowed.x;
-    motion[5] = slowed.y;
-    motion[6] = slowed.z;
+    displaced[4] = slowed.x;
+    displaced[5] = slowed.y;
+    displaced[6] = slowed.z;
 }
 
 }  // namespace talus::cpu

@@ -5,56 +5,68 @@
 #include <cstdint>
 #include <vector>
 
-#include "core/lanes.hpp"
 #include "sim/cpu/neighbours.hpp"
 #include "sim/model.hpp"
 #include "sim/physics/contact.hpp"
 #include "sim/state.hpp"
+#include "simd/lanes.hpp"
 
 namespace talus::cpu {
 
-/// What a step knows about its particles and forgets at its end, by the same index as State. Arrays of Oct are those
-/// that neighbours read.
+/// Rows of eight numbers in a cache line, which neighbours read at once. A type for each meaning.
+struct DisplacedRow : simd::Oct {};  ///< predicted position x, y, z, 0; displacement x, y, z, change of lambda to apply
+struct StressRow : simd::Oct {};     ///< change to apply of the stress tensor: xx, xy, xz, yy; yz, zz, 0, pressure
+struct MotionRow : simd::Oct {};     ///< as in State: position x, y, z, 0; velocity x, y, z, 0
+
+// clang-format off
+/// What a step knows about its particles and forgets at its end, by the same index as State: X(array, name).
+#define TALUS_WORK_ARRAYS(X)                                                                                           \
+    X(std::vector<float>, column_particles)  /* in the column of the flow, before the step; with drag by speed only */   \
+    X(std::vector<float>, mobile)            /* 1, or 0 for debris that is held or asleep */                             \
+    X(VectorArray, predicted)                /* position that gravity alone leads to, before the particles are sorted */ \
+    X(std::vector<DisplacedRow>, displaced)  /* by what the iterations have corrected so far */                          \
+    X(std::vector<StressRow>, stress)        /* with internal friction as a stress only */                               \
+    X(std::vector<MotionRow>, motion)                                                                                    \
+    X(VectorArray, corrected)                /* the displacement that contacts have yet to agree to */                   \
+    X(VectorArray, shift)                    /* undoes overlaps, becomes no velocity */                                  \
+    X(VectorArray, end)                      /* position at the end of the step */                                       \
+    /* The ground, taken to be plane within the step, and the share of ground and walls in the density. */               \
+    X(std::vector<float>, ground_distance)   /* m, of a particle that is not displaced; NaN where unknown */             \
+    X(std::vector<float>, ground_slope)                                                                                  \
+    X(VectorArray, ground_normal)                                                                                        \
+    X(VectorArray, boundary_gradient)                                                                                    \
+    /* The density constraint of a particle (see DensityConstraint). */                                                  \
+    X(std::vector<float>, constraint_start)                                                                              \
+    X(std::vector<float>, surface_share)                                                                                 \
+    X(std::vector<float>, gradient_square)                                                                               \
+    X(std::vector<float>, pair_square)                                                                                   \
+    X(std::vector<float>, compression)           /* max(0, G) */                                                         \
+    X(std::vector<float>, tolerated_compression) /* of what the step started with; pair friction only */                 \
+    /* How a particle is held, where that is not the same for all (see resists_by_particle). */                          \
+    X(std::vector<float>, ground_friction)   /* coefficient, lowered by pore pressure */                                 \
+    X(std::vector<float>, ground_strength)   /* m, where it touches (see Grip) */                                        \
+    X(std::vector<float>, effective_share)   /* 1 - r_u */                                                               \
+    X(std::vector<float>, ground_shear)      /* see shear_beside_ground; with inertial friction only */                  \
+    /* Contact with the ground in this step (see ContactMemory). */                                                      \
+    X(std::vector<float>, contact_normal)                                                                                \
+    X(VectorArray, contact_friction)                                                                                     \
+    /* The walls beside a particle; few have any. */                                                                     \
+    X(std::vector<std::uint8_t>, has_walls)                                                                              \
+    X(std::vector<WallContacts>, walls)
+// clang-format on
+
+/// Walls, distances as ground_distance, and the contacts with them in this step.
+struct WallContacts {
+    std::array<BoundaryFace<float>, face_count - 1> faces;
+    std::array<ContactMemory<float>, face_count - 1> contacts;
+};
+
 struct Work {
     explicit Work(std::size_t capacity);
 
-    std::vector<float> column_particles;  ///< before the step, in the column of the flow; with drag by speed only
-    std::vector<float> mobile;            ///< 1, or 0 for debris that is held
-    VectorArray predicted;                ///< x*: before the step, for finding neighbours; after it, where it ends
-    std::vector<Oct> motion;              ///< x*, nothing; x* - x so far, the last change of lambda. At last x and v
-    std::vector<Oct> stress;              ///< xx, xy, xz, yy; yz, zz, nothing, pressure: what is applied to neighbours.
-                                          ///< With pair friction, at first: x
-    VectorArray corrected;                ///< the displacement that contacts have yet to agree to
-    VectorArray shift;                    ///< undoes overlaps, becomes no velocity
-
-    // The ground, taken to be plane within the step, and the share of ground and walls in the density.
-    std::vector<float> ground_distance;  ///< m, of a particle that is not displaced; NaN where unknown
-    std::vector<float> ground_slope;
-    VectorArray ground_normal;
-    VectorArray boundary_gradient;
-
-    // The density constraint of a particle (see DensityConstraint).
-    std::vector<float> constraint_start, surface_share, gradient_square, pair_square;
-    std::vector<float> compression;            ///< max(0, G)
-    std::vector<float> tolerated_compression;  ///< of what the step started with; pair friction only
-
-    // How a particle is held, where that is not the same for all (see resists_by_particle).
-    std::vector<float> ground_friction;  ///< coefficient, lowered by pore pressure
-    std::vector<float> ground_strength;  ///< m, where it touches (see Grip)
-    std::vector<float> effective_share;  ///< 1 - r_u
-    std::vector<float> ground_shear;     ///< see shear_beside_ground; with inertial friction only
-
-    // Contact with the ground in this step (see ContactMemory).
-    std::vector<float> contact_normal;
-    VectorArray contact_friction;
-
-    /// The walls beside a particle; few have any.
-    struct Walls {
-        std::array<BoundaryFace<float>, face_count - 1> faces;  ///< distances as ground_distance
-        std::array<ContactMemory<float>, face_count - 1> contacts;
-    };
-    std::vector<std::uint8_t> has_walls;
-    std::vector<Walls> walls;
+#define TALUS_MEMBER(array, name) array name;
+    TALUS_WORK_ARRAYS(TALUS_MEMBER)
+#undef TALUS_MEMBER
 };
 
 /// What a stage works on.
@@ -76,7 +88,7 @@ Vec3<float> resolve_wall_contacts(const Model& model, Work& work, std::size_t i,
                                   Vec3<float> displacement);
 /// undo_overlap() of particle `i`.
 Vec3<float> undo_overlap_near_walls(const Model& model, const State& state, std::size_t i, const Vec3<float>& p,
-                                    float most);
+                                    float max_shift);
 /// Where the particle ends its step, swept; keeps what puts it back above ground from speeding it up.
 void enforce_particle(const Model& model, const State& state, Work& work, std::size_t i);
 

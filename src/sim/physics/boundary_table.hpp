@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "core/lanes.hpp"
+#include "core/number.hpp"
 #include "sim/physics/kernel.hpp"
 
 namespace talus {

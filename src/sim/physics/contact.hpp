@@ -87,9 +87,9 @@ Vec3<Real> resolve_contacts(const Model& model, const Boundary<Real>& boundary, 
     return displacement;
 }
 
-/// What brings a particle that overlaps ground or a wall back to touching it, at most `most` metres of it.
+/// What brings a particle that overlaps ground or a wall back to touching it, at most `max_shift` metres of it.
 template <class Real>
-Vec3<Real> undo_overlap(const Model& model, const Vec3<Real>& p, Real most, float grain_rank = largest_grain) {
+Vec3<Real> undo_overlap(const Model& model, const Vec3<Real>& p, Real max_shift, float grain_rank = largest_grain) {
     const Real touching = Real(model.contact_distance());
     const Boundary<Real> now = sample_boundary(model, p, grain_rank);
     Vec3<Real> shift{};
@@ -98,7 +98,7 @@ Vec3<Real> undo_overlap(const Model& model, const Vec3<Real>& p, Real most, floa
         const Real overlap = touching - face.distance;
         // Negated, so that the NaN of unknown ground counts as no overlap.
         if ((f > 0 && face.building < 0) || !(overlap > 0)) continue;
-        shift += face.normal * (overlap < most ? overlap : most);
+        shift += face.normal * (overlap < max_shift ? overlap : max_shift);
     }
     return shift;
 }
@@ -117,9 +117,9 @@ template <class Real>
 Vec3<Real> free_end(const Model& model, const Vec3<Real>& start, const Vec3<Real>& displacement,
                     float grain_rank = largest_grain) {
     const Vec3<Real> end = start + displacement;
-    const Real longest_part = Real(model.particle_spacing / 4);
+    const Real max_part = Real(model.particle_spacing / 4);
     const Real distance = length(displacement);
-    const int parts = distance > longest_part ? static_cast<int>(distance / longest_part) + 1 : 1;
+    const int parts = distance > max_part ? static_cast<int>(distance / max_part) + 1 : 1;
     Real clear = 0;  // share of the way known to be free
     Real blocked = -1;
     for (int part = 1; part <= parts; ++part) {
@@ -137,7 +137,7 @@ Vec3<Real> free_end(const Model& model, const Vec3<Real>& start, const Vec3<Real
         const Real depth = (ground.height - end.z) * ground.normal.z;
         Vec3<Real> lifted = end + ground.normal * (depth > 0 ? depth : Real(0));
         const Real height = model.terrain.sample(lifted.x, lifted.y).height;
-        if (lifted.z < height && height - lifted.z < longest_part) lifted.z = height;
+        if (lifted.z < height && height - lifted.z < max_part) lifted.z = height;
         if (is_free(model, lifted, grain_rank)) return lifted;
     }
     Vec3<Real> reached = start + displacement * clear;

@@ -72,7 +72,7 @@ Real spread_in_step(Real compression, Real share) {
 /// The factor on every correction of the Jacobi iteration: `relaxation` is relative to the eigenvalue at which
 /// neighbours that correct at once overshoot, so it is stable below 2 whatever the kernel.
 inline double jacobi_factor(double relaxation, const Kernel& kernel) {
-    return relaxation / kernel.largest_eigenvalue;
+    return relaxation / kernel.max_eigenvalue;
 }
 
 }  // namespace talus

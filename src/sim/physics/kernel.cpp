@@ -9,10 +9,10 @@ namespace {
 /// A multiplier that varies as cos(k x) over the lattice moves particles by the lattice sum of 2 grad W sin(k x), and
 /// that changes the constraints in the same pattern: the eigenvalue of a wave is the square of the sum, relative to the
 /// diagonal. The largest over all waves of the lattice.
-double largest_lattice_eigenvalue(const std::vector<Vec3<double>>& offsets, const std::vector<Vec3<double>>& gradients,
-                                  double gradient_square) {
+double max_lattice_eigenvalue(const std::vector<Vec3<double>>& offsets, const std::vector<Vec3<double>>& gradients,
+                              double gradient_square) {
     constexpr int waves = 24;  // per axis, from 0 to pi
-    double largest = 0;
+    double max = 0;
     for (int a = 0; a <= waves; ++a) {
         for (int b = 0; b <= a; ++b) {
             for (int c = 0; c <= b; ++c) {
@@ -21,11 +21,11 @@ double largest_lattice_eigenvalue(const std::vector<Vec3<double>>& offsets, cons
                 for (std::size_t i = 0; i < offsets.size(); ++i) {
                     sum += gradients[i] * std::sin(dot(wave, offsets[i]));
                 }
-                largest = std::max(largest, dot(sum, sum) / gradient_square);
+                max = std::max(max, dot(sum, sum) / gradient_square);
             }
         }
     }
-    return largest;
+    return max;
 }
 
 }  // namespace
@@ -58,7 +58,7 @@ Kernel make_kernel(KernelChoice choice, double particle_spacing, double support_
         result.support_radius = r;
         result.particle_volume = 1 / sum;
         result.rest_gradient_sum = gradient_square * result.particle_volume * result.particle_volume;
-        result.largest_eigenvalue = largest_lattice_eigenvalue(offsets, gradients, gradient_square);
+        result.max_eigenvalue = max_lattice_eigenvalue(offsets, gradients, gradient_square);
         result.gradient_moment = gradient_moment * result.particle_volume;
         result.second_moment = moment * result.particle_volume;
         return result;

@@ -107,7 +107,7 @@ struct Kernel {
     double rest_gradient_sum = 0;  ///< sum |V grad W|^2 of a particle in the rest lattice, 1/m2
     /// Largest eigenvalue of the density constraints' Jacobi iteration in the rest lattice: by how much neighbours that
     /// all correct at once overshoot.
-    double largest_eigenvalue = 1;
+    double max_eigenvalue = 1;
     /// Sum of -x d(V W)/dx over the lattice: how much of a stress that varies evenly the sum over neighbours passes on.
     double gradient_moment = 1;
     double second_moment = 0;  ///< sum of x^2 V W over the lattice, m2: links XSPH smoothing to a kinematic viscosity

@@ -319,7 +319,7 @@ void Backend::solve_contacts(const Model& model, State& state) {
 
 void Backend::undo_overlaps(const Model& model, State& state) {
     const double factor = jacobi_factor(model.solver.under_relaxation, model.kernel);
-    const double share = spreading_share(state.time_step), most = model.particle_spacing / 4;
+    const double share = spreading_share(state.time_step), max_shift = model.particle_spacing / 4;
     const auto point = [&](std::size_t k) { return state.particles[k].linearised_at; };
     std::vector<double> spread(state.particles.size());
     for (std::size_t i = 0; i < spread.size(); ++i) {
@@ -336,9 +336,9 @@ void Backend::undo_overlaps(const Model& model, State& state) {
                 p.shift += pair.gradient * (spread[i] + spread[j]);
             });
         }
-        p.shift += undo_overlap(model, p.predicted(), most, rank_of(i));
+        p.shift += undo_overlap(model, p.predicted(), max_shift, rank_of(i));
         const double size = length(p.shift);
-        if (size > most) p.shift = p.shift * (most / size);
+        if (size > max_shift) p.shift = p.shift * (max_shift / size);
     }
 }
 

@@ -141,7 +141,7 @@ Result<Outcome> compute(const EnergySpec& spec, const Setting& setting, const Wa
     Series elevation{"z", Series::Style::line, {}, {}}, start{"at the start", Series::Style::dashed, {}, {}};
     const double unit_time = spec.time / 200;
     const auto look = [&] {
-        if (state.left > 0) return;  // averages of what is left would mean nothing
+        if (state.outflow > 0) return;  // averages of what is left would mean nothing
         ways.after_step();
         const Ways::Means now = ways.means();
         const double plain = now.elevation + now.head + friction * now.way - first.elevation;
@@ -160,7 +160,7 @@ Result<Outcome> compute(const EnergySpec& spec, const Setting& setting, const Wa
     Outcome outcome;
     outcome.notes.push_back(fmt::format("{} particles, largest drop {:.1f} m", state.seeded, drop));
     if (!trusted) outcome.notes.push_back(trial.problem());
-    if (state.left > 0) outcome.notes.emplace_back("counted until the first particle left the terrain");
+    if (state.outflow > 0) outcome.notes.emplace_back("counted until the first particle left the terrain");
     outcome.measurements = {{"energy_line", "", trusted ? worst / drop : not_computed, {}},
                             {"energy_line_with_curvature", "", trusted ? worst_loaded / drop : not_computed, {}}};
     outcome.charts.push_back(

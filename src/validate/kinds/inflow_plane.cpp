@@ -56,7 +56,7 @@ Result<Outcome> compute(const PlaneSpec& spec, const Setting& setting, const Wat
     }
     trial.inject_inflow();  // what had not filled a row yet
     if (!trial.problem().empty()) outcome.notes.push_back(trial.problem());
-    const double volume = (state.count + state.left) * trial.model().particle_volume();
+    const double volume = (state.count + state.outflow) * trial.model().particle_volume();
     outcome.measurements.push_back({"particles", "", volume, inflow.volume_until(state.time)});
     // What the front does is heard of no farther upstream than this.
     const double wave = std::sqrt(trial.model().gravity * incline.cosine() * spec.thickness);

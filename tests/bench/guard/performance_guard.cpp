@@ -23,7 +23,7 @@
 #include "bench/scenes.hpp"
 #include "bench/table.hpp"
 #include "scene/builtin.hpp"
-#include "sim/cpu/dispatch.hpp"
+#include "simd/dispatch.hpp"
 #include "support/fixtures.hpp"
 
 namespace talus::bench {
@@ -118,7 +118,7 @@ int run(const std::vector<std::string>& arguments) {
     Result<Baseline> baseline = is_new ? Result<Baseline>(Baseline{}) : read_baseline(file);
     if (!baseline) return fail(baseline.error().message);
 
-    if (const Status chosen = cpu::choose_instruction_set_of_environment(); !chosen)
+    if (const Status chosen = simd::choose_instruction_set_of_environment(); !chosen)
         return fail(chosen.error().message);
     Calibration calibration;
     const std::string instruction_set(calibration.instruction_set());

@@ -1,11 +1,10 @@
 #pragma once
 
 #include <array>
-#include <cmath>
-#include <concepts>
-#include <cstddef>
 #include <cstdint>
 #include <type_traits>
+
+#include "core/number.hpp"
 
 /// Arithmetic that a formula written once runs through with one number or with as many side by side as a vector
 /// register holds. A formula takes `select` in place of a branch; the rest looks as ever.
@@ -13,15 +12,7 @@
 /// Built on the vector types of GCC and Clang, so a formula in any header turns into the instructions of the function
 /// that it is inlined into. Nothing here fuses a multiplication and an addition: every instruction set gives the same
 /// bits.
-namespace talus {
-
-/// On what is worth little when called, and on what passes bare vectors: they travel in other registers where a wider
-/// instruction set is on, so that a call between the two would be wrong. Lanes and masks are safe by having copy
-/// constructors: they travel in memory.
-#define TALUS_INLINE [[gnu::always_inline]] inline
-
-/// Four numbers that lie together: a gather of all four is one load.
-using Quad = std::array<float, 4>;
+namespace talus::simd {
 
 /// Twice four, in one cache line: a gather of all eight costs less than two of four.
 struct alignas(32) Oct {
@@ -220,12 +211,6 @@ struct Lanes {
     TALUS_INLINE static Lanes from(const Ints& ints) { return Lanes(Floats(__builtin_convertvector(ints, Floats))); }
 };
 
-/// The numbers of a Quad, of one particle or of many.
-template <class Real>
-struct Quads {
-    Real x{}, y{}, z{}, w{};
-};
-
 /// Transposes 4 x 4 numbers within every block of 128 bits; its own inverse.
 template <int count>
 TALUS_INLINE Quads<Lanes<count>> transposed(const Quads<Lanes<count>>& r) {
@@ -249,18 +234,6 @@ TALUS_INLINE Quads<Lanes<count>> quads_from(const Row& row) {
     };
     return transposed(Quads<Lanes<count>>{rows(0), rows(1), rows(2), rows(3)});
 }
-
-/// rows[index] for every lane.
-template <class Ints>
-requires(!std::is_integral_v<Ints>) TALUS_INLINE auto quads_at(const Quad* rows, const Ints& index) {
-    return quads_from<static_cast<int>(sizeof(Ints) / sizeof(std::int32_t))>([&](
-        int lane) __attribute__((always_inline)) { return rows + index[lane]; });
-}
-/// The numbers of an Oct, of one particle or of many.
-template <class Real>
-struct Octs {
-    Quads<Real> low, high;
-};
 
 /// The rows of eight that `row(lane)` points to.
 template <int count, class Row>
@@ -307,12 +280,6 @@ TALUS_INLINE Quads<Lanes<count>> quads_at(const Oct* rows, const std::uint32_t* 
     return quads_from<count>([&](int lane)
                                  __attribute__((always_inline)) { return rows[index[lane]].v.data() + 4 * part; });
 }
-/// rows[index] and rows[index + 1].
-template <class Ints>
-requires(!std::is_integral_v<Ints>) TALUS_INLINE auto quad_pairs_at(const Quad* rows, const Ints& index) {
-    constexpr int count = static_cast<int>(sizeof(Ints) / sizeof(std::int32_t));
-    return octs_from<count>([&](int lane) __attribute__((always_inline)) { return rows[index[lane]].data(); });
-}
 template <int count>
 TALUS_INLINE Octs<Lanes<count>> load_octs(const Oct* rows) {
     return octs_from<count>([&](int lane) __attribute__((always_inline)) { return rows[lane].v.data(); });
@@ -336,43 +303,22 @@ TALUS_INLINE void store_quads(const Quads<Lanes<count>>& quads, Oct* rows) {
     put(3, r.w);
 }
 
-// The same words for one number.
-template <std::floating_point Real>
-Real select(bool condition, Real yes, Real no) {
-    return condition ? yes : no;
-}
-inline bool any(bool condition) {
-    return condition;
-}
-template <std::floating_point Real>
-std::int32_t truncated(Real a) {
-    return static_cast<std::int32_t>(a);
-}
-inline Octs<float> quad_pairs_at(const Quad* rows, std::int32_t index) {
-    const Quad &low = rows[index], &high = rows[index + 1];
-    return {{low[0], low[1], low[2], low[3]}, {high[0], high[1], high[2], high[3]}};
-}
-inline Quads<float> quads_at(const Quad* rows, std::int32_t index) {
-    const Quad& row = rows[index];
-    return {row[0], row[1], row[2], row[3]};
-}
-template <class Real, class Index>
-TALUS_INLINE Real from_index(const Index& index) {
-    if constexpr (std::is_floating_point_v<Real>) {
-        return static_cast<Real>(index);
-    } else {
-        return Real::from(index);
-    }
-}
+}  // namespace talus::simd
 
-/// As std::max and std::min: the first where they compare equal, or not at all.
-template <class Real>
-TALUS_INLINE Real larger(const Real& a, const Real& b) {
-    return select(a < b, b, a);
+// Where a formula that knows no lanes finds them: beside Quad.
+namespace talus {
+
+/// rows[index] for every lane.
+template <class Ints>
+requires(!std::is_integral_v<Ints>) TALUS_INLINE auto quads_at(const Quad* rows, const Ints& index) {
+    return simd::quads_from<static_cast<int>(sizeof(Ints) / sizeof(std::int32_t))>([&](
+        int lane) __attribute__((always_inline)) { return rows[index[lane]].data(); });
 }
-template <class Real>
-TALUS_INLINE Real smaller(const Real& a, const Real& b) {
-    return select(b < a, b, a);
+/// rows[index] and rows[index + 1].
+template <class Ints>
+requires(!std::is_integral_v<Ints>) TALUS_INLINE auto quad_pairs_at(const Quad* rows, const Ints& index) {
+    constexpr int count = static_cast<int>(sizeof(Ints) / sizeof(std::int32_t));
+    return simd::octs_from<count>([&](int lane) __attribute__((always_inline)) { return rows[index[lane]].data(); });
 }
 
 }  // namespace talus

@@ -6,7 +6,7 @@
 #include "core/result.hpp"
 
 /// Which instruction set HWY_DYNAMIC_DISPATCH chooses.
-namespace talus::cpu {
+namespace talus::simd {
 
 /// Those that both this processor and this build have, best first.
 [[nodiscard]] std::vector<std::string> instruction_sets();
@@ -18,4 +18,4 @@ namespace talus::cpu {
 /// Chooses the set that the environment variable TALUS_SIMD names, if it names one. For the beginning of a program.
 [[nodiscard]] Status choose_instruction_set_of_environment();
 
-}  // namespace talus::cpu
+}  // namespace talus::simd

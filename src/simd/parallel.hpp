@@ -10,7 +10,7 @@
 #include <sanitizer/tsan_interface.h>
 #endif
 
-namespace talus::cpu {
+namespace talus::simd {
 
 /// Tells the thread sanitizer what it cannot see in an uninstrumented TBB: a task comes after what the caller did
 /// before, and what the caller does next comes after every task. Nothing at all in other builds.
@@ -67,4 +67,4 @@ Value reduce_ranges(std::size_t count, std::size_t grain, const Value& identity,
     return result;
 }
 
-}  // namespace talus::cpu
+}  // namespace talus::simd

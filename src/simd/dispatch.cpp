@@ -1,4 +1,4 @@
-#include "sim/cpu/dispatch.hpp"
+#include "simd/dispatch.hpp"
 
 #include <cstdlib>
 #include <hwy/highway.h>
@@ -6,7 +6,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-namespace talus::cpu {
+namespace talus::simd {
 namespace {
 
 /// Asked once, before the first choice: Highway names only the chosen one after it.
@@ -40,4 +40,4 @@ Status choose_instruction_set_of_environment() {
     return chosen ? Status() : Error{"TALUS_SIMD: " + chosen.error().message};
 }
 
-}  // namespace talus::cpu
+}  // namespace talus::simd

@@ -1,0 +1,79 @@
+#pragma once
+
+#include <array>
+#include <concepts>
+#include <cstddef>
+#include <cstdint>
+#include <type_traits>
+
+/// The words that a formula is written in so that it runs with one number or with many side by side (simd/lanes.hpp):
+/// `select` in place of a branch; the rest looks as ever. Here they are for one number.
+namespace talus {
+
+/// On what is worth little when called, and on what passes bare vectors: they travel in other registers where a wider
+/// instruction set is on, so that a call between the two would be wrong. Lanes and masks are safe by having copy
+/// constructors: they travel in memory.
+#define TALUS_INLINE [[gnu::always_inline]] inline
+
+/// Four numbers that lie together: a gather of all four is one load.
+struct Quad {
+    std::array<float, 4> v{};
+
+    [[nodiscard]] const float* data() const { return v.data(); }
+    float operator[](std::size_t i) const { return v[i]; }
+    float& operator[](std::size_t i) { return v[i]; }
+};
+
+/// The numbers of a Quad, of one particle or of many.
+template <class Real>
+struct Quads {
+    Real x{}, y{}, z{}, w{};
+};
+/// Twice four numbers.
+template <class Real>
+struct Octs {
+    Quads<Real> low, high;
+};
+
+template <std::floating_point Real>
+Real select(bool condition, Real yes, Real no) {
+    return condition ? yes : no;
+}
+inline bool any(bool condition) {
+    return condition;
+}
+/// Towards zero; for what an int can hold.
+template <std::floating_point Real>
+std::int32_t truncated(Real a) {
+    return static_cast<std::int32_t>(a);
+}
+template <class Real, class Index>
+TALUS_INLINE Real from_index(const Index& index) {
+    if constexpr (std::is_floating_point_v<Real>) {
+        return static_cast<Real>(index);
+    } else {
+        return Real::from(index);
+    }
+}
+
+/// As std::max and std::min: the first where they compare equal, or not at all.
+template <class Real>
+TALUS_INLINE Real larger(const Real& a, const Real& b) {
+    return select(a < b, b, a);
+}
+template <class Real>
+TALUS_INLINE Real smaller(const Real& a, const Real& b) {
+    return select(b < a, b, a);
+}
+
+/// rows[index].
+inline Quads<float> quads_at(const Quad* rows, std::int32_t index) {
+    const Quad& row = rows[index];
+    return {row[0], row[1], row[2], row[3]};
+}
+/// rows[index] and rows[index + 1].
+inline Octs<float> quad_pairs_at(const Quad* rows, std::int32_t index) {
+    return {quads_at(rows, index), quads_at(rows, index + 1)};
+}
+
+}  // namespace talus
