@@ -113,11 +113,10 @@ void clear_solids(const Model& model, State& state, const Extent& local) {
     }
 }
 
-void remove_building(Model& model, State& state, std::size_t building) {
+void remove_building(const Model& model, Ground& ground, State& state, std::size_t building) {
     const WorldPoint& origin = model.terrain.frame().origin;
     const Extent e = extent_of(model.buildings[building]);
-    model.buildings[building] = without_solid(std::move(model.buildings[building]));
-    model.solids = BuildingSolids(model.terrain, model.buildings, model.support_radius);
+    ground.remove_solid(building, model.support_radius);
     const Extent local{e.x_min - origin.x, e.y_min - origin.y, e.x_max - origin.x, e.y_max - origin.y};
     wake(state, local.grown(2 * model.support_radius));
 }

@@ -31,6 +31,7 @@ void wake(State& state, const Extent& local);
 void clear_solids(const Model& model, State& state, const Extent& local);
 
 /// Removes a building's solid; debris that rested on it or against it wakes.
-void remove_building(Model& model, State& state, std::size_t building);
+/// `ground` is that of the model.
+void remove_building(const Model& model, Ground& ground, State& state, std::size_t building);
 
 }  // namespace talus

@@ -214,14 +214,13 @@ void Entrainment::make_room(const Model& model, State& state, std::size_t index)
     }
 }
 
-void Entrainment::apply(Model& model, State& state) {
+void Entrainment::apply(const Model& model, Ground& ground, State& state) {
     if (sites_.empty()) return;
     const double area = model.terrain.cell() * model.terrain.cell(), depth = model.particle_volume() / area;
     find_neighbours(model, state);
     for (std::size_t s = 0; s < sites_.size(); ++s) {
         Site& site = sites_[s];
-        model.bed.eroded[site.cell] += static_cast<float>(depth);
-        model.terrain.set_elevation(site.cell, static_cast<float>(model.terrain.elevation().values[site.cell] - depth));
+        ground.erode(site.cell, depth);
         choose_foot(model, state, s);
         make_room(model, state, s);
         add_particle(state, site.foot + site.normal * static_cast<float>(model.contact_distance()), {},

@@ -24,8 +24,9 @@ class Entrainment {
     /// what has no room waits. Returns how many there are.
     std::size_t find(const Model& model, const State& state);
 
-    /// Turns ground into particles where find() found. The arrays of `state` have room for them.
-    void apply(Model& model, State& state);
+    /// Turns ground into particles where find() found; `ground` is that of the model. The arrays of `state` have room
+    /// for them.
+    void apply(const Model& model, Ground& ground, State& state);
 
   private:
     struct Site {

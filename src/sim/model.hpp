@@ -7,12 +7,10 @@
 
 #include "core/geometry.hpp"
 #include "params/spec.hpp"
+#include "sim/ground.hpp"
 #include "sim/physics/boundary_table.hpp"
 #include "sim/physics/kernel.hpp"
-#include "terrain/bed.hpp"
-#include "terrain/buildings.hpp"
 #include "terrain/ground_cover.hpp"
-#include "terrain/terrain.hpp"
 
 namespace talus {
 
@@ -32,13 +30,9 @@ struct InertialFriction {
     double grain_size = 0;  ///< m, diameter x sqrt(grain density / bulk density)
 };
 
-/// Everything that stays constant during a step, and during a run unless somebody changes it or debris picks up its
-/// bed.
-struct Model {
-    Terrain terrain;
-    Bed bed;
-    std::vector<Building> buildings;
-    BuildingSolids solids;
+/// What a step reads and never writes: parameters and tables, and the ground. A run gets at the ground alone to change
+/// it, as a Ground; the rest is changed by nobody but Simulation::change().
+struct Model : Ground {
     std::vector<ReleaseGroup> releases;
 
     double particle_spacing = 0;               ///< m

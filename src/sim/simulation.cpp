@@ -32,7 +32,8 @@ struct Simulation::OwnStages {
     void remove_failed() const {
         if (watcher == nullptr) return;
         for (const std::size_t building : watcher->failed_buildings()) {
-            self.change([building](Model& model, State& state) { remove_building(model, state, building); });
+            remove_building(self.model_, self.ground(), self.state_, building);
+            self.follow_change();
         }
     }
 };
@@ -65,7 +66,8 @@ std::optional<std::string> Simulation::advance(StepWatcher* watcher) {
 void Simulation::inject_inflow(StepWatcher* watcher) {
     if (!inflow_.due(state_.time)) return;
     const std::uint32_t first = state_.seeded;
-    change([this](const Model& model, State& state) { inflow_.inject(model, state); });
+    inflow_.inject(model_, state_);
+    follow_change();
     if (watcher != nullptr) watcher->follow_inflow(state_, first);
 }
 
@@ -84,7 +86,7 @@ std::optional<std::string> Simulation::entrain_bed() {
     }
     // With room to spare: growing takes everything anew.
     if (count > capacity_) make_room(static_cast<std::uint32_t>(std::min(limit, count + count / 2)));
-    entrainment_.apply(model_, state_);
+    entrainment_.apply(model_, ground(), state_);
     return std::nullopt;
 }
 
@@ -98,6 +100,10 @@ void Simulation::make_room(std::uint32_t count) {
 
 void Simulation::change(const std::function<void(Model&, State&)>& edit) {
     edit(model_, state_);
+    follow_change();
+}
+
+void Simulation::follow_change() {
     state_.building_contacts.clear();
     if (state_.count > capacity_) make_room(state_.count + expected_);
     measure_energy_and_speed();

@@ -28,8 +28,8 @@ class Simulation {
     /// Adds what inflows have brought by now. A step begins with it.
     void inject_inflow(StepWatcher* watcher = nullptr);
 
-    /// Lets `edit` change model and state between two steps. What it must leave as it is: terrain, particle spacing,
-    /// kernel, time. The contacts of the last step are forgotten.
+    /// Lets a user's `edit` change model and state between two steps; nothing else changes a model in a run. What it
+    /// must leave as it is: terrain, particle spacing, kernel, time. The contacts of the last step are forgotten.
     void change(const std::function<void(Model&, State&)>& edit);
 
     [[nodiscard]] const Model& model() const { return model_; }
@@ -41,6 +41,8 @@ class Simulation {
   private:
     struct OwnStages;
 
+    [[nodiscard]] Ground& ground() { return model_; }
+    void follow_change();
     void measure_energy_and_speed();
     void make_room(std::uint32_t count);
     [[nodiscard]] std::optional<std::string> entrain_bed();

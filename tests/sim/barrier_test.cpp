@@ -92,7 +92,7 @@ TEST(TakeDown, frees_what_lay_against_a_wall) {
     }
     Simulation simulation(std::move(model), state_of(points));
     for (int step = 0; step < 200; ++step) simulation.advance();
-    simulation.change([](Model& m, State& s) { remove_building(m, s, 0); });
+    simulation.change([](Model& m, State& s) { remove_building(m, m, s, 0); });
     EXPECT_FALSE(stands(simulation.model().buildings[0]));
     EXPECT_TRUE(simulation.model().solids.empty());
     for (int step = 0; step < 200; ++step) simulation.advance();

@@ -97,7 +97,7 @@ TEST(Entrainment, keeps_momentum_and_everybody_elses_speed) {
     ASSERT_GT(found, 0U);
     const LocalPoint before = momentum(state);
     const std::uint32_t count = state.count;
-    entrainment.apply(model, state);
+    entrainment.apply(model, model, state);
     EXPECT_EQ(state.count, count + found);
     const LocalPoint after = momentum(state);
     EXPECT_EQ(after.x, before.x);
@@ -123,7 +123,7 @@ TEST(Entrainment, makes_room_without_a_pop) {
     std::fill(state.velocity.x.begin(), state.velocity.x.end(), 3.0F);
     Entrainment entrainment;
     for (int k = 0; k < 8; ++k) {
-        if (entrainment.find(model, state) > 0) entrainment.apply(model, state);
+        if (entrainment.find(model, state) > 0) entrainment.apply(model, model, state);
     }
     ASSERT_GT(state.entrained, 20U);
     std::fill(state.velocity.x.begin(), state.velocity.x.end(), 0.0F);
