@@ -243,9 +243,8 @@ Status GltfFile::read_buffer(const json& entry, std::size_t index, const std::st
                 comma == std::string::npos ? std::nullopt : decode_base64(std::string_view(where).substr(comma + 8));
             if (!bytes) return Error{at + ": its data are not written as base64"};
             buffer.own = *bytes;
-        } else if (Status s = read_external(where, buffer, at); !s) {
-            return s;
-        }
+        } else
+            TALUS_TRY(read_external(where, buffer, at));
     } else if (index == 0 && chunk_begin_ > 0) {
         buffer.binary_chunk = true;
     } else {

@@ -147,9 +147,7 @@ class GltfReader {
         const std::optional<Matrix> own = placement_of(node);
         if (!own) return at_node(placed.node, "its matrix, translation, rotation or scale is not of finite numbers");
         const Matrix matrix = product(placed.above, *own);
-        if (Status s = open_nodes(gltf_member(node, "children"), matrix, fmt::format("nodes[{}]", placed.node)); !s) {
-            return s;
-        }
+        TALUS_TRY(open_nodes(gltf_member(node, "children"), matrix, fmt::format("nodes[{}]", placed.node)));
         const json& mesh = gltf_member(node, "mesh");
         if (mesh.is_null()) return {};
         std::size_t index = 0;

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "builtin_scene_files.hpp"
+#include "core/try.hpp"
 #include "params/fields.hpp"
 
 namespace talus {
@@ -44,11 +45,9 @@ void name_builtin_files(Scene& scene, const std::filesystem::path& folder) {
 }
 
 Result<Scene> load_builtin_scene(const std::filesystem::path& folder, const std::vector<std::string>& overrides) {
-    const auto file = unpack_builtin_scene(folder);
-    if (!file) return file.error();
-    auto scene = load_scene(*file, overrides);
-    if (!scene) return scene.error();
-    name_builtin_files(*scene, folder);
+    TALUS_ASSIGN(const auto file, unpack_builtin_scene(folder));
+    TALUS_ASSIGN(auto scene, load_scene(file, overrides));
+    name_builtin_files(scene, folder);
     return scene;
 }
 

@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "core/hash.hpp"
+#include "core/try.hpp"
 #include "geo/orthophoto.hpp"
 #include "sim/physics/kernel.hpp"
 #include "sim/physics/viscosity.hpp"
@@ -120,8 +121,8 @@ Status load_terrain(const ParsedScene& parsed, Scene& scene) {
             fmt::format("terrain: {:.2g} % of it has no data; debris that gets there has left the terrain",
                         100 * scene.nodata_share));
     }
-    if (Status s = add_depths(parsed, "deposit", spec.deposit, 1, *raster, scene); !s) return s;
-    if (Status s = add_depths(parsed, "erosion", spec.erosion, -1, *raster, scene); !s) return s;
+    TALUS_TRY(add_depths(parsed, "deposit", spec.deposit, 1, *raster, scene));
+    TALUS_TRY(add_depths(parsed, "erosion", spec.erosion, -1, *raster, scene));
     scene.terrain = Terrain(std::move(raster->grid));
     if (!spec.orthophoto.empty()) {
         const Extent extent = scene.terrain.elevation().geometry.extent();
@@ -163,23 +164,22 @@ Result<Scene> assemble_scene(const ParsedScene& parsed) {
     scene.spec = parsed.spec;
     if (scene.spec.scene.title.empty()) scene.spec.scene.title = title_from(parsed.file);
     record_input("scene", parsed.file.string(), scene);
-    if (Status s = load_terrain(parsed, scene); !s) return s.error();
-    if (Status s = load_zones(parsed, scene); !s) return s.error();
-    if (Status s = load_releases(parsed, scene); !s) return s.error();
-    if (Status s = load_bed(parsed, scene); !s) return s.error();
-    if (Status s = load_inflows(parsed, scene); !s) return s.error();
-    if (Status s = check_viscosity(parsed, scene); !s) return s.error();
-    if (Status s = load_buildings(parsed, scene); !s) return s.error();
-    if (Status s = load_barriers(parsed, scene); !s) return s.error();
-    if (Status s = load_flow_path(parsed, scene); !s) return s.error();
-    if (Status s = load_observations(parsed, scene); !s) return s.error();
+    TALUS_TRY(load_terrain(parsed, scene));
+    TALUS_TRY(load_zones(parsed, scene));
+    TALUS_TRY(load_releases(parsed, scene));
+    TALUS_TRY(load_bed(parsed, scene));
+    TALUS_TRY(load_inflows(parsed, scene));
+    TALUS_TRY(check_viscosity(parsed, scene));
+    TALUS_TRY(load_buildings(parsed, scene));
+    TALUS_TRY(load_barriers(parsed, scene));
+    TALUS_TRY(load_flow_path(parsed, scene));
+    TALUS_TRY(load_observations(parsed, scene));
     return Result<Scene>(std::move(scene));
 }
 
 Result<Scene> load_scene(const std::filesystem::path& file, const std::vector<std::string>& overrides) {
-    Result<ParsedScene> parsed = parse_scene_with_places(file, overrides);
-    if (!parsed) return parsed.error();
-    return assemble_scene(*parsed);
+    TALUS_ASSIGN(ParsedScene parsed, parse_scene_with_places(file, overrides));
+    return assemble_scene(parsed);
 }
 
 }  // namespace talus

@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "core/try.hpp"
 #include "geo/vector.hpp"
 #include "scene/attributes.hpp"
 #include "scene/load.hpp"
@@ -69,7 +70,7 @@ Status load_bed(const ParsedScene& parsed, Scene& scene) {
                                  scene.spec.beds.size(), Bed::most_materials)};
     }
     for (std::size_t i = 0; i < scene.spec.beds.size(); ++i) {
-        if (Status s = load_one(parsed, i, scene); !s) return s.error();
+        TALUS_TRY(load_one(parsed, i, scene));
     }
     scene.bed = lay_bed(scene.bed_layers, scene.terrain);
     return {};

@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "core/try.hpp"
 #include "geo/mesh.hpp"
 #include "geo/vector.hpp"
 #include "scene/load.hpp"
@@ -97,7 +98,7 @@ Status check_mesh_keys(const ParsedScene& parsed) {
 /// Every roof face becomes a part of the footprint with a roof of its own.
 Status load_mesh_buildings(const ParsedScene& parsed, Scene& scene, std::size_t& outside) {
     const BuildingsSpec& spec = scene.spec.buildings;
-    if (Status s = check_mesh_keys(parsed); !s) return s;
+    TALUS_TRY(check_mesh_keys(parsed));
     std::vector<std::string> more_files;
     const auto meshes = read_mesh_buildings(spec.file, scene.crs, more_files);
     if (!meshes) return Error{parsed.at("buildings.file") + ": " + meshes.error().message};
@@ -155,11 +156,9 @@ Status load_footprints(const ParsedScene& parsed, Scene& scene, std::size_t& out
     if (!layer) return Error{parsed.at("buildings.file") + ": " + layer.error().message};
     record_input("buildings", spec.file, scene);
     if (!layer->reprojection.empty()) scene.notes.push_back("buildings: " + layer->reprojection);
-    if (Status s = check_attribute(parsed, "buildings.height_attribute", spec.height_attribute, *layer); !s) return s;
-    if (Status s = check_attribute(parsed, "buildings.name_attribute", spec.name_attribute, *layer); !s) return s;
-    if (Status s = check_attribute(parsed, "buildings.resistance_attribute", spec.resistance_attribute, *layer); !s) {
-        return s;
-    }
+    TALUS_TRY(check_attribute(parsed, "buildings.height_attribute", spec.height_attribute, *layer));
+    TALUS_TRY(check_attribute(parsed, "buildings.name_attribute", spec.name_attribute, *layer));
+    TALUS_TRY(check_attribute(parsed, "buildings.resistance_attribute", spec.resistance_attribute, *layer));
     std::size_t assumed = 0;
     for (std::size_t i = 0; i < layer->features.size(); ++i) {
         const PolygonFeature& feature = layer->features[i];

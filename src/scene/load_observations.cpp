@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include "core/try.hpp"
 #include "geo/vector.hpp"
 #include "scene/load.hpp"
 
@@ -82,12 +83,12 @@ Status load_outlines(const ParsedScene& parsed, Scene& scene) {
 Status load_observations(const ParsedScene& parsed, Scene& scene) {
     note_observations(scene);
     const SceneSpec& spec = scene.spec;
-    if (Status s = check_chainages(parsed, scene, spec.superelevations, "superelevation"); !s) return s;
-    if (Status s = check_chainages(parsed, scene, spec.arrivals, "arrival"); !s) return s;
-    if (Status s = check_chainages(parsed, scene, spec.observed_run_outs, "observed_run_out"); !s) return s;
-    if (Status s = check_places(parsed, scene, spec.run_ups, "run_up"); !s) return s;
-    if (Status s = check_places(parsed, scene, spec.deposit_depths, "deposit_depth"); !s) return s;
-    if (Status s = check_damages(parsed, scene); !s) return s;
+    TALUS_TRY(check_chainages(parsed, scene, spec.superelevations, "superelevation"));
+    TALUS_TRY(check_chainages(parsed, scene, spec.arrivals, "arrival"));
+    TALUS_TRY(check_chainages(parsed, scene, spec.observed_run_outs, "observed_run_out"));
+    TALUS_TRY(check_places(parsed, scene, spec.run_ups, "run_up"));
+    TALUS_TRY(check_places(parsed, scene, spec.deposit_depths, "deposit_depth"));
+    TALUS_TRY(check_damages(parsed, scene));
     return load_outlines(parsed, scene);
 }
 

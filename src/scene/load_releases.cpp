@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "core/try.hpp"
 #include "geo/vector.hpp"
 #include "scene/attributes.hpp"
 #include "scene/load.hpp"
@@ -176,9 +177,8 @@ Status check_overlaps(const ParsedScene& parsed, const Scene& scene) {
 
 Status load_releases(const ParsedScene& parsed, Scene& scene) {
     for (std::size_t i = 0; i < scene.spec.releases.size(); ++i) {
-        Result<Release> release = load_release(parsed, i, scene);
-        if (!release) return release.error();
-        scene.releases.push_back(std::move(*release));
+        TALUS_ASSIGN(Release release, load_release(parsed, i, scene));
+        scene.releases.push_back(std::move(release));
     }
     return check_overlaps(parsed, scene);
 }

@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "core/try.hpp"
 #include "geo/vector.hpp"
 #include "params/fields.hpp"
 #include "scene/load.hpp"
@@ -42,11 +43,10 @@ Result<std::vector<Polygon>> read_outline(const ZoneSpec& spec, const std::strin
         parts.push_back(*polygon);
         return parts;
     }
-    const Result<PolygonLayer> layer = read_polygons(spec.file, spec.layer, scene.crs);
-    if (!layer) return layer.error();
+    TALUS_ASSIGN(const PolygonLayer layer, read_polygons(spec.file, spec.layer, scene.crs));
     record_input(label, spec.file, scene);
-    if (!layer->reprojection.empty()) scene.notes.push_back(label + ": " + layer->reprojection);
-    for (const PolygonFeature& feature : layer->features) {
+    if (!layer.reprojection.empty()) scene.notes.push_back(label + ": " + layer.reprojection);
+    for (const PolygonFeature& feature : layer.features) {
         parts.insert(parts.end(), feature.parts.begin(), feature.parts.end());
     }
     return parts;
@@ -122,7 +122,7 @@ Status load_zone(const ParsedScene& parsed, std::size_t index, Scene& scene) {
 
 Status load_zones(const ParsedScene& parsed, Scene& scene) {
     for (std::size_t index = 0; index < scene.spec.zones.size(); ++index) {
-        if (Status s = load_zone(parsed, index, scene); !s) return s;
+        TALUS_TRY(load_zone(parsed, index, scene));
     }
     LaidZones laid = lay_zones(scene.zones, scene.terrain);
     scene.cover = std::move(laid.cover);

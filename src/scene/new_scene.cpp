@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include "core/try.hpp"
 #include "geo/vector.hpp"
 #include "params/scene_text.hpp"
 #include "scene/load.hpp"
@@ -66,14 +67,14 @@ Status check_options(const NewSceneOptions& options) {
                                  *options.thickness, *options.volume)};
     }
     if (options.thickness) {
-        if (Status s = check_number("release", "thickness_m", "thickness", *options.thickness); !s) return s;
+        TALUS_TRY(check_number("release", "thickness_m", "thickness", *options.thickness));
     }
     if (options.volume) {
-        if (Status s = check_number("release", "volume_m3", "volume", *options.volume); !s) return s;
+        TALUS_TRY(check_number("release", "volume_m3", "volume", *options.volume));
     }
     if (options.target_particle_count) {
         const std::int64_t count = *options.target_particle_count;
-        if (Status s = check_number("solver", "target_particle_count", "target particle count", count); !s) return s;
+        TALUS_TRY(check_number("solver", "target_particle_count", "target particle count", count));
     }
     return {};
 }
@@ -135,17 +136,17 @@ Status write_file(const fs::path& folder, const fs::path& file, const std::strin
 }  // namespace
 
 Result<NewScene> write_new_scene(const NewSceneOptions& options) {
-    if (Status s = check_options(options); !s) return s.error();
+    TALUS_TRY(check_options(options));
     ParsedScene parsed = scene_from(options);
 
     Scene whole;
     whole.spec = parsed.spec;
-    if (Status s = load_terrain(parsed, whole); !s) return s.error();
+    TALUS_TRY(load_terrain(parsed, whole));
     const Result<PolygonLayer> layer = read_polygons(parsed.spec.releases[0].file, "", whole.crs);
     if (!layer) return Error{"new scene: release[0].file: " + layer.error().message};
-    if (Status s = choose_thickness(parsed, *layer); !s) return s.error();
+    TALUS_TRY(choose_thickness(parsed, *layer));
     whole.spec.releases = parsed.spec.releases;
-    if (Status s = load_releases(parsed, whole); !s) return s.error();
+    TALUS_TRY(load_releases(parsed, whole));
     parsed.spec.terrain.extent = choose_extent(whole);
     if (!options.buildings.empty()) {
         const Result<PolygonLayer> buildings = read_polygons(parsed.spec.buildings.file, "", whole.crs);
@@ -154,11 +155,11 @@ Result<NewScene> write_new_scene(const NewSceneOptions& options) {
         parsed.spec.buildings.name_attribute = find_attribute(*buildings, {"name"});
     }
     whole = {};
-    Result<Scene> scene = assemble_scene(parsed);  // as a run would load it: everything is checked before writing
-    if (!scene) return scene.error();
+    // As a run would load it: everything is checked before writing.
+    TALUS_ASSIGN(Scene scene, assemble_scene(parsed));
 
     SceneSpec spec = parsed.spec;
-    spec.scene.title = scene->spec.scene.title;
+    spec.scene.title = scene.spec.scene.title;
     spec.terrain.file = name_from(options.folder, spec.terrain.file);
     spec.buildings.file = name_from(options.folder, spec.buildings.file);
     spec.releases[0].file = name_from(options.folder, spec.releases[0].file);
@@ -170,10 +171,10 @@ Result<NewScene> write_new_scene(const NewSceneOptions& options) {
         "change it. Paths are relative to this file.\n\nterrain.extent_m holds all ground that lies below an energy "
         "line of " +
         fmt::format("{:.0f}", travel_angle_deg) + " degrees from the release, and a margin.";
-    NewScene made{options.folder / "scene.toml", std::move(scene->notes)};
+    NewScene made{options.folder / "scene.toml", std::move(scene.notes)};
     made.notes.insert(made.notes.begin(), extent_note);
     for (const std::string& assumption : spec.scene.assumptions) made.notes.push_back("assumed: " + assumption);
-    if (Status s = write_file(options.folder, made.file, write_scene(spec, header)); !s) return s.error();
+    TALUS_TRY(write_file(options.folder, made.file, write_scene(spec, header)));
     return made;
 }
 

@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include "core/try.hpp"
 #include "scene/parse.hpp"
 
 namespace talus {
@@ -62,10 +63,9 @@ Result<std::string> read_text(const std::filesystem::path& file, const std::stri
 }  // namespace
 
 Result<toml::table> read_toml_file(const std::filesystem::path& file, const std::string& what) {
-    const Result<std::string> text = read_text(file, what);
-    if (!text) return text.error();
+    TALUS_ASSIGN(const std::string text, read_text(file, what));
     try {
-        return toml::parse(*text, file.string());
+        return toml::parse(text, file.string());
     } catch (const toml::parse_error& error) {
         return Error{fmt::format("{}:{}: not valid TOML: {}", file.string(), error.source().begin.line,
                                  one_line(error.description()))};

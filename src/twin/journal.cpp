@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "core/hash.hpp"
+#include "core/try.hpp"
 #include "twin/json_keys.hpp"
 #include "twin/scenario.hpp"
 
@@ -134,7 +135,7 @@ Result<Journal> read_journal(const std::string& text) {
     if (before > journal.steps) {
         read.refuse(fmt::format("last.step = {}: an action comes after it, at step {}", journal.steps, before));
     }
-    if (!read.status()) return read.status().error();
+    TALUS_TRY(read.status());
     return journal;
 }
 
@@ -157,9 +158,8 @@ std::vector<std::string> changed_inputs(const Journal& journal, const Scene& sce
 Result<Replayed> replay(const Journal& journal, std::shared_ptr<const Scene> scene,
                         const std::function<bool(std::uint64_t)>& on_step) {
     // Nobody asks for frames of a replay.
-    auto opened = Scenario::open_at(journal, std::move(scene), {journal.overrides, 1e9, 0});
-    if (!opened) return opened.error();
-    Scenario& scenario = **opened;
+    TALUS_ASSIGN(auto opened, Scenario::open_at(journal, std::move(scene), {journal.overrides, 1e9, 0}));
+    Scenario& scenario = *opened;
     bool stopped = false;
     const auto go_to = [&](std::uint64_t step) -> Status {
         while (scenario.step() < step && !stopped) {

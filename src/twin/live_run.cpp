@@ -4,13 +4,14 @@
 #include <cmath>
 #include <utility>
 
+#include "core/try.hpp"
+
 namespace talus::twin {
 
 Result<std::unique_ptr<LiveRun>> LiveRun::start(const Scene& scene, const Setup& setup, double spacing,
                                                 const ScenarioOptions& options) {
-    auto run = Run::start(scene_of(scene, setup), spacing);
-    if (!run) return run.error();
-    return std::unique_ptr<LiveRun>(new LiveRun(*std::move(run), setup, options));
+    TALUS_ASSIGN(auto run, Run::start(scene_of(scene, setup), spacing));
+    return std::unique_ptr<LiveRun>(new LiveRun(std::move(run), setup, options));
 }
 
 LiveRun::LiveRun(std::unique_ptr<Run> run, Setup setup, const ScenarioOptions& options)

@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "core/try.hpp"
 #include "sim/change.hpp"
 #include "sim/seed.hpp"
 #include "twin/live_run.hpp"
@@ -140,9 +141,8 @@ Status LiveRun::plan_releases(const Setup& next, Change& change) const {
                 "that, and is {}",
                 release->body->name, release->body->volume, particles, model().solver.particle_limit)};
         }
-        Result<State> seeded = seed_releases(alone, {*release->body});
-        if (!seeded) return seeded.error();
-        change.seeds.push_back({release, *std::move(seeded)});
+        TALUS_ASSIGN(State seeded, seed_releases(alone, {*release->body}));
+        change.seeds.push_back({release, std::move(seeded)});
     }
     return {};
 }
@@ -153,7 +153,7 @@ Result<LiveRun::Change> LiveRun::plan(const Setup& next) const {
     if (!same_shapes(setup_.zones, next.zones)) {
         change.cover = lay_zones(bodies_of(next.zones), model().terrain).cover;
     }
-    if (Status s = plan_releases(next, change); !s) return s.error();
+    TALUS_TRY(plan_releases(next, change));
     return change;
 }
 
@@ -247,9 +247,8 @@ void LiveRun::carry_out(Change& change, const Setup& next) {
 
 Status LiveRun::bring_to(const Setup& next) {
     return run_->threads().execute([&]() -> Status {
-        Result<Change> change = plan(next);
-        if (!change) return change.error();
-        carry_out(*change, next);
+        TALUS_ASSIGN(Change change, plan(next));
+        carry_out(change, next);
         setup_ = next;
         return {};
     });

@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "core/try.hpp"
 #include "scene/hydrograph.hpp"
 #include "twin/hydrograph_json.hpp"
 #include "twin/json_keys.hpp"
@@ -21,47 +22,43 @@ PlanPoint shifted(const PlanPoint& p, const PlanPoint& by) {
 
 /// Where it comes in: across a line or over an area.
 Status read_place(const json& action, const Terrain& terrain, bool exists, Inflow& inflow) {
-    auto line = read_points(action, "line", false, 2, 2);
-    if (!line) return line.error();
-    auto polygon = read_points(action, "polygon", true, 3, most_points);
-    if (!polygon) return polygon.error();
-    const auto by = read_move(action, *line ? "line" : "polygon", "inflow", exists);
-    if (!by) return by.error();
-    if (*line && *polygon) return Error{"polygon: cannot go with line; send one of them"};
-    if (!exists && !*line && !*polygon) return missing("line or polygon", "inflow");
-    if (*line) {
-        inflow.from = (**line)[0];
-        inflow.to = (**line)[1];
+    TALUS_ASSIGN(auto line, read_points(action, "line", false, 2, 2));
+    TALUS_ASSIGN(auto polygon, read_points(action, "polygon", true, 3, most_points));
+    TALUS_ASSIGN(const auto by, read_move(action, line ? "line" : "polygon", "inflow", exists));
+    if (line && polygon) return Error{"polygon: cannot go with line; send one of them"};
+    if (!exists && !line && !polygon) return missing("line or polygon", "inflow");
+    if (line) {
+        inflow.from = (*line)[0];
+        inflow.to = (*line)[1];
         inflow.area.clear();
         inflow.direction.reset();
     }
-    if (*polygon) {
-        if (Status s = check_ring(terrain, **polygon, "polygon", true); !s) return s;
-        inflow.area = {{std::move(**polygon), {}}};
+    if (polygon) {
+        TALUS_TRY(check_ring(terrain, *polygon, "polygon", true));
+        inflow.area = {{std::move(*polygon), {}}};
         inflow.from = inflow.to = {};
     }
-    if (*by && inflow.over_area()) {
+    if (by && inflow.over_area()) {
         for (Polygon& part : inflow.area) {
-            part = moved(std::move(part), **by);
-            if (Status s = check_ground(terrain, part, "move_m", true); !s) return s;
+            part = moved(std::move(part), *by);
+            TALUS_TRY(check_ground(terrain, part, "move_m", true));
         }
-    } else if (*by) {
-        inflow.from = shifted(inflow.from, **by);
-        inflow.to = shifted(inflow.to, **by);
+    } else if (by) {
+        inflow.from = shifted(inflow.from, *by);
+        inflow.to = shifted(inflow.to, *by);
     }
-    return inflow.over_area() ? Status() : check_line(inflow, terrain, *by ? "move_m" : "line");
+    return inflow.over_area() ? Status() : check_line(inflow, terrain, by ? "move_m" : "line");
 }
 
 Status read_direction(const json& action, Inflow& inflow) {
     if (!action.contains("direction_deg")) return {};
-    const auto direction =
-        read_number(action, "direction_deg", find_section("inflow")->find("direction_deg")->range, "deg");
-    if (!direction) return direction.error();
-    if (*direction && !inflow.over_area()) {
+    TALUS_ASSIGN(const auto direction,
+                 read_number(action, "direction_deg", find_section("inflow")->find("direction_deg")->range, "deg"));
+    if (direction && !inflow.over_area()) {
         return Error{"direction_deg: is refused across a line, which has a direction of its own"};
     }
     inflow.direction.reset();
-    if (*direction) inflow.direction = **direction * std::numbers::pi / 180;
+    if (direction) inflow.direction = *direction * std::numbers::pi / 180;
     return {};
 }
 
@@ -79,24 +76,19 @@ double particles_in_all(const Setup& setup, const InflowSetup* existing, const I
 
 Result<Inflow> read_inflow(const json& action, const ActionContext& context, const Setup& setup,
                            const InflowSetup* existing, const std::string& name) {
-    if (Status s =
-            check_keys(action, {"action", "id", "name", "line", "polygon", "move_m", "direction_deg", "hydrograph"});
-        !s) {
-        return s.error();
-    }
+    TALUS_TRY(check_keys(action, {"action", "id", "name", "line", "polygon", "move_m", "direction_deg", "hydrograph"}));
     Inflow inflow;
     if (existing != nullptr) inflow = *existing->body;
     inflow.name = name;
-    if (Status s = read_place(action, context.scene.terrain, existing != nullptr, inflow); !s) return s.error();
-    if (Status s = read_direction(action, inflow); !s) return s.error();
+    TALUS_TRY(read_place(action, context.scene.terrain, existing != nullptr, inflow));
+    TALUS_TRY(read_direction(action, inflow));
     if (action.contains("hydrograph")) {
-        auto rows = read_hydrograph_rows(action["hydrograph"], inflow.over_area());
-        if (!rows) return rows.error();
-        inflow.hydrograph = std::move(*rows);
+        TALUS_ASSIGN(inflow.hydrograph, read_hydrograph_rows(action["hydrograph"], inflow.over_area()));
     } else if (existing == nullptr) {
         return missing("hydrograph", "inflow");
-    } else if (const auto rows = read_hydrograph_rows(to_json(inflow.hydrograph), inflow.over_area()); !rows) {
-        return rows.error();  // what came over an area may be too still for a line
+    } else {
+        // What came over an area may be too still for a line.
+        TALUS_TRY(read_hydrograph_rows(to_json(inflow.hydrograph), inflow.over_area()));
     }
     if (!(inflow.volume() > 0)) return Error{"hydrograph: brings no debris at all"};
     const SolverSpec& solver = context.scene.spec.solver;

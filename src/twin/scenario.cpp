@@ -10,6 +10,7 @@
 #include <fmt/ranges.h>
 
 #include "core/hash.hpp"
+#include "core/try.hpp"
 #include "observe/erosion.hpp"
 #include "products/products.hpp"
 #include "sim/seed.hpp"
@@ -71,10 +72,9 @@ Status Scenario::Parts::start(const Setup& setup) {
 
 Status Scenario::Parts::bring_to(const Setup& next_setup) {
     if (run->state().step > 0 || begin_alike(next_setup, run->begun_with())) return run->bring_to(next_setup);
-    auto anew = LiveRun::start(*scene, next_setup, particle_spacing, options);
-    if (!anew) return anew.error();
-    if (Status s = (*anew)->bring_to(next_setup); !s) return s;  // releases that were triggered
-    run = std::move(*anew);
+    TALUS_ASSIGN(auto anew, LiveRun::start(*scene, next_setup, particle_spacing, options));
+    TALUS_TRY(anew->bring_to(next_setup));  // releases that were triggered
+    run = std::move(anew);
     return {};
 }
 
@@ -89,7 +89,7 @@ Scenario::Parts::Parts(std::shared_ptr<const Scene> its_scene, ScenarioOptions i
 Result<std::unique_ptr<Scenario>> Scenario::open(std::shared_ptr<const Scene> scene, ScenarioOptions options) {
     auto parts = std::make_unique<Parts>(std::move(scene), std::move(options));
     const Setup setup = setup_of(*parts->scene, parts->next);
-    if (Status s = parts->start(setup); !s) return s.error();
+    TALUS_TRY(parts->start(setup));
     return std::unique_ptr<Scenario>(new Scenario(std::move(parts)));
 }
 
@@ -99,14 +99,14 @@ Result<std::unique_ptr<Scenario>> Scenario::open_at(const Journal& journal, std:
     if (!setup) return Error{"first_setup: " + setup.error().message};
     auto parts = std::make_unique<Parts>(std::move(scene), std::move(options));
     parts->next = journal.next;
-    if (Status s = parts->start(*setup); !s) return s.error();
+    TALUS_TRY(parts->start(*setup));
     return std::unique_ptr<Scenario>(new Scenario(std::move(parts)));
 }
 
 Result<std::unique_ptr<Scenario>> Scenario::copy() const {
     auto parts = std::make_unique<Parts>(parts_->scene, parts_->options);
     parts->next = parts_->next;
-    if (Status s = parts->start(held_again(parts_->setup())); !s) return s.error();
+    TALUS_TRY(parts->start(held_again(parts_->setup())));
     return std::unique_ptr<Scenario>(new Scenario(std::move(parts)));
 }
 
@@ -118,21 +118,20 @@ Result<Done> Scenario::Parts::edit(const json& action) {
     const ActionContext context{*scene, particle_spacing, run->model().viscosity,
                                 [&](const std::string& id) { return run->has_begun(id); }, run->state().step > 0};
     NextNumbers numbers = next;
-    Result<Edit> made = read_action(action, setup(), numbers, context);
-    if (!made) return made.error();
+    TALUS_ASSIGN(Edit made, read_action(action, setup(), numbers, context));
     Setup before = setup();
-    if (Status s = bring_to(made->setup); !s) return s.error();
+    TALUS_TRY(bring_to(made.setup));
     next = numbers;
-    undo.push_back({std::move(before), made->sentence, action["action"] == "trigger_release"});
+    undo.push_back({std::move(before), made.sentence, action["action"] == "trigger_release"});
     if (undo.size() > most_undo) undo.erase(undo.begin());
     redo.clear();
-    return Done{made->sentence, made->created};
+    return Done{made.sentence, made.created};
 }
 
 Result<Done> Scenario::Parts::step_back(std::vector<Past>& from, std::vector<Past>& to, const char* word) {
     if (from.empty()) return Error{fmt::format("action = \"{}\": there is nothing to {}", word, word)};
     Setup before = setup();
-    if (Status s = bring_to(from.back().setup); !s) return s.error();
+    TALUS_TRY(bring_to(from.back().setup));
     Past past = std::move(from.back());
     from.pop_back();
     to.push_back({std::move(before), past.sentence, past.by_trigger});
@@ -140,7 +139,7 @@ Result<Done> Scenario::Parts::step_back(std::vector<Past>& from, std::vector<Pas
 }
 
 Result<Done> Scenario::Parts::restart() {
-    if (Status s = start(held_again(setup())); !s) return s.error();
+    TALUS_TRY(start(held_again(setup())));
     // All releases wait again: there is no start left to take back.
     for (std::vector<Past>* pasts : {&undo, &redo}) {
         std::erase_if(*pasts, [](const Past& past) { return past.by_trigger; });
@@ -150,11 +149,10 @@ Result<Done> Scenario::Parts::restart() {
 }
 
 Result<Done> Scenario::apply(const json& action, const std::string& by) {
-    const Result<std::string> name = action_name(action);
-    if (!name) return name.error();
-    const bool back = *name == "undo", forth = *name == "redo", again = *name == "restart";
+    TALUS_ASSIGN(const std::string name, action_name(action));
+    const bool back = name == "undo", forth = name == "redo", again = name == "restart";
     if (back || forth || again) {
-        if (Status s = check_keys(action, {"action"}); !s) return s.error();
+        TALUS_TRY(check_keys(action, {"action"}));
     }
     Parts& p = *parts_;
     JournalEntry entry{step(), by, action, nullptr};
@@ -171,12 +169,11 @@ Result<Done> Scenario::apply(const json& action, const std::string& by) {
 
 Status Scenario::follow(const JournalEntry& entry) {
     if (entry.setup.is_null()) {
-        const Result<Done> done = apply(entry.action, entry.by);
-        return done ? Status() : done.error();
+        TALUS_TRY(apply(entry.action, entry.by));
+        return {};
     }
-    auto setup = read_setup(entry.setup, *parts_->scene);
-    if (!setup) return setup.error();
-    if (Status s = parts_->bring_to(*setup); !s) return s;
+    TALUS_ASSIGN(auto setup, read_setup(entry.setup, *parts_->scene));
+    TALUS_TRY(parts_->bring_to(setup));
     parts_->entries.push_back(entry);
     ++parts_->revision;
     return {};
