@@ -14,10 +14,10 @@ namespace talus {
 
 /// What debris does to buildings and barriers, from the impulses of every step and from what crosses a barrier's line.
 ///
-/// Force is the impulse of the last `filter_window` seconds divided by the window: the force of a single step depends on
-/// its length, an average over a fixed time does not. Pressure is that force over the wall area touched within the same
-/// window, one spacing^2 per particle that touched it. The area is not averaged: a first particle's knock would then
-/// count at its unfiltered pressure.
+/// Force is the impulse of the last `filter_window` seconds divided by the window: the force of a single step depends
+/// on its length, an average over a fixed time does not. Pressure is that force over the wall area touched within the
+/// same window, one spacing^2 per particle that touched it. The area is not averaged: a first particle's knock would
+/// then count at its unfiltered pressure.
 class ImpactRecorder {
   public:
     /// `filter_window` in s.

@@ -82,15 +82,15 @@ void for_each_component(std::vector<T>& a, std::vector<T>& b, const F& f) {
 // clang-format off
 /// Everything that a state holds per particle: X(array, element, name). All that goes through the arrays (resize, copy,
 /// reorder, append, remove) comes from this list.
-#define TALUS_PARTICLE_ARRAYS(X)                                                                                      \
-    X(VectorArray, LocalPoint, position)                    /* local, m */                                              \
-    X(VectorArray, LocalPoint, velocity)                    /* m/s */                                                   \
-    X(std::vector<float>, float, multiplier)                /* lambda of the density constraint in the last step, */    \
-                                                            /* <= 0, m2 (scales with dt^2) */                           \
-    X(DeviatorArray, Deviator<float>, stress)               /* deviatoric part, in the units of lambda */               \
-    X(std::vector<std::uint32_t>, std::uint32_t, id)        /* names the particle for good */                           \
-    X(std::vector<std::uint8_t>, std::uint8_t, held)        /* 1: its release has not started */                        \
-    X(std::vector<float>, float, still_time)                /* s, for how long it has hardly moved; 0 asleep */         \
+#define TALUS_PARTICLE_ARRAYS(X)                                                                                       \
+    X(VectorArray, LocalPoint, position)                    /* local, m */                                             \
+    X(VectorArray, LocalPoint, velocity)                    /* m/s */                                                  \
+    X(std::vector<float>, float, multiplier)                /* lambda of the density constraint in the last step, */   \
+                                                            /* <= 0, m2 (scales with dt^2) */                          \
+    X(DeviatorArray, Deviator<float>, stress)               /* deviatoric part, in the units of lambda */              \
+    X(std::vector<std::uint32_t>, std::uint32_t, id)        /* names the particle for good */                          \
+    X(std::vector<std::uint8_t>, std::uint8_t, held)        /* 1: its release has not started */                       \
+    X(std::vector<float>, float, still_time)                /* s, for how long it has hardly moved; 0 asleep */        \
     X(std::vector<std::uint8_t>, std::uint8_t, asleep)      /* 1: it stays where it is until something moves beside */
 // clang-format on
 

@@ -21,37 +21,37 @@ struct MotionRow : simd::Oct {};     ///< as in State: position x, y, z, 0; velo
 // clang-format off
 /// What a step knows about its particles and forgets at its end, by the same index as State: X(array, name).
 #define TALUS_WORK_ARRAYS(X)                                                                                           \
-    X(std::vector<float>, column_particles)  /* in the column of the flow, before the step; with drag by speed only */   \
-    X(std::vector<float>, mobile)            /* 1, or 0 for debris that is held or asleep */                             \
-    X(VectorArray, predicted)                /* position that gravity alone leads to, before the particles are sorted */ \
-    X(std::vector<DisplacedRow>, displaced)  /* by what the iterations have corrected so far */                          \
-    X(std::vector<StressRow>, stress)        /* with internal friction as a stress only */                               \
-    X(std::vector<MotionRow>, motion)                                                                                    \
-    X(VectorArray, corrected)                /* the displacement that contacts have yet to agree to */                   \
-    X(VectorArray, shift)                    /* undoes overlaps, becomes no velocity */                                  \
-    X(VectorArray, end)                      /* position at the end of the step */                                       \
-    /* The ground, taken to be plane within the step, and the share of ground and walls in the density. */               \
-    X(std::vector<float>, ground_distance)   /* m, of a particle that is not displaced; NaN where unknown */             \
-    X(std::vector<float>, ground_slope)                                                                                  \
-    X(VectorArray, ground_normal)                                                                                        \
-    X(VectorArray, boundary_gradient)                                                                                    \
-    /* The density constraint of a particle (see DensityConstraint). */                                                  \
-    X(std::vector<float>, constraint_start)                                                                              \
-    X(std::vector<float>, surface_share)                                                                                 \
-    X(std::vector<float>, gradient_square)                                                                               \
-    X(std::vector<float>, pair_square)                                                                                   \
-    X(std::vector<float>, compression)           /* max(0, G) */                                                         \
-    X(std::vector<float>, tolerated_compression) /* of what the step started with; pair friction only */                 \
-    /* How a particle is held, where that is not the same for all (see resists_by_particle). */                          \
-    X(std::vector<float>, ground_friction)   /* coefficient, lowered by pore pressure */                                 \
-    X(std::vector<float>, ground_strength)   /* m, where it touches (see Grip) */                                        \
-    X(std::vector<float>, effective_share)   /* 1 - r_u */                                                               \
-    X(std::vector<float>, ground_shear)      /* see shear_beside_ground; with inertial friction only */                  \
-    /* Contact with the ground in this step (see ContactMemory). */                                                      \
-    X(std::vector<float>, contact_normal)                                                                                \
-    X(VectorArray, contact_friction)                                                                                     \
-    /* The walls beside a particle; few have any. */                                                                     \
-    X(std::vector<std::uint8_t>, has_walls)                                                                              \
+    X(std::vector<float>, column_particles)  /* in the column of the flow, before the step; with drag by speed only */ \
+    X(std::vector<float>, mobile)            /* 1, or 0 for debris that is held or asleep */                           \
+    X(VectorArray, predicted)                /* where gravity alone leads, before the particles are sorted */          \
+    X(std::vector<DisplacedRow>, displaced)  /* by what the iterations have corrected so far */                        \
+    X(std::vector<StressRow>, stress)        /* with internal friction as a stress only */                             \
+    X(std::vector<MotionRow>, motion)                                                                                  \
+    X(VectorArray, corrected)                /* the displacement that contacts have yet to agree to */                 \
+    X(VectorArray, shift)                    /* undoes overlaps, becomes no velocity */                                \
+    X(VectorArray, end)                      /* position at the end of the step */                                     \
+    /* The ground, taken to be plane within the step, and the share of ground and walls in the density. */             \
+    X(std::vector<float>, ground_distance)   /* m, of a particle that is not displaced; NaN where unknown */           \
+    X(std::vector<float>, ground_slope)                                                                                \
+    X(VectorArray, ground_normal)                                                                                      \
+    X(VectorArray, boundary_gradient)                                                                                  \
+    /* The density constraint of a particle (see DensityConstraint). */                                                \
+    X(std::vector<float>, constraint_start)                                                                            \
+    X(std::vector<float>, surface_share)                                                                               \
+    X(std::vector<float>, gradient_square)                                                                             \
+    X(std::vector<float>, pair_square)                                                                                 \
+    X(std::vector<float>, compression)           /* max(0, G) */                                                       \
+    X(std::vector<float>, tolerated_compression) /* of what the step started with; pair friction only */               \
+    /* How a particle is held, where that is not the same for all (see resists_by_particle). */                        \
+    X(std::vector<float>, ground_friction)   /* coefficient, lowered by pore pressure */                               \
+    X(std::vector<float>, ground_strength)   /* m, where it touches (see Grip) */                                      \
+    X(std::vector<float>, effective_share)   /* 1 - r_u */                                                             \
+    X(std::vector<float>, ground_shear)      /* see shear_beside_ground; with inertial friction only */                \
+    /* Contact with the ground in this step (see ContactMemory). */                                                    \
+    X(std::vector<float>, contact_normal)                                                                              \
+    X(VectorArray, contact_friction)                                                                                   \
+    /* The walls beside a particle; few have any. */                                                                   \
+    X(std::vector<std::uint8_t>, has_walls)                                                                            \
     X(std::vector<WallContacts>, walls)
 // clang-format on
 
