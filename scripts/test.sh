@@ -34,7 +34,11 @@ if [[ -f tests/browser/package-lock.json ]]; then
 fi
 
 if (($# > 0)); then
-    for preset in "$@"; do test_preset "$preset" all; done
+    for preset in "$@"; do
+        target=all
+        if [[ $preset == tsan ]]; then target=thread_tests; fi
+        test_preset "$preset" "$target"
+    done
     exit
 fi
 test_preset release physics_tests --label-regex 'physics|threads|validation|performance'
