@@ -2,8 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <numeric>
+
+#include <fmt/format.h>
 
 #include "sim/cpu/backend.hpp"
 #include "sim/physics/viscosity.hpp"
@@ -164,25 +165,21 @@ Result<State> seed_releases(Model& model, const std::vector<Release>& releases) 
     double volume = 0, particles = 0;
     for (const Release& release : releases) {
         const double count = std::round(release.volume / model.particle_volume());
-        char text[256];
         if (count < 1) {
-            std::snprintf(text, sizeof text,
-                          "release '%s': %.4g m3 is less than one particle of solver.particle_spacing_m = %.4g",
-                          release.name.c_str(), release.volume, spacing);
-            return Error{text};
+            return Error{
+                fmt::format("release '{}': {:.4g} m3 is less than one particle of solver.particle_spacing_m = {:.4g}",
+                            release.name, release.volume, spacing)};
         }
         targets.push_back(static_cast<long>(std::min(count, 1e15)));
         volume += release.volume;
         particles += count;
     }
     if (particles > model.solver.particle_limit) {
-        char text[320];
-        std::snprintf(text, sizeof text,
-                      "%.4g m3 at solver.particle_spacing_m = %.4g would need %.0f particles, more than "
-                      "solver.particle_limit = %d; a spacing of %.4g m or more would fit",
-                      volume, spacing, particles, model.solver.particle_limit,
-                      std::ceil(std::cbrt(volume / model.solver.particle_limit) * 1000) / 1000);
-        return Error{text};
+        return Error{
+            fmt::format("{:.4g} m3 at solver.particle_spacing_m = {:.4g} would need {:.0f} particles, more than "
+                        "solver.particle_limit = {}; a spacing of {:.4g} m or more would fit",
+                        volume, spacing, particles, model.solver.particle_limit,
+                        std::ceil(std::cbrt(volume / model.solver.particle_limit) * 1000) / 1000)};
     }
 
     State state;

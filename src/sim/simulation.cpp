@@ -2,9 +2,10 @@
 
 #include <algorithm>
 #include <array>
-#include <cstdio>
 #include <limits>
 #include <vector>
+
+#include <fmt/format.h>
 
 #include "core/hash.hpp"
 #include "sim/change.hpp"
@@ -77,12 +78,10 @@ std::optional<std::string> Simulation::entrain_bed() {
     if (loose == 0) return std::nullopt;
     const std::size_t count = state_.count + loose, limit = static_cast<std::size_t>(model_.solver.particle_limit);
     if (count > limit) {
-        std::array<char, 200> text{};
-        std::snprintf(text.data(), text.size(),
-                      "at t = %.4g s debris has picked up its bed until it has more than solver.particle_limit = %zu "
-                      "particles: raise it, or solver.particle_spacing_m",
-                      state_.time, limit);
-        return text.data();
+        return fmt::format(
+            "at t = {:.4g} s debris has picked up its bed until it has more than solver.particle_limit = {} particles: "
+            "raise it, or solver.particle_spacing_m",
+            state_.time, limit);
     }
     // With room to spare: growing takes everything anew.
     if (count > capacity_) make_room(static_cast<std::uint32_t>(std::min(limit, count + count / 2)));
