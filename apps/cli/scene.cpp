@@ -62,10 +62,6 @@ int export_builtin_command(const ExportArguments& arguments) {
     return print_all(fmt::format("wrote {}\nrun it: talus run {}\n", file->string(), file->string()));
 }
 
-int reference_command(bool markdown) {
-    return print_all(markdown ? scene_reference_markdown() : scene_reference_text());
-}
-
 }  // namespace
 
 void add_scene(CLI::App& program, std::vector<Command>& commands) {
@@ -105,9 +101,13 @@ void add_scene(CLI::App& program, std::vector<Command>& commands) {
 
     CLI::App* reference_app =
         app->add_subcommand("reference", "every key of a scene file with unit, default and range");
-    const auto markdown = std::make_shared<bool>(false);
+    const auto markdown = std::make_shared<bool>(false), typescript = std::make_shared<bool>(false);
     reference_app->add_flag("--markdown", *markdown, "as a Markdown document");
-    commands.push_back({reference_app, [markdown] { return reference_command(*markdown); }});
+    reference_app->add_flag("--typescript", *typescript, "the live keys as types and form fields of the page");
+    commands.push_back({reference_app, [markdown, typescript] {
+                            if (*typescript) return print_all(scene_typescript());
+                            return print_all(*markdown ? scene_reference_markdown() : scene_reference_text());
+                        }});
 }
 
 }  // namespace talus

@@ -46,6 +46,7 @@ struct WorldPoint {
 /// A plan position in the terrain's coordinate reference system: metres east and north.
 struct PlanPoint {
     double x{}, y{};
+    bool operator==(const PlanPoint&) const = default;
 };
 
 /// Ties the solver's float frame to the world: one double-precision origin, no rotation, no scale.
@@ -69,6 +70,7 @@ using Ring = std::vector<PlanPoint>;
 struct Polygon {
     Ring outer;
     std::vector<Ring> holes;
+    bool operator==(const Polygon&) const = default;
 };
 
 /// Even-odd test over all rings. A point exactly on an edge may go either way.

@@ -20,7 +20,7 @@ void ImpactRecorder::follow(const Model& model, const State& state) {
     crossings_.resize(model.buildings.size());
     for (std::size_t b = 0; b < impacts_.size(); ++b) {
         impacts_[b].name = model.buildings[b].name;
-        const std::optional<BarrierShape>& barrier = model.buildings[b].barrier;
+        const std::optional<BarrierSpec>& barrier = model.buildings[b].barrier;
         impacts_[b].is_barrier = barrier.has_value();
         impacts_[b].passing_share = barrier ? barrier->passing_share.value_or(never) : never;
         if (!stands(model.buildings[b])) {
@@ -56,7 +56,7 @@ void ImpactRecorder::expect(std::uint32_t particles) {
 }
 
 void ImpactRecorder::watch(const Model& model, const State& state, std::size_t building) {
-    const std::optional<BarrierShape>& barrier = model.buildings[building].barrier;
+    const std::optional<BarrierSpec>& barrier = model.buildings[building].barrier;
     if (!barrier) return;
     crossings_[building] = std::make_unique<Overtopping>(model, *barrier);
     crossings_[building]->follow(state);

@@ -16,7 +16,7 @@ namespace talus {
 /// is neither. Looks at debris in a rectangle around the line only.
 class Overtopping {
   public:
-    Overtopping(const Model& model, const BarrierShape& shape);
+    Overtopping(const Model& model, const BarrierSpec& shape);
 
     /// Makes room for so many particles, so that no step has to.
     void follow(const State& state) { tracks_.resize(std::max<std::size_t>(tracks_.size(), state.seeded)); }

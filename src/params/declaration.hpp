@@ -153,6 +153,20 @@ class Declaration {
         return p;
     }
 
+    /// `blamed`: the key that is named where none is given.
+    void exactly_one_of(std::vector<std::string> keys, std::string blamed = "") {
+        if (blamed.empty()) blamed = keys.front();
+        section_.alternatives.push_back({std::move(keys), std::move(blamed)});
+    }
+
+    /// `problem(entry, scene, particle_spacing)` is a std::optional<Violation>.
+    template <class Problem>
+    void rule(Problem problem) {
+        section_.rules.push_back([part = part_, problem](const SceneSpec& spec, std::size_t index, double spacing) {
+            return std::optional<Violation>(problem(part(const_cast<SceneSpec&>(spec), index), spec, spacing));
+        });
+    }
+
     [[nodiscard]] Section take() { return std::move(section_); }
 
   private:
@@ -169,6 +183,12 @@ class Declaration {
     Section section_;
     std::function<Struct&(SceneSpec&, std::size_t)> part_;
 };
+
+/// Friction by pairs has no such law.
+[[nodiscard]] inline std::optional<Violation> needs_stress(const char* key, bool used, const SceneSpec& scene) {
+    if (!used || scene.solver.internal_friction == InternalFriction::stress) return {};
+    return Violation{key, ": needs solver.internal_friction = \"stress\"; friction by pairs has no such law"};
+}
 
 /// What moves, and ground that differs.
 [[nodiscard]] Section declare_material();

@@ -3,8 +3,10 @@
 #include <cstdint>
 #include <functional>
 #include <limits>
+#include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <variant>
 #include <vector>
 
@@ -32,6 +34,17 @@ struct Range {
     [[nodiscard]] std::string text() const;
 };
 
+/// How a form of the page shows a key. Slider, first value and unit are those of the page: a value times `factor`.
+struct Form {
+    std::string label;
+    double slider_low = 0, slider_high = 0;
+    double first = 0;    ///< what a value begins with that was not there before
+    std::string tick{};  ///< label of the box that gives and takes away an optional value
+    std::string tick_help{};
+    std::string unit{};  ///< empty: the usual one of the key's unit, such as kPa for Pa
+    double factor = 1;   ///< with a unit of its own only
+};
+
 /// One key of a scene file.
 struct Parameter {
     std::string key;   ///< with its unit: "particle_spacing_m"
@@ -42,11 +55,39 @@ struct Parameter {
     std::vector<std::string> choices;
     std::string absent;  ///< what happens when it is not given, where there is no default value
     std::string help;    ///< one sentence
+    std::string live;    ///< the key by which people change it while a run goes on; empty: they cannot
+    std::optional<Form> form;
+
+    /// Lets people change it while a run goes on, by this key or, where left out, its own.
+    Parameter& live_as(std::string json_key = "") {
+        live = json_key.empty() ? key : std::move(json_key);
+        return *this;
+    }
+    /// The same, with a field in the page's form.
+    Parameter& live_in(Form its_form, std::string json_key = "") {
+        form = std::move(its_form);
+        return live_as(std::move(json_key));
+    }
 
     /// The value in the `index`-th entry of the section (0 where it does not repeat).
     std::function<ParameterValue(const SceneSpec&, std::size_t index)> get;
     /// Takes a value that `problem_with` accepts; monostate only where the parameter is optional.
     std::function<void(SceneSpec&, std::size_t index, const ParameterValue&)> set;
+};
+
+/// A rule that is broken.
+struct Violation {
+    std::string key;   ///< to blame, within its section
+    std::string text;  ///< what follows the key: " = 0.1 is refused; it must be ...", ": exactly one of ..."
+};
+
+/// What ties keys to each other. `particle_spacing`: m, 0 as long as it is not known.
+using Rule = std::function<std::optional<Violation>(const SceneSpec&, std::size_t index, double particle_spacing)>;
+
+/// Keys of which exactly one must be given.
+struct Alternatives {
+    std::vector<std::string> keys;
+    std::string blamed;  ///< where none is
 };
 
 /// A table of a scene file: `[name]`, or `[[name]]` where it repeats.
@@ -55,11 +96,27 @@ struct Section {
     bool repeats = false;
     std::string help;
     std::vector<Parameter> parameters;
+    std::vector<Alternatives> alternatives;
+    std::vector<Rule> rules;
     std::function<std::size_t(const SceneSpec&)> count;  ///< entries; 1 where it does not repeat
     std::function<void(SceneSpec&)> append;              ///< adds an entry with default values, where it repeats
 
     [[nodiscard]] const Parameter* find(std::string_view key) const;
 };
+
+/// The section and the place of a struct of the scene.
+template <class Spec>
+inline constexpr std::pair<const char*, std::vector<Spec> SceneSpec::*> section_of{"", nullptr};
+template <>
+inline constexpr std::pair section_of<ReleaseSpec>{"release", &SceneSpec::releases};
+template <>
+inline constexpr std::pair section_of<BarrierSpec>{"barrier", &SceneSpec::barriers};
+template <>
+inline constexpr std::pair section_of<BarrierOpeningSpec>{"barrier_opening", &SceneSpec::barrier_openings};
+template <>
+inline constexpr std::pair section_of<ZoneSpec>{"zone", &SceneSpec::zones};
+template <>
+inline constexpr std::pair section_of<BedSpec>{"bed", &SceneSpec::beds};
 
 /// All sections in the order of the scene file.
 [[nodiscard]] const std::vector<Section>& scene_sections();
@@ -67,6 +124,17 @@ struct Section {
 
 /// The default, monostate where there is none.
 [[nodiscard]] ParameterValue default_value(const Section& section, const Parameter& parameter);
+
+/// Whether there is a value that is not empty.
+[[nodiscard]] bool is_given(const ParameterValue& value);
+
+/// The first of the alternatives that are not one; of all, or of those that people can change while a run goes on.
+[[nodiscard]] std::optional<Violation> wrong_choice(const Section& section, const SceneSpec& spec, std::size_t index,
+                                                    bool live_only);
+
+/// The first rule that an entry breaks.
+[[nodiscard]] std::optional<Violation> broken_rule(const Section& section, const SceneSpec& spec, std::size_t index,
+                                                   double particle_spacing);
 
 /// "release[0].thickness_m", "terrain.file".
 [[nodiscard]] std::string key_path(const Section& section, std::size_t index, const Parameter& parameter);

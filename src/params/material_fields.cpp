@@ -1,3 +1,5 @@
+#include <fmt/format.h>
+
 #include "params/declaration.hpp"
 
 namespace talus {
@@ -8,22 +10,27 @@ void declare_resistance(Declaration<MaterialSpec>& s) {
     s.key("viscosity_on_ground", "", &MaterialSpec::viscosity_on_ground, anything(),
           "Whether viscosity acts between debris and ground as well, which a viscous fluid sticks to.");
     s.optional_key("turbulent_friction_mps2", "m/s2", &MaterialSpec::turbulent_friction, above(0), "no such drag",
-                   "Voellmy's xi: flow of thickness h is slowed by g v2 / (xi h) beside Coulomb friction.");
+                   "Voellmy's xi: flow of thickness h is slowed by g v2 / (xi h) beside Coulomb friction.")
+        .live_as();
     s.optional_key(
         "turbulent_friction_thickness_m", "m", &MaterialSpec::turbulent_friction_thickness, above_to(0, 1000),
         "xi is the same at every thickness",
         "Thickness of the flow at which xi, here and in zones, is as given. It then grows with the cube root "
         "of the thickness: Manning's law, with n = thickness^(1/6) / sqrt(xi).");
     s.key(
-        "cohesion_Pa", "Pa", &MaterialSpec::cohesion, at_least(0),
-        "Shear strength that needs no pressure, on the ground and inside: the yield stress of a mud where friction is "
-        "0.");
+         "cohesion_Pa", "Pa", &MaterialSpec::cohesion, at_least(0),
+         "Shear strength that needs no pressure, on the ground and inside: the yield stress of a mud where friction is "
+         "0.")
+        .live_as();
     s.key(
-        "pore_pressure_ratio", "", &MaterialSpec::pore_pressure_ratio, between(0, 1),
-        "r_u, pore pressure over the total normal stress when debris starts: friction on ground, buildings and inside "
-        "is 1 - r_u of what it is in dry debris.");
+         "pore_pressure_ratio", "", &MaterialSpec::pore_pressure_ratio, between(0, 1),
+         "r_u, pore pressure over the total normal stress when debris starts: friction on ground, buildings and inside "
+         "is 1 - r_u of what it is in dry debris.")
+        .live_as();
     s.optional_key("pore_pressure_decay_time_s", "s", &MaterialSpec::pore_pressure_decay_time, above(0),
                    "pore pressure stays", "Time since a body's start in which its pore-pressure ratio falls to 1/e.");
+    s.key("rest_density_kgpm3", "kg/m3", &MaterialSpec::rest_density, above_to(0, 30000), "Bulk density of the debris.")
+        .live_as();
     s.optional_key("inertial_friction_coefficient", "", &MaterialSpec::inertial_friction_coefficient, between(0, 10),
                    "friction does not depend on the shear rate",
                    "Internal friction that is neared as shear gets fast (mu(I) law); at slow shear it is "
@@ -40,31 +47,48 @@ void declare_resistance(Declaration<MaterialSpec>& s) {
 
 Section declare_material() {
     Declaration<MaterialSpec> s("material", "What moves.", &SceneSpec::material);
-    s.key("rest_density_kgpm3", "kg/m3", &MaterialSpec::rest_density, above_to(0, 30000),
-          "Bulk density of the debris.");
     s.key("friction_coefficient", "", &MaterialSpec::friction_coefficient, between(0, 10),
           "Coulomb friction on the ground (tangent of the friction angle), and on buildings and inside unless set "
-          "apart.");
+          "apart.")
+        .live_as();
     s.optional_key("building_friction_coefficient", "", &MaterialSpec::building_friction_coefficient, between(0, 10),
-                   "equal to friction_coefficient", "Coulomb friction on the walls and roofs of buildings.");
+                   "equal to friction_coefficient", "Coulomb friction on the walls and roofs of buildings.")
+        .live_as();
     s.optional_key("internal_friction_coefficient", "", &MaterialSpec::internal_friction_coefficient, between(0, 10),
-                   "equal to friction_coefficient", "Coulomb friction of debris on debris.");
+                   "equal to friction_coefficient", "Coulomb friction of debris on debris.")
+        .live_as();
     s.key(
-        "viscosity", "", &MaterialSpec::viscosity, from_to_below(0, 1),
-        "Share of the velocity difference to its neighbours that debris loses per 1/60 s, whatever the time step. The "
-        "same share is another material at another particle spacing; kinematic_viscosity_m2ps is not.");
+         "viscosity", "", &MaterialSpec::viscosity, from_to_below(0, 1),
+         "Share of the velocity difference to its neighbours that debris loses per 1/60 s, whatever the time step. The "
+         "same share is another material at another particle spacing; kinematic_viscosity_m2ps is not.")
+        .live_as();
     s.optional_key("kinematic_viscosity_m2ps", "m2/s", &MaterialSpec::kinematic_viscosity, at_least(0),
                    "what viscosity amounts to at this particle spacing",
                    "Viscosity of the debris, in place of viscosity.");
     declare_resistance(s);
+    s.rule([](const MaterialSpec& material, const SceneSpec&, double) -> std::optional<Violation> {
+        const double slow = material.internal_friction_coefficient.value_or(material.friction_coefficient);
+        if (material.inertial_friction_coefficient.value_or(slow) >= slow) return {};
+        return Violation{"inertial_friction_coefficient",
+                         fmt::format(" = {} is refused; it must be at least the internal friction of slow shear, {}",
+                                     *material.inertial_friction_coefficient, slow)};
+    });
+    s.rule([](const MaterialSpec& material, const SceneSpec& scene, double) {
+        return needs_stress("cohesion_Pa", material.cohesion > 0, scene);
+    });
+    s.rule([](const MaterialSpec& material, const SceneSpec& scene, double) {
+        return needs_stress("pore_pressure_ratio", material.pore_pressure_ratio > 0, scene);
+    });
+    s.rule([](const MaterialSpec& material, const SceneSpec& scene, double) {
+        return needs_stress("inertial_friction_coefficient", material.inertial_friction_coefficient.has_value(), scene);
+    });
     return s.take();
 }
 
 Section declare_zone() {
     Declaration<ZoneSpec> s("zone",
-                            "Ground that resists in its own way. Exactly one of file, polygon and raster says where; a "
-                            "cell of the terrain belongs to it when its centre does. What a zone does not say is as "
-                            "elsewhere; later zones go before earlier ones.",
+                            "Ground that resists in its own way. A cell of the terrain belongs to it when its centre "
+                            "does. What a zone does not say is as elsewhere; later zones go before earlier ones.",
                             &SceneSpec::zones);
     s.text("name", &ZoneSpec::name, "\"zone N\"", "Name in reports and messages.");
     s.path("file", &ZoneSpec::file, "one of the other two is given",
@@ -80,16 +104,60 @@ Section declare_zone() {
     s.optional_key("raster_value", "", &ZoneSpec::raster_value, anything(), "every cell that has data",
                    "The zone_number of the zone.");
     s.optional_key("friction_coefficient", "", &ZoneSpec::friction_coefficient, between(0, 10), "as elsewhere",
-                   "Coulomb friction on this ground.");
+                   "Coulomb friction on this ground.")
+        .live_in({.label = "Coefficient",
+                  .slider_low = 0.05,
+                  .slider_high = 1.05,
+                  .first = 0.4,
+                  .tick = "Friction",
+                  .tick_help = "Coulomb friction of its own; unticked: as elsewhere"});
     s.optional_key("turbulent_friction_mps2", "m/s2", &ZoneSpec::turbulent_friction, above(0), "as elsewhere",
-                   "Voellmy's xi on this ground; lower is rougher.");
+                   "Voellmy's xi on this ground; lower is rougher.")
+        .live_in({.label = "Voellmy's \u03be",
+                  .slider_low = 100,
+                  .slider_high = 2100,
+                  .first = 500,
+                  .tick = "Turbulent friction",
+                  .tick_help = "Voellmy's turbulent friction of its own; unticked: as elsewhere"});
     s.optional_key("cohesion_Pa", "Pa", &ZoneSpec::cohesion, at_least(0), "as elsewhere",
-                   "Shear strength without pressure between debris and this ground.");
+                   "Shear strength without pressure between debris and this ground.")
+        .live_in({.label = "Shear strength",
+                  .slider_low = 0,
+                  .slider_high = 10,
+                  .first = 1,
+                  .tick = "Cohesion",
+                  .tick_help = "Cohesion of its own; unticked: as elsewhere"});
     s.key("stem_density_pm2", "1/m2", &ZoneSpec::stem_density, at_least(0),
-          "Stems of a forest per square metre that stand the flow; each drags on it as a cylinder.");
-    s.key("stem_diameter_m", "m", &ZoneSpec::stem_diameter, above_to(0, 100), "Diameter of a stem.");
+          "Stems of a forest per square metre that stand the flow; each drags on it as a cylinder.")
+        .live_in({.label = "Stems",
+                  .slider_low = 50,
+                  .slider_high = 1550,
+                  .first = 400,
+                  .tick = "Forest",
+                  .tick_help = "Stems that drag on the flow"});
+    s.key("stem_diameter_m", "m", &ZoneSpec::stem_diameter, above_to(0, 100), "Diameter of a stem.")
+        .live_in({.label = "Stem diameter", .slider_low = 0.05, .slider_high = 1.05, .first = 0.3});
     s.key("stem_drag_coefficient", "", &ZoneSpec::stem_drag_coefficient, at_least(0),
-          "Drag coefficient of a stem across the flow.");
+          "Drag coefficient of a stem across the flow.")
+        .live_in({.label = "Drag coefficient", .slider_low = 0, .slider_high = 3, .first = 1});
+    s.exactly_one_of({"file", "polygon", "raster"});
+    s.rule([](const ZoneSpec& zone, const SceneSpec&, double) -> std::optional<Violation> {
+        if (!zone.raster_value || zone.raster_holds == ZoneRaster::zone_number) return {};
+        return Violation{"raster_value",
+                         ": is given, but raster_holds says that the cells hold a coefficient; leave one of them out"};
+    });
+    s.rule([](const ZoneSpec& zone, const SceneSpec&, double) -> std::optional<Violation> {
+        if (zone.friction_coefficient || zone.turbulent_friction || zone.cohesion || zone.stem_density > 0 ||
+            zone.raster_holds != ZoneRaster::zone_number) {
+            return {};
+        }
+        return Violation{"friction_coefficient",
+                         ": the zone says nothing; give friction_coefficient, turbulent_friction_mps2, cohesion_Pa, "
+                         "stem_density_pm2 or raster_holds"};
+    });
+    s.rule([](const ZoneSpec& zone, const SceneSpec& scene, double) {
+        return needs_stress("cohesion_Pa", zone.cohesion.has_value(), scene);
+    });
     return s.take();
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 namespace talus {
 namespace {
@@ -33,6 +34,15 @@ std::string wrapped(const std::string& text, const std::string& prefix) {
 
 std::string header_of(const Section& section) {
     return section.repeats ? "[[" + section.name + "]]" : "[" + section.name + "]";
+}
+
+/// What the section is, and which of its keys exclude each other.
+std::string help_of(const Section& section) {
+    std::string text = section.help;
+    for (const Alternatives& choice : section.alternatives) {
+        text += fmt::format(" Exactly one of {} must be given.", fmt::join(choice.keys, ", "));
+    }
+    return text;
 }
 
 /// "0.4", "required", or what happens where there is no default.
@@ -105,7 +115,7 @@ std::string write_scene(const SceneSpec& spec, const std::string& header) {
     for (const Section& section : scene_sections()) {
         const std::size_t count = section.count(spec);
         for (std::size_t index = 0; index < count; ++index) {
-            if (index == 0) out += wrapped(section.help, "# ");
+            if (index == 0) out += wrapped(help_of(section), "# ");
             out += header_of(section) + "\n";
             for (const Parameter& parameter : section.parameters) {
                 out += parameter_lines(section, parameter, parameter.get(spec, index));
@@ -115,7 +125,7 @@ std::string write_scene(const SceneSpec& spec, const std::string& header) {
         if (count == 0) {
             SceneSpec example;
             section.append(example);
-            out += wrapped(section.help, "# ") + "# " + header_of(section) + "\n";
+            out += wrapped(help_of(section), "# ") + "# " + header_of(section) + "\n";
             for (const Parameter& parameter : section.parameters) {
                 out += parameter_lines(section, parameter, default_value(section, parameter));
             }
@@ -133,16 +143,19 @@ std::string scene_reference_markdown() {
         "A scene is a TOML file. Units are in the key names. Relative paths are taken from the scene file's folder, "
         "and "
         "`${NAME}` in a path from the environment. On the command line `--set section.key=value` replaces a value, "
-        "`--set release[0].key=value` one of the first release, and `none` as the value removes an optional key.\n";
+        "`--set release[0].key=value` one of the first release, and `none` as the value removes an optional key. A key "
+        "that "
+        "is marked live can also be changed in the live twin while debris moves.\n";
     for (const Section& section : scene_sections()) {
-        out += fmt::format("\n## `{}`\n\n{}\n\n", header_of(section), section.help);
-        out += "| Key | Unit | Default | Allowed | Meaning |\n|---|---|---|---|---|\n";
+        out += fmt::format("\n## `{}`\n\n{}\n\n", header_of(section), help_of(section));
+        out += "| Key | Unit | Default | Allowed | Live | Meaning |\n|---|---|---|---|---|---|\n";
         for (const Parameter& parameter : section.parameters) {
             const bool has_default = !std::holds_alternative<std::monostate>(default_value(section, parameter));
             std::string shown = default_text(section, parameter);
             if (has_default) shown.insert(0, "`").push_back('`');
-            out += fmt::format("| `{}` | {} | {} | {} | {} |\n", parameter.key, parameter.unit, markdown_cell(shown),
-                               markdown_cell(allowed_without_unit(parameter)), markdown_cell(parameter.help));
+            out += fmt::format("| `{}` | {} | {} | {} | {} | {} |\n", parameter.key, parameter.unit,
+                               markdown_cell(shown), markdown_cell(allowed_without_unit(parameter)),
+                               parameter.live.empty() ? "" : "live", markdown_cell(parameter.help));
         }
     }
     return out;
@@ -151,7 +164,7 @@ std::string scene_reference_markdown() {
 std::string scene_reference_text() {
     std::string out;
     for (const Section& section : scene_sections()) {
-        out += header_of(section) + "\n" + wrapped(section.help, "  ");
+        out += header_of(section) + "\n" + wrapped(help_of(section), "  ");
         for (const Parameter& parameter : section.parameters) {
             out += fmt::format("  {}\n", parameter.key);
             out += wrapped(parameter.help, "      ");

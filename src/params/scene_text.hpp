@@ -14,7 +14,10 @@ namespace talus {
 /// docs/scene-reference.md.
 [[nodiscard]] std::string scene_reference_markdown();
 
-/// The same for a terminal.
+/// web/src/protocol/schema.ts: what people can change while a run goes on, as types and as the fields of forms.
+[[nodiscard]] std::string scene_typescript();
+
+/// The reference for a terminal.
 [[nodiscard]] std::string scene_reference_text();
 
 }  // namespace talus

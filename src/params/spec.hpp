@@ -85,25 +85,29 @@ struct BuildingsSpec {
     std::optional<double> resistance;  ///< Pa; absent: they stand whatever happens
 };
 
-/// `[[barrier]]`: its line is given either here or in a file, its crest as a height or an elevation.
-struct BarrierSpec {
-    std::string name;
-    std::vector<PlanPoint> line;  ///< in the terrain's reference system
-    std::string file, layer;
-    std::optional<double> height;               ///< m above the ground under the line
-    std::optional<double> crest_elevation;      ///< m
-    double thickness = 1;                       ///< m
-    std::optional<double> passing_share;        ///< of a net; absent: it has no meshes
-    std::optional<double> resistance_force;     ///< N/m; absent: it stands whatever happens
-    std::optional<double> resistance_pressure;  ///< Pa; the same
+/// `[[barrier_opening]]`: a slot or a spillway.
+struct BarrierOpeningSpec {
+    double position = 0;    ///< m along the barrier's line, of the middle
+    double width = 0;       ///< m along the line
+    double sill = 0;        ///< m, what stands of the barrier there, above the ground under the line
+    std::string barrier{};  ///< its name
+    bool operator==(const BarrierOpeningSpec&) const = default;
 };
 
-/// `[[barrier_opening]]`
-struct BarrierOpeningSpec {
-    std::string barrier;  ///< its name
-    double position = 0;  ///< m along the barrier's line, of the middle
-    double width = 0;     ///< m
-    double sill = 0;      ///< m above the ground
+/// `[[barrier]]`: its line is given either here or in a file, its crest as a height or an elevation. The solver, the
+/// live twin and its journals have barriers in this form, too.
+struct BarrierSpec {
+    std::vector<PlanPoint> line{};                ///< in the terrain's reference system
+    std::optional<double> height{};               ///< m above the ground under the line
+    std::optional<double> crest_elevation{};      ///< m, a level crest
+    double thickness = 1;                         ///< m across the line
+    std::vector<BarrierOpeningSpec> openings{};   ///< a section of their own in a scene file
+    std::optional<double> passing_share{};        ///< of a net; absent: it has no meshes
+    std::optional<double> resistance_force{};     ///< N/m; absent: it stands whatever happens
+    std::optional<double> resistance_pressure{};  ///< Pa; the same
+    std::string name{};
+    std::string file{}, layer{};
+    bool operator==(const BarrierSpec&) const = default;
 };
 
 /// `[flow_path]`: no file means traced by steepest descent from the release.

@@ -18,6 +18,7 @@ struct BedLayer {
     struct Part {
         Polygon polygon;   ///< world
         double depth = 0;  ///< m, vertical
+        bool operator==(const Part&) const = default;
     };
     BedSpec spec;
     std::vector<Part> parts;                          ///< none: wherever the raster is; without one, everywhere

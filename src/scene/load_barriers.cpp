@@ -14,15 +14,6 @@ std::string path_of(std::size_t index) {
     return fmt::format("barrier[{}]", index);
 }
 
-/// Exactly one of two keys must be given.
-Status check_one_of(const ParsedScene& parsed, const std::string& path, const char* first, bool has_first,
-                    const char* second, bool has_second) {
-    if (has_first != has_second) return {};
-    return Error{fmt::format("{}: exactly one of {} and {} must be given; {}",
-                             parsed.at(path + "." + (has_first ? second : first)), first, second,
-                             has_first ? "both are" : "there is none")};
-}
-
 Status read_line_of(const ParsedScene& parsed, std::size_t index, Scene& scene, const std::string& name,
                     std::vector<PlanPoint>& line) {
     const BarrierSpec& spec = scene.spec.barriers[index];
@@ -39,23 +30,6 @@ Status read_line_of(const ParsedScene& parsed, std::size_t index, Scene& scene, 
         scene.notes.push_back(fmt::format("barrier \"{}\": {}", name, layer->reprojection));
     }
     line = std::move(layer->points);
-    return {};
-}
-
-Status add_openings(const ParsedScene& parsed, const Scene& scene, const std::string& name, double spacing,
-                    BarrierShape& shape) {
-    const std::vector<BarrierOpeningSpec>& openings = scene.spec.barrier_openings;
-    for (std::size_t k = 0; k < openings.size(); ++k) {
-        if (openings[k].barrier != name) continue;
-        if (openings[k].width < 2 * spacing) {
-            return Error{
-                fmt::format("{} = {:.6g} is refused; with particles of {:.3g} m it must be at least {:.4g} m: "
-                            "nothing would get through a narrower one; smaller particles allow less",
-                            parsed.at(fmt::format("barrier_opening[{}].width_m", k)), openings[k].width, spacing,
-                            std::ceil(2000 * spacing) / 1000)};
-        }
-        shape.openings.push_back({openings[k].position, openings[k].width, openings[k].sill});
-    }
     return {};
 }
 
@@ -87,35 +61,25 @@ Status check_names(const ParsedScene& parsed, const Scene& scene, std::size_t fi
 }  // namespace
 
 Status load_barriers(const ParsedScene& parsed, Scene& scene) {
-    const double spacing = choose_particle_spacing(scene.spec.solver, total_volume(scene));
+    if (Status s = check_rules(parsed, choose_particle_spacing(scene.spec.solver, total_volume(scene))); !s) return s;
     const std::size_t first = scene.buildings.size();
     for (std::size_t k = 0; k < scene.spec.barriers.size(); ++k) {
         const BarrierSpec& spec = scene.spec.barriers[k];
         const std::string path = path_of(k);
         const std::string name = spec.name.empty() ? fmt::format("barrier {}", k + 1) : spec.name;
-        if (Status s = check_one_of(parsed, path, "line_m", !spec.line.empty(), "file", !spec.file.empty()); !s) {
-            return s;
-        }
-        if (Status s = check_one_of(parsed, path, "height_m", spec.height.has_value(), "crest_elevation_m",
-                                    spec.crest_elevation.has_value());
-            !s) {
-            return s;
-        }
-        if (spec.thickness < spacing / 2) {
-            return Error{fmt::format(
-                "{} = {:.6g} is refused; with particles of {:.3g} m it must be at least {:.4g} m: "
-                "debris on both sides would feel each other through it",
-                parsed.at(path + ".thickness_m"), spec.thickness, spacing, std::ceil(500 * spacing) / 1000)};
-        }
-        BarrierShape shape{{}, spec.height.value_or(0), spec.crest_elevation, spec.thickness, {}, spec.passing_share};
+        BarrierSpec shape = spec;
+        shape.file.clear();
+        shape.layer.clear();
         if (Status s = read_line_of(parsed, k, scene, name, shape.line); !s) return s;
-        if (Status s = add_openings(parsed, scene, name, spacing, shape); !s) return s;
+        for (const BarrierOpeningSpec& opening : scene.spec.barrier_openings) {
+            if (opening.barrier != name) continue;
+            shape.openings.push_back(opening);
+            shape.openings.back().barrier.clear();
+        }
         Result<Building> barrier = make_barrier(scene.terrain, name, shape);
         if (!barrier) {
             return Error{parsed.at(path + (spec.file.empty() ? ".line_m" : ".file")) + ": " + barrier.error().message};
         }
-        if (spec.resistance_force) barrier->resistance.force_per_metre = *spec.resistance_force;
-        if (spec.resistance_pressure) barrier->resistance.pressure = *spec.resistance_pressure;
         for (const Release& release : scene.releases) {
             const double area = shared_area(release, *barrier);
             if (area <= 0) continue;

@@ -90,24 +90,11 @@ Result<Inflow> load_inflow(const ParsedScene& parsed, std::size_t index, Scene& 
     Inflow inflow;
     inflow.name = spec.name.empty() ? fmt::format("inflow {}", index + 1) : spec.name;
     const std::string label = fmt::format("inflow \"{}\"", inflow.name);
-    std::vector<const char*> given;
-    if (!spec.line.empty()) given.push_back("line_m");
-    if (!spec.file.empty()) given.push_back("file");
-    if (!spec.polygon.empty()) given.push_back("polygon_m");
-    if (!spec.polygon_file.empty()) given.push_back("polygon_file");
-    if (given.size() != 1) {
-        return Error{fmt::format("{}: exactly one of line_m, file, polygon_m and polygon_file must be given; {}",
-                                 parsed.at(path + (given.empty() ? "line_m" : given.back())),
-                                 given.empty()       ? "there is none"
-                                 : given.size() == 2 ? "both are"
-                                                     : "there are more")};
-    }
     const bool over_area = !spec.polygon.empty() || !spec.polygon_file.empty();
-    if (spec.direction && !over_area) {
-        return Error{parsed.at(path + "direction_deg") +
-                     ": is refused across a line, which has a direction of its own"};
-    }
-    const std::string at = parsed.at(path + given.front());
+    const std::string at = parsed.at(path + (!spec.line.empty()      ? "line_m"
+                                             : !spec.file.empty()    ? "file"
+                                             : !spec.polygon.empty() ? "polygon_m"
+                                                                     : "polygon_file"));
     const Status where =
         over_area ? load_area(spec, at, label, inflow, scene) : load_line(spec, at, label, inflow, scene);
     if (!where) return where.error();

@@ -82,9 +82,7 @@ class SceneReader {
                 for (const Parameter& parameter : section.parameters) {
                     const std::string path = key_path(section, index, parameter);
                     if (!parameter.required || scene_.places.count(path) > 0) continue;
-                    const auto header = section_places_.find(section_path(section, index));
-                    const std::string where = header == section_places_.end() ? name_ : header->second;
-                    return Error{fmt::format("{}: {} is missing; it must be {}", where, path, allowed_text(parameter))};
+                    return Error{fmt::format("{} is missing; it must be {}", scene_.at(path), allowed_text(parameter))};
                 }
             }
         }
@@ -128,7 +126,7 @@ class SceneReader {
     }
 
     Status read_table(const Section& section, std::size_t index, const toml::table& table, const std::string& where) {
-        section_places_[section_path(section, index)] = where;
+        scene_.places[section_path(section, index)] = where;
         for (const auto& [key, node] : table) {
             const Parameter* parameter = section.find(key.str());
             if (!parameter) return Error{place(key.source()) + ": " + unknown_key(section, key.str())};
@@ -198,13 +196,13 @@ class SceneReader {
 
     std::string name_;
     ParsedScene scene_;
-    std::map<std::string, std::string> section_places_;  // "release[0]" -> "scene.toml:8"
 };
 
 }  // namespace
 
 std::string ParsedScene::at(const std::string& key_path) const {
-    const auto found = places.find(key_path);
+    auto found = places.find(key_path);
+    if (found == places.end()) found = places.find(key_path.substr(0, key_path.rfind('.')));
     return (found == places.end() ? file.string() : found->second) + ": " + key_path;
 }
 

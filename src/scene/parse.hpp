@@ -15,9 +15,9 @@ namespace talus {
 struct ParsedScene {
     std::filesystem::path file;
     SceneSpec spec;
-    std::map<std::string, std::string> places;  ///< key path ("release[0].file") -> "scene.toml:12" or "--set ..."
+    std::map<std::string, std::string> places;  ///< "release[0].file" or "release[0]" -> "scene.toml:12" or "--set ..."
 
-    /// "scene.toml:12: release[0].file"; for a key that was not given, the scene file and the key.
+    /// "scene.toml:12: release[0].file"; for a key that was not given, the line of its section or the scene file.
     [[nodiscard]] std::string at(const std::string& key_path) const;
 };
 
@@ -25,7 +25,10 @@ struct ParsedScene {
 [[nodiscard]] Result<ParsedScene> parse_scene_with_places(const std::filesystem::path& file,
                                                           const std::vector<std::string>& overrides);
 
-/// Checks that concern several keys at once, makes paths absolute and expands `${NAME}` in them.
+/// The rules that tie keys to each other; those of the particle spacing, m, where it is not 0.
+[[nodiscard]] Status check_rules(const ParsedScene& scene, double particle_spacing);
+
+/// Checks the rules, makes paths absolute and expands `${NAME}` in them.
 [[nodiscard]] Status finish_scene(ParsedScene& scene);
 
 /// Without line breaks and control characters, which would garble a terminal, and cut after `longest` bytes.

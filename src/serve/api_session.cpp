@@ -7,9 +7,9 @@
 
 #include "core/try.hpp"
 #include "geo/orthophoto.hpp"
-#include "openapi_file.hpp"
 #include "serve/api.hpp"
 #include "serve/json_text.hpp"
+#include "serve/openapi.hpp"
 
 namespace talus::serve {
 namespace {
@@ -179,7 +179,7 @@ void control(Session& session, const Request& request, const Respond& respond) {
 void add_session_routes(Router& router, Session& session) {
     router.add({"GET", "/api/openapi.json", Role::nobody, [](const Request&, const Respond& respond) {
                     Response response;
-                    response.body = std::make_shared<const std::string>(openapi_file::openapi_json);
+                    response.body = std::make_shared<const std::string>(openapi_document());
                     respond(response);
                 }});
     router.add({"GET", "/api/session", Role::viewer, [&session](const Request& request, const Respond& respond) {

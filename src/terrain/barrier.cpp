@@ -72,21 +72,21 @@ Status check_line(const Terrain& terrain, const std::vector<PlanPoint>& line) {
     return {};
 }
 
-Status check_openings(const BarrierShape& shape) {
+Status check_openings(const BarrierSpec& shape) {
     const double length = length_of(shape.line);
     for (std::size_t k = 0; k < shape.openings.size(); ++k) {
-        const BarrierOpening& a = shape.openings[k];
+        const BarrierOpeningSpec& a = shape.openings[k];
         if (a.position - a.width / 2 < 0 || a.position + a.width / 2 > length) {
             return Error{fmt::format("opening {}: reaches from {:.6g} to {:.6g} m along a line of {:.6g} m", k + 1,
                                      a.position - a.width / 2, a.position + a.width / 2, length)};
         }
-        if (!shape.crest_elevation && a.sill >= shape.height) {
+        if (!shape.crest_elevation && a.sill >= shape.height.value_or(0)) {
             return Error{
                 fmt::format("opening {}: sill_height_m = {:.6g} must be below the barrier's height of {:.6g} m", k + 1,
-                            a.sill, shape.height)};
+                            a.sill, shape.height.value_or(0))};
         }
         for (std::size_t other = 0; other < k; ++other) {
-            const BarrierOpening& b = shape.openings[other];
+            const BarrierOpeningSpec& b = shape.openings[other];
             if (std::abs(a.position - b.position) < (a.width + b.width) / 2) {
                 return Error{fmt::format("openings {} and {}: overlap", other + 1, k + 1)};
             }
@@ -95,20 +95,20 @@ Status check_openings(const BarrierShape& shape) {
     return {};
 }
 
-const BarrierOpening* opening_at(const BarrierShape& shape, double chainage) {
-    for (const BarrierOpening& opening : shape.openings) {
+const BarrierOpeningSpec* opening_at(const BarrierSpec& shape, double chainage) {
+    for (const BarrierOpeningSpec& opening : shape.openings) {
         if (std::abs(chainage - opening.position) < opening.width / 2) return &opening;
     }
     return nullptr;
 }
 
 /// Where a segment, from chainage `from` to `to`, is cut: into even parts, and at the ends of openings. As shares.
-std::vector<double> find_cuts(const BarrierShape& shape, double from, double to, double part_length) {
+std::vector<double> find_cuts(const BarrierSpec& shape, double from, double to, double part_length) {
     const int parts = std::max(1, static_cast<int>(std::ceil((to - from) / part_length)));
     std::vector<double> cuts;
     cuts.reserve(static_cast<std::size_t>(parts) + 1 + 2 * shape.openings.size());
     for (int p = 0; p <= parts; ++p) cuts.push_back(static_cast<double>(p) / parts);
-    for (const BarrierOpening& opening : shape.openings) {
+    for (const BarrierOpeningSpec& opening : shape.openings) {
         for (const double end : {opening.position - opening.width / 2, opening.position + opening.width / 2}) {
             const double share = (end - from) / (to - from);
             if (share > 0 && share < 1) cuts.push_back(share);
@@ -123,7 +123,7 @@ std::vector<double> find_cuts(const BarrierShape& shape, double from, double to,
 
 }  // namespace
 
-Result<Building> make_barrier(const Terrain& terrain, const std::string& name, const BarrierShape& shape) {
+Result<Building> make_barrier(const Terrain& terrain, const std::string& name, const BarrierSpec& shape) {
     const std::vector<PlanPoint>& line = shape.line;
     TALUS_TRY(check_line(terrain, line));
     TALUS_TRY(check_openings(shape));
@@ -131,6 +131,9 @@ Result<Building> make_barrier(const Terrain& terrain, const std::string& name, c
     Building barrier;
     barrier.name = name;
     barrier.barrier = shape;
+    barrier.barrier->name.clear();
+    if (shape.resistance_force) barrier.resistance.force_per_metre = *shape.resistance_force;
+    if (shape.resistance_pressure) barrier.resistance.pressure = *shape.resistance_pressure;
     const double part_length = std::max(usual_part, length_of(line) / most_parts);
     double roofs = 0, heights = 0, chainage = 0, highest = 0;
     for (std::size_t k = 0; k + 1 < line.size(); ++k) {
@@ -155,9 +158,9 @@ Result<Building> make_barrier(const Terrain& terrain, const std::string& name, c
                 return Error{fmt::format("line: leaves the known ground at ({:.1f}, {:.1f}), between points {} and {}",
                                          middle.x, middle.y, k + 1, k + 2)};
             }
-            double roof = shape.crest_elevation.value_or(ground + shape.height);
+            double roof = shape.crest_elevation.value_or(ground + shape.height.value_or(0));
             highest = std::max(highest, roof - ground);
-            if (const BarrierOpening* opening = opening_at(shape, chainage + (from + to) / 2 * length)) {
+            if (const BarrierOpeningSpec* opening = opening_at(shape, chainage + (from + to) / 2 * length)) {
                 if (!(opening->sill > 0)) continue;
                 roof = std::min(roof, ground + opening->sill);
             }
@@ -177,7 +180,7 @@ Result<Building> make_barrier(const Terrain& terrain, const std::string& name, c
     }
     const auto parts = static_cast<double>(barrier.footprint.size());
     barrier.roof_elevation = roofs / parts;
-    barrier.height = shape.crest_elevation ? heights / parts : shape.height;
+    barrier.height = shape.crest_elevation ? heights / parts : shape.height.value_or(0);
     return barrier;
 }
 

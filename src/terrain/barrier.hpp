@@ -14,7 +14,7 @@ namespace talus {
 /// the crest follows the ground (or is level). In an opening the roof is the sill; without a sill there is no part.
 /// Errors: the line leaves the known ground, crosses itself, turns back, or has bends too close for the thickness;
 /// openings that overlap, lie beyond the line's ends or have a sill as high as the crest; a crest below all ground.
-[[nodiscard]] Result<Building> make_barrier(const Terrain& terrain, const std::string& name, const BarrierShape& shape);
+[[nodiscard]] Result<Building> make_barrier(const Terrain& terrain, const std::string& name, const BarrierSpec& shape);
 
 /// Length along the ground's plan, m.
 [[nodiscard]] double length_of(const std::vector<PlanPoint>& line);

@@ -8,31 +8,16 @@
 #include <vector>
 
 #include "core/geometry.hpp"
+#include "params/spec.hpp"
 #include "terrain/terrain.hpp"
 
 namespace talus {
-
-/// A slot or a spillway of a barrier.
-struct BarrierOpening {
-    double position = 0;  ///< m along the line, of its middle
-    double width = 0;     ///< m along the line
-    double sill = 0;      ///< m, what stands of the barrier there, above the ground under the line
-};
-
-/// A wall, a dam or a net along a line.
-struct BarrierShape {
-    std::vector<PlanPoint> line;                 ///< world plan coordinates, two points or more
-    double height = 0;                           ///< m above the ground under the line
-    std::optional<double> crest_elevation = {};  ///< m, world: a level crest, in place of `height`
-    double thickness = 0;                        ///< m across the line
-    std::vector<BarrierOpening> openings = {};
-    std::optional<double> passing_share = {};  ///< of the debris that goes through its meshes; absent: it has none
-};
 
 /// What a structure stands, as the filtered force that debris exerts on it normal to its walls. Beyond it is gone.
 struct Resistance {
     double force_per_metre = std::numeric_limits<double>::infinity();  ///< N/m of a barrier's line
     double pressure = std::numeric_limits<double>::infinity();         ///< Pa over the wall area in contact
+    bool operator==(const Resistance&) const = default;
 };
 
 /// A solid with vertical walls and a flat roof, from below the ground up to `roof_elevation` (not finite: no solid).
@@ -45,7 +30,7 @@ struct Building {
     double roof_elevation = 0;                   ///< m, world; set by place_buildings
     std::vector<double> part_roof_elevations{};  ///< m, world, per part of the footprint; empty: one roof for all
     Resistance resistance{};
-    std::optional<BarrierShape> barrier{};  ///< what it was made of, if it is one (make_barrier)
+    std::optional<BarrierSpec> barrier{};  ///< what it was made of, but for its name, if it is one (make_barrier)
 };
 
 /// Whether there is a solid.

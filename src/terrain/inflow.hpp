@@ -14,6 +14,7 @@ struct InflowSample {
     double discharge = 0;  ///< m3/s of bulk debris at its own density
     double velocity = 0;   ///< m/s, along the ground
     double density = 0;    ///< kg/m3; 0 in every row: that of the material
+    bool operator==(const InflowSample&) const = default;
 };
 
 /// Debris that comes in across a straight line, at right angles to it and towards its right, seen from `from` to `to`;

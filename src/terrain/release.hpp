@@ -14,6 +14,7 @@ namespace talus {
 struct ReleasePatch {
     Polygon polygon;
     double thickness = 0;
+    bool operator==(const ReleasePatch&) const = default;
 };
 
 /// A body of debris that starts to move at one moment.

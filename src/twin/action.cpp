@@ -15,6 +15,7 @@
 #include "terrain/barrier.hpp"
 #include "twin/json_keys.hpp"
 #include "twin/put.hpp"
+#include "twin/section_values.hpp"
 
 namespace talus::twin {
 namespace {
@@ -137,14 +138,14 @@ Status ActionReader::set_lever(const json& entry) {
     if (!*value && (!may_follow || !entry.contains("value"))) {
         return Error{fmt::format("{}: value: missing; must be {}", **key, allowed_text(parameter))};
     }
-    const bool by_stress = context_.scene.spec.solver.internal_friction == InternalFriction::stress;
-    if (!by_stress && (parameter.key == "cohesion_Pa" || parameter.key == "pore_pressure_ratio")) {
-        return Error{fmt::format("{}: needs solver.internal_friction = \"stress\"", **key)};
-    }
     const double before = value_in_force(edit_.setup.material, parameter, context_.viscosity);
     SceneSpec spec;
     spec.material = edit_.setup.material;
     parameter.set(spec, 0, *value ? ParameterValue(**value) : ParameterValue());
+    spec.solver = context_.scene.spec.solver;
+    if (Status s = check_live_rules(*find_section("material"), spec, context_.particle_spacing); !s) {
+        return Error{"material." + s.error().message};
+    }
     edit_.setup.material = spec.material;
     if (parameter.key == "viscosity") edit_.setup.material.kinematic_viscosity.reset();
     const double after = value_in_force(edit_.setup.material, parameter, context_.viscosity);
@@ -209,7 +210,7 @@ Status ActionReader::put_barrier() {
             return BarrierSetup{"", std::make_shared<const Building>(std::move(body))};
         },
         [](const BarrierSetup& barrier, const BarrierSetup* existing) {
-            const BarrierShape& shape = barrier.shape();
+            const BarrierSpec& shape = barrier.shape();
             std::string size = fmt::format(" {}: {:.1f} m long, {:.3g} m high, {:.3g} m thick",
                                            existing != nullptr ? "changed" : "placed", length_of(shape.line),
                                            barrier.body->height, shape.thickness);

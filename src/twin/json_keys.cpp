@@ -15,7 +15,7 @@ std::string shown(const json& value) {
     return text;
 }
 
-Status check_keys(const json& object, std::span<const char* const> allowed,
+Status check_keys(const json& object, const std::vector<std::string>& allowed,
                   std::initializer_list<std::string_view> also) {
     std::vector<std::string_view> names(also.begin(), also.end());
     names.insert(names.end(), allowed.begin(), allowed.end());
@@ -28,7 +28,7 @@ Status check_keys(const json& object, std::span<const char* const> allowed,
 }
 
 Status check_keys(const json& object, std::initializer_list<std::string_view> allowed) {
-    return check_keys(object, {}, allowed);
+    return check_keys(object, std::vector<std::string>(), allowed);
 }
 
 Result<std::optional<double>> read_number(const json& object, const std::string& key, const Range& range,

@@ -2,7 +2,6 @@
 
 #include <initializer_list>
 #include <optional>
-#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -20,7 +19,7 @@ namespace talus::twin {
 [[nodiscard]] Status check_keys(const nlohmann::json& object, std::initializer_list<std::string_view> allowed);
 
 /// Those that are allowed are in two lists.
-[[nodiscard]] Status check_keys(const nlohmann::json& object, std::span<const char* const> allowed,
+[[nodiscard]] Status check_keys(const nlohmann::json& object, const std::vector<std::string>& allowed,
                                 std::initializer_list<std::string_view> also);
 
 /// Nothing where the key is absent or null. Errors: no number, outside the range. `unit` is for the message.

@@ -21,7 +21,6 @@ namespace talus::twin {
 [[nodiscard]] Result<Release> read_release(const nlohmann::json& action, const ActionContext& context,
                                            const Setup& setup, const ReleaseSetup* existing, const std::string& name);
 
-/// A null makes a wall of a net, and a barrier with a resistance stand whatever happens.
 [[nodiscard]] Result<Building> read_barrier(const nlohmann::json& action, const ActionContext& context,
                                             const Building* existing, const std::string& name);
 

@@ -9,20 +9,10 @@
 #include "twin/section_values.hpp"
 
 namespace talus::twin {
-namespace {
-
-Status check_law(const BedSpec& spec) {
-    if (spec.law == EntrainmentLaw::growth && !spec.growth_rate) {
-        return Error{"growth_rate_per_m: missing; law = \"growth\" needs it"};
-    }
-    return {};
-}
-
-}  // namespace
 
 Result<BedLayer> read_bed(const nlohmann::json& action, const ActionContext& context, const BedLayer* existing,
                           const std::string& name) {
-    if (Status s = check_keys(action, bed_keys(), {"action", "id", "name", "polygon", "move_m"}); !s) {
+    if (Status s = check_keys(action, live_keys("bed"), {"action", "id", "name", "polygon", "move_m"}); !s) {
         return s.error();
     }
     auto polygon = read_points(action, "polygon", true, 3, most_points);
@@ -38,7 +28,7 @@ Result<BedLayer> read_bed(const nlohmann::json& action, const ActionContext& con
     const std::optional<double> depth_before = layer.spec.depth;
     if (Status s = read_values(action, layer.spec); !s) return s.error();
     if (!depth_given) layer.spec.depth = depth_before;  // a null asks for nothing: a bed has a depth
-    if (Status s = check_law(layer.spec); !s) return s.error();
+    if (Status s = check_rules(layer.spec, context.scene.spec.solver, context.particle_spacing); !s) return s.error();
     const Terrain& terrain = context.scene.terrain;
     if ((*polygon || *by) && !depth_given && (layer.depth_raster != nullptr || !layer.spec.depth)) {
         return Error{"depth_m: missing; the bed's depth differs from place to place, a new outline needs one value"};

@@ -11,7 +11,7 @@ namespace talus::twin {
 
 Result<Zone> read_zone(const nlohmann::json& action, const ActionContext& context, const Zone* existing,
                        const std::string& name) {
-    if (Status s = check_keys(action, zone_keys(), {"action", "id", "name", "polygon", "move_m"}); !s) {
+    if (Status s = check_keys(action, live_keys("zone"), {"action", "id", "name", "polygon", "move_m"}); !s) {
         return s.error();
     }
     auto polygon = read_points(action, "polygon", true, 3, most_points);
@@ -38,17 +38,7 @@ Result<Zone> read_zone(const nlohmann::json& action, const ActionContext& contex
             if (Status s = check_ground(terrain, part, "move_m", false); !s) return s.error();
         }
     }
-    const ZoneSpec& spec = zone.spec;
-    const bool says_something = spec.friction_coefficient || spec.turbulent_friction || spec.cohesion ||
-                                spec.stem_density > 0 || spec.raster_holds != ZoneRaster::zone_number;
-    if (!says_something) {
-        return Error{
-            "friction_coefficient: the zone says nothing; give friction_coefficient, turbulent_friction_mps2, "
-            "cohesion_Pa or stem_density_pm2, or remove it"};
-    }
-    if (spec.cohesion && context.scene.spec.solver.internal_friction != InternalFriction::stress) {
-        return Error{"cohesion_Pa: needs solver.internal_friction = \"stress\""};
-    }
+    if (Status s = check_rules(zone.spec, context.scene.spec.solver, context.particle_spacing); !s) return s.error();
     if (!(area_of(zone, terrain.elevation().geometry) > 0)) {
         return Error{fmt::format("{}: covers the centre of no cell of the terrain, which are {:.6g} m wide",
                                  *by ? "move_m" : "polygon", terrain.cell())};

@@ -100,18 +100,15 @@ json Scenario::setup_json() const {
                             {"start_time_s", number_or_null<json>(p.run->start_time_of(release.id))}});
     }
     for (const BarrierSetup& barrier : setup.barriers) {
-        barriers.push_back({{"id", barrier.id},
-                            {"name", barrier.body->name},
-                            {"line", to_json(barrier.shape().line)},
-                            {"height_m", barrier.body->height},
-                            {"crest_elevation_m", optional_json(barrier.shape().crest_elevation)},
-                            {"thickness_m", barrier.shape().thickness},
-                            {"openings", openings_json(barrier.shape())},
-                            {"passing_share", optional_json(barrier.shape().passing_share)},
-                            {"resistance_Npm", number_or_null<json>(barrier.body->resistance.force_per_metre)},
-                            {"resistance_Pa", number_or_null<json>(barrier.body->resistance.pressure)},
-                            {"crest_length_m", length_of(barrier.shape().line)},
-                            {"from_scene", barrier.from_scene}});
+        json entry = values_json(barrier.shape());
+        entry.update({{"id", barrier.id},
+                      {"name", barrier.body->name},
+                      {"line", to_json(barrier.shape().line)},
+                      {"height_m", barrier.body->height},
+                      {"openings", openings_json(barrier.shape())},
+                      {"crest_length_m", length_of(barrier.shape().line)},
+                      {"from_scene", barrier.from_scene}});
+        barriers.push_back(std::move(entry));
     }
     for (const BuildingSetup& building : setup.buildings) {
         const Building& body = *building.body;

@@ -8,33 +8,6 @@
 #include "twin/section_values.hpp"
 
 namespace talus::twin {
-namespace {
-
-bool same_ring(const Ring& a, const Ring& b) {
-    return std::equal(a.begin(), a.end(), b.begin(), b.end(),
-                      [](const PlanPoint& p, const PlanPoint& q) { return p.x == q.x && p.y == q.y; });
-}
-
-bool same_opening(const BarrierOpening& a, const BarrierOpening& b) {
-    return a.position == b.position && a.width == b.width && a.sill == b.sill;
-}
-
-/// As far as the footprint does not tell.
-bool same_barrier(const std::optional<BarrierShape>& a, const std::optional<BarrierShape>& b) {
-    if (a.has_value() != b.has_value()) return false;
-    return !a ||
-           (a->height == b->height && a->crest_elevation == b->crest_elevation && a->thickness == b->thickness &&
-            a->passing_share == b->passing_share && same_ring(a->line, b->line) &&
-            std::equal(a->openings.begin(), a->openings.end(), b->openings.begin(), b->openings.end(), same_opening));
-}
-
-bool same(const Polygon& a, const Polygon& b) {
-    return same_ring(a.outer, b.outer) &&
-           std::equal(a.holes.begin(), a.holes.end(), b.holes.begin(), b.holes.end(), same_ring);
-}
-
-}  // namespace
-
 Setup setup_of(const Scene& scene, NextNumbers& next) {
     Setup setup;
     setup.material = scene.spec.material;
@@ -94,9 +67,6 @@ Scene scene_of(const Scene& scene, const Setup& setup) {
 
 bool same_shape(const std::shared_ptr<const Release>& a, const std::shared_ptr<const Release>& b) {
     if (a == b) return true;
-    const auto same_patch = [](const ReleasePatch& p, const ReleasePatch& q) {
-        return p.thickness == q.thickness && same(p.polygon, q.polygon);
-    };
     const auto& r = a->thickness_raster;
     const auto& s = b->thickness_raster;
     const auto same_value = [](float p, float q) { return p == q || (p != p && q != q); };
@@ -104,39 +74,27 @@ bool same_shape(const std::shared_ptr<const Release>& a, const std::shared_ptr<c
         r.has_value() == s.has_value() &&
         (!r || (r->geometry == s->geometry &&
                 std::equal(r->values.begin(), r->values.end(), s->values.begin(), s->values.end(), same_value)));
-    return a->start_time == b->start_time && same_raster &&
-           std::equal(a->patches.begin(), a->patches.end(), b->patches.begin(), b->patches.end(), same_patch);
+    return a->start_time == b->start_time && same_raster && a->patches == b->patches;
 }
 
 bool same_shape(const std::shared_ptr<const Building>& a, const std::shared_ptr<const Building>& b) {
-    return a == b ||
-           (same_barrier(a->barrier, b->barrier) && a->resistance.force_per_metre == b->resistance.force_per_metre &&
-            a->resistance.pressure == b->resistance.pressure && a->height == b->height &&
-            a->roof_elevation == b->roof_elevation && a->part_roof_elevations == b->part_roof_elevations &&
-            std::equal(a->footprint.begin(), a->footprint.end(), b->footprint.begin(), b->footprint.end(), same));
+    return a == b || (a->barrier == b->barrier && a->resistance == b->resistance && a->height == b->height &&
+                      a->roof_elevation == b->roof_elevation && a->part_roof_elevations == b->part_roof_elevations &&
+                      a->footprint == b->footprint);
 }
 
 bool same_shape(const std::shared_ptr<const Zone>& a, const std::shared_ptr<const Zone>& b) {
-    return a == b || (values_json(a->spec) == values_json(b->spec) && a->cells == b->cells &&
-                      std::equal(a->outline.begin(), a->outline.end(), b->outline.begin(), b->outline.end(), same));
+    return a == b || (values_json(a->spec) == values_json(b->spec) && a->cells == b->cells && a->outline == b->outline);
 }
 
 bool same_shape(const std::shared_ptr<const BedLayer>& a, const std::shared_ptr<const BedLayer>& b) {
-    const auto same_part = [](const BedLayer::Part& p, const BedLayer::Part& q) {
-        return p.depth == q.depth && same(p.polygon, q.polygon);
-    };
-    return a == b || (values_json(a->spec) == values_json(b->spec) && a->depth_raster == b->depth_raster &&
-                      std::equal(a->parts.begin(), a->parts.end(), b->parts.begin(), b->parts.end(), same_part));
+    return a == b ||
+           (values_json(a->spec) == values_json(b->spec) && a->depth_raster == b->depth_raster && a->parts == b->parts);
 }
 
 bool same_shape(const std::shared_ptr<const Inflow>& a, const std::shared_ptr<const Inflow>& b) {
-    const auto same_row = [](const InflowSample& p, const InflowSample& q) {
-        return p.time == q.time && p.discharge == q.discharge && p.velocity == q.velocity && p.density == q.density;
-    };
-    return a == b || (same_ring({a->from, a->to}, {b->from, b->to}) && a->direction == b->direction &&
-                      std::equal(a->area.begin(), a->area.end(), b->area.begin(), b->area.end(), same) &&
-                      std::equal(a->hydrograph.begin(), a->hydrograph.end(), b->hydrograph.begin(), b->hydrograph.end(),
-                                 same_row));
+    return a == b || (a->from == b->from && a->to == b->to && a->direction == b->direction && a->area == b->area &&
+                      a->hydrograph == b->hydrograph);
 }
 
 bool begin_alike(const Setup& a, const Setup& b) {
@@ -146,10 +104,8 @@ bool begin_alike(const Setup& a, const Setup& b) {
 const std::vector<const Parameter*>& levers() {
     static const std::vector<const Parameter*> found = [] {
         std::vector<const Parameter*> list;
-        for (const char* key :
-             {"friction_coefficient", "building_friction_coefficient", "internal_friction_coefficient", "viscosity",
-              "turbulent_friction_mps2", "cohesion_Pa", "pore_pressure_ratio", "rest_density_kgpm3"}) {
-            list.push_back(find_section("material")->find(key));
+        for (const Parameter& parameter : find_section("material")->parameters) {
+            if (!parameter.live.empty()) list.push_back(&parameter);
         }
         return list;
     }();

@@ -33,7 +33,7 @@ struct BarrierSetup {
     std::shared_ptr<const Building> body;  ///< with its Building::barrier
     bool from_scene = false;
 
-    [[nodiscard]] const BarrierShape& shape() const { return *body->barrier; }
+    [[nodiscard]] const BarrierSpec& shape() const { return *body->barrier; }
 };
 
 struct BuildingSetup {

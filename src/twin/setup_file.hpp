@@ -13,10 +13,7 @@ namespace talus::twin {
 [[nodiscard]] nlohmann::json write_setup(const Setup& setup);
 
 /// As actions and setups have them.
-[[nodiscard]] nlohmann::json openings_json(const BarrierShape& shape);
-/// null where there is no value.
-[[nodiscard]] nlohmann::json optional_json(const std::optional<double>& value);
-
+[[nodiscard]] nlohmann::json openings_json(const BarrierSpec& shape);
 /// Errors name key and value.
 [[nodiscard]] Result<Setup> read_setup(const nlohmann::json& file, const Scene& scene);
 

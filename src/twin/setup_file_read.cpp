@@ -38,7 +38,7 @@ class SetupReader {
     /// The id, and which of `count` of the scene's it is; `key`: what only one that was changed has.
     template <class Entry>
     static Status read_origin(const json& file, const char* key, std::size_t count, Entry& setup);
-    static Result<std::vector<BarrierOpening>> read_openings(const json& file);
+    static Result<std::vector<BarrierOpeningSpec>> read_openings(const json& file);
     static Result<int> read_index(const json& object, std::size_t count);
 
     const Scene& scene_;
@@ -124,17 +124,14 @@ Result<ReleaseSetup> SetupReader::read_release(const json& file) const {
 }
 
 /// None where the key is absent: journals older than openings.
-Result<std::vector<BarrierOpening>> SetupReader::read_openings(const json& file) {
-    std::vector<BarrierOpening> openings;
+Result<std::vector<BarrierOpeningSpec>> SetupReader::read_openings(const json& file) {
+    std::vector<BarrierOpeningSpec> openings;
     if (!file.contains("openings")) return openings;
     if (!file["openings"].is_array()) return bad("openings", file);
     for (const json& entry : file["openings"]) {
-        const json& object = entry.is_object() ? entry : json::object();
-        const auto position = read_number(object, "position_m", {}, "m"),
-                   width = read_number(object, "width_m", {}, "m"),
-                   sill = read_number(object, "sill_height_m", {}, "m");
-        if (!position || !*position || !width || !*width || !sill || !*sill) return bad("openings", file);
-        openings.push_back({**position, **width, **sill});
+        BarrierOpeningSpec opening;
+        if (!entry.is_object() || !read_values(entry, opening)) return bad("openings", file);
+        openings.push_back(std::move(opening));
     }
     return openings;
 }
@@ -143,27 +140,21 @@ Result<BarrierSetup> SetupReader::read_barrier(const json& file) const {
     if (!file.is_object() || !file.contains("id") || !file["id"].is_string()) return bad("id", file);
     auto line = read_points(file, "line", false, 2, 1'000'000);
     const auto name = read_text(file, "name", 1000);
-    const auto height = read_number(file, "height_m", {}, "m"), thickness = read_number(file, "thickness_m", {}, "m");
-    const auto crest = read_number(file, "crest_elevation_m", {}, "m");
-    const auto passing = read_number(file, "passing_share", {.low = 0, .high = 1, .high_included = false}, "");
-    const auto force = read_number(file, "resistance_Npm", {}, "N/m"),
-               pressure = read_number(file, "resistance_Pa", {}, "Pa");
     if (!line) return line.error();
     if (!*line) return bad("line", file);
     if (!name || !*name) return bad("name", file);
-    if (!height || !*height) return bad("height_m", file);
-    if (!thickness || !*thickness) return bad("thickness_m", file);
-    if (!crest) return bad("crest_elevation_m", file);
-    if (!passing) return bad("passing_share", file);
-    if (!force) return bad("resistance_Npm", file);
-    if (!pressure) return bad("resistance_Pa", file);
     auto openings = read_openings(file);
     if (!openings) return openings.error();
-    auto body = make_barrier(scene_.terrain, **name,
-                             {std::move(**line), **height, *crest, **thickness, std::move(*openings), *passing});
+    BarrierSpec barrier;
+    barrier.line = std::move(**line);
+    barrier.openings = std::move(*openings);
+    json values = file;  // an older journal gives a level crest a height of 0, too
+    if (file.contains("crest_elevation_m") && !file["crest_elevation_m"].is_null()) values.erase("height_m");
+    Status s = read_values(values, barrier);
+    if (s) s = check_rules(barrier, scene_.spec.solver, 0);
+    if (!s) return s.error();
+    auto body = make_barrier(scene_.terrain, **name, barrier);
     if (!body) return body.error();
-    if (*force) body->resistance.force_per_metre = **force;
-    if (*pressure) body->resistance.pressure = **pressure;
     return BarrierSetup{file["id"], std::make_shared<const Building>(std::move(*body)),
                         file.value("from_scene", false)};
 }

@@ -71,23 +71,16 @@ json inflow_entry(const InflowSetup& inflow) {
     entry["name"] = body.name;
     if (!body.over_area()) entry["line"] = to_json(std::vector<PlanPoint>{body.from, body.to});
     entry["polygons"] = polygons_json(body.area);
-    entry["direction"] = optional_json(body.direction);
+    entry["direction"] = body.direction ? json(*body.direction) : json();
     entry["hydrograph"] = to_json(body.hydrograph);
     return entry;
 }
 
 }  // namespace
 
-json optional_json(const std::optional<double>& value) {
-    return value ? json(*value) : json();
-}
-
-json openings_json(const BarrierShape& shape) {
+json openings_json(const BarrierSpec& barrier) {
     json openings = json::array();
-    for (const BarrierOpening& opening : shape.openings) {
-        openings.push_back(
-            {{"position_m", opening.position}, {"width_m", opening.width}, {"sill_height_m", opening.sill}});
-    }
+    for (const BarrierOpeningSpec& opening : barrier.openings) openings.push_back(values_json(opening));
     return openings;
 }
 
@@ -114,17 +107,13 @@ json write_setup(const Setup& setup) {
         file["releases"].push_back(std::move(entry));
     }
     for (const BarrierSetup& barrier : setup.barriers) {
-        file["barriers"].push_back({{"id", barrier.id},
-                                    {"name", barrier.body->name},
-                                    {"line", to_json(barrier.shape().line)},
-                                    {"height_m", barrier.shape().height},
-                                    {"crest_elevation_m", optional_json(barrier.shape().crest_elevation)},
-                                    {"thickness_m", barrier.shape().thickness},
-                                    {"openings", openings_json(barrier.shape())},
-                                    {"passing_share", optional_json(barrier.shape().passing_share)},
-                                    {"resistance_Npm", number_or_null<json>(barrier.body->resistance.force_per_metre)},
-                                    {"resistance_Pa", number_or_null<json>(barrier.body->resistance.pressure)},
-                                    {"from_scene", barrier.from_scene}});
+        json entry = values_json(barrier.shape());
+        entry.update({{"id", barrier.id},
+                      {"name", barrier.body->name},
+                      {"line", to_json(barrier.shape().line)},
+                      {"openings", openings_json(barrier.shape())},
+                      {"from_scene", barrier.from_scene}});
+        file["barriers"].push_back(std::move(entry));
     }
     for (const BuildingSetup& building : setup.buildings) {
         json entry = {{"id", building.id}};

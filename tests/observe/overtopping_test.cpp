@@ -1,8 +1,9 @@
+#include "observe/overtopping.hpp"
+
 #include <cmath>
 
 #include <gtest/gtest.h>
 
-#include "observe/overtopping.hpp"
 #include "observe/particles.hpp"
 #include "sim/physics/net.hpp"
 
@@ -13,7 +14,7 @@ using test::add_particle;
 using test::advance;
 
 /// From south to north through the middle of the test ground: what runs east crosses it from left to right.
-BarrierShape dam(std::vector<BarrierOpening> openings = {}) {
+BarrierSpec dam(std::vector<BarrierOpeningSpec> openings = {}) {
     return {{{1000, 1990}, {1000, 2010}}, 2, {}, 1, std::move(openings)};
 }
 
@@ -51,7 +52,7 @@ TEST(Overtopping, tells_what_goes_over_the_crest_from_what_goes_through_a_slot) 
 
 TEST(Overtopping, what_a_net_lets_through_below_its_crest_has_passed) {
     const Model model = test::make_model(0.4);
-    BarrierShape net = dam();
+    BarrierSpec net = dam();
     net.passing_share = 0.5;
     for (std::uint32_t id = 0; id < 20; ++id) {
         for (const float z : {0.2F, 1.9F, 2.1F}) {

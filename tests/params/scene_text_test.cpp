@@ -11,18 +11,25 @@ namespace {
 
 using testing::HasSubstr;
 
-TEST(SceneReference, TheCommittedPageIsTheGeneratedOne) {
-    const std::string file = std::string(TALUS_SOURCE_DIR) + "/docs/scene-reference.md";
+void expect_committed(const std::string& path, const std::string& option, const std::string& text) {
+    const std::string file = std::string(TALUS_SOURCE_DIR) + "/" + path;
     std::ifstream committed(file);
     ASSERT_TRUE(committed) << file;
-    std::istringstream generated(scene_reference_markdown());
+    std::istringstream generated(text);
     std::string expected, line;
     for (int number = 1; std::getline(generated, expected); ++number) {
         std::getline(committed, line);
-        ASSERT_EQ(line, expected) << file << ":" << number
-                                  << ": run talus scene reference --markdown > docs/scene-reference.md";
+        ASSERT_EQ(line, expected) << file << ":" << number << ": run talus scene reference " << option << " > " << path;
     }
-    EXPECT_FALSE(std::getline(committed, line)) << "the page goes on after the generated text";
+    EXPECT_FALSE(std::getline(committed, line)) << "the file goes on after the generated text";
+}
+
+TEST(SceneReference, TheCommittedPageIsTheGeneratedOne) {
+    expect_committed("docs/scene-reference.md", "--markdown", scene_reference_markdown());
+}
+
+TEST(SceneReference, TheCommittedTypeScriptIsTheGeneratedOne) {
+    expect_committed("web/src/protocol/schema.ts", "--typescript", scene_typescript());
 }
 
 TEST(SceneReference, NamesEveryKeyWithUnitDefaultAndRange) {

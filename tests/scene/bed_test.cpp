@@ -86,7 +86,8 @@ TEST_F(LoadBed, RefusesWhatDoesNotSayHowMuchThereIs) {
 
 TEST_F(LoadBed, RefusesALawWithoutItsNumber) {
     write_valley("[[bed]]\ndepth_m = 1\n");
-    EXPECT_THAT(load_error(), AllOf(HasSubstr("bed[0].law"), HasSubstr("needs growth_rate_per_m")));
+    EXPECT_THAT(load_error(),
+                AllOf(HasSubstr("bed[0].growth_rate_per_m: missing"), HasSubstr("law = \"growth\" needs it")));
     write_valley("[[bed]]\ndepth_m = 1\nlaw = \"shear\"\ngrowth_rate_per_m = 0.1\n");
     EXPECT_THAT(load_error(), AllOf(HasSubstr("scene.toml:10"), HasSubstr("is not for law = \"shear\"")));
     write_valley("[[bed]]\ndepth_m = 1\nlaw = \"wind\"\n");

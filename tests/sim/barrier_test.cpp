@@ -17,7 +17,7 @@ using testing::terrain_of;
 /// Level ground with a thin wall across it at x = 20, its slot 2 m wide around y = 20.
 Model walled(double spacing, bool slot) {
     const Terrain terrain = terrain_of(60, 40, 1, [](double, double) { return 10; });
-    BarrierShape shape{{{20, 2}, {21, 20}, {20, 38}}, 6, {}, 0.3, {}};
+    BarrierSpec shape{{{20, 2}, {21, 20}, {20, 38}}, 6, {}, 0.3, {}};
     if (slot) shape.openings = {{std::hypot(1, 18), 2, 0}};
     const auto wall = make_barrier(terrain, "wall", shape);
     EXPECT_TRUE(wall);

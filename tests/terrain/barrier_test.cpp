@@ -1,9 +1,9 @@
+#include "terrain/barrier.hpp"
+
 #include <cmath>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-
-#include "terrain/barrier.hpp"
 
 namespace talus {
 namespace {
@@ -22,7 +22,7 @@ Terrain slope() {
 }
 
 /// Across the slope at x = 1030, 30 m long.
-BarrierShape dam(std::vector<BarrierOpening> openings = {}) {
+BarrierSpec dam(std::vector<BarrierOpeningSpec> openings = {}) {
     return {{{1030, 2005}, {1030, 2035}}, 4, {}, 1, std::move(openings)};
 }
 
@@ -49,7 +49,7 @@ TEST(Barrier, is_open_to_the_ground_in_a_slot_and_to_its_sill_in_a_spillway) {
 
 TEST(Barrier, with_a_crest_elevation_is_level) {
     const Terrain terrain = slope();
-    BarrierShape shape = dam();
+    BarrierSpec shape = dam();
     shape.line = {{1020, 2020}, {1040, 2020}};  // down the slope: ground from 90 to 80 m
     shape.crest_elevation = 92;
     const auto made = make_barrier(terrain, "dam", shape);
@@ -64,7 +64,7 @@ TEST(Barrier, with_a_crest_elevation_is_level) {
 
 TEST(Barrier, refuses_openings_that_do_not_fit) {
     const Terrain terrain = slope();
-    const auto refusal = [&](std::vector<BarrierOpening> openings) {
+    const auto refusal = [&](std::vector<BarrierOpeningSpec> openings) {
         const auto made = make_barrier(terrain, "dam", dam(std::move(openings)));
         return made ? std::string("(made)") : made.error().message;
     };

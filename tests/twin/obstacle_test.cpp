@@ -210,7 +210,7 @@ TEST(Barrier, refuses_lines_that_make_no_wall) {
     EXPECT_THAT(refusal(*scenario, with("height_m", 0)),
                 HasSubstr("height_m = 0: must be a number above 0 to 200 (m)"));
     EXPECT_THAT(refusal(*scenario, with("thickness_m", 0.1)),
-                HasSubstr("thickness_m = 0.1: must be a number 0.3 to 100"));
+                HasSubstr("thickness_m = 0.1 is refused; with particles of 0.6 m it must be at least 0.3 m"));
     EXPECT_THAT(refusal(*scenario, with("line", {at(50, 20)})), HasSubstr("must be 2 to 500 points"));
     EXPECT_THAT(refusal(*scenario, with("line", {at(50, 20), at(-20, 20)})), HasSubstr("point 2"));
     EXPECT_THAT(refusal(*scenario, with("line", {at(50, 20), at(60, 20), at(50, 20.1)})), HasSubstr("turns by"));

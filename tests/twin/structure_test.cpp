@@ -8,13 +8,13 @@ namespace talus::twin::test {
 namespace {
 
 /// The channel with a house and a dam across it; both from the scene.
-Scene dammed_scene(double resistance = std::numeric_limits<double>::infinity()) {
+Scene dammed_scene(std::optional<double> resistance = {}) {
     Scene scene = channel_scene();
     add_building(scene, "hut", rectangle(west + 100, south + 26, west + 104, south + 30), 3);
-    const BarrierShape shape{{{west + 52, south + 8}, {west + 52, south + 52}}, 5, {}, 1.2, {{22, 2, 0}}};
-    auto dam = make_barrier(scene.terrain, "dam", shape);
+    BarrierSpec shape{{{west + 52, south + 8}, {west + 52, south + 52}}, 5, {}, 1.2, {{22, 2, 0}}};
+    shape.resistance_force = resistance;
+    const auto dam = make_barrier(scene.terrain, "dam", shape);
     EXPECT_TRUE(dam);
-    dam->resistance.force_per_metre = resistance;
     scene.buildings.push_back(*dam);
     return scene;
 }

@@ -1,13 +1,14 @@
 import { describe, expect, it } from "vitest";
-import { barrierChange, barrierNote, openingsWith } from "../src/state/barriers";
+import { fields } from "../src/protocol/schema";
+import { barrierNote, openingsWith } from "../src/state/barriers";
+import { shownAs, toldAs } from "../src/state/format";
 
 describe("barriers", () => {
-  it("are told in the server's units, and null takes away", () => {
-    expect(barrierChange.passing(35)).toEqual({ passing_share: 0.35 });
-    expect(barrierChange.passing(0)).toEqual({ passing_share: 0 });
-    expect(barrierChange.passing(null)).toEqual({ passing_share: null });
-    expect(barrierChange.resistance(0.2)).toEqual({ resistance_Npm: 200 });
-    expect(barrierChange.resistance(null)).toEqual({ resistance_Npm: null });
+  it("are told in the server's units", () => {
+    const { passing_share, resistance_Npm } = fields.barrier;
+    expect(toldAs(passing_share, 35)).toBe(0.35);
+    expect(shownAs(passing_share, 0.35)).toBe(35);
+    expect(toldAs(resistance_Npm, 0.2)).toBe(200);
   });
   it("change one number of one opening", () => {
     const openings = [{ position_m: 4, width_m: 2, sill_height_m: 0 }, { position_m: 9, width_m: 3, sill_height_m: 1 }];

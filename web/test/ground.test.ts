@@ -1,7 +1,9 @@
 import { describe, expect, it } from "vitest";
 import type { Bed, Inflow, Point, Setup, Zone } from "../src/protocol/messages";
 import { Relief } from "../src/scene/relief";
-import { bedNote, kilo, lawChange, stems, zoneNote } from "../src/state/ground";
+import { fields } from "../src/protocol/schema";
+import { shownAs, toldAs } from "../src/state/format";
+import { bedNote, lawChange, zoneNote } from "../src/state/ground";
 import { arrowAlong, arrowsOf, downhill_deg, hasDensity, inflowNote, peakOf, rowsAndOne, rowsOfDensity, rowsWith, rowsWithout, told, usualHydrograph, volumeOf } from "../src/state/inflows";
 import { groundUnder } from "../src/state/picking";
 import { canReshape, fewestPoints, hasOutline, itemOf, mostPoints, pointsOf, type Item } from "../src/state/shapes";
@@ -16,12 +18,11 @@ const inflow = (id: string, line: Point[] | null, polygons: Point[][][] = []): I
 
 describe("zones and beds", () => {
   it("are told in the server's units, without digits that say nothing", () => {
-    expect(stems.change(300)).toEqual({ stem_density_pm2: 0.03 });
-    expect(stems.change(null)).toEqual({ stem_density_pm2: 0 });
-    expect(stems.perHectare({ stem_density_pm2: 0.07 })).toBe(700);
-    expect(stems.perHectare({ stem_density_pm2: 0 })).toBeNull();
-    expect(kilo.to(0.3)).toBe(300);
-    expect(kilo.from(kilo.to(1.1))).toBe(1.1);
+    const { stem_density_pm2, cohesion_Pa } = fields.zone;
+    expect(toldAs(stem_density_pm2, 300)).toBe(0.03);
+    expect(shownAs(stem_density_pm2, 0.07)).toBe(700);
+    expect(toldAs(cohesion_Pa, 0.3)).toBe(300);
+    expect(shownAs(cohesion_Pa, toldAs(cohesion_Pa, 1.1))).toBe(1.1);
   });
   it("say in a list what is different", () => {
     const plain = zone("a", []);

@@ -1,8 +1,9 @@
-// What only barriers have: meshes that make a net of one, the load that it bears, openings.
+// Barriers: every key of the field table that has a form, and openings.
 import type { BarrierOpening } from "../protocol/messages";
-import { barrierChange, openingsWith, type BarrierSet } from "../state/barriers";
+import { fields as described } from "../protocol/schema";
+import { openingsWith, type BarrierSet } from "../state/barriers";
 import { button, h } from "../ui/dom";
-import { optionalField } from "../ui/optional_field";
+import { valueField } from "../ui/value_field";
 
 export interface BarrierFields {
   element: HTMLElement;
@@ -15,12 +16,8 @@ export function barrierFields(value: BarrierSet, narrowest_m: number, onset: (ch
   let openings: readonly BarrierOpening[] = value.openings ?? [];
   let length = 0;
   let hindered: string | null = null;
-  const net = optionalField("Net", "Lets the finer share of the debris through its meshes and holds the rest", 50,
-    { label: "Passes the meshes", unit: "%", low: 0, high: 99.9, sliderLow: 0, sliderHigh: 95, value: null, help: "Share of the debris, by volume, in grains smaller than the meshes" },
-    (v) => onset(barrierChange.passing(v)));
-  const load = optionalField("Fails under load", "Beyond this mean force on its line it is gone", 200,
-    { label: "Resistance", unit: "kN/m", low: 0.001, high: 1e6, sliderLow: 10, sliderHigh: 1000, value: null, help: "Filtered force per metre of the line" },
-    (v) => onset(barrierChange.resistance(v)));
+  const keys = Object.keys(described.barrier) as (keyof typeof described.barrier)[];
+  const values = keys.map((key) => ({ key, field: valueField(described.barrier[key], null, (v) => onset({ [key]: v })) }));
   const list = h("div", { class: "corners" });
   const add = button("Add an opening", { class: "small", onclick: () => {
     openings = [...openings, { position_m: Number((length / 2).toFixed(2)), width_m: Math.max(2, narrowest_m), sill_height_m: 0 }];
@@ -41,19 +38,17 @@ export function barrierFields(value: BarrierSet, narrowest_m: number, onset: (ch
     }));
   };
   const fields: BarrierFields = {
-    element: h("div", {}, net.element, load.element,
+    element: h("div", {}, ...values.map(({ field }) => field.element),
       h("details", {}, h("summary", {}, "Openings"), h("p", { class: "hint" }, "Middle along the line, width, height of the sill, in metres."), list, add)),
     show(fresh, length_m) {
-      net.show(fresh.passing_share === null || fresh.passing_share === undefined ? null : 100 * fresh.passing_share);
-      load.show(fresh.resistance_Npm === null || fresh.resistance_Npm === undefined ? null : fresh.resistance_Npm / 1000);
+      for (const { key, field } of values) field.show(fresh[key]);
       openings = fresh.openings ?? [];
       length = length_m;
       refill();
     },
     enable(hindrance) {
       hindered = hindrance;
-      net.enable(hindrance);
-      load.enable(hindrance);
+      for (const { field } of values) field.enable(hindrance);
       add.disabled = hindrance !== null;
       refill();
     },

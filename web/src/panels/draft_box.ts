@@ -3,10 +3,10 @@ import type { Drawing } from "../scene/drawing";
 import { number, quantity } from "../state/format";
 import { area, drawnAsLine, fewestPoints, length, releaseVolume } from "../state/shapes";
 import type { Shape, Twin } from "../state/twin";
+import { fields as described, type FieldDescription } from "../protocol/schema";
 import { choice } from "../ui/choice";
 import { button, h } from "../ui/dom";
-import { depthField, growthField } from "./bed_fields";
-import { heightField, thicknessField } from "./shape_fields";
+import { valueField } from "../ui/value_field";
 import { newZoneFields } from "./zone_fields";
 
 function howTo(shape: Shape, byLine: boolean): string {
@@ -18,28 +18,27 @@ function howTo(shape: Shape, byLine: boolean): string {
 /** Fields for what a new shape begins with; its other keys come when it is there. */
 function newFields(twin: Twin, shape: Shape, changed: () => void): HTMLElement[] {
   const sizes = twin.newShape;
+  /** A field for one of the sizes. */
+  const field = <Values extends object>(about: FieldDescription, values: Values, key: keyof Values & string): HTMLElement =>
+    valueField(about, values[key] as number, (v) => {
+      Object.assign(values, { [key]: v });
+      changed();
+    }).element;
   switch (shape) {
     case "release":
-      return [thicknessField("release", sizes.release.thickness_m, (v) => {
-        sizes.release.thickness_m = v;
-        changed();
-      }).element];
+      return [field(described.release.thickness_m, sizes.release, "thickness_m")];
     case "barrier":
-      return [heightField("barrier", sizes.barrier.height_m, (v) => (sizes.barrier.height_m = v)).element,
-        thicknessField("barrier", sizes.barrier.thickness_m, (v) => (sizes.barrier.thickness_m = v)).element,
+      return [field(described.barrier.height_m, sizes.barrier, "height_m"), field(described.barrier.thickness_m, sizes.barrier, "thickness_m"),
         h("label", { class: "check", title: "Half of the debris passes its meshes at first; the share is in its editor" },
           h("input", { type: "checkbox", onchange: (event: Event) => {
             sizes.barrier.passing_share = (event.currentTarget as HTMLInputElement).checked ? 0.5 : null;
           } }), "Net")];
     case "building":
-      return [heightField("building", sizes.building.height_m, (v) => (sizes.building.height_m = v)).element];
+      return [field(described.buildings.height_m, sizes.building, "height_m")];
     case "zone":
       return [newZoneFields((zone) => (sizes.zone = zone))];
     case "bed":
-      return [depthField(sizes.bed.depth_m, (v) => {
-        sizes.bed.depth_m = v;
-        changed();
-      }).element, growthField(sizes.bed.growth_rate_per_m, (v) => (sizes.bed.growth_rate_per_m = v)).element];
+      return [field(described.bed.depth_m, sizes.bed, "depth_m"), field(described.bed.growth_rate_per_m, sizes.bed, "growth_rate_per_m")];
     case "inflow":
       return [choice("Where debris comes in", [["line", "Across a line"], ["area", "Over an area"]], "line", (where) => {
         twin.inflowByLine.value = where === "line";

@@ -1,10 +1,11 @@
 // What only inflows have: the hydrograph as a table and a chart, and the way in which debris comes.
 import { Chart } from "../charts/chart";
 import type { HydrographRow, Inflow } from "../protocol/messages";
+import { fields as described } from "../protocol/schema";
 import { hasDensity, rowsAndOne, rowsOfDensity, rowsWith, rowsWithout, told, type HydrographKey } from "../state/inflows";
 import { unitText } from "../state/format";
 import { button, h } from "../ui/dom";
-import { optionalField } from "../ui/optional_field";
+import { valueField } from "../ui/value_field";
 
 export interface InflowFields {
   element: HTMLElement;
@@ -34,8 +35,7 @@ export function inflowFields(inflow: Inflow, downhill_deg: number, restDensity: 
   const add = button("Add a row", { class: "small", icon: "plus", onclick: () => put(rowsAndOne(rows)) });
   const density = h("input", { type: "checkbox", onchange: () => put(rowsOfDensity(rows, density.checked ? restDensity : null)) });
   const turn = button("Turn round", { class: "small", title: "Debris goes to the other side of the line", onclick: () => onset({ turn: true }) });
-  const direction = optionalField("Set direction", "Where debris moves as it comes in; unticked: downhill", downhill_deg,
-    { label: "Clockwise from north", unit: "deg", low: 0, high: 359.999, sliderLow: 0, sliderHigh: 359, value: null, help: "0 is north, 90 east" }, (v) => onset({ direction_deg: v }));
+  const direction = valueField({ ...described.inflow.direction_deg, first: downhill_deg }, null, (direction_deg) => onset({ direction_deg }));
   const long = h("p", { class: "hint" }, "Its hydrograph has more than 200 rows: it stays as the scene's file has it.");
   const form = h("div", {}, table, h("div", { class: "row" }, add, h("label", { class: "check", title: "Else the debris has the material's rest density" }, density, "Density")), chart.element);
 

@@ -1,5 +1,6 @@
 // JSON of docs/protocol.md.
 import type { ScenarioName } from "./frame";
+import type { BarrierOpeningValues, BarrierValues, BedValues, BuildingsValues, InflowValues, ReleaseValues, ZoneValues } from "./schema";
 
 export type Point = [number, number];
 export type Place = [number, number, number];
@@ -83,75 +84,51 @@ export interface State {
   hash?: string;
 }
 
-export interface Release {
+export interface Release extends ReleaseValues {
   id: string;
   name: string;
   polygons: Point[][];
-  thickness_m: number | null;
   volume_m3: number;
   from_scene: boolean;
   status: "held" | "released";
   start_time_s: number | null;
 }
-export interface BarrierOpening { position_m: number; width_m: number; sill_height_m: number }
-export interface Barrier {
+export type BarrierOpening = BarrierOpeningValues;
+export interface Barrier extends BarrierValues {
   id: string;
   name: string;
   line: Point[];
+  /** The mean of a level crest. */
   height_m: number;
-  /** Of a level crest; height_m is then a mean. */
-  crest_elevation_m: number | null;
-  thickness_m: number;
   openings: BarrierOpening[];
-  /** What a net lets through; null: a wall. */
-  passing_share: number | null;
-  /** null: it stands whatever happens. */
-  resistance_Npm: number | null;
-  resistance_Pa: number | null;
   crest_length_m: number;
   from_scene: boolean;
 }
-export interface Building {
+export interface Building extends BuildingsValues {
   id: string;
   name: string;
   /** Polygons, each with its outer ring first. */
   footprint: Point[][][];
-  height_m: number;
   base_m: number;
   roof_m: number;
   from_scene: boolean;
 }
-/** Ground that resists in its own way; null: as elsewhere. */
-export interface Zone {
+export interface Zone extends ZoneValues {
   id: string;
   name: string;
   /** Each with its outer ring first; none: it comes from a raster and has no outline. */
   polygons: Point[][][];
   area_m2: number;
-  friction_coefficient: number | null;
-  turbulent_friction_mps2: number | null;
-  cohesion_Pa: number | null;
-  /** 0: no forest. */
-  stem_density_pm2: number;
-  stem_diameter_m: number;
-  stem_drag_coefficient: number;
   from_scene: boolean;
 }
-/** Loose material that debris picks up. */
-export interface Bed {
+/** Its depth is null where it differs from place to place. */
+export interface Bed extends BedValues {
   id: string;
   name: string;
   /** None: it comes from a raster, or lies everywhere. */
   polygons: Point[][][];
   area_m2: number;
   volume_m3: number;
-  /** null: it differs from place to place. */
-  depth_m: number | null;
-  law: "growth" | "shear";
-  growth_rate_per_m: number | null;
-  critical_shear_stress_Pa: number;
-  erosion_rate_mps: number;
-  erosion_depth_mpPa: number;
   from_scene: boolean;
   /** false: changed, it holds from the next restart. */
   in_force: boolean;
@@ -159,13 +136,11 @@ export interface Bed {
 /** density_kgpm3: null or left out is the material's rest density. */
 export interface HydrographRow { time_s: number; discharge_m3ps: number; velocity_mps: number; density_kgpm3?: number | null }
 /** Debris that comes in while the run goes on: to the right of a line, seen along it, or all over an area. */
-export interface Inflow {
+export interface Inflow extends InflowValues {
   id: string;
   name: string;
   line: Point[] | null;
   polygons: Point[][][];
-  /** Clockwise from north; null: downhill. */
-  direction_deg: number | null;
   /** null: too long to be edited here. */
   hydrograph: HydrographRow[] | null;
   volume_m3: number;
@@ -283,15 +258,12 @@ export type Action =
   | { action: "set_parameter"; key: string; value: number }
   | { action: "set_parameters"; values: Record<string, number> }
   // With an id just what changes has to be given.
-  | { action: "put_release"; id?: string; name?: string; polygon?: Point[]; move_m?: Point; thickness_m?: number }
-  | { action: "put_barrier"; id?: string; name?: string; line?: Point[]; height_m?: number; thickness_m?: number;
-      passing_share?: number | null; openings?: BarrierOpening[]; resistance_Npm?: number | null; resistance_Pa?: number | null }
-  | { action: "put_building"; id?: string; name?: string; footprint?: Point[]; move_m?: Point; height_m?: number }
-  | { action: "put_zone"; id?: string; name?: string; polygon?: Point[]; move_m?: Point; friction_coefficient?: number | null; turbulent_friction_mps2?: number | null;
-      cohesion_Pa?: number | null; stem_density_pm2?: number; stem_diameter_m?: number; stem_drag_coefficient?: number }
-  | { action: "put_bed"; id?: string; name?: string; polygon?: Point[]; move_m?: Point; depth_m?: number | null; law?: Bed["law"]; growth_rate_per_m?: number | null;
-      critical_shear_stress_Pa?: number; erosion_rate_mps?: number; erosion_depth_mpPa?: number }
-  | { action: "put_inflow"; id?: string; name?: string; line?: Point[]; polygon?: Point[]; move_m?: Point; direction_deg?: number | null; hydrograph?: HydrographRow[] }
+  | { action: "put_release"; id?: string; name?: string; polygon?: Point[]; move_m?: Point } & Partial<ReleaseValues>
+  | { action: "put_barrier"; id?: string; name?: string; line?: Point[]; openings?: BarrierOpening[] } & Partial<BarrierValues>
+  | { action: "put_building"; id?: string; name?: string; footprint?: Point[]; move_m?: Point } & Partial<BuildingsValues>
+  | { action: "put_zone"; id?: string; name?: string; polygon?: Point[]; move_m?: Point } & Partial<ZoneValues>
+  | { action: "put_bed"; id?: string; name?: string; polygon?: Point[]; move_m?: Point } & Partial<BedValues>
+  | { action: "put_inflow"; id?: string; name?: string; line?: Point[]; polygon?: Point[]; move_m?: Point; hydrograph?: HydrographRow[] } & Partial<InflowValues>
   | { action: "trigger_release" | "remove_release" | "remove_barrier" | "remove_building" | "remove_zone" | "remove_bed" | "remove_inflow"; id: string };
 export interface Done { done: string; created: string | null }
 

@@ -1,14 +1,8 @@
-// What barriers have beside their line and sizes, as the page tells the server.
+// What barriers have beside their line, as the page tells the server.
 import type { Barrier, BarrierOpening } from "../protocol/messages";
+import type { BarrierValues } from "../protocol/schema";
 
-/** null: none. */
-export type BarrierSet = Partial<Pick<Barrier, "passing_share" | "openings" | "resistance_Npm">>;
-
-export const barrierChange = {
-  /** Percent as in the form; to four digits, or 35 would become 0.35000000000000003. */
-  passing: (percent: number | null): BarrierSet => ({ passing_share: percent === null ? null : Number((percent / 100).toPrecision(4)) }),
-  resistance: (kilonewton: number | null): BarrierSet => ({ resistance_Npm: kilonewton === null ? null : Number((kilonewton * 1000).toPrecision(6)) }),
-};
+export type BarrierSet = Partial<BarrierValues & Pick<Barrier, "openings">>;
 
 /** The openings with one number of one of them changed; as they are where that is no number. */
 export function openingsWith(openings: readonly BarrierOpening[], index: number, key: keyof BarrierOpening, value: number): BarrierOpening[] {

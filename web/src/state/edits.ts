@@ -24,8 +24,9 @@ export async function create(twin: Twin, shape: Shape, points: readonly Point[])
   if (done?.created) twin.selection.value = { shape, id: done.created };
 }
 
-export interface Change extends BarrierSet, ZoneSet, BedSet {
-  points?: readonly Point[]; move_m?: Point; name?: string; thickness_m?: number; height_m?: number; direction_deg?: number | null; hydrograph?: HydrographRow[];
+/** Sizes that several shapes have may be null here; the server says of which it is none. */
+export interface Change extends Omit<BarrierSet, "thickness_m" | "height_m">, ZoneSet, BedSet {
+  points?: readonly Point[]; move_m?: Point; name?: string; thickness_m?: number | null; height_m?: number | null; direction_deg?: number | null; hydrograph?: HydrographRow[];
 }
 
 /** Sends just what changes: all else stays as it is. */
@@ -34,7 +35,7 @@ export async function change(twin: Twin, item: Item, what: Change): Promise<bool
   const by = move_m === undefined ? {} : { move_m: rounded([move_m])[0] };
   const key = lineOf(item) ? "line" : item.shape === "building" ? "footprint" : "polygon";
   const outline = points === undefined ? {} : { [key]: rounded(points) };
-  return (await twin.act({ action: `put_${item.shape}`, id: item.id, ...sizes, ...by, ...outline })) !== null;
+  return (await twin.act({ action: `put_${item.shape}`, id: item.id, ...sizes, ...by, ...outline } as Action)) !== null;
 }
 
 export async function remove(twin: Twin, item: Item): Promise<void> {

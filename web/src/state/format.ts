@@ -1,4 +1,5 @@
 // Numbers with their units, as the page writes them everywhere.
+import type { FieldDescription } from "../protocol/schema";
 const nothing = "–";
 
 /** Unit as it is shown: kg/m3 becomes kg/m³. */
@@ -39,3 +40,9 @@ export function bytes(value: number | null): string {
   }
   return quantity(value, "B");
 }
+
+/** Factors of ten: without rounding, 0.3 would become 0.30000000000000004. */
+const tidy = (value: number): number => Number(value.toPrecision(6));
+/** Between the server's unit and the form's. */
+export const shownAs = (about: FieldDescription, value: number): number => tidy(value * about.factor);
+export const toldAs = (about: FieldDescription, value: number): number => tidy(value / about.factor);

@@ -5,6 +5,8 @@ import { Live, type Connection } from "../protocol/live";
 import type { Action, CalibrationStatus, Done, Ensemble, Impacts, Person, Place, Point, ProbeSeries, SceneInfo, Series, ServerMessage, Session, Setup, ShownLayer, State, You } from "../protocol/messages";
 import type { Relief } from "../scene/relief";
 import { Cell } from "./cell";
+import { fields } from "../protocol/schema";
+import type { BarrierSet } from "./barriers";
 import { usualBed, usualZone, type ZoneSet } from "./ground";
 import { usualHydrograph } from "./inflows";
 import { stateAt } from "./past";
@@ -57,8 +59,9 @@ export class Twin {
   readonly tool = new Cell<Tool>({ kind: "none" });
   readonly selection = new Cell<Selection | null>(null);
   /** Thickness, height and so on that the next drawn shape gets. */
-  readonly newShape = { release: { thickness_m: 1.5 }, barrier: { height_m: 3, thickness_m: 1, passing_share: null as number | null }, building: { height_m: 6 },
-    zone: { ...usualZone.friction } as ZoneSet, bed: { ...usualBed }, inflow: { hydrograph: usualHydrograph } };
+  readonly newShape = { release: { thickness_m: fields.release.thickness_m.first as number },
+    barrier: { height_m: fields.barrier.height_m.first, thickness_m: fields.barrier.thickness_m.first, passing_share: null } as BarrierSet,
+    building: { height_m: fields.buildings.height_m.first as number }, zone: { ...usualZone.friction } as ZoneSet, bed: { ...usualBed }, inflow: { hydrograph: usualHydrograph } };
   /** Whether the next inflow is drawn as a line; else as an area. */
   readonly inflowByLine = new Cell(true);
   readonly probes = new Cell<readonly Probe[]>([]);

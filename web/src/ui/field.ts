@@ -46,7 +46,7 @@ export function numberField(options: NumberFieldOptions): NumberField {
   };
   const set = (value: number): void => {
     if (!Number.isFinite(value) || value < options.low || value > options.high) {
-      complain(`${options.label} is ${Number.isFinite(value) ? text(value) : "no number"}; allowed is ${text(options.low)} to ${text(options.high)} ${unitText(options.unit)}`.trim());
+      complain(`${options.label} is ${Number.isFinite(value) ? text(value) : "no number"}; allowed is ${options.high === Infinity ? `at least ${text(options.low)}` : `${text(options.low)} to ${text(options.high)}`} ${unitText(options.unit)}`.trim());
       return;
     }
     complain(null);

@@ -1,0 +1,12 @@
+#pragma once
+
+#include <string>
+
+namespace talus::serve {
+
+/// The description of the API: openapi.json, with the keys of sections as the field table declares them. In it an
+/// object with "x-section": "barrier" has the values of that section that can change while a run goes on;
+/// with "x-section-input" it takes them; "x-actions" does so for the sections of several actions.
+[[nodiscard]] const std::string& openapi_document();
+
+}  // namespace talus::serve

@@ -1,0 +1,191 @@
+// Generated from the field table by `talus scene reference --typescript`; a test keeps it current.
+
+/** A body of debris that starts to move at one moment; a scene needs one, or an inflow. */
+export interface ReleaseValues {
+  /** Uniform thickness, normal to the slope. null: one of the other three is given. */
+  thickness_m: number | null;
+}
+
+/** Debris that comes in while the run goes on, any number of them: across a straight line, at right angles to it and towards its right, or all over an area, such as a slope that rain wears down. */
+export interface InflowValues {
+  /** Over an area: where the debris moves as it comes in, clockwise from north. null: down the slope. */
+  direction_deg: number | null;
+}
+
+/** Loose material on the ground that debris picks up where it moves over it. */
+export interface BedValues {
+  /** Uniform depth of the bed, vertical; debris picks up no more. null: one of the other two is given. */
+  depth_m: number | null;
+  /** How debris picks it up: growth adds a share of its volume per metre that it moves (McDougall & Hungr 2005); shear goes by the shear stress on the bed (Frank et al. 2015). */
+  law: "growth" | "shear";
+  /** Share of its volume that debris picks up per metre: ln(volume after / volume before) over the length of the bed. null: law = "growth" needs it, and law = "shear" does not have it. */
+  growth_rate_per_m: number | null;
+  /** With law = "shear": less shear stress, rest density x gravity x depth x sine of the slope, picks up nothing. */
+  critical_shear_stress_Pa: number;
+  /** With law = "shear": how fast the bed is lowered. */
+  erosion_rate_mps: number;
+  /** With law = "shear": how deep at most, per shear stress above the critical one. */
+  erosion_depth_mpPa: number;
+}
+
+/** Solid obstacles with vertical walls and flat roofs. */
+export interface BuildingsValues {
+  /** Height above the ground where the attribute is absent, empty or not above zero; counted as assumed. */
+  height_m: number;
+}
+
+/** A wall, a dam or a net along a line; any number. */
+export interface BarrierValues {
+  /** Height above the ground under the line: the crest follows the ground. null: crest_elevation_m is given. */
+  height_m: number | null;
+  /** Elevation of a level crest. null: height_m is given. */
+  crest_elevation_m: number | null;
+  /** Thickness across the line; at least half a particle spacing. */
+  thickness_m: number;
+  /** Makes it a net: the share of the debris, by volume, in grains that pass its meshes (the percentage passing at the size of the opening, over 100). The others are held as by a wall. null: it is a wall. */
+  passing_share: number | null;
+  /** Filtered force per metre of the line above which it is destroyed: it is gone from then on. null: it stands whatever happens. */
+  resistance_Npm: number | null;
+  /** Filtered pressure above which it is destroyed. null: it stands whatever happens. */
+  resistance_Pa: number | null;
+}
+
+/** A slot or a spillway in a barrier, as check dams have; any number. */
+export interface BarrierOpeningValues {
+  /** Distance of its middle along the barrier's line from its first place. */
+  position_m: number;
+  /** Width along the line; at least two particle spacings, or nothing gets through. */
+  width_m: number;
+  /** How much of the barrier stands there, above the ground; 0: open to the ground. */
+  sill_height_m: number;
+}
+
+/** What moves. */
+export interface MaterialValues {
+  /** Coulomb friction on the ground (tangent of the friction angle), and on buildings and inside unless set apart. */
+  friction_coefficient: number;
+  /** Coulomb friction on the walls and roofs of buildings. null: equal to friction_coefficient. */
+  building_friction_coefficient: number | null;
+  /** Coulomb friction of debris on debris. null: equal to friction_coefficient. */
+  internal_friction_coefficient: number | null;
+  /** Share of the velocity difference to its neighbours that debris loses per 1/60 s, whatever the time step. The same share is another material at another particle spacing; kinematic_viscosity_m2ps is not. */
+  viscosity: number;
+  /** Voellmy's xi: flow of thickness h is slowed by g v2 / (xi h) beside Coulomb friction. null: no such drag. */
+  turbulent_friction_mps2: number | null;
+  /** Shear strength that needs no pressure, on the ground and inside: the yield stress of a mud where friction is 0. */
+  cohesion_Pa: number;
+  /** r_u, pore pressure over the total normal stress when debris starts: friction on ground, buildings and inside is 1 - r_u of what it is in dry debris. */
+  pore_pressure_ratio: number;
+  /** Bulk density of the debris. */
+  rest_density_kgpm3: number;
+}
+
+/** Ground that resists in its own way. A cell of the terrain belongs to it when its centre does. What a zone does not say is as elsewhere; later zones go before earlier ones. */
+export interface ZoneValues {
+  /** Coulomb friction on this ground. null: as elsewhere. */
+  friction_coefficient: number | null;
+  /** Voellmy's xi on this ground; lower is rougher. null: as elsewhere. */
+  turbulent_friction_mps2: number | null;
+  /** Shear strength without pressure between debris and this ground. null: as elsewhere. */
+  cohesion_Pa: number | null;
+  /** Stems of a forest per square metre that stand the flow; each drags on it as a cylinder. */
+  stem_density_pm2: number;
+  /** Diameter of a stem. */
+  stem_diameter_m: number;
+  /** Drag coefficient of a stem across the flow. */
+  stem_drag_coefficient: number;
+}
+
+/** How a form shows a value: times `factor`, in this unit. `first`: what it begins with; `tick`: the label of the box that gives it and takes it away. */
+export interface FieldDescription {
+  label: string; unit: string; factor: number; low: number; high: number; sliderLow: number; sliderHigh: number; first: number;
+  tick: string | null; tickHelp: string; help: string;
+}
+
+/** By section and key. */
+export const fields = {
+  release: {
+    thickness_m: {
+      label: "Thickness", unit: "m", factor: 1, low: 0.0001, high: 1000, sliderLow: 0.1, sliderHigh: 10, first: 1.5,
+      tick: null, tickHelp: "", help: "Uniform thickness, normal to the slope.",
+    },
+  },
+  inflow: {
+    direction_deg: {
+      label: "Clockwise from north", unit: "deg", factor: 1, low: 0, high: 359.99, sliderLow: 0, sliderHigh: 359, first: 0,
+      tick: "Set direction", tickHelp: "Where debris moves as it comes in; unticked: downhill", help: "Over an area: where the debris moves as it comes in, clockwise from north.",
+    },
+  },
+  bed: {
+    depth_m: {
+      label: "Depth", unit: "m", factor: 1, low: 0.0001, high: 100, sliderLow: 0.1, sliderHigh: 5.1, first: 1,
+      tick: null, tickHelp: "", help: "Uniform depth of the bed, vertical; debris picks up no more.",
+    },
+    growth_rate_per_m: {
+      label: "Growth rate", unit: "1/m", factor: 1, low: 1e-06, high: 1, sliderLow: 0.0005, sliderHigh: 0.0505, first: 0.005,
+      tick: null, tickHelp: "", help: "Share of its volume that debris picks up per metre: ln(volume after / volume before) over the length of the bed.",
+    },
+    critical_shear_stress_Pa: {
+      label: "Critical shear stress", unit: "kPa", factor: 0.001, low: 0, high: Infinity, sliderLow: 0, sliderHigh: 5, first: 1,
+      tick: null, tickHelp: "", help: "With law = \"shear\": less shear stress, rest density x gravity x depth x sine of the slope, picks up nothing.",
+    },
+    erosion_rate_mps: {
+      label: "Erosion rate", unit: "m/s", factor: 1, low: 1e-05, high: 10, sliderLow: 0.001, sliderHigh: 0.101, first: 0.025,
+      tick: null, tickHelp: "", help: "With law = \"shear\": how fast the bed is lowered.",
+    },
+    erosion_depth_mpPa: {
+      label: "Erosion depth", unit: "m/kPa", factor: 1000, low: 0.0001, high: 1000, sliderLow: 0.01, sliderHigh: 1.01, first: 0.1,
+      tick: null, tickHelp: "", help: "With law = \"shear\": how deep at most, per shear stress above the critical one.",
+    },
+  },
+  buildings: {
+    height_m: {
+      label: "Height", unit: "m", factor: 1, low: 0.001, high: 1000, sliderLow: 0.5, sliderHigh: 40, first: 6,
+      tick: null, tickHelp: "", help: "Height above the ground where the attribute is absent, empty or not above zero; counted as assumed.",
+    },
+  },
+  barrier: {
+    height_m: {
+      label: "Height", unit: "m", factor: 1, low: 0.001, high: 200, sliderLow: 0.5, sliderHigh: 15, first: 3,
+      tick: null, tickHelp: "", help: "Height above the ground under the line: the crest follows the ground.",
+    },
+    thickness_m: {
+      label: "Thickness", unit: "m", factor: 1, low: 0.0001, high: 100, sliderLow: 0.1, sliderHigh: 5, first: 1,
+      tick: null, tickHelp: "", help: "Thickness across the line; at least half a particle spacing.",
+    },
+    passing_share: {
+      label: "Passes the meshes", unit: "%", factor: 100, low: 0, high: 99.999, sliderLow: 0, sliderHigh: 95, first: 50,
+      tick: "Net", tickHelp: "Lets the finer share of the debris through its meshes and holds the rest", help: "Makes it a net: the share of the debris, by volume, in grains that pass its meshes (the percentage passing at the size of the opening, over 100). The others are held as by a wall.",
+    },
+    resistance_Npm: {
+      label: "Resistance", unit: "kN/m", factor: 0.001, low: 0.01, high: Infinity, sliderLow: 10, sliderHigh: 1000, first: 200,
+      tick: "Fails under load", tickHelp: "Beyond this mean force on its line it is gone", help: "Filtered force per metre of the line above which it is destroyed: it is gone from then on.",
+    },
+  },
+  zone: {
+    friction_coefficient: {
+      label: "Coefficient", unit: "", factor: 1, low: 0, high: 10, sliderLow: 0.05, sliderHigh: 1.05, first: 0.4,
+      tick: "Friction", tickHelp: "Coulomb friction of its own; unticked: as elsewhere", help: "Coulomb friction on this ground.",
+    },
+    turbulent_friction_mps2: {
+      label: "Voellmy's ξ", unit: "m/s2", factor: 1, low: 0.1, high: Infinity, sliderLow: 100, sliderHigh: 2100, first: 500,
+      tick: "Turbulent friction", tickHelp: "Voellmy's turbulent friction of its own; unticked: as elsewhere", help: "Voellmy's xi on this ground; lower is rougher.",
+    },
+    cohesion_Pa: {
+      label: "Shear strength", unit: "kPa", factor: 0.001, low: 0, high: Infinity, sliderLow: 0, sliderHigh: 10, first: 1,
+      tick: "Cohesion", tickHelp: "Cohesion of its own; unticked: as elsewhere", help: "Shear strength without pressure between debris and this ground.",
+    },
+    stem_density_pm2: {
+      label: "Stems", unit: "1/ha", factor: 10000, low: 0, high: Infinity, sliderLow: 50, sliderHigh: 1550, first: 400,
+      tick: "Forest", tickHelp: "Stems that drag on the flow", help: "Stems of a forest per square metre that stand the flow; each drags on it as a cylinder.",
+    },
+    stem_diameter_m: {
+      label: "Stem diameter", unit: "m", factor: 1, low: 0.0001, high: 100, sliderLow: 0.05, sliderHigh: 1.05, first: 0.3,
+      tick: null, tickHelp: "", help: "Diameter of a stem.",
+    },
+    stem_drag_coefficient: {
+      label: "Drag coefficient", unit: "", factor: 1, low: 0, high: Infinity, sliderLow: 0, sliderHigh: 3, first: 1,
+      tick: null, tickHelp: "", help: "Drag coefficient of a stem across the flow.",
+    },
+  },
+} as const satisfies Record<string, Record<string, FieldDescription>>;
