@@ -52,6 +52,13 @@ Overtopping::Overtopping(const Model& model, const BarrierSpec& shape)
         openings_.push_back({opening.position - opening.width / 2, opening.position + opening.width / 2,
                              shape.crest_elevation.value_or(ground + shape.height.value_or(0)) - origin.z});
     }
+    if (shape.clearance) {  // the gap below follows the ground: a row of openings, a metre wide each
+        const double length = length_of(shape.line);
+        for (double chainage = 0; chainage < length; ++chainage) {
+            const double ground = model.terrain.elevation_at(point_at(shape.line, std::min(chainage + 0.5, length)));
+            openings_.push_back({chainage - 1e-3, chainage + 1, ground + *shape.clearance - origin.z});
+        }
+    }
     if (shape.passing_share) {
         passing_share_ = static_cast<float>(*shape.passing_share);
         const double length = length_of(shape.line);

@@ -211,6 +211,15 @@ Section declare_barrier() {
                   .tick_help = "Lets the finer share of the debris through its meshes and holds the rest",
                   .unit = "%",
                   .factor = 100});
+    s.optional_key("clearance_m", "m", &BarrierSpec::clearance, above_to(0, 100), "it reaches the ground",
+                   "Height above the ground of the gap below it, as nets hang across a torrent: debris passes freely "
+                   "there; at least one particle spacing, or nothing gets through.")
+        .live_in({.label = "Clearance",
+                  .slider_low = 0.1,
+                  .slider_high = 3,
+                  .first = 0.5,
+                  .tick = "Gap below",
+                  .tick_help = "It hangs above the ground: debris passes below it"});
     s.optional_key("resistance_Npm", "N/m", &BarrierSpec::resistance_force, above(0), "it stands whatever happens",
                    "Filtered force per metre of the line above which it is destroyed: it is gone from then on.")
         .live_in({.label = "Resistance",
@@ -224,6 +233,19 @@ Section declare_barrier() {
         .live_as();
     s.exactly_one_of({"line_m", "file"});
     s.exactly_one_of({"height_m", "crest_elevation_m"});
+    s.rule([](const BarrierSpec& barrier, const SceneSpec&, double spacing) -> std::optional<Violation> {
+        if (!barrier.clearance) return {};
+        const double gap = *barrier.clearance;
+        if (gap < spacing) {
+            return Violation{"clearance_m",
+                             fmt::format(" = {:.6g} is refused; with particles of {:.3g} m it must be at least that: "
+                                         "nothing would get through a lower gap; smaller particles allow less",
+                                         gap, spacing)};
+        }
+        if (gap < barrier.height.value_or(gap + 1)) return {};
+        return Violation{"clearance_m",
+                         fmt::format(" = {:.6g} is refused; it must be below height_m = {:.6g}", gap, *barrier.height)};
+    });
     s.rule([](const BarrierSpec& barrier, const SceneSpec&, double spacing) -> std::optional<Violation> {
         if (barrier.thickness >= spacing / 2) return {};
         return Violation{"thickness_m",

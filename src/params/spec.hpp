@@ -103,6 +103,7 @@ struct BarrierSpec {
     double thickness = 1;                         ///< m across the line
     std::vector<BarrierOpeningSpec> openings{};   ///< a section of their own in a scene file
     std::optional<double> passing_share{};        ///< of a net; absent: it has no meshes
+    std::optional<double> clearance{};            ///< m, of the gap below it; absent: it stands on the ground
     std::optional<double> resistance_force{};     ///< N/m; absent: it stands whatever happens
     std::optional<double> resistance_pressure{};  ///< Pa; the same
     std::string name{};

@@ -123,6 +123,11 @@ BuildingSolids::BuildingSolids(const Terrain& terrain, const std::vector<Buildin
                 building.part_roof_elevations.empty() ? building.roof_elevation : building.part_roof_elevations[p];
             const double roof = elevation - terrain.frame().origin.z;
             if (!std::isfinite(roof)) continue;
+            double floor = -infinity;
+            if (building.barrier && building.barrier->clearance) {
+                floor = mean_ground(terrain, {part}) + *building.barrier->clearance - terrain.frame().origin.z;
+                if (!(floor < roof)) continue;
+            }
             const std::size_t first = edges_.size();
             append_edges(part.outer, terrain.frame(), false, edges_);
             if (edges_.size() == first) continue;
@@ -134,6 +139,7 @@ BuildingSolids::BuildingSolids(const Terrain& terrain, const std::vector<Buildin
                         edges_[first].ay,
                         edges_[first].ax,
                         edges_[first].ay,
+                        floor,
                         roof,
                         building.barrier ? static_cast<float>(building.barrier->passing_share.value_or(0)) : 0};
             for (std::size_t e = first; e < edges_.size(); ++e) {
@@ -189,6 +195,7 @@ void BuildingSolids::split_walls() {
                 for (const std::uint32_t o : near) {
                     const Solid& other = solids_[o];
                     if (!in_plan(other, outside_x, outside_y)) continue;
+                    if (other.floor > solid.floor && solid.floor == -infinity) continue;  // open below it
                     if (other.passing_share <= solid.passing_share) {
                         piece.hidden_below = std::max(piece.hidden_below, other.roof);
                     } else {
@@ -263,18 +270,28 @@ SolidSample<Real> BuildingSolids::nearest(const Vec3<Real>& p, float grain_rank)
     const auto [first, last] = candidates(x, y);
     if (first == last) return {};
 
-    // Above or below the highest roof at this plan position; below it, the position is inside.
-    int roof_building = -1;
-    double roof = -infinity;
+    // Above or below the highest roof at this plan position; below it, and above the floor, the position is inside.
+    int roof_building = -1, floor_building = -1;
+    double roof = -infinity, floor = -infinity, below = infinity;
     for (std::uint32_t k = first; k < last; ++k) {
         const Solid& solid = solids_[bin_solids_[k]];
+        if (z < solid.floor) {
+            if (solid.floor - z < below && solid.stops(grain_rank) && in_plan(solid, x, y))
+                below = solid.floor - z, floor_building = solid.building;
+            continue;
+        }
         if (solid.roof > roof && solid.stops(grain_rank) && in_plan(solid, x, y))
-            roof = solid.roof, roof_building = solid.building;
+            roof = solid.roof, floor = solid.floor, roof_building = solid.building;
     }
     const bool inside = z < roof;
     int building = roof_building;
     double best = roof_building < 0 ? infinity : std::abs(z - roof);
     Vec3<double> normal{0, 0, 1};
+    if (inside ? z - floor < best : below < best) {
+        best = inside ? z - floor : below;
+        building = inside ? roof_building : floor_building;
+        normal.z = -1;
+    }
 
     for (std::uint32_t k = first; k < last; ++k) {
         const Solid& solid = solids_[bin_solids_[k]];
@@ -282,7 +299,7 @@ SolidSample<Real> BuildingSolids::nearest(const Vec3<Real>& p, float grain_rank)
         for (std::uint32_t i = solid.first_edge; i < solid.last_edge; ++i) {
             const Edge& e = edges_[i];
             // From inside, only what other solids do not hide is a way out. From outside hidden walls are never nearer.
-            const double bottom = inside ? e.hidden_for(grain_rank) : -infinity;
+            const double bottom = inside ? std::max(e.hidden_for(grain_rank), solid.floor) : solid.floor;
             if (bottom >= solid.roof) continue;
             const double dx = e.bx - e.ax, dy = e.by - e.ay, length_squared = dx * dx + dy * dy;
             const double t = std::clamp(((x - e.ax) * dx + (y - e.ay) * dy) / length_squared, 0.0, 1.0);
@@ -322,7 +339,7 @@ SolidSample<Real> BuildingSolids::second_nearest(const Vec3<Real>& p, const Soli
     const auto [first, last] = candidates(x, y);
     for (std::uint32_t k = first; k < last; ++k) {
         const Solid& solid = solids_[bin_solids_[k]];
-        if (!solid.stops(grain_rank)) continue;
+        if (!solid.stops(grain_rank) || z < solid.floor) continue;
         if (z >= solid.roof) {
             if (z - solid.roof < best && turned_away(0, 0, 1) && in_plan(solid, x, y)) {
                 take(solid.building, z - solid.roof, 0, 0, 1);

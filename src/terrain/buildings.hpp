@@ -58,6 +58,7 @@ inline constexpr float largest_grain = 1;
 
 /// Answers how far a local position is from the buildings. Cost away from all buildings: one table look-up.
 /// Buildings that touch or overlap act as one solid: a wall between two of them is no surface.
+/// A barrier with a clearance has a lower face: below it there is no solid.
 /// A net is no solid for grains whose rank by size, 0 to 1, is below its passing share: to them it is not there.
 class BuildingSolids {
   public:
@@ -113,7 +114,7 @@ class BuildingSolids {
         std::uint32_t first_edge, last_edge;
         int building;
         double x_min, y_min, x_max, y_max;  ///< local, not grown
-        double roof;                        ///< local z
+        double floor, roof;                 ///< local z; -infinity: from below the ground
         float passing_share;                ///< grains of a lower rank do not meet it
 
         [[nodiscard]] bool stops(float grain_rank) const { return grain_rank >= passing_share; }

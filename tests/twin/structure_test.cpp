@@ -133,6 +133,63 @@ TEST(Net, lets_through_and_holds_in_the_live_twin_and_replays_to_the_same_hash) 
     EXPECT_EQ(again->hash, journal->hash);
 }
 
+/// The channel with a net across it, which reaches 4 m above the ground and none of whose debris passes the meshes.
+Scene netted_scene(std::optional<double> clearance) {
+    Scene scene = channel_scene();
+    BarrierSpec net{{{west + 62, south + 8}, {west + 62, south + 52}}, 4, {}, 1.2, {}, 0.0};
+    net.clearance = clearance;
+    scene.buildings.push_back(*make_barrier(scene.terrain, "net", net));
+    return scene;
+}
+
+TEST(Clearance, is_a_gap_with_an_edge_above_it) {
+    const Scene scene = netted_scene(1);
+    const BuildingSolids solids(scene.terrain, scene.buildings, 2);
+    const WorldPoint origin = scene.terrain.frame().origin;
+    const auto at = [&](double east, double height) {  // on the flat floor of the channel, at an elevation of 0
+        return Vec3<double>{west + 62 + east - origin.x, south + 30 - origin.y, height - origin.z};
+    };
+    for (const double height : {0.1, 0.9, 4.1}) EXPECT_FALSE(solids.inside(at(0, height))) << height;
+    for (const double height : {1.1, 2.5, 3.9}) EXPECT_TRUE(solids.inside(at(0, height))) << height;
+    for (const double height : {0.4, 0.9}) {
+        const auto below = solids.nearest(at(0, height));
+        EXPECT_NEAR(below.distance, 1 - height, 1e-6);
+        EXPECT_EQ(below.normal.z, -1);
+    }
+    const auto in = solids.nearest(at(0, 1.2));
+    EXPECT_NEAR(in.distance, -0.2, 1e-6);
+    EXPECT_EQ(in.normal.z, -1) << "the nearest way out is down";
+    const auto beside = solids.nearest(at(-1, 0.6));
+    EXPECT_NEAR(beside.distance, std::hypot(0.4, 0.4), 1e-6) << "to the lower edge of the wall";
+    EXPECT_NEAR(solids.nearest(at(-1, 2)).distance, 0.4, 1e-6);
+    EXPECT_EQ(solids.second_nearest(at(-1, 0.6), beside).building, -1);
+}
+
+TEST(Clearance, lets_debris_pass_below_the_net_as_if_it_were_not_there) {
+    const auto held = open(netted_scene({})), open_below = open(netted_scene(1.5));
+    for (Scenario* scenario : {held.get(), open_below.get()}) {
+        run_until(*scenario, 10);
+        ASSERT_NE(scenario->phase(), RunPhase::fault) << scenario->message();
+        expect_balance(*scenario);
+    }
+    const json closed = held->impacts_json()["barriers"][0], gap = open_below->impacts_json()["barriers"][0];
+    EXPECT_EQ(closed["passed_m3"], 0);
+    EXPECT_GT(closed["held_m3"], 5);
+    EXPECT_GT(gap["passed_m3"].get<double>() + gap["held_m3"].get<double>(), 5);
+    EXPECT_GT(gap["passed_m3"], 5);
+    EXPECT_EQ(gap["overtopped_m3"], 0);
+    EXPECT_GT(number(*open_below, "front_chainage_m"), number(*held, "front_chainage_m") + 3);
+    // Hung lower while debris is below it: what is in its way is moved out of it.
+    act(*open_below, {{"action", "put_barrier"}, {"id", "barrier-1"}, {"clearance_m", 0.8}});
+    run_until(*open_below, 12);
+    ASSERT_NE(open_below->phase(), RunPhase::fault) << open_below->message();
+    expect_balance(*open_below);
+    const json low = {{"action", "put_barrier"}, {"id", "barrier-1"}, {"clearance_m", 0.4}},
+               high = {{"action", "put_barrier"}, {"id", "barrier-1"}, {"clearance_m", 4}};
+    EXPECT_THAT(refusal(*open_below, low), testing::HasSubstr("clearance_m = 0.4 is refused; with particles of 0.6 m"));
+    EXPECT_THAT(refusal(*open_below, high), testing::HasSubstr("it must be below height_m = 4"));
+}
+
 TEST(Inflow, over_an_area_with_a_density_runs_live_and_again_after_a_restart) {
     Scene scene = channel_scene();
     scene.releases.clear();

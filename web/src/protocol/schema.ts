@@ -44,6 +44,8 @@ export interface BarrierValues {
   thickness_m: number;
   /** Makes it a net: the share of the debris, by volume, in grains that pass its meshes (the percentage passing at the size of the opening, over 100). The others are held as by a wall. null: it is a wall. */
   passing_share: number | null;
+  /** Height above the ground of the gap below it, as nets hang across a torrent: debris passes freely there; at least one particle spacing, or nothing gets through. null: it reaches the ground. */
+  clearance_m: number | null;
   /** Filtered force per metre of the line above which it is destroyed: it is gone from then on. null: it stands whatever happens. */
   resistance_Npm: number | null;
   /** Filtered pressure above which it is destroyed. null: it stands whatever happens. */
@@ -156,6 +158,10 @@ export const fields = {
     passing_share: {
       label: "Passes the meshes", unit: "%", factor: 100, low: 0, high: 99.999, sliderLow: 0, sliderHigh: 95, first: 50,
       tick: "Net", tickHelp: "Lets the finer share of the debris through its meshes and holds the rest", help: "Makes it a net: the share of the debris, by volume, in grains that pass its meshes (the percentage passing at the size of the opening, over 100). The others are held as by a wall.",
+    },
+    clearance_m: {
+      label: "Clearance", unit: "m", factor: 1, low: 0.0001, high: 100, sliderLow: 0.1, sliderHigh: 3, first: 0.5,
+      tick: "Gap below", tickHelp: "It hangs above the ground: debris passes below it", help: "Height above the ground of the gap below it, as nets hang across a torrent: debris passes freely there; at least one particle spacing, or nothing gets through.",
     },
     resistance_Npm: {
       label: "Resistance", unit: "kN/m", factor: 0.001, low: 0.01, high: Infinity, sliderLow: 10, sliderHigh: 1000, first: 200,

@@ -79,7 +79,7 @@ function stations(line: Point[], openings: readonly BarrierOpening[], step: numb
   return all;
 }
 
-type BarrierForm = Pick<Barrier, "id" | "line" | "height_m" | "thickness_m"> & Partial<Pick<Barrier, "crest_elevation_m" | "openings" | "passing_share">>;
+type BarrierForm = Pick<Barrier, "id" | "line" | "height_m" | "thickness_m"> & Partial<Pick<Barrier, "crest_elevation_m" | "openings" | "passing_share" | "clearance_m">>;
 
 /** A wall, or a net that one sees through, whose crest is `height_m` above the ground along its line, or level; openings are left out down to their sills. */
 export function barrierSolid(barrier: BarrierForm, relief: Relief, colour: string): Group {
@@ -102,7 +102,7 @@ export function barrierSolid(barrier: BarrierForm, relief: Relief, colour: strin
       const crest = typeof barrier.crest_elevation_m === "number" ? barrier.crest_elevation_m - relief.origin[2] : z + barrier.height_m;
       const top = opening ? Math.min(crest, z + opening.sill_height_m) : crest;
       for (const [px, py] of [left[end], right[end]]) {
-        const foot = Math.min(z, relief.at(px, py) - relief.origin[2]) - 0.5;
+        const foot = typeof barrier.clearance_m === "number" ? Math.min(z + barrier.clearance_m, top) : Math.min(z, relief.at(px, py) - relief.origin[2]) - 0.5;
         corner.push(px - relief.origin[0], py - relief.origin[1], foot, px - relief.origin[0], py - relief.origin[1], top);
       }
     }
