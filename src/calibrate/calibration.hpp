@@ -8,12 +8,12 @@
 
 #include <nlohmann/json.hpp>
 
+#include "calibrate/search.hpp"
+#include "core/result.hpp"
 #include "ensemble/ensemble_folder.hpp"
 #include "ensemble/plan.hpp"
 #include "ensemble/predict.hpp"
 #include "ensemble/run_record.hpp"
-#include "calibrate/search.hpp"
-#include "core/result.hpp"
 #include "run/variants.hpp"
 #include "scene/scene.hpp"
 

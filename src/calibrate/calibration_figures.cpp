@@ -7,38 +7,22 @@
 #include <fmt/format.h>
 
 #include "ensemble/reduction.hpp"
-#include "calibration_report_files.hpp"
 #include "params/fields.hpp"
-#include "products/report_colour.hpp"
-#include "products/report_plot.hpp"
-#include "products/report_text.hpp"
+#include "report/colour.hpp"
+#include "report/number_text.hpp"
 
 namespace talus::report {
 namespace {
 
 constexpr std::array<double, 9> misfit_breaks = {0, 0.5, 1, 2, 4, 8, 16, 32, 64};  // limits of the map's colours
 
-Colour misfit_colour(double misfit) {
-    std::size_t index = 0;
-    while (index + 1 < misfit_breaks.size() && misfit >= misfit_breaks[index + 1]) ++index;
+std::vector<std::string> misfit_colours() {
     constexpr Ramp ramp = {95, 0.05, 262, 0.12, 0.96, 0.34};
-    return ramp.at(1 - static_cast<double>(index) / (misfit_breaks.size() - 1));
-}
-
-std::string circle(double x, double y, double radius, std::string_view css_class) {
-    return fmt::format(R"(<circle class="{}" cx="{}" cy="{}" r="{}"/>)", css_class, coordinate(x), coordinate(y),
-                       radius);
-}
-
-std::string cell(double x1, double x2, double y1, double y2, const std::string& colour) {
-    // A little larger than it is, or seams show between cells.
-    return fmt::format(R"(<rect x="{}" y="{}" width="{}" height="{}" fill="{}"/>)", coordinate(std::min(x1, x2)),
-                       coordinate(std::min(y1, y2)), coordinate(std::abs(x2 - x1) + 0.4),
-                       coordinate(std::abs(y2 - y1) + 0.4), colour);
-}
-
-const char* dot_class(SearchPhase phase) {
-    return phase == SearchPhase::design ? "dot-design" : phase == SearchPhase::search ? "dot-search" : "dot-check";
+    std::vector<std::string> colours;
+    for (std::size_t i = 0; i < misfit_breaks.size(); ++i) {
+        colours.push_back(ramp.at(1 - static_cast<double>(i) / (misfit_breaks.size() - 1)).hex());
+    }
+    return colours;
 }
 
 double value_of(const Calibration& c, std::size_t factor, const std::vector<double>& point) {
@@ -60,79 +44,73 @@ double given_value(const Calibration& c, std::size_t factor) {
     return found;
 }
 
-std::string cross(double x, double y) {
-    return fmt::format(R"(<path class="given-mark" d="M{0} {2}L{1} {3}M{0} {3}L{1} {2}"/>)", coordinate(x - 6),
-                       coordinate(x + 6), coordinate(y - 6), coordinate(y + 6));
+constexpr std::array<const char*, 4> dot_names = {"design", "search", "check", "failed"};
+
+/// Dots of one style.
+Curve dots_of(const char* style, const char* name, double radius) {
+    return {Curve::Shape::dots, style, name, {}, {}, {}, radius};
 }
 
-/// The colours of the map with the misfits between which they stand.
-std::string colour_key(double left, double top) {
-    std::string svg =
-        fmt::format(R"(<text class="note-strong" x="{}" y="{}">Misfit</text>)", coordinate(left), coordinate(top - 8));
-    for (std::size_t i = 0; i < misfit_breaks.size(); ++i) {
-        const double y = top + 22 * static_cast<double>(i);
-        svg += cell(left, left + 18, y, y + 22, misfit_colour(misfit_breaks[i]).hex());
-        const bool last = i + 1 == misfit_breaks.size();
-        svg += fmt::format(R"(<text class="tick" x="{}" y="{}">{}</text>)", coordinate(left + 25), coordinate(y + 15),
-                           last ? fmt::format("over {}", misfit_breaks[i])
-                                : fmt::format("{} – {}", misfit_breaks[i], misfit_breaks[i + 1]));
+/// The runs as dots, each kind in its colour; `place` says where, NaN: nowhere.
+template <class Place>
+void add_runs(Plot& plot, const Calibration& c, double radius, const Place& place) {
+    std::array<Curve, 4> kinds = {
+        dots_of("dot-design", dot_names[0], radius), dots_of("dot-search", dot_names[1], radius),
+        dots_of("dot-check", dot_names[2], radius), dots_of("dot-failed", dot_names[3], radius)};
+    for (const SearchRun& run : c.result.runs) {
+        const auto [x, y] = place(run);
+        Curve& kind = kinds[run.predicted.empty()              ? 3
+                            : run.phase == SearchPhase::design ? 0
+                            : run.phase == SearchPhase::search ? 1
+                                                               : 2];
+        kind.x.push_back(x);
+        kind.y.push_back(y);
     }
-    return svg;
-}
-
-std::string dot_key(double left, double top, bool given) {
-    std::string svg;
-    double y = top;
-    const auto row = [&](const std::string& mark, std::string_view name) {
-        svg += mark + fmt::format(R"(<text class="tick" x="{}" y="{}">{}</text>)", coordinate(left + 25),
-                                  coordinate(y + 4), name);
-        y += 20;
-    };
-    row(circle(left + 9, y, 3.6, "dot-design"), "design");
-    row(circle(left + 9, y, 3.6, "dot-search"), "search");
-    row(circle(left + 9, y, 3.6, "dot-check"), "check");
-    row(circle(left + 9, y, 7, "best-mark"), "best fit");
-    if (given) row(cross(left + 9, y), "as given");
-    return svg;
+    for (Curve& kind : kinds) {
+        if (!kind.x.empty()) plot.curves.push_back(std::move(kind));
+    }
 }
 
 /// Both panels over the first two factors.
-std::string draw_plane(const Calibration& c, const MisfitMap& map) {
+Chart plane_chart(const Calibration& c, const MisfitMap& map) {
     const ValueRange x{map.x.front(), map.x.back()}, y{map.y.front(), map.y.back()};
-    Plot left(70, 24, 350, 350, x, y);
-    std::string cells;
-    for (std::size_t i = 0; i < map.misfit.size(); ++i) {
-        const std::size_t column = i % map.cells, row = i / map.cells;
-        cells += cell(left.px(map.x[column]), left.px(map.x[column + 1]), left.py(map.y[row]), left.py(map.y[row + 1]),
-                      misfit_colour(map.misfit[i]).hex());
-    }
-    left.axes(c.factors[0].key, c.factors[1].key);
-    std::string dots;
-    for (const SearchRun& run : c.result.runs) {
-        dots += circle(left.px(value_of(c, 0, run.point)), left.py(value_of(c, 1, run.point)), 3.6,
-                       run.predicted.empty() ? "dot-failed" : dot_class(run.phase));
-    }
-    Plot right(640, 24, 350, 350, x, y);
-    right.axes(c.factors[0].key, c.factors[1].key);
-    std::string draws;
+    Plot left(70, 24, 350, 350, x, y), right(640, 24, 350, 350, x, y);
+    left.name = "Misfit and runs";
+    right.name = "Draws from the posterior";
+    left.cells = {map.x, map.y, map.misfit, {misfit_breaks.begin(), misfit_breaks.end()}, misfit_colours(), "Misfit"};
+    left.key = Plot::Key::beside;
+    for (Plot* plot : {&left, &right}) plot->axes(c.factors[0].key, c.factors[1].key);
+    add_runs(left, c, 3.6, [&](const SearchRun& run) {
+        return std::pair{value_of(c, 0, run.point), value_of(c, 1, run.point)};
+    });
+    Curve draws = dots_of("draw-dot", "", 1.5);
     for (const auto& draw : c.result.posterior.draws) {
-        draws += circle(right.px(std::clamp(value_of(c, 0, draw), x.low, x.high)),
-                        right.py(std::clamp(value_of(c, 1, draw), y.low, y.high)), 1.5, "draw-dot");
+        draws.x.push_back(std::clamp(value_of(c, 0, draw), x.low, x.high));
+        draws.y.push_back(std::clamp(value_of(c, 1, draw), y.low, y.high));
     }
+    right.curves.push_back(std::move(draws));
     const auto& best = c.result.runs[*c.result.best].point;
     const double given_x = given_value(c, 0), given_y = given_value(c, 1);
     const bool given = given_x >= x.low && given_x <= x.high && given_y >= y.low && given_y <= y.high;
-    for (const Plot* plot : {&left, &right}) {
-        dots += circle(plot->px(value_of(c, 0, best)), plot->py(value_of(c, 1, best)), 7, "best-mark");
-        if (given) dots += cross(plot->px(given_x), plot->py(given_y));
+    for (Plot* plot : {&left, &right}) {
+        const bool named = plot == &left;
+        plot->curves.push_back({Curve::Shape::dots,
+                                "best-mark",
+                                named ? "best fit" : "",
+                                {value_of(c, 0, best)},
+                                {value_of(c, 1, best)},
+                                {},
+                                7});
+        if (given) {
+            plot->curves.push_back(
+                {Curve::Shape::crosses, "given-mark", named ? "as given" : "", {given_x}, {given_y}, {}, 0});
+        }
     }
-    const std::string titles =
-        R"(<text class="note-strong" x="70" y="14">Misfit and runs</text><text class="note-strong" x="640" y="14">Draws from the posterior</text>)";
-    return cells + left.svg() + right.svg() + draws + dots + colour_key(440, 44) + dot_key(440, 272, given) + titles;
+    return {"Misfit of all runs", 1000, 440, {std::move(left), std::move(right)}};
 }
 
 /// The only factor.
-std::string draw_line(const Calibration& c, const MisfitMap& map) {
+Chart line_chart(const Calibration& c, const MisfitMap& map) {
     const ValueRange x{map.x.front(), map.x.back()};
     std::vector<double> at;
     ValueRange y{0, 1};
@@ -143,98 +121,62 @@ std::string draw_line(const Calibration& c, const MisfitMap& map) {
     y.high *= 1.05;
     Plot plot(70, 24, 760, 350, x, y);
     plot.axes(c.factors[0].key, "misfit");
+    plot.key = Plot::Key::beside;
     std::vector<double> shown;
     for (const double misfit : map.misfit) shown.push_back(misfit <= y.high ? misfit : never);
     plot.line(at, shown, "series blue");
-    std::string dots;
-    for (const SearchRun& run : c.result.runs) {
-        if (!(run.misfit <= y.high)) continue;
-        dots += circle(plot.px(value_of(c, 0, run.point)), plot.py(run.misfit), 3.6, dot_class(run.phase));
-    }
-    return plot.svg() + dots + dot_key(850, 44, false);
-}
-
-constexpr const char* misfit_title = "Misfit of all runs";
-
-std::string draw_misfit(const Calibration& c, const MisfitMap& map) {
-    return map.y.empty() ? draw_line(c, map) : draw_plane(c, map);
+    add_runs(plot, c, 3.6, [&](const SearchRun& run) {
+        return std::pair{value_of(c, 0, run.point), run.misfit <= y.high ? run.misfit : never};
+    });
+    return {"Misfit of all runs", 1000, 440, {std::move(plot)}};
 }
 
 }  // namespace
 
-std::string misfit_figure(const Calibration& c, const MisfitMap& map, int number) {
-    const std::string others =
-        c.factors.size() > 2 ? " at those values of the other factors that fit best there" : std::string();
-    return "<figure>" + figure_svg(1000, 440, misfit_title, draw_misfit(c, map)) +
-           caption(
-               number, "Misfit and posterior.",
-               fmt::format("Left: sum of the squared deviations from the observations in standard deviations, as the "
-                           "emulators have it{}; a dot per run. Right: {} draws from the posterior.",
-                           others, c.result.posterior.draws.size())) +
-           "</figure>";
+Chart misfit_chart(const Calibration& c, const MisfitMap& map) {
+    return map.y.empty() ? line_chart(c, map) : plane_chart(c, map);
 }
 
-std::string misfit_picture(const Calibration& c, const MisfitMap& map) {
-    std::string svg = figure_svg(1000, 440, misfit_title, draw_misfit(c, map));
-    const std::string style = fmt::format(
-        "<style>svg{{font-family:'Liberation Sans',Arial,sans-serif;font-size:13px;background:#fff}}{}</style>",
-        calibration_report_files::calibration_css);
-    const std::size_t end = svg.find('>');
-    svg.insert(end + 1, style);
-    constexpr std::string_view tag = "<svg";
-    if (svg.find("xmlns") == std::string::npos) svg.insert(tag.size(), R"( xmlns="http://www.w3.org/2000/svg")");
-    return svg + "\n";
-}
-
-std::string factor_figure(const Calibration& c, const CalibrationSummary& s, int number) {
+Chart factor_chart(const Calibration& c, const CalibrationSummary& s) {
     constexpr std::size_t columns = 3, bars = 30;
     constexpr double width = 1000.0 / columns, height = 240;
-    std::string svg;
+    Chart chart{"Factors before and after", 1000, 0, {}};
     for (std::size_t k = 0; k < s.factors.size(); ++k) {
         const Distribution& prior = c.factors[k].distribution;
         const bool open = prior.kind == DistributionKind::normal;
         const ValueRange x{prior.quantile(open ? 0.005 : 0), prior.quantile(open ? 0.995 : 1)};
-        std::vector<double> counts(bars, 0), before_x, before;
         const double step = (x.high - x.low) / bars,
                      share = 100.0 / static_cast<double>(c.result.posterior.draws.size());
+        Curve after{Curve::Shape::bars, "bar", "", {}, std::vector<double>(bars, 0), {}, step};
         for (const auto& draw : c.result.posterior.draws) {
             const double at = (value_of(c, k, draw) - x.low) / step;
-            counts[static_cast<std::size_t>(std::clamp(at, 0.0, static_cast<double>(bars - 1)))] += share;
+            after.y[static_cast<std::size_t>(std::clamp(at, 0.0, static_cast<double>(bars - 1)))] += share;
         }
         ValueRange y{0, 1};
-        for (const double count : counts) y.include(count * 1.1);
+        for (const double count : after.y) y.include(count * 1.1);
+        std::vector<double> before_x, before;
         for (std::size_t i = 0; i < bars; ++i) {
             const double from = x.low + step * static_cast<double>(i);
+            after.x.push_back(from);
             before_x.insert(before_x.end(), {from, from + step});
             const double part = 100 * (share_below(prior, from + step) - share_below(prior, from));
             before.insert(before.end(), {part, part});
             y.include(part * 1.1);
         }
-        const double left = width * static_cast<double>(k % columns) + 56;
-        const std::size_t row = k / columns;
-        Plot plot(left, height * static_cast<double>(row) + 16, width - 76, height - 66, x, y);
+        const auto row = static_cast<double>(k / columns);
+        Plot plot(width * static_cast<double>(k % columns) + 56, height * row + 16, width - 76, height - 66, x, y);
         plot.axes(c.factors[k].key, k % columns == 0 ? "draws, %" : "");
-        for (std::size_t i = 0; i < bars; ++i) {
-            if (counts[i] <= 0) continue;
-            const double from = x.low + step * static_cast<double>(i), top = plot.py(counts[i]);
-            svg += fmt::format(R"(<rect class="bar" x="{}" y="{}" width="{}" height="{}"/>)",
-                               coordinate(plot.px(from) + 0.5), coordinate(top),
-                               coordinate(plot.px(from + step) - plot.px(from) - 1), coordinate(plot.py(0) - top));
-        }
+        plot.curves.push_back(std::move(after));
         plot.line(before_x, before, "series black");
         for (const double limit : {s.factors[k].low, s.factors[k].high}) plot.vertical(limit, "percentile-line");
-        svg += plot.svg();
+        chart.plots.push_back(std::move(plot));
+        chart.height = height * (row + 1);
     }
-    const std::size_t rows = (s.factors.size() + columns - 1) / columns;
-    return "<figure>" + figure_svg(1000, height * static_cast<double>(rows), "Factors before and after", svg) +
-           caption(number, "What is known of each factor.",
-                   "Bars: draws from the posterior; red: the interval that holds 95 % of them. Dashed: the same before "
-                   "the observations, as the plan states it.") +
-           "</figure>";
+    return chart;
 }
 
-std::string observation_figure(const Calibration& c, const CalibrationSummary& s, int number) {
-    constexpr double row = 46, left = 300, top = 26, width = 660;
+Chart observation_chart(const Calibration& c, const CalibrationSummary& s) {
+    constexpr double row = 46, left = 300;
     ValueRange x{-3, 3};
     const auto scaled = [&](std::size_t j, double value) {
         const double shown = std::isfinite(value) ? value : c.observed[j].unreached;
@@ -245,53 +187,44 @@ std::string observation_figure(const Calibration& c, const CalibrationSummary& s
         for (const double value : {o.prior_low, o.prior_high, o.low, o.high, o.best})
             x.include(scaled(j, value) * 1.08);
     }
-    const double height = row * static_cast<double>(s.observations.size());
-    Plot plot(left, top, width, height, x, {0, 1});
-    std::string svg = fmt::format(R"(<text class="axis-title" x="{}" y="{}" text-anchor="middle">{}</text>)",
-                                  coordinate(left + width / 2), coordinate(top + height + 38),
-                                  "standard deviations from what was observed");
-    const Ticks ticks = round_ticks(x, 8);
-    for (const double value : ticks.values) {
-        plot.vertical(value, value == 0 ? "axis" : "grid");
-        svg += fmt::format(R"(<text class="tick" x="{}" y="{}" text-anchor="middle">{}</text>)",
-                           coordinate(plot.px(value)), coordinate(top + height + 17), fixed(value, ticks.digits));
-    }
+    const auto count = static_cast<double>(s.observations.size());
+    Plot plot(left, 26, 660, row * count, x, {0, count});
+    plot.axes("standard deviations from what was observed", "");
+    plot.has_y_axis = false;
+    plot.vertical(0, "axis");
+    Curve checks = dots_of("dot-check", "", 3.4), best = dots_of("best-mark", "", 6);
     for (std::size_t j = 0; j < s.observations.size(); ++j) {
         const ObservationResult& o = s.observations[j];
         const ObservedValue& observed = c.observed[j];
-        const double y = top + row * (static_cast<double>(j) + 0.5);
-        const auto line = [&](double from, double to, double at, const char* css_class) {
-            return fmt::format(R"(<line class="{0}" x1="{1}" x2="{2}" y1="{3}" y2="{3}"/>)", css_class,
-                               coordinate(plot.px(scaled(j, from))), coordinate(plot.px(scaled(j, to))),
-                               coordinate(at));
+        const double y = count - static_cast<double>(j) - 0.5, apart = 11 / row;
+        const auto span = [&](double from, double to, double at, const char* style) {
+            const std::vector<double> ends = {scaled(j, from), scaled(j, to)}, level = {at, at};
+            plot.line(ends, level, style);
         };
         const char* side = observed.kind == ObservedValue::Kind::at_least ? "at least "
                            : observed.kind == ObservedValue::Kind::below  ? "below "
                                                                           : "";
-        svg += fmt::format(R"(<text class="row-name" x="0" y="{}">{}</text>)", coordinate(y - 2),
-                           escape(shortened(observed.name, 42)));
-        svg += fmt::format(R"(<text class="tick" x="0" y="{}">{}{} ± {} {}; best fit {}</text>)", coordinate(y + 14),
-                           side, significant(observed.value, 3), significant(observed.uncertainty, 2), observed.unit,
-                           significant(o.best, 3));
-        svg +=
-            line(observed.value - observed.uncertainty, observed.value + observed.uncertainty, y - 11, "span-observed");
-        svg += line(o.prior_low, o.prior_high, y + 11, "span-before") + line(o.low, o.high, y, "span-after");
+        plot.label(x.low, y, -left, -2, "start", "row-name", shortened(observed.name, 42));
+        plot.label(x.low, y, -left, 14, "start", "tick",
+                   fmt::format("{}{} ± {} {}; best fit {}", side, significant(observed.value, 3),
+                               significant(observed.uncertainty, 2), observed.unit, significant(o.best, 3)));
+        span(observed.value - observed.uncertainty, observed.value + observed.uncertainty, y + apart, "span-observed");
+        span(o.prior_low, o.prior_high, y - apart, "span-before");
+        span(o.low, o.high, y, "span-after");
         for (const Check& check : c.result.checks) {
             if (check.observation != j) continue;
-            svg += circle(plot.px(scaled(j, check.computed)), y, 3.4, "dot-check");
+            checks.x.push_back(scaled(j, check.computed));
+            checks.y.push_back(y);
         }
-        svg += circle(plot.px(scaled(j, o.best)), y, 6, "best-mark");
+        best.x.push_back(scaled(j, o.best));
+        best.y.push_back(y);
     }
-    return "<figure>" + figure_svg(1000, top + height + 56, "Predicted against observed", plot.svg() + svg) +
-           caption(
-               number, "Predicted against observed.",
-               "Dark: one standard deviation around what was observed. Blue: 95 % of runs that the posterior expects. "
-               "Grey: 90 % of the runs of the design, before anything was learned. Green dots: runs that check the "
-               "posterior; ring: the best fit. Beyond 12 standard deviations marks are drawn there.") +
-           "</figure>";
+    plot.curves.push_back(std::move(checks));
+    plot.curves.push_back(std::move(best));
+    return {"Predicted against observed", 1000, 26 + row * count + 56, {std::move(plot)}};
 }
 
-std::string convergence_figure(const Calibration& c, int number) {
+Chart convergence_chart(const Calibration& c) {
     const auto& runs = c.result.runs;
     ValueRange x{0, static_cast<double>(runs.size())}, y{-2, 1};
     const auto level = [](double misfit) { return std::log10(std::max(misfit, 0.01)); };
@@ -299,43 +232,39 @@ std::string convergence_figure(const Calibration& c, int number) {
     y.high += 0.1;
     Plot left(70, 24, 400, 250, x, y);
     left.axes("run", "log10 of the misfit");
-    std::string dots;
+    left.key = Plot::Key::none;
+    add_runs(left, c, 3.4, [&](const SearchRun& run) {
+        const double number = static_cast<double>(&run - runs.data()) + 1;
+        return std::pair{number, run.predicted.empty() ? never : level(run.misfit)};
+    });
     std::vector<double> at, least;
     for (std::size_t i = 0; i < runs.size(); ++i) {
         if (runs[i].predicted.empty()) continue;
-        const double best = std::min(level(runs[i].misfit), least.empty() ? 1e9 : least.back());
         at.push_back(static_cast<double>(i) + 1);
-        least.push_back(best);
-        dots += circle(left.px(at.back()), left.py(level(runs[i].misfit)), 3.4, dot_class(runs[i].phase));
+        least.push_back(std::min(level(runs[i].misfit), least.empty() ? 1e9 : least.back()));
     }
     left.line(at, least, "series black");
 
     ValueRange range{-3, 3};
-    std::vector<std::pair<double, double>> pairs;
+    std::vector<double> computed, emulated;
     for (std::size_t j = 0; j < c.observed.size(); ++j) {
         if (!c.result.fit.emulators[j].value()) continue;
         for (const Emulator::LeftOut& run : c.result.fit.emulators[j].value()->leave_one_out()) {
             const auto scaled = [&](double value) {
                 return std::clamp((value - c.observed[j].value) / c.observed[j].uncertainty, -12.0, 12.0);
             };
-            pairs.emplace_back(scaled(run.computed), scaled(run.mean));
-            range.include(pairs.back().first);
-            range.include(pairs.back().second);
+            computed.push_back(scaled(run.computed));
+            emulated.push_back(scaled(run.mean));
+            range.include(computed.back());
+            range.include(emulated.back());
         }
     }
     Plot right(570, 24, 400, 250, range, range);
     right.axes("computed, standard deviations from observed", "by the emulator");
     const std::vector<double> ends = {range.low, range.high};
     right.line(ends, ends, "series black");
-    std::string emulated;
-    for (const auto& pair : pairs) emulated += circle(right.px(pair.first), right.py(pair.second), 2.6, "run-dot");
-    return "<figure>" + figure_svg(1000, 330, "Convergence", left.svg() + dots + right.svg() + emulated) +
-           caption(
-               number, "Convergence.",
-               "Left: misfit of every run, and the least so far (white: design, orange: search, green: check; below "
-               "0.01 drawn there). Right: every run's results as the emulators tell them from all other runs; on the "
-               "line they are right. Runs whose debris did not come there are left out.") +
-           "</figure>";
+    right.dots(computed, emulated, 2.6, "run-dot");
+    return {"Convergence", 1000, 330, {std::move(left), std::move(right)}};
 }
 
 }  // namespace talus::report

@@ -194,7 +194,7 @@ Status write_calibration(const Calibration& c, const SceneSource& source, bool o
     TALUS_TRY(write_text_file(folder / "observations.csv", observation_csv(c, s)));
     TALUS_TRY(write_text_file(folder / "misfit_map.csv", map_csv(c, map)));
     TALUS_TRY(write_text_file(folder / "posterior.csv", draw_csv(c)));
-    TALUS_TRY(write_text_file(folder / "misfit_map.svg", report::misfit_picture(c, map)));
+    TALUS_TRY(write_text_file(folder / "misfit_map.svg", report::chart_file(report::misfit_chart(c, map))));
     TALUS_TRY(write_best_scene(c, source, own_files, folder));
     TALUS_TRY(write_text_file(folder / "report.html", render_calibration_report(c)));
     return write_text_file(folder / "calibration.json", calibration_json(c).dump(2) + "\n");

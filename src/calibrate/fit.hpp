@@ -3,8 +3,8 @@
 #include <string>
 #include <vector>
 
-#include "stats/distribution.hpp"
 #include "ensemble/predict.hpp"
+#include "stats/distribution.hpp"
 #include "stats/prediction_emulator.hpp"
 #include "stats/sampler.hpp"
 

@@ -5,9 +5,9 @@
 #include <functional>
 #include <string>
 
+#include "core/result.hpp"
 #include "ensemble/ensemble_folder.hpp"
 #include "ensemble/plan.hpp"
-#include "core/result.hpp"
 #include "run/variants.hpp"
 
 namespace talus {

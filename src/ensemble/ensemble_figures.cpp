@@ -8,9 +8,9 @@
 
 #include <fmt/format.h>
 
-#include "products/report_colour.hpp"
-#include "products/report_plot.hpp"
-#include "products/report_text.hpp"
+#include "core/number_or_null.hpp"
+#include "report/colour.hpp"
+#include "report/number_text.hpp"
 
 namespace talus::report {
 namespace {
@@ -22,12 +22,6 @@ ValueRange range_of(const std::vector<double>& values) {
     ValueRange range{infinite, -infinite};
     for (const double v : values) range.include(v);
     return range;
-}
-
-std::string rectangle(double x1, double x2, double y1, double y2, std::string_view css_class) {
-    return fmt::format(R"(<rect class="{}" x="{}" y="{}" width="{}" height="{}"/>)", css_class,
-                       coordinate(std::min(x1, x2)), coordinate(std::min(y1, y2)), coordinate(std::abs(x2 - x1)),
-                       coordinate(std::abs(y2 - y1)));
 }
 
 /// Bars of a round width that hold the values, starting at a multiple of it.
@@ -94,8 +88,8 @@ std::string value_text(const FactorEffect& e, SensitivityKind kind, const std::s
 }
 
 /// The bars of one result and factor, `width` wide from `left`, with their value behind.
-std::string draw_effect(const Sensitivity& s, std::size_t factor, const std::string& unit, double left, double width,
-                        double y, double row) {
+void draw_effect(Svg& svg, const Sensitivity& s, std::size_t factor, const std::string& unit, double left, double width,
+                 double y, double row) {
     const FactorEffect& effect = s.effects[factor];
     const ValueRange scale = scale_of(s);
     const auto px = [&](double v) {
@@ -103,41 +97,14 @@ std::string draw_effect(const Sensitivity& s, std::size_t factor, const std::str
     };
     const std::vector<Bar> bars = bars_of(effect, s.kind);
     const double height = (row - 12) / static_cast<double>(bars.size());
-    std::string svg;
     for (std::size_t b = 0; b < bars.size(); ++b) {
         const double from = y + 6 + height * static_cast<double>(b), middle = from + (height - 1) / 2;
-        svg += rectangle(px(0), px(bars[b].value), from, from + height - 1, bars[b].css_class);
-        if (!bars[b].whisker) continue;
-        svg += fmt::format(R"(<line class="whisker" x1="{0}" x2="{1}" y1="{2}" y2="{2}"/>)",
-                           coordinate(px(bars[b].low)), coordinate(px(bars[b].high)), coordinate(middle));
+        const double start = std::min(px(0), px(bars[b].value));
+        svg.rect(bars[b].css_class, start, from, std::abs(px(bars[b].value) - px(0)), height - 1);
+        if (bars[b].whisker) svg.line("whisker", px(bars[b].low), middle, px(bars[b].high), middle);
     }
-    svg += fmt::format(R"(<line class="axis" x1="{0}" x2="{0}" y1="{1}" y2="{2}"/>)", coordinate(px(0)),
-                       coordinate(y + 3), coordinate(y + row - 3));
-    return svg + fmt::format(R"(<text class="tick" x="{}" y="{}">{}</text>)", coordinate(left + width + 8),
-                             coordinate(y + 19), value_text(effect, s.kind, unit));
-}
-
-std::string sensitivity_caption(SensitivityKind kind, std::size_t used) {
-    switch (kind) {
-        case SensitivityKind::variance:
-            return fmt::format(
-                "Blue: first-order Sobol index, the share of the result's variance that the factor explains alone. "
-                "Orange: total index, with all its interactions. Lines hold 95 % of {} resampled sets of {} blocks; "
-                "numbers are first / total.",
-                500, used);
-        case SensitivityKind::screening:
-            return fmt::format(
-                "Blue: mean size of the elementary effects over {} trajectories, as change of the result over the "
-                "factor's whole range. Orange: their standard deviation; large beside the mean where the factor acts "
-                "together with others or not in proportion.",
-                used);
-        case SensitivityKind::rank:
-            break;
-    }
-    return fmt::format(
-        "Spearman's rank correlation over {} runs: 1 where the result always rises with the factor (blue), −1 where it "
-        "always falls (red). For shares of the variance run the design saltelli.",
-        used);
+    svg.line("axis", px(0), y + 3, px(0), y + row - 3);
+    svg.text("tick", left + width + 8, y + 19, value_text(effect, s.kind, unit));
 }
 
 /// "solver.iteration_count" under its value in the run; a text has none.
@@ -149,9 +116,9 @@ double number_of(const std::string& text) {
 
 }  // namespace
 
-std::string run_out_figure(const EnsembleResult& result, int number) {
+Json run_out_chart(const EnsembleResult& result) {
     std::vector<double> values = result.values_of(run_out_measure);
-    if (values.empty()) return "<p>No run brought debris to the flow path, so there is no run-out to draw.</p>";
+    if (values.empty()) return {};
     const double low = percentile(values, 5), median = percentile(values, 50), high = percentile(values, 95);
     const Histogram h = histogram_of(values, range_of(values));
     const double end = h.first + h.width * static_cast<double>(h.counts.size());
@@ -162,18 +129,19 @@ std::string run_out_figure(const EnsembleResult& result, int number) {
 
     Plot left(66, 20, 420, 250, x, counts);
     left.axes("run-out (chainage of the front), m", "runs");
-    std::string bars;
+    Curve inside{Curve::Shape::bars, "bar", "", {}, {}, {}, h.width}, outside = inside;
+    outside.style = "bar outside";
     for (std::size_t i = 0; i < h.counts.size(); ++i) {
-        if (h.counts[i] == 0) continue;
         const double from = h.first + h.width * static_cast<double>(i), middle = from + h.width / 2;
-        bars += rectangle(left.px(from) + 0.75, left.px(from + h.width) - 0.75, left.py(0), left.py(h.counts[i]),
-                          middle < low || middle > high ? "bar outside" : "bar");
+        Curve& bars = middle < low || middle > high ? outside : inside;
+        bars.x.push_back(from);
+        bars.y.push_back(h.counts[i]);
     }
-    Plot lines(66, 20, 420, 250, x, counts);
-    for (const double v : {low, median, high}) lines.vertical(v, "percentile-line");
+    left.curves = {std::move(inside), std::move(outside)};
+    for (const double v : {low, median, high}) left.vertical(v, "percentile-line");
     const auto label = [&](double v, const char* anchor, double dx, double dy, const char* name) {
-        lines.label(v, counts.high, dx, dy, anchor, v == median ? "note-strong" : "note",
-                    fmt::format("{} {} m", name, fixed(v, 0)));
+        left.label(v, counts.high, dx, dy, anchor, v == median ? "note-strong" : "note",
+                   fmt::format("{} {} m", name, fixed(v, 0)));
     };
     label(low, "end", -5, 14, "5 %:");
     label(median, "middle", 0, -5, "median");
@@ -192,18 +160,14 @@ std::string run_out_figure(const EnsembleResult& result, int number) {
     at.push_back(x.high);
     share.push_back(0);
     right.line(at, share, "series blue");
-    return "<figure>" + figure_svg(1000, 320, "Run-out of all runs", left.svg() + bars + lines.svg() + right.svg()) +
-           caption(number, "Run-out of all runs.",
-                   "Left: number of runs by the farthest chainage of the front, with the 5th, 50th and 95th "
-                   "percentile. Right: the share of runs whose front gets beyond a chainage.") +
-           "</figure>";
+    return chart_json({"Run-out of all runs", 1000, 320, {std::move(left), std::move(right)}});
 }
 
-std::string sensitivity_figure(const EnsembleResult& result, int number) {
+Json sensitivity_figure(const EnsembleResult& result) {
     constexpr double left = 270, row = 30, head = 30;
     constexpr std::size_t most_columns = 4;  // factors side by side; more go below
     const auto& factors = result.runs->plan().factors;
-    std::string svg;
+    Svg svg;
     double y = 0;
     std::size_t used = 0;
     SensitivityKind kind = SensitivityKind::rank;
@@ -211,9 +175,8 @@ std::string sensitivity_figure(const EnsembleResult& result, int number) {
         const std::size_t columns = std::min(most_columns, factors.size() - first);
         const double width = (1000 - left) / static_cast<double>(columns);
         for (std::size_t c = 0; c < columns; ++c) {
-            svg += fmt::format(R"(<text class="column-name" x="{}" y="{}">{}</text>)",
-                               coordinate(left + width * (static_cast<double>(c) + 0.5)), coordinate(y + 16),
-                               escape(shortened(factors[first + c].key, static_cast<std::size_t>(width / 7.2))));
+            svg.text("column-name", left + width * (static_cast<double>(c) + 0.5), y + 16,
+                     shortened(factors[first + c].key, static_cast<std::size_t>(width / 7.2)));
         }
         y += head;
         for (std::size_t m = 0; m < result.measures.size(); ++m) {
@@ -221,24 +184,26 @@ std::string sensitivity_figure(const EnsembleResult& result, int number) {
             if (s.effects.empty()) continue;
             used = std::max(used, s.used);
             kind = s.kind;
-            svg += fmt::format(R"(<line class="row-rule" x1="0" x2="1000" y1="{0}" y2="{0}"/>)", coordinate(y));
-            svg += fmt::format(R"(<text class="row-name" x="0" y="{}">{}</text>)", coordinate(y + 19),
-                               escape(shortened(result.measures[m].name, 40)));
+            svg.line("row-rule", 0, y, 1000, y);
+            svg.text("row-name", 0, y + 19, shortened(result.measures[m].name, 40));
             for (std::size_t c = 0; c < columns; ++c) {
                 const double from = left + width * static_cast<double>(c) + 12;
-                svg += draw_effect(s, first + c, result.measures[m].unit, from,
-                                   width - (s.kind == SensitivityKind::rank ? 70 : 108), y, row);
+                draw_effect(svg, s, first + c, result.measures[m].unit, from,
+                            width - (s.kind == SensitivityKind::rank ? 70 : 108), y, row);
             }
             y += row;
         }
         y += 14;
     }
-    if (used == 0) return "<p>There are too few complete runs to say what the results depend on.</p>";
-    return "<figure>" + figure_svg(1000, y, "Sensitivity of every result to every factor", svg) +
-           caption(number, "Sensitivity of each result to each factor.", sensitivity_caption(kind, used)) + "</figure>";
+    if (used == 0) return {};
+    return {{"svg", figure_svg(1000, y, "Sensitivity of every result to every factor", svg)},
+            {"used", used},
+            {"variance", kind == SensitivityKind::variance},
+            {"screening", kind == SensitivityKind::screening},
+            {"rank", kind == SensitivityKind::rank}};
 }
 
-std::string scatter_figure(const EnsembleResult& result, int number) {
+Json scatter_chart(const EnsembleResult& result) {
     const auto& factors = result.runs->plan().factors;
     std::vector<std::size_t> shown;
     for (std::size_t k = 0; k < factors.size(); ++k) {
@@ -246,14 +211,14 @@ std::string scatter_figure(const EnsembleResult& result, int number) {
         const bool texts = d.kind == DistributionKind::list && std::isnan(number_of(d.entries.front()));
         if (!texts && shown.size() < 6) shown.push_back(k);
     }
-    std::string svg;
     const std::vector<double> all = result.values_of(run_out_measure);
-    if (shown.empty() || all.empty()) return "";
+    if (shown.empty() || all.empty()) return {};
     ValueRange y = range_of(all);
     const double margin = std::max(1.0, 0.08 * (y.high - y.low));
     y = {y.low - margin, y.high + margin};
     const std::size_t columns = std::min<std::size_t>(3, shown.size());
     const double width = 1000.0 / static_cast<double>(columns);
+    Chart chart{"Run-out against every factor", 1000, 0, {}};
     for (std::size_t i = 0; i < shown.size(); ++i) {
         std::vector<double> xs, ys;
         for (const RunRecord& run : result.reduction.runs) {
@@ -264,19 +229,14 @@ std::string scatter_figure(const EnsembleResult& result, int number) {
         ValueRange x = range_of(xs);
         const double pad = 0.05 * (x.high - x.low);
         x = {x.low - pad, x.high + pad};
-        const auto row = static_cast<int>(i / columns);
-        const double left = width * static_cast<double>(i % columns) + 66, top = 300.0 * row + 12;
-        Plot plot(left, top, width - 84, 226, x, y);
+        const auto row = static_cast<double>(i / columns);
+        Plot plot(width * static_cast<double>(i % columns) + 66, 300.0 * row + 12, width - 84, 226, x, y);
         plot.axes(factors[shown[i]].key, i % columns == 0 ? "run-out, m" : "");
-        svg += plot.svg();
-        for (std::size_t p = 0; p < xs.size(); ++p) {
-            svg += fmt::format(R"(<circle class="run-dot" cx="{}" cy="{}" r="{}"/>)", coordinate(plot.px(xs[p])),
-                               coordinate(plot.py(ys[p])), xs.size() > 400 ? 2.2 : 4);
-        }
+        plot.dots(xs, ys, xs.size() > 400 ? 2.2 : 4, "run-dot");
+        chart.plots.push_back(std::move(plot));
+        chart.height = 300 * (row + 1);
     }
-    const double rows = std::ceil(static_cast<double>(shown.size()) / static_cast<double>(columns));
-    return "<figure>" + figure_svg(1000, 300 * rows, "Run-out against every factor", svg) +
-           caption(number, "Run-out against every factor.", "A dot per complete run.") + "</figure>";
+    return chart_json(chart);
 }
 
 }  // namespace talus::report

@@ -5,9 +5,9 @@
 
 #include <nlohmann/json.hpp>
 
+#include "core/result.hpp"
 #include "ensemble/plan.hpp"
 #include "ensemble/run_record.hpp"
-#include "core/result.hpp"
 
 namespace talus {
 

@@ -6,12 +6,12 @@
 
 #include <nlohmann/json.hpp>
 
+#include "core/result.hpp"
 #include "ensemble/plan.hpp"
 #include "ensemble/reduction.hpp"
-#include "stats/sensitivity.hpp"
-#include "core/result.hpp"
-#include "products/hazard_map.hpp"
+#include "report/hazard_map.hpp"
 #include "scene/scene.hpp"
+#include "stats/sensitivity.hpp"
 
 namespace talus {
 

@@ -1,21 +1,23 @@
 #include <algorithm>
 #include <cmath>
 #include <ctime>
-#include <numeric>
 #include <string>
 #include <vector>
 
 #include <fmt/chrono.h>
 #include <fmt/format.h>
 
+#include "core/number_or_null.hpp"
 #include "core/try.hpp"
 #include "ensemble/ensemble_figures.hpp"
 #include "ensemble/ensemble_products.hpp"
 #include "ensemble/predict.hpp"
 #include "ensemble_report_files.hpp"
 #include "params/fields.hpp"
-#include "products/report_map.hpp"
-#include "products/report_text.hpp"
+#include "report/map.hpp"
+#include "report/number_text.hpp"
+#include "report/page.hpp"
+#include "report/table.hpp"
 
 namespace talus {
 
@@ -27,13 +29,6 @@ constexpr std::size_t most_buildings = 60;  // rows of the table
 
 std::string percent(double share) {
     return std::isfinite(share) ? fixed(100 * share, share > 0 && share < 0.01 ? 1 : 0) + " %" : "–";
-}
-
-std::string card(const std::string& name, const std::string& value, const std::string& unit, const std::string& below) {
-    return fmt::format(
-        "<div class=\"card\"><dt>{}</dt><dd><strong>{}</strong> <span class=\"unit\">{}</span>"
-        "<div class=\"below\">{}</div></dd></div>\n",
-        name, value, unit, below);
 }
 
 /// The first map of a kind, map index and level; every result has it.
@@ -50,32 +45,34 @@ double area_above(const Grid<float>& grid, double share) {
     return cells * grid.geometry.cell * grid.geometry.cell;
 }
 
-std::string key_results(const EnsembleResult& result) {
+Json key_figures_of(const EnsembleResult& result) {
     const Reduction& r = result.reduction;
     std::vector<double> run_out = result.values_of(0);
     const double median = percentile(run_out, 50);
     std::string below = r.failed > 0 ? fmt::format("{} failed, see below", r.failed) : "none failed";
     if (!r.missing.empty()) below += fmt::format("; {} of the plan not run", r.missing.size());
-    std::string html =
-        card("Complete runs", fmt::format("{}", r.complete), fmt::format("of {}", result.runs->count()), below);
-    html += card("Run-out, median", fixed(median, 0), "m",
-                 std::isnan(median) ? "no run reached the flow path"
-                                    : fmt::format("5 to 95 %: {} to {} m", fixed(percentile(run_out, 5), 0),
-                                                  fixed(percentile(run_out, 95), 0)));
+    Json all = Json::array();
+    all.push_back(key_figure("complete_runs", "Complete runs", r.complete, "",
+                             fmt::format("of {}", result.runs->count()), below));
+    all.push_back(key_figure("median_run_out_m", "Run-out, median", number_or_null<Json>(median), "f0", "m",
+                             std::isnan(median) ? "no run reached the flow path"
+                                                : fmt::format("5 to 95 %: {} to {} m", fixed(percentile(run_out, 5), 0),
+                                                              fixed(percentile(run_out, 95), 0))));
     const double depth = result.runs->plan().thresholds.depth.front();
     if (const EnsembleMap* map = find_map(result, EnsembleMap::Kind::probability, 0, depth)) {
-        html += card("Likely covered", fixed(area_above(map->grid, 0.5), 0), "m²",
-                     fmt::format("deeper than {} m in more than half of the runs; {} m² in any", plain(depth),
-                                 fixed(area_above(map->grid, 0), 0)));
+        all.push_back(key_figure("likely_covered_m2", "Likely covered", area_above(map->grid, 0.5), "f0", "m²",
+                                 fmt::format("deeper than {} m in more than half of the runs; {} m² in any",
+                                             plain(depth), fixed(area_above(map->grid, 0), 0))));
     }
     const auto hit = std::count_if(r.buildings.begin(), r.buildings.end(), [](const auto& b) { return b.hit > 0; });
     const auto likely =
         std::count_if(r.buildings.begin(), r.buildings.end(), [](const auto& b) { return b.hit > 0.5; });
-    html += card("Buildings hit", fmt::format("{}", likely),
-                 r.buildings.empty() ? "" : fmt::format("of {}", r.buildings.size()),
-                 r.buildings.empty() ? "the scene has none"
-                                     : fmt::format("in more than half of the runs; {} in at least one", hit));
-    return html;
+    all.push_back(key_figure("buildings_likely_hit", "Buildings hit", likely, "",
+                             r.buildings.empty() ? "" : fmt::format("of {}", r.buildings.size()),
+                             r.buildings.empty()
+                                 ? "the scene has none"
+                                 : fmt::format("in more than half of the runs; {} in at least one", hit)));
+    return all;
 }
 
 /// The scene's own value of a factor's key, and its unit.
@@ -93,15 +90,19 @@ std::pair<std::string, std::string> as_given(const Scene& scene, const std::stri
     return found;
 }
 
-std::string factor_table(const EnsembleResult& result) {
-    std::string html;
+Json factors_of(const EnsembleResult& result) {
+    Json rows = table({{"key", "Factor", "", "", "code"},
+                       {"distribution", "Distribution", ""},
+                       {"as_given", "As given", "", "", "n"},
+                       {"unit", "Unit", "", "", "", ""}});
     for (const Factor& f : result.runs->plan().factors) {
         const auto [value, unit] = as_given(*result.scene, f.key);
-        html += fmt::format("<tr><td><code>{}</code></td><td>{}</td><td class=\"n\">{}</td><td>{}</td></tr>\n",
-                            escape(f.key), escape(f.distribution.text()), escape(value),
-                            unit == "m3" ? "m³" : escape(unit));
+        rows["rows"].push_back({{"key", f.key},
+                                {"distribution", f.distribution.text()},
+                                {"as_given", value},
+                                {"unit", unit == "m3" ? "m³" : unit}});
     }
-    return html;
+    return rows;
 }
 
 std::string design_text(const EnsembleResult& result) {
@@ -133,7 +134,7 @@ std::string design_text(const EnsembleResult& result) {
             break;
     }
     return fmt::format("Design: {}; seed {}. All other values are those of the scene; in every run {}.", text,
-                       plan.seed, escape(fmt::format("{}", fmt::join(result.runs->fixed(), ", "))));
+                       plan.seed, fmt::join(result.runs->fixed(), ", "));
 }
 
 /// Which maps the page shows: all probabilities, and the percentiles that a planner asks for.
@@ -178,57 +179,44 @@ MapContent content_of(const EnsembleResult& result) {
     for (const BuildingOdds& b : result.reduction.buildings) {
         content.buildings.classes.push_back(b.hit == 0 ? 0 : b.hit <= 0.1 ? 1 : b.hit <= 0.5 ? 2 : 3);
         content.buildings.titles.push_back(
-            fmt::format("{}: hit in {} of the runs", escape(b.name.empty() ? "Building" : b.name), percent(b.hit)));
+            fmt::format("{}: hit in {} of the runs", b.name.empty() ? "Building" : b.name, percent(b.hit)));
     }
     return content;
 }
 
-std::string building_table(const EnsembleResult& result) {
-    const auto& buildings = result.reduction.buildings;
+Json buildings_of(const EnsembleResult& result) {
+    const auto& all = result.reduction.buildings;
     std::vector<const BuildingOdds*> hit;
-    for (const BuildingOdds& b : buildings) {
+    for (const BuildingOdds& b : all) {
         if (b.hit > 0) hit.push_back(&b);
     }
-    if (hit.empty())
-        return buildings.empty() ? "<p>The scene has no buildings.</p>" : "<p>No run reached a building.</p>";
+    if (hit.empty()) return {};
     std::stable_sort(hit.begin(), hit.end(), [](const auto* a, const auto* b) { return a->hit > b->hit; });
-    std::string html = "<div class=\"scroll\"><table class=\"data odds\"><thead><tr><th>Building</th><th>Hit</th>";
-    for (const double p : result.runs->plan().thresholds.pressure) {
-        html += fmt::format("<th>Over {} kPa</th>", plain(p));
-    }
-    html +=
-        "<th class=\"n\">Pressure, median<br><small>kPa</small></th><th class=\"n\">Pressure, 95 "
-        "%<br><small>kPa</small></th>"
-        "<th class=\"n\">Depth at walls, 95 %<br><small>m</small></th><th class=\"n\">First hit, "
-        "median<br><small>s</small></th></tr></thead><tbody>\n";
-    const auto odds = [](double share) {
-        return fmt::format("<td>{}<span class=\"share\"><i style=\"width:{}%\"></i></span></td>", percent(share),
-                           coordinate(100 * share));
-    };
+    const std::vector<double>& pressures = result.runs->plan().thresholds.pressure;
+    std::vector<Column> columns = {{"name", "Building", ""}, {"hit", "Hit", ""}};
+    for (const double p : pressures) columns.push_back({"over_" + plain(p) + "_kPa", "Over " + plain(p) + " kPa", ""});
+    columns.insert(columns.end(), {{"median_pressure_kPa", "Pressure, median", "kPa", "s3"},
+                                   {"high_pressure_kPa", "Pressure, 95 %", "kPa", "s3"},
+                                   {"high_depth_m", "Depth at walls, 95 %", "m", "f2"},
+                                   {"median_first_hit_s", "First hit, median", "s", "f1"}});
+    Json rows = table(columns, "odds");
+    const auto odds = [](double share) -> Json { return {{"value", percent(share)}, {"share", share}}; };
     for (std::size_t i = 0; i < std::min(hit.size(), most_buildings); ++i) {
         const BuildingOdds& b = *hit[i];
-        html += fmt::format("<tr><td><span class=\"dot hit-{}\"></span>{}</td>{}",
-                            b.hit <= 0.1   ? 1
-                            : b.hit <= 0.5 ? 2
-                                           : 3,
-                            b.name.empty() ? "unnamed" : escape(b.name), odds(b.hit));
-        for (const double share : b.over_pressure) html += odds(share);
-        html += fmt::format(
-            "<td class=\"n\">{}</td><td class=\"n\">{}</td><td class=\"n\">{}</td><td class=\"n\">{}</td></tr>\n",
-            significant(b.median_pressure / 1e3, 3), significant(b.high_pressure / 1e3, 3), fixed(b.high_depth, 2),
-            fixed(b.median_hit, 1));
+        const int mark = b.hit <= 0.1 ? 1 : b.hit <= 0.5 ? 2 : 3;
+        Json row = {{"name", {{"value", b.name.empty() ? "unnamed" : b.name}, {"mark", fmt::format("hit-{}", mark)}}},
+                    {"hit", odds(b.hit)},
+                    {"median_pressure_kPa", number_or_null<Json>(b.median_pressure / 1e3)},
+                    {"high_pressure_kPa", number_or_null<Json>(b.high_pressure / 1e3)},
+                    {"high_depth_m", number_or_null<Json>(b.high_depth)},
+                    {"median_first_hit_s", number_or_null<Json>(b.median_hit)}};
+        for (std::size_t k = 0; k < b.over_pressure.size(); ++k) row[columns[2 + k].key] = odds(b.over_pressure[k]);
+        rows["rows"].push_back(std::move(row));
     }
-    html += "</tbody></table></div>\n";
-    html += fmt::format(
-        "<p class=\"note\">{} of {} buildings were never hit{}. Pressure is the filtered force on the walls over the "
-        "area in "
-        "contact; a run that misses the building counts as 0 in percentiles of pressure and depth. The first hit has a "
-        "median where half of the runs hit.</p>",
-        buildings.size() - hit.size(), buildings.size(),
-        hit.size() > most_buildings
-            ? fmt::format("; {} more that were are in buildings.csv", hit.size() - most_buildings)
-            : "");
-    return html;
+    return {{"table", std::move(rows)},
+            {"never_hit", all.size() - hit.size()},
+            {"count", all.size()},
+            {"more", hit.size() > most_buildings ? Json(hit.size() - most_buildings) : Json()}};
 }
 
 /// What was observed in the field, for the results that have it.
@@ -243,64 +231,59 @@ std::string observed_text(const Scene& scene, const std::string& key) {
     return "";
 }
 
-std::string result_table(const EnsembleResult& result) {
-    std::string html;
+Json results_of(const EnsembleResult& result) {
+    Json rows = table({{"name", "Result", ""},
+                       {"runs", "Runs", "", "f0"},
+                       {"p5", "5 %", "", "s3"},
+                       {"p50", "Median", "", "s3"},
+                       {"p95", "95 %", "", "s3"},
+                       {"least", "Least", "", "s3"},
+                       {"greatest", "Greatest", "", "s3"},
+                       {"unit", "Unit", "", "", "", ""},
+                       {"observed", "Observed", "", "", "n", ""}});
     for (std::size_t m = 0; m < result.measures.size(); ++m) {
         const Measure& measure = result.measures[m];
         std::vector<double> values = result.values_of(m);
-        html += fmt::format("<tr><td>{}</td><td class=\"n\">{}</td>", escape(measure.name), values.size());
-        for (const double p : {5.0, 50.0, 95.0, 0.0, 100.0}) {
-            html +=
-                fmt::format("<td class=\"n\">{}</td>", measure.unit.empty() ? fixed(percentile(values, p), 0)
-                                                                            : significant(percentile(values, p), 3));
-        }
-        html += fmt::format("<td>{}</td><td class=\"n\">{}</td></tr>\n",
-                            measure.unit == "m2"    ? "m²"
-                            : measure.unit == "deg" ? "°"
-                                                    : measure.unit,
-                            observed_text(*result.scene, measure.key));
+        const auto shown = [&](double p) -> Json {
+            return {{"value", number_or_null<Json>(percentile(values, p))},
+                    {"format", measure.unit.empty() ? "f0" : "s3"}};
+        };
+        rows["rows"].push_back({{"name", measure.name},
+                                {"runs", values.size()},
+                                {"p5", shown(5)},
+                                {"p50", shown(50)},
+                                {"p95", shown(95)},
+                                {"least", shown(0)},
+                                {"greatest", shown(100)},
+                                {"unit", measure.unit == "m2"    ? "m²"
+                                         : measure.unit == "deg" ? "°"
+                                                                 : measure.unit},
+                                {"observed", observed_text(*result.scene, measure.key)}});
     }
-    return html;
+    return rows;
 }
 
-std::string failed_section(const EnsembleResult& result) {
-    const Reduction& r = result.reduction;
-    if (r.failed == 0) return "";
-    std::string html =
-        "<section id=\"failed\">\n<h2>Failed runs</h2>\n<div class=\"scroll\"><table class=\"data\"><thead><tr><th "
-        "class=\"n\">Run</th>";
-    for (const Factor& f : result.runs->plan().factors) html += fmt::format("<th class=\"n\">{}</th>", escape(f.key));
-    html += "<th>Fault</th></tr></thead><tbody>\n";
-    std::size_t rows = 0;
-    for (const RunRecord& run : r.runs) {
-        if (run.complete() || ++rows > 40) continue;
-        html += fmt::format("<tr><td class=\"n\">{}</td>", run.run);
-        for (const std::string& value : run.values) html += fmt::format("<td class=\"n\">{}</td>", escape(value));
-        html += fmt::format("<td class=\"fault\">{}</td></tr>\n", escape(run.fault));
+Json failed_runs(const EnsembleResult& result) {
+    if (result.reduction.failed == 0) return {};
+    constexpr std::size_t most_rows = 40;
+    const auto& factors = result.runs->plan().factors;
+    std::vector<Column> columns = {{"run", "Run", "", "f0"}};
+    for (const Factor& f : factors) columns.push_back({f.key, f.key, "", "", "n"});
+    columns.push_back({"fault", "Fault", "", "", "fault"});
+    Json rows = table(columns);
+    for (const RunRecord& run : result.reduction.runs) {
+        if (run.complete() || rows["rows"].size() >= most_rows) continue;
+        Json row = {{"run", run.run}, {"fault", run.fault}};
+        for (std::size_t k = 0; k < factors.size(); ++k) row[factors[k].key] = run.values[k];
+        rows["rows"].push_back(std::move(row));
     }
-    return html +
-           "</tbody></table></div>\n<p class=\"note\">Failed runs count neither as hits nor as misses; if they are "
-           "many or lie at one end of a factor, the probabilities above are not to be trusted. All are in "
-           "runs.csv.</p>\n</section>\n";
+    return rows;
 }
 
-std::string method_text(const EnsembleResult& result) {
-    std::vector<double> walls;
-    for (const RunRecord& run : result.reduction.runs) walls.push_back(run.wall_time);
-    const double sum = std::accumulate(walls.begin(), walls.end(), 0.0);
-    return fmt::format(
-        "<p>Every run is a full simulation; nothing is interpolated between runs. A percentile of n runs is the "
-        "smallest value that "
-        "at least that share of them does not exceed. A run that never came to a place counts there as depth, speed "
-        "and pressure 0, "
-        "and as no arrival. With {} runs a probability p has a standard error of √(p(1 − p)/n), at most {} percentage "
-        "points, for independent draws.</p>\n"
-        "<p>A run took {} s of one processor's wall time on average. Each run's values, results and checksum are in "
-        "runs.csv; maps are GeoTIFF "
-        "beside this page. The same plan and seed give the same numbers on any number of threads, shards or ranks.</p>",
-        result.reduction.complete,
-        fixed(50 / std::sqrt(std::max<double>(1, static_cast<double>(result.reduction.complete))), 1),
-        significant(walls.empty() ? never : sum / static_cast<double>(walls.size()), 3));
+double mean_wall_time(const EnsembleResult& result) {
+    double sum = 0;
+    for (const RunRecord& run : result.reduction.runs) sum += run.wall_time;
+    return result.reduction.runs.empty() ? never : sum / static_cast<double>(result.reduction.runs.size());
 }
 
 }  // namespace
@@ -309,58 +292,37 @@ Result<std::string> render_ensemble_report(const EnsembleResult& result) {
     const Scene& scene = *result.scene;
     const SceneInfo& info = scene.spec.scene;
     const Reduction& r = result.reduction;
-    TALUS_ASSIGN(const auto maps, render_maps(scene, content_of(result)));
+    TALUS_ASSIGN(auto maps, map_figures(scene, content_of(result)));
     const bool partial = !r.missing.empty();
-    const std::string date = fmt::format("{:%d %B %Y, %H:%M} UTC", fmt::gmtime(std::time(nullptr)));
-    std::string banners;
-    if (info.reconstruction) {
-        banners +=
-            "<div class=\"banner reconstruction\"><b>Reconstruction.</b> The inputs of this scene are reconstructed, "
-            "not surveyed.</div>\n";
-    }
-    if (partial) {
-        banners += fmt::format(
-            "<div class=\"banner partial\"><b>{} of {} runs are missing.</b> The numbers below are those of the runs "
-            "that are there.</div>\n",
-            r.missing.size(), result.runs->count());
-    }
-    if (r.failed > 0) {
-        banners += fmt::format(
-            "<div class=\"banner unconverged\"><b>{} of {} runs failed.</b> They are left out of all probabilities; "
-            "see <a href=\"#failed\">Failed runs</a>.</div>\n",
-            r.failed, result.runs->count());
-    }
-    const std::string scatter = scatter_figure(result, maps.count + 2);
-    const std::string sensitivity = scatter + sensitivity_figure(result, maps.count + (scatter.empty() ? 2 : 3));
-    std::string style(ensemble_report_files::report_css);
-    style += ensemble_report_files::ensemble_css;
-    const std::string description =
-        info.description.empty() ? "" : "<p class=\"lead\">" + escape(info.description) + "</p>";
-    return fill(ensemble_report_files::ensemble_html,
-                {{"title", escape(info.title)},
-                 {"style", style},
-                 {"script", ensemble_report_files::report_js},
-                 {"page_note", info.reconstruction ? "Reconstruction, not surveyed" : ""},
-                 {"date", date},
-                 {"status", partial ? "partial" : "complete"},
-                 {"status_class", partial ? "partial" : "complete"},
-                 {"version", TALUS_VERSION},
-                 {"description", description},
-                 {"banners", banners},
-                 {"key_results", key_results(result)},
-                 {"factor_table", factor_table(result)},
-                 {"design_text", design_text(result)},
-                 {"map_definitions", maps.definitions},
-                 {"map_figures", maps.figures},
-                 {"map_read_out", maps.read_out},
-                 {"crs", escape(scene.crs.label())},
-                 {"complete", fmt::format("{}", r.complete)},
-                 {"run_out_figure", run_out_figure(result, maps.count + 1)},
-                 {"building_table", building_table(result)},
-                 {"result_table", result_table(result)},
-                 {"sensitivity", sensitivity},
-                 {"failed", failed_section(result)},
-                 {"method", method_text(result)}});
+    const double complete = std::max<double>(1, static_cast<double>(r.complete));
+    const Json page = {{"report_name", "ensemble report"},
+                       {"masthead", "Ensemble of landslide run-out simulations"},
+                       {"program", std::string("talus ") + TALUS_VERSION},
+                       {"date", fmt::format("{:%d %B %Y, %H:%M} UTC", fmt::gmtime(std::time(nullptr)))},
+                       {"title", info.title},
+                       {"description", info.description},
+                       {"reconstruction", info.reconstruction},
+                       {"reference_system", scene.crs.label()},
+                       {"status", {{"name", partial ? "runs are missing" : "complete"}, {"partial", partial}}},
+                       {"runs", result.runs->count()},
+                       {"complete", r.complete},
+                       {"missing", r.missing.size()},
+                       {"failed", r.failed > 0 ? Json(r.failed) : Json()},
+                       {"key_figures", key_figures_of(result)},
+                       {"factors", factors_of(result)},
+                       {"design", design_text(result)},
+                       {"maps", std::move(maps)},
+                       {"run_out", run_out_chart(result)},
+                       {"has_buildings", !r.buildings.empty()},
+                       {"buildings", buildings_of(result)},
+                       {"results", results_of(result)},
+                       {"scatter", scatter_chart(result)},
+                       {"sensitivity", sensitivity_figure(result)},
+                       {"resampled_sets", 500},
+                       {"failed_runs", failed_runs(result)},
+                       {"largest_standard_error_percent", 50 / std::sqrt(complete)},
+                       {"mean_wall_time_s", number_or_null<Json>(mean_wall_time(result))}};
+    return render(ensemble_report_files::ensemble_html, page);
 }
 
 }  // namespace talus

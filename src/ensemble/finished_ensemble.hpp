@@ -6,10 +6,10 @@
 #include <string>
 #include <vector>
 
+#include "core/result.hpp"
 #include "ensemble/plan.hpp"
 #include "ensemble/reduction.hpp"
-#include "core/result.hpp"
-#include "products/hazard_map.hpp"
+#include "report/hazard_map.hpp"
 
 namespace talus {
 

@@ -7,11 +7,11 @@
 #include <utility>
 #include <vector>
 
-#include "stats/design.hpp"
-#include "stats/distribution.hpp"
 #include "core/result.hpp"
 #include "run/variants.hpp"
 #include "scene/scene.hpp"
+#include "stats/design.hpp"
+#include "stats/distribution.hpp"
 
 /// What an ensemble varies, how often it runs, and what it counts.
 namespace talus {

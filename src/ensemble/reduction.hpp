@@ -5,10 +5,10 @@
 #include <string>
 #include <vector>
 
-#include "ensemble/plan.hpp"
-#include "ensemble/run_record.hpp"
 #include "core/grid.hpp"
 #include "core/result.hpp"
+#include "ensemble/plan.hpp"
+#include "ensemble/run_record.hpp"
 
 /// What the runs of an ensemble say together.
 namespace talus {

@@ -12,19 +12,17 @@
 #include "core/hash.hpp"
 #include "geo/versions.hpp"
 #include "params/fields.hpp"
-#include "products/hardware.hpp"
-#include "products/hazard_map.hpp"
 #include "products/results_json.hpp"
 #include "products/text_file.hpp"
 #include "products/writers.hpp"
+#include "report/hardware.hpp"
+#include "report/hazard_map.hpp"
 
 namespace talus {
 
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-constexpr double degrees = 180 / std::numbers::pi;
 
 struct ToJson {
     Json operator()(std::monostate) const { return nullptr; }

@@ -1,7 +1,7 @@
 #include "geo/raster.hpp"
-#include "products/hazard_map.hpp"
 #include "products/text_file.hpp"
 #include "products/writers.hpp"
+#include "report/hazard_map.hpp"
 
 namespace talus {
 namespace {

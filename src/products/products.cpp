@@ -4,6 +4,8 @@
 
 #include "products/text_file.hpp"
 #include "products/writers.hpp"
+#include "report/report.hpp"
+#include "report/results.hpp"
 
 namespace talus {
 
@@ -19,11 +21,16 @@ Status write_partial_note(const RunResult& result, const std::filesystem::path& 
     return write_text_file(folder / "PARTIAL.txt", text);
 }
 
+/// results.json and report.html, which shows what that holds.
 Status write_report(const Scene& scene, const RunResult& result, const std::vector<Comparison>& comparisons,
                     const std::filesystem::path& folder) {
-    const auto report = render_report(scene, result, comparisons);
-    if (!report) return report.error();
-    return write_text_file(folder / "report.html", *report);
+    const report::Json results = report::run_results(scene, result, comparisons);
+    // Names from attribute tables need not be valid UTF-8; the file is.
+    const std::string text = results.dump(1, ' ', false, report::Json::error_handler_t::replace) + "\n";
+    if (Status s = write_text_file(folder / "results.json", text); !s) return s;
+    const auto page = report::run_report(scene, result, results);
+    if (!page) return page.error();
+    return write_text_file(folder / "report.html", *page);
 }
 
 }  // namespace

@@ -36,14 +36,10 @@ class OutputFolder {
     bool force_ = false;
 };
 
-/// Writes maps (.tif + .qml), front.csv, buildings.csv, results.gpkg, timeseries.csv, manifest.json, report.html; where
-/// there are comparisons with variants of the scene, convergence.csv and variants.csv too.
-/// Errors name the file and the cause (disk full, ...).
+/// Writes maps (.tif + .qml), front.csv, buildings.csv, results.gpkg, timeseries.csv, manifest.json, results.json,
+/// report.html; where there are comparisons with variants of the scene, convergence.csv and variants.csv too. Errors
+/// name the file and the cause (disk full, ...).
 [[nodiscard]] Status write_products(const Scene& scene, const RunResult& result, const std::filesystem::path& folder,
                                     const std::vector<Comparison>& comparisons = {});
-
-/// The self-contained report.
-[[nodiscard]] Result<std::string> render_report(const Scene& scene, const RunResult& result,
-                                                const std::vector<Comparison>& comparisons = {});
 
 }  // namespace talus

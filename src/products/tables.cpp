@@ -9,8 +9,6 @@ namespace talus {
 
 namespace {
 
-constexpr double degrees = 180 / std::numbers::pi;
-
 std::string front_table(const Observation& observation) {
     Csv csv("chainage_m,first_arrival_time_s,front_velocity_mps,front_particle_speed_mps");
     for (const FrontSample& f : observation.front) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <boost/random/sobol.hpp>
 #include <cmath>
 #include <numeric>
 #include <utility>
@@ -51,67 +52,16 @@ Points latin_hypercube(std::size_t count, std::size_t factors, std::uint64_t see
     return points;
 }
 
-/// A dimension of Joe & Kuo's (2008) table new-joe-kuo-6: degree and inner coefficients of the primitive polynomial and
-/// the first direction numbers. The first dimension, van der Corput's sequence, has none.
-struct SobolDimension {
-    unsigned degree, coefficients;
-    std::array<std::uint32_t, 7> first;
-};
-constexpr std::array<SobolDimension, sobol_dimensions - 1> sobol_table = {{
-    {1, 0, {1}},
-    {2, 1, {1, 3}},
-    {3, 1, {1, 3, 1}},
-    {3, 2, {1, 1, 1}},
-    {4, 1, {1, 1, 3, 3}},
-    {4, 4, {1, 3, 5, 13}},
-    {5, 2, {1, 1, 5, 5, 17}},
-    {5, 4, {1, 1, 5, 5, 5}},
-    {5, 7, {1, 1, 7, 11, 19}},
-    {5, 11, {1, 1, 5, 1, 1}},
-    {5, 13, {1, 1, 1, 3, 11}},
-    {5, 14, {1, 3, 5, 5, 31}},
-    {6, 1, {1, 3, 3, 9, 7, 49}},
-    {6, 13, {1, 1, 1, 15, 21, 21}},
-    {6, 16, {1, 3, 1, 13, 27, 49}},
-    {6, 19, {1, 1, 1, 15, 7, 5}},
-    {6, 22, {1, 3, 1, 15, 13, 25}},
-    {6, 25, {1, 1, 5, 5, 19, 61}},
-    {7, 1, {1, 3, 7, 11, 23, 15, 103}},
-    {7, 4, {1, 3, 7, 13, 13, 15, 69}},
-}};
-
-using Directions = std::array<std::uint32_t, 32>;
-
-Directions directions_of(std::size_t dimension) {
-    Directions v{};
-    if (dimension == 0) {
-        for (unsigned i = 0; i < 32; ++i) v.at(i) = 1U << (31 - i);
-        return v;
-    }
-    const SobolDimension& d = sobol_table.at(dimension - 1);
-    for (unsigned i = 0; i < d.degree; ++i) v.at(i) = d.first.at(i) << (31 - i);
-    for (unsigned i = d.degree; i < 32; ++i) {
-        v.at(i) = v.at(i - d.degree) ^ (v.at(i - d.degree) >> d.degree);
-        for (unsigned k = 1; k < d.degree; ++k) {
-            if ((d.coefficients >> (d.degree - 1 - k) & 1U) != 0) v.at(i) ^= v.at(i - k);
-        }
-    }
-    return v;
-}
-
-/// In Gray code order (Antonov & Saleev 1979). The seed's digital shift keeps the even spread and moves the first point
-/// off the corner.
+/// Sobol's sequence with the direction numbers of Joe & Kuo (2008). The seed's digital shift keeps the even spread and
+/// moves the first point off the corner.
 Points sobol_sequence(std::size_t count, std::size_t factors, std::uint64_t seed) {
     Points points(count, std::vector<double>(factors));
-    for (std::size_t k = 0; k < factors; ++k) {
-        const Directions v = directions_of(k);
-        const auto shift = static_cast<std::uint32_t>(draw_bits(seed, 0, k) >> 32);
-        std::uint32_t x = 0;
-        for (std::size_t i = 0; i < count; ++i) {
+    boost::random::sobol_engine<std::uint32_t, 32> sequence(factors);
+    for (std::size_t i = 0; i < count; ++i) {
+        for (std::size_t k = 0; k < factors; ++k) {
+            const auto shift = static_cast<std::uint32_t>(draw_bits(seed, 0, k) >> 32);
+            const std::uint32_t x = i == 0 ? 0 : sequence();  // the library leaves the corner out
             points[i][k] = (static_cast<double>(x ^ shift) + 0.5) / 4294967296.0;
-            std::size_t bit = 0;
-            while ((i >> bit & 1U) != 0) ++bit;
-            x ^= v.at(bit);
         }
     }
     return points;

@@ -8,14 +8,16 @@
 #include <fmt/format.h>
 
 #include "core/try.hpp"
-#include "products/report_text.hpp"
 #include "products/text_file.hpp"
+#include "report/page.hpp"
+#include "report/table.hpp"
 #include "validation_page_files.hpp"
 
 namespace talus::validate {
 namespace {
 
-using report::escape;
+using report::Json;
+using report::table;
 
 constexpr const char* legend =
     "Deviation and tolerance are shares of the expected value, or in the quantity's own unit where 0 is expected. "
@@ -36,32 +38,6 @@ std::string summary_text(const std::vector<CaseResult>& results) {
         tally.failed + tally.known_failures, tally.known_failures, tally.shown, tally.skipped, wall_time);
 }
 
-std::string row_html(const Row& row) {
-    const char* css = row.verdict == Verdict::pass                                            ? "pass"
-                      : row.verdict == Verdict::fail || row.verdict == Verdict::known_failure ? "fail"
-                                                                                              : "other";
-    const auto cell = [](const std::string& text, const char* attributes) {
-        return fmt::format("<td{}>{}</td>", attributes, escape(text));
-    };
-    constexpr const char* number = " class=\"n\"";
-    return "<tr>" + cell(row.quantity, "") + cell(expected_text(row), number) + cell(computed_text(row), number) +
-           cell(deviation_text(row), number) + cell(tolerance_text(row), number) +
-           cell(row.source, " class=\"source\"") +
-           fmt::format("<td><span class=\"verdict {}\">{}</span></td></tr>\n", css, verdict_text(row.verdict));
-}
-
-std::string overview_html(const CaseResult& result) {
-    const Case& c = result.validation_case;
-    const Tally tally = count({result});
-    const int failed = tally.failed + tally.known_failures;
-    return fmt::format(
-        "<tr><td><a href=\"#case-{}\">{}</a></td><td>{}</td><td class=\"n\">{}</td>"
-        "<td class=\"n\">{}</td><td class=\"n\">{}</td><td class=\"n\">{:.0f} s</td></tr>\n",
-        escape(c.name), escape(c.title), result.skipped.empty() ? "" : "skipped", tally.passed,
-        failed > 0 ? fmt::format("<span class=\"verdict fail\">{}</span>", failed) : "0", tally.shown,
-        result.wall_time);
-}
-
 /// What is said of a case beside its numbers: why it fails, why it was not run, what to know.
 std::vector<std::string> remarks(const CaseResult& result) {
     std::vector<std::string> said;
@@ -76,26 +52,63 @@ std::vector<std::string> remarks(const CaseResult& result) {
     return said;
 }
 
-std::string case_html(const CaseResult& result) {
-    const Case& c = result.validation_case;
-    std::string html = fmt::format("<section class=\"case\" id=\"case-{}\">\n<h2>{}<small>{}</small></h2>\n<p>{}</p>\n",
-                                   escape(c.name), escape(c.title), escape(c.name), escape(c.description));
-    std::string list;
-    for (const std::string& remark : remarks(result)) list += "<li>" + escape(remark) + "</li>\n";
-    if (!list.empty()) html += "<ul>\n" + list + "</ul>\n";
-    html +=
-        "<div class=\"scroll\"><table class=\"data\"><thead><tr><th>Quantity</th><th class=\"n\">Expected</th>"
-        "<th class=\"n\">Computed</th><th class=\"n\">Deviation</th><th class=\"n\">Tolerance</th><th>Source</th>"
-        "<th>Result</th></tr></thead><tbody>\n";
-    for (const Row& row : result.rows) html += row_html(row);
-    html += "</tbody></table></div>\n";
-    std::string figures;
-    for (const Chart& chart : result.charts) {
-        figures += fmt::format("<figure>{}\n<figcaption>{}.</figcaption></figure>\n", chart_svg(chart, false),
-                               escape(chart.title));
+Json rows_of(const CaseResult& result) {
+    Json rows = table({{"quantity", "Quantity", ""},
+                       {"expected", "Expected", "", "", "n"},
+                       {"computed", "Computed", "", "", "n"},
+                       {"deviation", "Deviation", "", "", "n"},
+                       {"tolerance", "Tolerance", "", "", "n"},
+                       {"source", "Source", "", "", "source"},
+                       {"result", "Result", ""}});
+    for (const Row& row : result.rows) {
+        const char* look = row.verdict == Verdict::pass                                            ? "pass"
+                           : row.verdict == Verdict::fail || row.verdict == Verdict::known_failure ? "fail"
+                                                                                                   : "other";
+        rows["rows"].push_back({{"quantity", row.quantity},
+                                {"expected", expected_text(row)},
+                                {"computed", computed_text(row)},
+                                {"deviation", deviation_text(row)},
+                                {"tolerance", tolerance_text(row)},
+                                {"source", row.source},
+                                {"result", {{"value", verdict_text(row.verdict)}, {"verdict", look}}}});
     }
-    if (!figures.empty()) html += "<div class=\"charts\">\n" + figures + "</div>\n";
-    return html + "</section>\n";
+    return rows;
+}
+
+Json overview_of(const std::vector<CaseResult>& results) {
+    Json rows = table({{"case", "Case", ""},
+                       {"skipped", "", "", "", "", ""},
+                       {"passed", "Pass", "", "f0"},
+                       {"failed", "Fail", "", "f0"},
+                       {"shown", "Shown", "", "f0"},
+                       {"wall_time_s", "Time", "s", "f0"}});
+    for (const CaseResult& result : results) {
+        const Tally tally = count({result});
+        const int failed = tally.failed + tally.known_failures;
+        Json row = {
+            {"case", {{"value", result.validation_case.title}, {"link", "#case-" + result.validation_case.name}}},
+            {"passed", tally.passed},
+            {"failed", failed},
+            {"shown", tally.shown},
+            {"wall_time_s", result.wall_time}};
+        if (!result.skipped.empty()) row["skipped"] = "skipped";
+        if (failed > 0) row["failed"] = {{"value", failed}, {"verdict", "fail"}};
+        rows["rows"].push_back(std::move(row));
+    }
+    return rows;
+}
+
+Json case_data(const CaseResult& result) {
+    const Case& c = result.validation_case;
+    Json charts = Json::array();
+    for (const Chart& chart : result.charts) charts.push_back(report::chart_json(drawing_of(chart)));
+    return {{"name", c.name},
+            {"title", c.title},
+            {"about", c.description},
+            {"remarks", remarks(result)},
+            {"table", rows_of(result)},
+            {"has_charts", !charts.empty()},
+            {"charts", std::move(charts)}};
 }
 
 /// Text within a line or a cell of Markdown.
@@ -119,20 +132,14 @@ std::string row_markdown(const Row& row) {
 }  // namespace
 
 std::string page_html(const std::vector<CaseResult>& results) {
-    std::string overview, cases;
-    for (const CaseResult& result : results) {
-        overview += overview_html(result);
-        cases += case_html(result);
-    }
-    const std::string style = fmt::format("{}\n{}\n{}", validation_page_files::report_css,
-                                          validation_page_files::chart_css, validation_page_files::page_css);
-    return report::fill(validation_page_files::page_html, {{"version", TALUS_VERSION},
-                                                           {"style", style},
-                                                           {"date", now_text()},
-                                                           {"summary", escape(summary_text(results))},
-                                                           {"overview", overview},
-                                                           {"legend", escape(legend)},
-                                                           {"cases", cases}});
+    Json cases = Json::array();
+    for (const CaseResult& result : results) cases.push_back(case_data(result));
+    return report::render(validation_page_files::page_html, {{"program", std::string("talus ") + TALUS_VERSION},
+                                                             {"date", now_text()},
+                                                             {"summary", summary_text(results)},
+                                                             {"overview", overview_of(results)},
+                                                             {"legend", legend},
+                                                             {"cases", std::move(cases)}});
 }
 
 Status write_markdown(const std::vector<CaseResult>& results, const std::filesystem::path& file) {
@@ -156,7 +163,7 @@ Status write_markdown(const std::vector<CaseResult>& results, const std::filesys
         if (!list.empty()) text += "\n" + list;
         for (const Chart& chart : result.charts) {
             const std::string name = fmt::format("{}_{}.svg", c.name, chart.name);
-            TALUS_TRY(write_text_file(folder / name, chart_svg(chart, true) + "\n"));
+            TALUS_TRY(write_text_file(folder / name, report::chart_file(drawing_of(chart))));
             text += fmt::format("\n![{}]({}/{})\n", markdown_text(chart.title), folder.filename().string(), name);
         }
     }

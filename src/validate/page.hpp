@@ -5,13 +5,14 @@
 #include <vector>
 
 #include "core/result.hpp"
+#include "report/chart.hpp"
 #include "validate/suite.hpp"
 
 /// The validation table with the plots of every case, for people.
 namespace talus::validate {
 
-/// A chart as SVG. `self_contained`: with its own style and a white ground, to stand in any page.
-[[nodiscard]] std::string chart_svg(const Chart& chart, bool self_contained);
+/// A case's chart as reports draw it.
+[[nodiscard]] report::Chart drawing_of(const Chart& chart);
 
 /// A page that holds all it shows.
 [[nodiscard]] std::string page_html(const std::vector<CaseResult>& results);

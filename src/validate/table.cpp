@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/number_or_null.hpp"
-#include "products/report_text.hpp"
+#include "report/number_text.hpp"
 #include "validate/suite.hpp"
 
 namespace talus::validate {

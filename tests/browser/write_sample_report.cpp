@@ -1,8 +1,7 @@
 #include <cstdio>
 #include <fstream>
 
-#include "products/products.hpp"
-#include "products/report_fixture.hpp"
+#include "report/report_fixture.hpp"
 
 // Writes the report of the sample valley to the file named, for the browser to open.
 int main(int argc, char** argv) {
@@ -12,12 +11,7 @@ int main(int argc, char** argv) {
     }
     const talus::Scene scene = talus::test::sample_scene();
     const talus::RunResult result = talus::test::sample_result(scene);
-    const auto html = talus::render_report(scene, result, talus::test::sample_comparisons(scene, result));
-    if (!html) {
-        std::fprintf(stderr, "%s\n", html.error().message.c_str());
-        return 1;
-    }
     std::ofstream file(argv[1], std::ios::binary);
-    file << *html;
+    file << talus::test::report_page(scene, result, talus::test::sample_comparisons(scene, result));
     return file.flush() ? 0 : 1;
 }

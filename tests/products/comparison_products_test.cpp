@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <sstream>
 
 #include <gmock/gmock.h>
@@ -5,9 +6,8 @@
 #include <nlohmann/json.hpp>
 
 #include "products/products.hpp"
-#include "products/report_sections.hpp"
 #include "products/writers.hpp"
-#include "report_fixture.hpp"
+#include "report/report_fixture.hpp"
 #include "support/fixtures.hpp"
 
 namespace talus {
@@ -38,7 +38,15 @@ class ComparisonProducts : public testing::Test {
         }
         return all;
     }
-    [[nodiscard]] std::string sections() const { return report::comparison_sections(comparisons, scene, result, 8); }
+    [[nodiscard]] std::string page() const { return test::report_page(scene, result, comparisons); }
+    /// What the report says of comparisons alone.
+    [[nodiscard]] std::string sections() const {
+        const std::string all = page();
+        const std::size_t start =
+            std::min(all.find("<section id=\"convergence\">"), all.find("<section id=\"sensitivity\">"));
+        const std::size_t end = all.find("<section id=\"method\">");
+        return start < end ? all.substr(start, end - start) : "";
+    }
 };
 
 TEST_F(ComparisonProducts, TablesHaveARowPerRunAndTwoColumnsPerQuantity) {
@@ -79,21 +87,19 @@ TEST_F(ComparisonProducts, StandInTheFolderAndInTheManifest) {
 }
 
 TEST_F(ComparisonProducts, NothingIsSaidOfThemWithoutVariants) {
-    const auto html = render_report(scene, result);
-    ASSERT_TRUE(html.ok());
-    EXPECT_THAT(*html, Not(HasSubstr("<section id=\"convergence\">")));
-    EXPECT_THAT(*html, Not(HasSubstr("<section id=\"sensitivity\">")));
+    const std::string html = test::report_page(scene, result);
+    EXPECT_THAT(html, Not(HasSubstr("<section id=\"convergence\">")));
+    EXPECT_THAT(html, Not(HasSubstr("<section id=\"sensitivity\">")));
 }
 
 TEST_F(ComparisonProducts, ConvergenceUnknownIsNotCalledConverged) {
-    EXPECT_THAT(report::comparison_banners(comparisons),
-                HasSubstr("<b>Not converged: 3 of 8 changes above 5 %, 1 of 3 runs missing.</b>"));
+    EXPECT_THAT(page(), HasSubstr("<b>Not converged: 3 of 8 changes above 5 %, 1 of 3 runs missing.</b>"));
     EXPECT_THAT(sections(), HasSubstr("Not converged: 3 of 8 changes above 5 %, 1 of 3 runs missing"));
 
     comparisons[0].rows.erase(comparisons[0].rows.begin() + 1);
-    EXPECT_THAT(report::comparison_banners(comparisons), HasSubstr("<b>Convergence not known: "));
+    EXPECT_THAT(page(), HasSubstr("<b>Convergence not known: "));
     comparisons[0].rows.pop_back();
-    EXPECT_EQ(report::comparison_banners(comparisons), "");
+    EXPECT_THAT(page(), Not(HasSubstr("href=\"#convergence\"")));
     EXPECT_THAT(sections(), HasSubstr("<b class=\"good\">Converged: no change above 5 %.</b>"));
 }
 

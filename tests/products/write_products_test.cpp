@@ -12,10 +12,10 @@
 #include "geo/raster.hpp"
 #include "geo/vector.hpp"
 #include "params/fields.hpp"
-#include "products/hazard_map.hpp"
 #include "products/products.hpp"
 #include "products/writers.hpp"
-#include "report_fixture.hpp"
+#include "report/hazard_map.hpp"
+#include "report/report_fixture.hpp"
 #include "support/fixtures.hpp"
 
 namespace talus {
@@ -230,26 +230,23 @@ TEST_F(Products, BarriersHaveTheirVolumesAndTheirHistory) {
     EXPECT_EQ(test::read_text(folder.path() / "structures_over_time.csv"),
               "name,time_s,force_kN,impulse_kNs,overtopped_m3,passed_m3,held_m3,filling_height_m\n"
               "House 38,11,2,3,1,0.5,40,1.5\nHouse 38,12,5,7,7.25,0.5,44,2\n");
-    const auto report = render_report(*scene_, result, {});
-    ASSERT_TRUE(report);
-    EXPECT_THAT(*report, HasSubstr("House 38 failed at 12.50 s"));
-    EXPECT_THAT(*report, HasSubstr("Force on structures over time."));
-    EXPECT_THAT(*report, HasSubstr("<h3>Barriers</h3>"));
-    EXPECT_THAT(*report, testing::Not(HasSubstr("What nets held and let through.")));
+    const std::string report = test::report_page(*scene_, result);
+    EXPECT_THAT(report, HasSubstr("House 38 failed at 12.50 s"));
+    EXPECT_THAT(report, HasSubstr("Force on structures over time."));
+    EXPECT_THAT(report, HasSubstr("<h3>Barriers</h3>"));
+    EXPECT_THAT(report, testing::Not(HasSubstr("What nets held and let through.")));
     dam.passing_share = 0.4;
     dam.hit = true;
     dam.held_volume = 44;
     dam.passed_volume = 8.75;
     ASSERT_TRUE(write_tables(*scene_, result, folder.path()).ok());
     EXPECT_EQ(rows_of(test::read_text(folder.path() / "buildings.csv"))[1][10], "net");
-    const auto of_net = render_report(*scene_, result, {});
-    ASSERT_TRUE(of_net);
-    EXPECT_THAT(*of_net, HasSubstr("What nets held and let through."));
-    EXPECT_THAT(*of_net, HasSubstr("its meshes let 40 % of the grains through"));
-    EXPECT_THAT(*of_net, HasSubstr("Of 60.0 m³ that came to it, 44.0 m³ lie behind it (73 %), 8.8 m³ went through"));
-    const auto without = render_report(*scene_, *result_, {});
-    ASSERT_TRUE(without);
-    EXPECT_THAT(*without, testing::Not(HasSubstr("Force on structures over time.")));
+    const std::string of_net = test::report_page(*scene_, result);
+    EXPECT_THAT(of_net, HasSubstr("What nets held and let through."));
+    EXPECT_THAT(of_net, HasSubstr("its meshes let 40 % of the grains through"));
+    EXPECT_THAT(of_net, HasSubstr("Of 60.0 m³ that came to it, 44.0 m³ lie behind it (73 %), 8.8 m³ went through"));
+    const std::string without = test::report_page(*scene_, *result_);
+    EXPECT_THAT(without, testing::Not(HasSubstr("Force on structures over time.")));
 }
 
 TEST_F(Products, NamesWithCommasAndQuotesAreQuoted) {

@@ -188,7 +188,7 @@ TEST(Page, HoldsTableAndPlotsAndEscapesWhatItIsGiven) {
     EXPECT_THAT(html, HasSubstr("computed &lt;b&gt;"));
     EXPECT_THAT(html, HasSubstr("<span class=\"verdict fail\">FAIL</span>"));
     EXPECT_THAT(html, HasSubstr("<a href=\"#case-")) << "the overview leads to the cases";
-    EXPECT_THAT(html, HasSubstr("<svg class=\"chart\""));
+    EXPECT_THAT(html, HasSubstr("<svg class=\"figure\""));
     EXPECT_EQ(html.find("{{"), std::string::npos);
     EXPECT_EQ(html.find("http://www.w3.org/2000/svg"), std::string::npos) << "inline, nothing from the network";
     EXPECT_EQ(html.find("nan"), std::string::npos);

@@ -5,7 +5,7 @@
 #include <fmt/format.h>
 
 #include "core/try.hpp"
-#include "products/report_sections.hpp"
+#include "report/results.hpp"
 #include "run/run_scene.hpp"
 #include "scene/scene.hpp"
 #include "validate/kinds/kinds.hpp"

@@ -1,0 +1,19 @@
+#pragma once
+
+#include <vector>
+
+#include "core/geometry.hpp"
+#include "core/grid.hpp"
+
+namespace talus {
+
+/// A line of equal elevation; closed where it ends at its start.
+struct Contour {
+    double elevation = 0;  ///< m
+    std::vector<PlanPoint> points;
+};
+
+/// Contour lines at whole multiples of `interval` up to the edges of the grid, by GDAL. None where no cell has a value.
+[[nodiscard]] std::vector<Contour> contours(const Grid<float>& elevation, double interval);
+
+}  // namespace talus

@@ -1,0 +1,412 @@
+#include "report/chart.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include <fmt/format.h>
+
+#include "core/number_or_null.hpp"
+#include "report/colour.hpp"
+#include "report_files.hpp"
+
+namespace talus::report {
+namespace {
+
+constexpr double key_row_height = 20, key_sample = 26, key_gap = 32, key_apart = 22;
+/// Names may reach a little beyond the plot that they stand over; their length is only estimated.
+constexpr double key_slack = 18;
+
+double key_length(const Curve& curve) {
+    return key_gap + 6.7 * static_cast<double>(curve.name.size()) + key_apart;
+}
+
+/// What stands for a curve in a key, `y` being its middle.
+void draw_sample(Svg& svg, const Curve& curve, double x, double y) {
+    using Shape = Curve::Shape;
+    switch (curve.shape) {
+        case Shape::band:
+        case Shape::bars:
+            svg.rect(curve.style, x, y - 5, key_sample, 10);
+            break;
+        case Shape::diamonds:
+            svg.path(curve.style, diamond(x + key_sample / 2, y));
+            break;
+        case Shape::dots:
+            svg.circle(curve.style, x + key_sample / 2, y, curve.size);
+            break;
+        default:
+            svg.line(curve.style, x, y, x + key_sample, y);
+    }
+}
+
+std::vector<double> copied(std::span<const double> values) {
+    return {values.begin(), values.end()};
+}
+
+}  // namespace
+
+void ValueRange::include(double value) {
+    if (!std::isfinite(value)) return;
+    low = std::min(low, value);
+    high = std::max(high, value);
+}
+
+Ticks round_ticks(const ValueRange& range, int count) {
+    const double step = round_step((range.high - range.low) / count);
+    Ticks ticks;
+    while (ticks.digits < 6 &&
+           std::abs(step * std::pow(10, ticks.digits) - std::round(step * std::pow(10, ticks.digits))) > 1e-6) {
+        ++ticks.digits;
+    }
+    const double last = std::floor(range.high / step + 1e-9);
+    for (double k = std::ceil(range.low / step - 1e-9); k <= last; ++k) ticks.values.push_back(k * step);
+    return ticks;
+}
+
+int key_rows(const std::vector<Curve>& curves, double width) {
+    int rows = 1;
+    double x = 0;
+    for (const Curve& curve : curves) {
+        if (curve.name.empty()) continue;
+        if (x > 0 && x + key_length(curve) - key_apart > width + key_slack) {
+            x = 0;
+            ++rows;
+        }
+        x += key_length(curve);
+    }
+    return rows;
+}
+
+Plot::Plot(double from_left, double from_top, double wide, double high, const ValueRange& x, const ValueRange& y)
+    : left(from_left), top(from_top), width(wide), height(high), x_range(x), y_range(y) {
+    if (!(x_range.high > x_range.low)) x_range.high = x_range.low + 1;
+    if (!(y_range.high > y_range.low)) y_range.high = y_range.low + 1;
+}
+
+void Plot::axes(std::string_view title_of_x, std::string_view title_of_y) {
+    has_axes = true;
+    x_title = title_of_x;
+    y_title = title_of_y;
+}
+
+void Plot::line(std::span<const double> x, std::span<const double> y, std::string_view style,
+                std::string_view curve_name) {
+    curves.push_back({Curve::Shape::line, std::string(style), std::string(curve_name), copied(x), copied(y), {}, 0});
+}
+
+void Plot::band(std::span<const double> x, std::span<const double> low, std::span<const double> high,
+                std::string_view style, std::string_view curve_name) {
+    curves.push_back(
+        {Curve::Shape::band, std::string(style), std::string(curve_name), copied(x), copied(high), copied(low), 0});
+}
+
+void Plot::vertical(double x, std::string_view style) {
+    curves.push_back({Curve::Shape::vertical, std::string(style), "", {x}, {}, {}, 0});
+}
+
+void Plot::horizontal(double y, std::string_view style, std::string_view curve_name) {
+    curves.push_back({Curve::Shape::horizontal, std::string(style), std::string(curve_name), {}, {y}, {}, 0});
+}
+
+void Plot::mark(double x, double y, std::string_view style, std::string_view curve_name) {
+    curves.push_back({Curve::Shape::diamonds, std::string(style), std::string(curve_name), {x}, {y}, {}, 0});
+}
+
+void Plot::dots(std::span<const double> x, std::span<const double> y, double radius, std::string_view style,
+                std::string_view curve_name) {
+    curves.push_back(
+        {Curve::Shape::dots, std::string(style), std::string(curve_name), copied(x), copied(y), {}, radius});
+}
+
+void Plot::label(double x, double y, double dx, double dy, std::string_view anchor, std::string_view style,
+                 std::string_view text) {
+    notes.push_back({x, y, dx, dy, std::string(anchor), std::string(style), std::string(text)});
+}
+
+void Plot::draw(Svg& svg) const {
+    draw_cells(svg);
+    if (has_axes) draw_axes(svg);
+    if (!name.empty()) svg.text("note-strong", left, top - 10, name);
+    for (const Curve& curve : curves) draw_curve(svg, curve);
+    for (const Note& note : notes) {
+        svg.text(note.style, px(note.x) + note.dx, py(note.y) + note.dy, note.text, note.anchor);
+    }
+    if (key != Key::none) draw_key(svg);
+}
+
+void Plot::draw_cells(Svg& svg) const {
+    for (std::size_t i = 0; i < cells.values.size(); ++i) {
+        const std::size_t column = i % (cells.x.size() - 1), row = i / (cells.x.size() - 1);
+        std::size_t k = 0;
+        while (k + 1 < cells.breaks.size() && cells.values[i] >= cells.breaks[k + 1]) ++k;
+        // A little larger than it is, or seams show between cells.
+        svg.rect("", px(cells.x[column]), py(cells.y[row + 1]), px(cells.x[column + 1]) - px(cells.x[column]) + 0.4,
+                 py(cells.y[row]) - py(cells.y[row + 1]) + 0.4, cells.colours[k]);
+    }
+}
+
+void Plot::draw_axes(Svg& svg) const {
+    const double right = left + width, bottom = top + height;
+    const Ticks across = round_ticks(x_range, std::max(3, static_cast<int>(width / 75)));
+    for (const double v : across.values) {
+        svg.line("grid", px(v), top, px(v), bottom);
+        if (!x_title.empty()) svg.text("tick", px(v), bottom + 16, fixed(v, across.digits), "middle");
+    }
+    if (has_y_axis) {
+        const Ticks up = round_ticks(y_range, std::max(3, static_cast<int>(height / 36)));
+        for (const double v : up.values) {
+            svg.line("grid", left, py(v), right, py(v));
+            svg.text("tick", left - 7, py(v) + 4, fixed(v, up.digits), "end");
+        }
+        svg.line("axis", left, top, left, bottom);
+    }
+    svg.line("axis", left, bottom, right, bottom);
+    if (!x_title.empty()) svg.text("axis-title", left + width / 2, bottom + 35, x_title, "middle");
+    if (!y_title.empty()) svg.turned_text("axis-title", left - 46, top + height / 2, -90, y_title, "middle");
+}
+
+void Plot::draw_curve(Svg& svg, const Curve& curve) const {
+    using Shape = Curve::Shape;
+    const std::vector<double>&x = curve.x, &y = curve.y;
+    const auto place = [&](double at, double value) {
+        return fmt::format("{} {}", coordinate(px(at)), coordinate(py(value)));
+    };
+    std::string path;
+    switch (curve.shape) {
+        case Shape::vertical:
+            for (const double at : x) svg.line(curve.style, px(at), top, px(at), top + height);
+            return;
+        case Shape::horizontal:
+            for (const double value : y) svg.line(curve.style, left, py(value), left + width, py(value));
+            return;
+        case Shape::band: {
+            const std::size_t n = std::min({x.size(), y.size(), curve.low.size()});
+            for (std::size_t i = 0; i < n; ++i) path += (i == 0 ? "M" : "L") + place(x[i], y[i]);
+            for (std::size_t i = n; i-- > 0;) path += "L" + place(x[i], curve.low[i]);
+            if (n > 1) svg.path(curve.style, path + "Z");
+            return;
+        }
+        default:
+            break;
+    }
+    bool drawing = false;
+    for (std::size_t i = 0; i < std::min(x.size(), y.size()); ++i) {
+        if (!std::isfinite(x[i]) || !std::isfinite(y[i])) {
+            drawing = false;
+            continue;
+        }
+        const double at_x = px(x[i]), at_y = py(y[i]);
+        if (curve.shape == Shape::diamonds) {
+            svg.path(curve.style, diamond(at_x, at_y));
+        } else if (curve.shape == Shape::dots) {
+            svg.circle(curve.style, at_x, at_y, curve.size);
+        } else if (curve.shape == Shape::crosses) {
+            svg.path(curve.style, fmt::format("M{} {}l12 12m0 -12l-12 12", coordinate(at_x - 6), coordinate(at_y - 6)));
+        } else if (curve.shape == Shape::bars) {
+            if (y[i] > 0) svg.rect(curve.style, at_x + 0.75, at_y, px(x[i] + curve.size) - at_x - 1.5, py(0) - at_y);
+        } else {
+            path += (drawing ? "L" : "M") + place(x[i], y[i]);
+            drawing = true;
+        }
+    }
+    if (!path.empty()) svg.path(curve.style, path);
+}
+
+void Plot::draw_key(Svg& svg) const {
+    const int rows = key_rows(curves, width);
+    const bool above = key == Key::above;
+    double x = above ? left : left + width + 24;
+    double y = above ? top - 14 - key_row_height * (rows - 1) : draw_cell_key(svg, x, top) + 16;
+    for (const Curve& curve : curves) {
+        if (curve.name.empty()) continue;
+        if (above && x > left && x + key_length(curve) - key_apart > left + width + key_slack) {
+            x = left;
+            y += key_row_height;
+        }
+        draw_sample(svg, curve, x, y);
+        svg.text("key", x + key_gap, y + 4, curve.name);
+        (above ? x : y) += above ? key_length(curve) : 24;
+    }
+}
+
+double Plot::draw_cell_key(Svg& svg, double x, double y) const {
+    if (cells.values.empty()) return y;
+    svg.text("note-strong", x, y + 12, cells.title);
+    y += 20;
+    for (std::size_t k = 0; k < cells.breaks.size(); ++k) {
+        const std::string from = plain(cells.breaks[k]);
+        svg.rect("", x, y, 18, 22, cells.colours[k]);
+        svg.text(
+            "tick", x + 25, y + 15,
+            k + 1 < cells.breaks.size() ? fmt::format("{} – {}", from, plain(cells.breaks[k + 1])) : "over " + from);
+        y += 22;
+    }
+    return y;
+}
+
+namespace {
+
+constexpr std::array<std::string_view, 8> shape_names = {"line", "band",    "bars",     "diamonds",
+                                                         "dots", "crosses", "vertical", "horizontal"};
+constexpr std::array<std::string_view, 3> key_names = {"above", "beside", "none"};
+
+Json numbers(const std::vector<double>& values) {
+    Json list = Json::array();
+    for (const double value : values) list.push_back(number_or_null<Json>(value));
+    return list;
+}
+
+std::vector<double> numbers_from(const Json& list) {
+    std::vector<double> values;
+    for (const Json& value : list) {
+        values.push_back(value.is_null() ? std::numeric_limits<double>::quiet_NaN() : value.get<double>());
+    }
+    return values;
+}
+
+template <std::size_t count>
+int index_of(const std::array<std::string_view, count>& names, const Json& name) {
+    const auto found = std::find(names.begin(), names.end(), name.get<std::string>());
+    return found == names.end() ? 0 : static_cast<int>(found - names.begin());
+}
+
+Json axis_json(const std::string& title, const ValueRange& range) {
+    return {{"title", title}, {"low", range.low}, {"high", range.high}};
+}
+
+Json plot_json(const Plot& plot) {
+    Json json = {{"x", axis_json(plot.x_title, plot.x_range)},
+                 {"y", axis_json(plot.y_title, plot.y_range)},
+                 {"name", plot.name},
+                 {"place", {plot.left, plot.top, plot.width, plot.height}},
+                 {"axes", plot.has_axes},
+                 {"y_axis", plot.has_y_axis},
+                 {"key", key_names.at(static_cast<std::size_t>(plot.key))},
+                 {"curves", Json::array()},
+                 {"notes", Json::array()}};
+    for (const Curve& curve : plot.curves) {
+        Json entry = {{"shape", shape_names.at(static_cast<std::size_t>(curve.shape))},
+                      {"style", curve.style},
+                      {"name", curve.name},
+                      {"x", numbers(curve.x)},
+                      {"y", numbers(curve.y)}};
+        if (!curve.low.empty()) entry["low"] = numbers(curve.low);
+        if (curve.size > 0) entry["size"] = curve.size;
+        json["curves"].push_back(std::move(entry));
+    }
+    for (const Note& note : plot.notes) {
+        json["notes"].push_back({{"at", {note.x, note.y, note.dx, note.dy}},
+                                 {"anchor", note.anchor},
+                                 {"style", note.style},
+                                 {"text", note.text}});
+    }
+    if (!plot.cells.values.empty()) {
+        json["cells"] = {{"x", numbers(plot.cells.x)},           {"y", numbers(plot.cells.y)},
+                         {"values", numbers(plot.cells.values)}, {"breaks", plot.cells.breaks},
+                         {"colours", plot.cells.colours},        {"title", plot.cells.title}};
+    }
+    return json;
+}
+
+ValueRange range_from(const Json& axis) {
+    return {axis["low"].get<double>(), axis["high"].get<double>()};
+}
+
+Plot plot_from(const Json& json) {
+    const std::vector<double> place = numbers_from(json["place"]);
+    Plot plot(place.at(0), place.at(1), place.at(2), place.at(3), range_from(json["x"]), range_from(json["y"]));
+    plot.name = json["name"];
+    plot.x_title = json["x"]["title"];
+    plot.y_title = json["y"]["title"];
+    plot.has_axes = json["axes"];
+    plot.has_y_axis = json["y_axis"];
+    plot.key = static_cast<Plot::Key>(index_of(key_names, json["key"]));
+    for (const Json& entry : json["curves"]) {
+        plot.curves.push_back({static_cast<Curve::Shape>(index_of(shape_names, entry["shape"])), entry["style"],
+                               entry["name"], numbers_from(entry["x"]), numbers_from(entry["y"]),
+                               entry.contains("low") ? numbers_from(entry["low"]) : std::vector<double>(),
+                               entry.value("size", 0.0)});
+    }
+    for (const Json& entry : json["notes"]) {
+        const std::vector<double> at = numbers_from(entry["at"]);
+        plot.notes.push_back({at.at(0), at.at(1), at.at(2), at.at(3), entry["anchor"], entry["style"], entry["text"]});
+    }
+    if (json.contains("cells")) {
+        const Json& cells = json["cells"];
+        plot.cells = {numbers_from(cells["x"]),
+                      numbers_from(cells["y"]),
+                      numbers_from(cells["values"]),
+                      numbers_from(cells["breaks"]),
+                      cells["colours"].get<std::vector<std::string>>(),
+                      cells["title"]};
+    }
+    return plot;
+}
+
+Svg drawn(const Chart& chart) {
+    Svg svg;
+    for (const Plot& plot : chart.plots) plot.draw(svg);
+    return svg;
+}
+
+}  // namespace
+
+Json chart_json(const Chart& chart) {
+    Json json = {{"kind", "chart"},
+                 {"title", chart.title},
+                 {"width", chart.width},
+                 {"height", chart.height},
+                 {"plots", Json::array()}};
+    for (const Plot& plot : chart.plots) json["plots"].push_back(plot_json(plot));
+    return json;
+}
+
+Chart chart_from(const Json& json) {
+    Chart chart{json["title"], json["width"], json["height"], {}};
+    for (const Json& plot : json["plots"]) chart.plots.push_back(plot_from(plot));
+    return chart;
+}
+
+std::string chart_svg(const Chart& chart) {
+    return figure_svg(chart.width, chart.height, chart.title, drawn(chart));
+}
+
+std::string chart_file(const Chart& chart) {
+    Svg svg;
+    svg.open("svg", {{"xmlns", "http://www.w3.org/2000/svg"},
+                     {"class", "figure"},
+                     {"width", chart.width},
+                     {"height", chart.height},
+                     {"viewBox", fmt::format("0 0 {} {}", coordinate(chart.width), coordinate(chart.height))},
+                     {"role", "img"},
+                     {"aria-label", chart.title}});
+    svg.add("style", {}, report_files::chart_css);
+    svg.add("rect", {{"class", "panel"}, {"width", chart.width}, {"height", chart.height}, {"rx", 6.0}});
+    svg.append(drawn(chart));
+    svg.close("svg");
+    return svg.str() + "\n";
+}
+
+std::string figure_svg(double width, double height, std::string_view title, const Svg& content, double widest) {
+    Svg svg;
+    svg.open("svg", {{"class", "figure"},
+                     {"viewBox", fmt::format("0 0 {} {}", coordinate(width), coordinate(height))},
+                     {"style", widest > 0 ? fmt::format("max-width:{}px", coordinate(widest)) : std::string()},
+                     {"role", "img"},
+                     {"aria-label", title}});
+    svg.append(content);
+    svg.close("svg");
+    return svg.str();
+}
+
+std::string sample_svg(std::string_view style) {
+    Svg svg;
+    svg.open("svg", {{"class", "sample"}, {"viewBox", "0 0 26 8"}});
+    svg.line(style, 0, 4, 26, 4);
+    svg.close("svg");
+    return svg.str();
+}
+
+}  // namespace talus::report

@@ -1,0 +1,145 @@
+#include "report/hazard_map.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "report/number_text.hpp"
+
+namespace talus {
+
+namespace {
+
+std::string item(const std::string& upper_limit, const report::Colour& colour, int alpha, const std::string& label) {
+    return fmt::format("          <item value=\"{}\" color=\"{}\" alpha=\"{}\" label=\"{}\"/>\n", upper_limit,
+                       colour.hex(), alpha, report::escape(label));
+}
+
+}  // namespace
+
+const std::vector<HazardMap>& hazard_maps() {
+    // Breaks at 15 and 30 kPa part slight, extensive and complete damage to buildings not of reinforced concrete
+    // (Kang & Kim 2014); depths of 0.5 and 1 m are the limits of common intensity classes.
+    static const std::vector<HazardMap> maps = {
+        {"peak_depth",
+         "Peak depth",
+         "peak flow depth, vertical",
+         "m",
+         1,
+         &HazardMaps::peak_depth,
+         {0, 0.1, 0.25, 0.5, 1, 2, 3, 5, 10, 20},
+         {205, 0.05, 268, 0.15, 0.90, 0.28}},
+        {"peak_speed",
+         "Peak speed",
+         "peak depth-averaged speed",
+         "m/s",
+         1,
+         &HazardMaps::peak_speed,
+         {0, 1, 2, 4, 6, 8, 10, 15, 20, 30},
+         {104, 0.11, 8, 0.13, 0.93, 0.28}},
+        {"peak_pressure",
+         "Peak impact pressure",
+         "peak impact pressure, rest density x speed^2",
+         "kPa",
+         1e-3,
+         &HazardMaps::peak_pressure,
+         {0, 5, 15, 30, 50, 100, 200, 400, 800},
+         {88, 0.08, -48, 0.14, 0.93, 0.26}},
+        {"arrival_time",
+         "Arrival time",
+         "time of first arrival since the start of the run",
+         "s",
+         1,
+         &HazardMaps::arrival_time,
+         {},
+         {215, 0.06, 118, 0.10, 0.30, 0.92}},
+        {"deposit_depth",
+         "Deposit depth",
+         "deposit depth at the end of the run, vertical",
+         "m",
+         1,
+         &HazardMaps::deposit_depth,
+         {0.05, 0.1, 0.25, 0.5, 1, 2, 3, 5, 10, 20},
+         {92, 0.07, 42, 0.09, 0.92, 0.28}},
+    };
+    return maps;
+}
+
+const HazardMap& erosion_map() {
+    static const HazardMap map = {"erosion_depth",
+                                  "Erosion depth",
+                                  "depth that debris picked up from the bed, vertical",
+                                  "m",
+                                  1,
+                                  nullptr,
+                                  {0, 0.05, 0.1, 0.25, 0.5, 1, 2, 3, 5},
+                                  {25, 0.07, 52, 0.13, 0.92, 0.30}};
+    return map;
+}
+
+Grid<float> in_unit(const Grid<float>& si, double factor) {
+    Grid<float> result = si;
+    for (float& value : result.values) value = static_cast<float>(value * factor);
+    return result;
+}
+
+double greatest(const Grid<float>& grid) {
+    double most = 0;
+    for (const float value : grid.values) {
+        if (value > most) most = value;
+    }
+    return most;
+}
+
+std::string qgis_style(const HazardMap& map, double largest) {
+    largest = std::max(largest, map.full_scale);
+    const report::Classes classes = map.breaks.empty() ? report::even_classes(largest, map.ramp)
+                                                       : report::fixed_classes(map.breaks, largest, map.ramp);
+    const std::size_t count = classes.breaks.size();
+    // QGIS gives a value the colour of the first item at or above it. A time of zero is an arrival, so the times have
+    // no class that is left out.
+    std::string items;
+    if (!map.breaks.empty()) {
+        const double lowest = classes.breaks.front();
+        items += item(fmt::format("{}", lowest), classes.colours.front(), 0,
+                      lowest > 0 ? fmt::format("up to {} {}", lowest, map.unit) : std::string("none"));
+    }
+    for (std::size_t k = 0; k < count; ++k) {
+        const bool last = k + 1 == count;
+        const std::string upper = last ? "inf" : fmt::format("{}", classes.breaks[k + 1]);
+        const std::string label = last ? fmt::format("above {} {}", classes.breaks[k], map.unit)
+                                       : fmt::format("{} – {} {}", classes.breaks[k], upper, map.unit);
+        items += item(upper, classes.colours[k], 255, label);
+    }
+    return fmt::format(
+        R"qml(<!DOCTYPE qgis PUBLIC 'http://mrcc.com/qgis.dtd' 'SYSTEM'>
+<qgis version="3.22.0" styleCategories="AllStyleCategories" hasScaleBasedVisibilityFlag="0">
+  <customproperties>
+    <Option/>
+  </customproperties>
+  <pipe>
+    <rasterrenderer type="singlebandpseudocolor" band="1" opacity="0.85" alphaBand="-1" nodataColor="" classificationMin="{0}" classificationMax="{1}">
+      <rasterTransparency/>
+      <minMaxOrigin>
+        <limits>None</limits>
+        <extent>WholeRaster</extent>
+        <statAccuracy>Exact</statAccuracy>
+      </minMaxOrigin>
+      <rastershader>
+        <colorrampshader colorRampType="DISCRETE" classificationMode="1" clip="0" minimumValue="{0}" maximumValue="{1}" labelPrecision="2">
+{2}        </colorrampshader>
+      </rastershader>
+    </rasterrenderer>
+    <brightnesscontrast brightness="0" contrast="0" gamma="1"/>
+    <huesaturation saturation="0" grayscaleMode="0" colorizeOn="0"/>
+    <rasterresampler maxOversampling="2"/>
+    <resamplingStage>resamplingFilter</resamplingStage>
+  </pipe>
+  <blendMode>0</blendMode>
+</qgis>
+)qml",
+        classes.breaks.front(), std::max(largest, classes.breaks.back()), items);
+}
+
+}  // namespace talus

@@ -1,0 +1,385 @@
+#include "report/map.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "report/colour.hpp"
+#include "report/hazard_map.hpp"
+#include "report/image.hpp"
+#include "report/number_text.hpp"
+#include "report/relief.hpp"
+
+namespace talus::report {
+namespace {
+
+/// What the report says of a map beside its name, unit and colours.
+struct Words {
+    const char* tab;
+    const char* caption;
+    int digits;  ///< of values
+};
+
+/// In the order of hazard_maps().
+constexpr std::array<Words, 5> map_words = {{
+    {"Peak depth", "Greatest vertical flow depth at each place during the run.", 2},
+    {"Peak speed", "Greatest depth-averaged speed at each place during the run.", 1},
+    {"Peak pressure", "Greatest impact pressure of the free flow at each place: density times the square of the speed.",
+     0},
+    {"Arrival time", "Time from the start of the run until debris first stands at each place.", 1},
+    {"Deposit", "Vertical depth of debris at the end of the run. Below 0.05 m nothing is drawn.", 2},
+}};
+
+double largest(const Grid<float>& grid) {
+    double most = std::numeric_limits<double>::quiet_NaN();
+    for (const float v : grid.values) {
+        if (!std::isnan(v) && !(v <= most)) most = v;
+    }
+    return most;
+}
+
+/// The smallest extent around the cells that have a value.
+std::optional<Extent> wet_extent(const Grid<float>& grid) {
+    std::optional<Extent> out;
+    for (int r = 0; r < grid.geometry.rows; ++r) {
+        for (int c = 0; c < grid.geometry.columns; ++c) {
+            if (std::isnan(grid.at(c, r))) continue;
+            const PlanPoint p = grid.geometry.centre(c, r);
+            if (!out) out = Extent{p.x, p.y, p.x, p.y};
+            out->include(p);
+        }
+    }
+    return out;
+}
+
+/// Widens the shorter side so that no map is a ribbon, then keeps the area within the terrain.
+Extent well_proportioned(Extent area, const Extent& terrain) {
+    constexpr double widest = 1.75, narrowest = 0.85;  // width over height
+    const double ratio = area.width() / area.height();
+    if (ratio > widest) {
+        const double more = (area.width() / widest - area.height()) / 2;
+        area.y_min -= more;
+        area.y_max += more;
+    } else if (ratio < narrowest) {
+        const double more = (area.height() * narrowest - area.width()) / 2;
+        area.x_min -= more;
+        area.x_max += more;
+    }
+    // Shifted inward first, so that the margin lost on one side is won on the other; then cut.
+    const auto keep = [](double& low, double& high, double terrain_low, double terrain_high) {
+        if (low < terrain_low) {
+            high += terrain_low - low;
+            low = terrain_low;
+        }
+        if (high > terrain_high) {
+            low = std::max(terrain_low, low - (high - terrain_high));
+            high = terrain_high;
+        }
+    };
+    keep(area.x_min, area.x_max, terrain.x_min, terrain.x_max);
+    keep(area.y_min, area.y_max, terrain.y_min, terrain.y_max);
+    return area;
+}
+
+/// Classes of a layer over its part inside the frame, finer than its cells: values are interpolated between them.
+ClassImage paint(const HazardMap& layer, const Grid<float>& map, const Classes& classes) {
+    const GridGeometry& g = map.geometry;
+    const int longest = std::max(g.columns, g.rows);
+    const int finer = std::clamp(1200 / std::max(1, longest), 1, 8);
+    ClassImage image{g.columns * finer, g.rows * finer, {}, classes.colours};
+    image.pixels.reserve(static_cast<std::size_t>(image.width) * image.height);
+    const double pixel = g.cell / finer, north = g.y_min + g.rows * g.cell;
+    for (int y = 0; y < image.height; ++y) {
+        for (int x = 0; x < image.width; ++x) {
+            const double v = interpolate(map, {g.x_min + (x + 0.5) * pixel, north - (y + 0.5) * pixel});
+            image.pixels.push_back(static_cast<std::uint8_t>(classes.of(v * layer.factor) + 1));
+        }
+    }
+    return image;
+}
+
+struct ReadOut {
+    ValueImage image;
+    double base = 0, resolution = 1;
+};
+
+/// Values in steps of a 65 534th of their range, for the page's script.
+ReadOut read_out_of(const Grid<float>& grid, double factor) {
+    double low = std::numeric_limits<double>::infinity(), high = -low;
+    for (const float v : grid.values) {
+        if (std::isnan(v)) continue;
+        low = std::min(low, v * factor);
+        high = std::max(high, v * factor);
+    }
+    ReadOut out;
+    if (low <= high) {
+        out.base = low;
+        // Centimetres are enough, and repeat more often than millimetres, so that the picture stays small.
+        out.resolution = std::max(0.01, (high - low) / 65000);
+    }
+    out.image.width = grid.geometry.columns;
+    out.image.height = grid.geometry.rows;
+    for (int r = grid.geometry.rows; r-- > 0;) {
+        for (int c = 0; c < grid.geometry.columns; ++c) {
+            const float v = grid.at(c, r);
+            const long step = std::isnan(v) ? 0 : 1 + std::lround((v * factor - out.base) / out.resolution);
+            out.image.pixels.insert(out.image.pixels.end(), {static_cast<std::uint8_t>(step >> 8 & 255),
+                                                             static_cast<std::uint8_t>(step & 255), 0});
+        }
+    }
+    return out;
+}
+
+nlohmann::json placed(const Grid<float>& grid, const ReadOut& values, const std::string& uri) {
+    const GridGeometry& g = grid.geometry;
+    return {{"values", uri},
+            {"x_min", g.x_min},
+            {"y_max", g.y_min + g.rows * g.cell},
+            {"cell", g.cell},
+            {"columns", g.columns},
+            {"rows", g.rows},
+            {"base", values.base},
+            {"resolution", values.resolution}};
+}
+
+void draw_classes(Svg& svg, const MapLayer& shown, const Classes& classes, double most, const MapFrame& frame) {
+    const HazardMap& layer = shown.style;
+    const double x = frame.right() + 20;
+    svg.text("legend-title", x, frame.top + 13, shown.tab);
+    svg.text("legend-unit", x, frame.top + 31,
+             std::isfinite(most) ? fmt::format("{}, at most {} {}", layer.unit, fixed(most, shown.digits), layer.unit)
+                                 : layer.unit);
+    const std::size_t n = classes.breaks.size();
+    for (std::size_t k = n; k-- > 0;) {
+        const double y = frame.top + 44 + 18.0 * static_cast<double>(n - 1 - k);
+        const std::string from = coordinate(classes.breaks[k]);
+        const std::string text = k + 1 < n ? fmt::format("{} – {}", from, coordinate(classes.breaks[k + 1]))
+                                           : (n > 1 ? "over " : "from ") + from;
+        draw_swatch(svg, x, y, classes.colours[k]);
+        svg.text("legend", x + 39, y + 13.5, text);
+    }
+}
+
+std::string building_title(const Building& building, const BuildingImpact& impact) {
+    std::string title = building.name.empty() ? "Building" : building.name;
+    if (!std::isnan(impact.removed_time)) title += fmt::format(" (until {} s)", fixed(impact.removed_time, 1));
+    if (!impact.hit) return title + ": not reached";
+    return title + fmt::format(": {} kPa, first hit at {} s", significant(impact.peak_pressure / 1e3, 3),
+                               fixed(impact.first_hit_time, 1));
+}
+
+Classes classes_of(const HazardMap& layer, double most) {
+    if (layer.breaks.empty()) return even_classes(most, layer.ramp);
+    return fixed_classes(layer.breaks, std::max(layer.full_scale, std::isnan(most) ? 0 : most), layer.ramp);
+}
+
+}  // namespace
+
+int impact_class(const BuildingImpact& impact) {
+    if (!impact.hit) return 0;
+    return impact.peak_pressure < 15e3 ? 1 : impact.peak_pressure < 30e3 ? 2 : 3;
+}
+
+MapFrame map_frame(const Scene& scene, const MapContent& content) {
+    const Extent terrain = scene.terrain.elevation().geometry.extent();
+    std::vector<Extent> parts;
+    if (const auto wet = wet_extent(*content.reached)) parts.push_back(*wet);
+    for (const Release& release : scene.releases) {
+        if (!release.patches.empty() || release.thickness_raster) parts.push_back(release.extent());
+    }
+    for (const Inflow& inflow : scene.inflows) {
+        for (const Polygon& part : inflow.area) parts.push_back(extent_of(part));
+        if (inflow.over_area()) continue;
+        for (const PlanPoint& end : {inflow.from, inflow.to}) parts.push_back({end.x, end.y, end.x, end.y});
+    }
+    if (!scene.flow_path.empty()) {
+        double last = content.farthest_chainage;
+        for (const ObservationSpec& o : scene.spec.observations)
+            last = std::isnan(last) ? o.chainage : std::max(last, o.chainage);
+        const double end = std::isnan(last) ? scene.flow_path.length() : std::min(scene.flow_path.length(), 1.2 * last);
+        for (int k = 0; k <= 100; ++k) {
+            const PlanPoint p = scene.flow_path.point_at(end * k / 100);
+            parts.push_back({p.x, p.y, p.x, p.y});
+        }
+    }
+    for (std::size_t i = 0; i < std::min(scene.buildings.size(), content.buildings.classes.size()); ++i) {
+        if (content.buildings.classes[i] == 0) continue;
+        for (const Polygon& polygon : scene.buildings[i].footprint) parts.push_back(extent_of(polygon));
+    }
+    Extent area = parts.empty() ? terrain : parts.front();
+    for (const Extent& e : parts) {
+        area.include({e.x_min, e.y_min});
+        area.include({e.x_max, e.y_max});
+    }
+    area = well_proportioned(area.grown(10 + 0.06 * std::max(area.width(), area.height())), terrain);
+    MapFrame frame;
+    frame.area = area;
+    const double widest = 1000 - frame.left - 20 - MapFrame::key_width;
+    frame.scale = std::min(widest / area.width(), 700 / area.height());
+    return frame;
+}
+
+MapContent map_content(const Scene& scene, const RunResult& result) {
+    const Observation& observation = result.observation;
+    MapContent content;
+    content.reached = &observation.maps.peak_depth;
+    content.farthest_chainage = observation.run_out.front_chainage;
+    content.cell = result.map_cell > 0 ? result.map_cell : observation.maps.peak_depth.geometry.cell;
+    content.buildings.title = "Buildings, filtered pressure";
+    content.buildings.class_names = {"not reached", "hit, below 15 kPa", "hit, 15 – 30 kPa", "hit, over 30 kPa"};
+    for (std::size_t i = 0; i < std::min(scene.buildings.size(), observation.buildings.size()); ++i) {
+        const BuildingImpact& impact = observation.buildings[i];
+        content.buildings.classes.push_back(impact_class(impact));
+        content.buildings.titles.push_back(building_title(scene.buildings[i], impact));
+        content.buildings.removed.push_back(!std::isnan(impact.removed_time));
+    }
+    for (std::size_t k = 0; k < hazard_maps().size(); ++k) {
+        const HazardMap& map = hazard_maps()[k];
+        content.layers.push_back(
+            {map, &(observation.maps.*map.grid), map_words.at(k).tab, map_words.at(k).caption, map_words.at(k).digits});
+    }
+    if (!observation.erosion.depth.values.empty()) {
+        content.layers.push_back({erosion_map(), &observation.erosion.depth, "Erosion",
+                                  "What debris picked up from the bed, measured vertically, on the cells of the "
+                                  "terrain, which sank by it.",
+                                  2});
+    }
+    return content;
+}
+
+void draw_image(Svg& svg, std::string_view css_class, double x, double y, double width, double height,
+                std::string_view uri) {
+    svg.add("image", {{"class", css_class},
+                      {"x", x},
+                      {"y", y},
+                      {"width", width},
+                      {"height", height},
+                      {"preserveAspectRatio", "none"},
+                      {"href", uri}});
+}
+
+void draw_swatch(Svg& svg, double x, double y, const Colour& colour) {
+    svg.rect("swatch-base", x, y, 30, 18);
+    svg.rect("swatch layer", x, y, 30, 18, colour.hex());
+}
+
+namespace {
+
+Svg::Attribute clip() {
+    return {"clip-path", "url(#map-clip)"};
+}
+
+/// What all maps share, to be used by its name.
+std::string definitions(const Scene& scene, const BuildingMarks& buildings, const MapFrame& frame,
+                        const std::string& relief, double key_top, double& contour_interval) {
+    Svg svg;
+    svg.open("svg", {{"class", "definitions"}, {"width", 0.0}, {"height", 0.0}, {"aria-hidden", "true"}});
+    svg.open("defs", {});
+    svg.open("clipPath", {{"id", "map-clip"}});
+    svg.rect("", frame.left, frame.top, frame.width(), frame.height());
+    svg.close("clipPath");
+    svg.open("g", {{"id", "map-base"}, clip()});
+    svg.rect("no-data", frame.left, frame.top, frame.width(), frame.height());
+    draw_image(svg, "", frame.left, frame.top, frame.width(), frame.height(), relief);
+    svg.close("g");
+    svg.open("g", {{"id", "map-over"}});
+    svg.open("g", {clip()});
+    draw_contours(svg, scene, frame, contour_interval);
+    draw_vectors(svg, scene, buildings, frame);
+    svg.close("g");
+    draw_frame(svg, scene, frame);
+    svg.close("g");
+    svg.open("g", {{"id", "map-key"}, {"transform", translation(0, key_top)}});
+    draw_key(svg, scene, buildings, frame, contour_interval);
+    svg.close("g");
+    svg.close("defs");
+    svg.close("svg");
+    return svg.str();
+}
+
+}  // namespace
+
+Result<Json> map_figures(const Scene& scene, const MapContent& content) {
+    const MapFrame frame = map_frame(scene, content);
+    const Grid<float> ground = crop(scene.terrain.elevation(), frame.area, 900);
+    const double pixels_per_metre = 1150 / std::max(frame.area.width(), frame.area.height());
+    auto relief = png_uri(hillshade(ground, frame.area, pixels_per_metre));
+    if (!relief) return relief.error();
+
+    const double width = frame.right() + 20 + MapFrame::key_width;
+    std::size_t most_classes = 0;
+    for (const MapLayer& layer : content.layers) {
+        const double most = largest(*layer.grid) * layer.style.factor;
+        most_classes = std::max(most_classes, classes_of(layer.style, most).breaks.size());
+    }
+    const double key_top = frame.top + 44 + 18.0 * static_cast<double>(most_classes) + 14;
+    const double height = std::max(frame.bottom() + 30, key_top + key_height(scene));
+
+    double contour_interval = 0;
+    Json out = {{"definitions", definitions(scene, content.buildings, frame, *relief, key_top, contour_interval)},
+                {"layers", Json::array()}};
+    out["contour_interval"] = contour_interval;
+
+    const Grid<float> coarse_ground = crop(scene.terrain.elevation(), frame.area, 260);
+    const ReadOut ground_values = read_out_of(coarse_ground, 1);
+    auto ground_uri = png_uri(ground_values.image);
+    if (!ground_uri) return ground_uri.error();
+    nlohmann::json page = {{"left", frame.left},
+                           {"top", frame.top},
+                           {"width", frame.width()},
+                           {"height", frame.height()},
+                           {"x_min", frame.area.x_min},
+                           {"y_max", frame.area.y_max},
+                           {"scale", frame.scale},
+                           {"ground", placed(coarse_ground, ground_values, *ground_uri)},
+                           {"layers", nlohmann::json::array()}};
+
+    for (const MapLayer& shown : content.layers) {
+        const HazardMap& layer = shown.style;
+        const Grid<float>& map = *shown.grid;
+        const double most = largest(map) * layer.factor;
+        const Classes classes = classes_of(layer, most);
+        Svg picture;
+        picture.add("use", {{"href", "#map-base"}});
+        if (std::isfinite(most)) {
+            const Grid<float> part = crop(map, frame.area, 1200);
+            const Extent e = part.geometry.extent();
+            auto uri = png_uri(paint(layer, part, classes));
+            if (!uri) return uri.error();
+            picture.open("g", {clip()});
+            draw_image(picture, "layer", frame.x(e.x_min), frame.y(e.y_max), e.width() * frame.scale,
+                       e.height() * frame.scale, *uri);
+            picture.close("g");
+            const Grid<float> coarse = crop(map, frame.area, 500);
+            const ReadOut values = read_out_of(coarse, layer.factor);
+            auto values_uri = png_uri(values.image);
+            if (!values_uri) return values_uri.error();
+            nlohmann::json entry = placed(coarse, values, *values_uri);
+            entry["id"] = layer.file;
+            entry["name"] = shown.tab;
+            entry["unit"] = layer.unit;
+            entry["digits"] = shown.digits;
+            page["layers"].push_back(std::move(entry));
+        }
+        picture.add("use", {{"href", "#map-over"}});
+        draw_classes(picture, shown, classes, most, frame);
+        picture.add("use", {{"href", "#map-key"}});
+        out["layers"].push_back({{"file", layer.file},
+                                 {"name", shown.tab},
+                                 {"svg", figure_svg(width, height, "Map: " + shown.tab, picture, 1.04 * width)},
+                                 {"about", shown.caption},
+                                 {"cell", map.values.empty() ? content.cell : map.geometry.cell}});
+    }
+    std::string read_out = page.dump();
+    // Inside a script element only "<" could end it; JSON may write it as an escape.
+    for (std::size_t at = 0; (at = read_out.find('<', at)) != std::string::npos;) read_out.replace(at, 1, "\\u003c");
+    out["read_out"] = std::move(read_out);
+    return out;
+}
+
+}  // namespace talus::report

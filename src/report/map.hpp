@@ -1,0 +1,94 @@
+#pragma once
+
+#include <array>
+#include <string>
+#include <vector>
+
+#include "core/geometry.hpp"
+#include "core/grid.hpp"
+#include "core/result.hpp"
+#include "report/chart.hpp"
+#include "report/hazard_map.hpp"
+#include "run/run_result.hpp"
+#include "scene/scene.hpp"
+
+/// The report's maps: rasters as PNG, everything else as SVG on top, in the same coordinates.
+namespace talus::report {
+
+/// Places the part of the world that the maps show inside the SVG.
+struct MapFrame {
+    Extent area;                              ///< shown, world
+    double left = 34, top = 8;                ///< SVG units
+    double scale = 1;                         ///< SVG units per metre
+    static constexpr double key_width = 196;  ///< of the column to the right with the legend
+
+    [[nodiscard]] double width() const { return area.width() * scale; }
+    [[nodiscard]] double height() const { return area.height() * scale; }
+    [[nodiscard]] double right() const { return left + width(); }
+    [[nodiscard]] double bottom() const { return top + height(); }
+    [[nodiscard]] double x(double east) const { return left + (east - area.x_min) * scale; }
+    [[nodiscard]] double y(double north) const { return top + (area.y_max - north) * scale; }
+};
+
+/// One map: its raster and what is said of it.
+struct MapLayer {
+    HazardMap style;
+    const Grid<float>* grid = nullptr;  ///< SI; NaN: nothing there
+    std::string tab;                    ///< "Peak depth"
+    std::string caption;                ///< a sentence
+    int digits = 2;                     ///< of values
+};
+
+/// How the maps' buildings are coloured: classes 0 (not at all) to 3.
+struct BuildingMarks {
+    std::string title;                       ///< over the classes in the key
+    std::array<std::string, 4> class_names;  ///< from 0 up
+    std::vector<int> classes;                ///< as in Scene::buildings
+    std::vector<std::string> titles;         ///< likewise; said under the pointer
+    std::vector<bool> removed;               ///< likewise, if any; taken away while the run went on
+};
+
+/// What a report's maps show, whatever they are of.
+struct MapContent {
+    const Grid<float>* reached = nullptr;  ///< has a value wherever debris came
+    double farthest_chainage = 0;          ///< m, of any front; NaN: none
+    double cell = 0;                       ///< m
+    BuildingMarks buildings;
+    std::vector<MapLayer> layers;
+};
+
+/// The maps of a single run. `result` must outlive them.
+[[nodiscard]] MapContent map_content(const Scene& scene, const RunResult& result);
+
+/// The area of interest: where debris came, the releases, the flow path as far as it matters (to a fifth beyond the
+/// run-out and the last observation), the buildings hit, and a margin, kept within the terrain.
+[[nodiscard]] MapFrame map_frame(const Scene& scene, const MapContent& content);
+
+/// What the template `maps` shows: `definitions`, an unseen <svg> with what all maps share; `layers`, one per map;
+/// `read_out` for the page's script: where the maps lie and their values. And `contour_interval`, m.
+/// Errors: a picture could not be encoded.
+[[nodiscard]] Result<Json> map_figures(const Scene& scene, const MapContent& content);
+
+/// What the template `zones` shows of zones and beds, over the relief of the maps. Null where there are none.
+/// Errors: a picture could not be encoded.
+[[nodiscard]] Result<Json> zone_figure(const Scene& scene, const MapContent& content, double contour_interval);
+
+/// How hard a building was hit: 0 not at all, 1 below 15 kPa, 2 to 30 kPa, 3 above. The limits are those between
+/// slight, extensive and complete damage to buildings not of reinforced concrete (Kang & Kim 2014).
+[[nodiscard]] int impact_class(const BuildingImpact& impact);
+
+// The parts of the drawing that all maps share.
+void draw_contours(Svg& svg, const Scene& scene, const MapFrame& frame, double& interval);
+void draw_vectors(Svg& svg, const Scene& scene, const BuildingMarks& marks, const MapFrame& frame);
+void draw_frame(Svg& svg, const Scene& scene, const MapFrame& frame);
+void draw_key(Svg& svg, const Scene& scene, const BuildingMarks& marks, const MapFrame& frame, double contour_interval);
+/// A picture over an area of the frame, cut where the frame ends.
+void draw_image(Svg& svg, std::string_view css_class, double x, double y, double width, double height,
+                std::string_view uri);
+/// A class of the key, (x, y) being its upper left corner.
+void draw_swatch(Svg& svg, double x, double y, const Colour& colour);
+
+/// Height of what draw_key draws, SVG units.
+[[nodiscard]] double key_height(const Scene& scene);
+
+}  // namespace talus::report

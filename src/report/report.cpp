@@ -1,0 +1,22 @@
+#include "report/report.hpp"
+
+#include "report/map.hpp"
+#include "report_files.hpp"
+
+namespace talus::report {
+
+Result<std::string> run_report(const Scene& scene, const RunResult& result, const Json& results) {
+    const MapContent content = map_content(scene, result);
+    auto maps = map_figures(scene, content);
+    if (!maps) return maps.error();
+    auto zone_map = zone_figure(scene, content, (*maps)["contour_interval"]);
+    if (!zone_map) return zone_map.error();
+    Json page = results;
+    page["report_name"] = "landslide run-out report";
+    page["masthead"] = "Landslide run-out simulation";
+    page["maps"] = *std::move(maps);
+    page["zone_map"] = *std::move(zone_map);
+    return render(report_files::report_html, page);
+}
+
+}  // namespace talus::report

@@ -1,0 +1,16 @@
+#pragma once
+
+#include <string>
+
+#include "core/result.hpp"
+#include "report/page.hpp"
+#include "run/run_result.hpp"
+#include "scene/scene.hpp"
+
+namespace talus::report {
+
+/// The self-contained report: what `results`, of run_results(), say, with maps of the run.
+/// Errors: a picture of a map could not be encoded.
+[[nodiscard]] Result<std::string> run_report(const Scene& scene, const RunResult& result, const Json& results);
+
+}  // namespace talus::report

@@ -1,0 +1,252 @@
+#include "report/results.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <numbers>
+
+#include <fmt/chrono.h>
+#include <fmt/format.h>
+
+#include "core/number_or_null.hpp"
+#include "report/hazard_map.hpp"
+#include "report/number_text.hpp"
+
+namespace talus::report {
+namespace {
+
+double degrees(double radians) {
+    return radians * 180 / std::numbers::pi;
+}
+
+struct Peak {
+    double value = never;
+    PlanPoint at;
+};
+
+Peak peak_of(const Grid<float>& map) {
+    Peak peak;
+    for (int r = 0; r < map.geometry.rows; ++r) {
+        for (int c = 0; c < map.geometry.columns; ++c) {
+            const double v = map.at(c, r);
+            if (std::isnan(v) || v <= peak.value) continue;
+            peak = {v, map.geometry.centre(c, r)};
+        }
+    }
+    return peak;
+}
+
+/// "at chainage 88 m", or the coordinates where the path does not come by.
+std::string place(const Scene& scene, const Peak& peak) {
+    if (std::isnan(peak.value)) return "no debris mapped";
+    if (!scene.flow_path.empty()) {
+        if (const auto on_path = scene.flow_path.locate(peak.at)) {
+            return fmt::format("at chainage {} m", fixed(on_path->chainage, 0));
+        }
+    }
+    return fmt::format("at {} E {} N", fixed(peak.at.x, 0), fixed(peak.at.y, 0));
+}
+
+struct MassBalance {
+    double entrained = 0, held = 0, moving = 0, deposited = 0, left = 0, residual = 0;
+    bool closes = false;
+};
+
+MassBalance mass_balance(const Observation& observation) {
+    MassBalance m;
+    if (!observation.timeseries.empty()) {
+        const TimeSample& s = observation.timeseries.back();
+        m.entrained = s.volume_entrained;
+        m.held = s.volume_held;
+        m.moving = s.volume_moving;
+        m.deposited = s.volume_deposited;
+        m.left = s.volume_left;
+    }
+    m.residual = observation.volume_released + m.entrained - m.held - m.moving - m.deposited - m.left;
+    m.closes = std::abs(m.residual) <= 1e-9 * std::max(1.0, observation.volume_released);
+    return m;
+}
+
+}  // namespace
+
+std::string plural(std::size_t n, std::string_view word) {
+    return fmt::format("{} {}{}", n, word, n == 1 ? "" : "s");
+}
+
+Json status(const RunResult& result) {
+    const bool fault = result.status == RunStatus::fault, complete = result.status == RunStatus::complete;
+    return {{"name", complete ? "complete"
+                     : fault  ? "fault"
+                              : "interrupted"},
+            {"partial", !complete},
+            {"fault", fault},
+            {"stop_reason", result.stop_reason},
+            {"simulated_time_s", result.simulated_time}};
+}
+
+Json compression(const Scene& scene, const RunResult& result) {
+    const Observation& o = result.observation;
+    return {{"within_limits", within_compression_limits(o)},
+            {"worst_mean_percent", 100 * o.worst_mean_compression},
+            {"worst_mean_time_s", o.worst_mean_time},
+            {"mean_limit_percent", 100 * mean_compression_limit},
+            {"worst_percent", 100 * o.worst_max_compression},
+            {"worst_time_s", o.worst_max_time},
+            {"limit_percent", 100 * max_compression_limit},
+            {"time_above_a_limit_percent", 100 * o.compressed_time_share},
+            {"iteration_count", scene.spec.solver.iteration_count},
+            {"fixed_time_step", scene.spec.solver.time_step.has_value()}};
+}
+
+Json key_figures(const Scene& scene, const RunResult& result) {
+    const Observation& o = result.observation;
+    const MassBalance mass = mass_balance(o);
+    Json all = Json::array();
+    const auto add = [&](const char* key, const char* name, Json value, const char* format, const char* unit,
+                         const std::string& note, bool alert = false) {
+        all.push_back(key_figure(key, name, std::move(value), format, unit, note, alert));
+    };
+    add("released_volume_m3", "Released volume", o.volume_released, o.volume_released < 100 ? "f1" : "f0", "m³",
+        plural(scene.releases.size(), "release") +
+            (scene.inflows.empty() ? "" : ", " + plural(scene.inflows.size(), "inflow")));
+    if (!scene.bed.empty()) {
+        add("entrained_volume_m3", "Picked up from the bed", mass.entrained, mass.entrained < 100 ? "f1" : "f0", "m³",
+            fmt::format("{} × the released volume, deepest {} m", fixed(mass.entrained / o.volume_released, 2),
+                        fixed(greatest(o.erosion.depth), 2)));
+    }
+    const bool ran = std::isfinite(o.run_out.horizontal_distance);
+    const std::string drop = fmt::format("drop {} m", fixed(o.run_out.drop, 1));
+    add("run_out_distance_m", "Run-out distance", o.run_out.horizontal_distance, "f0", ran ? "m" : "",
+        !ran ? "no debris ran out"
+        : std::isfinite(o.run_out.front_chainage)
+            ? fmt::format("front to chainage {} m, {}", fixed(o.run_out.front_chainage, 0), drop)
+            : drop);
+    add("runout_angle_deg", "Runout angle", degrees(o.run_out.runout_angle), "f1", ran ? "°" : "",
+        ran ? fmt::format("travel angle of the centre of mass {}°", fixed(degrees(o.run_out.travel_angle), 1)) : "");
+    const auto hit =
+        std::count_if(o.buildings.begin(), o.buildings.end(), [](const BuildingImpact& b) { return b.hit; });
+    const auto worst = std::max_element(o.buildings.begin(), o.buildings.end(),
+                                        [](const auto& a, const auto& b) { return a.peak_pressure < b.peak_pressure; });
+    all.push_back(
+        key_figure("buildings_hit", "Buildings hit", hit, "f0", fmt::format("of {}", o.buildings.size()),
+                   hit > 0 ? fmt::format("highest pressure {} kPa, {}", significant(worst->peak_pressure / 1e3, 3),
+                                         worst->name.empty() ? "unnamed" : worst->name)
+                           : "no building was hit",
+                   hit > 0));
+    const Peak depth = peak_of(o.maps.peak_depth), speed = peak_of(o.maps.peak_speed),
+               pressure = peak_of(o.maps.peak_pressure);
+    add("peak_depth_m", "Peak flow depth", depth.value, "f1", "m", place(scene, depth));
+    add("peak_speed_mps", "Peak speed", speed.value, "f1", "m/s", place(scene, speed));
+    add("peak_pressure_kPa", "Peak impact pressure", pressure.value / 1e3, "s3", "kPa",
+        place(scene, pressure) + ", ρv²");
+    add("mass_balance", "Mass balance", mass.closes ? Json("closed") : Json(mass.residual), "f3",
+        mass.closes ? "" : "m³ missing",
+        fmt::format("deposited\u00a0{} · moving\u00a0{} · left\u00a0{}\u00a0m³{}", fixed(mass.deposited, 1),
+                    fixed(mass.moving, 1), fixed(mass.left, 1),
+                    mass.held > 0 ? fmt::format(" · held\u00a0{}\u00a0m³", fixed(mass.held, 1)) : ""),
+        !mass.closes);
+    return all;
+}
+
+Json quality(const Scene& scene, const RunResult& result) {
+    const Observation& o = result.observation;
+    const char* state = result.status == RunStatus::complete      ? "complete"
+                        : result.status == RunStatus::interrupted ? "partial: interrupted"
+                                                                  : "partial: stopped by a fault";
+    const MassBalance mass = mass_balance(o);
+    const bool within = within_compression_limits(o);
+    return {
+        fact("Status", result.stop_reason.empty() ? state : state + ("; " + result.stop_reason)),
+        fact("Simulated time",
+             fmt::format("{} s in {} s of wall time, {} steps of {} to {} ms", fixed(result.simulated_time, 1),
+                         fixed(result.wall_time, 1), fixed(static_cast<double>(result.steps), 0),
+                         fixed(1e3 * result.smallest_time_step, 2), fixed(1e3 * result.largest_time_step, 2))),
+        fact("Real-time factor",
+             significant(result.real_time_factor(), 3) + " (simulated over wall time; 1 is real time)"),
+        fact("Particles", fmt::format("{}, spacing {} m", fixed(result.particles, 0), plain(result.particle_spacing))),
+        fact("Compression",
+             fmt::format("worst mean over the debris {} % (at {} s; limit {} %), worst particle {} % (at {} s; limit "
+                         "{} %): ",
+                         fixed(100 * o.worst_mean_compression, 2), fixed(o.worst_mean_time, 1),
+                         fixed(100 * mean_compression_limit, 0), fixed(100 * o.worst_max_compression, 2),
+                         fixed(o.worst_max_time, 1), fixed(100 * max_compression_limit, 0)),
+             within ? "within limits"
+                    : fmt::format("not converged during {} % of the simulated time",
+                                  significant(100 * o.compressed_time_share, 2)),
+             within),
+        fact("Mass balance",
+             fmt::format("released {}{} = held {} + moving {} + deposited {} + left {} m³", fixed(o.volume_released, 2),
+                         scene.bed.empty() ? "" : fmt::format(" + picked up {}", fixed(mass.entrained, 2)),
+                         fixed(mass.held, 2), fixed(mass.moving, 2), fixed(mass.deposited, 2), fixed(mass.left, 2)),
+             mass.closes ? "" : fmt::format("; {} m³ missing", fixed(mass.residual, 3))),
+    };
+}
+
+Json observations(const Scene& scene, const RunResult& result) {
+    if (scene.spec.observations.empty()) return {};
+    Json rows = table({{"observation", "Observation", ""},
+                       {"chainage_m", "Chainage", "m", "f0"},
+                       {"observed_mps", "Observed", "m/s", "f1"},
+                       {"computed_mps", "Computed front", "m/s", "f1", "", "not reached", true},
+                       {"difference_percent", "Difference", "%", "d0"},
+                       {"particle_speed_mps", "Particle speed", "m/s", "f1"},
+                       {"arrival_s", "Arrival", "s", "f1"},
+                       {"source", "Source", "", "", "source"}});
+    for (const ObservationSpec& observed : scene.spec.observations) {
+        const FrontSample computed = front_at(result.observation, observed.chainage);
+        rows["rows"].push_back({{"observation", observed.name},
+                                {"chainage_m", observed.chainage},
+                                {"observed_mps", observed.front_velocity},
+                                {"computed_mps", number_or_null<Json>(computed.front_velocity)},
+                                {"difference_percent",
+                                 number_or_null<Json>(100 * (computed.front_velocity / observed.front_velocity - 1))},
+                                {"particle_speed_mps", number_or_null<Json>(computed.particle_speed)},
+                                {"arrival_s", number_or_null<Json>(computed.arrival_time)},
+                                {"source", observed.source}});
+    }
+    return rows;
+}
+
+Json run_results(const Scene& scene, const RunResult& result, const std::vector<Comparison>& comparisons) {
+    const SceneInfo& info = scene.spec.scene;
+    const auto now = fmt::gmtime(std::chrono::system_clock::now());
+    Json all = {{"format", "talus results"},
+                {"version", results_version},
+                {"program", std::string("talus ") + TALUS_VERSION},
+                {"created", fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", now)},
+                {"date", fmt::format("{:%d %B %Y, %H:%M} UTC", now)},
+                {"title", info.title.empty() ? scene.file.stem().string() : info.title},
+                {"description", info.description},
+                {"reconstruction", info.reconstruction},
+                {"reference_system", scene.crs.label()},
+                {"status", status(result)},
+                {"compression", compression(scene, result)},
+                {"key_figures", key_figures(scene, result)},
+                {"observations", observations(scene, result)},
+                {"quality", quality(scene, result)},
+                {"buildings", buildings(scene, result)},
+                {"barriers", barriers(result)},
+                {"impact_filter_window_s", scene.spec.outputs.impact_filter_window},
+                {"force", force_chart(result)},
+                {"front", front_chart(scene, result)},
+                {"front_velocity_window_m", scene.spec.outputs.front_velocity_window},
+                {"time", time_chart(result)},
+                {"zones", zones(scene)},
+                {"inflow", inflow(scene, result)},
+                {"erosion", erosion(scene, result)},
+                {"comparisons", Json::array()},
+                {"method", method(scene)},
+                {"assumptions", info.assumptions},
+                {"notes", scene.notes},
+                {"sources", info.sources},
+                {"as_computed", chosen_values(scene, result)},
+                {"parameters", parameters(scene)},
+                {"inputs", inputs(scene)},
+                {"computation", computation(scene, result)}};
+    for (const Comparison& compared : comparisons) {
+        all["comparisons"].push_back(comparison(compared, scene, result));
+    }
+    return all;
+}
+
+}  // namespace talus::report

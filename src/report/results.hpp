@@ -1,0 +1,48 @@
+#pragma once
+
+#include <vector>
+
+#include "report/chart.hpp"
+#include "report/table.hpp"
+#include "run/comparison.hpp"
+#include "run/run_result.hpp"
+#include "scene/scene.hpp"
+
+/// What a run's report says, as data: results.json, described in docs/results.md.
+namespace talus::report {
+
+constexpr int results_version = 1;
+
+[[nodiscard]] Json run_results(const Scene& scene, const RunResult& result, const std::vector<Comparison>& comparisons);
+
+// Its parts. Null where there is nothing to tell.
+[[nodiscard]] Json status(const RunResult& result);
+/// How far debris was compressed, and what to change where that was too much.
+[[nodiscard]] Json compression(const Scene& scene, const RunResult& result);
+[[nodiscard]] Json key_figures(const Scene& scene, const RunResult& result);
+[[nodiscard]] Json quality(const Scene& scene, const RunResult& result);
+/// Computed front velocities beside those observed in the field.
+[[nodiscard]] Json observations(const Scene& scene, const RunResult& result);
+[[nodiscard]] Json buildings(const Scene& scene, const RunResult& result);
+[[nodiscard]] Json barriers(const RunResult& result);
+/// Force over time on the structures that were hit.
+[[nodiscard]] Json force_chart(const RunResult& result);
+/// Front velocity, ground profile and arrival time against chainage, one below the other.
+[[nodiscard]] Json front_chart(const Scene& scene, const RunResult& result);
+/// Energy, volumes, largest speed and compression over time.
+[[nodiscard]] Json time_chart(const RunResult& result);
+[[nodiscard]] Json zones(const Scene& scene);
+[[nodiscard]] Json inflow(const Scene& scene, const RunResult& result);
+[[nodiscard]] Json erosion(const Scene& scene, const RunResult& result);
+[[nodiscard]] Json comparison(const Comparison& comparison, const Scene& scene, const RunResult& base);
+/// Which laws the scene uses.
+[[nodiscard]] Json method(const Scene& scene);
+[[nodiscard]] Json chosen_values(const Scene& scene, const RunResult& result);
+[[nodiscard]] Json parameters(const Scene& scene);
+[[nodiscard]] Json inputs(const Scene& scene);
+[[nodiscard]] Json computation(const Scene& scene, const RunResult& result);
+
+/// "1 building", "2 buildings"
+[[nodiscard]] std::string plural(std::size_t n, std::string_view word);
+
+}  // namespace talus::report

@@ -1,0 +1,216 @@
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include <fmt/format.h>
+
+#include "geo/versions.hpp"
+#include "params/fields.hpp"
+#include "report/hardware.hpp"
+#include "report/number_text.hpp"
+#include "report/results.hpp"
+#include "sim/stage_times.hpp"
+
+namespace talus::report {
+namespace {
+
+std::string_view kernel_name(KernelChoice kernel) {
+    switch (kernel) {
+        case KernelChoice::wendland_c2:
+            return "Wendland C2 with its own gradient";
+        case KernelChoice::cubic_spline:
+            return "cubic spline with its own gradient";
+        case KernelChoice::spiky:
+            return "spiky with its own gradient";
+        case KernelChoice::poly6_spiky:
+            return "published pair: Poly6 density, spiky gradient";
+    }
+    return "";
+}
+
+std::string bytes_text(std::uint64_t bytes) {
+    if (bytes < 10'000) return fmt::format("{} B", bytes);
+    return bytes < 10'000'000 ? fmt::format("{} kB", bytes / 1000) : fmt::format("{} MB", bytes / 1'000'000);
+}
+
+/// What resists beside friction and viscosity, where anything does.
+void add_resistances(Json& rows, const Scene& scene) {
+    const MaterialSpec& material = scene.spec.material;
+    const auto add = [&](const std::string& name, const std::string& text) { rows.push_back(fact(name, text)); };
+    if (material.viscosity_on_ground) add("Viscosity on the ground", "the debris sticks to it");
+    if (material.turbulent_friction) {
+        const std::string at = material.turbulent_friction_thickness
+                                   ? fmt::format(" where {} m thick", plain(*material.turbulent_friction_thickness))
+                                   : "";
+        add("Turbulent friction", fmt::format("ξ = {} m/s²{}", plain(*material.turbulent_friction), at));
+    }
+    if (material.cohesion > 0) add("Cohesion", fmt::format("{} Pa", plain(material.cohesion)));
+    for (const ReleaseSpec& release : scene.spec.releases) {
+        const double ratio = release.pore_pressure_ratio.value_or(material.pore_pressure_ratio);
+        if (ratio <= 0) continue;
+        const std::string decay = material.pore_pressure_decay_time
+                                      ? fmt::format(", falls to 1/e in {} s", plain(*material.pore_pressure_decay_time))
+                                      : ", stays";
+        add(fmt::format("Pore pressure, {}", release.name), fmt::format("ratio {}{}", plain(ratio), decay));
+    }
+    if (material.inertial_friction_coefficient) {
+        add("Friction inside, fast shear",
+            fmt::format("f = {}, half way at I = {}, grains of {} m", plain(*material.inertial_friction_coefficient),
+                        plain(material.inertial_number), plain(material.grain_diameter)));
+    }
+    for (const ZoneSpec& zone : scene.spec.zones) {
+        std::string says;
+        const auto say = [&](const std::string& text) { says += (says.empty() ? "" : ", ") + text; };
+        if (zone.friction_coefficient) say(fmt::format("f = {}", plain(*zone.friction_coefficient)));
+        if (zone.turbulent_friction) say(fmt::format("ξ = {} m/s²", plain(*zone.turbulent_friction)));
+        if (zone.cohesion) say(fmt::format("cohesion {} Pa", plain(*zone.cohesion)));
+        if (zone.raster_holds != ZoneRaster::zone_number) say("coefficients of its raster");
+        if (zone.stem_density > 0) {
+            say(fmt::format("{} stems of {} m per m²", plain(zone.stem_density), plain(zone.stem_diameter)));
+        }
+        add(fmt::format("Zone {}", zone.name), says);
+    }
+}
+
+bool has_pore_pressure(const SceneSpec& spec) {
+    return spec.material.pore_pressure_ratio > 0 ||
+           std::any_of(spec.releases.begin(), spec.releases.end(),
+                       [](const ReleaseSpec& r) { return r.pore_pressure_ratio.value_or(0) > 0; });
+}
+
+/// The rows of a section have its name above the first.
+std::string heading_of(const Section& section, std::size_t index) {
+    return fmt::format("[{}]", section.repeats ? fmt::format("{} {}", section.name, index + 1) : section.name);
+}
+
+}  // namespace
+
+Json chosen_values(const Scene& scene, const RunResult& result) {
+    const SolverSpec& solver = scene.spec.solver;
+    const MaterialSpec& material = scene.spec.material;
+    Json rows = Json::array();
+    const auto add = [&](const char* name, const std::string& text) { rows.push_back(fact(name, text)); };
+    add("Particle spacing", fmt::format("{} m", plain(result.particle_spacing)));
+    add("Support radius", fmt::format("{} m", plain(result.support_radius)));
+    add("Kernel", std::string(kernel_name(solver.kernel)));
+    add("Time step", fmt::format("{} to {} ms, {}", fixed(1e3 * result.smallest_time_step, 3),
+                                 fixed(1e3 * result.largest_time_step, 3),
+                                 solver.time_step ? "fixed"
+                                                  : fmt::format("adaptive: a particle moves at most {} of a spacing",
+                                                                plain(solver.displacement_limit))));
+    add("Iterations per step", fmt::format("{}", solver.iteration_count));
+    add("Rest density", fmt::format("{} kg/m³", fixed(material.rest_density, 0)));
+    add("Friction on the ground", fmt::format("f = {}", plain(material.friction_coefficient)));
+    add("Friction on buildings",
+        fmt::format("f = {}", plain(material.building_friction_coefficient.value_or(material.friction_coefficient))));
+    add("Friction inside",
+        fmt::format("f = {}", plain(material.internal_friction_coefficient.value_or(material.friction_coefficient))));
+    const std::string smoothing =
+        material.kinematic_viscosity ? significant(result.viscosity, 3) : plain(material.viscosity);
+    add("Viscosity, as smoothing", fmt::format("μ = {} per 1/60 s", smoothing));
+    add("Viscosity, kinematic",
+        fmt::format("{} m²/s at this support radius", significant(result.kinematic_viscosity, 3)));
+    add_resistances(rows, scene);
+    add("Cell of the maps", fmt::format("{} m", plain(result.map_cell)));
+    return rows;
+}
+
+Json parameters(const Scene& scene) {
+    Json rows = table({{"key", "Key", "", "", "code"},
+                       {"value", "Value", "", "", "value"},
+                       {"unit", "Unit", "", "", "", ""},
+                       {"help", "Meaning", "", "", "help"}},
+                      "parameters");
+    std::string open;
+    for_each_value(scene.spec, [&](const Section& section, std::size_t index, const Parameter& parameter,
+                                   const ParameterValue& value) {
+        // Printed in full elsewhere: at the top, under Assumptions, beside the computed front velocities.
+        if (section.name == "scene" || section.name == "observation") return;
+        Json row = {{"key", parameter.key}, {"unit", parameter.unit}, {"help", parameter.help}};
+        if (const std::string heading = heading_of(section, index); heading != open) {
+            row["heading"] = open = heading;
+            row["heading_note"] = index == 0 ? section.help : "";
+        }
+        const std::string text = plain_text(value);
+        if (text.empty()) {
+            row["value"] = {{"value", parameter.absent.empty() ? "not given" : parameter.absent}, {"tone", "absent"}};
+        } else if (text != plain_text(default_value(section, parameter))) {
+            row["value"] = {{"value", text}, {"tone", "differs"}};
+        } else {
+            row["value"] = text;
+        }
+        rows["rows"].push_back(std::move(row));
+    });
+    return rows;
+}
+
+Json method(const Scene& scene) {
+    const MaterialSpec& material = scene.spec.material;
+    const auto& all_zones = scene.spec.zones;
+    const auto any_zone = [&](const auto& holds) { return std::any_of(all_zones.begin(), all_zones.end(), holds); };
+    const bool turbulent = material.turbulent_friction || any_zone([](const ZoneSpec& zone) {
+                               return zone.turbulent_friction || zone.raster_holds == ZoneRaster::turbulent_friction;
+                           });
+    const auto& all_barriers = scene.spec.barriers;
+    const auto given = [](const auto& value) { return value ? Json(*value) : Json(); };
+    const bool pairwise = scene.spec.solver.internal_friction == InternalFriction::pair;
+    return {{"pairwise_internal_friction", pairwise},
+            {"turbulent_friction",
+             turbulent ? Json{{"thickness_m", given(material.turbulent_friction_thickness)}} : Json()},
+            {"cohesion", material.cohesion > 0},
+            {"pore_pressure",
+             has_pore_pressure(scene.spec) ? Json{{"decay_time_s", given(material.pore_pressure_decay_time)}} : Json()},
+            {"inertial_friction", material.inertial_friction_coefficient.has_value()},
+            {"viscosity_on_ground", static_cast<bool>(material.viscosity_on_ground)},
+            {"stems", any_zone([](const ZoneSpec& zone) { return zone.stem_density > 0; })},
+            {"nets", std::any_of(all_barriers.begin(), all_barriers.end(),
+                                 [](const BarrierSpec& b) { return b.passing_share.has_value(); })},
+            {"zones", !all_zones.empty()}};
+}
+
+Json inputs(const Scene& scene) {
+    Json rows = table({{"role", "Input", ""},
+                       {"path", "File", "", "", "path"},
+                       {"size", "Size", "", "", "n"},
+                       {"fnv1a_64", "Checksum (FNV-1a 64)", "", "", "code"}});
+    for (const InputFile& input : scene.inputs) {
+        rows["rows"].push_back({{"role", input.role},
+                                {"path", input.path},
+                                {"size", bytes_text(input.bytes)},
+                                {"bytes", input.bytes},
+                                {"fnv1a_64", input.hash}});
+    }
+    return rows;
+}
+
+Json computation(const Scene& scene, const RunResult& result) {
+    const Hardware machine = this_machine();
+    const GridGeometry& grid = scene.terrain.elevation().geometry;
+    Json rows = {
+        fact("Result hash", fmt::format("{:016x}, of time, positions and velocities at the end", result.hash)),
+        fact("Program", fmt::format("talus {}, GDAL {}, PROJ {}, compiled with {}", TALUS_VERSION, gdal_version(),
+                                    proj_version(), compiler_version())),
+        fact("Hardware",
+             fmt::format("{}, {} of {} logical cores used{}{}{}",
+                         machine.cpu.empty() ? "processor not named by the system" : machine.cpu, result.thread_count,
+                         machine.logical_cores,
+                         machine.memory_GiB > 0 ? fmt::format(", {} GiB of memory", fixed(machine.memory_GiB, 1)) : "",
+                         machine.system.empty() ? "" : ", ", machine.system)),
+        fact("Arithmetic", "32-bit floating point around a 64-bit origin"),
+        fact("Reference system", scene.crs.label()),
+        fact("Terrain",
+             fmt::format("{} × {} cells of {} m, {} % without data, elevations in {}", grid.columns, grid.rows,
+                         plain(scene.terrain.cell()), fixed(100 * scene.nodata_share, 1), scene.vertical_unit)),
+    };
+    double total = 0;
+    for (const double s : result.stage_times.seconds) total += s;
+    std::string stages;
+    for (std::size_t k = 0; total > 0 && k < stage_count; ++k) {
+        stages += fmt::format("{}{}\u00a0{}\u00a0%", k == 0 ? "" : ", ", step_stages[k].name,
+                              fixed(100 * result.stage_times.seconds[k] / total, 0));
+    }
+    if (!stages.empty()) rows.push_back(fact("Time per stage", stages));
+    return rows;
+}
+
+}  // namespace talus::report

@@ -1,0 +1,215 @@
+// What debris did to barriers, and the force on what it hit, over time.
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "core/number_or_null.hpp"
+#include "report/map.hpp"
+#include "report/number_text.hpp"
+#include "report/results.hpp"
+
+namespace talus::report {
+namespace {
+
+constexpr std::size_t most_lines = 8;  // of the figure: report.css has so many colours
+constexpr std::size_t most_nets = 4;   // a plot each
+constexpr std::size_t most_rows = 30;  // of the table of buildings
+
+/// Structures with a history to draw, those under the greatest force first.
+std::vector<const BuildingImpact*> drawn(const RunResult& result) {
+    std::vector<const BuildingImpact*> all;
+    for (const BuildingImpact& impact : result.observation.buildings) {
+        if (impact.history.size() > 1 && impact.peak_force > 0) all.push_back(&impact);
+    }
+    std::stable_sort(all.begin(), all.end(),
+                     [](const auto* a, const auto* b) { return a->peak_force > b->peak_force; });
+    if (all.size() > most_lines) all.resize(most_lines);
+    return all;
+}
+
+std::string name_of(const BuildingImpact& impact) {
+    return impact.name.empty() ? "unnamed" : impact.name;
+}
+
+Json seconds(double time) {
+    return number_or_null<Json>(time);
+}
+
+/// {"name": ..., "time_s": ...} of those that have such a time; "another" from the second on.
+Json events(const std::vector<BuildingImpact>& impacts, double BuildingImpact::*time) {
+    Json list = Json::array();
+    for (const BuildingImpact& impact : impacts) {
+        if (std::isnan(impact.*time)) continue;
+        list.push_back({{"name", name_of(impact)}, {"time_s", impact.*time}, {"another", !list.empty()}});
+    }
+    return list;
+}
+
+/// What became of the debris that came to a net, for each that it met.
+Json net_balances(const std::vector<BuildingImpact>& impacts) {
+    Json list = Json::array();
+    for (const BuildingImpact& net : impacts) {
+        if (!net.hit || std::isnan(net.passing_share)) continue;
+        const double all = net.held_volume + net.passed_volume + net.overtopped_volume;
+        list.push_back({{"name", name_of(net)},
+                        {"passing_percent", 100 * net.passing_share},
+                        {"arrived_m3", all},
+                        {"held_m3", net.held_volume},
+                        {"held_percent", all > 0 ? Json(100 * net.held_volume / all) : Json()},
+                        {"passed_m3", net.passed_volume},
+                        {"overtopped_m3", net.overtopped_volume},
+                        {"peak_force_kN", net.peak_force / 1e3}});
+    }
+    return list;
+}
+
+/// What nets held, let through and did not keep from going over them, over time.
+Json net_chart(const RunResult& result) {
+    std::vector<const BuildingImpact*> nets;
+    for (const BuildingImpact& impact : result.observation.buildings) {
+        if (!std::isnan(impact.passing_share) && impact.history.size() > 1) nets.push_back(&impact);
+    }
+    std::stable_sort(nets.begin(), nets.end(),
+                     [](const auto* a, const auto* b) { return a->peak_force > b->peak_force; });
+    if (nets.size() > most_nets) nets.resize(most_nets);
+    if (nets.empty()) return {};
+    constexpr double step = 270;
+    Chart chart{"What nets held and let through", 1000, step * static_cast<double>(nets.size()) + 20, {}};
+    for (const BuildingImpact* net : nets) {
+        ValueRange time{0, 0}, volume{0, 1e-3};
+        std::vector<double> t, held, through, over;
+        for (const StructureSample& s : net->history) {
+            t.push_back(s.time);
+            held.push_back(s.held_volume);
+            through.push_back(s.passed_volume);
+            over.push_back(s.overtopped_volume);
+            time.include(s.time);
+            for (const double value : {held.back(), through.back(), over.back()}) volume.include(value);
+        }
+        volume.high *= 1.05;
+        Plot plot(66, 34 + step * static_cast<double>(chart.plots.size()), 640, 190, time, volume);
+        plot.axes("time, s", "volume, m³");
+        plot.line(t, held, "series v0", "held");
+        plot.line(t, through, "series v1", "through");
+        plot.line(t, over, "series v2", "over");
+        if (!std::isnan(net->failure_time)) plot.vertical(net->failure_time, "toe-line");
+        plot.label(time.high, volume.high, 24, 16, "start", "key", shortened(name_of(*net), 34));
+        chart.plots.push_back(std::move(plot));
+    }
+    return chart_json(chart);
+}
+
+Json building_rows(const Scene& scene, const std::vector<BuildingImpact>& impacts, std::vector<std::size_t> hit) {
+    std::stable_sort(hit.begin(), hit.end(),
+                     [&](std::size_t a, std::size_t b) { return impacts[a].peak_pressure > impacts[b].peak_pressure; });
+    Json rows = table({{"name", "Building", ""},
+                       {"first_hit_s", "First hit", "s", "f1"},
+                       {"peak_force_kN", "Peak force", "kN", "s3"},
+                       {"peak_pressure_kPa", "Peak pressure", "kPa, filtered", "s3", "", "–", true},
+                       {"peak_dynamic_pressure_kPa", "Peak ρv² beside it", "kPa", "s3"},
+                       {"peak_depth_m", "Peak depth at walls", "m", "f2"},
+                       {"height_m", "Height", "m", "f1"}});
+    for (std::size_t k = 0; k < std::min(most_rows, hit.size()); ++k) {
+        const BuildingImpact& b = impacts[hit[k]];
+        Json name = {{"value", name_of(b)}, {"mark", fmt::format("hit-{}", impact_class(b))}};
+        if (!std::isnan(b.removed_time)) name["note"] = fmt::format("until {} s", fixed(b.removed_time, 1));
+        Json height;
+        if (hit[k] < scene.buildings.size()) {
+            height = {{"value", scene.buildings[hit[k]].height}};
+            if (scene.buildings[hit[k]].height_assumed) height["footnote"] = "a";
+        }
+        rows["rows"].push_back({{"name", std::move(name)},
+                                {"first_hit_s", seconds(b.first_hit_time)},
+                                {"peak_force_kN", b.peak_force / 1e3},
+                                {"peak_pressure_kPa", b.peak_pressure / 1e3},
+                                {"peak_dynamic_pressure_kPa", b.peak_dynamic_pressure / 1e3},
+                                {"peak_depth_m", b.peak_depth},
+                                {"height_m", std::move(height)}});
+    }
+    return rows;
+}
+
+}  // namespace
+
+Json buildings(const Scene& scene, const RunResult& result) {
+    const auto& impacts = result.observation.buildings;
+    if (impacts.empty()) return {};
+    std::vector<std::size_t> hit;
+    for (std::size_t i = 0; i < impacts.size(); ++i) {
+        if (impacts[i].hit) hit.push_back(i);
+    }
+    const auto assumed = static_cast<std::size_t>(std::count_if(scene.buildings.begin(), scene.buildings.end(),
+                                                                [](const Building& b) { return b.height_assumed; }));
+    const Json removed = events(impacts, &BuildingImpact::removed_time);
+    return {{"count", plural(impacts.size(), "building")},
+            {"hit", hit.size()},
+            {"none_hit", hit.empty()},
+            {"table", hit.empty() ? Json() : building_rows(scene, impacts, hit)},
+            {"shown", hit.size() > most_rows ? Json(most_rows) : Json()},
+            {"removed", removed.empty() ? Json() : Json{{"list", removed}}},
+            {"assumed_heights", assumed > 0 ? Json(assumed) : Json()}};
+}
+
+Json barriers(const RunResult& result) {
+    const auto& impacts = result.observation.buildings;
+    Json rows;
+    if (std::any_of(impacts.begin(), impacts.end(), [](const auto& b) { return b.is_barrier; })) {
+        rows = table({{"name", "Barrier", ""},
+                      {"first_hit_s", "First hit", "s", "f1"},
+                      {"peak_force_kN", "Peak force", "kN", "s3"},
+                      {"impulse_kNs", "Impulse", "kN s", "s3"},
+                      {"overtopped_m3", "Over the crest", "m³", "f1", "", "–", true},
+                      {"first_overtopped_s", "First over", "s", "f1"},
+                      {"passed_m3", "Through openings and meshes", "m³", "f1"},
+                      {"held_m3", "Held at the end", "m³", "f1"},
+                      {"peak_held_m3", "Held at most", "m³", "f1"},
+                      {"peak_filling_height_m", "Filled at most", "m", "f2"}});
+        for (const BuildingImpact& b : impacts) {
+            if (!b.is_barrier) continue;
+            rows["rows"].push_back({{"name", name_of(b)},
+                                    {"first_hit_s", seconds(b.first_hit_time)},
+                                    {"peak_force_kN", b.peak_force / 1e3},
+                                    {"impulse_kNs", b.impulse / 1e3},
+                                    {"overtopped_m3", b.overtopped_volume},
+                                    {"first_overtopped_s", seconds(b.first_overtopping_time)},
+                                    {"passed_m3", b.passed_volume},
+                                    {"held_m3", b.held_volume},
+                                    {"peak_held_m3", b.peak_held_volume},
+                                    {"peak_filling_height_m", b.peak_filling_height}});
+        }
+    }
+    return {{"failures", events(impacts, &BuildingImpact::failure_time)},
+            {"table", std::move(rows)},
+            {"nets", net_balances(impacts)},
+            {"net_volumes", net_chart(result)}};
+}
+
+Json force_chart(const RunResult& result) {
+    const std::vector<const BuildingImpact*> all = drawn(result);
+    if (all.empty()) return {};
+    ValueRange time{0, 0}, forces{0, 0};
+    for (const BuildingImpact* impact : all) {
+        for (const StructureSample& s : impact->history) {
+            time.include(s.time);
+            forces.include(s.force / 1e3);
+        }
+    }
+    forces.high = std::max(forces.high * 1.05, 1e-3);
+    Plot plot(66, 24, 640, 250, time, forces);
+    plot.axes("time, s", "force, kN");
+    plot.key = Plot::Key::beside;
+    for (std::size_t k = 0; k < all.size(); ++k) {
+        std::vector<double> t, force;
+        for (const StructureSample& s : all[k]->history) {
+            t.push_back(s.time);
+            force.push_back(s.force / 1e3);
+        }
+        plot.line(t, force, fmt::format("series v{}", k), shortened(name_of(*all[k]), 30));
+        if (!std::isnan(all[k]->failure_time)) plot.vertical(all[k]->failure_time, "toe-line");
+    }
+    return chart_json({"Force on structures over time", 1000, 320, {std::move(plot)}});
+}
+
+}  // namespace talus::report

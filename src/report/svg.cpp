@@ -1,0 +1,71 @@
+#include "report/svg.hpp"
+
+#include <fmt/format.h>
+
+namespace talus::report {
+
+void Svg::start(std::string_view element, Attributes attributes) {
+    text_.append("<").append(element);
+    for (const Attribute& attribute : attributes) {
+        if (attribute.value.empty()) continue;
+        text_.append(" ").append(attribute.name).append("=\"").append(escape(attribute.value)).append("\"");
+    }
+}
+
+void Svg::add(std::string_view element, Attributes attributes, std::string_view text) {
+    start(element, attributes);
+    if (text.empty()) {
+        text_ += "/>";
+        return;
+    }
+    text_.append(">").append(escape(text));
+    close(element);
+}
+
+void Svg::open(std::string_view element, Attributes attributes) {
+    start(element, attributes);
+    text_ += ">";
+}
+
+void Svg::close(std::string_view element) {
+    text_.append("</").append(element).append(">");
+}
+
+void Svg::line(std::string_view css_class, double x1, double y1, double x2, double y2) {
+    add("line", {{"class", css_class}, {"x1", x1}, {"y1", y1}, {"x2", x2}, {"y2", y2}});
+}
+
+void Svg::rect(std::string_view css_class, double x, double y, double width, double height, std::string_view fill) {
+    add("rect", {{"class", css_class}, {"x", x}, {"y", y}, {"width", width}, {"height", height}, {"fill", fill}});
+}
+
+void Svg::circle(std::string_view css_class, double x, double y, double radius) {
+    add("circle", {{"class", css_class}, {"cx", x}, {"cy", y}, {"r", radius}});
+}
+
+void Svg::path(std::string_view css_class, std::string_view data, std::string_view title) {
+    if (title.empty()) return add("path", {{"class", css_class}, {"d", data}});
+    open("path", {{"class", css_class}, {"d", data}});
+    add("title", {}, title);
+    close("path");
+}
+
+void Svg::text(std::string_view css_class, double x, double y, std::string_view words, std::string_view anchor) {
+    add("text", {{"class", css_class}, {"x", x}, {"y", y}, {"text-anchor", anchor}}, words);
+}
+
+void Svg::turned_text(std::string_view css_class, double x, double y, double degrees, std::string_view words,
+                      std::string_view anchor, std::string_view dy) {
+    const std::string place = fmt::format("{} rotate({})", translation(x, y), coordinate(degrees));
+    add("text", {{"class", css_class}, {"transform", place}, {"text-anchor", anchor}, {"dy", dy}}, words);
+}
+
+std::string diamond(double x, double y) {
+    return fmt::format("M{} {}l7 7l-7 7l-7 -7Z", coordinate(x), coordinate(y - 7));
+}
+
+std::string translation(double x, double y) {
+    return fmt::format("translate({} {})", coordinate(x), coordinate(y));
+}
+
+}  // namespace talus::report

@@ -1,0 +1,56 @@
+#pragma once
+
+#include <initializer_list>
+#include <string>
+#include <string_view>
+
+#include "report/number_text.hpp"
+
+namespace talus::report {
+
+/// Writes SVG: elements with their attributes, all text escaped.
+class Svg {
+  public:
+    /// An empty text stands for no attribute.
+    struct Attribute {
+        std::string_view name;
+        std::string value;
+
+        Attribute(std::string_view n, double number) : name(n), value(coordinate(number)) {}
+        Attribute(std::string_view n, std::string text) : name(n), value(std::move(text)) {}
+        Attribute(std::string_view n, std::string_view text) : name(n), value(text) {}
+        Attribute(std::string_view n, const char* text) : name(n), value(text) {}
+    };
+    using Attributes = std::initializer_list<Attribute>;
+
+    /// An element that holds nothing but `text`.
+    void add(std::string_view element, Attributes attributes, std::string_view text = {});
+    /// An element that holds what follows until its close().
+    void open(std::string_view element, Attributes attributes);
+    void close(std::string_view element);
+    void append(const Svg& other) { text_ += other.text_; }
+
+    void line(std::string_view css_class, double x1, double y1, double x2, double y2);
+    void rect(std::string_view css_class, double x, double y, double width, double height, std::string_view fill = {});
+    void circle(std::string_view css_class, double x, double y, double radius);
+    /// `title` is what the pointer reads.
+    void path(std::string_view css_class, std::string_view data, std::string_view title = {});
+    void text(std::string_view css_class, double x, double y, std::string_view words, std::string_view anchor = {});
+    /// Written around its place, turned by `degrees` clockwise.
+    void turned_text(std::string_view css_class, double x, double y, double degrees, std::string_view words,
+                     std::string_view anchor = {}, std::string_view dy = {});
+
+    [[nodiscard]] const std::string& str() const { return text_; }
+
+  private:
+    void start(std::string_view element, Attributes attributes);
+    std::string text_;
+};
+
+/// The path of a diamond around a place.
+[[nodiscard]] std::string diamond(double x, double y);
+
+/// "translate(x y)"
+[[nodiscard]] std::string translation(double x, double y);
+
+}  // namespace talus::report

@@ -1,0 +1,475 @@
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <regex>
+#include <string>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "params/fields.hpp"
+#include "report/chart.hpp"
+#include "report/colour.hpp"
+#include "report/map.hpp"
+#include "report/number_text.hpp"
+#include "report/relief.hpp"
+#include "report/report_fixture.hpp"
+#include "report/results.hpp"
+
+namespace talus {
+namespace {
+
+using ::testing::ElementsAre;
+
+struct Sample {
+    Scene scene = test::sample_scene();
+    RunResult result = test::sample_result(scene);
+
+    std::string html() const { return test::report_page(scene, result); }
+};
+
+/// Unlike a matcher, it does not print the page when it fails.
+bool has(const std::string& text, const std::string& part) {
+    return text.find(part) != std::string::npos;
+}
+
+TEST(Report, IsOneSmallPageThatNamesNoOtherFile) {
+    const std::string html = Sample().html();
+    EXPECT_LT(html.size(), 3'000'000U);
+    EXPECT_FALSE(has(html, "http://"));
+    EXPECT_FALSE(has(html, "https://"));
+    EXPECT_FALSE(has(html, "@import"));
+    EXPECT_FALSE(has(html, "{{"));
+    for (std::size_t at = 0; (at = html.find("src=\"", at)) != std::string::npos; ++at) {
+        EXPECT_EQ(html.compare(at + 5, 5, "data:"), 0) << html.substr(at, 60);
+    }
+    for (std::size_t at = 0; (at = html.find("href=\"", at)) != std::string::npos; ++at) {
+        EXPECT_TRUE(html.compare(at + 6, 5, "data:") == 0 || html[at + 6] == '#') << html.substr(at, 60);
+    }
+}
+
+TEST(Report, EscapesEveryTextOfTheScene) {
+    Sample s;
+    const std::string evil = "<script>alert('1')</script>\"&";
+    s.scene.spec.scene.title = evil + "title";
+    s.scene.spec.scene.description = evil + "description";
+    s.scene.spec.scene.assumptions = {evil + "assumption"};
+    s.scene.spec.scene.sources = {evil + "source"};
+    s.scene.spec.observations[0].name = evil;
+    s.scene.spec.observations[0].source = evil;
+    s.scene.spec.releases[0].name = evil;
+    s.scene.spec.terrain.file = evil;
+    s.scene.releases[0].name = evil;
+    s.scene.notes = {evil + "note"};
+    s.scene.inputs[0] = {evil, evil, 1, evil};
+    s.scene.crs.name = evil;
+    s.scene.vertical_unit = evil;
+    s.result.status = RunStatus::fault;
+    s.result.stop_reason = evil;
+    for (std::size_t i = 0; i < s.scene.buildings.size(); ++i) {
+        s.scene.buildings[i].name = s.result.observation.buildings[i].name = evil;
+    }
+    const std::string html = s.html();
+    EXPECT_FALSE(has(html, "<script>alert"));
+    EXPECT_FALSE(has(html, "\"&title"));
+    EXPECT_TRUE(has(html, "&lt;script&gt;alert(&apos;1&apos;)&lt;/script&gt;&quot;&amp;title"));
+    for (const char* place : {"description", "assumption", "source", "note"}) {
+        EXPECT_TRUE(has(html, std::string("&quot;&amp;") + place));
+    }
+}
+
+TEST(Report, ABraceInATitleIsNotTakenForATemplate) {
+    Sample s;
+    s.scene.spec.scene.title = "{{style}}";
+    EXPECT_TRUE(has(s.html(), "<h1>{{style}}</h1>"));
+}
+
+TEST(Report, SaysReconstructionOnThePageAndOnEveryMap) {
+    Sample s;
+    const std::string with = s.html();
+    EXPECT_TRUE(has(with, "banner reconstruction"));
+    EXPECT_TRUE(has(with, ">RECONSTRUCTION</text>"));
+    EXPECT_TRUE(has(with, "\"Reconstruction, not surveyed\""));
+    s.scene.spec.scene.reconstruction = false;
+    const std::string without = s.html();
+    EXPECT_FALSE(has(without, "banner reconstruction"));
+    EXPECT_FALSE(has(without, "RECONSTRUCTION"));
+}
+
+TEST(Report, SaysPartialWithItsReason) {
+    Sample s;
+    EXPECT_FALSE(has(s.html(), "class=\"banner partial\""));
+    s.result.status = RunStatus::fault;
+    s.result.stop_reason = "compression 0.6 above compression_limit 0.5 at 12.3 s";
+    const std::string html = s.html();
+    EXPECT_TRUE(has(html, "class=\"banner partial\""));
+    EXPECT_TRUE(has(html, "compression 0.6 above compression_limit 0.5 at 12.3 s"));
+    s.result.status = RunStatus::interrupted;
+    EXPECT_TRUE(has(s.html(), "was interrupted"));
+}
+
+TEST(Report, WarnsOfCompressionAboveEitherLimit) {
+    Sample s;
+    EXPECT_FALSE(has(s.html(), "class=\"banner unconverged\""));
+    s.result.observation.worst_max_compression = 0.031;
+    s.result.observation.worst_max_time = 12.3;
+    s.result.observation.compressed_time_share = 0.25;
+    const std::string html = s.html();
+    EXPECT_TRUE(has(html, "class=\"banner unconverged\""));
+    for (const char* part :
+         {"3.1&nbsp;% at a single particle (at 12.3 s; limit 3&nbsp;%)", "during 25&nbsp;% of the simulated time",
+          "<code>solver.iteration_count</code> (now 4)", "solver.displacement_limit"}) {
+        EXPECT_TRUE(has(html, part)) << part;
+    }
+    s.scene.spec.solver.time_step = 0.01;
+    EXPECT_TRUE(has(s.html(), "lower <code>solver.time_step_s</code>"));
+    s.result.observation.worst_max_compression = 0.02;
+    s.result.observation.worst_mean_compression = 0.011;
+    EXPECT_TRUE(has(s.html(), "Not converged"));
+}
+
+TEST(Report, MissingVolumeIsNotCalledClosed) {
+    Sample s;
+    EXPECT_TRUE(has(s.html(), "<strong>closed</strong>"));
+    s.result.observation.timeseries.back().volume_deposited -= 0.25;
+    const std::string html = s.html();
+    EXPECT_FALSE(has(html, "<strong>closed</strong>"));
+    EXPECT_TRUE(has(html, "<strong>0.250</strong> <span class=\"unit\">m³ missing</span>"));
+    EXPECT_TRUE(has(html, "<b class=\"bad\">; 0.250 m³ missing</b>"));
+}
+
+TEST(Report, ComparesTheFrontWithEachObservation) {
+    Sample s;
+    s.result.observation.front = {{120, 14, 10, 9}, {122, 14.2, 12, 10}};
+    const std::string html = s.html();
+    EXPECT_TRUE(has(html, "<b>11.0</b>"));         // between the two samples
+    EXPECT_TRUE(has(html, "<b>not reached</b>"));  // 217 m lies beyond
+}
+
+TEST(Report, ListsBuildingsByPressureAndMarksAssumedHeights) {
+    Sample s;
+    const report::Json buildings = report::buildings(s.scene, s.result);
+    std::vector<std::string> names;
+    for (const auto& row : buildings["table"]["rows"]) names.push_back(row["name"]["value"]);
+    ASSERT_EQ(names.size(), 3U) << "those that were not hit are not listed";
+    EXPECT_THAT(names, ElementsAre(testing::HasSubstr("House 38"), "House 12", "House 21A"));
+    EXPECT_TRUE(has(s.html(), "6.0<sup>a</sup>"));
+}
+
+TEST(Report, SaysWhenNoBuildingWasHit) {
+    Sample s;
+    for (BuildingImpact& b : s.result.observation.buildings) b.hit = false;
+    EXPECT_TRUE(has(s.html(), "No building was hit."));
+}
+
+TEST(Report, ShowsThirtyOfManyBuildingsAndCountsTheRest) {
+    Sample s;
+    s.scene.buildings.clear();
+    s.result.observation.buildings.clear();
+    for (int i = 0; i < 45; ++i) {
+        BuildingImpact b;
+        b.name = "house number " + std::to_string(i);
+        b.hit = true;
+        b.peak_pressure = 1000.0 * i;
+        s.result.observation.buildings.push_back(b);
+    }
+    const report::Json buildings = report::buildings(s.scene, s.result);
+    EXPECT_EQ(buildings["shown"], 30);
+    EXPECT_EQ(buildings["hit"], 45);
+    EXPECT_EQ(buildings["table"]["rows"].size(), 30U);
+    EXPECT_EQ(buildings["table"]["rows"].back()["name"]["value"], "house number 15");
+    EXPECT_TRUE(has(s.html(), "first 30 of 45 buildings"));
+}
+
+TEST(Report, PrintsEveryParameterWithItsUnit) {
+    Sample s;
+    const std::string html = s.html();
+    for (const Section& section : scene_sections()) {
+        // Observations have a table of their own; of kinds that the scene lacks there is nothing to print.
+        if (section.name == "scene" || section.name == "observation" || section.count(s.scene.spec) == 0) continue;
+        for (const Parameter& parameter : section.parameters) {
+            EXPECT_TRUE(has(html, "<code>" + parameter.key + "</code>"));
+        }
+    }
+    EXPECT_TRUE(has(html, "0.1 per 1/60 s"));
+    EXPECT_TRUE(has(html, "0.310 m²/s"));
+}
+
+/// Whether the page's figures are numbered from 1 up, none twice.
+void expect_numbered_figures(const std::string& html) {
+    int count = 0;
+    for (std::size_t at = 0; (at = html.find("<b>Figure ", at)) != std::string::npos; ++at) {
+        EXPECT_EQ(std::atoi(html.c_str() + at + 10), ++count);
+    }
+    EXPECT_GT(count, 5);
+}
+
+TEST(Report, DrawsZonesAndBedWithTheirValuesWhereThereAreSome) {
+    Sample sample;
+    const std::string without = sample.html();
+    EXPECT_FALSE(has(without, "id=\"zones\""));
+    expect_numbered_figures(without);
+    ZoneSpec rough, forest;
+    rough.name = "rough <gully>";
+    rough.friction_coefficient = 0.37;
+    rough.turbulent_friction = 450;
+    forest.name = "forest";
+    forest.stem_density = 0.08;
+    forest.stem_diameter = 0.35;
+    sample.scene.spec.zones = {rough, forest};
+    BedSpec bed;
+    bed.name = "colluvium";
+    bed.depth = 1.5;
+    bed.growth_rate = 0.006;
+    sample.scene.spec.beds = {bed};
+    const std::size_t cells = sample.scene.terrain.elevation().values.size();
+    sample.scene.zone_at.assign(cells, 1);
+    std::fill(sample.scene.zone_at.begin(), sample.scene.zone_at.begin() + static_cast<std::ptrdiff_t>(cells / 2), 2);
+    sample.scene.bed.materials.resize(1);
+    sample.scene.bed.material_at.assign(cells, 1);
+    const std::string html = sample.html();
+    for (const char* part : {"id=\"zones\"", "rough &lt;gully&gt;", "friction 0.37", "ξ 450 m/s²", "0.08 stems/m²",
+                             "0.35 m thick", "colluvium", "1.5 m deep", "growth 0.006 per m",
+                             "Petryk &amp; Bosmajian 1975", "Zones of the ground and bed.</b>"}) {
+        EXPECT_TRUE(has(html, part)) << part;
+    }
+    expect_numbered_figures(html);
+}
+
+TEST(Report, DrawsTheDensityOfAnInflowWhereItHasOne) {
+    Sample sample;
+    sample.scene.inflows.push_back({"torrent", {0, 0}, {3, 0}, {{0, 5, 2}, {10, 5, 2}}});
+    std::string html = sample.html();
+    EXPECT_TRUE(has(html, "torrent, across a line: 50.0 m³"));
+    EXPECT_FALSE(has(html, "density, kg/m³"));
+    expect_numbered_figures(html);
+    Inflow rain{"scarp", {}, {}, {{0, 5, 2, 1500}, {10, 5, 2, 1700}}};
+    rain.area.push_back({{{0, 0}, {20, 0}, {20, 10}, {0, 10}}, {}});
+    sample.scene.inflows.push_back(rain);
+    html = sample.html();
+    EXPECT_TRUE(has(html, "scarp, over 200 m², down the slope: 50.0 m³"));
+    EXPECT_TRUE(has(html, "80.0 t, ") && has(html, "600 kg/m³ on average"));
+    EXPECT_TRUE(has(html, "density, kg/m³"));
+    EXPECT_TRUE(has(html, "Their motion does not depend on it."));
+}
+
+TEST(Report, MarksInflowsOnItsMapsWithAnArrowWhereDebrisGoes) {
+    Sample sample;
+    const Extent ground = sample.scene.terrain.elevation().geometry.extent();
+    const double x = (ground.x_min + ground.x_max) / 2, y = (ground.y_min + ground.y_max) / 2;
+    EXPECT_FALSE(has(sample.html(), R"(class="inflow")"));
+    // Northwards: to its right is the east, to the right on the page.
+    sample.scene.inflows.push_back({"torrent", {x, y}, {x, y + 2}, {{0, 5, 2}, {10, 5, 2}}});
+    const std::string html = sample.html();
+    const std::regex mark(
+        R"re(class="inflow" d="M([\d.]+) ([\d.]+)L([\d.]+) ([\d.]+)M\S+ \S+?L([\d.]+) ([\d.]+)M.*?<title>torrent)re");
+    std::smatch found;
+    ASSERT_TRUE(std::regex_search(html, found, mark));
+    const auto number = [&](std::size_t k) { return std::stod(found[k]); };
+    EXPECT_NEAR(number(1), number(3), 0.11);
+    EXPECT_GT(number(2), number(4)) << "north is up";
+    EXPECT_NEAR(number(5), number(1) + 16, 0.21) << "the tip";
+    EXPECT_TRUE(has(html, ">Inflow</text>"));
+}
+
+TEST(Report, RendersARunInWhichNothingMoved) {
+    Sample s;
+    s.scene.buildings.clear();
+    s.scene.spec.observations.clear();
+    s.scene.flow_path = FlowPath();
+    s.result.observation = Observation();
+    s.result.status = RunStatus::interrupted;
+    const std::string html = s.html();
+    EXPECT_TRUE(has(html, "No debris reached the flow path"));
+    EXPECT_TRUE(has(html, "no debris mapped"));
+    for (const char* nan : {">nan", " nan", "\"nan", "Lnan", "Mnan"}) EXPECT_FALSE(has(html, nan)) << nan;
+}
+
+TEST(ReportMap, ShowsWhereDebrisCameTheReleaseAndTheBuildingsHit) {
+    const Sample s;
+    const report::MapFrame frame = report::map_frame(s.scene, report::map_content(s.scene, s.result));
+    const Extent terrain = s.scene.terrain.elevation().geometry.extent();
+    EXPECT_GE(frame.area.x_min, terrain.x_min);
+    EXPECT_LE(frame.area.y_max, terrain.y_max);
+    const Extent release = s.scene.releases[0].extent();
+    EXPECT_TRUE(frame.area.contains({release.x_min, release.y_min}));
+    EXPECT_TRUE(frame.area.contains(s.scene.flow_path.point_at(test::SampleValley::toe)));
+    EXPECT_NEAR(frame.x(frame.area.x_max) - frame.x(frame.area.x_min), frame.width(), 1e-9);
+    EXPECT_LT(frame.y(frame.area.y_max), frame.y(frame.area.y_min));  // north is up
+}
+
+TEST(ReportMap, AWideTerrainIsCroppedToTheEvent) {
+    Sample s;
+    Grid<float> wide(GridGeometry{test::SampleValley::east - 2000, test::SampleValley::north - 2000, 20, 220, 220},
+                     50.0F);
+    for (std::size_t i = 0; i < wide.values.size(); ++i) wide.values[i] += static_cast<float>(i % 220);
+    s.scene.terrain = Terrain(wide);
+    const report::MapFrame frame = report::map_frame(s.scene, report::map_content(s.scene, s.result));
+    EXPECT_LT(frame.area.width(), 600);
+    EXPECT_LT(frame.area.height(), 400);
+}
+
+TEST(ReportMap, CallsImpactsByTheirPressure) {
+    BuildingImpact b;
+    b.peak_pressure = 50e3;
+    EXPECT_EQ(report::impact_class(b), 0);  // not hit
+    b.hit = true;
+    EXPECT_EQ(report::impact_class(b), 3);
+    b.peak_pressure = 29e3;
+    EXPECT_EQ(report::impact_class(b), 2);
+    b.peak_pressure = 14e3;
+    EXPECT_EQ(report::impact_class(b), 1);
+}
+
+TEST(ReportRelief, SlopesFacingNorthWestAreBrighterThanThoseFacingSouthEast) {
+    Grid<float> ridge(GridGeometry{0, 0, 1, 40, 40});
+    for (int r = 0; r < 40; ++r) {
+        for (int c = 0; c < 40; ++c) ridge.at(c, r) = static_cast<float>(20 - 0.5 * std::abs(c - r));
+    }
+    const report::GreyImage image = report::hillshade(ridge, ridge.geometry.extent(), 1);
+    const auto grey = [&](int x, int y) { return image.pixels[2 * static_cast<std::size_t>(y * image.width + x)]; };
+    EXPECT_GT(grey(10, 10), grey(30, 30) + 40);  // picture rows run from north to south
+}
+
+TEST(ReportRelief, NothingIsInterpolatedFarFromData) {
+    Grid<float> grid(GridGeometry{0, 0, 1, 4, 4}, std::numeric_limits<float>::quiet_NaN());
+    grid.at(1, 1) = 3;
+    EXPECT_NEAR(report::interpolate(grid, {1.6, 1.6}), 3, 1e-6);
+    EXPECT_TRUE(std::isnan(report::interpolate(grid, {2.1, 2.1})));
+    EXPECT_TRUE(std::isnan(report::interpolate(grid, {-50, 2})));
+}
+
+TEST(ReportColour, RampsFallEvenlyInLightness) {
+    const report::Ramp ramp{205, 0.05, 268, 0.15, 0.90, 0.28};
+    for (int k = 0; k <= 10; ++k) {
+        EXPECT_NEAR(report::lightness(ramp.at(k / 10.0)), 0.90 - 0.062 * k, 0.01) << k;
+    }
+}
+
+TEST(ReportColour, ClassesEndAboveTheLargestValue) {
+    const report::Ramp ramp{205, 0.05, 268, 0.15};
+    EXPECT_THAT(report::fixed_classes({0, 0.5, 1, 2, 5}, 1.5, ramp).breaks, ElementsAre(0, 0.5, 1));
+    EXPECT_THAT(report::even_classes(38, ramp).breaks, ElementsAre(0, 5, 10, 15, 20, 25, 30, 35));
+    const report::Classes classes = report::fixed_classes({0.05, 0.5, 1}, 3, ramp);
+    EXPECT_EQ(classes.of(0.01), -1);
+    EXPECT_EQ(classes.of(0.5), 1);
+    EXPECT_EQ(classes.of(99), 2);
+    EXPECT_EQ(classes.of(std::numeric_limits<double>::quiet_NaN()), -1);
+}
+
+TEST(ReportText, NumbersReadAsAnEngineerPrintsThem) {
+    EXPECT_EQ(report::fixed(824262.04, 1), "824\u202f262.0");
+    EXPECT_EQ(report::fixed(1999, 0), "1999");
+    EXPECT_EQ(report::fixed(-0.26, 1), "−0.3");
+    EXPECT_EQ(report::fixed(-0.001, 1), "0.0");
+    EXPECT_EQ(report::fixed(never, 1), "–");
+    EXPECT_EQ(report::significant(38.44, 3), "38.4");
+    EXPECT_EQ(report::significant(0.0123, 2), "0.012");
+    EXPECT_EQ(report::coordinate(12.50), "12.5");
+}
+
+TEST(ReportText, ShortenedNamesKeepWholeCharacters) {
+    EXPECT_EQ(report::shortened("Zürich", 9), "Zürich");
+    EXPECT_EQ(report::shortened("Zürich", 2), "Z…");
+}
+
+TEST(ReportPlot, LinesLeaveGapsWhereThereIsNoValue) {
+    report::Plot plot(0, 0, 100, 100, {0, 4}, {0, 1});
+    const std::vector<double> x = {0, 1, 2, 3, 4}, y = {0, 1, never, 1, 0};
+    plot.line(x, y, "series");
+    report::Svg svg;
+    plot.draw(svg);
+    EXPECT_TRUE(has(svg.str(), "d=\"M0 100L25 0M75 0L100 100\""));
+}
+
+TEST(ReportChart, IsTheSameAfterItWasWrittenAndRead) {
+    report::Plot plot(66, 20, 400, 200, {0, 4}, {-1, 1});
+    plot.axes("time, s", "height <m>");
+    const std::vector<double> x = {0, 1, 2, 3, 4}, y = {0, 1, never, 1, 0}, zero(5, 0);
+    plot.band(x, zero, y, "area", "a & b");
+    plot.dots(x, y, 2.5, "run-dot", "runs");
+    plot.mark(1, 0.5, "observation");
+    plot.horizontal(0.1, "limit", "limit");
+    plot.label(1, 1, 4, -2, "end", "note", "here");
+    plot.cells = {{0, 2, 4}, {-1, 1}, {0.5, 7}, {0, 1}, {"#fff", "#000"}, "misfit"};
+    plot.key = report::Plot::Key::beside;
+    const report::Chart chart{"A \"chart\"", 640, 300, {plot, plot}};
+    const std::string written = report::chart_json(chart).dump();
+    const report::Chart read = report::chart_from(report::Json::parse(written));
+    EXPECT_EQ(report::chart_svg(read), report::chart_svg(chart));
+    EXPECT_EQ(report::chart_json(read).dump(), written);
+    EXPECT_TRUE(has(report::chart_svg(read), "height &lt;m&gt;"));
+}
+
+/// Every kind of object that the report shows, by its "kind".
+void expect_documented(const report::Json& json, int& tables, int& charts) {
+    if (json.is_array()) {
+        for (const auto& entry : json) expect_documented(entry, tables, charts);
+    }
+    if (!json.is_object()) return;
+    const std::string kind = json.value("kind", "");
+    if (kind == "chart") ++charts;
+    if (kind == "table") {
+        ++tables;
+        for (const auto& row : json["rows"]) {
+            for (const auto& column : json["columns"]) {
+                EXPECT_TRUE(row.contains(column["key"]) || row.contains("fills")) << column << row;
+            }
+        }
+    }
+    for (const auto& entry : json) expect_documented(entry, tables, charts);
+}
+
+TEST(Results, HoldAllThatTheReportShows) {
+    Sample s;
+    const report::Json results = report::run_results(s.scene, s.result, test::sample_comparisons(s.scene, s.result));
+    EXPECT_EQ(results["format"], "talus results");
+    EXPECT_EQ(results["version"], report::results_version);
+    int tables = 0, charts = 0;
+    expect_documented(results, tables, charts);
+    EXPECT_GE(tables, 6);
+    EXPECT_GE(charts, 4);
+    for (const auto& figure : results["key_figures"]) EXPECT_FALSE(figure["name"].get<std::string>().empty());
+    EXPECT_EQ(results["key_figures"][0]["value"], s.result.observation.volume_released);
+
+    const auto page = report::run_report(s.scene, s.result, results);
+    const auto again = report::run_report(s.scene, s.result, report::Json::parse(results.dump()));
+    ASSERT_TRUE(page.ok() && again.ok());
+    EXPECT_TRUE(*page == *again) << "the page shows what results.json holds, also after it was written and read";
+}
+
+TEST(Page, FillsTemplatesWithTextNumbersAndFigures) {
+    const report::Json data = {{"name", "<a & b>"},  {"width", 1234.5678}, {"none", nullptr}, {"empty", ""},
+                               {"list", {"x", "y"}}, {"large", 12345.6},   {"nan", never}};
+    EXPECT_EQ(report::render("{{name}}|{{{name}}}", data), "&lt;a &amp; b&gt;|<a & b>");
+    EXPECT_EQ(report::render("{{width|f1}} {{width|s2}} {{width|p}} {{none|f1}} {{nan|f1}}{{nan}} {{large|d0}}", data),
+              "1234.6 1235 1234.57 – – +12\u202f346");
+    EXPECT_EQ(report::render("{{#list}}{{.}},{{/list}}{{#none}}no{{/none}}{{^empty}}empty{{/empty}}", data),
+              "x,y,empty");
+    EXPECT_EQ(report::render("{{figure}} {{figure}}", data), "1 2");
+}
+
+TEST(Page, DrawsTablesWithTheirMarksAndGaps) {
+    report::Json rows = report::table({{"name", "Name <b>", ""}, {"depth_m", "Depth", "m", "f2", "", "none"}}, "odds");
+    rows["rows"].push_back(
+        {{"name", {{"value", "a&b"}, {"mark", "hit-2"}, {"note", "until 3 s"}}}, {"depth_m", 1.234}});
+    rows["rows"].push_back({{"name", "c"}, {"depth_m", nullptr}, {"heading", "[part]"}, {"heading_note", "two"}});
+    rows["rows"].push_back({{"name", "d"}, {"depth_m", "missing"}, {"fills", "depth_m"}});
+    const std::string html = report::render("{{#t}}{{> table}}{{/t}}", {{"t", rows}});
+    for (const char* part :
+         {"<table class=\"data odds\">", "<th>Name &lt;b&gt;</th>", "<th class=\"n\">Depth<br><small>m</small></th>",
+          "<td><i class=\"dot hit-2\"></i>a&amp;b<br><small>until 3 s</small></td><td class=\"n\">1.23</td>",
+          "<td class=\"n\">none</td>", "<th colspan=\"2\" scope=\"colgroup\">[part] <small>two</small></th>",
+          "<td class=\"missing\" colspan=\"1\">missing</td>"}) {
+        EXPECT_TRUE(has(html, part)) << part << "\n" << html;
+    }
+}
+
+TEST(ReportPlot, TicksAreRound) {
+    const report::Ticks ticks = report::round_ticks({0, 12.2}, 5);
+    EXPECT_THAT(ticks.values, ElementsAre(0, 2.5, 5, 7.5, 10));
+    EXPECT_EQ(ticks.digits, 1);
+}
+
+}  // namespace
+}  // namespace talus
