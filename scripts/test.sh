@@ -42,8 +42,7 @@ if (($# > 0)); then
     exit
 fi
 test_preset release physics_tests --label-regex 'physics|threads|validation|performance'
-# A page draws with the processor here, beside the simulation, and a person's patience is a clock: what fails may try again.
 step "test the pages"
-ctest --preset release --parallel "$(nproc)" --label-regex browser --repeat until-pass:2
+ctest --preset release --parallel "$(nproc)" --label-regex browser
 test_preset asan all
 step "done"

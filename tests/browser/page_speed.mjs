@@ -1,5 +1,5 @@
 // What the script of the twin's page costs while debris moves; no test, since it depends on the machine.
-// Usage: node page_speed.mjs SERVER [ARGUMENT ...], as for twin_test.mjs. Without a graphics card the pixels are drawn by
+// Usage: node page_speed.mjs TALUS serve --json --port 0 SCENE. Without a graphics card the pixels are drawn by
 // the processor, in another process; the figures here are the page's own script and what it hands to WebGL.
 import { tmpdir } from "node:os";
 import { join } from "node:path";
@@ -11,11 +11,11 @@ const browser = await chromium.launch({ executablePath: process.env.TALUS_BROWSE
 const server = await startServer(process.argv.slice(2));
 try {
   const run = new Run(browser, join(tmpdir(), "talus_page_speed"));
-  const page = await run.open(server.controller, { name: "Ada" });
+  const page = await run.open(server.controller, { name: "Ada", finest: true });
   console.log(`first picture    ${page.firstPicture_ms} ms after opening the link`);
   await page.selectOption("select[aria-label^=Speed]", "");
   await page.click(".run");
-  await until(() => page.evaluate(() => window.talusStats.shownTime_s), (t) => t > 1, "debris on its way", 300_000);
+  await until(() => page.evaluate(() => window.talusStats.shownTime_s), (t) => t > 1, "debris on its way");
   const seen = await page.evaluate(() => new Promise((resolve) => {
     const pictures = [];
     const end = performance.now() + 120_000; // a run that has ended draws no more

@@ -83,7 +83,7 @@ async function open(width, height = 900) {
   });
   await page.goto(pathToFileURL(resolve(reportFile)).href);
   await page.evaluate(() => Promise.all([...document.images].map((image) => image.decode())));
-  await page.waitForTimeout(200);
+  await page.evaluate(() => new Promise((resolve) => requestAnimationFrame(() => requestAnimationFrame(resolve))));
   return page;
 }
 

@@ -1,10 +1,10 @@
 // The page of the live twin in Chromium, with real clicks and keys.
-// Usage: node twin_test.mjs OUTPUT_FOLDER SERVER [ARGUMENT ...]: the server prints a line of JSON with its links, as
-// `talus serve --json --port 0 SCENE` does. TALUS_PARTS=PART,... runs those parts alone, TALUS_ONLY=PATTERN
-// the checks whose name matches.
+// Usage: node twin_test.mjs OUTPUT_FOLDER TALUS serve SCENE. TALUS_PARTS=PART,... runs those parts alone, TALUS_ONLY=PATTERN the checks
+// whose name matches. No check is a clock: what is waited for is a state of the server or the page, and a run that has to go on while
+// the page is looked at goes slowly.
 // Exit code 77: skipped, the browser or its driver is missing.
 import { resolve } from "node:path";
-import { existsSync, Run, startServer } from "./twin/harness.mjs";
+import { existsSync, Run } from "./twin/harness.mjs";
 import { testBackanalysis } from "./twin/backanalysis.mjs";
 import { testBarrier } from "./twin/barrier.mjs";
 import { testErosion } from "./twin/erosion.mjs";
@@ -29,33 +29,27 @@ try {
   skip("playwright-core is not installed; run `npm ci` in tests/browser");
 }
 
-// WebGL without a graphics card: SwiftShader has to be asked for.
+// WebGL without a graphics card: SwiftShader has to be asked for. Smooth edges would take it twice as long.
 const browser = await chromium.launch({ executablePath: browserPath, args: ["--headless", "--no-sandbox", "--use-angle=swiftshader",
-  "--enable-unsafe-swiftshader", "--ignore-gpu-blocklist", "--disable-background-networking", "--disable-component-update", "--no-first-run"] });
-const run = new Run(browser, resolve(output), process.env.TALUS_ONLY);
-const server = await startServer(command);
-const parts = (process.env.TALUS_PARTS ?? "levers,readings,barrier,parts,erosion,ground,photo,backanalysis,sharing").split(",");
-let sharing = server;
+  "--enable-unsafe-swiftshader", "--ignore-gpu-blocklist", "--webgl-msaa-sample-count=0", "--disable-background-networking",
+  "--disable-component-update", "--no-first-run"] });
+const run = new Run(browser, resolve(output), command, process.env.TALUS_ONLY);
+const parts = { levers: testLevers, readings: testReadings, barrier: testBarrier, parts: testParts, erosion: testErosion, ground: testGround, photo: testPhoto,
+  backanalysis: testBackanalysis, sharing: testSharing };
 try {
-  if (parts.includes("levers")) await (await testLevers(run, server)).context().close();
-  if (parts.includes("readings")) await testReadings(run, server);
-  if (parts.includes("barrier")) await testBarrier(run, command);
-  if (parts.includes("parts")) await testParts(run, server, command);
-  if (parts.includes("erosion")) await testErosion(run, command);
-  if (parts.includes("ground")) await testGround(run, server, command);
-  if (parts.includes("photo")) await testPhoto(run, server, command);
-  if (parts.includes("backanalysis")) await testBackanalysis(run, command);
-  if (parts.includes("sharing")) sharing = await testSharing(run, server, command);
+  for (const part of (process.env.TALUS_PARTS ?? Object.keys(parts).join()).split(",")) {
+    if (!parts[part]) throw new Error(`TALUS_PARTS names ${part}; there are ${Object.keys(parts).join(", ")}`);
+    await parts[part](run);
+  }
   await run.check("nothing but the server is asked for, and the console is silent", async () => {
-    const own = run.ports.flatMap((port) => [`http://127.0.0.1:${port}/`, `ws://127.0.0.1:${port}/`]);
+    const own = run.servers.flatMap(({ port }) => [`http://127.0.0.1:${port}/`, `ws://127.0.0.1:${port}/`]);
     const foreign = run.requests.filter((url) => !own.some((base) => url.startsWith(base)));
     if (foreign.length > 0) throw new Error(`asked for ${[...new Set(foreign)].join(", ")}`);
     if (run.problems.length > 0) throw new Error([...new Set(run.problems)].join("\n"));
   });
 } finally {
   await browser.close();
-  await sharing.stop();
-  await server.stop();
+  await run.stopServers();
 }
 console.log(`${run.passed} passed, ${run.failed} failed`);
 process.exit(run.failed === 0 && run.passed > 0 ? 0 : 1);

@@ -2,27 +2,25 @@
 import { spawnSync } from "node:child_process";
 import { cpSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import { basename, dirname, join, resolve } from "node:path";
-import { assert, startServer, until, viewClip } from "./harness.mjs";
+import { assert, inControl, until, viewClip } from "./harness.mjs";
 
-const few = ["--set", "solver.target_particle_count=400"];
+const particles = 400;
 const layerSelect = "select[aria-label^='Map layer']";
 
-export async function testBackanalysis(run, command) {
-  const at = command.indexOf("serve");
-  const scene = command.find((word) => word.endsWith(".toml"));
-  if (at < 0 || !scene) return;
+export async function testBackanalysis(run) {
   const folder = join(run.output, "ensemble of friction");
   rmSync(folder, { recursive: true, force: true });
-  const made = spawnSync(command[0], ["ensemble", scene, ...few, "--vary", "material.friction_coefficient=0.25:0.5", "--runs", "6", "-o", folder, "--quiet"]);
+  const made = spawnSync(run.command[0], ["ensemble", run.scene, "--set", `solver.target_particle_count=${particles}`, "--vary", "material.friction_coefficient=0.25:0.5",
+    "--runs", "6", "-o", folder, "--quiet"]);
   assert.equal(made.status, 0, String(made.stderr));
-  const server = await startServer([...command, ...few, "--ensemble", folder]);
+  const server = await run.start(["--ensemble", folder], { particles });
   const page = await run.open(server.controller, { name: "Ada" });
-  await until(() => page.textContent(".control"), (t) => /You have control/.test(t), "control");
+  await inControl(page);
   await testMaps(run, page);
   await testCalibration(run, server, page);
   await page.context().close();
   await server.stop();
-  await testNoObservations(run, command, scene);
+  await testNoObservations(run);
 }
 
 async function testMaps(run, page) {
@@ -32,9 +30,8 @@ async function testMaps(run, page) {
     assert.equal(await group.getAttribute("label"), "Ensemble ensemble of friction, 6 runs");
     await page.locator("label:has-text('Particles') input").uncheck();
     await page.click("[aria-label='Top view']");
-    await page.waitForTimeout(700);
     const clip = await viewClip(page);
-    const bare = await run.colours(page, clip);
+    const bare = await run.still(page, clip);
     const legend = page.locator(".legend").last();
     const seen = new Set([bare.hash]);
     for (const [name, title, unit] of [["probability_depth_0.5m", "Probability of peak depth over 0.5 m", "%"], ["probability_speed_10mps", "Probability of peak speed over 10 m/s", "%"],
@@ -43,13 +40,12 @@ async function testMaps(run, page) {
       await until(() => legend.locator(".legend-title b").textContent(), (t) => t === title, `legend of ${name}`);
       assert.equal(await legend.locator(".legend-title span").textContent(), unit);
       assert.equal(await legend.locator(".legend-from").textContent(), "ensemble of friction, 6 runs");
-      await page.waitForTimeout(700);
-      seen.add((await run.colours(page, clip)).hash);
+      seen.add((await run.changed(page, clip, [...seen], name)).hash);
       await run.shot(page, `30-${name}`);
     }
     assert.equal(seen.size, 6, "different pictures");
     await page.selectOption(layerSelect, "none");
-    await until(async () => (await run.colours(page, clip)).hash, (hash) => hash === bare.hash, "the ground without a layer");
+    await run.back(page, clip, bare, "the ground without a layer");
     await page.locator("label:has-text('Particles') input").check();
   });
 }
@@ -70,13 +66,13 @@ async function testCalibration(run, server, page) {
     await page.locator("[aria-label='Runs at most']").fill("16");
     await page.click(".run");
     await page.click(".calibrate-form button.primary");
-    await until(() => page.locator(".misfit circle.run").count(), (n) => n >= 2, "dots", 120_000);
-    await until(() => viewer.locator(".misfit circle.run").count(), (n) => n >= 2, "dots for the viewer", 120_000);
+    await until(() => page.locator(".misfit circle.run").count(), (n) => n >= 2, "dots");
+    await until(() => viewer.locator(".misfit circle.run").count(), (n) => n >= 2, "dots for the viewer");
     assert.ok((await server.ask("scenarios/A/state")).step > 0, "the live run goes on");
     await run.shot(page, "32-dots");
-    await until(() => page.locator("canvas.misfit-field").isVisible(), (v) => v, "the field", 240_000);
+    await until(() => page.locator("canvas.misfit-field").isVisible(), (v) => v, "the field");
     await run.shot(page, "33-field");
-    const end = await until(status, (s) => !["running", "cancelling"].includes(s.state), "the end", 300_000);
+    const end = await until(status, (s) => !["running", "cancelling"].includes(s.state), "the end");
     assert.equal(end.state, "done", end.message);
     await until(() => page.locator(".misfit circle.run").count(), (n) => n === end.runs.length, "all dots");
     await page.locator("table.found").waitFor();
@@ -99,7 +95,7 @@ async function testCalibration(run, server, page) {
     await until(focused, (text) => text === "Cancel", "the focus goes on to what takes the place of the button");
     assert.equal((await status()).state, "running");
     await page.keyboard.press("Enter");
-    const end = await until(async () => (await status()).state, (state) => state !== "running" && state !== "cancelling", "an end", 60_000);
+    const end = await until(async () => (await status()).state, (state) => state !== "running" && state !== "cancelling", "an end");
     assert.equal(end, "cancelled");
     await until(() => page.textContent(".calibrate-progress"), (t) => t.startsWith("Cancelled"), "the page says so");
     await until(focused, (text) => text === "Start", "the focus comes back");
@@ -107,13 +103,13 @@ async function testCalibration(run, server, page) {
   await viewer.context().close();
 }
 
-async function testNoObservations(run, command, scene) {
+async function testNoObservations(run) {
   const copy = join(run.output, "scene without observations");
-  cpSync(dirname(resolve(scene)), copy, { recursive: true });
-  const file = join(copy, basename(scene));
-  const text = readFileSync(scene, "utf8").split(/^(?=\[)/m).filter((section) => !section.startsWith("[[observation]]")).join("");
+  cpSync(dirname(resolve(run.scene)), copy, { recursive: true });
+  const file = join(copy, basename(run.scene));
+  const text = readFileSync(run.scene, "utf8").split(/^(?=\[)/m).filter((section) => !section.startsWith("[[observation]]")).join("");
   writeFileSync(file, text);
-  const server = await startServer([...command.filter((word) => word !== scene), ...few, file]);
+  const server = await run.start([], { scene: file, particles });
   const page = await run.open(server.controller, { name: "Di" });
   await run.check("a scene without observations says what is missing", async () => {
     await page.click("[data-tab=calibrate]");

@@ -1,6 +1,6 @@
 // Debris against a barrier: one that is high enough holds it, one that is not is overtopped; both are told, and one that is
 // taken away stays in the books. On a server of its own: another barrier on the way would change what this one holds.
-import { assert, pause, shownTime, startServer, until, viewClip } from "./harness.mjs";
+import { assert, inControl, pause, shownTime, until, viewClip } from "./harness.mjs";
 
 /** Ends of a line of `half` metres to either side of the flow path at a chainage. */
 function across(path, chainage, half) {
@@ -14,10 +14,10 @@ function across(path, chainage, half) {
   return [-1, 1].map((s) => [x + s * half * side[0], y + s * half * side[1]]);
 }
 
-export async function testBarrier(run, command) {
-  const server = await startServer(command);
+export async function testBarrier(run) {
+  const server = await run.start();
   const page = await run.open(server.controller, { name: "Dan" });
-  await until(() => page.textContent(".control"), (t) => /You have control/.test(t), "control");
+  await inControl(page);
   const state = () => server.ask("scenarios/A/state");
   const setup = () => server.ask("scenarios/A/setup");
   const scene = await server.ask("scene");
@@ -36,10 +36,9 @@ export async function testBarrier(run, command) {
   const play = async () => {
     await page.selectOption("select[aria-label^=Speed]", "");
     await page.click(".run");
-    await until(state, (s) => s.time_s > reach || !["running", "paused"].includes(s.status), "the run", 120_000);
+    await until(state, (s) => s.time_s > reach || !["running", "paused"].includes(s.status), "the run");
     await pause(page, state);
     await until(() => shownTime(page), (t) => t > reach - 1, "time on the page");
-    await page.waitForTimeout(1500);
   };
   const row = async () => {
     await page.click("[data-tab=impact]");

@@ -1,6 +1,6 @@
 // Debris that picks up its bed: the ground sinks under it, on the page too, as far as at the time on display, and a restart
 // brings it back. On a server and a scene of its own: the shipped ones have no bed.
-import { assert, boxOf, pause, saved, startServer, until, viewClip } from "./harness.mjs";
+import { assert, boxOf, inControl, pause, saved, until, viewClip } from "./harness.mjs";
 import { writeGully } from "./gully.mjs";
 
 /** Grid message of docs/protocol.md: where the largest value is, and how large. */
@@ -20,63 +20,59 @@ async function largestOf(page, path, token) {
   }, [`api/scenarios/A/layers/${path}`, token]);
 }
 
-export async function testErosion(run, command) {
-  if (!command.includes("serve")) return;
-  const own = await startServer([...command.slice(0, -1), writeGully(run.output)]);
+export async function testErosion(run) {
+  const own = await run.start([], { scene: writeGully(run.output), particles: null });
   const page = await run.open(own.controller, { name: "Hal" });
-  await until(() => page.textContent(".control"), (t) => /You have control/.test(t), "control");
+  await inControl(page);
   const state = () => own.ask("scenarios/A/state");
   const sunk = () => page.evaluate(() => window.talusStats.sunk_m.A ?? 0);
   const offered = () => page.locator("option[value=erosion_depth]").evaluate((option) => !option.disabled);
   // Downstream of the release, whose outline tells whether it is held: nothing but the ground is there.
   const box = await boxOf(page.locator(".stage canvas"));
   const clip = { x: box.x + 0.15 * box.width, y: box.y + 0.25 * box.height, width: 0.7 * box.width, height: 0.45 * box.height };
-  let deepest, before;
+  let deepest, before, layer;
 
   /** The read-out's height of the ground right below a share of the view. */
   const heightAt = async (u, v) => {
-    await page.mouse.move(box.x + u * box.width + 3, box.y + v * box.height);
+    await page.mouse.move(1, 1); // away from the canvas, which clears it
+    await until(() => page.textContent(".read-out"), (t) => t === "", "no read-out");
     await page.mouse.move(box.x + u * box.width, box.y + v * box.height);
     const text = await until(() => page.textContent(".read-out"), (t) => /ground/.test(t), "the read-out");
     return Number(/ground (\S+) m/.exec(text)[1]);
   };
   /** Share of the flow path in the reach that debris picks up from. */
   const path = async () => (await run.colours(page, { ...clip, width: 0.4 * box.width })).bluish;
-  const ground = async () => (await run.colours(page, clip)).png;
 
   await run.check("the ground sinks where debris picks up its bed, as far as the server says", async () => {
     await page.click("[aria-label='Top view']");
     for (const name of ["Names", "Particles"]) await page.locator(`label:has-text('${name}') input`).uncheck();
-    await page.waitForTimeout(600);
     assert.equal(await offered(), false, "nothing was picked up, so there is no map of it");
-    before = { png: await ground(), path: await path(), height: await heightAt(0.5, 0.5) };
+    before = { ...await run.still(page, clip), path: await path(), height: await heightAt(0.5, 0.5) };
     // No faster than in reality, so that it is still under way when it is paused: a scenario B does not run then.
     await page.selectOption("select[aria-label^=Speed]", "1");
     await page.click(".run");
-    await until(sunk, (depth) => depth > 0, "the ground sinks while debris moves", 60_000);
-    await until(state, (s) => s.time_s > 5, "more of it", 120_000);
+    await until(sunk, (depth) => depth > 0, "the ground sinks while debris moves");
+    await until(state, (s) => s.time_s > 6, "more of it");
     await pause(page, state);
     assert.equal((await state()).status, "paused");
     const { volume_entrained_m3: volume } = await state();
     deepest = await largestOf(page, "erosion_depth", own.token);
     assert.ok(volume > 10 && deepest.most > 0.3 && deepest.cells > 50, JSON.stringify({ volume, deepest }));
     await until(sunk, (depth) => Math.abs(depth - deepest.most) < 1e-6, "the page's ground in the pause");
-    await until(async () => (await ground()).equals(before.png), (same) => !same, "another look of the ground");
+    await run.changed(page, clip, [before.hash], "another look of the ground");
     // The flow path lies on the sunk ground: under the old one it would not be seen.
     assert.ok(before.path > 1e-3, `${before.path} of the view is the flow path`);
     await until(path, (share) => share > 0.8 * before.path, `the flow path, which was ${before.path} of the view`);
     await run.shot(page, "45-sunk-ground");
-    const height = await heightAt(0.5, 0.5);
-    assert.ok(height < before.height - 0.1 && height > before.height - deepest.most - 0.1, `${before.height} m, then ${height} m`);
+    await until(() => heightAt(0.5, 0.5), (height) => height < before.height - 0.1 && height > before.height - deepest.most - 0.1, `the height, which was ${before.height} m`);
   });
 
   await run.check("erosion is a map layer with a legend in metres, and among the exports", async () => {
     await until(offered, (there) => there, "the layer is offered");
-    const bare = await ground();
+    const bare = await run.still(page, clip);
     await page.selectOption("select[aria-label^='Map layer']", "erosion_depth");
     await until(() => page.locator(".legend").last().textContent(), (t) => /^Erosionm/.test(t), "legend");
-    await until(async () => (await ground()).equals(bare), (same) => !same, "the layer");
-    await page.waitForTimeout(600);
+    layer = await run.changed(page, clip, [bare.hash], "the layer");
     await run.shot(page, "45-erosion-layer");
     await page.click("button:has-text('Export')");
     const tif = await saved(page, () => page.click("[aria-label='Save erosion_depth.tif']"));
@@ -85,7 +81,6 @@ export async function testErosion(run, command) {
   });
 
   await run.check("looking back, ground and layer are those of then", async () => {
-    const now = await ground();
     const last = (await state()).recording.last_s;
     const then = await largestOf(page, `erosion_depth?time_s=${0.4 * last}`, own.token);
     assert.ok(then.cells > 0 && then.cells < deepest.cells, `${then.cells} cells then, ${deepest.cells} now`);
@@ -93,10 +88,10 @@ export async function testErosion(run, command) {
     await page.keyboard.press("Home");
     await until(sunk, (depth) => depth === 0, "the ground of the beginning");
     await page.selectOption("select[aria-label^='Map layer']", "none");
-    await until(async () => (await ground()).equals(before.png), (same) => same, "looks as at the beginning");
+    await run.back(page, clip, before, "looks as at the beginning");
     await page.click(".live");
     await page.selectOption("select[aria-label^='Map layer']", "erosion_depth");
-    await until(async () => (await ground()).equals(now), (same) => same, "the ground of now");
+    await run.back(page, clip, layer, "the ground of now");
     await page.selectOption("select[aria-label^='Map layer']", "none");
   });
 
@@ -104,13 +99,13 @@ export async function testErosion(run, command) {
     await page.click("button:has-text('Compare')");
     await page.locator(".pane[data-scenario=B]").waitFor();
     await until(() => page.evaluate(() => window.talusStats.sunk_m), (s) => Math.abs(s.A - deepest.most) < 1e-6, "the ground of A");
-    await page.waitForTimeout(1200);  // longer than the page waits before it asks again
+    const panes = [];
+    for (const name of ["A", "B"]) panes.push((await run.still(page, await viewClip(page, name))).hash);
     assert.equal(await page.evaluate(() => window.talusStats.sunk_m.B ?? 0), 0, "B is at time 0");
-    const panes = await Promise.all(["A", "B"].map(async (name) => (await run.colours(page, await viewClip(page, name))).png));
-    assert.ok(!panes[0].equals(panes[1]), "both views are alike");
+    assert.notEqual(panes[0], panes[1], "both views are alike");
     await page.click("[aria-label='Fit']");
     await page.locator("label:has-text('Particles') input").check();
-    await page.waitForTimeout(900);
+    await run.still(page);
     await run.shot(page, "45-own-ground");
     await page.locator("label:has-text('Particles') input").uncheck();
     await page.click("[aria-label='End scenario B']");
@@ -119,8 +114,8 @@ export async function testErosion(run, command) {
     await page.click('[aria-label="Restart"]');
     await until(state, (s) => s.time_s === 0, "time 0");
     await until(sunk, (depth) => depth === 0, "the old ground");
-    await until(async () => (await ground()).equals(before.png), (same) => same, "looks as before");
-    assert.equal(await heightAt(0.5, 0.5), before.height);
+    await run.back(page, clip, before, "looks as before");
+    await until(() => heightAt(0.5, 0.5), (height) => height === before.height, `the height, which was ${before.height} m`);
   });
   await page.context().close();
   await own.stop();

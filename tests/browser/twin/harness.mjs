@@ -14,7 +14,7 @@ export async function startServer(command) {
   const links = await new Promise((resolve, reject) => {
     createInterface({ input: process_.stdout }).on("line", (line) => line.startsWith("{") && resolve(JSON.parse(line)));
     process_.on("exit", (code) => reject(new Error(`the server ended with ${code}: ${told}`)));
-    setTimeout(() => reject(new Error(`the server printed no links: ${told}`)), 60_000).unref();
+    setTimeout(() => reject(new Error(`the server printed no links: ${told}`)), 120_000).unref();
   });
   const token = new URL(links.controller_url).hash.slice(7);
   const viewerToken = new URL(links.viewer_url).hash.slice(7);
@@ -37,17 +37,34 @@ export async function startServer(command) {
   };
 }
 
+/** What has not come after so long does not come: nothing is measured by it, and only a failing test waits for it. */
+const limit_ms = 120_000;
+
 export class Run {
   passed = 0;
   failed = 0;
   problems = [];
   requests = [];
-  /** Of the servers that pages were opened at. */
-  ports = [];
+  servers = [];
 
-  constructor(browser, output, only) {
-    Object.assign(this, { browser, output, only });
+  /** command: how the server is started, for all parts: each starts its own. */
+  constructor(browser, output, command, only) {
+    Object.assign(this, { browser, output, command, only });
     mkdirSync(output, { recursive: true });
+  }
+  /** The command's scene is the last word. */
+  get scene() {
+    return this.command.at(-1);
+  }
+  /** A server with further arguments. Few particles show as much of the page as many; `particles`: null leaves the scene's. */
+  async start(further = [], { scene = this.scene, particles = 2500, port = 0 } = {}) {
+    const few = particles === null ? [] : ["--set", `solver.target_particle_count=${particles}`];
+    const server = await startServer([...this.command.slice(0, -1), "--json", "--port", String(port), ...few, ...further, scene]);
+    this.servers.push(server);
+    return server;
+  }
+  async stopServers() {
+    await Promise.all(this.servers.map((server) => server.stop()));
   }
   async check(name, body) {
     if (this.only && !new RegExp(this.only).test(name)) return;
@@ -62,7 +79,8 @@ export class Run {
       await this.last?.screenshot({ path: join(this.output, `failed-${this.failed}.png`) }).catch(() => {});
     }
   }
-  async open(link, { width = 1280, height = 720, reduced = true, name } = {}) {
+  /** finest: with the whole mesh of the ground; a coarser one is drawn in a fraction of the time. */
+  async open(link, { width = 1280, height = 720, reduced = true, name, finest = false } = {}) {
     const context = await this.browser.newContext({ viewport: { width, height }, reducedMotion: reduced ? "reduce" : "no-preference", acceptDownloads: true });
     const page = await context.newPage();
     if (name) await page.addInitScript((n) => localStorage.setItem("talus-name", n), name);
@@ -75,8 +93,18 @@ export class Run {
     page.on("request", (request) => {
       if (!/^(data|blob):/.test(request.url())) this.requests.push(request.url());
     });
-    page.setDefaultTimeout(30_000);
-    this.ports.push(new URL(link).port);
+    page.asked = { begun: 0, open: 0 };
+    const count = (by) => (request) => {
+      // The answer to a POST may never be read, and so never end.
+      if (request.method() !== "GET" || !request.url().includes("/api/")) return;
+      page.asked.open += by;
+      if (by > 0) ++page.asked.begun;
+    };
+    page.on("request", count(1));
+    page.on("requestfinished", count(-1));
+    page.on("requestfailed", count(-1));
+    page.setDefaultTimeout(limit_ms);
+    if (!finest) await page.route(/\/api\/terrain/, (route) => route.continue({ url: route.request().url().replace(/max_cells=\d+/, "max_cells=20000") }));
     const begun = Date.now();
     await page.goto(link);
     await page.waitForFunction(() => window.talusStats?.frames > 0 && document.querySelector(".transport"));
@@ -96,6 +124,30 @@ export class Run {
   async reddish(page, clip) {
     const png = await page.screenshot({ clip });
     return (await page.evaluate(readPixels, png.toString("base64"))).reddish;
+  }
+  /** The colours of a part of the page at rest: two looks in a row find the same picture, all its pixels drawn, while nothing is asked of the server. */
+  async still(page, clip) {
+    const at = () => page.evaluate(() => [window.talusStats.frames, window.talusStats.pixelRatio === Math.min(2, devicePixelRatio)]);
+    let last = null;
+    return until(async () => {
+      const { begun, open } = page.asked;
+      const [frames, all] = await at();
+      const seen = await this.colours(page, clip);
+      const [after] = await at();
+      const quiet = open === 0 && page.asked.begun === begun && all && after === frames;
+      const same = quiet && last === seen.hash;
+      last = quiet ? seen.hash : null;
+      return same ? seen : null;
+    }, (seen) => seen !== null, "a view at rest");
+  }
+  /** The same once it is another picture than `others`, hashes of earlier ones. */
+  async changed(page, clip, others, what) {
+    await until(async () => (await this.colours(page, clip)).hash, (hash) => !others.includes(hash), what);
+    return this.still(page, clip);
+  }
+  /** The same once it is `one` again. */
+  async back(page, clip, one, what) {
+    await until(async () => (await this.colours(page, clip)).hash, (hash) => hash === one.hash, what);
   }
   async shot(page, name) {
     await page.screenshot({ path: join(this.output, `${name}.png`) });
@@ -135,18 +187,27 @@ export async function clickGround(page, u, v, options = {}) {
   await page.mouse.click(box.x + u * box.width, box.y + v * box.height, options);
 }
 /** Waits until a question has the wanted answer; says the last answer if it never has. */
-export async function until(question, wanted, what, limit_ms = 20_000) {
+export async function until(question, wanted, what) {
   const begun = Date.now();
   let answer;
   for (;;) {
     answer = await question();
     if (wanted(answer)) return answer;
-    if (Date.now() - begun > limit_ms) throw new Error(`${what}: still ${JSON.stringify(answer)?.slice(0, 300)}`);
+    if (Date.now() - begun > limit_ms) throw new Error(`${what}: still ${JSON.stringify(answer)?.slice(0, 600)}`);
     await new Promise((resolve) => setTimeout(resolve, 100));
   }
 }
 /** Where an element is, once it is there: what lies over the view comes and goes with pictures. */
 export const boxOf = (locator) => until(() => locator.boundingBox({ timeout: 1000 }).catch(() => null), (box) => box !== null, String(locator));
+export const inControl = (page) => until(() => page.textContent(".control"), (t) => /You have control/.test(t), "control");
+/** Drags an element by so many pixels. */
+export async function drag(page, locator, dx, dy) {
+  const box = await boxOf(locator);
+  await page.mouse.move(box.x + 6, box.y + 6);
+  await page.mouse.down();
+  await page.mouse.move(box.x + 6 + dx, box.y + 6 + dy, { steps: 4 });
+  await page.mouse.up();
+}
 /** Presses Pause, unless the run ends by itself meanwhile. `state`: asks the server for the scenario's. */
 export async function pause(page, state) {
   const ended = (s) => s.status !== "running";
@@ -154,11 +215,11 @@ export async function pause(page, state) {
     // A button that is no longer Pause, or off because the run has ended, is not waited for: the server says how it is.
     if (!ended(await state())) await page.click(".run[data-face=Pause]", { timeout: 10_000 }).catch(() => {});
     return state();
-  }, ended, "the pause", 90_000);
+  }, ended, "the pause");
 }
 export const shownTime = async (page) => Number((await page.textContent(".clock")).replace("−", "-").split(" ")[0]);
 export async function saved(page, click) {
-  const [download] = await Promise.all([page.waitForEvent("download", { timeout: 60_000 }), click()]);
+  const [download] = await Promise.all([page.waitForEvent("download"), click()]);
   return { name: download.suggestedFilename(), bytes: readFileSync(await download.path()) };
 }
 export { assert, existsSync };

@@ -1,7 +1,7 @@
 // The scene's orthophoto over the terrain, on a server of its own: the shipped scene has none.
 import { writeFileSync } from "node:fs";
 import { join } from "node:path";
-import { assert, startServer, until, viewClip } from "./harness.mjs";
+import { assert, viewClip } from "./harness.mjs";
 
 /** A picture of squares with a world file beside it, over an extent; its north-western quarter is red. */
 function writePhoto(file, [west, south, east, north], size = 96) {
@@ -27,27 +27,24 @@ function writePhoto(file, [west, south, east, north], size = 96) {
   writeFileSync(file.replace(/bmp$/, "bpw"), [dx, 0, 0, -dy, west + dx / 2, north - dy / 2].join("\n"));
 }
 
-export async function testPhoto(run, server, command) {
-  if (!command.includes("serve")) return;
+export async function testPhoto(run) {
   const file = join(run.output, "photo.bmp");
-  writePhoto(file, (await server.ask("scene")).extent_m);
-  const own = await startServer([...command, "--set", `terrain.orthophoto=${file}`]);
+  writePhoto(file, [824090, 825520, 824440, 825920]); // the terrain of the scene
+  const own = await run.start(["--set", `terrain.orthophoto=${file}`]);
   const page = await run.open(own.viewer, { name: "Fay" });
   await run.check("an orthophoto is draped over the terrain, the right way round, and can be put away", async () => {
     await page.click("[aria-label='Top view']");
     await page.locator("label:has-text('Names') input").uncheck();
-    await page.waitForTimeout(600);
     const clip = await viewClip(page);
-    const plain = await run.colours(page, clip);
+    const plain = await run.still(page, clip);
     await page.locator("label:has-text('Photo') input").check();
-    await until(async () => (await run.colours(page, clip)).png.equals(plain.png), (same) => !same, "the photo");
-    await page.waitForTimeout(600);
+    await run.changed(page, clip, [plain.hash], "the photo");
     await run.shot(page, "20-photo");
     const half = (left, top) => run.reddish(page, { x: clip.x + (left ? 0.2 : 0.55) * clip.width, y: clip.y + (top ? 0 : 0.6) * clip.height, width: 0.2 * clip.width, height: 0.35 * clip.height });
     assert.ok((await half(true, true)) > 0.8, "the north-western quarter is red");
     for (const [left, top] of [[false, true], [true, false], [false, false]]) assert.ok((await half(left, top)) < 0.1, `${left} ${top}`);
     await page.locator("label:has-text('Photo') input").uncheck();
-    await until(async () => (await run.colours(page, clip)).png.equals(plain.png), (same) => same, "the ground without it");
+    await run.back(page, clip, plain, "the ground without it");
   });
   await page.context().close();
   await own.stop();

@@ -1,7 +1,8 @@
 // Several people in one session, breaks of the connection, sizes of the window, keyboard and names of controls.
-import { assert, shownTime, startServer, until, viewClip } from "./harness.mjs";
+import { assert, shownTime, until, viewClip } from "./harness.mjs";
 
-export async function testSharing(run, server, command) {
+export async function testSharing(run) {
+  const server = await run.start();
   const small = { width: 1024, height: 640 };
   const ada = await run.open(server.controller, { ...small, name: "Ada" });
   const state = () => server.ask("scenarios/A/state");
@@ -16,7 +17,7 @@ export async function testSharing(run, server, command) {
       if (await control.isVisible()) assert.equal(await control.isDisabled(), true, await control.evaluate((e) => e.outerHTML.slice(0, 120)));
     }
     assert.equal(await eve.locator(".control:visible").count(), 0);
-    const seen = await run.colours(eve, await viewClip(eve));
+    const seen = await run.still(eve, await viewClip(eve));
     assert.ok(seen.different > 800);
     await until(() => ada.locator(".chips .person").count(), (n) => n === 2, "two people");
     await eve.click("button:has-text('Share')");
@@ -73,7 +74,7 @@ export async function testSharing(run, server, command) {
   for (const [width, height] of [[1280, 720], [1024, 768]]) {
     await run.check(`works at ${width} x ${height}: nothing is cut off, readings can be reached`, async () => {
       await ada.setViewportSize({ width, height });
-      await ada.waitForTimeout(500);
+      await run.still(ada);
       const outside = await ada.evaluate(() => [...document.querySelectorAll("button, select, input, .legend, .clock")].filter((e) => {
         const r = e.getBoundingClientRect();
         if (r.width === 0 || !e.checkVisibility({ visibilityProperty: true }) || e.closest(".levers, .tab-panels, .unseen")) return false;
@@ -92,9 +93,8 @@ export async function testSharing(run, server, command) {
       assert.deepEqual(overlaps, []);
       const drawer = ada.locator(".drawer-switch");
       if (width < 1180) await drawer.click();
-      await ada.waitForTimeout(400);
       await ada.click("[data-tab=balance]");
-      assert.ok(await ada.locator("caption:has-text('Mass balance')").isVisible());
+      await ada.locator("caption:has-text('Mass balance')").waitFor();
       await run.shot(ada, `17-size-${width}`);
       if (width < 1180) await drawer.click();
     });
@@ -123,21 +123,16 @@ export async function testSharing(run, server, command) {
     assert.equal(await ada.locator("dialog[open]").count(), 0);
   });
 
-  let next = server;
   await run.check("after a break the page comes back by itself and shows the present state", async () => {
     await server.stop();
     await until(() => ada.textContent(".connection"), (t) => /Connection lost|Reconnecting/.test(t), "the break is told");
     assert.equal(await ada.isDisabled(".run"), true);
-    const port = command.indexOf("--port");
-    const again = port < 0 ? [...command, "--port", String(server.port)] : command.map((part, i) => (i === port + 1 ? String(server.port) : part));
-    if (again.includes("serve")) again.push("--token", server.token, "--token", server.viewerToken);
-    next = await startServer(again);
-    await until(() => ada.locator(".connection:visible").count(), (n) => n === 0, "the connection", 25_000);
+    const next = await run.start(["--token", server.token, "--token", server.viewerToken], { port: server.port });
+    await until(() => ada.locator(".connection:visible").count(), (n) => n === 0, "the connection");
     await until(async () => Math.abs((await shownTime(ada)) - (await next.ask("scenarios/A/state")).time_s), (d) => d < 0.2, "the present time");
     await until(() => ada.isDisabled(".run"), (d) => !d, "control again");
     await ada.click("[aria-label='Step']");
     await until(() => next.ask("scenarios/A/state"), (s) => s.step >= 1, "a step");
   });
   await ada.context().close();
-  return next;
 }
