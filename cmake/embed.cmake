@@ -75,5 +75,7 @@ extern const std::array<File, file_count> files;
     DEPENDS ${paths} ${talus_embed_script}
     COMMENT "Embedding ${space}" VERBATIM)
   target_sources(${target} PRIVATE ${folder}/${space}.cpp)
+  add_custom_target(${space}_source DEPENDS ${folder}/${space}.cpp)
+  add_dependencies(generated_sources ${space}_source)
   target_include_directories(${target} PRIVATE ${folder})
 endfunction()

@@ -29,8 +29,12 @@ endif()
 # A module without a .cpp is an interface library.
 function(talus_module name)
   file(GLOB_RECURSE sources CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/*.cpp)
+  set(wanted "")
+  if(TALUS_SANITIZE)
+    set(wanted EXCLUDE_FROM_ALL)  # for the tests of a sanitized build, if one of them needs it
+  endif()
   if(sources)
-    add_library(talus_${name} STATIC ${sources})
+    add_library(talus_${name} STATIC ${wanted} ${sources})
     target_link_libraries(talus_${name} PUBLIC talus_options ${ARGN})
   else()
     add_library(talus_${name} INTERFACE)
@@ -38,36 +42,42 @@ function(talus_module name)
   endif()
 endfunction()
 
-# talus_test(NAME LABEL DEPENDS...): the program test_NAME from every .cpp in the current folder, its tests labelled. With
-# `talus_test_processors` set in the folder, each of them has so many processors for itself; those that match the googletest
-# pattern `talus_long_tests` are minutes of arithmetic and left out of sanitized programs, in which others run the same code.
-# What is labelled `physics` is also tested in the release build (target physics_tests). Tests that match the pattern
-# `talus_thread_tests` are what the thread sanitizer looks at: in its build they alone are found, labelled `threads` (target
-# thread_tests).
+# talus_glue(TARGET): reads, writes and puts together; no loop of it is hot. -O1 compiles it in two thirds of the time.
+function(talus_glue target)
+  if(CMAKE_BUILD_TYPE STREQUAL "Release")
+    target_compile_options(${target} PRIVATE -O1)
+  endif()
+endfunction()
+
+# talus_test(NAME LABEL DEPENDS...): the program test_NAME from every .cpp in the current folder, its tests labelled. A folder
+# may set before it:
+#   talus_test_processors  processors that each of its tests has for itself
+#   talus_memory_tests     googletest pattern of what the address sanitizer looks at: what reads what others wrote, indexes
+#                          arrays, or owns memory across threads
+#   talus_thread_tests     the same for the thread sanitizer
+# Sanitized builds have these tests alone. A folder without such tests is not built there.
 function(talus_test name label)
   file(GLOB sources CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/*.cpp)
-  if(NOT sources)
-    return()
+  set(filter "")
+  if(TALUS_SANITIZE)
+    set(pattern "${talus_memory_tests}")
+    if(TALUS_SANITIZE STREQUAL "thread")
+      set(pattern "${talus_thread_tests}")
+    endif()
+    if(NOT pattern)
+      return()
+    endif()
+    set(filter TEST_FILTER "${pattern}")
   endif()
   add_executable(test_${name} ${sources})
   target_link_libraries(test_${name} PRIVATE ${ARGN} GTest::gtest GTest::gtest_main GTest::gmock)
   target_include_directories(test_${name} PRIVATE ${PROJECT_SOURCE_DIR}/tests)
   target_compile_definitions(test_${name} PRIVATE TALUS_SOURCE_DIR="${PROJECT_SOURCE_DIR}"
                              TALUS_PROGRAM="${CMAKE_BINARY_DIR}/bin/talus")
-  set(filter "")
-  if(TALUS_SANITIZE STREQUAL "thread" AND talus_thread_tests)
-    set(label threads)
-    set(filter TEST_FILTER "${talus_thread_tests}")
-  elseif(TALUS_SANITIZE AND talus_long_tests)
-    set(filter TEST_FILTER "-${talus_long_tests}")
-  endif()
-  if(label STREQUAL threads)
-    add_dependencies(thread_tests test_${name})
-  endif()
+  # A test spends its time in the libraries, which are optimised; those labelled `physics` call laws themselves.
   if(label STREQUAL physics OR label STREQUAL threads)
-    add_dependencies(physics_tests test_${name})
-  elseif(TALUS_SANITIZE)
-    # Half the time to compile; the libraries under test, where the arithmetic is, stay optimised.
+    target_compile_options(test_${name} PRIVATE -O1)
+  else()
     target_compile_options(test_${name} PRIVATE -O0)
   endif()
   set(processors 1)

@@ -1,10 +1,13 @@
 #!/usr/bin/env bash
-# Installs what is missing, builds everything and passes all tests:
-#   release  the program that users run: physics, validation, speed, the pages in a browser
-#   asan     all tests but the longest under the address and undefined-behaviour sanitizers, warnings being errors, and
-#            the checks of style and layering
-# Presets' names as arguments test those alone: scripts/test.sh dev (as asan, without sanitizers), scripts/test.sh tsan
-# (what runs in parallel, under the thread sanitizer).
+# Installs what is missing, builds the program that users run and passes its tests, the pages in a browser among them.
+# Names as arguments ask for something else, one after the other:
+#   scripts/test.sh release   the same as without arguments
+#   scripts/test.sh asan      what reads foreign data, indexes arrays or is shared by threads, under the address and
+#                             undefined-behaviour sanitizers
+#   scripts/test.sh tsan      what runs in parallel, under the thread sanitizer
+#   scripts/test.sh style     format, clang-tidy, layers, files; with TALUS_CHANGED_SINCE=<revision> clang-tidy looks only
+#                             at the modules that have changed since
+#   scripts/test.sh dev       all tests with assertions, every file compiled by itself
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
@@ -13,36 +16,44 @@ step() {
     echo "== $* ($((SECONDS / 60)) min $((SECONDS % 60)) s)"
 }
 
-test_preset() {
-    local preset=$1 target=$2
-    shift 2
+build_and_test() {
+    local preset=$1
     step "build $preset"
     cmake --preset "$preset"
-    cmake --build --preset "$preset" --target "$target" --parallel "$(nproc)"
+    cmake --build --preset "$preset" --parallel "$(nproc)"
     step "test $preset"
-    ctest --preset "$preset" --parallel "$(nproc)" "$@"
+    ctest --preset "$preset" --parallel "$(nproc)" --label-exclude style
 }
 
-step "packages"
-scripts/install_packages.sh test
-if [[ -f tests/browser/package-lock.json ]]; then
+install_browser_tests() {
     # The lock file decides what is installed; a copy of it says whether that has been done.
     if ! cmp --silent tests/browser/package-lock.json tests/browser/node_modules/.installed-lock.json; then
         npm ci --prefix tests/browser --no-audit --no-fund
         cp tests/browser/package-lock.json tests/browser/node_modules/.installed-lock.json
     fi
-fi
+}
 
-if (($# > 0)); then
-    for preset in "$@"; do
-        target=all
-        if [[ $preset == tsan ]]; then target=thread_tests; fi
-        test_preset "$preset" "$target"
-    done
-    exit
-fi
-test_preset release physics_tests --label-regex 'physics|threads|validation|performance'
-step "test the pages"
-ctest --preset release --parallel "$(nproc)" --label-regex browser
-test_preset asan all
+step "packages"
+scripts/install_packages.sh test
+if (($# == 0)); then set -- release; fi
+for name in "$@"; do
+    case $name in
+        release | dev)
+            install_browser_tests
+            build_and_test "$name"
+            ;;
+        asan | tsan) build_and_test "$name" ;;
+        style)
+            step "style"
+            cmake --preset release
+            # clang-tidy reads headers that the build makes.
+            cmake --build --preset release --target generated_sources --parallel "$(nproc)"
+            ctest --preset release --parallel "$(nproc)" --label-regex style
+            ;;
+        *)
+            echo "scripts/test.sh: $name is none of release, asan, tsan, style, dev" >&2
+            exit 2
+            ;;
+    esac
+done
 step "done"
