@@ -71,10 +71,10 @@ bool Run::over() {
 }
 
 void Run::take_step() {
-    const auto fault = simulation_.advance(&observer_);
+    const Status stepped = simulation_.advance(&observer_);
     smallest_time_step_ = std::min(smallest_time_step_, state().time_step);
     largest_time_step_ = std::max(largest_time_step_, state().time_step);
-    if (fault) return stop(RunPhase::fault, *fault);
+    if (!stepped) return stop(RunPhase::fault, stepped.error().message);
     if (!observer_.failed_buildings().empty()) rest_.stir(state().time);
     const bool waiting = still_waiting(model(), state()) || simulation_.inflow().to_come() > 0;
     if (rest_.at_rest(state().time, total_momentum(model(), state()), waiting)) {

@@ -12,9 +12,9 @@ double speed_bound(const Model& model, double highest_energy_head) {
     return 1.5 * std::sqrt(2 * model.gravity * fall) + 1;
 }
 
-std::optional<std::string> find_fault(const Model& model, const State& state, double highest_energy_head) {
+Status find_fault(const Model& model, const State& state, double highest_energy_head) {
     const auto fault = [&]<class... Values>(fmt::format_string<double, Values...> text, Values... values) {
-        return std::optional<std::string>(fmt::vformat(text, fmt::make_format_args(state.time, values...)));
+        return Error{fmt::vformat(text, fmt::make_format_args(state.time, values...))};
     };
     if (!std::isfinite(state.max_speed) || !std::isfinite(state.mean_compression)) {
         return fault(
@@ -45,7 +45,7 @@ std::optional<std::string> find_fault(const Model& model, const State& state, do
             "solver.largest_time_step_s or solver.under_relaxation",
             state.max_speed, bound);
     }
-    return std::nullopt;
+    return {};
 }
 
 }  // namespace talus

@@ -1,8 +1,6 @@
 #pragma once
 
-#include <optional>
-#include <string>
-
+#include "core/result.hpp"
 #include "sim/model.hpp"
 #include "sim/state.hpp"
 
@@ -15,6 +13,6 @@ namespace talus {
 
 /// Why the last step cannot be trusted, with the time and the parameter to change; nothing if it can.
 /// `highest_energy_head`: greatest z + v^2 / 2g of any particle when it was released, local m.
-[[nodiscard]] std::optional<std::string> find_fault(const Model& model, const State& state, double highest_energy_head);
+[[nodiscard]] Status find_fault(const Model& model, const State& state, double highest_energy_head);
 
 }  // namespace talus

@@ -23,10 +23,10 @@ struct Simulation::OwnStages {
 
     void inject_inflow() const { self.inject_inflow(watcher); }
     void choose_time_step() const { self.state_.time_step = cpu::choose_time_step(self.model_, self.state_); }
-    [[nodiscard]] std::optional<std::string> check_faults() const {
+    [[nodiscard]] Status check_faults() const {
         return find_fault(self.model_, self.state_, self.highest_energy_head_);
     }
-    [[nodiscard]] std::optional<std::string> entrain_bed() const { return self.entrain_bed(); }
+    [[nodiscard]] Status entrain_bed() const { return self.entrain_bed(); }
     void observe() const {
         if (watcher != nullptr) watcher->observe(self.model_, self.state_);
     }
@@ -60,7 +60,7 @@ void Simulation::measure_energy_and_speed() {
     state_.building_contacts.reserve((face_count - 1) * std::max(state_.count, capacity_));
 }
 
-std::optional<std::string> Simulation::advance(StepWatcher* watcher) {
+Status Simulation::advance(StepWatcher* watcher) {
     return step(*backend_, model_, state_, times_, OwnStages{*this, watcher});
 }
 
@@ -72,21 +72,21 @@ void Simulation::inject_inflow(StepWatcher* watcher) {
     if (watcher != nullptr) watcher->follow_inflow(state_, first);
 }
 
-std::optional<std::string> Simulation::entrain_bed() {
-    if (model_.bed.empty()) return std::nullopt;
+Status Simulation::entrain_bed() {
+    if (model_.bed.empty()) return {};
     const std::size_t loose = entrainment_.find(model_, state_);
-    if (loose == 0) return std::nullopt;
+    if (loose == 0) return {};
     const std::size_t count = state_.count + loose, limit = static_cast<std::size_t>(model_.solver.particle_limit);
     if (count > limit) {
-        return fmt::format(
+        return Error{fmt::format(
             "at t = {:.4g} s debris has picked up its bed until it has more than solver.particle_limit = {} particles: "
             "raise it, or solver.particle_spacing_m",
-            state_.time, limit);
+            state_.time, limit)};
     }
     // With room to spare: growing takes everything anew.
     if (count > capacity_) make_room(static_cast<std::uint32_t>(std::min(limit, count + count / 2)));
     entrainment_.apply(model_, ground(), state_);
-    return std::nullopt;
+    return {};
 }
 
 void Simulation::make_room(std::uint32_t count) {

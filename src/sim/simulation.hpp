@@ -3,8 +3,8 @@
 #include <cstdint>
 #include <functional>
 #include <optional>
-#include <string>
 
+#include "core/result.hpp"
 #include "sim/cpu/backend.hpp"
 #include "sim/entrainment.hpp"
 #include "sim/inflow.hpp"
@@ -23,7 +23,7 @@ class Simulation {
 
     /// Takes one step, in which `watcher` takes part if there is one. Returns why the step cannot be trusted, if it
     /// cannot; the state is then as that step left it.
-    std::optional<std::string> advance(StepWatcher* watcher = nullptr);
+    Status advance(StepWatcher* watcher = nullptr);
 
     /// Adds what inflows have brought by now. A step begins with it.
     void inject_inflow(StepWatcher* watcher = nullptr);
@@ -45,7 +45,7 @@ class Simulation {
     void follow_change();
     void measure_energy_and_speed();
     void make_room(std::uint32_t count);
-    [[nodiscard]] std::optional<std::string> entrain_bed();
+    [[nodiscard]] Status entrain_bed();
 
     Model model_;
     State state_;

@@ -1,8 +1,6 @@
 #pragma once
 
-#include <optional>
-#include <string>
-
+#include "core/try.hpp"
 #include "sim/model.hpp"
 #include "sim/stage_times.hpp"
 
@@ -13,8 +11,8 @@ namespace talus {
 struct MotionAlone {
     void inject_inflow() {}
     void choose_time_step() {}
-    std::optional<std::string> check_faults() { return {}; }
-    std::optional<std::string> entrain_bed() { return {}; }
+    Status check_faults() { return {}; }
+    Status entrain_bed() { return {}; }
     void observe() {}
     void remove_failed() {}
 };
@@ -22,7 +20,7 @@ struct MotionAlone {
 /// One step of the method, a line per stage, for any backend: CPU, and the double-precision reference that checks it.
 /// Returns why the step cannot be trusted, if it cannot; the state is then as it left it.
 template <class Backend, class State, class Run>
-std::optional<std::string> step(Backend& backend, const Model& model, State& state, StageTimes& times, Run&& run) {
+Status step(Backend& backend, const Model& model, State& state, StageTimes& times, Run&& run) {
     const auto timed = [&](Stage stage, auto&& f) {
         const StageTimer timer(times, stage);
         return f();
@@ -52,16 +50,16 @@ std::optional<std::string> step(Backend& backend, const Model& model, State& sta
     timed(Stage::remove_outflow, [&] { backend.remove_outflow(model, state); });
     state.time += state.time_step;
     ++state.step;
-    if (auto fault = timed(Stage::check_faults, [&] { return run.check_faults(); })) return fault;
-    if (auto fault = timed(Stage::entrain_bed, [&] { return run.entrain_bed(); })) return fault;
+    TALUS_TRY(timed(Stage::check_faults, [&] { return run.check_faults(); }));
+    TALUS_TRY(timed(Stage::entrain_bed, [&] { return run.entrain_bed(); }));
     timed(Stage::observe, [&] { run.observe(); });
     timed(Stage::remove_failed, [&] { run.remove_failed(); });
-    return std::nullopt;
+    return {};
 }
 
 template <class Backend, class State>
 void step(Backend& backend, const Model& model, State& state, StageTimes& times) {
-    step(backend, model, state, times, MotionAlone{});
+    (void)step(backend, model, state, times, MotionAlone{});  // which finds no fault
 }
 
 }  // namespace talus

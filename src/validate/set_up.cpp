@@ -113,8 +113,8 @@ bool Trial::advance_to(double time, const std::function<void()>& after_step) {
             stopped_ = true;
             break;
         }
-        if (const auto fault = simulation_.advance()) {
-            if (problem_.empty()) problem_ = *fault;
+        if (const Status stepped = simulation_.advance(); !stepped) {
+            if (problem_.empty()) problem_ = stepped.error().message;
             stopped_ = on_fault_ == OnFault::stop || !std::isfinite(state().max_speed);
         }
         if (!stopped_ && after_step) after_step();

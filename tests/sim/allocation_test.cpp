@@ -14,9 +14,9 @@ using testing::simulate;
 
 /// Allocations of `steps` steps after `warm_up` of them.
 long allocations_of(Simulation& simulation, int warm_up, int steps) {
-    for (int i = 0; i < warm_up; ++i) EXPECT_FALSE(simulation.advance());
+    for (int i = 0; i < warm_up; ++i) EXPECT_TRUE(simulation.advance());
     const long before = test::allocation_count();
-    for (int i = 0; i < steps; ++i) EXPECT_FALSE(simulation.advance());
+    for (int i = 0; i < steps; ++i) EXPECT_TRUE(simulation.advance());
     return test::allocation_count() - before;
 }
 

@@ -60,7 +60,7 @@ TEST(Barrier, a_run_leaves_debris_only_through_its_slot) {
         Simulation simulation(std::move(model), std::move(start));
         std::uint32_t beyond = 0;
         for (int step = 0; step < 400; ++step) {
-            simulation.advance();
+            EXPECT_TRUE(simulation.advance());
             const State& state = simulation.state();
             beyond = 0;
             for (std::uint32_t i = 0; i < state.count; ++i) {
@@ -91,11 +91,11 @@ TEST(TakeDown, frees_what_lay_against_a_wall) {
         }
     }
     Simulation simulation(std::move(model), state_of(points));
-    for (int step = 0; step < 200; ++step) simulation.advance();
+    for (int step = 0; step < 200; ++step) EXPECT_TRUE(simulation.advance());
     simulation.change([](Model& m, State& s) { remove_building(m, m, s, 0); });
     EXPECT_FALSE(stands(simulation.model().buildings[0]));
     EXPECT_TRUE(simulation.model().solids.empty());
-    for (int step = 0; step < 200; ++step) simulation.advance();
+    for (int step = 0; step < 200; ++step) EXPECT_TRUE(simulation.advance());
     float farthest = -100;
     for (std::uint32_t i = 0; i < simulation.state().count; ++i) {
         farthest = std::max(farthest, simulation.state().position.x[i]);

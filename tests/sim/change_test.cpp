@@ -23,8 +23,8 @@ struct Slide {
     }
     void run(int steps) {
         for (int k = 0; k < steps; ++k) {
-            const auto fault = simulation->advance();
-            ASSERT_FALSE(fault) << *fault;
+            const Status stepped = simulation->advance();
+            ASSERT_TRUE(stepped) << stepped.error().message;
         }
     }
     [[nodiscard]] State more(double x_min) const {

@@ -93,7 +93,7 @@ TEST(Net, holds_coarse_grains_that_a_step_would_carry_past_it) {
     Simulation simulation = thrown(netted(0.4, solver), 150);  // 3 m in a step
     std::uint32_t fine_beyond = 0;
     for (int step = 0; step < 5; ++step) {
-        simulation.advance();
+        EXPECT_TRUE(simulation.advance());
         const State& state = simulation.state();
         for (std::uint32_t i = 0; i < state.count; ++i) {
             const LocalPoint p = state.position.at(i);
@@ -115,7 +115,7 @@ TEST(Net, holds_its_share_of_a_run_and_lets_some_of_the_rest_through) {
         std::vector<bool> beyond(simulation.state().seeded);
         std::vector<float> height(simulation.state().seeded);
         for (int step = 0; step < 300; ++step) {
-            simulation.advance();
+            EXPECT_TRUE(simulation.advance());
             const State& state = simulation.state();
             ASSERT_EQ(state.count + state.outflow, state.seeded);
             for (const BuildingContact& contact : state.building_contacts) {
@@ -145,7 +145,7 @@ std::uint64_t hash_after(Model model, int threads = 0) {
     const tbb::global_control limit(tbb::global_control::max_allowed_parallelism,
                                     static_cast<std::size_t>(threads > 0 ? threads : 2));
     Simulation simulation = thrown(std::move(model));
-    for (int step = 0; step < 120; ++step) simulation.advance();
+    for (int step = 0; step < 120; ++step) EXPECT_TRUE(simulation.advance());
     return hash_state(simulation.state());
 }
 
@@ -174,7 +174,7 @@ TEST(Net, put_up_in_debris_pushes_only_what_it_holds_aside) {
         }
     }
     Simulation simulation(std::move(model), state_of(points));
-    for (int step = 0; step < 60; ++step) simulation.advance();
+    for (int step = 0; step < 60; ++step) EXPECT_TRUE(simulation.advance());
     simulation.change([&](Model& m, State& s) {
         const Model with = netted(0.5);
         m.buildings = with.buildings;

@@ -38,7 +38,7 @@ double mean_height(const State& state) {
 }
 
 void advance_to(Simulation& simulation, double time) {
-    while (simulation.state().time < time) ASSERT_FALSE(simulation.advance());
+    while (simulation.state().time < time) ASSERT_TRUE(simulation.advance());
 }
 
 TEST(DebrisAtRest, falls_asleep_and_stays_where_it_is) {
@@ -83,7 +83,7 @@ TEST(DebrisAtRest, presses_as_it_did_on_what_is_awake) {
     double worst = 0;
     int beside = 0;
     while (state.time < 6) {
-        ASSERT_FALSE(simulation.advance());
+        ASSERT_TRUE(simulation.advance());
         if (state.awake < state.count / 20 || state.awake > state.count / 2) continue;
         ++beside;
         worst = std::max(worst, state.max_compression);
