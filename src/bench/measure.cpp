@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <limits>
 #include <utility>
 
 #include <fmt/format.h>
@@ -49,8 +48,7 @@ RunStart start_of(const Start& start, const Task& task) {
     solver.internal_friction = task.method;
     solver.iteration_count = task.iterations;
     solver.thread_count = task.threads;
-    solver.stop_momentum_fraction = 0;
-    solver.end_time = std::numeric_limits<double>::infinity();
+    changed.endless = true;
     return changed;
 }
 

@@ -43,6 +43,7 @@ Run::Run(RunStart start)
       observer_(model(), state(), start.flow_path, start.outputs,
                 start.outputs.map_cell.value_or(default_map_cell(model().terrain.cell(), model().particle_spacing))),
       rest_(model().solver),
+      endless_(start.endless),
       smallest_time_step_(model().solver.end_time) {
     observer_.expect(state().seeded + simulation_.inflow().to_come());
     if (no_debris()) stop(RunPhase::at_rest, "there is no debris");
@@ -54,7 +55,11 @@ void Run::stop(RunPhase phase, std::string why) {
 }
 
 bool Run::advance() {
-    if (phase_ != RunPhase::ready || over()) return false;
+    if (endless_) {
+        stop(RunPhase::ready, "");
+    } else if (phase_ != RunPhase::ready || over()) {
+        return false;
+    }
     const auto start = std::chrono::steady_clock::now();
     threads_.execute([&] { take_step(); });
     wall_time_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
@@ -75,6 +80,7 @@ void Run::take_step() {
     smallest_time_step_ = std::min(smallest_time_step_, state().time_step);
     largest_time_step_ = std::max(largest_time_step_, state().time_step);
     if (!stepped) return stop(RunPhase::fault, stepped.error().message);
+    if (endless_) return;
     if (!observer_.failed_buildings().empty()) rest_.stir(state().time);
     const bool waiting = still_waiting(model(), state()) || simulation_.inflow().to_come() > 0;
     if (rest_.at_rest(state().time, total_momentum(model(), state()), waiting)) {

@@ -24,6 +24,8 @@ struct RunStart {
     InflowFeeder inflow = {};
     FlowPath flow_path = {};  ///< empty: no front against chainage
     OutputSpec outputs = {};
+    /// Goes on at rest, beyond solver.end_time and after a fault: who drives it says when it ends.
+    bool endless = false;
 };
 
 /// A run: a simulation, the observer that measures it, and the rule that says when it is over. Whoever runs anything
@@ -41,6 +43,8 @@ class Run {
 
     /// Takes a step and measures it. False: the run was over before, or the step cannot be trusted; see phase().
     bool advance();
+    /// Adds what inflows have brought by now. A step begins with it.
+    void inject_inflow() { simulation_.inject_inflow(&observer_); }
 
     /// What was done to a run between two steps.
     struct Change {
@@ -76,6 +80,7 @@ class Run {
     Simulation simulation_;
     Observer observer_;
     RestDetector rest_;
+    bool endless_;
     RunPhase phase_ = RunPhase::ready;
     std::string stop_reason_;
     double wall_time_ = 0, smallest_time_step_, largest_time_step_ = 0;

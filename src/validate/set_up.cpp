@@ -103,8 +103,18 @@ State state_under_weight(const Model& model, const std::vector<LocalPoint>& poin
     return state;
 }
 
-Trial::Trial(Model model, State state, const Watch& watch, OnFault on_fault, InflowFeeder inflow)
-    : simulation_(std::move(model), std::move(state), std::move(inflow)), watch_(watch), on_fault_(on_fault) {}
+namespace {
+
+RunStart endless(RunStart start, const Watch& watch) {
+    start.model.solver.thread_count = watch.thread_count;
+    start.endless = true;
+    return start;
+}
+
+}  // namespace
+
+Trial::Trial(RunStart start, const Watch& watch, OnFault on_fault)
+    : run_(endless(std::move(start), watch)), watch_(watch), on_fault_(on_fault) {}
 
 bool Trial::advance_to(double time, const std::function<void()>& after_step) {
     while (!stopped_ && state().time < time - 1e-9) {
@@ -113,8 +123,8 @@ bool Trial::advance_to(double time, const std::function<void()>& after_step) {
             stopped_ = true;
             break;
         }
-        if (const Status stepped = simulation_.advance(); !stepped) {
-            if (problem_.empty()) problem_ = stepped.error().message;
+        if (!run_.advance()) {
+            if (problem_.empty()) problem_ = run_.stop_reason();
             stopped_ = on_fault_ == OnFault::stop || !std::isfinite(state().max_speed);
         }
         if (!stopped_ && after_step) after_step();

@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "core/geometry.hpp"
+#include "run/run.hpp"
 #include "sim/model.hpp"
-#include "sim/simulation.hpp"
 #include "sim/state.hpp"
 #include "terrain/buildings.hpp"
 #include "terrain/terrain.hpp"
@@ -68,24 +68,25 @@ enum class OnFault {
     note,  ///< go on: for what is only shown, where a fault is a part of the answer
 };
 
-/// A simulation under test that stops at the first step that cannot be trusted.
+/// A run under test: until a time, or the first step that cannot be trusted.
 class Trial {
   public:
-    Trial(Model model, State state, const Watch& watch, OnFault on_fault = OnFault::stop, InflowFeeder inflow = {});
+    Trial(RunStart start, const Watch& watch, OnFault on_fault = OnFault::stop);
 
-    /// As Simulation::inject_inflow().
-    void inject_inflow() { simulation_.inject_inflow(); }
+    /// As Run::inject_inflow().
+    void inject_inflow() { run_.inject_inflow(); }
 
     /// Steps until `time`, calling `after_step` after each. False when it stopped before: `problem` says why.
     bool advance_to(double time, const std::function<void()>& after_step = {});
 
-    [[nodiscard]] const Model& model() const { return simulation_.model(); }
-    [[nodiscard]] const State& state() const { return simulation_.state(); }
+    [[nodiscard]] const Model& model() const { return run_.model(); }
+    [[nodiscard]] const State& state() const { return run_.state(); }
+    [[nodiscard]] const Observer& observer() const { return run_.observer(); }
     /// The first fault, or that the user wants to stop; empty: none.
     [[nodiscard]] const std::string& problem() const { return problem_; }
 
   private:
-    Simulation simulation_;
+    Run run_;
     const Watch& watch_;
     OnFault on_fault_;
     bool stopped_ = false;

@@ -9,6 +9,7 @@
 
 #include "run/run_scene.hpp"
 #include "scene/scene_folder.hpp"
+#include "sim/seed.hpp"
 
 namespace talus {
 namespace {
@@ -100,6 +101,34 @@ TEST_F(RunOfAScene, TooManyParticlesAreRefused) {
     ASSERT_FALSE(result);
     EXPECT_THAT(result.error().message, HasSubstr("scene.toml: "));
     EXPECT_THAT(result.error().message, HasSubstr("solver.particle_limit = 100"));
+}
+
+TEST(EndlessRun, GoesOnBeyondItsEndAndAfterAFault) {
+    SolverSpec solver;
+    solver.end_time = 0.01;
+    const Grid<float> level(GridGeometry{0, 0, 1, 20, 20}, 0.0F);
+    RunStart start{make_model({}, solver, Terrain(level), {}, 0.5), State{}};
+    start.state.resize(1);
+    start.state.count = start.state.seeded = 1;
+    start.state.position.set(0, start.model.terrain.frame().to_local({10, 10, 3}));
+    talus::Run ends(start);
+    for (int step = 0; step < 20; ++step) (void)ends.advance();
+    EXPECT_EQ(ends.phase(), RunPhase::ended);
+    EXPECT_LT(ends.state().step, 20U);
+
+    start.endless = true;
+    talus::Run goes_on(start);
+    for (int step = 0; step < 20; ++step) EXPECT_TRUE(goes_on.advance());
+    EXPECT_EQ(goes_on.phase(), RunPhase::ready);
+
+    start.model.solver.compression_limit = -1;
+    talus::Run faulty(start);
+    for (const std::uint64_t step : {1U, 2U}) {
+        EXPECT_FALSE(faulty.advance());
+        EXPECT_EQ(faulty.phase(), RunPhase::fault);
+        EXPECT_THAT(faulty.stop_reason(), HasSubstr("t = "));
+        EXPECT_EQ(faulty.state().step, step);
+    }
 }
 
 }  // namespace

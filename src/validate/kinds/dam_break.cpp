@@ -50,7 +50,7 @@ Measured measure(const DamSpec& spec, double spacing, const Setting& setting, co
     const auto thickness = [&](double, double) { return spec.depth; };
     const auto points = fill_lattice(incline, spacing, -columns * spacing, columns, -width / 2, spec.width, thickness);
     State start = state_under_weight(model, points, incline, thickness);
-    Trial trial(std::move(model), std::move(start), watch);
+    Trial trial({std::move(model), std::move(start)}, watch);
     const State& state = trial.state();
     Measured measured;
     measured.particles = state.count;

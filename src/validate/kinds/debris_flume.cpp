@@ -137,7 +137,7 @@ Measured measure(const FlumeSpec& spec, Obstacle obstacle, double spacing, const
     measured.thicknesses.assign(spec.samples.size(), not_computed);
     measured.time.resize(spec.stations.size());
     measured.depth.resize(spec.stations.size());
-    Trial trial(std::move(model), std::move(start), watch, OnFault::note);
+    Trial trial({std::move(model), std::move(start)}, watch, OnFault::note);
     const State& state = trial.state();
     constexpr double window = 0.5, arrived = 0.02;
     const double delay = spec.gate_time / 2;

@@ -129,7 +129,7 @@ Result<Outcome> compute(const EnergySpec& spec, const Setting& setting, const Wa
     TALUS_ASSIGN(World world, make_world(spec));
     Model model = make_model(setting.material, setting.solver, world.terrain, {}, spec.spacing);
     TALUS_ASSIGN(State seeded, seed_releases(model, world.releases));
-    Trial trial(std::move(model), std::move(seeded), watch);
+    Trial trial({std::move(model), std::move(seeded)}, watch);
     const State& state = trial.state();
     const double friction = setting.material.friction_coefficient;
 

@@ -57,7 +57,7 @@ Result<Outcome> compute(const FallSpec& spec, const Setting& setting, const Watc
     }
     State start = state_at_rest(points);
     for (std::uint32_t i = 0; i < start.count; ++i) start.velocity.x[i] = static_cast<float>(spec.speed);
-    Trial trial(std::move(model), std::move(start), watch);
+    Trial trial({std::move(model), std::move(start)}, watch);
     const State& state = trial.state();
 
     std::vector<Flight> flights(state.count);

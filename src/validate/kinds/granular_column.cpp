@@ -89,7 +89,7 @@ Measured measure(const ColumnSpec& spec, double aspect, double resolution, const
         spec.planar ? fill_lattice(flat, spacing, 0, half, -width / 2, spec.width, thickness)
                     : fill_lattice(flat, spacing, -half * spacing, 2 * half, -half * spacing, 2 * half, thickness);
     State start = state_under_weight(model, points, flat, thickness);
-    Trial trial(std::move(model), std::move(start), watch);
+    Trial trial({std::move(model), std::move(start)}, watch);
 
     const State& state = trial.state();
     const auto distance = [&](std::uint32_t i) {

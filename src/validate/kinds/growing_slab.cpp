@@ -64,7 +64,7 @@ void compute_one(const GrowthSpec& spec, double spacing, const Setting& setting,
     const auto across = static_cast<int>(std::lround(spec.width / spacing));
     const auto points = fill_lattice(incline, spacing, -columns * spacing / 2, columns, -spec.width / 2, across,
                                      [&](double, double) { return spec.thickness; });
-    Trial trial(std::move(model), state_at_rest(points), watch);
+    Trial trial({std::move(model), state_at_rest(points)}, watch);
     const State& state = trial.state();
     const LocalPoint down = incline.down(1);
     const auto speed = [&] {

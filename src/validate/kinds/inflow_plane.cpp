@@ -43,7 +43,7 @@ Result<Outcome> compute(const PlaneSpec& spec, const Setting& setting, const Wat
     inflow.hydrograph = {{0, discharge, spec.velocity}, {spec.time, discharge, spec.velocity}};
     InflowFeeder feeder(model, {inflow});
     watch.say(fmt::format("{} particles", feeder.to_come()));
-    Trial trial(std::move(model), State{}, watch, OnFault::stop, std::move(feeder));
+    Trial trial({std::move(model), State{}, std::move(feeder)}, watch);
     const State& state = trial.state();
     double fastest = 0;
     Outcome outcome;

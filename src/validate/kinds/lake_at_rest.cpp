@@ -77,7 +77,7 @@ Measured measure(const LakeSpec& spec, const Ground& ground, const Setting& sett
     const Incline flat(0, spec.length, width);
     const auto surface = [&](double, double) { return spec.depth; };
     State start = state_under_weight(model, points, flat, surface);
-    Trial trial(std::move(model), std::move(start), watch);
+    Trial trial({std::move(model), std::move(start)}, watch);
     const State& state = trial.state();
     Measured measured;
     if (!trial.advance_to(spec.time)) {

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include "observe/observer.hpp"
 #include "sim/physics/net.hpp"
 #include "sim/seed.hpp"
 #include "terrain/barrier.hpp"
@@ -77,10 +76,10 @@ Measured measure(const NetSpec& spec, double passing, double spacing, const Sett
     const double before = momentum_along(model, start);
     OutputSpec outputs;
     outputs.sample_interval = 0.05 * stream / (speed + wave);
-    Trial trial(std::move(model), std::move(start), watch, OnFault::note);
-    Observer observer(trial.model(), trial.state(), FlowPath{}, outputs, spec.depth);
-    const bool done =
-        trial.advance_to(stream / (speed + wave), [&] { observer.after_step(trial.model(), trial.state(), 0); });
+    outputs.map_cell = spec.depth;
+    Trial trial({std::move(model), std::move(start), {}, {}, outputs}, watch, OnFault::note);
+    const Observer& observer = trial.observer();
+    const bool done = trial.advance_to(stream / (speed + wave));
     Measured measured;
     measured.problem = trial.problem();
     if (!done) return measured;

@@ -61,7 +61,7 @@ Measured measure(const RunUpSpec& spec, bool ramp, double froude, const Setting&
     State start = state_at_rest(points);
     for (std::uint32_t i = 0; i < start.count; ++i) start.velocity.x[i] = static_cast<float>(speed);
     // Jets at the obstacle are faster than a fall explains. The run-up is what is asked for, so it goes on.
-    Trial trial(std::move(model), std::move(start), watch, OnFault::note);
+    Trial trial({std::move(model), std::move(start)}, watch, OnFault::note);
     const State& state = trial.state();
     const double cell = spec.depth / 2;
     const int cells = ramp ? static_cast<int>(reach / cell) : 1;

@@ -55,7 +55,7 @@ Measured measure(const ShearSpec& spec, double viscosity, double time_step, doub
         start.velocity.x[i] = static_cast<float>(fastest * std::cos(wave_number * points[i].z));
         start.position.z[i] += static_cast<float>(above);
     }
-    Trial trial(std::move(model), std::move(start), watch);
+    Trial trial({std::move(model), std::move(start)}, watch);
     const State& state = trial.state();
     const auto amplitude = [&] {
         double sum = 0;

@@ -106,7 +106,7 @@ Measured measure(const SheetSpec& spec, double slope, double start_share, const 
     for (std::uint32_t i = 0; i < start.count; ++i) {
         start.velocity.set(i, incline.down(start_share * law(incline.normal(start.position.at(i)))));
     }
-    Trial trial(std::move(model), std::move(start), watch);
+    Trial trial({std::move(model), std::move(start)}, watch);
     Layers layers(spec.layers);
     const bool trusted = trial.advance_to(spec.start) && trial.advance_to(spec.end, [&] {
         layers.add(trial.state(), incline, down, spec.length, spec.spacing);

@@ -64,7 +64,7 @@ Measured measure(const SlabSpec& spec, const Variant& variant, const Setting& se
                              make_slice(incline.terrain(), width, thickness), variant.spacing);
     const auto points = fill_lattice(incline, variant.spacing, -columns * variant.spacing / 2, columns, -width / 2,
                                      spec.width, [&](double, double) { return thickness; });
-    Trial trial(std::move(model), state_at_rest(points), watch);
+    Trial trial({std::move(model), state_at_rest(points)}, watch);
 
     // The ends spread; the middle is what the law speaks of.
     std::vector<std::uint8_t> middle(points.size()), lowest(points.size());

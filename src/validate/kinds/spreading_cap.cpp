@@ -87,7 +87,7 @@ Measured measure(const CapSpec& spec, double spacing, const Setting& setting, co
     const auto thickness = [&](double s, double y) { return law.thickness(s, y, 0); };
     const auto points = fill_lattice(incline, spacing, -half * spacing, 2 * half, -half * spacing, 2 * half, thickness);
     State start = state_under_weight(model, points, incline, thickness);
-    Trial trial(std::move(model), std::move(start), watch);
+    Trial trial({std::move(model), std::move(start)}, watch);
     Measured measured;
     measured.particles = trial.state().count;
     if (trial.advance_to(spec.time)) {

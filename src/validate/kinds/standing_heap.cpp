@@ -74,7 +74,7 @@ Measured measure(const HeapSpec& spec, double share, double time_step, const Set
         return measured;
     }
     measured.particles = seeded->count;
-    Trial trial(std::move(model), *std::move(seeded), watch);
+    Trial trial({std::move(model), *std::move(seeded)}, watch);
     const State& state = trial.state();
     // What is to flow flows from the first step; what is to stand is a heap once its lattice has settled.
     const double begin = share < 1 ? spec.settling_time : 0;

@@ -3,7 +3,6 @@
 
 #include <fmt/format.h>
 
-#include "observe/observer.hpp"
 #include "sim/seed.hpp"
 #include "validate/kinds/kinds.hpp"
 #include "validate/laws.hpp"
@@ -70,13 +69,13 @@ Measured measure(const ImpactSpec& spec, double froude, const Setting& setting, 
     OutputSpec outputs;
     outputs.impact_filter_window = 0.2 * spec.depth / wave;
     outputs.sample_interval = 0.05 * stream / (speed + wave);
-    Trial trial(std::move(model), std::move(start), watch, OnFault::note);
-    Observer observer(trial.model(), trial.state(), FlowPath{}, outputs, spec.depth);
+    outputs.map_cell = spec.depth;
+    Trial trial({std::move(model), std::move(start), {}, {}, outputs}, watch, OnFault::note);
+    const Observer& observer = trial.observer();
     // As long as the stream's other end has not been heard of at the wall; the splash of the first fifth apart.
     const double end = stream / (speed + wave);
     double early = 0;
     const auto look = [&] {
-        observer.after_step(trial.model(), trial.state(), 0);
         if (trial.state().time < end / 5) early = observer.impacts()[2].impulse;
     };
     Measured measured;

@@ -53,7 +53,7 @@ Result<Outcome> compute(const ColumnSpec& spec, const Setting& setting, const Wa
         const auto points =
             fill_lattice(flat, spacing, 0, static_cast<int>(std::lround(resolution)), -width / 2, spec.width, depth);
         State start = state_under_weight(model, points, flat, depth);
-        Trial trial(std::move(model), std::move(start), watch);
+        Trial trial({std::move(model), std::move(start)}, watch);
         const State& state = trial.state();
         // Where the water still covers the bed; drops ahead of it are not the front.
         const auto front = [&] {
