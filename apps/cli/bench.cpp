@@ -32,7 +32,7 @@ struct BenchArguments {
     std::vector<int> particles, threads;       ///< empty: the usual ones; all cores
     bool full = false;                         ///< particles up to a million
     int iterations = 4, repeats = 7;
-    std::optional<int> steps, warm_up;  ///< left out: by the number of particles
+    std::optional<int> steps, warm_up;  ///< absent: by the number of particles
     std::string backend = "cpu";
     std::string json, svg;  ///< files to write; empty: none
 };

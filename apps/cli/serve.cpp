@@ -30,7 +30,7 @@ struct ServeArguments {
     std::string host = "127.0.0.1";
     int port = 8123;
     std::vector<std::string> allowed_hosts;
-    std::vector<std::string> tokens;  ///< the controllers', then the viewers'; left out: random ones
+    std::vector<std::string> tokens;  ///< the controllers', then the viewers'; absent: random ones
     std::optional<int> threads;
     std::vector<std::string> overrides;  ///< "section.key=value"
     std::string data;                    ///< value of TALUS_DATA; empty: as in the environment

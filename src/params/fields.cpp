@@ -311,11 +311,12 @@ Section declare_solver() {
           "An adaptive time step below this stops the run as a fault.");
     s.key("iteration_count", "", &SolverSpec::iteration_count, between(1, 1000), "Solver iterations per time step.");
     s.choice("kernel", &SolverSpec::kernel, {"wendland_c2", "cubic_spline", "spiky", "poly6_spiky"},
-             "Smoothing kernel; poly6_spiky is the published pair of density kernel and gradient kernel.");
+             "Smoothing kernel; poly6_spiky is the pair of Macklin & Mueller (2013): Poly6 for the density, Spiky for "
+             "its gradient.");
     s.choice(
         "internal_friction", &SolverSpec::internal_friction, {"stress", "pair"},
         "How debris rubs on debris: stress keeps a shear stress per particle between steps, so that a deposit stands; "
-        "pair is the published correction per pair of particles, which creeps.");
+        "pair is a correction per pair of particles (Macklin et al. 2014), which creeps.");
     s.key("support_ratio", "", &SolverSpec::support_ratio, between(1.5, 4),
           "Support radius of the kernel over the particle spacing.");
     s.key(

@@ -133,9 +133,9 @@ struct MaterialSpec {
     double pore_pressure_ratio = 0;                       ///< r_u, at the start of the debris
     std::optional<double> pore_pressure_decay_time;       ///< s; absent: it stays
     std::optional<double> inertial_friction_coefficient;  ///< internal, of fast shear; absent: the rate is no matter
-    double inertial_number = 0.279;                       ///< of half the way there
-    double grain_diameter = 0.01;                         ///< m
-    double grain_density = 2650;                          ///< kg/m3
+    double inertial_number = 0.279;  ///< I_0, at which friction is halfway between its slow and fast values
+    double grain_diameter = 0.01;    ///< m
+    double grain_density = 2650;     ///< kg/m3
 };
 
 /// What the cells of a zone's raster hold.
@@ -163,12 +163,12 @@ enum class KernelChoice {
     wendland_c2,  ///< one kernel with its own gradient
     cubic_spline,
     spiky,
-    poly6_spiky,  ///< the published pair: Poly6 density, Spiky gradient
+    poly6_spiky,  ///< Poly6 density, Spiky gradient (Macklin & Mueller 2013)
 };
 
 enum class InternalFriction {
     stress,  ///< a deviatoric stress per particle that persists between steps, limited by Drucker & Prager
-    pair,    ///< the published correction per pair of particles
+    pair,    ///< a correction per pair of particles (Macklin et al. 2014)
 };
 
 /// `[solver]`: an absent optional is chosen by the program and reported.

@@ -23,7 +23,7 @@ std::string_view kernel_name(KernelChoice kernel) {
         case KernelChoice::spiky:
             return "spiky with its own gradient";
         case KernelChoice::poly6_spiky:
-            return "published pair: Poly6 density, spiky gradient";
+            return "Poly6 density, Spiky gradient (Macklin & Mueller 2013)";
     }
     return "";
 }

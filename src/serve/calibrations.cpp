@@ -34,9 +34,9 @@ double rounded(double value) {
     return std::round(value / unit) * unit;
 }
 
-const Parameter* find_lever(const std::string& key) {
-    for (const Parameter* lever : twin::levers()) {
-        if ("material." + lever->key == key) return lever;
+const Parameter* find_live_parameter(const std::string& key) {
+    for (const Parameter* parameter : twin::live_parameters()) {
+        if ("material." + parameter->key == key) return parameter;
     }
     return nullptr;
 }
@@ -50,7 +50,7 @@ Result<Factor> read_factor(const json& entry) {
     };
     const auto name = entry.find("key");
     const std::string key = name != entry.end() && name->is_string() ? name->get<std::string>() : "";
-    if (find_lever(key) == nullptr) {
+    if (find_live_parameter(key) == nullptr) {
         return Error{fmt::format("parameters: key = {}: must be one of the scene's parameters",
                                  name == entry.end() ? json().dump() : name->dump().substr(0, 80))};
     }
@@ -217,7 +217,7 @@ void Calibrations::work(const CalibrationPlan& plan, const std::string& by, cons
         begin(plan, by);
         std::string names;
         for (const Factor& factor : plan.factors) {
-            names += (names.empty() ? "" : ", ") + twin::label_of(*find_lever(factor.key));
+            names += (names.empty() ? "" : ", ") + twin::label_of(*find_live_parameter(factor.key));
         }
         const std::string done = fmt::format("calibration of {} with at most {} runs", names, plan.search.runs);
         respond(json_response(200, {{"done", done}, {"created", nullptr}}));
@@ -254,10 +254,10 @@ void Calibrations::begin(const CalibrationPlan& plan, const std::string& by) {
     const std::lock_guard lock(mutex_);
     json parameters = json::array();
     for (const Factor& factor : plan.factors) {
-        const Parameter& lever = *find_lever(factor.key);
+        const Parameter& parameter = *find_live_parameter(factor.key);
         parameters.push_back({{"key", factor.key},
-                              {"label", twin::label_of(lever)},
-                              {"unit", lever.unit},
+                              {"label", twin::label_of(parameter)},
+                              {"unit", parameter.unit},
                               {"low", factor.distribution.low},
                               {"high", factor.distribution.high}});
     }

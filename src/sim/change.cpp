@@ -100,7 +100,7 @@ void clear_solids(const Model& model, State& state, const Extent& local) {
     for (std::uint32_t k = 0; k < part.count; ++k) {
         const std::uint32_t i = source[k];
         part.position.set(k, state.position.at(i));
-        part.id[k] = state.id[i];  // what nets do to it hangs on that
+        part.id[k] = state.id[i];  // what nets do to it depends on that
         source_of_id[state.id[i]] = i;
         part.held[k] = state.held[i] != 0 || !yields.contains({state.position.x[i], state.position.y[i]});
     }

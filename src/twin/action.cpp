@@ -42,7 +42,7 @@ class ActionReader {
 
   private:
     /// The key and the value of an object; adds to the sentence.
-    Status set_lever(const json& entry);
+    Status set_parameter(const json& entry);
     [[nodiscard]] Result<std::string> id() const;
     [[nodiscard]] static Error no_such(const std::string& id, const char* what);
     [[nodiscard]] double highest_viscosity() const;
@@ -98,7 +98,7 @@ double ActionReader::highest_viscosity() const {
 
 Status ActionReader::set_parameter() {
     if (Status s = check_keys(action_, {"action", "key", "value"}); !s) return s;
-    return set_lever(action_);
+    return set_parameter(action_);
 }
 
 /// Several at once are one change, which one undo takes back.
@@ -109,24 +109,24 @@ Status ActionReader::set_parameters() {
         return Error{"values: must be an object of keys such as material.friction_coefficient with their values"};
     }
     for (const auto& [key, value] : values->items()) {
-        if (Status s = set_lever({{"key", key}, {"value", value}}); !s) return s;
+        if (Status s = set_parameter({{"key", key}, {"value", value}}); !s) return s;
     }
     return {};
 }
 
-Status ActionReader::set_lever(const json& entry) {
+Status ActionReader::set_parameter(const json& entry) {
     const auto key = read_text(entry, "key");
     if (!key) return key.error();
-    const auto lever = std::find_if(levers().begin(), levers().end(), [&](const Parameter* p) {
+    const auto found = std::find_if(live_parameters().begin(), live_parameters().end(), [&](const Parameter* p) {
         return key->has_value() && "material." + p->key == **key;
     });
-    if (lever == levers().end()) {
+    if (found == live_parameters().end()) {
         std::vector<std::string> names;
-        for (const Parameter* p : levers()) names.push_back("material." + p->key);
+        for (const Parameter* p : live_parameters()) names.push_back("material." + p->key);
         return Error{
             fmt::format("key = {}: must be one of {}", shown(entry.value("key", json())), fmt::join(names, ", "))};
     }
-    const Parameter& parameter = **lever;
+    const Parameter& parameter = **found;
     Range range = parameter.range;
     if (parameter.key == "viscosity" && highest_viscosity() < range.high) {
         range.high = std::floor(1e4 * highest_viscosity()) / 1e4;

@@ -22,19 +22,20 @@ json range_json(const Range& range) {
             {"high_included", range.high_included}};
 }
 
-json levers_json(const Scene& scene, const Model& model, const MaterialSpec& now) {
+json live_parameters_json(const Scene& scene, const Model& model, const MaterialSpec& now) {
     json list = json::array();
-    for (const Parameter* lever : levers()) {
+    for (const Parameter* parameter : live_parameters()) {
         // A scene that gives another viscosity gives this one, too, at its spacing.
         const double scene_viscosity =
             scene.spec.material.kinematic_viscosity && now.kinematic_viscosity ? model.viscosity : 0;
-        list.push_back({{"key", "material." + lever->key},
-                        {"label", label_of(*lever)},
-                        {"unit", lever->unit},
-                        {"default", number_or_null<json>(value_in_force(scene.spec.material, *lever, scene_viscosity))},
-                        {"range", range_json(lever->range)},
-                        {"help", lever->help},
-                        {"value", number_or_null<json>(value_in_force(now, *lever, model.viscosity))}});
+        list.push_back(
+            {{"key", "material." + parameter->key},
+             {"label", label_of(*parameter)},
+             {"unit", parameter->unit},
+             {"default", number_or_null<json>(value_in_force(scene.spec.material, *parameter, scene_viscosity))},
+             {"range", range_json(parameter->range)},
+             {"help", parameter->help},
+             {"value", number_or_null<json>(value_in_force(now, *parameter, model.viscosity))}});
     }
     return list;
 }
@@ -130,7 +131,7 @@ json Scenario::scene_json() const {
             {"gravity_mps2", model.gravity},
             {"flow_path", flow_path_json(scene)},
             {"observations", observations},
-            {"parameters", levers_json(scene, model, parts_->setup().material)},
+            {"parameters", live_parameters_json(scene, model, parts_->setup().material)},
             {"intensity", intensity_json()}};
 }
 

@@ -77,9 +77,9 @@ json Scenario::setup_json() const {
     const Parts& p = *parts_;
     const Setup& setup = p.setup();
     json parameters = json::object(), releases = json::array(), barriers = json::array(), buildings = json::array();
-    for (const Parameter* lever : levers()) {
-        parameters["material." + lever->key] =
-            number_or_null<json>(value_in_force(setup.material, *lever, p.run->model().viscosity));
+    for (const Parameter* parameter : live_parameters()) {
+        parameters["material." + parameter->key] =
+            number_or_null<json>(value_in_force(setup.material, *parameter, p.run->model().viscosity));
     }
     for (const ReleaseSetup& release : setup.releases) {
         json polygons = json::array();

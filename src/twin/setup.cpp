@@ -101,7 +101,7 @@ bool begin_alike(const Setup& a, const Setup& b) {
     return same_shapes(a.beds, b.beds) && same_shapes(a.inflows, b.inflows);
 }
 
-const std::vector<const Parameter*>& levers() {
+const std::vector<const Parameter*>& live_parameters() {
     static const std::vector<const Parameter*> found = [] {
         std::vector<const Parameter*> list;
         for (const Parameter& parameter : find_section("material")->parameters) {
@@ -121,13 +121,13 @@ std::string label_of(const Parameter& parameter) {
     return label;
 }
 
-double value_in_force(const MaterialSpec& material, const Parameter& lever, double viscosity) {
+double value_in_force(const MaterialSpec& material, const Parameter& parameter, double viscosity) {
     SceneSpec spec;
     spec.material = material;
-    if (lever.key == "viscosity" && material.kinematic_viscosity) return viscosity;
-    const ParameterValue value = lever.get(spec, 0);
+    if (parameter.key == "viscosity" && material.kinematic_viscosity) return viscosity;
+    const ParameterValue value = parameter.get(spec, 0);
     if (const double* number = std::get_if<double>(&value)) return *number;
-    if (lever.key == "turbulent_friction_mps2") return std::numeric_limits<double>::quiet_NaN();
+    if (parameter.key == "turbulent_friction_mps2") return std::numeric_limits<double>::quiet_NaN();
     return material.friction_coefficient;  // both others that may be left out follow it
 }
 

@@ -124,7 +124,7 @@ template <class Entry>
 [[nodiscard]] bool begin_alike(const Setup& a, const Setup& b);
 
 /// The keys of the material section that can change while debris moves, as declared for the scene file.
-[[nodiscard]] const std::vector<const Parameter*>& levers();
+[[nodiscard]] const std::vector<const Parameter*>& live_parameters();
 
 /// "friction coefficient", from "friction_coefficient"; without the unit that the key ends with.
 [[nodiscard]] std::string label_of(const Parameter& parameter);
@@ -132,6 +132,6 @@ template <class Entry>
 /// The value that holds, in the unit of the key: one that is not set apart is that of what it follows; NaN where it
 /// follows nothing.
 /// `viscosity`: as make_model takes it, where the scene gives it as kinematic viscosity.
-[[nodiscard]] double value_in_force(const MaterialSpec& material, const Parameter& lever, double viscosity);
+[[nodiscard]] double value_in_force(const MaterialSpec& material, const Parameter& parameter, double viscosity);
 
 }  // namespace talus::twin

@@ -23,7 +23,7 @@ json material_json(const MaterialSpec& material) {
         const double* number = std::get_if<double>(&value);
         values[parameter.key] = number != nullptr ? json(*number) : json();
     };
-    for (const Parameter* lever : levers()) add(*lever);
+    for (const Parameter* parameter : live_parameters()) add(*parameter);
     add(*find_section("material")->find(kinematic));
     return values;
 }

@@ -9,7 +9,7 @@ import { testBackanalysis } from "./twin/backanalysis.mjs";
 import { testBarrier } from "./twin/barrier.mjs";
 import { testErosion } from "./twin/erosion.mjs";
 import { testGround } from "./twin/ground.mjs";
-import { testLevers } from "./twin/levers.mjs";
+import { testControls } from "./twin/controls.mjs";
 import { testParts } from "./twin/parts.mjs";
 import { testPhoto } from "./twin/photo.mjs";
 import { testReadings } from "./twin/readings.mjs";
@@ -34,7 +34,7 @@ const browser = await chromium.launch({ executablePath: browserPath, args: ["--h
   "--enable-unsafe-swiftshader", "--ignore-gpu-blocklist", "--webgl-msaa-sample-count=0", "--disable-background-networking",
   "--disable-component-update", "--no-first-run"] });
 const run = new Run(browser, resolve(output), command, process.env.TALUS_ONLY);
-const parts = { levers: testLevers, readings: testReadings, barrier: testBarrier, parts: testParts, erosion: testErosion, ground: testGround, photo: testPhoto,
+const parts = { controls: testControls, readings: testReadings, barrier: testBarrier, parts: testParts, erosion: testErosion, ground: testGround, photo: testPhoto,
   backanalysis: testBackanalysis, sharing: testSharing };
 try {
   for (const part of (process.env.TALUS_PARTS ?? Object.keys(parts).join()).split(",")) {

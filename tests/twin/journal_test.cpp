@@ -18,7 +18,7 @@ Scene scene_with_threads(int threads) {
     return scene;
 }
 
-/// Everything that people do: lever, barrier, drawn release, trigger, undo of each kind, moving a house.
+/// Everything that people do: live parameter, barrier, drawn release, trigger, undo of each kind, moving a house.
 void play(Scenario& scenario) {
     run_until(scenario, 0.4);
     act(scenario, {{"action", "set_parameter"}, {"key", "material.friction_coefficient"}, {"value", 0.3}});

@@ -8,7 +8,7 @@ import { exportButtons } from "./panels/exports";
 import { impactColour, impactsPanel, largestPressure } from "./panels/impacts";
 import { help, keys } from "./panels/keys";
 import { legends, scaleAndCompass } from "./panels/legends";
-import { levers } from "./panels/levers";
+import { controls } from "./panels/controls";
 import { people } from "./panels/people";
 import { Picture } from "./panels/picture";
 import { balance, runCard } from "./panels/run_card";
@@ -91,7 +91,7 @@ function buildPage(page: HTMLElement, twin: Twin): void {
   page.replaceChildren(
     h("header", { class: "topbar" }, h("span", { class: "wordmark" }, "talus"), h("h1", {}, twin.scene.title), badge, h("span", { class: "spring" }),
       people(twin), ...exportButtons(twin, picture), button("Help", { icon: "help", bare: true, title: "Help and shortcuts (?)", onclick: help }), drawer),
-    levers(twin, drawing),
+    controls(twin, drawing),
     h("main", { class: "middle" }, stage.element, bar.camera, bar.show, key, scale),
     h("aside", { class: "readings", "aria-label": "Readings" }, runCard(twin), readings.element, readings.panel),
     transport(twin, playback),
@@ -99,7 +99,7 @@ function buildPage(page: HTMLElement, twin: Twin): void {
   );
 }
 
-/** Setups and impacts go to the views; the view that the levers edit is marked. */
+/** Setups and impacts go to the views; the view that the controls edit is marked. */
 function showSetups(twin: Twin, stage: Stage): void {
   for (const name of ["A", "B"] as const) {
     const put = (): void => {

@@ -39,7 +39,7 @@ struct StressStages {
     StageFunction spread;        ///< the shift that spreads it
 };
 
-/// The published method: density and pair friction, both built up from nothing in every step.
+/// Pairwise position-based dynamics: density and pair friction, both built up from nothing in every step.
 struct PairStages {
     StageFunction find_tolerated;      ///< compression that the step starts with
     StageFunction update_multipliers;  ///< eqs. (1) and (2)

@@ -31,7 +31,7 @@ BoundaryTable::BoundaryTable(const Kernel& kernel, double particle_spacing)
     std::vector<Node> nodes(node_count);
     with_kernel(kernel.choice, [&](auto k) {
         const auto density_kernel = [&](double q) { return k.value(q); };
-        // The published pair takes its gradient from another kernel than its density; the ground follows suit.
+        // The pair poly6_spiky takes its gradient from another kernel than its density; the ground follows suit.
         const auto gradient_kernel = [&](double q) {
             if (kernel.choice == KernelChoice::poly6_spiky) return kernels::Spiky::value(q);
             return k.value(q);

@@ -85,7 +85,7 @@ async function testCalibration(run, server, page) {
     await until(async () => (await setup()).parameters, close, "the values in the setup");
     await page.locator(".calibrate button:has-text('Use these values')").scrollIntoViewIfNeeded();
     await run.shot(page, "35-used");
-    await page.click(".levers button:has-text('Undo')");
+    await page.click(".controls button:has-text('Undo')");
     await until(async () => JSON.stringify((await setup()).parameters), (p) => p === JSON.stringify(before), "one undo takes both back");
   });
   await run.check("a calibration can be cancelled, by keyboard too", async () => {

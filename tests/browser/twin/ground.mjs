@@ -190,8 +190,8 @@ export async function testGround(run) {
     await shot("43-inflow-area");
     await page.setViewportSize({ width: 1024, height: 768 });
     await shot("43-narrow");
-    const wide = await page.evaluate(() => [...document.querySelectorAll(".levers input, .levers button, .levers select, .levers canvas")].filter((e) => e.checkVisibility())
-      .filter((e) => e.getBoundingClientRect().right > document.querySelector(".levers").getBoundingClientRect().left + document.querySelector(".levers").clientWidth + 0.5)
+    const wide = await page.evaluate(() => [...document.querySelectorAll(".controls input, .controls button, .controls select, .controls canvas")].filter((e) => e.checkVisibility())
+      .filter((e) => e.getBoundingClientRect().right > document.querySelector(".controls").getBoundingClientRect().left + document.querySelector(".controls").clientWidth + 0.5)
       .map((e) => e.outerHTML.slice(0, 90)));
     assert.deepEqual(wide, []);
     await page.setViewportSize({ width: 1280, height: 720 });
@@ -235,7 +235,7 @@ export async function testGround(run) {
       await boxOf(editor);
       await press("Remove").click();
       await until(setup, (s) => s[kind].length === before.length - 1, `${kind} removed`);
-      await page.click(".levers button:has-text('Undo')");
+      await page.click(".controls button:has-text('Undo')");
       await until(setup, (s) => JSON.stringify(s[kind]) === JSON.stringify(before), `${kind} back`);
     }
   });

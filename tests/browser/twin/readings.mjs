@@ -245,10 +245,10 @@ export async function testReadings(run) {
     assert.ok(video.bytes.length > 5000, `${video.bytes.length} bytes`);
   });
 
-  await run.check("two scenarios: own levers, one camera, difference map, and back to one", async () => {
+  await run.check("two scenarios: own controls, one camera, difference map, and back to one", async () => {
     await page.click("button:has-text('Compare')");
     await page.locator(".pane[data-scenario=B]").waitFor();
-    await until(() => page.getAttribute("button[data-scenario=B]", "aria-pressed"), (v) => v === "true", "levers of B");
+    await until(() => page.getAttribute("button[data-scenario=B]", "aria-pressed"), (v) => v === "true", "controls of B");
     const friction = page.locator(".field", { hasText: "riction" }).first().locator("input[type=number]");
     const a = (await server.ask("scenarios/A/setup")).parameters["material.friction_coefficient"];
     await friction.fill("0.2");

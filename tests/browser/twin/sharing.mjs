@@ -13,7 +13,7 @@ export async function testSharing(run) {
     await until(async () => Math.abs((await shownTime(eve)) - (await state()).time_s), (d) => d < 0.2, "the same time for the late comer");
     assert.equal(await eve.isDisabled(".run"), true);
     assert.match(await eve.textContent(".why"), /viewer's link/);
-    for (const control of await eve.locator(".levers input, .levers [data-draw], .levers button:has-text('Undo'), .levers button:has-text('Compare')").all()) {
+    for (const control of await eve.locator(".controls input, .controls [data-draw], .controls button:has-text('Undo'), .controls button:has-text('Compare')").all()) {
       if (await control.isVisible()) assert.equal(await control.isDisabled(), true, await control.evaluate((e) => e.outerHTML.slice(0, 120)));
     }
     assert.equal(await eve.locator(".control:visible").count(), 0);
@@ -54,7 +54,7 @@ export async function testSharing(run) {
     await ben.click(".control");
     await request.locator("button:has-text('Grant')").click();
     await until(() => ben.textContent(".control"), (t) => /You have control/.test(t), "granted");
-    await until(() => ada.isDisabled(".run"), (d) => d, "Ada's levers are off");
+    await until(() => ada.isDisabled(".run"), (d) => d, "Ada's controls are off");
     assert.match(await ada.textContent(".why"), /Ben has control/);
     await ben.click("button:has-text('Share')");
     assert.equal(await ben.locator("dialog input[readonly]").count(), 2);
@@ -77,7 +77,7 @@ export async function testSharing(run) {
       await run.still(ada);
       const outside = await ada.evaluate(() => [...document.querySelectorAll("button, select, input, .legend, .clock")].filter((e) => {
         const r = e.getBoundingClientRect();
-        if (r.width === 0 || !e.checkVisibility({ visibilityProperty: true }) || e.closest(".levers, .tab-panels, .unseen")) return false;
+        if (r.width === 0 || !e.checkVisibility({ visibilityProperty: true }) || e.closest(".controls, .tab-panels, .unseen")) return false;
         return r.left < -1 || r.right > innerWidth + 1 || r.top < -1 || r.bottom > innerHeight + 1;
       }).map((e) => e.outerHTML.slice(0, 90)));
       assert.deepEqual(outside, []);

@@ -20,7 +20,7 @@ const shortcuts: [string, [string, string][]][] = [
 
 export function help(): void {
   openDialog(dialog("Help", h("p", { class: "hint" },
-    "Run the simulation below. Levers on the left take effect in the next step, also while debris moves: draw a barrier across the path, raise the friction, trigger a release. Beds and inflows hold from the next restart. Readings are on the right. The bar at the bottom goes back through the recording."),
+    "Run the simulation below. Controls on the left take effect in the next step, also while debris moves: draw a barrier across the path, raise the friction, trigger a release. Beds and inflows hold from the next restart. Readings are on the right. The bar at the bottom goes back through the recording."),
   ...shortcuts.map(([title, keys]) => h("section", { class: "shortcuts" }, h("h3", {}, title),
     h("dl", {}, ...keys.flatMap(([key, what]) => [h("dt", {}, key), h("dd", {}, what)]))))));
 }

@@ -86,7 +86,7 @@ export function shapeSection(twin: Twin, drawing: Drawing, shape: Shape): HTMLEl
 
 /** Scrolls the panel until all of a section is in sight, or its head is on top. */
 function reveal(section: HTMLElement): void {
-  const panel = section.closest(".levers");
+  const panel = section.closest(".controls");
   if (!panel) return;
   const [inner, outer] = [section.getBoundingClientRect(), panel.getBoundingClientRect()];
   if (inner.bottom > outer.bottom) panel.scrollTop += Math.min(inner.bottom - outer.bottom, inner.top - outer.top);

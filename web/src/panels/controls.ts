@@ -8,7 +8,7 @@ import { groundGroup } from "./ground_group";
 import { parameterFields } from "./parameters";
 import { shapeSection } from "./shapes";
 
-export function levers(twin: Twin, drawing: Drawing): HTMLElement {
+export function controls(twin: Twin, drawing: Drawing): HTMLElement {
   const why = h("div", { class: "why", role: "status" });
   const undo = button("Undo", { icon: "undo", onclick: () => void twin.act({ action: "undo" }), class: "grow" });
   const redo = button("Redo", { icon: "redo", onclick: () => void twin.act({ action: "redo" }), class: "grow" });
@@ -22,7 +22,7 @@ export function levers(twin: Twin, drawing: Drawing): HTMLElement {
       twin.edited.value = "B";
     }) });
   const endB = button("End scenario B", { icon: "close", bare: true, onclick: () => void twin.attempt(() => twin.api.endScenario()) });
-  const which = h("div", { class: "which", role: "group", "aria-label": "Scenario that these levers change" }, a, b, compare, endB);
+  const which = h("div", { class: "which", role: "group", "aria-label": "Scenario that these controls change" }, a, b, compare, endB);
 
   watchAll([twin.scenarios, twin.edited, twin.you, twin.controller, twin.connection, twin.people, twin.cells.A.setup, twin.cells.B.setup], () => {
     const two = twin.scenarios.value.length > 1;
@@ -42,7 +42,7 @@ export function levers(twin: Twin, drawing: Drawing): HTMLElement {
     for (const control of [compare, endB]) control.disabled = hindrance !== null;
   });
 
-  return h("aside", { class: "levers", "aria-label": "Levers" },
+  return h("aside", { class: "controls", "aria-label": "Controls" },
     h("div", { class: "group head" }, which, why, h("div", { class: "row" }, undo, redo), undoName),
     shapeSection(twin, drawing, "release"),
     shapeSection(twin, drawing, "barrier"),

@@ -18,7 +18,7 @@ async function testOpening(run) {
   await server.stop();
 }
 
-export async function testLevers(run) {
+export async function testControls(run) {
   await testOpening(run);
   const server = await run.start();
   const page = await run.open(server.controller, { name: "Ada" });
@@ -85,14 +85,14 @@ export async function testLevers(run) {
     await slider.press("ArrowRight");
     const moved = await until(setup, (s) => s.parameters[key] > 0.55, "friction by slider");
     assert.ok(Math.abs(moved.parameters[key] - 0.56) < 0.011);
-    await page.click(".levers button:has-text('Undo')");
+    await page.click(".controls button:has-text('Undo')");
     await until(setup, (s) => s.parameters[key] === 0.55, "undo by button");
     await page.locator(".stage canvas").focus();
     await page.keyboard.press("Control+z");
     await until(setup, (s) => s.parameters[key] === first, "undo by key");
     await page.keyboard.press("Control+Shift+Z");
     await until(setup, (s) => s.parameters[key] === 0.55, "redo by key");
-    await until(() => page.locator(".levers button:has-text('Undo')").getAttribute("title"), (t) => /Undo: .+/.test(t), "what undo would undo");
+    await until(() => page.locator(".controls button:has-text('Undo')").getAttribute("title"), (t) => /Undo: .+/.test(t), "what undo would undo");
     await friction.locator("button[aria-label^=Reset]").click();
     const usual = (await server.ask("scene")).parameters.find((p) => p.key === key).default;
     await until(setup, (s) => s.parameters[key] === usual, "reset");
@@ -222,7 +222,7 @@ export async function testLevers(run) {
     await until(setup, (s) => s.barriers[0].passing_share === null && s.barriers[0].resistance_Npm === 200_000, "a wall again");
     await page.click(".editor button:has-text('Remove')");
     await until(setup, (s) => s.barriers.length === 0, "removed");
-    await page.click(".levers button:has-text('Undo')");
+    await page.click(".controls button:has-text('Undo')");
     await until(setup, (s) => s.barriers.length === 1 && s.barriers[0].height_m === 6, "back");
   });
 
