@@ -1,5 +1,6 @@
 #include <string>
 
+#include "core/try.hpp"
 #include "products/csv.hpp"
 #include "products/text_file.hpp"
 #include "products/writers.hpp"
@@ -55,7 +56,7 @@ Status write_comparisons(const std::vector<Comparison>& comparisons, const RunRe
                          const std::filesystem::path& folder) {
     for (const Comparison& comparison : comparisons) {
         const char* name = comparison.kind == ComparisonKind::convergence ? "convergence.csv" : "variants.csv";
-        if (Status s = write_text_file(folder / name, comparison_table(comparison, base)); !s) return s;
+        TALUS_TRY(write_text_file(folder / name, comparison_table(comparison, base)));
     }
     return {};
 }

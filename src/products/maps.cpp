@@ -1,3 +1,4 @@
+#include "core/try.hpp"
 #include "geo/raster.hpp"
 #include "products/text_file.hpp"
 #include "products/writers.hpp"
@@ -11,7 +12,7 @@ Status write_map(const HazardMap& map, const Grid<float>& si, const std::string&
     const Grid<float> grid = in_unit(si, map.factor);
     const RasterBand band{&grid, map.description + caveat, map.unit};
     const std::string stem = (folder / map.file).string();
-    if (Status s = write_cog(stem + ".tif", band, crs); !s) return s;
+    TALUS_TRY(write_cog(stem + ".tif", band, crs));
     return write_text_file(stem + ".qml", qgis_style(map, greatest(grid)));
 }
 
@@ -20,7 +21,7 @@ Status write_map(const HazardMap& map, const Grid<float>& si, const std::string&
 Status write_maps(const Scene& scene, const RunResult& result, const std::filesystem::path& folder) {
     const std::string said = caveat(scene, result);
     for (const HazardMap& map : hazard_maps()) {
-        if (Status s = write_map(map, result.observation.maps.*map.grid, said, scene.crs, folder); !s) return s;
+        TALUS_TRY(write_map(map, result.observation.maps.*map.grid, said, scene.crs, folder));
     }
     const Grid<float>& erosion = result.observation.erosion.depth;
     return erosion.values.empty() ? Status() : write_map(erosion_map(), erosion, said, scene.crs, folder);

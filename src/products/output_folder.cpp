@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "core/try.hpp"
 #include "products/products.hpp"
 
 namespace talus {
@@ -67,7 +68,7 @@ Result<OutputFolder> OutputFolder::create(const fs::path& final_path, bool force
     OutputFolder folder;
     folder.final_ = resolved(final_path);
     folder.force_ = force;
-    if (Status s = check_replaceable(folder.final_, force); !s) return s.error();
+    TALUS_TRY(check_replaceable(folder.final_, force));
 
     const fs::path parent = folder.final_.parent_path();
     std::error_code failed;
@@ -98,7 +99,7 @@ OutputFolder::~OutputFolder() {
 
 Status OutputFolder::commit() {
     // The run took its time: what is there now need not be what was there at the start.
-    if (Status s = check_replaceable(final_, force_); !s) return s.error();
+    TALUS_TRY(check_replaceable(final_, force_));
     const auto failure = [&](const std::error_code& cause) {
         return Error{fmt::format("{}: cannot be given its name: {}", final_.string(), cause.message())};
     };

@@ -9,6 +9,7 @@
 
 #include <fmt/format.h>
 
+#include "core/try.hpp"
 #include "products/text_file.hpp"
 
 namespace talus {
@@ -114,7 +115,7 @@ _)",
         state.time, origin.x, origin.y, origin.z, count, count, points, velocity, speeds, ids, held, vertices, ends);
     text += data.bytes();
     text += "\n</AppendedData>\n</VTKFile>\n";
-    if (Status s = write_text_file(folder_ / frame_name(times_.size()), text); !s) return s;
+    TALUS_TRY(write_text_file(folder_ / frame_name(times_.size()), text));
     times_.push_back(state.time);
     return {};
 }

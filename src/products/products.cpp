@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "core/try.hpp"
 #include "products/text_file.hpp"
 #include "products/writers.hpp"
 #include "report/report.hpp"
@@ -27,22 +28,21 @@ Status write_report(const Scene& scene, const RunResult& result, const std::vect
     const report::Json results = report::run_results(scene, result, comparisons);
     // Names from attribute tables need not be valid UTF-8; the file is.
     const std::string text = results.dump(1, ' ', false, report::Json::error_handler_t::replace) + "\n";
-    if (Status s = write_text_file(folder / "results.json", text); !s) return s;
-    const auto page = report::run_report(scene, result, results);
-    if (!page) return page.error();
-    return write_text_file(folder / "report.html", *page);
+    TALUS_TRY(write_text_file(folder / "results.json", text));
+    TALUS_ASSIGN(const auto page, report::run_report(scene, result, results));
+    return write_text_file(folder / "report.html", page);
 }
 
 }  // namespace
 
 Status write_products(const Scene& scene, const RunResult& result, const std::filesystem::path& folder,
                       const std::vector<Comparison>& comparisons) {
-    if (Status s = write_partial_note(result, folder); !s) return s;
-    if (Status s = write_maps(scene, result, folder); !s) return s;
-    if (Status s = write_tables(scene, result, folder); !s) return s;
-    if (Status s = write_vectors(scene, result, folder); !s) return s;
-    if (Status s = write_comparisons(comparisons, result, folder); !s) return s;
-    if (Status s = write_report(scene, result, comparisons, folder); !s) return s;
+    TALUS_TRY(write_partial_note(result, folder));
+    TALUS_TRY(write_maps(scene, result, folder));
+    TALUS_TRY(write_tables(scene, result, folder));
+    TALUS_TRY(write_vectors(scene, result, folder));
+    TALUS_TRY(write_comparisons(comparisons, result, folder));
+    TALUS_TRY(write_report(scene, result, comparisons, folder));
     // Last, as it lists the files; a folder that has one is complete.
     return write_manifest(scene, result, comparisons, folder);
 }

@@ -1,6 +1,7 @@
 #include <numbers>
 #include <string>
 
+#include "core/try.hpp"
 #include "products/csv.hpp"
 #include "products/text_file.hpp"
 #include "products/writers.hpp"
@@ -88,13 +89,13 @@ std::string erosion_table(const Erosion& erosion) {
 
 Status write_tables(const Scene& scene, const RunResult& result, const std::filesystem::path& folder) {
     const Observation& observation = result.observation;
-    if (Status s = write_text_file(folder / "front.csv", front_table(observation)); !s) return s;
-    if (Status s = write_text_file(folder / "run_out.csv", run_out_table(observation.run_out)); !s) return s;
-    if (Status s = write_text_file(folder / "buildings.csv", building_table(scene, observation)); !s) return s;
+    TALUS_TRY(write_text_file(folder / "front.csv", front_table(observation)));
+    TALUS_TRY(write_text_file(folder / "run_out.csv", run_out_table(observation.run_out)));
+    TALUS_TRY(write_text_file(folder / "buildings.csv", building_table(scene, observation)));
     if (!observation.erosion.chainage.empty()) {
-        if (Status s = write_text_file(folder / "erosion.csv", erosion_table(observation.erosion)); !s) return s;
+        TALUS_TRY(write_text_file(folder / "erosion.csv", erosion_table(observation.erosion)));
     }
-    if (Status s = write_text_file(folder / "structures_over_time.csv", structure_table(observation)); !s) return s;
+    TALUS_TRY(write_text_file(folder / "structures_over_time.csv", structure_table(observation)));
     return write_text_file(folder / "timeseries.csv", time_table(observation));
 }
 

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/try.hpp"
 #include "geo/vector.hpp"
 #include "products/writers.hpp"
 
@@ -119,14 +120,12 @@ std::vector<OutputFeature> chainage_marks(const Scene& scene, const Observation&
 Status write_vectors(const Scene& scene, const RunResult& result, const std::filesystem::path& folder) {
     const std::string file = (folder / "results.gpkg").string();
     const Observation& observation = result.observation;
-    if (Status s = write_buildings(scene, observation, file); !s) return s;
-    if (Status s = write_releases(scene, file); !s) return s;
+    TALUS_TRY(write_buildings(scene, observation, file));
+    TALUS_TRY(write_releases(scene, file));
     if (scene.flow_path.empty()) return {};
     const OutputFeature line{
         {}, scene.flow_path.points(), {scene.flow_path.length(), yes_or_no(scene.flow_path_traced)}};
-    if (Status s = write_geopackage_layer(file, "flow_path", {{"length_m"}, {"traced", true}}, {line}, scene.crs); !s) {
-        return s;
-    }
+    TALUS_TRY(write_geopackage_layer(file, "flow_path", {{"length_m"}, {"traced", true}}, {line}, scene.crs));
     return write_geopackage_layer(file, "chainage", {{"chainage_m"}, {"first_arrival_time_s"}, {"front_velocity_mps"}},
                                   chainage_marks(scene, observation), scene.crs);
 }

@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "core/try.hpp"
 #include "report/colour.hpp"
 #include "report/hazard_map.hpp"
 #include "report/image.hpp"
@@ -308,8 +309,7 @@ Result<Json> map_figures(const Scene& scene, const MapContent& content) {
     const MapFrame frame = map_frame(scene, content);
     const Grid<float> ground = crop(scene.terrain.elevation(), frame.area, 900);
     const double pixels_per_metre = 1150 / std::max(frame.area.width(), frame.area.height());
-    auto relief = png_uri(hillshade(ground, frame.area, pixels_per_metre));
-    if (!relief) return relief.error();
+    TALUS_ASSIGN(auto relief, png_uri(hillshade(ground, frame.area, pixels_per_metre)));
 
     const double width = frame.right() + 20 + MapFrame::key_width;
     std::size_t most_classes = 0;
@@ -321,14 +321,13 @@ Result<Json> map_figures(const Scene& scene, const MapContent& content) {
     const double height = std::max(frame.bottom() + 30, key_top + key_height(scene));
 
     double contour_interval = 0;
-    Json out = {{"definitions", definitions(scene, content.buildings, frame, *relief, key_top, contour_interval)},
+    Json out = {{"definitions", definitions(scene, content.buildings, frame, relief, key_top, contour_interval)},
                 {"layers", Json::array()}};
     out["contour_interval"] = contour_interval;
 
     const Grid<float> coarse_ground = crop(scene.terrain.elevation(), frame.area, 260);
     const ReadOut ground_values = read_out_of(coarse_ground, 1);
-    auto ground_uri = png_uri(ground_values.image);
-    if (!ground_uri) return ground_uri.error();
+    TALUS_ASSIGN(auto ground_uri, png_uri(ground_values.image));
     nlohmann::json page = {{"left", frame.left},
                            {"top", frame.top},
                            {"width", frame.width()},
@@ -336,7 +335,7 @@ Result<Json> map_figures(const Scene& scene, const MapContent& content) {
                            {"x_min", frame.area.x_min},
                            {"y_max", frame.area.y_max},
                            {"scale", frame.scale},
-                           {"ground", placed(coarse_ground, ground_values, *ground_uri)},
+                           {"ground", placed(coarse_ground, ground_values, ground_uri)},
                            {"layers", nlohmann::json::array()}};
 
     for (const MapLayer& shown : content.layers) {
@@ -349,17 +348,15 @@ Result<Json> map_figures(const Scene& scene, const MapContent& content) {
         if (std::isfinite(most)) {
             const Grid<float> part = crop(map, frame.area, 1200);
             const Extent e = part.geometry.extent();
-            auto uri = png_uri(paint(layer, part, classes));
-            if (!uri) return uri.error();
+            TALUS_ASSIGN(auto uri, png_uri(paint(layer, part, classes)));
             picture.open("g", {clip()});
             draw_image(picture, "layer", frame.x(e.x_min), frame.y(e.y_max), e.width() * frame.scale,
-                       e.height() * frame.scale, *uri);
+                       e.height() * frame.scale, uri);
             picture.close("g");
             const Grid<float> coarse = crop(map, frame.area, 500);
             const ReadOut values = read_out_of(coarse, layer.factor);
-            auto values_uri = png_uri(values.image);
-            if (!values_uri) return values_uri.error();
-            nlohmann::json entry = placed(coarse, values, *values_uri);
+            TALUS_ASSIGN(auto values_uri, png_uri(values.image));
+            nlohmann::json entry = placed(coarse, values, values_uri);
             entry["id"] = layer.file;
             entry["name"] = shown.tab;
             entry["unit"] = layer.unit;

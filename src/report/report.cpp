@@ -1,5 +1,6 @@
 #include "report/report.hpp"
 
+#include "core/try.hpp"
 #include "report/map.hpp"
 #include "report_files.hpp"
 
@@ -7,15 +8,13 @@ namespace talus::report {
 
 Result<std::string> run_report(const Scene& scene, const RunResult& result, const Json& results) {
     const MapContent content = map_content(scene, result);
-    auto maps = map_figures(scene, content);
-    if (!maps) return maps.error();
-    auto zone_map = zone_figure(scene, content, (*maps)["contour_interval"]);
-    if (!zone_map) return zone_map.error();
+    TALUS_ASSIGN(auto maps, map_figures(scene, content));
+    TALUS_ASSIGN(auto zone_map, zone_figure(scene, content, maps["contour_interval"]));
     Json page = results;
     page["report_name"] = "landslide run-out report";
     page["masthead"] = "Landslide run-out simulation";
-    page["maps"] = *std::move(maps);
-    page["zone_map"] = *std::move(zone_map);
+    page["maps"] = std::move(maps);
+    page["zone_map"] = std::move(zone_map);
     return render(report_files::report_html, page);
 }
 

@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "core/try.hpp"
 #include "report/image.hpp"
 #include "report/map.hpp"
 #include "report/number_text.hpp"
@@ -118,13 +119,12 @@ double draw_entry(Svg& svg, double x, double y, const Colour& colour, bool strip
 Result<Json> zone_figure(const Scene& scene, const MapContent& content, double contour_interval) {
     if (scene.spec.zones.empty() && scene.bed.empty()) return Json();
     const MapFrame frame = map_frame(scene, content);
-    auto picture = png_uri(picture_of(scene, frame));
-    if (!picture) return picture.error();
+    TALUS_ASSIGN(auto picture, png_uri(picture_of(scene, frame)));
     const double x = frame.right() + 20, width = x + MapFrame::key_width;
     Svg svg;
     svg.add("use", {{"href", "#map-base"}});
     svg.open("g", {{"clip-path", "url(#map-clip)"}});
-    draw_image(svg, "layer", frame.left, frame.top, frame.width(), frame.height(), *picture);
+    draw_image(svg, "layer", frame.left, frame.top, frame.width(), frame.height(), picture);
     svg.close("g");
     svg.add("use", {{"href", "#map-over"}});
     svg.text("legend-title", x, frame.top + 14, "On the ground");

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "core/try.hpp"
 #include "scene/parse.hpp"
 
 namespace talus {
@@ -71,7 +72,7 @@ Status check_rules(const ParsedScene& scene, double particle_spacing) {
 }
 
 Status finish_scene(ParsedScene& scene) {
-    if (Status s = check_rules(scene, 0); !s) return s.error();
+    TALUS_TRY(check_rules(scene, 0));
     for (std::size_t i = 0; i < scene.spec.beds.size(); ++i) {
         const BedSpec& bed = scene.spec.beds[i];
         if (bed.law == EntrainmentLaw::growth || !bed.growth_rate) continue;

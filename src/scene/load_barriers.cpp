@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "core/try.hpp"
 #include "geo/vector.hpp"
 #include "scene/load.hpp"
 #include "sim/seed.hpp"
@@ -61,7 +62,7 @@ Status check_names(const ParsedScene& parsed, const Scene& scene, std::size_t fi
 }  // namespace
 
 Status load_barriers(const ParsedScene& parsed, Scene& scene) {
-    if (Status s = check_rules(parsed, choose_particle_spacing(scene.spec.solver, total_volume(scene))); !s) return s;
+    TALUS_TRY(check_rules(parsed, choose_particle_spacing(scene.spec.solver, total_volume(scene))));
     const std::size_t first = scene.buildings.size();
     for (std::size_t k = 0; k < scene.spec.barriers.size(); ++k) {
         const BarrierSpec& spec = scene.spec.barriers[k];
@@ -70,7 +71,7 @@ Status load_barriers(const ParsedScene& parsed, Scene& scene) {
         BarrierSpec shape = spec;
         shape.file.clear();
         shape.layer.clear();
-        if (Status s = read_line_of(parsed, k, scene, name, shape.line); !s) return s;
+        TALUS_TRY(read_line_of(parsed, k, scene, name, shape.line));
         for (const BarrierOpeningSpec& opening : scene.spec.barrier_openings) {
             if (opening.barrier != name) continue;
             shape.openings.push_back(opening);

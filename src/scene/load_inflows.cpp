@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "core/try.hpp"
 #include "geo/vector.hpp"
 #include "scene/hydrograph.hpp"
 #include "scene/load.hpp"
@@ -95,9 +96,7 @@ Result<Inflow> load_inflow(const ParsedScene& parsed, std::size_t index, Scene& 
                                              : !spec.file.empty()    ? "file"
                                              : !spec.polygon.empty() ? "polygon_m"
                                                                      : "polygon_file"));
-    const Status where =
-        over_area ? load_area(spec, at, label, inflow, scene) : load_line(spec, at, label, inflow, scene);
-    if (!where) return where.error();
+    TALUS_TRY(over_area ? load_area(spec, at, label, inflow, scene) : load_line(spec, at, label, inflow, scene));
     Result<std::vector<InflowSample>> rows = read_hydrograph(spec.hydrograph, over_area);
     if (!rows) return Error{parsed.at(path + "hydrograph") + ": " + rows.error().message};
     record_input(label + " hydrograph", spec.hydrograph, scene);
@@ -111,14 +110,13 @@ Result<Inflow> load_inflow(const ParsedScene& parsed, std::size_t index, Scene& 
 
 Status load_inflows(const ParsedScene& parsed, Scene& scene) {
     for (std::size_t index = 0; index < scene.spec.inflows.size(); ++index) {
-        Result<Inflow> inflow = load_inflow(parsed, index, scene);
-        if (!inflow) return inflow.error();
-        if (inflow->hydrograph.front().time >= scene.spec.solver.end_time) {
+        TALUS_ASSIGN(Inflow inflow, load_inflow(parsed, index, scene));
+        if (inflow.hydrograph.front().time >= scene.spec.solver.end_time) {
             return Error{fmt::format("{}: begins at {:.6g} s; that must be below solver.end_time_s = {:.6g}",
                                      parsed.at(fmt::format("inflow[{}].hydrograph", index)),
-                                     inflow->hydrograph.front().time, scene.spec.solver.end_time)};
+                                     inflow.hydrograph.front().time, scene.spec.solver.end_time)};
         }
-        scene.inflows.push_back(std::move(*inflow));
+        scene.inflows.push_back(std::move(inflow));
     }
     return {};
 }

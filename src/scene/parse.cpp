@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 #include <toml++/toml.h>
 
+#include "core/try.hpp"
 #include "scene/scene.hpp"
 #include "scene/toml_file.hpp"
 
@@ -46,7 +47,7 @@ class SceneReader {
         for (const auto& [key, node] : root) {
             const Section* section = find_section(key.str());
             if (!section) return Error{place(key.source()) + ": " + unknown_section(key.str())};
-            if (Status s = read_section(*section, node, place(key.source())); !s) return s.error();
+            TALUS_TRY(read_section(*section, node, place(key.source())));
         }
         return {};
     }
@@ -71,9 +72,8 @@ class SceneReader {
         const std::string key = text.substr(dot + 1, equals - dot - 1);
         const Parameter* parameter = section->find(key);
         if (!parameter) return Error{where + ": " + unknown_key(*section, key)};
-        const Result<std::size_t> index = override_index(*section, index_text, where);
-        if (!index) return index.error();
-        return override_value(*section, *index, *parameter, text.substr(equals + 1), where);
+        TALUS_ASSIGN(const std::size_t index, override_index(*section, index_text, where));
+        return override_value(*section, index, *parameter, text.substr(equals + 1), where);
     }
 
     [[nodiscard]] Status check_required() const {
@@ -120,7 +120,7 @@ class SceneReader {
             }
             section.append(scene_.spec);
             const std::size_t index = section.count(scene_.spec) - 1;
-            if (Status s = read_table(section, index, *table, place(table->source())); !s) return s.error();
+            TALUS_TRY(read_table(section, index, *table, place(table->source())));
         }
         return {};
     }
@@ -130,7 +130,7 @@ class SceneReader {
         for (const auto& [key, node] : table) {
             const Parameter* parameter = section.find(key.str());
             if (!parameter) return Error{place(key.source()) + ": " + unknown_key(section, key.str())};
-            if (Status s = read_parameter(section, index, *parameter, node, place(key.source())); !s) return s.error();
+            TALUS_TRY(read_parameter(section, index, *parameter, node, place(key.source())));
         }
         return {};
     }
@@ -208,23 +208,21 @@ std::string ParsedScene::at(const std::string& key_path) const {
 
 Result<ParsedScene> parse_scene_with_places(const std::filesystem::path& file,
                                             const std::vector<std::string>& overrides) {
-    const Result<toml::table> root = read_toml_file(file, "scene");
-    if (!root) return root.error();
+    TALUS_ASSIGN(const toml::table root, read_toml_file(file, "scene"));
     SceneReader reader(file);
-    if (Status s = reader.read_file(*root); !s) return s.error();
+    TALUS_TRY(reader.read_file(root));
     for (const std::string& override_text : overrides) {
-        if (Status s = reader.read_override(override_text); !s) return s.error();
+        TALUS_TRY(reader.read_override(override_text));
     }
-    if (Status s = reader.check_required(); !s) return s.error();
+    TALUS_TRY(reader.check_required());
     ParsedScene scene = reader.take();
-    if (Status s = finish_scene(scene); !s) return s.error();
+    TALUS_TRY(finish_scene(scene));
     return scene;
 }
 
 Result<SceneSpec> parse_scene(const std::filesystem::path& file, const std::vector<std::string>& overrides) {
-    Result<ParsedScene> scene = parse_scene_with_places(file, overrides);
-    if (!scene) return scene.error();
-    return std::move(scene->spec);
+    TALUS_ASSIGN(ParsedScene scene, parse_scene_with_places(file, overrides));
+    return std::move(scene.spec);
 }
 
 }  // namespace talus

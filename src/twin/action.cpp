@@ -11,6 +11,7 @@
 
 #include <fmt/format.h>
 
+#include "core/try.hpp"
 #include "sim/physics/viscosity.hpp"
 #include "terrain/barrier.hpp"
 #include "twin/json_keys.hpp"
@@ -80,9 +81,8 @@ const std::string& name_of(const Inflow& inflow) {
 }
 
 Result<std::string> ActionReader::id() const {
-    auto text = read_text(action_, "id");
-    if (!text) return text.error();
-    return text->value_or("");
+    TALUS_ASSIGN(auto text, read_text(action_, "id"));
+    return text.value_or("");
 }
 
 Error ActionReader::no_such(const std::string& id, const char* what) {
@@ -97,28 +97,27 @@ double ActionReader::highest_viscosity() const {
 }
 
 Status ActionReader::set_parameter() {
-    if (Status s = check_keys(action_, {"action", "key", "value"}); !s) return s;
+    TALUS_TRY(check_keys(action_, {"action", "key", "value"}));
     return set_parameter(action_);
 }
 
 /// Several at once are one change, which one undo takes back.
 Status ActionReader::set_parameters() {
-    if (Status s = check_keys(action_, {"action", "values"}); !s) return s;
+    TALUS_TRY(check_keys(action_, {"action", "values"}));
     const auto values = action_.find("values");
     if (values == action_.end() || !values->is_object() || values->empty()) {
         return Error{"values: must be an object of keys such as material.friction_coefficient with their values"};
     }
     for (const auto& [key, value] : values->items()) {
-        if (Status s = set_parameter({{"key", key}, {"value", value}}); !s) return s;
+        TALUS_TRY(set_parameter({{"key", key}, {"value", value}}));
     }
     return {};
 }
 
 Status ActionReader::set_parameter(const json& entry) {
-    const auto key = read_text(entry, "key");
-    if (!key) return key.error();
+    TALUS_ASSIGN(const auto key, read_text(entry, "key"));
     const auto found = std::find_if(live_parameters().begin(), live_parameters().end(), [&](const Parameter* p) {
-        return key->has_value() && "material." + p->key == **key;
+        return key.has_value() && "material." + p->key == *key;
     });
     if (found == live_parameters().end()) {
         std::vector<std::string> names;
@@ -133,10 +132,10 @@ Status ActionReader::set_parameter(const json& entry) {
         range.high_included = true;
     }
     const auto value = read_number(entry, "value", range, parameter.unit);
-    if (!value) return Error{fmt::format("{}: {}", **key, value.error().message)};
+    if (!value) return Error{fmt::format("{}: {}", *key, value.error().message)};
     const bool may_follow = !parameter.absent.empty();  // null: as what it follows
     if (!*value && (!may_follow || !entry.contains("value"))) {
-        return Error{fmt::format("{}: value: missing; must be {}", **key, allowed_text(parameter))};
+        return Error{fmt::format("{}: value: missing; must be {}", *key, allowed_text(parameter))};
     }
     const double before = value_in_force(edit_.setup.material, parameter, context_.viscosity);
     SceneSpec spec;
@@ -159,16 +158,13 @@ Status ActionReader::set_parameter(const json& entry) {
 template <class Entry, class Read, class Add, class Tell>
 Status ActionReader::put(std::vector<Entry>& entries, const char* what, int& number, const Read& read, const Add& add,
                          const Tell& tell) {
-    const auto given_id = id();
-    if (!given_id) return given_id.error();
-    Entry* existing = find_id(entries, *given_id);
-    if (!given_id->empty() && existing == nullptr) return no_such(*given_id, what);
-    const auto name = read_text(action_, "name");
-    if (!name) return name.error();
-    auto body = read(
-        existing, name->value_or(existing != nullptr ? name_of(*existing->body) : fmt::format("{} {}", what, number)));
-    if (!body) return body.error();
-    Entry made = add(std::move(*body));
+    TALUS_ASSIGN(const auto given_id, id());
+    Entry* existing = find_id(entries, given_id);
+    if (!given_id.empty() && existing == nullptr) return no_such(given_id, what);
+    TALUS_ASSIGN(const auto name, read_text(action_, "name"));
+    TALUS_ASSIGN(auto body, read(existing, name.value_or(existing != nullptr ? name_of(*existing->body)
+                                                                             : fmt::format("{} {}", what, number))));
+    Entry made = add(std::move(body));
     edit_.sentence = fmt::format("{} {}", what, in_quotes(name_of(*made.body))) + tell(made, existing);
     if (existing != nullptr) {
         existing->body = std::move(made.body);
@@ -283,14 +279,13 @@ Status ActionReader::put_inflow() {
 }
 
 Status ActionReader::trigger_release() {
-    if (Status s = check_keys(action_, {"action", "id"}); !s) return s;
-    const auto given = id();
-    if (!given) return given.error();
-    ReleaseSetup* release = find_id(edit_.setup.releases, *given);
-    if (release == nullptr) return no_such(*given, "release");
+    TALUS_TRY(check_keys(action_, {"action", "id"}));
+    TALUS_ASSIGN(const auto given, id());
+    ReleaseSetup* release = find_id(edit_.setup.releases, given);
+    if (release == nullptr) return no_such(given, "release");
     if (release->triggered || context_.has_begun(release->id)) {
-        return Error{fmt::format("id = {}: release {} has already started", shown(json(*given)),
-                                 in_quotes(release->body->name))};
+        return Error{
+            fmt::format("id = {}: release {} has already started", shown(json(given)), in_quotes(release->body->name))};
     }
     release->triggered = true;
     edit_.sentence =
@@ -300,11 +295,10 @@ Status ActionReader::trigger_release() {
 
 template <class Entries>
 Status ActionReader::remove(Entries& entries, const char* what) {
-    if (Status s = check_keys(action_, {"action", "id"}); !s) return s;
-    const auto given = id();
-    if (!given) return given.error();
-    const auto* entry = find_id(entries, *given);
-    if (entry == nullptr) return no_such(*given, what);
+    TALUS_TRY(check_keys(action_, {"action", "id"}));
+    TALUS_ASSIGN(const auto given, id());
+    const auto* entry = find_id(entries, given);
+    if (entry == nullptr) return no_such(given, what);
     using Entry = std::remove_cvref_t<decltype(*entry)>;
     constexpr bool from_time_0 = std::is_same_v<Entry, BedSetup> || std::is_same_v<Entry, InflowSetup>;
     edit_.sentence =
@@ -317,15 +311,13 @@ Status ActionReader::remove(Entries& entries, const char* what) {
 
 Result<std::string> action_name(const json& action) {
     if (!action.is_object()) return Error{fmt::format("the action {} must be a JSON object", shown(action))};
-    auto name = read_text(action, "action");
-    if (!name) return name.error();
-    if (!*name) return Error{"action: missing; it must name what to do, such as set_parameter"};
-    return **name;
+    TALUS_ASSIGN(auto name, read_text(action, "action"));
+    if (!name) return Error{"action: missing; it must name what to do, such as set_parameter"};
+    return *name;
 }
 
 Result<Edit> read_action(const json& action, const Setup& setup, NextNumbers& next, const ActionContext& context) {
-    const Result<std::string> name = action_name(action);
-    if (!name) return name.error();
+    TALUS_ASSIGN(const std::string name, action_name(action));
     Edit edit{setup, "", ""};
     ActionReader reader(action, next, context, edit);
     Setup& changed = edit.setup;
@@ -347,15 +339,14 @@ Result<Edit> read_action(const json& action, const Setup& setup, NextNumbers& ne
         {"remove_inflow", [&] { return reader.remove(changed.inflows, "inflow"); }},
     };
     const auto wanted = std::find_if(std::begin(actions), std::end(actions),
-                                     [&](const auto& action_and_work) { return action_and_work.first == *name; });
+                                     [&](const auto& action_and_work) { return action_and_work.first == name; });
     if (wanted == std::end(actions)) {
         std::vector<std::string> names;
         for (const auto& [known, work] : actions) names.emplace_back(known);
         return Error{fmt::format("action = {}: must be one of {}, undo, redo, restart, run, pause, step, set_speed",
-                                 shown(json(*name)), fmt::join(names, ", "))};
+                                 shown(json(name)), fmt::join(names, ", "))};
     }
-    const Status done = wanted->second();
-    if (!done) return done.error();
+    TALUS_TRY(wanted->second());
     return edit;
 }
 

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "core/try.hpp"
 #include "terrain/barrier.hpp"
 #include "twin/json_keys.hpp"
 #include "twin/outline.hpp"
@@ -43,15 +44,12 @@ Status read_openings(const json& action, const ActionContext& context, BarrierSp
 
 Result<Building> read_barrier(const json& action, const ActionContext& context, const Building* existing,
                               const std::string& name) {
-    if (Status s = check_keys(action, live_keys("barrier"), {"action", "id", "name", "line", "openings"}); !s) {
-        return s.error();
-    }
-    auto line = read_points(action, "line", false, 2, most_points);
-    if (!line) return line.error();
-    if (existing == nullptr && !*line) return missing("line", "barrier");
+    TALUS_TRY(check_keys(action, live_keys("barrier"), {"action", "id", "name", "line", "openings"}));
+    TALUS_ASSIGN(auto line, read_points(action, "line", false, 2, most_points));
+    if (existing == nullptr && !line) return missing("line", "barrier");
     BarrierSpec barrier;
     if (existing != nullptr) barrier = *existing->barrier;
-    if (*line) barrier.line = std::move(**line);
+    if (line) barrier.line = std::move(*line);
     Status s = read_values(action, barrier);
     if (s) s = read_openings(action, context, barrier);
     if (s) s = check_rules(barrier, context.scene.spec.solver, context.particle_spacing);

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "core/try.hpp"
 #include "twin/json_keys.hpp"
 #include "twin/outline.hpp"
 #include "twin/put.hpp"
@@ -11,37 +12,33 @@ namespace talus::twin {
 
 Result<Zone> read_zone(const nlohmann::json& action, const ActionContext& context, const Zone* existing,
                        const std::string& name) {
-    if (Status s = check_keys(action, live_keys("zone"), {"action", "id", "name", "polygon", "move_m"}); !s) {
-        return s.error();
-    }
-    auto polygon = read_points(action, "polygon", true, 3, most_points);
-    if (!polygon) return polygon.error();
-    const auto by = read_move(action, "polygon", "zone", existing != nullptr);
-    if (!by) return by.error();
-    if (existing == nullptr && !*polygon) return missing("polygon", "zone");
+    TALUS_TRY(check_keys(action, live_keys("zone"), {"action", "id", "name", "polygon", "move_m"}));
+    TALUS_ASSIGN(auto polygon, read_points(action, "polygon", true, 3, most_points));
+    TALUS_ASSIGN(const auto by, read_move(action, "polygon", "zone", existing != nullptr));
+    if (existing == nullptr && !polygon) return missing("polygon", "zone");
     Zone zone;
     if (existing != nullptr) zone = *existing;
     zone.spec.name = name;
-    if (Status s = read_values(action, zone.spec); !s) return s.error();
+    TALUS_TRY(read_values(action, zone.spec));
     const Terrain& terrain = context.scene.terrain;
-    if ((*polygon || *by) && zone.cells != nullptr) {
+    if ((polygon || by) && zone.cells != nullptr) {
         return Error{fmt::format("{}: the zone comes from a raster and stays where that is; draw a new one",
-                                 *by ? "move_m" : "polygon")};
+                                 by ? "move_m" : "polygon")};
     }
-    if (*polygon) {
-        if (Status s = check_ring(terrain, **polygon, "polygon", false); !s) return s.error();
-        zone.outline = {{std::move(**polygon), {}}};
+    if (polygon) {
+        TALUS_TRY(check_ring(terrain, *polygon, "polygon", false));
+        zone.outline = {{std::move(*polygon), {}}};
     }
-    if (*by) {
+    if (by) {
         for (Polygon& part : zone.outline) {
-            part = moved(std::move(part), **by);
-            if (Status s = check_ground(terrain, part, "move_m", false); !s) return s.error();
+            part = moved(std::move(part), *by);
+            TALUS_TRY(check_ground(terrain, part, "move_m", false));
         }
     }
-    if (Status s = check_rules(zone.spec, context.scene.spec.solver, context.particle_spacing); !s) return s.error();
+    TALUS_TRY(check_rules(zone.spec, context.scene.spec.solver, context.particle_spacing));
     if (!(area_of(zone, terrain.elevation().geometry) > 0)) {
         return Error{fmt::format("{}: covers the centre of no cell of the terrain, which are {:.6g} m wide",
-                                 *by ? "move_m" : "polygon", terrain.cell())};
+                                 by ? "move_m" : "polygon", terrain.cell())};
     }
     return zone;
 }

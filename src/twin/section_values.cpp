@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "core/try.hpp"
 #include "twin/json_keys.hpp"
 
 namespace talus::twin {
@@ -22,13 +23,11 @@ json value_json(const ParameterValue& value) {
 Result<ParameterValue> read_value(const json& object, const Parameter& parameter) {
     const std::string& key = parameter.live;
     if (parameter.kind == ParameterKind::choice) {
-        const auto text = read_text(object, key);
-        if (!text) return text.error();
-        if (*text && problem_with(parameter, **text).empty()) return ParameterValue(**text);
+        TALUS_ASSIGN(const auto text, read_text(object, key));
+        if (text && problem_with(parameter, *text).empty()) return ParameterValue(*text);
     } else {
-        const auto number = read_number(object, key, parameter.range, parameter.unit);
-        if (!number) return number.error();
-        if (*number) return ParameterValue(**number);
+        TALUS_ASSIGN(const auto number, read_number(object, key, parameter.range, parameter.unit));
+        if (number) return ParameterValue(*number);
         if (!parameter.absent.empty()) return ParameterValue();
     }
     return Error{fmt::format("{} = {}: must be {}", key, shown(object[key]), allowed_text(parameter))};
@@ -71,12 +70,11 @@ json live_values(const Section& section, const SceneSpec& spec) {
 }
 
 Status read_live_values(const json& object, const Section& section, SceneSpec& spec) {
-    if (Status s = drop_alternatives(object, section, spec); !s) return s;
+    TALUS_TRY(drop_alternatives(object, section, spec));
     for (const Parameter& parameter : section.parameters) {
         if (parameter.live.empty() || !object.contains(parameter.live)) continue;
-        const Result<ParameterValue> value = read_value(object, parameter);
-        if (!value) return value.error();
-        parameter.set(spec, 0, *value);
+        TALUS_ASSIGN(const ParameterValue value, read_value(object, parameter));
+        parameter.set(spec, 0, value);
     }
     return {};
 }

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include "core/try.hpp"
 #include "terrain/barrier.hpp"
 #include "twin/hydrograph_json.hpp"
 #include "twin/json_keys.hpp"
@@ -48,13 +49,12 @@ Result<Polygon> SetupReader::read_polygon(const json& rings) {
     if (!rings.is_array() || rings.empty()) return Error{fmt::format("rings = {}: must be rings", shown(rings))};
     Polygon polygon;
     for (std::size_t k = 0; k < rings.size(); ++k) {
-        auto ring = read_points({{"ring", rings[k]}}, "ring", true, 3, 1'000'000);
-        if (!ring) return ring.error();
-        if (!*ring) return Error{"ring = null: must be points"};
+        TALUS_ASSIGN(auto ring, read_points({{"ring", rings[k]}}, "ring", true, 3, 1'000'000));
+        if (!ring) return Error{"ring = null: must be points"};
         if (k == 0) {
-            polygon.outer = std::move(**ring);
+            polygon.outer = std::move(*ring);
         } else {
-            polygon.holes.push_back(std::move(**ring));
+            polygon.holes.push_back(std::move(*ring));
         }
     }
     return polygon;
@@ -80,10 +80,9 @@ Status SetupReader::read_material(const json& file, MaterialSpec& material) cons
         if (parameter == nullptr || parameter->kind != ParameterKind::number) {
             return Error{fmt::format("material.{}: no such key", key)};
         }
-        auto number = read_number(file, key, parameter->range, parameter->unit);
-        if (!number) return number.error();
-        if (!*number && parameter->absent.empty()) return Error{fmt::format("material.{}: must be a number", key)};
-        parameter->set(spec, 0, *number ? ParameterValue(**number) : ParameterValue());
+        TALUS_ASSIGN(auto number, read_number(file, key, parameter->range, parameter->unit));
+        if (!number && parameter->absent.empty()) return Error{fmt::format("material.{}: must be a number", key)};
+        parameter->set(spec, 0, number ? ParameterValue(*number) : ParameterValue());
     }
     material = spec.material;
     return {};
@@ -91,32 +90,29 @@ Status SetupReader::read_material(const json& file, MaterialSpec& material) cons
 
 Result<ReleaseSetup> SetupReader::read_release(const json& file) const {
     if (!file.is_object() || !file.contains("id") || !file["id"].is_string()) return bad("id", file);
-    const Result<int> index = read_index(file, scene_.releases.size());
-    if (!index) return index.error();
+    TALUS_ASSIGN(const int index, read_index(file, scene_.releases.size()));
     ReleaseSetup setup;
     setup.id = file["id"];
-    setup.scene_index = *index;
+    setup.scene_index = index;
     setup.as_in_scene = !file.contains("patches");
     setup.triggered = file.contains("triggered") && file["triggered"] == true;
     Release release;
     release.start_time = std::numeric_limits<double>::infinity();
-    if (*index >= 0) release = scene_.releases[static_cast<std::size_t>(*index)];
+    if (index >= 0) release = scene_.releases[static_cast<std::size_t>(index)];
     if (!setup.as_in_scene) {
-        const auto name = read_text(file, "name", 1000);
-        if (!name) return name.error();
-        release.name = name->value_or("");
+        TALUS_ASSIGN(const auto name, read_text(file, "name", 1000));
+        release.name = name.value_or("");
         if (!file.contains("raster")) release.thickness_raster.reset();
         release.patches.clear();
         if (!file["patches"].is_array()) return bad("patches", file);
         for (const json& patch : file["patches"]) {
             const auto thickness = read_number(patch.is_object() ? patch : json::object(), "thickness_m", {}, "m");
             if (!thickness || !*thickness || !patch.contains("rings")) return bad("patches", file);
-            auto polygon = read_polygon(patch["rings"]);
-            if (!polygon) return polygon.error();
-            release.patches.push_back({std::move(*polygon), **thickness});
+            TALUS_ASSIGN(auto polygon, read_polygon(patch["rings"]));
+            release.patches.push_back({std::move(polygon), **thickness});
         }
         release.volume = release_volume(scene_.terrain, release);
-    } else if (*index < 0) {
+    } else if (index < 0) {
         return bad("patches", file);
     }
     setup.body = std::make_shared<const Release>(std::move(release));
@@ -143,33 +139,29 @@ Result<BarrierSetup> SetupReader::read_barrier(const json& file) const {
     if (!line) return line.error();
     if (!*line) return bad("line", file);
     if (!name || !*name) return bad("name", file);
-    auto openings = read_openings(file);
-    if (!openings) return openings.error();
+    TALUS_ASSIGN(auto openings, read_openings(file));
     BarrierSpec barrier;
     barrier.line = std::move(**line);
-    barrier.openings = std::move(*openings);
+    barrier.openings = std::move(openings);
     json values = file;  // an older journal gives a level crest a height of 0, too
     if (file.contains("crest_elevation_m") && !file["crest_elevation_m"].is_null()) values.erase("height_m");
     Status s = read_values(values, barrier);
     if (s) s = check_rules(barrier, scene_.spec.solver, 0);
     if (!s) return s.error();
-    auto body = make_barrier(scene_.terrain, **name, barrier);
-    if (!body) return body.error();
-    return BarrierSetup{file["id"], std::make_shared<const Building>(std::move(*body)),
-                        file.value("from_scene", false)};
+    TALUS_ASSIGN(auto body, make_barrier(scene_.terrain, **name, barrier));
+    return BarrierSetup{file["id"], std::make_shared<const Building>(std::move(body)), file.value("from_scene", false)};
 }
 
 Result<BuildingSetup> SetupReader::read_building(const json& file) const {
     if (!file.is_object() || !file.contains("id") || !file["id"].is_string()) return bad("id", file);
-    const Result<int> index = read_index(file, scene_.buildings.size());
-    if (!index) return index.error();
+    TALUS_ASSIGN(const int index, read_index(file, scene_.buildings.size()));
     BuildingSetup setup;
     setup.id = file["id"];
-    setup.scene_index = *index;
+    setup.scene_index = index;
     setup.as_in_scene = !file.contains("footprint");
     if (setup.as_in_scene) {
-        if (*index < 0) return bad("footprint", file);
-        setup.body = std::make_shared<const Building>(scene_.buildings[static_cast<std::size_t>(*index)]);
+        if (index < 0) return bad("footprint", file);
+        setup.body = std::make_shared<const Building>(scene_.buildings[static_cast<std::size_t>(index)]);
         return setup;
     }
     const auto name = read_text(file, "name", 1000);
@@ -181,9 +173,8 @@ Result<BuildingSetup> SetupReader::read_building(const json& file) const {
     building.name = **name;
     building.height = **height;
     for (const json& rings : file["footprint"]) {
-        auto polygon = read_polygon(rings);
-        if (!polygon) return polygon.error();
-        building.footprint.push_back(std::move(*polygon));
+        TALUS_ASSIGN(auto polygon, read_polygon(rings));
+        building.footprint.push_back(std::move(polygon));
     }
     std::vector<Building> placed{std::move(building)};
     place_buildings(scene_.terrain, placed);
@@ -195,9 +186,8 @@ Result<std::vector<Polygon>> SetupReader::read_polygons(const json& file, const 
     std::vector<Polygon> polygons;
     if (!file[key].is_array()) return bad(key, file);
     for (const json& rings : file[key]) {
-        auto polygon = read_polygon(rings);
-        if (!polygon) return polygon.error();
-        polygons.push_back(std::move(*polygon));
+        TALUS_ASSIGN(auto polygon, read_polygon(rings));
+        polygons.push_back(std::move(polygon));
     }
     return polygons;
 }
@@ -205,27 +195,24 @@ Result<std::vector<Polygon>> SetupReader::read_polygons(const json& file, const 
 template <class Entry>
 Status SetupReader::read_origin(const json& file, const char* key, std::size_t count, Entry& setup) {
     if (!file.is_object() || !file.contains("id") || !file["id"].is_string()) return bad("id", file);
-    const Result<int> index = read_index(file, count);
-    if (!index) return index.error();
+    TALUS_ASSIGN(const int index, read_index(file, count));
     setup.id = file["id"];
-    setup.scene_index = *index;
+    setup.scene_index = index;
     setup.as_in_scene = !file.contains(key);
-    return setup.as_in_scene && *index < 0 ? Status(bad(key, file)) : Status();
+    return setup.as_in_scene && index < 0 ? Status(bad(key, file)) : Status();
 }
 
 Result<ZoneSetup> SetupReader::read_zone(const json& file) const {
     ZoneSetup setup;
-    if (Status s = read_origin(file, "polygons", scene_.zones.size(), setup); !s) return s.error();
+    TALUS_TRY(read_origin(file, "polygons", scene_.zones.size(), setup));
     Zone zone;
     if (setup.scene_index >= 0) zone = scene_.zones[static_cast<std::size_t>(setup.scene_index)];
     if (!setup.as_in_scene) {
         const auto name = read_text(file, "name", 1000);
         if (!name || !*name) return bad("name", file);
         zone.spec.name = **name;
-        if (Status s = read_values(file, zone.spec); !s) return s.error();
-        auto outline = read_polygons(file, "polygons");
-        if (!outline) return outline.error();
-        zone.outline = std::move(*outline);
+        TALUS_TRY(read_values(file, zone.spec));
+        TALUS_ASSIGN(zone.outline, read_polygons(file, "polygons"));
     }
     setup.area = area_of(zone, scene_.terrain.elevation().geometry);
     setup.body = std::make_shared<const Zone>(std::move(zone));
@@ -234,23 +221,22 @@ Result<ZoneSetup> SetupReader::read_zone(const json& file) const {
 
 Result<BedSetup> SetupReader::read_bed(const json& file) const {
     BedSetup setup;
-    if (Status s = read_origin(file, "parts", scene_.bed_layers.size(), setup); !s) return s.error();
+    TALUS_TRY(read_origin(file, "parts", scene_.bed_layers.size(), setup));
     BedLayer layer;
     if (setup.scene_index >= 0) layer = scene_.bed_layers[static_cast<std::size_t>(setup.scene_index)];
     if (!setup.as_in_scene) {
         const auto name = read_text(file, "name", 1000);
         if (!name || !*name) return bad("name", file);
         layer.spec.name = **name;
-        if (Status s = read_values(file, layer.spec); !s) return s.error();
+        TALUS_TRY(read_values(file, layer.spec));
         if (!file.contains("raster")) layer.depth_raster = nullptr;
         layer.parts.clear();
         if (!file["parts"].is_array()) return bad("parts", file);
         for (const json& part : file["parts"]) {
             const auto depth = read_number(part.is_object() ? part : json::object(), "depth_m", {}, "m");
             if (!depth || !*depth || !part.contains("rings")) return bad("parts", file);
-            auto polygon = read_polygon(part["rings"]);
-            if (!polygon) return polygon.error();
-            layer.parts.push_back({std::move(*polygon), **depth});
+            TALUS_ASSIGN(auto polygon, read_polygon(part["rings"]));
+            layer.parts.push_back({std::move(polygon), **depth});
         }
     }
     setup.amount = amount_of(layer, scene_.terrain);
@@ -260,7 +246,7 @@ Result<BedSetup> SetupReader::read_bed(const json& file) const {
 
 Result<InflowSetup> SetupReader::read_inflow(const json& file) const {
     InflowSetup setup;
-    if (Status s = read_origin(file, "polygons", scene_.inflows.size(), setup); !s) return s.error();
+    TALUS_TRY(read_origin(file, "polygons", scene_.inflows.size(), setup));
     if (setup.as_in_scene) {
         setup.body = std::make_shared<const Inflow>(scene_.inflows[static_cast<std::size_t>(setup.scene_index)]);
         return setup;
@@ -281,9 +267,7 @@ Result<InflowSetup> SetupReader::read_inflow(const json& file) const {
     }
     inflow.area = std::move(*area);
     inflow.direction = *direction;
-    auto rows = read_hydrograph_rows(file.value("hydrograph", json()), inflow.over_area());
-    if (!rows) return rows.error();
-    inflow.hydrograph = std::move(*rows);
+    TALUS_ASSIGN(inflow.hydrograph, read_hydrograph_rows(file.value("hydrograph", json()), inflow.over_area()));
     setup.body = std::make_shared<const Inflow>(std::move(inflow));
     return setup;
 }
@@ -300,7 +284,7 @@ Result<Setup> read_setup(const json& file, const Scene& scene) {
     }
     const SetupReader reader(scene);
     Setup setup;
-    if (Status s = reader.read_material(file["material"], setup.material); !s) return s.error();
+    TALUS_TRY(reader.read_material(file["material"], setup.material));
     const auto read_all = [](const json& entries, auto& into, const char* key, const auto& read) -> Status {
         for (std::size_t k = 0; k < entries.size(); ++k) {
             auto entry = read(entries[k]);
