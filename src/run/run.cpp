@@ -79,7 +79,11 @@ void Run::take_step() {
     const Status stepped = simulation_.advance(&observer_);
     smallest_time_step_ = std::min(smallest_time_step_, state().time_step);
     largest_time_step_ = std::max(largest_time_step_, state().time_step);
-    if (!stepped) return stop(RunPhase::fault, stepped.error().message);
+    if (!stepped) {
+        // Who goes on all the same needs measurements without a hole.
+        if (endless_) observer_.observe(model(), state());
+        return stop(RunPhase::fault, stepped.error().message);
+    }
     if (endless_) return;
     if (!observer_.failed_buildings().empty()) rest_.stir(state().time);
     const bool waiting = still_waiting(model(), state()) || simulation_.inflow().to_come() > 0;
