@@ -166,15 +166,21 @@ export async function testControls(run) {
   await run.check("an action that the server refuses is told beside the control", async () => {
     const first = (await setup()).barriers.length;
     await page.click("[data-draw=barrier]");
-    const height = page.locator(".draft:visible input[type=number]").first();
+    const height = page.locator(".draft:visible input[type=number]").first(), thickness = page.locator(".draft:visible input[type=number]").nth(1);
     await height.fill("900");
     await height.press("Enter");
+    assert.match(await page.locator(".draft:visible .field-note").first().textContent(), /Height is 900; allowed/);
+    await height.fill("3");
+    await height.press("Enter");
+    // What depends on the particle spacing only the server knows.
+    await thickness.fill("0.01");
+    await thickness.press("Enter");
     await clickGround(page, 0.42, 0.62);
     await clickGround(page, 0.52, 0.62);
     await page.click(".draft:visible button:has-text('Finish')");
     const toast = page.locator(".toast.error");
     await toast.waitFor();
-    assert.match(await toast.textContent(), /height_m.*900/);
+    assert.match(await toast.textContent(), /thickness_m.*0\.01/);
     await toast.locator("button").click();
     assert.equal(await page.locator(".toast.error").count(), 0);
     assert.equal((await setup()).barriers.length, first);
@@ -185,6 +191,9 @@ export async function testControls(run) {
     const height = page.locator(".draft:visible input[type=number]").first();
     await height.fill("4");
     await height.press("Enter");
+    const thickness = page.locator(".draft:visible input[type=number]").nth(1);
+    await thickness.fill("1");
+    await thickness.press("Enter");
     const clip = await viewClip(page);
     const without = await run.still(page, clip);
     await clickGround(page, 0.38, 0.62);
