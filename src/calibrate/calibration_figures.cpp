@@ -163,8 +163,9 @@ Chart factor_chart(const Calibration& c, const CalibrationSummary& s) {
             before.insert(before.end(), {part, part});
             y.include(part * 1.1);
         }
-        const auto row = static_cast<double>(k / columns);
-        Plot plot(width * static_cast<double>(k % columns) + 56, height * row + 16, width - 76, height - 66, x, y);
+        const std::size_t row = k / columns;
+        Plot plot(width * static_cast<double>(k % columns) + 56, height * static_cast<double>(row) + 16, width - 76,
+                  height - 66, x, y);
         plot.axes(c.factors[k].key, k % columns == 0 ? "draws, %" : "");
         plot.curves.push_back(std::move(after));
         plot.line(before_x, before, "series black");

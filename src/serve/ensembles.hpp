@@ -6,8 +6,8 @@
 
 #include <nlohmann/json.hpp>
 
-#include "ensemble/finished_ensemble.hpp"
 #include "core/result.hpp"
+#include "ensemble/finished_ensemble.hpp"
 #include "scene/scene.hpp"
 #include "serve/message.hpp"
 

@@ -6,8 +6,8 @@
 #include <string_view>
 #include <vector>
 
-/// Where in the unit cube the runs of an ensemble lie. A design depends on its kind, its size and the seed alone, so that
-/// run 17 is the same run on any machine, shard or rank.
+/// Where in the unit cube the runs of an ensemble lie. A design depends on its kind, its size and the seed alone, so
+/// that run 17 is the same run on any machine, shard or rank.
 namespace talus {
 
 enum class DesignKind {

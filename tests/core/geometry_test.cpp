@@ -1,8 +1,8 @@
+#include "core/geometry.hpp"
+
 #include <utility>
 
 #include <gtest/gtest.h>
-
-#include "core/geometry.hpp"
 
 namespace talus {
 namespace {

@@ -1,8 +1,9 @@
+#include "observe/building_impact.hpp"
+
 #include <cmath>
 
 #include <gtest/gtest.h>
 
-#include "observe/building_impact.hpp"
 #include "observe/particles.hpp"
 
 namespace talus {

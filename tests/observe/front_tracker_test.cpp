@@ -1,8 +1,9 @@
+#include "observe/front_tracker.hpp"
+
 #include <cmath>
 
 #include <gtest/gtest.h>
 
-#include "observe/front_tracker.hpp"
 #include "observe/particles.hpp"
 #include "observe/run_out.hpp"
 

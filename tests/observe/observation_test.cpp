@@ -1,8 +1,8 @@
+#include "observe/observation.hpp"
+
 #include <cmath>
 
 #include <gtest/gtest.h>
-
-#include "observe/observation.hpp"
 
 namespace talus {
 namespace {

@@ -1,3 +1,5 @@
+#include "terrain/flow_path.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <functional>
@@ -8,7 +10,6 @@
 
 #include <gtest/gtest.h>
 
-#include "terrain/flow_path.hpp"
 #include "terrain/grids.hpp"
 
 namespace talus {

@@ -1,9 +1,9 @@
+#include "terrain/ground_cover.hpp"
+
 #include <cmath>
 #include <limits>
 
 #include <gtest/gtest.h>
-
-#include "terrain/ground_cover.hpp"
 
 namespace talus {
 namespace {

@@ -1,3 +1,5 @@
+#include "terrain/release.hpp"
+
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -5,7 +7,6 @@
 #include <gtest/gtest.h>
 
 #include "terrain/grids.hpp"
-#include "terrain/release.hpp"
 
 namespace talus {
 namespace {

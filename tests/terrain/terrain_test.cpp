@@ -1,3 +1,5 @@
+#include "terrain/terrain.hpp"
+
 #include <cmath>
 #include <functional>
 #include <limits>
@@ -6,7 +8,6 @@
 #include <gtest/gtest.h>
 
 #include "terrain/grids.hpp"
-#include "terrain/terrain.hpp"
 
 namespace talus {
 namespace {

@@ -1,5 +1,5 @@
-// Pairwise position-based dynamics (docs/equations.md), eqs. (1) to (4): density and pair friction, both built up from nothing in every step.
-// Compiled once per instruction set by Highway's foreach_target.
+// Pairwise position-based dynamics (docs/equations.md), eqs. (1) to (4): density and pair friction, both built up from
+// nothing in every step. Compiled once per instruction set by Highway's foreach_target.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "sim/cpu/pair_stages.cpp"
 #include <hwy/foreach_target.h>
