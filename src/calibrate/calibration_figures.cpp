@@ -171,7 +171,7 @@ Chart factor_chart(const Calibration& c, const CalibrationSummary& s) {
         plot.line(before_x, before, "series black");
         for (const double limit : {s.factors[k].low, s.factors[k].high}) plot.vertical(limit, "percentile-line");
         chart.plots.push_back(std::move(plot));
-        chart.height = height * (row + 1);
+        chart.height = height * static_cast<double>(row + 1);
     }
     return chart;
 }

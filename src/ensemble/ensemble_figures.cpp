@@ -229,12 +229,13 @@ Json scatter_chart(const EnsembleResult& result) {
         ValueRange x = range_of(xs);
         const double pad = 0.05 * (x.high - x.low);
         x = {x.low - pad, x.high + pad};
-        const auto row = static_cast<double>(i / columns);
-        Plot plot(width * static_cast<double>(i % columns) + 66, 300.0 * row + 12, width - 84, 226, x, y);
+        const std::size_t row = i / columns;
+        Plot plot(width * static_cast<double>(i % columns) + 66, 300.0 * static_cast<double>(row) + 12, width - 84, 226,
+                  x, y);
         plot.axes(factors[shown[i]].key, i % columns == 0 ? "run-out, m" : "");
         plot.dots(xs, ys, xs.size() > 400 ? 2.2 : 4, "run-dot");
         chart.plots.push_back(std::move(plot));
-        chart.height = 300 * (row + 1);
+        chart.height = 300 * static_cast<double>(row + 1);
     }
     return chart_json(chart);
 }

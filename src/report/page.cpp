@@ -99,7 +99,7 @@ class Context : public mustache::context<std::string> {
     }
 
   private:
-    const mustache::data* made(std::string text) const { return &made_.emplace_back(std::move(text)); }
+    const mustache::data* made(const std::string& text) const { return &made_.emplace_back(text); }
 
     mutable int figures_ = 0;
     mutable std::deque<mustache::data> made_;
