@@ -164,7 +164,7 @@ void for_each_array(State& a, State& b, const F& f) {
 
 inline Particle State::particle(std::size_t i) const {
     Particle result;
-#define TALUS_GET(array, element, name) result.name = name.at(i);
+#define TALUS_GET(array, element, name) result.name = (name).at(i);
     TALUS_PARTICLE_ARRAYS(TALUS_GET)
 #undef TALUS_GET
     return result;
