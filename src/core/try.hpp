@@ -9,7 +9,7 @@
 /// `TALUS_TRY(check(scene));` returns the Error, if there is one.
 #define TALUS_TRY(...)                                    \
     do {                                                  \
-        const auto result_of_try = (__VA_ARGS__);         \
+        const auto& result_of_try = (__VA_ARGS__);        \
         if (!result_of_try) return result_of_try.error(); \
     } while (false)
 

@@ -34,7 +34,7 @@ template <class Spec>
     const auto& [section, place] = section_of<Spec>;
     SceneSpec spec;
     spec.*place = {entry};
-    const Status read = read_live_values(object, *find_section(section), spec);
+    Status read = read_live_values(object, *find_section(section), spec);
     if (read) entry = (spec.*place).front();
     return read;
 }
