@@ -51,7 +51,7 @@ class [[nodiscard]] Result {
     std::variant<T, Error> content_;
 };
 
-/// Success, or the Error. `if (Status s = f(); !s) return s.error();`
+/// Success, or the Error; TALUS_TRY (try.hpp) passes it on.
 class [[nodiscard]] Status {
   public:
     Status() = default;
