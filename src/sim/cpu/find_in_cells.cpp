@@ -5,6 +5,7 @@
 // (must come after foreach_target)
 #include <algorithm>
 #include <array>
+#include <cstdint>
 #include <hwy/highway.h>
 #include <utility>
 
@@ -51,6 +52,26 @@ class RowSweep {
     std::array<std::size_t, row_count> cell_{};
 };
 
+/// For each mask of `lanes` bits: the lanes whose bits are set, in order, the others after them.
+template <int lanes>
+constexpr auto compress_table() {
+    std::array<std::array<std::uint32_t, lanes>, 1U << lanes> table{};
+    for (std::uint32_t mask = 0; mask < table.size(); ++mask) {
+        std::uint32_t to = 0;
+        for (const std::uint32_t set : {1U, 0U}) {
+            for (std::uint32_t lane = 0; lane < lanes; ++lane) {
+                if ((mask >> lane & 1U) == set) table[mask][to++] = lane;
+            }
+        }
+    }
+    return table;
+}
+
+/// The candidates around a cell, and which of them is the first particle of the cell itself.
+struct Candidates {
+    std::size_t count, own;
+};
+
 }  // namespace
 }  // namespace talus::cpu
 #endif
@@ -63,15 +84,19 @@ namespace hn = hwy::HWY_NAMESPACE;
 using D = hn::ScalableTag<float>;
 using DU = hn::RebindToUnsigned<D>;
 
+constexpr float far_away = 1e18f;  // m; its square is a float
+
 /// Copies the particles in the 9 rows around a cell to one place: those of the cell look through all of them in turn.
-/// Goes on for a vector with particles that are near nothing. Returns how many there are.
-std::size_t collect_candidates(const VectorArray& sorted, RowSweep& sweep, std::size_t cell, SearchScratch& scratch) {
+/// Goes on for a vector with particles that are near nothing.
+Candidates collect_candidates(const VectorArray& sorted, RowSweep& sweep, std::size_t cell, std::uint32_t begin,
+                              SearchScratch& scratch) {
     constexpr D d;
     constexpr DU du;
     const std::size_t lanes = hn::Lanes(d);
-    std::size_t count = 0;
+    std::size_t count = 0, own = 0;
     for (std::size_t row = 0; row < row_count; ++row) {
         const auto [first, last] = sweep.particles(row, cell);
+        if (row == row_count / 2) own = count + (begin - first);
         const std::size_t room = count + (last - first) + 2 * lanes;
         if (scratch.x.size() < room) {
             for (auto* array : {&scratch.x, &scratch.y, &scratch.z}) array->resize(2 * room);
@@ -86,8 +111,29 @@ std::size_t collect_candidates(const VectorArray& sorted, RowSweep& sweep, std::
         }
         count += last - first;
     }
-    hn::StoreU(hn::Set(d, 1e30f), d, scratch.x.data() + count);
-    return count;
+    hn::StoreU(hn::Set(d, far_away), d, scratch.x.data() + count);
+    return {count, own};
+}
+
+/// Stores the lanes of `index` that are `near` at `to`, in order, and as many others after them as fill a vector.
+/// Returns how many are near.
+HWY_INLINE std::size_t store_compressed(hn::Vec<DU> index, hn::Mask<DU> near, std::uint32_t* to) {
+    constexpr DU du;
+#if HWY_TARGET <= HWY_AVX3 || HWY_TARGET == HWY_SCALAR
+    // In a register and then stored whole: the instruction that compresses into memory is slow on AMD.
+    hn::StoreU(hn::Compress(index, near), du, to);
+    return hn::CountTrue(du, near);
+#else
+    // Highway 1.0's Compress keeps its table in a constexpr that is not static, and GCC 12 copies that to the stack for
+    // every vector (google/highway issue 1139): three quarters of the search.
+    constexpr int lanes = hn::MaxLanes(du);
+    static constexpr auto table = compress_table<lanes>();
+    std::array<std::uint8_t, 8> bits{};
+    hn::StoreMaskBits(du, near, bits.data());
+    const std::uint32_t mask = bits[0];
+    hn::StoreU(hn::TableLookupLanes(index, hn::SetTableIndices(du, table[mask].data())), du, to);
+    return static_cast<std::size_t>(__builtin_popcount(mask));
+#endif
 }
 
 void find_in_cells(const VectorArray& sorted, const std::uint8_t* asleep, const CellGrid& grid, std::size_t first,
@@ -102,26 +148,30 @@ void find_in_cells(const VectorArray& sorted, const std::uint8_t* asleep, const 
         const std::uint32_t begin = grid.start[cell], end = grid.start[cell + 1];
         std::fill(count + begin, count + end, 0);
         if (std::all_of(asleep + begin, asleep + end, [](std::uint8_t sleeps) { return sleeps != 0; })) continue;
-        const std::size_t candidates = collect_candidates(sorted, sweep, cell, scratch);
+        const Candidates candidates = collect_candidates(sorted, sweep, cell, begin, scratch);
         const std::uint32_t particles = end - begin;
-        const std::size_t room = size + particles * candidates + lanes;
+        const std::size_t room = size + particles * candidates.count + lanes;
         if (scratch.found.size() < room) scratch.found.resize(2 * room);
+        // Kept out of the vectors' bookkeeping, which the stores below might otherwise change.
+        float* const x = scratch.x.data();
+        const float *const y = scratch.y.data(), *const z = scratch.z.data();
+        const std::uint32_t* const index = scratch.index.data();
+        std::uint32_t* const found = scratch.found.data();
         for (std::uint32_t i = begin; i < end; ++i) {
             if (asleep[i]) continue;
-            const auto px = hn::Set(d, sorted.x[i]), py = hn::Set(d, sorted.y[i]), pz = hn::Set(d, sorted.z[i]);
-            const auto own = hn::Set(du, i);
+            float& own_x = x[candidates.own + (i - begin)];
+            const float mine = std::exchange(own_x, far_away);  // not its own neighbour
+            const auto px = hn::Set(d, mine), py = hn::Set(d, sorted.y[i]), pz = hn::Set(d, sorted.z[i]);
             const std::size_t before = size;
-            for (std::size_t c = 0; c < candidates; c += lanes) {
-                const auto dx = hn::Sub(hn::LoadU(d, scratch.x.data() + c), px);
-                const auto dy = hn::Sub(hn::LoadU(d, scratch.y.data() + c), py);
-                const auto dz = hn::Sub(hn::LoadU(d, scratch.z.data() + c), pz);
-                const auto index = hn::LoadU(du, scratch.index.data() + c);
+            for (std::size_t c = 0; c < candidates.count; c += lanes) {
+                const auto dx = hn::Sub(hn::LoadU(d, x + c), px);
+                const auto dy = hn::Sub(hn::LoadU(d, y + c), py);
+                const auto dz = hn::Sub(hn::LoadU(d, z + c), pz);
                 const auto square = hn::Add(hn::Mul(dz, dz), hn::Add(hn::Mul(dy, dy), hn::Mul(dx, dx)));
-                const auto near = hn::And(hn::RebindMask(du, hn::Lt(square, limit)), hn::Ne(index, own));
-                // In a register and then stored whole: the instruction that compresses into memory is slow on AMD.
-                hn::StoreU(hn::Compress(index, near), du, scratch.found.data() + size);
-                size += hn::CountTrue(du, near);
+                const auto near = hn::RebindMask(du, hn::Lt(square, limit));
+                size += store_compressed(hn::LoadU(du, index + c), near, found + size);
             }
+            own_x = mine;
             count[i] = static_cast<std::uint32_t>(size - before);
         }
     }
