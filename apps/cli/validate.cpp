@@ -13,6 +13,7 @@
 #include "exit_code.hpp"
 #include "interrupt.hpp"
 #include "params/fields.hpp"
+#include "products/results_json.hpp"
 #include "products/text_file.hpp"
 #include "progress.hpp"
 #include "temporary_folder.hpp"
@@ -27,10 +28,10 @@ using validate::Case;
 using validate::CaseResult;
 
 struct ValidateArguments {
-    std::vector<std::string> cases;    ///< names or folders; empty: all cases of the program
-    bool quick = false, list = false;  ///< quick: only the cases that say so
-    bool known = false;                ///< failures that the case files announce are no reason to fail
-    std::string json, html, markdown;  ///< files to write; empty: none
+    std::vector<std::string> cases;             ///< names or folders; empty: all cases of the program
+    bool quick = false, list = false;           ///< quick: only the cases that say so
+    bool known = false;                         ///< failures that the case files announce are no reason to fail
+    std::string json, results, html, markdown;  ///< files to write; empty: none
     std::optional<int> threads;
     std::string data;  ///< value of TALUS_DATA; empty: as in the environment
 };
@@ -83,8 +84,10 @@ Status write_outputs(const ValidateArguments& arguments, const std::vector<CaseR
     if (!arguments.json.empty()) {
         TALUS_TRY(write_text_file(arguments.json, validate::table_json(results)));
     }
-    if (!arguments.html.empty()) {
-        TALUS_TRY(write_text_file(arguments.html, validate::page_html(results)));
+    if (!arguments.results.empty() || !arguments.html.empty()) {
+        const report::Json data = validate::page_data(results);
+        if (!arguments.results.empty()) TALUS_TRY(write_results(data, arguments.results));
+        if (!arguments.html.empty()) TALUS_TRY(write_text_file(arguments.html, validate::page_html(data)));
     }
     if (!arguments.markdown.empty()) return validate::write_markdown(results, arguments.markdown);
     return {};
@@ -93,7 +96,7 @@ Status write_outputs(const ValidateArguments& arguments, const std::vector<CaseR
 int validate_command(const ValidateArguments& arguments) {
     if (!arguments.data.empty()) set_data_folder(arguments.data);
     InterruptWatch watch;
-    for (const std::string& file : {arguments.json, arguments.html, arguments.markdown}) {
+    for (const std::string& file : {arguments.json, arguments.results, arguments.html, arguments.markdown}) {
         if (Status s = check_output_file(file); !s) return fail(exit_code::bad_input, s.error().message);
     }
     const TemporaryFolder unpacked;
@@ -146,6 +149,8 @@ void add_validate(CLI::App& program, std::vector<Command>& commands) {
     app->add_flag("--list", validate->list, "list the cases instead of computing them");
     app->add_flag("--known", validate->known, "announced failures are no reason for exit code 4");
     app->add_option("--json", validate->json, "write the table as a list of objects")->type_name("FILE");
+    app->add_option("--results", validate->results, "write all that the page shows, as data (results.json)")
+        ->type_name("FILE");
     app->add_option("--html", validate->html, "write a page with the table and a plot for each case")
         ->type_name("FILE");
     app->add_option("--markdown", validate->markdown, "write the same as Markdown, its plots into a folder beside it")

@@ -10,6 +10,7 @@
 #include "core/try.hpp"
 #include "params/scene_text.hpp"
 #include "products/csv.hpp"
+#include "products/results_json.hpp"
 #include "products/text_file.hpp"
 #include "scene/builtin.hpp"
 
@@ -196,7 +197,9 @@ Status write_calibration(const Calibration& c, const SceneSource& source, bool o
     TALUS_TRY(write_text_file(folder / "posterior.csv", draw_csv(c)));
     TALUS_TRY(write_text_file(folder / "misfit_map.svg", report::chart_file(report::misfit_chart(c, map))));
     TALUS_TRY(write_best_scene(c, source, own_files, folder));
-    TALUS_TRY(write_text_file(folder / "report.html", render_calibration_report(c)));
+    const Json results = calibration_results(c, s, map);
+    TALUS_TRY(write_results(results, folder / "results.json"));
+    TALUS_TRY(write_text_file(folder / "report.html", calibration_report(results)));
     return write_text_file(folder / "calibration.json", calibration_json(c).dump(2) + "\n");
 }
 

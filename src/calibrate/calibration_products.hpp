@@ -55,7 +55,7 @@ struct MisfitMap {
 /// The share of a distribution (not a list) that lies below a value.
 [[nodiscard]] double share_below(const Distribution& distribution, double value);
 
-/// runs.csv, factors.csv, observations.csv, misfit_map.csv, posterior.csv, calibration.json, report.html,
+/// runs.csv, factors.csv, observations.csv, misfit_map.csv, posterior.csv, calibration.json, results.json, report.html,
 /// misfit_map.svg and best_fit/scene.toml, which runs the best fit, into the folder. `own_files`: the scene's files are
 /// unpacked into best_fit too (the built-in scene). Errors name the file and the cause.
 [[nodiscard]] Status write_calibration(const Calibration& calibration, const SceneSource& source, bool own_files,
@@ -64,7 +64,11 @@ struct MisfitMap {
 /// Everything but draws and the map; values that do not exist are null.
 [[nodiscard]] nlohmann::ordered_json calibration_json(const Calibration& calibration);
 
-/// The self-contained page.
-[[nodiscard]] std::string render_calibration_report(const Calibration& calibration);
+/// What the report shows, as data: results.json.
+[[nodiscard]] nlohmann::ordered_json calibration_results(const Calibration& calibration,
+                                                         const CalibrationSummary& summary, const MisfitMap& map);
+
+/// The self-contained page: what `results`, of calibration_results(), say.
+[[nodiscard]] std::string calibration_report(const nlohmann::ordered_json& results);
 
 }  // namespace talus

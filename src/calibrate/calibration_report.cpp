@@ -1,8 +1,6 @@
 #include <cmath>
-#include <ctime>
 #include <string>
 
-#include <fmt/chrono.h>
 #include <fmt/format.h>
 
 #include "calibrate/calibration_figures.hpp"
@@ -12,6 +10,7 @@
 #include "params/fields.hpp"
 #include "report/number_text.hpp"
 #include "report/page.hpp"
+#include "report/results.hpp"
 #include "report/table.hpp"
 
 namespace talus {
@@ -145,36 +144,34 @@ Json convergence_of(const Calibration& c, const CalibrationSummary& s) {
 
 }  // namespace
 
-std::string render_calibration_report(const Calibration& c) {
-    const SceneInfo& info = c.scene->spec.scene;
-    const CalibrationSummary s = summarise(c);
+Json calibration_results(const Calibration& c, const CalibrationSummary& s, const MisfitMap& map) {
     double wall = 0;
     for (const RunRecord& record : c.records) wall += record.wall_time;
-    const Json page = {{"report_name", "calibration report"},
-                       {"masthead", "Back-analysis of a landslide from field observations"},
-                       {"program", std::string("talus ") + TALUS_VERSION},
-                       {"date", fmt::format("{:%d %B %Y, %H:%M} UTC", fmt::gmtime(std::time(nullptr)))},
-                       {"title", info.title},
-                       {"description", info.description},
-                       {"reconstruction", info.reconstruction},
-                       {"reference_system", c.scene->crs.label()},
-                       {"status", {{"name", "complete"}, {"partial", false}}},
-                       {"maps", nullptr},
-                       {"key_figures", key_figures_of(c, s)},
-                       {"has_warnings", !s.warnings.empty()},
-                       {"warnings", s.warnings},
-                       {"factors", factors_of(c, s)},
-                       {"misfit", chart_json(misfit_chart(c, misfit_map(c)))},
-                       {"more_factors", c.factors.size() > 2},
-                       {"draws", c.result.posterior.draws.size()},
-                       {"factor_chart", chart_json(factor_chart(c, s))},
-                       {"correlations", correlations_of(c)},
-                       {"observation_chart", chart_json(observation_chart(c, s))},
-                       {"observations", observations_of(c, s)},
-                       {"convergence_chart", chart_json(convergence_chart(c))},
-                       {"convergence", convergence_of(c, s)},
-                       {"chains", chain_count},
-                       {"wall_time_s", wall}};
+    Json all = results_head("talus calibration", *c.scene);
+    all.update({{"status", {{"name", "complete"}, {"partial", false}}},
+                {"key_figures", key_figures_of(c, s)},
+                {"warnings", s.warnings},
+                {"factors", factors_of(c, s)},
+                {"misfit", chart_json(misfit_chart(c, map))},
+                {"more_factors", c.factors.size() > 2},
+                {"draws", c.result.posterior.draws.size()},
+                {"factor_chart", chart_json(factor_chart(c, s))},
+                {"correlations", correlations_of(c)},
+                {"observation_chart", chart_json(observation_chart(c, s))},
+                {"observations", observations_of(c, s)},
+                {"convergence_chart", chart_json(convergence_chart(c))},
+                {"convergence", convergence_of(c, s)},
+                {"chains", chain_count},
+                {"wall_time_s", wall}});
+    return all;
+}
+
+std::string calibration_report(const Json& results) {
+    Json page = results;
+    page["report_name"] = "calibration report";
+    page["masthead"] = "Back-analysis of a landslide from field observations";
+    page["has_warnings"] = !results["warnings"].empty();
+    page["maps"] = nullptr;
     return render(calibration_report_files::calibration_html, page);
 }
 

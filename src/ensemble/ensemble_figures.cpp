@@ -41,6 +41,10 @@ Histogram histogram_of(const std::vector<double>& values, const ValueRange& rang
     return h;
 }
 
+double number_of(const Json& value) {
+    return value.is_number() ? value.get<double>() : never;
+}
+
 /// A bar of the sensitivity figure.
 struct Bar {
     double value = 0, low = 0, high = 0;
@@ -48,25 +52,27 @@ struct Bar {
     bool whisker = false;
 };
 
-std::vector<Bar> bars_of(const FactorEffect& e, SensitivityKind kind) {
-    switch (kind) {
-        case SensitivityKind::variance:
-            return {{e.first.value, e.first.low, e.first.high, "effect-first", true},
-                    {e.total.value, e.total.low, e.total.high, "effect-total", true}};
-        case SensitivityKind::screening:
-            return {{e.mean_size, 0, 0, "effect-first", false}, {e.deviation, 0, 0, "effect-total", false}};
-        case SensitivityKind::rank:
-            break;
+/// Of an effect_json().
+std::vector<Bar> bars_of(const Json& effect) {
+    if (effect.contains("first_order")) {
+        const Json &first = effect["first_order"], &total = effect["total"];
+        return {{number_of(first[0]), number_of(first[1]), number_of(first[2]), "effect-first", true},
+                {number_of(total[0]), number_of(total[1]), number_of(total[2]), "effect-total", true}};
     }
-    return {{e.correlation, 0, 0, e.correlation < 0 ? "effect-fall" : "effect-first", false}};
+    if (effect.contains("mean_absolute_effect")) {
+        return {{number_of(effect["mean_absolute_effect"]), 0, 0, "effect-first", false},
+                {number_of(effect["standard_deviation"]), 0, 0, "effect-total", false}};
+    }
+    const double correlation = number_of(effect["rank_correlation"]);
+    return {{correlation, 0, 0, correlation < 0 ? "effect-fall" : "effect-first", false}};
 }
 
 /// The scale of one result's bars: shares and correlations have their own, elementary effects the result's unit.
-ValueRange scale_of(const Sensitivity& s) {
-    if (s.kind == SensitivityKind::rank) return {-1, 1};
-    ValueRange range{0, s.kind == SensitivityKind::variance ? 1 : 1e-12};
-    for (const FactorEffect& e : s.effects) {
-        for (const Bar& bar : bars_of(e, s.kind)) {
+ValueRange scale_of(const Json& sensitivity, const Json& effects) {
+    if (sensitivity["rank"].get<bool>()) return {-1, 1};
+    ValueRange range{0, sensitivity["variance"].get<bool>() ? 1 : 1e-12};
+    for (const Json& effect : effects) {
+        for (const Bar& bar : bars_of(effect)) {
             range.include(bar.value);
             if (bar.whisker) range.include(std::min(bar.high, 1.3));
             if (bar.whisker) range.include(std::max(bar.low, -0.2));
@@ -75,27 +81,21 @@ ValueRange scale_of(const Sensitivity& s) {
     return range;
 }
 
-std::string value_text(const FactorEffect& e, SensitivityKind kind, const std::string& unit) {
-    switch (kind) {
-        case SensitivityKind::variance:
-            return fmt::format("{} / {}", fixed(e.first.value, 2), fixed(e.total.value, 2));
-        case SensitivityKind::screening:
-            return fmt::format("{} {}", significant(e.mean_size, 3), unit);
-        case SensitivityKind::rank:
-            break;
-    }
-    return fixed(e.correlation, 2);
+std::string value_text(const Json& sensitivity, const std::vector<Bar>& bars, const std::string& unit) {
+    if (sensitivity["variance"].get<bool>())
+        return fmt::format("{} / {}", fixed(bars[0].value, 2), fixed(bars[1].value, 2));
+    if (sensitivity["screening"].get<bool>()) return fmt::format("{} {}", significant(bars[0].value, 3), unit);
+    return fixed(bars[0].value, 2);
 }
 
 /// The bars of one result and factor, `width` wide from `left`, with their value behind.
-void draw_effect(Svg& svg, const Sensitivity& s, std::size_t factor, const std::string& unit, double left, double width,
+void draw_effect(Svg& svg, const Json& sensitivity, const Json& result, std::size_t factor, double left, double width,
                  double y, double row) {
-    const FactorEffect& effect = s.effects[factor];
-    const ValueRange scale = scale_of(s);
+    const ValueRange scale = scale_of(sensitivity, result["effects"]);
     const auto px = [&](double v) {
         return left + (std::clamp(v, scale.low, scale.high) - scale.low) / (scale.high - scale.low) * width;
     };
-    const std::vector<Bar> bars = bars_of(effect, s.kind);
+    const std::vector<Bar> bars = bars_of(result["effects"][factor]);
     const double height = (row - 12) / static_cast<double>(bars.size());
     for (std::size_t b = 0; b < bars.size(); ++b) {
         const double from = y + 6 + height * static_cast<double>(b), middle = from + (height - 1) / 2;
@@ -104,7 +104,7 @@ void draw_effect(Svg& svg, const Sensitivity& s, std::size_t factor, const std::
         if (bars[b].whisker) svg.line("whisker", px(bars[b].low), middle, px(bars[b].high), middle);
     }
     svg.line("axis", px(0), y + 3, px(0), y + row - 3);
-    svg.text("tick", left + width + 8, y + 19, value_text(effect, s.kind, unit));
+    svg.text("tick", left + width + 8, y + 19, value_text(sensitivity, bars, result["unit"].get<std::string>()));
 }
 
 /// "solver.iteration_count" under its value in the run; a text has none.
@@ -163,44 +163,58 @@ Json run_out_chart(const EnsembleResult& result) {
     return chart_json({"Run-out of all runs", 1000, 320, {std::move(left), std::move(right)}});
 }
 
-Json sensitivity_figure(const EnsembleResult& result) {
-    constexpr double left = 270, row = 30, head = 30;
-    constexpr std::size_t most_columns = 4;  // factors side by side; more go below
+Json sensitivity_data(const EnsembleResult& result) {
     const auto& factors = result.runs->plan().factors;
-    Svg svg;
-    double y = 0;
     std::size_t used = 0;
     SensitivityKind kind = SensitivityKind::rank;
+    Json names = Json::array(), rows = Json::array();
+    for (const Factor& f : factors) names.push_back(f.key);
+    for (std::size_t m = 0; m < result.measures.size(); ++m) {
+        const Sensitivity& s = result.sensitivity[m];
+        if (s.effects.empty()) continue;
+        used = std::max(used, s.used);
+        kind = s.kind;
+        Json effects = Json::array();
+        for (std::size_t k = 0; k < factors.size(); ++k)
+            effects.push_back(effect_json(s.kind, factors[k].key, s.effects[k]));
+        rows.push_back({{"name", result.measures[m].name}, {"unit", result.measures[m].unit}, {"effects", effects}});
+    }
+    if (used == 0) return {};
+    return {{"used", used},
+            {"variance", kind == SensitivityKind::variance},
+            {"screening", kind == SensitivityKind::screening},
+            {"rank", kind == SensitivityKind::rank},
+            {"factors", names},
+            {"rows", rows}};
+}
+
+std::string sensitivity_svg(const Json& sensitivity) {
+    constexpr double left = 270, row = 30, head = 30;
+    constexpr std::size_t most_columns = 4;  // factors side by side; more go below
+    const Json& factors = sensitivity["factors"];
+    Svg svg;
+    double y = 0;
     for (std::size_t first = 0; first < factors.size(); first += most_columns) {
         const std::size_t columns = std::min(most_columns, factors.size() - first);
         const double width = (1000 - left) / static_cast<double>(columns);
         for (std::size_t c = 0; c < columns; ++c) {
             svg.text("column-name", left + width * (static_cast<double>(c) + 0.5), y + 16,
-                     shortened(factors[first + c].key, static_cast<std::size_t>(width / 7.2)));
+                     shortened(factors[first + c].get<std::string>(), static_cast<std::size_t>(width / 7.2)));
         }
         y += head;
-        for (std::size_t m = 0; m < result.measures.size(); ++m) {
-            const Sensitivity& s = result.sensitivity[m];
-            if (s.effects.empty()) continue;
-            used = std::max(used, s.used);
-            kind = s.kind;
+        for (const Json& result : sensitivity["rows"]) {
             svg.line("row-rule", 0, y, 1000, y);
-            svg.text("row-name", 0, y + 19, shortened(result.measures[m].name, 40));
+            svg.text("row-name", 0, y + 19, shortened(result["name"].get<std::string>(), 40));
             for (std::size_t c = 0; c < columns; ++c) {
                 const double from = left + width * static_cast<double>(c) + 12;
-                draw_effect(svg, s, first + c, result.measures[m].unit, from,
-                            width - (s.kind == SensitivityKind::rank ? 70 : 108), y, row);
+                draw_effect(svg, sensitivity, result, first + c, from,
+                            width - (sensitivity["rank"].get<bool>() ? 70 : 108), y, row);
             }
             y += row;
         }
         y += 14;
     }
-    if (used == 0) return {};
-    return {{"svg", figure_svg(1000, y, "Sensitivity of every result to every factor", svg)},
-            {"used", used},
-            {"variance", kind == SensitivityKind::variance},
-            {"screening", kind == SensitivityKind::screening},
-            {"rank", kind == SensitivityKind::rank}};
+    return figure_svg(1000, y, "Sensitivity of every result to every factor", svg);
 }
 
 Json scatter_chart(const EnsembleResult& result) {

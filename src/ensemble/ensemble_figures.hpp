@@ -9,8 +9,10 @@ namespace talus::report {
 /// Histogram of run-out with its percentiles, and the share of runs that go farther.
 [[nodiscard]] Json run_out_chart(const EnsembleResult& result);
 
-/// For every result, how much of it depends on each factor: bars, drawn, whose meaning follows the design.
-[[nodiscard]] Json sensitivity_figure(const EnsembleResult& result);
+/// For every result, how much of it depends on each factor, by the measure that follows from the design.
+[[nodiscard]] Json sensitivity_data(const EnsembleResult& result);
+/// That as bars: a drawing for the report.
+[[nodiscard]] std::string sensitivity_svg(const Json& sensitivity);
 
 /// Run-out against each numeric factor, a dot per run.
 [[nodiscard]] Json scatter_chart(const EnsembleResult& result);

@@ -11,6 +11,7 @@
 #include "core/try.hpp"
 #include "geo/raster.hpp"
 #include "products/csv.hpp"
+#include "products/results_json.hpp"
 #include "products/text_file.hpp"
 
 namespace talus {
@@ -109,22 +110,6 @@ std::string sensitivity_csv(const EnsembleResult& result) {
     return csv.text();
 }
 
-Json effect_json(SensitivityKind kind, const std::string& factor, const FactorEffect& e) {
-    const auto interval = [](const Estimate& v) { return Json{v.value, v.low, v.high}; };
-    Json json = {{"factor", factor}};
-    if (kind == SensitivityKind::variance) {
-        json["first_order"] = interval(e.first);
-        json["total"] = interval(e.total);
-    } else if (kind == SensitivityKind::screening) {
-        json["mean_absolute_effect"] = e.mean_size;
-        json["mean_effect"] = e.mean;
-        json["standard_deviation"] = e.deviation;
-    } else {
-        json["rank_correlation"] = e.correlation;
-    }
-    return json;
-}
-
 /// Maps of thresholds that are counted no more must not lie beside those that are.
 void remove_old_maps(const fs::path& folder, const std::set<std::string>& wanted) {
     std::error_code error;
@@ -205,6 +190,22 @@ HazardMap style_of(const EnsembleMap& map) {
     return style;
 }
 
+Json effect_json(SensitivityKind kind, const std::string& factor, const FactorEffect& e) {
+    const auto interval = [](const Estimate& v) { return Json{v.value, v.low, v.high}; };
+    Json json = {{"factor", factor}};
+    if (kind == SensitivityKind::variance) {
+        json["first_order"] = interval(e.first);
+        json["total"] = interval(e.total);
+    } else if (kind == SensitivityKind::screening) {
+        json["mean_absolute_effect"] = e.mean_size;
+        json["mean_effect"] = e.mean;
+        json["standard_deviation"] = e.deviation;
+    } else {
+        json["rank_correlation"] = e.correlation;
+    }
+    return json;
+}
+
 Json statistics_json(const EnsembleResult& result) {
     const Reduction& r = result.reduction;
     const std::vector<Factor>& factors = result.runs->plan().factors;
@@ -247,7 +248,9 @@ Status write_ensemble(const EnsembleResult& result, const fs::path& folder) {
     TALUS_TRY(write_text_file(folder / "buildings.csv", building_csv(result)));
     TALUS_TRY(write_text_file(folder / "distributions.csv", distribution_csv(result)));
     TALUS_TRY(write_text_file(folder / "sensitivity.csv", sensitivity_csv(result)));
-    TALUS_ASSIGN(const std::string report, render_ensemble_report(result));
+    const Json results = ensemble_results(result);
+    TALUS_TRY(write_results(results, folder / "results.json"));
+    TALUS_ASSIGN(const std::string report, ensemble_report(result, results));
     TALUS_TRY(write_text_file(folder / "report.html", report));
     return write_text_file(folder / "statistics.json", statistics_json(result).dump(2) + "\n");
 }

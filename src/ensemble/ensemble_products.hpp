@@ -33,14 +33,22 @@ struct EnsembleResult {
 /// How a map of an ensemble is called and coloured: "probability_depth_0.1m", "peak_depth_p95".
 [[nodiscard]] HazardMap style_of(const EnsembleMap& map);
 
-/// Maps (.tif + .qml), runs.csv, buildings.csv, distributions.csv, sensitivity.csv, statistics.json and report.html
-/// into the folder, over those of an earlier call. Errors name the file and the cause.
+/// Maps (.tif + .qml), runs.csv, buildings.csv, distributions.csv, sensitivity.csv, statistics.json, results.json and
+/// report.html into the folder, over those of an earlier call. Errors name the file and the cause.
 [[nodiscard]] Status write_ensemble(const EnsembleResult& result, const std::filesystem::path& folder);
+
+/// A factor's effect on a result as statistics.json and results.json have it.
+[[nodiscard]] nlohmann::ordered_json effect_json(SensitivityKind kind, const std::string& factor,
+                                                 const FactorEffect& effect);
 
 /// Counts, percentiles of every measure, odds of every building, sensitivity. A value that does not exist is null.
 [[nodiscard]] nlohmann::ordered_json statistics_json(const EnsembleResult& result);
 
-/// The self-contained page. Errors: a picture could not be encoded.
-[[nodiscard]] Result<std::string> render_ensemble_report(const EnsembleResult& result);
+/// What the report shows, as data: results.json.
+[[nodiscard]] nlohmann::ordered_json ensemble_results(const EnsembleResult& result);
+
+/// The self-contained page: what `results`, of ensemble_results(), say, with maps. Errors: a picture could not be
+/// encoded.
+[[nodiscard]] Result<std::string> ensemble_report(const EnsembleResult& result, const nlohmann::ordered_json& results);
 
 }  // namespace talus

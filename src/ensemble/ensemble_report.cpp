@@ -1,10 +1,8 @@
 #include <algorithm>
 #include <cmath>
-#include <ctime>
 #include <string>
 #include <vector>
 
-#include <fmt/chrono.h>
 #include <fmt/format.h>
 
 #include "core/number_or_null.hpp"
@@ -17,6 +15,7 @@
 #include "report/map.hpp"
 #include "report/number_text.hpp"
 #include "report/page.hpp"
+#include "report/results.hpp"
 #include "report/table.hpp"
 
 namespace talus {
@@ -288,40 +287,41 @@ double mean_wall_time(const EnsembleResult& result) {
 
 }  // namespace
 
-Result<std::string> render_ensemble_report(const EnsembleResult& result) {
-    const Scene& scene = *result.scene;
-    const SceneInfo& info = scene.spec.scene;
+Json ensemble_results(const EnsembleResult& result) {
     const Reduction& r = result.reduction;
-    TALUS_ASSIGN(auto maps, map_figures(scene, content_of(result)));
     const bool partial = !r.missing.empty();
     const double complete = std::max<double>(1, static_cast<double>(r.complete));
-    const Json page = {{"report_name", "ensemble report"},
-                       {"masthead", "Ensemble of landslide run-out simulations"},
-                       {"program", std::string("talus ") + TALUS_VERSION},
-                       {"date", fmt::format("{:%d %B %Y, %H:%M} UTC", fmt::gmtime(std::time(nullptr)))},
-                       {"title", info.title},
-                       {"description", info.description},
-                       {"reconstruction", info.reconstruction},
-                       {"reference_system", scene.crs.label()},
-                       {"status", {{"name", partial ? "runs are missing" : "complete"}, {"partial", partial}}},
-                       {"runs", result.runs->count()},
-                       {"complete", r.complete},
-                       {"missing", r.missing.size()},
-                       {"failed", r.failed > 0 ? Json(r.failed) : Json()},
-                       {"key_figures", key_figures_of(result)},
-                       {"factors", factors_of(result)},
-                       {"design", design_text(result)},
-                       {"maps", std::move(maps)},
-                       {"run_out", run_out_chart(result)},
-                       {"has_buildings", !r.buildings.empty()},
-                       {"buildings", buildings_of(result)},
-                       {"results", results_of(result)},
-                       {"scatter", scatter_chart(result)},
-                       {"sensitivity", sensitivity_figure(result)},
-                       {"resampled_sets", 500},
-                       {"failed_runs", failed_runs(result)},
-                       {"largest_standard_error_percent", 50 / std::sqrt(complete)},
-                       {"mean_wall_time_s", number_or_null<Json>(mean_wall_time(result))}};
+    Json all = results_head("talus ensemble", *result.scene);
+    all.update({{"status", {{"name", partial ? "runs are missing" : "complete"}, {"partial", partial}}},
+                {"runs", result.runs->count()},
+                {"complete", r.complete},
+                {"missing", r.missing.size()},
+                {"failed", r.failed},
+                {"key_figures", key_figures_of(result)},
+                {"factors", factors_of(result)},
+                {"design", design_text(result)},
+                {"run_out", run_out_chart(result)},
+                {"has_buildings", !r.buildings.empty()},
+                {"buildings", buildings_of(result)},
+                {"results", results_of(result)},
+                {"scatter", scatter_chart(result)},
+                {"sensitivity", sensitivity_data(result)},
+                {"resampled_sets", 500},
+                {"failed_runs", failed_runs(result)},
+                {"largest_standard_error_percent", 50 / std::sqrt(complete)},
+                {"mean_wall_time_s", number_or_null<Json>(mean_wall_time(result))}});
+    return all;
+}
+
+Result<std::string> ensemble_report(const EnsembleResult& result, const Json& results) {
+    TALUS_ASSIGN(auto maps, map_figures(*result.scene, content_of(result)));
+    Json page = results;
+    page["report_name"] = "ensemble report";
+    page["masthead"] = "Ensemble of landslide run-out simulations";
+    page["maps"] = std::move(maps);
+    if (Json& sensitivity = page["sensitivity"]; !sensitivity.is_null()) {
+        sensitivity["svg"] = sensitivity_svg(sensitivity);
+    }
     return render(ensemble_report_files::ensemble_html, page);
 }
 

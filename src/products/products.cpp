@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "core/try.hpp"
+#include "products/results_json.hpp"
 #include "products/text_file.hpp"
 #include "products/writers.hpp"
 #include "report/report.hpp"
@@ -26,9 +27,7 @@ Status write_partial_note(const RunResult& result, const std::filesystem::path& 
 Status write_report(const Scene& scene, const RunResult& result, const std::vector<Comparison>& comparisons,
                     const std::filesystem::path& folder) {
     const report::Json results = report::run_results(scene, result, comparisons);
-    // Names from attribute tables need not be valid UTF-8; the file is.
-    const std::string text = results.dump(1, ' ', false, report::Json::error_handler_t::replace) + "\n";
-    TALUS_TRY(write_text_file(folder / "results.json", text));
+    TALUS_TRY(write_results(results, folder / "results.json"));
     TALUS_ASSIGN(const auto page, report::run_report(scene, result, results));
     return write_text_file(folder / "report.html", page);
 }

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "core/hash.hpp"
+#include "products/text_file.hpp"
 
 namespace talus {
 
@@ -105,6 +106,11 @@ Json structures_json(const Observation& observation) {
         list.push_back(entry);
     }
     return list;
+}
+
+Status write_results(const Json& results, const std::filesystem::path& file) {
+    // Names from attribute tables need not be valid UTF-8; the file is.
+    return write_text_file(file, results.dump(1, ' ', false, Json::error_handler_t::replace) + "\n");
 }
 
 }  // namespace talus

@@ -1,7 +1,10 @@
 #pragma once
 
+#include <filesystem>
+
 #include <nlohmann/json.hpp>
 
+#include "core/result.hpp"
 #include "run/comparison.hpp"
 
 /// Parts of a result as the manifest and `talus run --json` both give them. A value that does not exist is null.
@@ -16,5 +19,8 @@ namespace talus {
 
 /// What was hit, with its peaks, and every barrier. A value that does not exist is null.
 [[nodiscard]] nlohmann::ordered_json structures_json(const Observation& observation);
+
+/// What a report shows, as the file results.json (docs/results.md). Errors name the file and the cause.
+[[nodiscard]] Status write_results(const nlohmann::ordered_json& results, const std::filesystem::path& file);
 
 }  // namespace talus

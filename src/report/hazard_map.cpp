@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -16,66 +17,37 @@ std::string item(const std::string& upper_limit, const report::Colour& colour, i
                        colour.hex(), alpha, report::escape(label));
 }
 
+HazardMap map(const char* file, const char* title, const char* description, const char* unit, double factor,
+              Grid<float> HazardMaps::*grid, std::vector<double> breaks, const report::Ramp& ramp) {
+    return {file, title, description, unit, factor, grid, std::move(breaks), ramp};
+}
+
 }  // namespace
 
 const std::vector<HazardMap>& hazard_maps() {
+    using Maps = HazardMaps;
     // Breaks at 15 and 30 kPa part slight, extensive and complete damage to buildings not of reinforced concrete
     // (Kang & Kim 2014); depths of 0.5 and 1 m are the limits of common intensity classes.
     static const std::vector<HazardMap> maps = {
-        {"peak_depth",
-         "Peak depth",
-         "peak flow depth, vertical",
-         "m",
-         1,
-         &HazardMaps::peak_depth,
-         {0, 0.1, 0.25, 0.5, 1, 2, 3, 5, 10, 20},
-         {205, 0.05, 268, 0.15, 0.90, 0.28}},
-        {"peak_speed",
-         "Peak speed",
-         "peak depth-averaged speed",
-         "m/s",
-         1,
-         &HazardMaps::peak_speed,
-         {0, 1, 2, 4, 6, 8, 10, 15, 20, 30},
-         {104, 0.11, 8, 0.13, 0.93, 0.28}},
-        {"peak_pressure",
-         "Peak impact pressure",
-         "peak impact pressure, rest density x speed^2",
-         "kPa",
-         1e-3,
-         &HazardMaps::peak_pressure,
-         {0, 5, 15, 30, 50, 100, 200, 400, 800},
-         {88, 0.08, -48, 0.14, 0.93, 0.26}},
-        {"arrival_time",
-         "Arrival time",
-         "time of first arrival since the start of the run",
-         "s",
-         1,
-         &HazardMaps::arrival_time,
-         {},
-         {215, 0.06, 118, 0.10, 0.30, 0.92}},
-        {"deposit_depth",
-         "Deposit depth",
-         "deposit depth at the end of the run, vertical",
-         "m",
-         1,
-         &HazardMaps::deposit_depth,
-         {0.05, 0.1, 0.25, 0.5, 1, 2, 3, 5, 10, 20},
-         {92, 0.07, 42, 0.09, 0.92, 0.28}},
+        map("peak_depth", "Peak depth", "peak flow depth, vertical", "m", 1, &Maps::peak_depth,
+            {0, 0.1, 0.25, 0.5, 1, 2, 3, 5, 10, 20}, {205, 0.05, 268, 0.15, 0.90, 0.28}),
+        map("peak_speed", "Peak speed", "peak depth-averaged speed", "m/s", 1, &Maps::peak_speed,
+            {0, 1, 2, 4, 6, 8, 10, 15, 20, 30}, {104, 0.11, 8, 0.13, 0.93, 0.28}),
+        map("peak_pressure", "Peak impact pressure", "peak impact pressure, rest density x speed^2", "kPa", 1e-3,
+            &Maps::peak_pressure, {0, 5, 15, 30, 50, 100, 200, 400, 800}, {88, 0.08, -48, 0.14, 0.93, 0.26}),
+        map("arrival_time", "Arrival time", "time of first arrival since the start of the run", "s", 1,
+            &Maps::arrival_time, {}, {215, 0.06, 118, 0.10, 0.30, 0.92}),
+        map("deposit_depth", "Deposit depth", "deposit depth at the end of the run, vertical", "m", 1,
+            &Maps::deposit_depth, {0.05, 0.1, 0.25, 0.5, 1, 2, 3, 5, 10, 20}, {92, 0.07, 42, 0.09, 0.92, 0.28}),
     };
     return maps;
 }
 
 const HazardMap& erosion_map() {
-    static const HazardMap map = {"erosion_depth",
-                                  "Erosion depth",
-                                  "depth that debris picked up from the bed, vertical",
-                                  "m",
-                                  1,
-                                  nullptr,
-                                  {0, 0.05, 0.1, 0.25, 0.5, 1, 2, 3, 5},
-                                  {25, 0.07, 52, 0.13, 0.92, 0.30}};
-    return map;
+    static const HazardMap erosion =
+        map("erosion_depth", "Erosion depth", "depth that debris picked up from the bed, vertical", "m", 1, nullptr,
+            {0, 0.05, 0.1, 0.25, 0.5, 1, 2, 3, 5}, {25, 0.07, 52, 0.13, 0.92, 0.30});
+    return erosion;
 }
 
 Grid<float> in_unit(const Grid<float>& si, double factor) {

@@ -207,19 +207,28 @@ Json observations(const Scene& scene, const RunResult& result) {
     return rows;
 }
 
-Json run_results(const Scene& scene, const RunResult& result, const std::vector<Comparison>& comparisons) {
-    const SceneInfo& info = scene.spec.scene;
+Json results_head(std::string_view format) {
     const auto now = fmt::gmtime(std::chrono::system_clock::now());
-    Json all = {{"format", "talus results"},
-                {"version", results_version},
-                {"program", std::string("talus ") + TALUS_VERSION},
-                {"created", fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", now)},
-                {"date", fmt::format("{:%d %B %Y, %H:%M} UTC", now)},
-                {"title", info.title.empty() ? scene.file.stem().string() : info.title},
-                {"description", info.description},
-                {"reconstruction", info.reconstruction},
-                {"reference_system", scene.crs.label()},
-                {"status", status(result)},
+    return {{"format", format},
+            {"version", results_version},
+            {"program", std::string("talus ") + TALUS_VERSION},
+            {"created", fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", now)},
+            {"date", fmt::format("{:%d %B %Y, %H:%M} UTC", now)}};
+}
+
+Json results_head(std::string_view format, const Scene& scene) {
+    const SceneInfo& info = scene.spec.scene;
+    Json head = results_head(format);
+    head["title"] = info.title.empty() ? scene.file.stem().string() : info.title;
+    head["description"] = info.description;
+    head["reconstruction"] = info.reconstruction;
+    head["reference_system"] = scene.crs.label();
+    return head;
+}
+
+Json run_results(const Scene& scene, const RunResult& result, const std::vector<Comparison>& comparisons) {
+    Json all = results_head("talus results", scene);
+    all.update({{"status", status(result)},
                 {"compression", compression(scene, result)},
                 {"key_figures", key_figures(scene, result)},
                 {"observations", observations(scene, result)},
@@ -236,13 +245,13 @@ Json run_results(const Scene& scene, const RunResult& result, const std::vector<
                 {"erosion", erosion(scene, result)},
                 {"comparisons", Json::array()},
                 {"method", method(scene)},
-                {"assumptions", info.assumptions},
+                {"assumptions", scene.spec.scene.assumptions},
                 {"notes", scene.notes},
-                {"sources", info.sources},
+                {"sources", scene.spec.scene.sources},
                 {"as_computed", chosen_values(scene, result)},
                 {"parameters", parameters(scene)},
                 {"inputs", inputs(scene)},
-                {"computation", computation(scene, result)}};
+                {"computation", computation(scene, result)}});
     for (const Comparison& compared : comparisons) {
         all["comparisons"].push_back(comparison(compared, scene, result));
     }

@@ -8,10 +8,14 @@
 #include "run/run_result.hpp"
 #include "scene/scene.hpp"
 
-/// What a run's report says, as data: results.json, described in docs/results.md.
+/// What reports say, as data: results.json, described in docs/results.md.
 namespace talus::report {
 
 constexpr int results_version = 1;
+
+/// How every results.json begins: `format`, version, program and time; then, if given, what the scene says of itself.
+[[nodiscard]] Json results_head(std::string_view format);
+[[nodiscard]] Json results_head(std::string_view format, const Scene& scene);
 
 [[nodiscard]] Json run_results(const Scene& scene, const RunResult& result, const std::vector<Comparison>& comparisons);
 

@@ -25,6 +25,7 @@ struct ExportFile {
 // The files of a run; names that are asked for are held against these, so none leads out of the folder.
 constexpr ExportFile export_files[] = {
     {"report.html", "text/html", "Report with maps, plots and tables, for the browser and for paper"},
+    {"results.json", "application/json", "What the report shows, as data: key figures, tables, curves"},
     {"front.csv", "text/csv", "Front: chainage, first arrival, velocity"},
     {"run_out.csv", "text/csv", "Run-out, drop, runout angle and travel angle"},
     {"buildings.csv", "text/csv", "Impact per building"},

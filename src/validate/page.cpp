@@ -1,15 +1,14 @@
 #include "validate/page.hpp"
 
 #include <algorithm>
-#include <ctime>
 #include <system_error>
 
-#include <fmt/chrono.h>
 #include <fmt/format.h>
 
 #include "core/try.hpp"
 #include "products/text_file.hpp"
 #include "report/page.hpp"
+#include "report/results.hpp"
 #include "report/table.hpp"
 #include "validation_page_files.hpp"
 
@@ -22,10 +21,6 @@ using report::table;
 constexpr const char* legend =
     "Deviation and tolerance are shares of the expected value, or in the quantity's own unit where 0 is expected. "
     "FAIL (known) is a failure that the case file announces, with its reason; rows that are only shown fail nothing.";
-
-std::string now_text() {
-    return fmt::format("{:%d %B %Y, %H:%M} UTC", fmt::gmtime(std::time(nullptr)));
-}
 
 std::string summary_text(const std::vector<CaseResult>& results) {
     const Tally tally = count(results);
@@ -131,15 +126,26 @@ std::string row_markdown(const Row& row) {
 
 }  // namespace
 
-std::string page_html(const std::vector<CaseResult>& results) {
+Json page_data(const std::vector<CaseResult>& results) {
+    Json all = report::results_head("talus validation");
     Json cases = Json::array();
     for (const CaseResult& result : results) cases.push_back(case_data(result));
-    return report::render(validation_page_files::page_html, {{"program", std::string("talus ") + TALUS_VERSION},
-                                                             {"date", now_text()},
-                                                             {"summary", summary_text(results)},
-                                                             {"overview", overview_of(results)},
-                                                             {"legend", legend},
-                                                             {"cases", std::move(cases)}});
+    all.update({{"title", "Validation of " + all["program"].get<std::string>()},
+                {"description", summary_text(results)},
+                {"legend", legend},
+                {"overview", overview_of(results)},
+                {"cases", std::move(cases)}});
+    return all;
+}
+
+std::string page_html(const Json& data) {
+    Json page = data;
+    page.update({{"report_name", ""},
+                 {"masthead", "Validation"},
+                 {"reconstruction", false},
+                 {"status", {{"partial", false}}},
+                 {"maps", nullptr}});
+    return report::render(validation_page_files::page_html, page);
 }
 
 Status write_markdown(const std::vector<CaseResult>& results, const std::filesystem::path& file) {
@@ -147,11 +153,12 @@ Status write_markdown(const std::vector<CaseResult>& results, const std::filesys
     std::error_code error;
     std::filesystem::create_directories(folder, error);
     if (error) return Error{fmt::format("{}: cannot make this folder: {}", folder.string(), error.message())};
+    const Json head = report::results_head("talus validation");
     std::string text = fmt::format(
-        "# Validation\n\nMade by `talus validate --markdown` of talus {} on {}. {}\n\n{}\n\n"
+        "# Validation\n\nMade by `talus validate --markdown` of {} on {}. {}\n\n{}\n\n"
         "| Case | Quantity | Expected | Computed | Deviation | Tolerance | Source | Result |\n"
         "|---|---|---:|---:|---:|---:|---|---|\n",
-        TALUS_VERSION, now_text(), summary_text(results), legend);
+        head["program"].get<std::string>(), head["date"].get<std::string>(), summary_text(results), legend);
     for (const CaseResult& result : results) {
         for (const Row& row : result.rows) text += row_markdown(row);
     }

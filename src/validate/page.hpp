@@ -14,8 +14,10 @@ namespace talus::validate {
 /// A case's chart as reports draw it.
 [[nodiscard]] report::Chart drawing_of(const Chart& chart);
 
-/// A page that holds all it shows.
-[[nodiscard]] std::string page_html(const std::vector<CaseResult>& results);
+/// All that the page shows, as data (docs/results.md).
+[[nodiscard]] report::Json page_data(const std::vector<CaseResult>& results);
+/// A page that holds all it shows, from page_data().
+[[nodiscard]] std::string page_html(const report::Json& data);
 
 /// Writes `file` as Markdown and the plots as SVG files into a folder of the same name beside it, without its ending.
 /// Errors: a file or the folder cannot be written.

@@ -86,6 +86,19 @@ TEST_F(CalibrationTest, SeesThatTwoFactorsStandForEachOther) {
     EXPECT_THAT(summarise(made).warnings, Contains(HasSubstr("are correlated by -0.")));
 }
 
+TEST_F(CalibrationTest, TheReportShowsWhatResultsHoldAlsoAfterTheyWereWrittenAndRead) {
+    search_with([](const std::vector<double>& p) { return std::vector<double>{16 - 16 * p[0], 12}; });
+    const auto results = calibration_results(made, summarise(made), misfit_map(made));
+    EXPECT_EQ(results["format"], "talus calibration");
+    EXPECT_EQ(results["factors"]["rows"][0]["key"], "material.friction_coefficient");
+    EXPECT_EQ(results["misfit"]["kind"], "chart");
+    const std::string page = calibration_report(results);
+    EXPECT_THAT(page, HasSubstr("material.viscosity is hardly constrained"));
+    EXPECT_EQ(page.find("{{"), std::string::npos);
+    EXPECT_EQ(page.find("nan"), std::string::npos);
+    EXPECT_TRUE(page == calibration_report(nlohmann::ordered_json::parse(results.dump())));
+}
+
 TEST_F(CalibrationTest, TheMapIsLowWhereTheRunsFit) {
     search_with([](const std::vector<double>& p) { return std::vector<double>{16 - 16 * p[0], 12}; });
     const MisfitMap map = misfit_map(made);

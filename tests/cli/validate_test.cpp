@@ -39,7 +39,8 @@ class Validate : public testing::Test {
 
 TEST_F(Validate, PrintsATableAndSucceeds) {
     write_case("slab", 0);
-    const ProgramOutcome outcome = run({"slab", "--json", "v.json", "--html", "v.html", "--markdown", "v.md"});
+    const ProgramOutcome outcome =
+        run({"slab", "--json", "v.json", "--results", "r.json", "--html", "v.html", "--markdown", "v.md"});
     EXPECT_EQ(outcome.exit_code, 0) << outcome.error;
     EXPECT_THAT(outcome.out, HasSubstr("case"));
     EXPECT_THAT(outcome.out, HasSubstr("pass"));
@@ -47,6 +48,7 @@ TEST_F(Validate, PrintsATableAndSucceeds) {
     ASSERT_EQ(list.size(), 1U);
     EXPECT_EQ(list[0]["case"], "slab");
     EXPECT_EQ(list[0]["pass"], true);
+    EXPECT_EQ(nlohmann::json::parse(read_text(folder_.path() / "r.json"))["format"], "talus validation");
     EXPECT_THAT(read_text(folder_.path() / "v.html"), HasSubstr("<svg"));
     EXPECT_THAT(read_text(folder_.path() / "v.md"), HasSubstr("# Validation"));
     EXPECT_TRUE(std::filesystem::exists(folder_.path() / "v" / "slab_acceleration.svg"));

@@ -8,6 +8,7 @@
 
 #include "ensemble/ensemble_products.hpp"
 #include "scene/scene_folder.hpp"
+#include "support/fixtures.hpp"
 
 namespace talus {
 namespace {
@@ -149,12 +150,18 @@ TEST_F(EnsembleTest, WritesMapsTablesAndAReport) {
     float most = 0;
     for (const float v : raster->grid.values) most = std::max(most, v);
     EXPECT_EQ(most, 100);  // in percent; all runs cover the release
-    for (const char* file : {"peak_depth_p95.tif", "peak_depth_p95.qml", "probability_pressure_15kPa.qml", "runs.csv",
-                             "buildings.csv", "distributions.csv", "sensitivity.csv", "statistics.json"}) {
+    for (const char* file :
+         {"peak_depth_p95.tif", "peak_depth_p95.qml", "probability_pressure_15kPa.qml", "runs.csv", "buildings.csv",
+          "distributions.csv", "sensitivity.csv", "statistics.json", "report.html"}) {
         EXPECT_TRUE(std::filesystem::exists(folder / "done" / file)) << file;
     }
-    const auto page = render_ensemble_report(result);
+    const auto results = nlohmann::ordered_json::parse(test::read_text(folder / "done/results.json"));
+    EXPECT_EQ(results["format"], "talus ensemble");
+    EXPECT_EQ(results["complete"], 6);
+    EXPECT_EQ(results["run_out"]["kind"], "chart");
+    const auto page = ensemble_report(result, results);
     ASSERT_TRUE(page) << page.error().message;
+    EXPECT_TRUE(*page == test::read_text(folder / "done/report.html")) << "the page shows what results.json holds";
     for (const char* part : {"6</strong> <span class=\"unit\">of 6", "material.friction_coefficient", "Latin hypercube",
                              "Run-out of all runs", "Share of the complete runs", "Front velocity at 20 m"}) {
         EXPECT_THAT(*page, HasSubstr(part));

@@ -234,6 +234,9 @@ TEST_F(OpenApi, exports_are_of_the_run_so_far) {
     for (int i = 0; i < 30; ++i) act({{"action", "step"}});
     EXPECT_TRUE(bytes_of("timeseries.csv").is_null());
     EXPECT_EQ(eye.get("/api/scenarios/A/exports/report.html").status, 200);
+    const Answer results = eye.get("/api/scenarios/A/exports/results.json");
+    EXPECT_EQ(results.json()["format"], "talus results");
+    EXPECT_EQ(bytes_of("results.json"), results.body.size());
     EXPECT_EQ(eye.get("/api/scenarios/A/exports/peak_depth.tif").status, 200);
     EXPECT_EQ(bytes_of("erosion_depth.tif"), "not listed");
     const Answer none = eye.get("/api/scenarios/A/exports/erosion_depth.tif");

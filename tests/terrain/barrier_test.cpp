@@ -5,6 +5,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "terrain/grids.hpp"
+
 namespace talus {
 namespace {
 
@@ -12,13 +14,7 @@ using testing::HasSubstr;
 
 /// 60 x 40 m that falls to the east by 1 : 2.
 Terrain slope() {
-    Grid<float> grid(GridGeometry{1000, 2000, 1, 60, 40});
-    for (int row = 0; row < 40; ++row) {
-        for (int column = 0; column < 60; ++column) {
-            grid.at(column, row) = static_cast<float>(100 - 0.5 * (grid.geometry.centre(column, row).x - 1000));
-        }
-    }
-    return Terrain(std::move(grid));
+    return Terrain(make({1000, 2000, 1, 60, 40}, [](double x, double) { return 100 - 0.5 * (x - 1000); }));
 }
 
 /// Across the slope at x = 1030, 30 m long.

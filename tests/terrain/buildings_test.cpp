@@ -7,6 +7,8 @@
 
 #include <gtest/gtest.h>
 
+#include "terrain/grids.hpp"
+
 namespace talus {
 namespace {
 
@@ -277,11 +279,7 @@ TEST(BuildingSolids, float_and_double_agree_to_rounding) {
 }
 
 TEST(PlaceBuildings, roof_is_the_height_above_the_mean_ground_of_all_parts) {
-    Grid<float> grid(GridGeometry{0, 0, 5, 40, 40});
-    for (int r = 0; r < 40; ++r) {
-        for (int c = 0; c < 40; ++c) grid.at(c, r) = static_cast<float>(100 + 0.4 * grid.geometry.centre(c, r).x);
-    }
-    const Terrain terrain(grid);
+    const Terrain terrain(make({0, 0, 5, 40, 40}, [](double x, double) { return 100 + 0.4 * x; }));
     std::vector<Building> buildings{building({{rectangle(50, 50, 60, 60), {}}}, 6),
                                     building({{rectangle(50, 50, 60, 60), {}}, {rectangle(100, 50, 110, 80), {}}}, 6),
                                     building({{rectangle(70, 50, 70.02, 50.02), {}}}, 6),

@@ -13,11 +13,7 @@ namespace {
 
 /// A plane that rises eastward.
 Terrain plane(double slope, double cell = 5, int cells = 60) {
-    Grid<float> grid(GridGeometry{0, 0, cell, cells, cells});
-    for (int r = 0; r < cells; ++r) {
-        for (int c = 0; c < cells; ++c) grid.at(c, r) = static_cast<float>(slope * grid.geometry.centre(c, r).x);
-    }
-    return Terrain(grid);
+    return Terrain(make({0, 0, cell, cells, cells}, [slope](double x, double) { return slope * x; }));
 }
 
 Ring square(double x, double y, double size) {
@@ -90,15 +86,8 @@ TEST(ReleaseVolume, raster_thickness_replaces_the_patches_own_within_them) {
 }
 
 TEST(ReleaseVolume, on_curved_ground_agrees_with_a_fine_sum) {
-    const int cells = 60;
-    Grid<float> grid(GridGeometry{0, 0, 2, cells, cells});
-    for (int r = 0; r < cells; ++r) {
-        for (int c = 0; c < cells; ++c) {
-            const PlanPoint p = grid.geometry.centre(c, r);
-            grid.at(c, r) = static_cast<float>(0.01 * (p.x - 60) * (p.x - 60) + 4 * std::sin(p.y / 9));
-        }
-    }
-    const Terrain terrain(grid);
+    const Terrain terrain(
+        make({0, 0, 2, 60, 60}, [](double x, double y) { return 0.01 * (x - 60) * (x - 60) + 4 * std::sin(y / 9); }));
     const Release r = release({circle(55, 62, 18), {}}, 0.8);
     double expected = 0;
     const double h = 0.04;

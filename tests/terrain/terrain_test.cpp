@@ -12,6 +12,22 @@
 namespace talus {
 namespace {
 
+Grid<float> rough_ground(const GridGeometry& geometry, float highest, unsigned seed) {
+    std::mt19937 random(seed);
+    std::uniform_real_distribution<float> any(0, highest);
+    Grid<float> grid(geometry);
+    for (float& z : grid.values) z = any(random);
+    return grid;
+}
+
+/// Calls `check` along the edges that run north between the cells of a grid of 20 x 20 cells of 5 m.
+template <class Check>
+void at_cell_edges(const Check& check) {
+    for (int c = 1; c < 18; ++c) {
+        for (float y = -40; y < 40; y += 1.3F) check(-47.5F + 5 * static_cast<float>(c), y);
+    }
+}
+
 TEST(Terrain, a_plane_is_reproduced_exactly_everywhere_between_cell_centres) {
     const GridGeometry g{820000, 825000, 5, 40, 30};
     const Terrain terrain(make(g, [](double x, double y) { return 100 + 0.5 * (x - 820000) - 0.25 * (y - 825000); }));
@@ -38,26 +54,16 @@ TEST(Terrain, frame_is_the_middle_of_the_grid_at_the_lowest_elevation) {
 }
 
 TEST(Terrain, heights_agree_from_both_sides_of_every_cell_edge) {
-    std::mt19937 random(2);
-    std::uniform_real_distribution<float> any(0, 50);
-    Grid<float> grid(GridGeometry{0, 0, 5, 20, 20});
-    for (float& z : grid.values) z = any(random);
-    const Terrain terrain(grid);
-    for (int c = 1; c < 18; ++c) {
-        const float x = -47.5F + 5 * static_cast<float>(c);
-        for (float y = -40; y < 40; y += 1.3F) {
-            const float on = terrain.sample(x, y).height;
-            EXPECT_NEAR(terrain.sample(std::nextafter(x, -100.0F), y).height, on, 1e-3);
-            EXPECT_NEAR(terrain.sample(std::nextafter(x, 100.0F), y).height, on, 1e-3);
-        }
-    }
+    const Terrain terrain(rough_ground({0, 0, 5, 20, 20}, 50, 2));
+    at_cell_edges([&](float x, float y) {
+        const float on = terrain.sample(x, y).height;
+        EXPECT_NEAR(terrain.sample(std::nextafter(x, -100.0F), y).height, on, 1e-3);
+        EXPECT_NEAR(terrain.sample(std::nextafter(x, 100.0F), y).height, on, 1e-3);
+    });
 }
 
 TEST(Terrain, cell_centres_carry_their_own_elevation) {
-    std::mt19937 random(3);
-    std::uniform_real_distribution<float> any(0, 50);
-    Grid<float> grid(GridGeometry{0, 0, 0.7, 15, 12});
-    for (float& z : grid.values) z = any(random);
+    const Grid<float> grid = rough_ground({0, 0, 0.7, 15, 12}, 50, 3);
     const Terrain terrain(grid);
     for (int r = 0; r < 12; ++r) {
         for (int c = 0; c < 15; ++c) {
@@ -85,18 +91,11 @@ TEST(Terrain, normal_is_that_of_the_smooth_ground_below) {
 }
 
 TEST(Terrain, normals_turn_gradually_from_cell_to_cell) {
-    std::mt19937 random(9);
-    std::uniform_real_distribution<float> any(0, 20);
-    Grid<float> grid(GridGeometry{0, 0, 5, 20, 20});
-    for (float& z : grid.values) z = any(random);
-    const Terrain terrain(grid);
-    for (int c = 1; c < 18; ++c) {
-        const float x = -47.5F + 5 * static_cast<float>(c);
-        for (float y = -40; y < 40; y += 1.3F) {
-            const auto west = terrain.sample(x - 2e-4F, y).normal, east = terrain.sample(x + 2e-4F, y).normal;
-            EXPECT_NEAR(length(east - west), 0, 5e-3);
-        }
-    }
+    const Terrain terrain(rough_ground({0, 0, 5, 20, 20}, 20, 9));
+    at_cell_edges([&](float x, float y) {
+        const auto west = terrain.sample(x - 2e-4F, y).normal, east = terrain.sample(x + 2e-4F, y).normal;
+        EXPECT_NEAR(length(east - west), 0, 5e-3);
+    });
 }
 
 TEST(Terrain, heights_and_normals_belong_to_one_surface) {

@@ -183,7 +183,7 @@ TEST(TableText, ShowsFailuresAndCountsThem) {
 }
 
 TEST(Page, HoldsTableAndPlotsAndEscapesWhatItIsGiven) {
-    const std::string html = page_html({sample_result()});
+    const std::string html = page_html(page_data({sample_result()}));
     EXPECT_THAT(html, HasSubstr("A &lt;title&gt; | with *marks*"));
     EXPECT_THAT(html, HasSubstr("computed &lt;b&gt;"));
     EXPECT_THAT(html, HasSubstr("<span class=\"verdict fail\">FAIL</span>"));
@@ -192,6 +192,13 @@ TEST(Page, HoldsTableAndPlotsAndEscapesWhatItIsGiven) {
     EXPECT_EQ(html.find("{{"), std::string::npos);
     EXPECT_EQ(html.find("http://www.w3.org/2000/svg"), std::string::npos) << "inline, nothing from the network";
     EXPECT_EQ(html.find("nan"), std::string::npos);
+}
+
+TEST(Page, ShowsWhatItsDataHoldAlsoAfterTheyWereWrittenAndRead) {
+    const report::Json data = page_data({sample_result()});
+    EXPECT_EQ(data["format"], "talus validation");
+    EXPECT_EQ(data["cases"][0]["charts"][0]["kind"], "chart");
+    EXPECT_TRUE(page_html(data) == page_html(report::Json::parse(data.dump())));
 }
 
 TEST(Markdown, HasItsPlotsBesideIt) {
