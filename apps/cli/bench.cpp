@@ -38,7 +38,7 @@ struct BenchArguments {
 };
 
 constexpr const char* bench_help = R"(
-Steps standard scenes with a fixed number of iterations and everything that a run has: terrain, friction, viscosity,
+Steps standard scenes with a fixed number of iterations and all components of a run: terrain, friction, viscosity,
 houses, maps, front and impact. Scenes:
   slab         ten layers of debris that slide down a plane of raster terrain towards two houses
   column       a block of debris, at most 24 layers high, that collapses on flat ground beside a house
@@ -53,7 +53,7 @@ A row of the table is the median of the repeats:
   x real time  simulated seconds per second; the time step is chosen as in a run of the scene
   neighbours   mean number of neighbours of a particle
   relative     particle-iterations per unit of a calibration loop that is timed before and after every repeat: it
-               changes with the program, and hardly with how busy the machine is
+               changes with the program, but hardly with the load of the machine
   hash         of the state after the last step: the same for any number of threads
 
 Examples:
@@ -65,7 +65,7 @@ Exit codes:
     1  the machine failed: disk full, out of memory
     2  bad input: nothing was computed
     3  a step could not be trusted; nothing was written
-  130  interrupted by Ctrl-C; the table shows what was complete, no file was written
+  130  interrupted by Ctrl-C; the table shows the complete rows, no file was written
 )";
 
 const std::vector<int> usual_particles = {5000, 20000, 75000}, full_particles = {5000, 20000, 75000, 300000, 1000000};
@@ -162,7 +162,7 @@ int bench_command(const BenchArguments& arguments) {
 }  // namespace
 
 void add_bench(CLI::App& program, std::vector<Command>& commands) {
-    CLI::App* app = program.add_subcommand("bench", "measure how fast talus steps standard scenes here");
+    CLI::App* app = program.add_subcommand("bench", "measure the speed of talus on standard scenes");
     const auto bench = std::make_shared<BenchArguments>();
     const auto add_list = [app](const std::string& name, auto& values, const std::string& text) {
         return app->add_option(name, values, text)->delimiter(',')->allow_extra_args(false);

@@ -36,19 +36,19 @@ struct CalibrateArguments {
 };
 
 constexpr const char* calibrate_help = R"(
-Finds the values of a scene that explain what was observed in the field ([[observation]], [[run_up]], [[deposit_depth]]
-and the rest, each with its uncertainty), and says how sure that is: a space-filling design, emulators of what runs
-predict, runs where they help most, the posterior, and runs that check it. What is free is given like a factor of talus
+Finds the values of a scene that explain field observations ([[observation]], [[run_up]], [[deposit_depth]] and others,
+each with its uncertainty), and their uncertainty: a space-filling design, emulators of the runs' predictions, further
+runs where they help most, the posterior, and runs that check it. Free values are given like the factors of talus
 ensemble, as a range or a prior:
-  --vary material.friction_coefficient=0.1:0.6        anything between
-  --vary material.viscosity=log:0.01:0.6              likewise, of its logarithm
-  --vary release.volume_m3=normal:600:60              known to be about so much
+  --vary material.friction_coefficient=0.1:0.6        uniform between
+  --vary material.viscosity=log:0.01:0.6              log-uniform
+  --vary release.volume_m3=normal:600:60              a prior: mean and standard deviation
 The folder holds report.html, the runs, intervals, draws from the posterior, the misfit map, and best_fit/scene.toml.
-The same command again goes on where an earlier one stopped. --recover 10 does it ten times with observations made by
-runs with known values, and counts how often those are returned within the stated interval: what these observations
-can tell at all (docs/calibration.md).
+The same command resumes where an earlier one stopped. --recover 10 repeats the calibration ten times with observations
+from runs with known values, and counts how often these are recovered within the stated interval, which shows what such
+observations can identify (docs/calibration.md).
 
-Exit codes: as talus run. A run that fails is left out; 3: no run of the design was complete.
+Exit codes: as talus run. A run that fails is excluded; 3: no run of the design was complete.
 )";
 
 Result<CalibrationPlan> read_arguments(const CalibrateArguments& arguments) {
@@ -71,7 +71,7 @@ Result<CalibrationPlan> read_arguments(const CalibrateArguments& arguments) {
 
 int say_interrupted(const fs::path& path) {
     return fail(exit_code::interrupted,
-                fmt::format("interrupted; the runs that are done lie in {}, and the same command goes on from there",
+                fmt::format("interrupted; the completed runs are in {}, and the same command resumes from there",
                             path.string()));
 }
 
@@ -156,35 +156,34 @@ int calibrate_command(const CalibrateArguments& arguments) {
 
 void add_calibrate(CLI::App& program, std::vector<Command>& commands) {
     CLI::App* app = program.add_subcommand(
-        "calibrate", "find the values of a scene that explain field observations, and how surely");
+        "calibrate", "find the values of a scene that explain field observations, with their uncertainty");
     const auto arguments = std::make_shared<CalibrateArguments>();
     app->add_option("scene", arguments->scene, "scene file; default: the built-in scene")->type_name("SCENE");
     app->add_option("-o,--output", arguments->output, "folder; default: talus_out/<scene name>_calibration")
         ->type_name("DIR");
-    app->add_option("--vary", arguments->factors, "a free value with its range or prior; may be given many times")
+    app->add_option("--vary", arguments->factors, "a free value with its range or prior; may be repeated")
         ->type_name("SECTION.KEY=DISTRIBUTION")
         ->allow_extra_args(false);
     app->add_option("--runs", arguments->runs, "maximum number of runs; default: 100")->type_name("N");
-    app->add_option("--design", arguments->design, "of them in the design; default: ten per factor")
+    app->add_option("--design", arguments->design, "runs of the design; default: ten per factor")
         ->type_name("N")
         ->check(CLI::Range(3, 2000));
     app->add_option("--checks", arguments->checks, "runs that check the result; default: 10")
         ->type_name("N")
         ->check(CLI::Range(0, 1000));
     app->add_option("--seed", arguments->seed, "of the design and the chains; default: 1")->type_name("N");
-    app->add_option("--recover", arguments->recover, "so many times with observations made by runs of known values")
+    app->add_option("--recover", arguments->recover, "repeat N times with observations from runs with known values")
         ->type_name("N")
         ->check(CLI::Range(1, 1000));
-    app->add_option("--set", arguments->overrides, "set a value of the scene; may be given many times")
+    app->add_option("--set", arguments->overrides, "set a value of the scene; may be repeated")
         ->type_name("SECTION.KEY=VALUE")
         ->allow_extra_args(false);
-    app->add_option("--data", arguments->data, "folder that ${TALUS_DATA} in a scene's paths stands for")
-        ->type_name("DIR");
-    app->add_option("--threads", arguments->threads, "runs side by side, a thread each; default: all cores")
+    app->add_option("--data", arguments->data, "folder for ${TALUS_DATA} in the paths of a scene")->type_name("DIR");
+    app->add_option("--threads", arguments->threads, "runs in parallel, one thread each; default: all cores")
         ->type_name("N")
         ->check(CLI::Range(1, 4096));
-    app->add_flag("--retry-failed", arguments->retry_failed, "run again what failed in an earlier call");
-    CLI::Option* quiet = app->add_flag("--quiet", arguments->quiet, "print nothing but errors");
+    app->add_flag("--retry-failed", arguments->retry_failed, "repeat runs that failed in an earlier call");
+    CLI::Option* quiet = app->add_flag("--quiet", arguments->quiet, "print only errors");
     app->add_flag("--json", arguments->json, "progress and result as one JSON object per line on stdout")
         ->excludes(quiet);
     app->footer(calibrate_help);

@@ -21,7 +21,7 @@ std::string calibration_text(const Calibration& c, const std::filesystem::path& 
     const CalibrationSummary s = summarise(c);
     const SearchResult& r = c.result;
     std::string text = fmt::format("{} runs, {} failed; {}\nleast misfit {:.3g} in run {}\n\n", r.runs.size(), s.failed,
-                                   r.settled ? "nothing more was to be learned" : "as many as allowed",
+                                   r.settled ? "no further gain expected" : "stopped at the maximum number of runs",
                                    r.runs[*r.best].misfit, *r.best);
     text += fmt::format("{:<38}{:>11}{:>11}{:>11}{:>11}{:>12}\n", "factor", "best fit", "median", "95 % from", "to",
                         "width left");
@@ -85,11 +85,11 @@ std::string recovery_text(const Recovery& recovery, const std::filesystem::path&
         const auto hits = std::count_if(recovery.seeds.begin(), recovery.seeds.end(),
                                         [&](const RecoverySeed& seed) { return seed.returned(k); });
         text +=
-            fmt::format("{} returned within its interval in {} of {} seeds\n", recovery.factors[k].key, hits, count);
+            fmt::format("{} recovered within its interval in {} of {} seeds\n", recovery.factors[k].key, hits, count);
     }
     const auto all = std::count_if(recovery.seeds.begin(), recovery.seeds.end(),
                                    [](const RecoverySeed& seed) { return seed.returned(); });
-    return text + fmt::format("all of them together in {} of {}\n{}\n", all, count, (folder / "recovery.csv").string());
+    return text + fmt::format("all together in {} of {}\n{}\n", all, count, (folder / "recovery.csv").string());
 }
 
 std::string recovery_json(const Recovery& recovery) {

@@ -22,7 +22,7 @@ Status check_output_file(const std::string& file) {
     if (file.empty()) return {};
     const std::filesystem::path parent = std::filesystem::absolute(file).parent_path();
     std::error_code error;
-    if (std::filesystem::is_directory(file, error)) return Error{file + ": is a folder, not a file to write"};
+    if (std::filesystem::is_directory(file, error)) return Error{file + ": is a folder, not a file"};
     if (!std::filesystem::is_directory(parent, error)) {
         return Error{fmt::format("{}: there is no folder {}", file, parent.string())};
     }
@@ -30,13 +30,13 @@ Status check_output_file(const std::string& file) {
 }
 
 void add_overrides(CLI::App& command, std::vector<std::string>& overrides) {
-    command.add_option("--set", overrides, "set a value of the scene; may be given many times")
+    command.add_option("--set", overrides, "set a value of the scene; may be repeated")
         ->type_name("SECTION.KEY=VALUE")
         ->allow_extra_args(false);
 }
 
 void add_data_folder(CLI::App& command, std::string& data) {
-    command.add_option("--data", data, "folder that ${TALUS_DATA} in a scene's paths stands for")->type_name("DIR");
+    command.add_option("--data", data, "folder for ${TALUS_DATA} in the paths of a scene")->type_name("DIR");
 }
 
 void set_data_folder(const std::string& folder) {

@@ -52,11 +52,11 @@ struct MergeArguments {
 };
 
 constexpr const char* ensemble_help = R"(
-Runs the scene once per point of a design over the factors, several runs side by side, and counts: probability and
-percentile maps, run-out, odds of every building, sensitivity; with a report. A factor is any value of a scene:
+Runs the scene once per point of a design over the factors, several runs in parallel. Results: probability and
+percentile maps, run-out, probability of a hit per building, sensitivity, a report. A factor is any value of a scene:
   --vary material.friction_coefficient=0.2:0.5        uniform between
   --vary release.volume_m3=log:300:1200               log-uniform
-  --vary material.viscosity=normal:0.1:0.02           normal, cut to what the key allows; or normal:MEAN:DEV:LOW:HIGH
+  --vary material.viscosity=normal:0.1:0.02           normal, truncated to the key's range; or normal:MEAN:DEV:LOW:HIGH
   --vary release.volume_m3=triangular:400:600:900     low, mode, high
   --vary solver.kernel=spiky,cubic_spline             one of a list
 or [[factor]] in a plan file (docs/ensembles.md). Designs:
@@ -64,10 +64,10 @@ or [[factor]] in a plan file (docs/ensembles.md). Designs:
   grid                                  every combination of --levels values per factor, or of a list's entries
   saltelli                              first-order and total Sobol indices; factors + 2 runs per block
   morris                                elementary effects; factors + 1 runs per trajectory
-Run 17 is the same on any machine: the same command again goes on where an earlier one stopped, mpirun -n N spreads runs
+Run 17 is the same on any machine. The same command resumes where an earlier one stopped, mpirun -n N distributes runs
 over ranks, and --shard i/n with talus ensemble merge does so without MPI, with the same results.
 
-Exit codes: as talus run. A run that fails is listed with its fault, and the ensemble goes on; 3: no run was complete.
+Exit codes: as talus run. A run that fails is listed with its fault, and the ensemble continues; 3: no run was complete.
 )";
 
 Status set_thresholds(Thresholds& thresholds, const std::string& depths, const std::string& speeds,
@@ -83,7 +83,7 @@ Status set_thresholds(Thresholds& thresholds, const std::string& depths, const s
 }
 
 void add_thresholds(CLI::App& command, std::string& depths, std::string& speeds, std::string& pressures) {
-    command.add_option("--depth-m", depths, "peak depths to map the probability of; default: 0.1,0.5,1")
+    command.add_option("--depth-m", depths, "peak depths whose probability is mapped; default: 0.1,0.5,1")
         ->type_name("M,M");
     command.add_option("--speed-mps", speeds, "likewise peak speeds; default: 5,10")->type_name("MPS,MPS");
     command.add_option("--pressure-kPa", pressures, "likewise pressures, on buildings too; default: 15,30")
@@ -131,14 +131,14 @@ Result<std::pair<std::size_t, std::size_t>> parse_shard(const std::string& text)
 /// Counts the runs of the folders and writes what they say into `folder`.
 int write_results(const SceneInput& source, const PlannedRuns& runs, const std::vector<fs::path>& folders,
                   const fs::path& folder, bool quiet, bool json, ThrottledProgress& reporter) {
-    reporter.say("counting the runs, writing maps, tables and report");
+    reporter.say("evaluating the runs, writing maps, tables and report");
     Result<Reduction> reduction = reduce(folders, runs.count(), runs.plan().thresholds);
     if (!reduction) return fail(exit_code::failure, reduction.error().message);
     if (reduction->complete == 0) {
         reporter.clear();
         const std::string fault = reduction->runs.empty() ? "none was run" : reduction->runs.front().fault;
         return fail(exit_code::fault,
-                    fmt::format("no run of {} is complete, so there is nothing to count; the first: {}",
+                    fmt::format("no run of {} is complete, so there is nothing to evaluate; the first: {}",
                                 folder.string(), fault));
     }
     const EnsembleResult result = summarise(source.scene, runs, *std::move(reduction));
@@ -214,12 +214,12 @@ int ensemble_command(const EnsembleArguments& arguments) {
     if (!ranks.first()) return interrupted > 0 ? exit_code::interrupted : exit_code::success;
     if (interrupted > 0) {
         return fail(exit_code::interrupted,
-                    fmt::format("interrupted with {} runs done in {}; the same command goes on from there", done,
+                    fmt::format("interrupted with {} runs complete in {}; the same command resumes from there", done,
                                 path.string()));
     }
     if (shard->second > 1) {
         if (!arguments.quiet && !arguments.json)
-            print(fmt::format("shard {} is complete: {} runs in {}; talus ensemble merge puts shards together\n",
+            print(fmt::format("shard {} is complete: {} runs in {}; talus ensemble merge combines shards\n",
                               arguments.shard, done, path.string()));
         if (arguments.json) print(fmt::format("{{\"event\":\"shard\",\"runs_done\":{}}}\n", done));
         return exit_code::success;
@@ -231,8 +231,7 @@ int merge_command(const MergeArguments& arguments) {
     if (!arguments.data.empty()) set_data_folder(arguments.data);
     InterruptWatch watch;
     if (arguments.output.empty() && arguments.folders.size() > 1) {
-        return fail(exit_code::bad_input,
-                    "several folders are given; name the one to put them together in with --output");
+        return fail(exit_code::bad_input, "several folders are given; name the output folder with --output");
     }
     const Result<nlohmann::ordered_json> definition = read_definition(arguments.folders.front());
     if (!definition) return fail(exit_code::bad_input, definition.error().message);
@@ -240,7 +239,7 @@ int merge_command(const MergeArguments& arguments) {
         const auto other = read_definition(folder);
         if (!other) return fail(exit_code::bad_input, other.error().message);
         if (const std::string differs = difference(*other, *definition); !differs.empty()) {
-            return fail(exit_code::bad_input, fmt::format("{}: is part of another ensemble than {} ({})", folder,
+            return fail(exit_code::bad_input, fmt::format("{}: does not belong to the ensemble of {} ({})", folder,
                                                           arguments.folders.front(), differs));
         }
     }
@@ -254,13 +253,13 @@ int merge_command(const MergeArguments& arguments) {
         open_scene(scene, definition->value("overrides", std::vector<std::string>()), watch);
     if (!source)
         return fail(exit_code::bad_input,
-                    source.error().message + (arguments.scene.empty() ? "; --scene says where it lies now" : ""));
+                    source.error().message + (arguments.scene.empty() ? "; give its present path with --scene" : ""));
     const Result<PlannedRuns> runs = PlannedRuns::make(*plan, source->source, source->scene);
     if (!runs) return fail(exit_code::bad_input, runs.error().message);
     const auto made = ensemble_definition(*runs, source->source, source->scene, source->name);
     if (const std::string differs = difference(*definition, made); !differs.empty()) {
         return fail(exit_code::bad_input,
-                    fmt::format("{}: is no longer the scene of this ensemble ({})", scene, differs));
+                    fmt::format("{}: has changed since this ensemble was run ({})", scene, differs));
     }
 
     const fs::path path = arguments.output.empty() ? arguments.folders.front() : arguments.output;
@@ -286,7 +285,7 @@ void add_ensemble(CLI::App& program, std::vector<Command>& commands) {
         ->type_name("DIR");
     app->add_option("--plan", ensemble->plan, "plan file with factors, design and thresholds; options override it")
         ->type_name("FILE");
-    app->add_option("--vary", ensemble->factors, "a factor; may be given many times")
+    app->add_option("--vary", ensemble->factors, "a factor; may be repeated")
         ->type_name("SECTION.KEY=DISTRIBUTION")
         ->allow_extra_args(false);
     app->add_option("--design", ensemble->design, "default: latin_hypercube")->type_name("NAME");
@@ -296,29 +295,29 @@ void add_ensemble(CLI::App& program, std::vector<Command>& commands) {
     add_thresholds(*app, ensemble->depths, ensemble->speeds, ensemble->pressures);
     add_overrides(*app, ensemble->overrides);
     add_data_folder(*app, ensemble->data);
-    app->add_option("--threads", ensemble->threads, "runs side by side, a thread each; default: all cores, 1 per rank")
+    app->add_option("--threads", ensemble->threads, "runs in parallel, one thread each; default: all cores, 1 per rank")
         ->type_name("N")
         ->check(CLI::Range(1, 4096));
     app->add_option("--shard", ensemble->shard, "only every n-th run, from the i-th; each shard in its own folder")
         ->type_name("I/N");
-    app->add_flag("--retry-failed", ensemble->retry_failed, "run again what failed in an earlier call");
-    CLI::Option* quiet = app->add_flag("--quiet", ensemble->quiet, "print nothing but errors");
+    app->add_flag("--retry-failed", ensemble->retry_failed, "repeat runs that failed in an earlier call");
+    CLI::Option* quiet = app->add_flag("--quiet", ensemble->quiet, "print only errors");
     app->add_flag("--json", ensemble->json, "progress and result as one JSON object per line on stdout")
         ->excludes(quiet);
     app->footer(ensemble_help);
 
-    CLI::App* merge_app = app->add_subcommand("merge", "put shards together, or count again with other thresholds");
+    CLI::App* merge_app = app->add_subcommand("merge", "combine shards, or evaluate other thresholds");
     const auto merge = std::make_shared<MergeArguments>();
     merge_app->add_option("folders", merge->folders, "folders of an ensemble or its shards")
         ->required()
         ->type_name("DIR");
-    merge_app->add_option("-o,--output", merge->output, "folder for all; default: the only folder given")
+    merge_app->add_option("-o,--output", merge->output, "output folder; default: the only folder given")
         ->type_name("DIR");
-    merge_app->add_option("--scene", merge->scene, "where the scene lies now; default: where it lay")
+    merge_app->add_option("--scene", merge->scene, "present path of the scene; default: the path of the runs")
         ->type_name("SCENE");
     add_thresholds(*merge_app, merge->depths, merge->speeds, merge->pressures);
     add_data_folder(*merge_app, merge->data);
-    CLI::Option* merge_quiet = merge_app->add_flag("--quiet", merge->quiet, "print nothing but errors");
+    CLI::Option* merge_quiet = merge_app->add_flag("--quiet", merge->quiet, "print only errors");
     merge_app->add_flag("--json", merge->json, "the result as one JSON object on stdout")->excludes(merge_quiet);
     merge_app->footer("");
 

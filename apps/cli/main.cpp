@@ -20,27 +20,27 @@ Examples:
   talus run                                 the built-in scene, into talus_out/sham_tseng
   talus run my_scene.toml -o result         your scene, into the folder result
   talus run my_scene.toml --set material.friction_coefficient=0.3
-  talus run my_scene.toml --convergence     do results hold with finer numerics? four runs, about nine times as long
+  talus run my_scene.toml --convergence     check convergence: four runs, about nine times as long
   talus run my_scene.toml --vary material.friction_coefficient=0.3,0.5 --vary solver.target_particle_count=3000
-                                            how much results depend on an input: a run per value, one at a time
+                                            sensitivity to inputs: a run per value, one at a time
   talus scene new --dem dem.tif --release scar.geojson --thickness-m 1.5 -o my_scene
                                             a commented scene from your own terrain, ready to run
-  talus scene check my_scene/scene.toml     what a scene reads and means, without running it
-  talus replay session.json                 runs a saved live session again and compares its result
-  talus validate --quick                    computes cases whose results are known, and prints one table
-  talus serve                               the built-in scene live in the browser: watch, steer and share it
+  talus scene check my_scene/scene.toml     reads and checks a scene without running it
+  talus replay session.json                 repeats a saved live session and compares its result
+  talus validate --quick                    computes cases with known results, and prints one table
+  talus serve                               the built-in scene live in the browser: watch, control and share it
   talus calibrate my_scene.toml --vary material.friction_coefficient=0.1:0.6
-                                            which friction explains what was observed in the field, and how surely
-  talus bench                               how fast talus is here: milliseconds per stage, particles per second
+                                            which friction explains the field observations, with its uncertainty
+  talus bench                               speed of talus on this machine: milliseconds per stage, particles per second
 
 Exit codes:
     0  complete
     1  the machine failed: disk full, out of memory
     2  bad input: command line, scene or a file it names; nothing was written
-    3  a step could not be trusted (fault); what was computed until then is written, marked partial
+    3  a step could not be trusted (fault); the results so far are written, marked partial
     4  talus validate: a case failed
-  130  interrupted by Ctrl-C; what was computed until then is written, marked partial.
-       A second Ctrl-C ends at once and leaves nothing. With --convergence or --vary: runs that are missing are named.)";
+  130  interrupted by Ctrl-C; the results so far are written, marked partial.
+       A second Ctrl-C ends at once and writes nothing. With --convergence or --vary, missing runs are listed.)";
 
 /// The command that the user got to before the error: the one whose --help is of use.
 std::string deepest_command(const CLI::App& app) {

@@ -31,15 +31,15 @@ struct ReplayArguments {
 };
 
 constexpr const char* replay_help = R"(
-A journal is what a live session can save (the page's menu, or GET /api/scenarios/A/journal): the scene, and everything
-that people did with the step before which they did it. The same actions at the same steps give the same result, to the
-last bit, on any number of threads.
+A live session saves its journal from the page's menu or with GET /api/scenarios/A/journal: the scene, and all actions
+with the step before which they took effect. The same actions at the same steps give a bit-identical result on any
+number of threads.
 
 Exit codes:
-    0  the same result: the hash of the last step is that of the session
+    0  the result is the same: the hash of the last step equals that of the session
     1  the machine failed: out of memory
     2  bad input: the journal, its scene or a file it names
-    3  the result is another
+    3  the result differs
   130  interrupted by Ctrl-C
 )";
 
@@ -72,7 +72,7 @@ int replay_command(const ReplayArguments& arguments) {
     auto scene = load_scene_of(arguments, *journal);
     if (!scene) {
         return fail(exit_code::bad_input,
-                    scene.error().message + " (the scene of this journal; --scene names it where it is now)");
+                    scene.error().message + " (the scene of this journal; give its present path with --scene)");
     }
     for (const std::string& sentence : twin::changed_inputs(*journal, *scene)) {
         (void)std::fprintf(stderr, "talus: note: %s\n", sentence.c_str());
@@ -93,7 +93,7 @@ int replay_command(const ReplayArguments& arguments) {
     if (replayed->hash != journal->hash) {
         return fail(
             exit_code::fault,
-            fmt::format("{}: the result is another: hash {} after step {}, the session had {}; a scene, a program "
+            fmt::format("{}: the result differs: hash {} after step {}, the session had {}; a scene, a program "
                         "or an instruction set that differs is the usual reason (the session ran on {})",
                         arguments.journal, replayed->hash, replayed->steps, journal->hash, journal->instruction_set));
     }
@@ -107,7 +107,7 @@ int replay_command(const ReplayArguments& arguments) {
 }  // namespace
 
 void add_replay(CLI::App& program, std::vector<Command>& commands) {
-    CLI::App* app = program.add_subcommand("replay", "run the journal of a live session again and compare the result");
+    CLI::App* app = program.add_subcommand("replay", "repeat the journal of a live session and compare the result");
     const auto replay = std::make_shared<ReplayArguments>();
     app->add_option("journal", replay->journal, "journal of a session")->required()->type_name("JOURNAL");
     app->add_option("--scene", replay->scene, "scene file; default: the one that the journal names")
@@ -116,7 +116,7 @@ void add_replay(CLI::App& program, std::vector<Command>& commands) {
         ->type_name("N")
         ->check(CLI::Range(1, 4096));
     add_data_folder(*app, replay->data);
-    app->add_flag("--quiet", replay->quiet, "print nothing but errors and what has changed");
+    app->add_flag("--quiet", replay->quiet, "print only errors and differences");
     app->footer(replay_help);
     commands.push_back({app, [replay] { return replay_command(*replay); }});
 }

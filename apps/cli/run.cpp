@@ -32,11 +32,11 @@ namespace fs = std::filesystem;
 
 constexpr const char* run_help = R"(
 Every value of the scene can be set with --set section.key=value. The result folder holds maps (GeoTIFF with QGIS
-styles), front.csv, timeseries.csv, buildings.csv, results.gpkg, manifest.json and report.html.
+styles), front.csv, timeseries.csv, buildings.csv, results.gpkg, results.json, manifest.json and report.html.
 
---convergence and --vary compare front velocity at every observation, arrival (first building hit; where none is, the
-front at 90 % of its way) and run-out with the scene as given: on the terminal, in convergence.csv and variants.csv, in
-the report, the manifest and --json. --convergence passes where nothing changes by more than 5 %.
+--convergence and --vary compare front velocity at every observation, arrival (first building hit; if there is none, the
+front at 90 % of its chainage) and run-out with the scene as given: on the terminal, in convergence.csv and
+variants.csv, in the report, the manifest and --json. --convergence passes if nothing changes by more than 5 %.
 )";
 
 /// talus_out in the current folder, made when needed and removed again if nothing came to lie in it.
@@ -157,7 +157,7 @@ int run_command(const RunArguments& arguments) {
     const bool interrupted = result->status == RunStatus::interrupted ||
                              (watch.stop_requested() && !std::all_of(comparisons.begin(), comparisons.end(),
                                                                      [](const Comparison& c) { return c.all_ran(); }));
-    progress.say(interrupted ? "interrupted: writing what there is" : "writing maps, tables and report");
+    progress.say(interrupted ? "interrupted: writing the results so far" : "writing maps, tables and report");
     const Status written = write_report(*job, *result, comparisons, watch);  // report
     progress.clear();
     if (!written) return fail(exit_code::failure, written.error().message);
@@ -168,8 +168,8 @@ int run_command(const RunArguments& arguments) {
         print(summary_text(scene, *result, comparisons, job->shown));
     }
     if (result->status != RunStatus::fault) return interrupted ? exit_code::interrupted : exit_code::success;
-    return fail(exit_code::fault, fmt::format("{}; what was computed until then is in {}, marked partial",
-                                              result->stop_reason, job->shown.string()));
+    return fail(exit_code::fault, fmt::format("{}; the results so far are in {}, marked partial", result->stop_reason,
+                                              job->shown.string()));
 }
 
 }  // namespace
@@ -179,17 +179,17 @@ void add_run(CLI::App& program, std::vector<Command>& commands) {
     const auto run = std::make_shared<RunArguments>();
     app->add_option("scene", run->scene, "scene file; default: the built-in scene")->type_name("SCENE");
     app->add_option("-o,--output", run->output, "result folder; default: talus_out/<scene name>")->type_name("DIR");
-    app->add_flag("--force", run->force, "replace the result folder if it is already there");
-    app->add_option("--threads", run->threads, "number of threads; default: all cores; the result is the same")
+    app->add_flag("--force", run->force, "replace the result folder if it exists");
+    app->add_option("--threads", run->threads, "number of threads; default: all cores; does not affect the result")
         ->type_name("N");
     add_overrides(*app, run->overrides);
     app->add_flag("--convergence", run->convergence,
                   "run again with half the time step, double the iterations, three times the particles; compare");
-    app->add_option("--vary", run->variations, "run again with each of the values; compare; may be given many times")
+    app->add_option("--vary", run->variations, "run again with each of the values; compare; may be repeated")
         ->type_name("SECTION.KEY=VALUE,VALUE")
         ->allow_extra_args(false);
     add_data_folder(*app, run->data);
-    CLI::Option* quiet = app->add_flag("--quiet", run->quiet, "print nothing but errors");
+    CLI::Option* quiet = app->add_flag("--quiet", run->quiet, "print only errors");
     app->add_flag("--json", run->json, "progress and result as one JSON object per line on stdout")->excludes(quiet);
     app->footer([] { return run_help + scene_reference_text(); });
     commands.push_back({app, [run] { return run_command(*run); }});

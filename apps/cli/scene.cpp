@@ -53,7 +53,7 @@ int new_command(const NewSceneOptions& options) {
 int export_builtin_command(const ExportArguments& arguments) {
     std::error_code error;
     if (!arguments.force && std::filesystem::exists(arguments.folder, error)) {
-        return fail(exit_code::bad_input, fmt::format("{}: is already there; name another folder, or write into it "
+        return fail(exit_code::bad_input, fmt::format("{}: already exists; name another folder, or write into it "
                                                       "with --force",
                                                       arguments.folder));
     }
@@ -68,7 +68,7 @@ void add_scene(CLI::App& program, std::vector<Command>& commands) {
     CLI::App* app = program.add_subcommand("scene", "make, check and explain scene files");
     app->require_subcommand(1);
 
-    CLI::App* check_app = app->add_subcommand("check", "read a scene with all its inputs and say what it means");
+    CLI::App* check_app = app->add_subcommand("check", "read a scene with all its inputs and summarise it");
     const auto check = std::make_shared<CheckArguments>();
     check_app->add_option("scene", check->scene, "scene file")->required()->type_name("SCENE");
     add_overrides(*check_app, check->overrides);
@@ -80,7 +80,7 @@ void add_scene(CLI::App& program, std::vector<Command>& commands) {
     new_app->add_option("--dem", create->dem, "terrain raster in a projected metric CRS")
         ->required()
         ->type_name("FILE");
-    new_app->add_option("--release", create->release, "polygons of the failing ground")->required()->type_name("FILE");
+    new_app->add_option("--release", create->release, "polygons of the release area")->required()->type_name("FILE");
     new_app->add_option("--buildings", create->buildings, "polygons of the buildings")->type_name("FILE");
     CLI::Option* thickness =
         new_app->add_option("--thickness-m", create->thickness, "thickness of the release normal to the slope, m")
@@ -89,14 +89,16 @@ void add_scene(CLI::App& program, std::vector<Command>& commands) {
         ->type_name("M3")
         ->excludes(thickness);
     new_app->add_option("-o,--output", create->folder, "folder to make for the scene")->required()->type_name("DIR");
-    new_app->add_option("--particles", create->target_particle_count, "particles to aim for; more are finer and slower")
+    new_app
+        ->add_option("--particles", create->target_particle_count,
+                     "target number of particles; more are finer and slower")
         ->type_name("N");
     commands.push_back({new_app, [create] { return new_command(*create); }});
 
     CLI::App* export_app = app->add_subcommand("export-builtin", "write the built-in scene with its data");
     const auto exported = std::make_shared<ExportArguments>();
     export_app->add_option("-o,--output", exported->folder, "folder to write it to")->required()->type_name("DIR");
-    export_app->add_flag("--force", exported->force, "write into a folder that is already there");
+    export_app->add_flag("--force", exported->force, "write into an existing folder");
     commands.push_back({export_app, [exported] { return export_builtin_command(*exported); }});
 
     CLI::App* reference_app =

@@ -42,15 +42,15 @@ struct ServeArguments {
 
 constexpr const char* serve_help = R"(
 Opens the scene as a live twin in the browser: press Run in the page, change parameters, releases, barriers and buildings
-while debris moves, look at every moment again, compare two scenarios, take maps and report away. It prints two links.
-Who has the first can steer (one at a time), who has the second can look; both carry a secret, so pass on the right one.
+while debris moves, replay any moment, compare two scenarios, export maps and report. It prints two links: with the
+first, one person at a time controls the twin; the second only allows watching. Both contain a secret token.
 Ctrl-C ends it.
 
-Only this computer can reach it. To share it in a network, let it listen on all addresses and name those by which
-browsers will know it; connections are not encrypted, so put a web server with TLS before it where that matters:
+By default only this computer can reach it. To share it in a network, listen on all addresses and give the host names
+that browsers use. Connections are not encrypted; where that matters, put a web server with TLS in front:
   talus serve my_scene.toml --host 0.0.0.0 --allow-host twin.example.org
 
-The page's whole interface is open to programs: docs/protocol.md, or /api/openapi.json of the running server.
+Programs can use the same interface as the page: docs/protocol.md, or /api/openapi.json of the running server.
   talus serve my_scene.toml --run --json
   curl -H "Authorization: Bearer TOKEN" http://127.0.0.1:8123/api/scenarios/A/state
 
@@ -92,7 +92,7 @@ void print_links(const ServeArguments& arguments, const Scene& scene, const serv
         text = links.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
     } else {
         for (const std::string& note : scene.notes) text += fmt::format("note: {}\n", note);
-        text += fmt::format("{}\n\n  to steer it   {}\n  to look only  {}\n\n{} Ctrl-C ends it.\n",
+        text += fmt::format("{}\n\n  to control it  {}\n  to watch it    {}\n\n{} Ctrl-C ends it.\n",
                             scene.spec.scene.title, control, view,
                             arguments.run ? "It runs. Open a link in the browser."
                                           : "Open the first link in the browser and press Run.");
@@ -170,28 +170,27 @@ int serve_command(const ServeArguments& arguments) {
     server->reset();
 
     const std::lock_guard lock(mutex);
-    if (!failure.empty()) return fail(exit_code::failure, "the simulation cannot go on: " + failure);
+    if (!failure.empty()) return fail(exit_code::failure, "the simulation cannot continue: " + failure);
     return exit_code::success;
 }
 
 }  // namespace
 
 void add_serve(CLI::App& program, std::vector<Command>& commands) {
-    CLI::App* app = program.add_subcommand("serve", "open a scene live in the browser: watch, steer and share it");
+    CLI::App* app = program.add_subcommand("serve", "open a scene live in the browser: watch, control and share it");
     const auto serve = std::make_shared<ServeArguments>();
     app->add_option("scene", serve->scene, "scene file; default: the built-in scene")->type_name("SCENE");
-    app->add_option("--port", serve->port, "port to listen on; default: 8123; 0: any that is free")
+    app->add_option("--port", serve->port, "port to listen on; default: 8123; 0: any free port")
         ->type_name("N")
         ->check(CLI::Range(0, 65535));
-    app->add_option("--host", serve->host,
-                    "address to listen on; default: 127.0.0.1, this computer alone; 0.0.0.0: all")
+    app->add_option("--host", serve->host, "address to listen on; default: 127.0.0.1, this computer only; 0.0.0.0: all")
         ->type_name("ADDRESS");
     app->add_option("--allow-host", serve->allowed_hosts,
-                    "a name that browsers know this server by; may be given many times")
+                    "a host name under which browsers reach this server; may be repeated")
         ->type_name("NAME")
         ->allow_extra_args(false);
     app->add_option("--token", serve->tokens,
-                    "secret of the links, once for controllers, again for viewers; default: new ones each time")
+                    "token of the links, once for controllers, again for viewers; default: new tokens each time")
         ->type_name("TOKEN")
         ->allow_extra_args(false);
     app->add_option("--calibrations", serve->calibrations,
@@ -199,16 +198,15 @@ void add_serve(CLI::App& program, std::vector<Command>& commands) {
                     "when the program ends")
         ->type_name("DIR");
     app->add_option("--ensemble", serve->ensembles,
-                    "folder of a finished talus ensemble of this scene, whose maps the page shows; may be given many "
-                    "times")
+                    "folder of a finished talus ensemble of this scene, whose maps the page shows; may be repeated")
         ->type_name("DIR")
         ->allow_extra_args(false);
-    app->add_flag("--run", serve->run, "begin at once instead of paused at time 0");
-    app->add_option("--threads", serve->threads, "number of threads; default: all cores; the result is the same")
+    app->add_flag("--run", serve->run, "start running instead of paused at time 0");
+    app->add_option("--threads", serve->threads, "number of threads; default: all cores; does not affect the result")
         ->type_name("N");
     add_overrides(*app, serve->overrides);
     add_data_folder(*app, serve->data);
-    CLI::Option* quiet = app->add_flag("--quiet", serve->quiet, "print nothing but errors");
+    CLI::Option* quiet = app->add_flag("--quiet", serve->quiet, "print only errors");
     app->add_flag("--json", serve->json, "print the links as one JSON object on stdout")->excludes(quiet);
     app->footer(serve_help);
     commands.push_back({app, [serve] { return serve_command(*serve); }});

@@ -37,9 +37,9 @@ struct ValidateArguments {
 };
 
 constexpr const char* validate_help = R"(
-A case is a folder with a case.toml: what to compute, what to expect of it, and who says so. Without CASE all cases that
-travel inside the program are computed. The table shows every expectation; a failing one as FAIL, one that its case file
-announces as FAIL (known). Cases whose data are not here are listed as skipped.
+A case is a folder with a case.toml: what to compute, the expected values, and their sources. Without CASE all cases
+embedded in the program are computed. The table shows every expectation; a failing one as FAIL, one that its case file
+announces as FAIL (known). Cases whose data are missing are listed as skipped.
 
 Exit codes:
     0  every expectation holds (with --known: all but the announced ones)
@@ -141,25 +141,25 @@ int validate_command(const ValidateArguments& arguments) {
 }  // namespace
 
 void add_validate(CLI::App& program, std::vector<Command>& commands) {
-    CLI::App* app = program.add_subcommand("validate", "compute cases whose results are known, print one table");
+    CLI::App* app = program.add_subcommand("validate", "compute cases with known results, print one table");
     const auto validate = std::make_shared<ValidateArguments>();
-    app->add_option("cases", validate->cases, "names or folders of cases; default: all of the program's")
+    app->add_option("cases", validate->cases, "names or folders of cases; default: all cases of the program")
         ->type_name("CASE");
     app->add_flag("--quick", validate->quick, "only the quick cases: under two minutes on two cores");
     app->add_flag("--list", validate->list, "list the cases instead of computing them");
-    app->add_flag("--known", validate->known, "announced failures are no reason for exit code 4");
+    app->add_flag("--known", validate->known, "announced failures do not cause exit code 4");
     app->add_option("--json", validate->json, "write the table as a list of objects")->type_name("FILE");
     app->add_option("--results", validate->results, "write all that the page shows, as data (results.json)")
         ->type_name("FILE");
     app->add_option("--html", validate->html, "write a page with the table and a plot for each case")
         ->type_name("FILE");
-    app->add_option("--markdown", validate->markdown, "write the same as Markdown, its plots into a folder beside it")
+    app->add_option("--markdown", validate->markdown,
+                    "write the same as Markdown, with its plots in a folder beside it")
         ->type_name("FILE");
     app->add_option("--threads", validate->threads, "number of threads; default: all cores")
         ->type_name("N")
         ->check(CLI::Range(1, 4096));
-    app->add_option("--data", validate->data, "folder that TALUS_DATA names, for cases on real terrain")
-        ->type_name("DIR");
+    app->add_option("--data", validate->data, "folder for TALUS_DATA, for cases on real terrain")->type_name("DIR");
     app->footer(validate_help);
     commands.push_back({app, [validate] { return validate_command(*validate); }});
 }

@@ -41,7 +41,7 @@ std::vector<Comparison> VariantPlan::run(const Scene& scene, const RunResult& ba
     std::vector<VariantRun> runs;
     for (const Variant& variant : variants_) {
         if (base.status == RunStatus::fault) {
-            runs.push_back({variant, std::nullopt, "not run after the fault in the run as given"});
+            runs.push_back({variant, std::nullopt, "not run because of the fault in the run as given"});
         } else {
             runs.push_back(run_variant(source_, variant, options));
         }

@@ -34,8 +34,8 @@ Json key_figures_of(const Calibration& c, const CalibrationSummary& s) {
     }
     all.push_back(key_figure("runs", "Runs", s.complete, "", "",
                              s.failed > 0       ? fmt::format("{} failed", s.failed)
-                             : c.result.settled ? "ended as nothing more was to be learned"
-                                                : "as many as allowed"));
+                             : c.result.settled ? "ended: no further gain expected"
+                                                : "stopped at the maximum number"));
     return all;
 }
 

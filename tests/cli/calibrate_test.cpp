@@ -72,7 +72,7 @@ TEST(Calibrate, AnInterruptedOneGoesOnToTheSameResult) {
     options.while_running = [](int process) { kill(process, SIGINT); };
     const auto first = run_program(calibrate_command("part", {"--json", "--threads", "1"}, "14"), options);
     ASSERT_EQ(first.exit_code, 130) << first.error;
-    EXPECT_THAT(first.error, HasSubstr("the same command goes on from there"));
+    EXPECT_THAT(first.error, HasSubstr("the same command resumes from there"));
     EXPECT_FALSE(fs::exists(scene.folder() / "part/report.html"));
     ASSERT_EQ(run_program(calibrate_command("part", {"--quiet"}, "14"), here).exit_code, 0);
     for (const char* file : {"factors.csv", "observations.csv", "posterior.csv", "calibration.json"}) {

@@ -69,7 +69,7 @@ TEST(Ensemble, AnInterruptedOneGoesOn) {
     options.while_running = [](int process) { kill(process, SIGINT); };
     const auto first = run_program(ensemble_command("result", {"--json", "--threads", "1"}, "6"), options);
     ASSERT_EQ(first.exit_code, 130) << first.error;
-    EXPECT_THAT(first.error, HasSubstr("the same command goes on from there"));
+    EXPECT_THAT(first.error, HasSubstr("the same command resumes from there"));
     EXPECT_FALSE(fs::exists(scene.folder() / "result/report.html"));
     const auto rest = run_program(ensemble_command("result", {"--quiet"}, "6"), {.folder = scene.folder()});
     EXPECT_EQ(rest.exit_code, 0) << rest.error;

@@ -55,7 +55,7 @@ TEST(Replay, SaysWhenTheResultIsAnother) {
     write_text(inputs.input("session.json"), journal.dump());
     const auto replayed = run_program({"replay", "session.json"}, {.folder = inputs.folder()});
     EXPECT_EQ(replayed.exit_code, 3);
-    EXPECT_THAT(replayed.error, HasSubstr("the result is another"));
+    EXPECT_THAT(replayed.error, HasSubstr("the result differs"));
     EXPECT_EQ(lines_of(replayed.error).size(), 1U);
 }
 
@@ -83,7 +83,7 @@ TEST(Replay, RefusesWhatItCannotRead) {
     EXPECT_THAT(error_of(journal), HasSubstr("session.json: step = \"many\": must be a whole number"));
     journal["last"]["step"] = 30;
     journal["scene"]["file"] = "nowhere.toml";
-    EXPECT_THAT(error_of(journal), HasSubstr("--scene names it where it is now"));
+    EXPECT_THAT(error_of(journal), HasSubstr("give its present path with --scene"));
     const auto moved =
         run_program({"replay", "session.json", "--scene", inputs.scene_file()}, {.folder = inputs.folder()});
     EXPECT_EQ(moved.exit_code, 0) << moved.error;

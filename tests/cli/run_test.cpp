@@ -189,7 +189,7 @@ TEST_F(Interrupted, AfterPlainLinesOfProgressSaysSo) {
     EXPECT_THAT(
         lines_of(outcome.error),
         testing::ElementsAre(testing::ContainsRegex("^t [0-9.]+ s of at most 1000 s, [0-9.]+ x real time, front"),
-                             "interrupted: writing what there is"));
+                             "interrupted: writing the results so far"));
     EXPECT_THAT(outcome.out, HasSubstr("PARTIAL RESULT"));
 }
 

@@ -139,7 +139,7 @@ TEST_F(InterruptedVariants, AreNamedOnTheTerminalToo) {
     EXPECT_THAT(outcome.out, Not(HasSubstr("PARTIAL")));
     EXPECT_THAT(lines_of(outcome.error),
                 Contains(ContainsRegex("^run 2 of 3, solver.end_time_s = 1000: t .* left of all runs$")));
-    EXPECT_THAT(lines_of(outcome.error), Contains("interrupted: writing what there is"));
+    EXPECT_THAT(lines_of(outcome.error), Contains("interrupted: writing the results so far"));
 }
 
 TEST(Fault, OfTheSceneLeavesItsVariantsOut) {
@@ -150,7 +150,7 @@ TEST(Fault, OfTheSceneLeavesItsVariantsOut) {
         {.folder = scene.folder()});
     EXPECT_EQ(outcome.exit_code, 3);
     EXPECT_THAT(last_event(outcome).at("convergence").at("variants").at(0).at("missing").get<std::string>(),
-                HasSubstr("not run after the fault"));
+                HasSubstr("not run because of the fault"));
     EXPECT_TRUE(last_event(outcome).at("convergence").at("converged").is_null());
 }
 

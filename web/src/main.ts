@@ -11,7 +11,7 @@ const meshCells = 400_000;
 async function begin(page: HTMLElement): Promise<void> {
   const token = takeToken();
   if (token === "") {
-    say(page, "This page needs the whole link", "Open the link that talus serve printed. It ends in #token=… and lets you in.");
+    say(page, "This page needs the complete link", "Open the link that talus serve printed. It ends in #token=…, which grants access.");
     return;
   }
   const api = new Api(token);

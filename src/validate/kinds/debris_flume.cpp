@@ -237,7 +237,7 @@ Computation prepare(Parameters& parameters, const Setting& setting) {
 }  // namespace debris_flume
 
 Kind debris_flume_kind() {
-    return {"debris_flume", "wet debris is let go into a flume", debris_flume::quantities, debris_flume::prepare};
+    return {"debris_flume", "wet debris is released into a flume", debris_flume::quantities, debris_flume::prepare};
 }
 
 }  // namespace talus::validate

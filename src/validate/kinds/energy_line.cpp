@@ -191,7 +191,7 @@ Computation prepare(Parameters& parameters, const Setting& setting) {
 }  // namespace energy_line
 
 Kind energy_line_kind() {
-    return {"energy_line", "energy of a mass that only Coulomb friction slows down", energy_line::quantities,
+    return {"energy_line", "energy of a mass slowed by Coulomb friction only", energy_line::quantities,
             energy_line::prepare};
 }
 

@@ -151,7 +151,7 @@ Computation prepare(Parameters& parameters, const Setting& setting) {
 }  // namespace free_fall
 
 Kind free_fall_kind() {
-    return {"free_fall", "debris that runs over a step falls freely", free_fall::quantities, free_fall::prepare};
+    return {"free_fall", "debris in free fall over a step", free_fall::quantities, free_fall::prepare};
 }
 
 }  // namespace talus::validate

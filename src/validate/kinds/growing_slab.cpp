@@ -134,7 +134,7 @@ Computation prepare(Parameters& parameters, const Setting& setting) {
 }  // namespace growing_slab
 
 Kind growing_slab_kind() {
-    return {"growing_slab", "a slab on an incline that picks up its bed", growing_slab::quantities,
+    return {"growing_slab", "a slab on an incline that entrains its bed", growing_slab::quantities,
             growing_slab::prepare};
 }
 

@@ -146,7 +146,7 @@ Computation prepare(Parameters& parameters, const Setting& setting) {
 }  // namespace net_stream
 
 Kind net_stream_kind() {
-    return {"net_stream", "what a net holds of a stream, and what bears on it", net_stream::quantities,
+    return {"net_stream", "a stream at a net: what it holds, and the load on it", net_stream::quantities,
             net_stream::prepare};
 }
 

@@ -119,7 +119,7 @@ export async function testGround(run) {
     const later = await until(setup, (s) => s.beds[0].depth_m === 3, "3 m deep");
     assert.equal(later.beds[0].in_force, false);
     assert.equal(later.pending_restart, true);
-    await editor.locator("text=From the next restart.").waitFor();
+    await editor.locator("text=Takes effect at the next restart.").waitFor();
     await shot("41-bed-waits");
     await press("Restart").click();
     await until(setup, (s) => s.beds[0].in_force && !s.pending_restart, "in force");

@@ -58,7 +58,7 @@ const volumes: Plotted[] = [
   { column: "volume_moving_m3", label: "Moving", colour: "#3b83b5" },
   { column: "volume_deposited_m3", label: "Deposited", colour: "#8a6d3b" },
   { column: "volume_held_m3", label: "Held", colour: "#8b949c" },
-  { column: "volume_left_m3", label: "Left the terrain", colour: "#a3262a" },
+  { column: "volume_left_m3", label: "Outflow", colour: "#a3262a" },
 ];
 
 export function timeCharts(twin: Twin): HTMLElement {

@@ -39,7 +39,7 @@ export function barrierFields(value: BarrierSet, narrowest_m: number, onset: (ch
   };
   const fields: BarrierFields = {
     element: h("div", {}, ...values.map(({ field }) => field.element),
-      h("details", {}, h("summary", {}, "Openings"), h("p", { class: "hint" }, "Middle along the line, width, height of the sill, in metres."), list, add)),
+      h("details", {}, h("summary", {}, "Openings"), h("p", { class: "hint" }, "Position of the middle along the line, width, sill height, in metres."), list, add)),
     show(fresh, length_m) {
       for (const { key, field } of values) field.show(fresh[key]);
       openings = fresh.openings ?? [];

@@ -38,7 +38,7 @@ function resultTable(status: CalibrationStatus): HTMLElement | null {
   const { result } = status;
   if (!result) return null;
   return h("table", { class: "plain found" }, h("caption", {}, "Best fit"),
-    h("thead", {}, h("tr", {}, h("th", { scope: "col" }, "Parameter"), h("td", {}, "Best"), h("td", { title: "Of the posterior" }, "Median"), h("td", { title: "Holds 95 % of the posterior" }, "95\u202f% interval"))),
+    h("thead", {}, h("tr", {}, h("th", { scope: "col" }, "Parameter"), h("td", {}, "Best"), h("td", { title: "Of the posterior" }, "Median"), h("td", { title: "Contains 95 % of the posterior" }, "95\u202f% interval"))),
     h("tbody", {}, ...result.parameters.map((p) => {
       const about = status.parameters.find((q) => q.key === p.key);
       const unit = about?.unit ? `, ${unitText(about.unit)}` : "";
@@ -55,7 +55,7 @@ const inWords = (warning: string, status: CalibrationStatus): string =>
 function warnings(status: CalibrationStatus): HTMLElement | null {
   const list = status.result?.warnings ?? [];
   if (list.length === 0) return null;
-  return h("details", { class: "why", open: true }, h("summary", {}, h("b", {}, `Mind before believing it (${list.length})`)), h("ul", {}, ...list.map((w) => h("li", {}, inWords(w, status)))));
+  return h("details", { class: "why", open: true }, h("summary", {}, h("b", {}, `Warnings (${list.length})`)), h("ul", {}, ...list.map((w) => h("li", {}, inWords(w, status)))));
 }
 
 export function calibratePanel(twin: Twin): HTMLElement {
@@ -70,7 +70,7 @@ export function calibratePanel(twin: Twin): HTMLElement {
     const free = choices.filter((c) => c.free.checked);
     const ranges = free.map((c) => ({ key: c.parameter.key, low: c.ends[0].valueAsNumber, high: c.ends[1].valueAsNumber }));
     problem.textContent = free.map((c, i) => rangeProblem(c.parameter, ranges[i].low, ranges[i].high)).find((p) => p !== null)
-      ?? (free.length === 0 ? "Choose a parameter that is free." : "");
+      ?? (free.length === 0 ? "Choose at least one free parameter." : "");
     if (problem.textContent !== "") return;
     start.disabled = true;
     successor = cancel;
@@ -100,7 +100,7 @@ export function calibratePanel(twin: Twin): HTMLElement {
     void twin.act({ action: "set_parameters", values: Object.fromEntries(status.parameters.map((p, i) => [p.key, Number(best.values[i].toPrecision(4))])) });
   } });
   const why = h("p", { class: "hint calibrate-why" });
-  const about = h("p", { class: "hint" }, "Which values explain what was observed? Runs of the scene as it was opened, without what was changed here since; beside the live run, which goes on.");
+  const about = h("p", { class: "hint" }, "Finds the values that explain the field observations. Runs use the scene as it was opened, without later changes in the page; the live run continues beside them.");
   const table = h("details", {}, h("summary", {}, "All runs"));
   const element = h("div", { class: "calibrate" }, about, why, going, map.element, found, table, observed, form);
 
@@ -116,7 +116,7 @@ export function calibratePanel(twin: Twin): HTMLElement {
     why.hidden = possible;
     why.textContent = status?.why_not ?? "";
     about.hidden = !possible || status.state !== "idle";
-    heading.textContent = status === null || status.state === "idle" ? "Free, and between which values" : "Once more";
+    heading.textContent = status === null || status.state === "idle" ? "Free parameters and their ranges" : "Once more";
     for (const part of [observed, form]) part.hidden = !possible;
     const ran = possible && status.state !== "idle";
     const runningNow = ran && (status.state === "running" || status.state === "cancelling");
@@ -127,7 +127,7 @@ export function calibratePanel(twin: Twin): HTMLElement {
     if (!possible) return;
     const hindrance = twin.hindrance;
     start.disabled = use.disabled = hindrance !== null;
-    start.title = hindrance ?? "Runs beside the live run, with less right to the processor";
+    start.title = hindrance ?? "Runs beside the live run, at lower priority";
     for (const { free, ends } of choices) {
       free.disabled = hindrance !== null;
       for (const end of ends) end.disabled = hindrance !== null || !free.checked;

@@ -1,4 +1,4 @@
-// What is shown while a new shape is drawn: how to, sizes, live measures, and a way without a mouse.
+// Display options while a new shape is drawn: how to, sizes, live measures, and a way without a mouse.
 import type { Drawing } from "../scene/drawing";
 import { number, quantity } from "../state/format";
 import { area, drawnAsLine, fewestPoints, length, releaseVolume } from "../state/shapes";
@@ -11,7 +11,7 @@ import { newZoneFields } from "./zone_fields";
 
 function howTo(shape: Shape, byLine: boolean): string {
   if (shape === "barrier") return "Click points along the line; double-click or Enter ends it.";
-  if (shape === "inflow" && byLine) return "Click the two ends of a line across the flow. Debris goes to the right of the way from the first to the second.";
+  if (shape === "inflow" && byLine) return "Click the two ends of a line across the flow. Debris enters towards the right, looking from the first to the second.";
   return `Click ${shape === "building" ? "the corners of the footprint" : "corners on the ground"}; double-click or Enter closes ${shape === "building" ? "it" : "the outline"}.`;
 }
 
@@ -29,7 +29,7 @@ function newFields(twin: Twin, shape: Shape, changed: () => void): HTMLElement[]
       return [field(described.release.thickness_m, sizes.release, "thickness_m")];
     case "barrier":
       return [field(described.barrier.height_m, sizes.barrier, "height_m"), field(described.barrier.thickness_m, sizes.barrier, "thickness_m"),
-        h("label", { class: "check", title: "Half of the debris passes its meshes at first; the share is in its editor" },
+        h("label", { class: "check", title: "At first half of the debris passes its meshes; change the share in its editor" },
           h("input", { type: "checkbox", onchange: (event: Event) => {
             sizes.barrier.passing_share = (event.currentTarget as HTMLInputElement).checked ? 0.5 : null;
           } }), "Net")];
@@ -40,7 +40,7 @@ function newFields(twin: Twin, shape: Shape, changed: () => void): HTMLElement[]
     case "bed":
       return [field(described.bed.depth_m, sizes.bed, "depth_m"), field(described.bed.growth_rate_per_m, sizes.bed, "growth_rate_per_m")];
     case "inflow":
-      return [choice("Where debris comes in", [["line", "Across a line"], ["area", "Over an area"]], "line", (where) => {
+      return [choice("Where debris enters", [["line", "Across a line"], ["area", "Over an area"]], "line", (where) => {
         twin.inflowByLine.value = where === "line";
         // Points of an outline are no line: drawing begins anew.
         twin.tool.value = { kind: "draw", shape };

@@ -32,8 +32,8 @@ async function open(twin: Twin): Promise<void> {
     const control = button("Save", { class: "small", "aria-label": `Save ${name}`, onclick: () => fetchFile(control, name, get) });
     return h("tr", {}, h("th", { scope: "row" }, name, h("div", { class: "muted" }, what)), h("td", {}, size === null ? "" : bytes(size)), h("td", {}, control));
   };
-  openDialog(dialog(`Export scenario ${scenario}`, h("p", { class: "hint" }, "Files hold the run up to now, as a run without the twin writes them."),
+  openDialog(dialog(`Export scenario ${scenario}`, h("p", { class: "hint" }, "The files contain the run up to now, as talus run writes them."),
     h("table", { class: "plain exports" }, h("tbody", {}, ...files.map((f) => row(f.name, f.what, f.bytes, () => twin.api.exported(scenario, f.name))),
-      row("journal.json", "Every action with its step: a replay of it ends in the same state", null, () => twin.api.journal(scenario)))),
+      row("journal.json", "Every action with its step: a replay ends in the same state", null, () => twin.api.journal(scenario)))),
     files.length === 0 ? h("p", { class: "hint" }, "No results yet: run the simulation first.") : null));
 }

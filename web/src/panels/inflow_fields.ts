@@ -34,10 +34,10 @@ export function inflowFields(inflow: Inflow, downhill_deg: number, restDensity: 
   };
   const add = button("Add a row", { class: "small", icon: "plus", onclick: () => put(rowsAndOne(rows)) });
   const density = h("input", { type: "checkbox", onchange: () => put(rowsOfDensity(rows, density.checked ? restDensity : null)) });
-  const turn = button("Turn round", { class: "small", title: "Debris goes to the other side of the line", onclick: () => onset({ turn: true }) });
+  const turn = button("Turn round", { class: "small", title: "Debris enters towards the other side of the line", onclick: () => onset({ turn: true }) });
   const direction = valueField({ ...described.inflow.direction_deg, first: downhill_deg }, null, (direction_deg) => onset({ direction_deg }));
-  const long = h("p", { class: "hint" }, "Its hydrograph has more than 200 rows: it stays as the scene's file has it.");
-  const form = h("div", {}, table, h("div", { class: "row" }, add, h("label", { class: "check", title: "Else the debris has the material's rest density" }, density, "Density")), chart.element);
+  const long = h("p", { class: "hint" }, "Its hydrograph has more than 200 rows and cannot be edited here.");
+  const form = h("div", {}, table, h("div", { class: "row" }, add, h("label", { class: "check", title: "Otherwise the debris has the material's rest density" }, density, "Density")), chart.element);
 
   const cell = (row: number, [key, label, unit]: (typeof columns)[number]): HTMLElement => {
     const input = h("input", { type: "number", step: "any", min: "0", value: text(rows[row][key]), disabled: hindered !== null, "data-cell": `${row} ${key}`,
@@ -73,7 +73,7 @@ export function inflowFields(inflow: Inflow, downhill_deg: number, restDensity: 
     fresh?.focus();
     if (held instanceof HTMLInputElement && fresh instanceof HTMLInputElement && held.value !== held.defaultValue) fresh.value = held.value;
   };
-  const way = h("div", { class: "row" }, turn, h("span", { class: "muted" }, "Debris goes where the arrows show."));
+  const way = h("div", { class: "row" }, turn, h("span", { class: "muted" }, "Debris enters in the direction of the arrows."));
   way.hidden = inflow.line === null;
   direction.element.hidden = inflow.line !== null;
   return {

@@ -13,14 +13,14 @@ const shortcuts: [string, [string, string][]][] = [
   ["Time", [["Space", "Run or pause (when no control has the focus)"], [".", "One step"], ["R", "Play or pause the recording"], ["L", "Return to live"]]],
   ["View (focus it with V)", [["Arrow keys", "Turn and tilt"], ["Shift + arrow keys", "Move"], ["+ and −", "Zoom"], ["1, 2, 3", "Orbit, fly, follow the front"],
     ["W A S D, Q E", "Fly"], ["T", "Top view"], ["F", "Whole scene"], ["Alt + 1 … 9", "Saved view"]]],
-  ["Drawing", [["Space", "Point in the middle of the view"], ["Enter", "Finish"], ["Backspace", "Take the last point back"], ["Escape", "Cancel, or select nothing"],
-    ["Delete", "Remove what is selected"], ["Arrow keys on a corner", "Move it by 1 m"]]],
+  ["Drawing", [["Space", "Point in the middle of the view"], ["Enter", "Finish"], ["Backspace", "Remove the last point"], ["Escape", "Cancel, or clear the selection"],
+    ["Delete", "Remove the selection"], ["Arrow keys on a corner", "Move it by 1 m"]]],
   ["Everywhere", [["Ctrl + Z", "Undo"], ["Ctrl + Shift + Z", "Redo"], ["?", "This help"]]],
 ];
 
 export function help(): void {
   openDialog(dialog("Help", h("p", { class: "hint" },
-    "Run the simulation below. Controls on the left take effect in the next step, also while debris moves: draw a barrier across the path, raise the friction, trigger a release. Beds and inflows hold from the next restart. Readings are on the right. The bar at the bottom goes back through the recording."),
+    "Run the simulation below. Controls on the left take effect in the next step, also while debris moves: draw a barrier across the path, raise the friction, trigger a release. Changes to beds and inflows take effect at the next restart. Readings are on the right. The bar at the bottom scrubs through the recording."),
   ...shortcuts.map(([title, keys]) => h("section", { class: "shortcuts" }, h("h3", {}, title),
     h("dl", {}, ...keys.flatMap(([key, what]) => [h("dt", {}, key), h("dd", {}, what)]))))));
 }

@@ -12,7 +12,7 @@ import { h } from "../ui/dom";
 
 export interface Legend { title: string; unit: string; low: number; high: number; at: (share: number) => Rgb; note?: string; from?: string }
 
-const pastNote = "Rebuilt from the recording: a peak between two recorded frames is missed, so values can be a little low.";
+const pastNote = "Rebuilt from the recording: peaks between recorded frames are missed, so values can be slightly low.";
 
 /** Legends of what is on display now, also for pictures of the view. */
 export function presentLegends(twin: Twin, stage: Stage, layers: ShownLayers): Legend[] {
@@ -98,6 +98,6 @@ export function scaleAndCompass(twin: Twin, stage: Stage, readOut: HTMLElement):
     text.textContent = length >= 1000 ? `${tick(length / 1000)}\u202fkm` : `${tick(length)}\u202fm`;
   });
   return h("div", { class: "map-marks" }, compass,
-    h("div", { class: "scale", title: "Holds at the middle of the view" }, text, bar), readOut,
+    h("div", { class: "scale", title: "Scale at the middle of the view" }, text, bar), readOut,
     h("div", { class: "map-note" }, `Contours every ${tick(contourInterval(stage.relief))}\u202fm · ${twin.scene.crs}`));
 }

@@ -42,7 +42,7 @@ export class MisfitMap {
     this.bar.style.background = `linear-gradient(to right, ${Array.from({ length: 17 }, (_, i) => css(rampAt(ramps.misfit, i / 16))).join(", ")})`;
     this.element = h("figure", { class: "misfit-map" }, holder,
       h("div", { class: "misfit-key" }, h("b", {}, "Misfit"), h("div", {}, this.bar, this.ends)),
-      h("p", { class: "hint" }, "A dot is a run. Misfit: sum of squared deviations from the observations, in standard deviations; dark fits best. Ring: best run. Cross: the values now."));
+      h("p", { class: "hint" }, "A dot is a run. Misfit: sum of squared deviations from the observations, in standard deviations; dark fits best. Ring: best run. Cross: the present values."));
   }
 
   /** present: the live scenario's values of the parameters. */

@@ -25,7 +25,7 @@ export function people(twin: Twin): HTMLElement {
     const mine = twin.controller.value === twin.you.value?.id;
     const alone = twin.controller.value === null;
     if (await twin.attempt(() => twin.api.control(mine ? "release" : "request"))) {
-      if (!mine && !alone) twin.notice("Asked for control; without an answer it comes to you in 10 s.", "done");
+      if (!mine && !alone) twin.notice("Asked for control; without an answer you get it in 10 s.", "done");
     }
   };
   watchAll([twin.people, twin.controller, twin.request, twin.you, twin.connection], () => {
@@ -37,12 +37,12 @@ export function people(twin: Twin): HTMLElement {
     const mine = you !== null && twin.controller.value === you.id;
     const waiting = twin.request.value?.id === you?.id;
     control.replaceChildren(h("span", {}, mine ? "You have control" : waiting ? "Asked for control …" : twin.controller.value === null ? "Take control" : "Ask for control"));
-    control.title = mine ? "Give control back" : "";
+    control.title = mine ? "Release control" : "";
     control.classList.toggle("on", mine);
     control.disabled = waiting;
     const { state, retryIn_s } = twin.connection.value;
     connection.hidden = state === "open";
-    const sentence = state === "lost" ? (retryIn_s > 0 ? `Connection lost. Trying again in ${retryIn_s} s.` : "Reconnecting …") : "Connecting …";
+    const sentence = state === "lost" ? (retryIn_s > 0 ? `Connection lost. Reconnecting in ${retryIn_s} s.` : "Reconnecting …") : "Connecting …";
     if (connection.textContent !== sentence) connection.replaceChildren(h("span", {}, sentence));
     const asked = mine ? twin.request.value : null;
     if (!asked) request.replaceChildren();
@@ -78,11 +78,11 @@ function share(twin: Twin): void {
   };
   const links = twin.links.value;
   const box = dialog("Share this session", h("label", { class: "row own-name" }, "Your name", name), list,
-    link("Link for viewers", "They see everything and change nothing.", links.viewer),
+    link("Link for viewers", "They can see everything but change nothing.", links.viewer),
     link("Link for controllers", "They can ask for control and then change the simulation.", links.controller),
     links.viewer === undefined && links.controller === undefined ? h("p", { class: "hint" }, "The program printed the links when it started.") : null,
     location.hostname === "127.0.0.1" || location.hostname === "localhost"
-      ? h("p", { class: "hint" }, "The program listens on this computer only: the links work in browsers here.") : null);
+      ? h("p", { class: "hint" }, "The server listens on this computer only: the links work in browsers on this computer.") : null);
   box.addEventListener("close", end);
   openDialog(box);
 }

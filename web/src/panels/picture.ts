@@ -106,7 +106,7 @@ export class Picture {
     }
     const type = ["video/webm;codecs=vp9", "video/webm;codecs=vp8", "video/webm"].find((t) => MediaRecorder.isTypeSupported(t));
     if (!type) {
-      this.twin.notice("This browser records no WebM video.", "error");
+      this.twin.notice("This browser cannot record WebM video.", "error");
       return;
     }
     this.compose(this.stage.drawNow());

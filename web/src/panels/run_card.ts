@@ -13,7 +13,7 @@ export function runCard(twin: Twin): HTMLElement {
     return { element: h("div", { title: help }, h("dt", {}, label), value), value };
   };
   const front = cell("Front velocity", "Velocity of the front along the flow path");
-  const fastest = cell("Largest speed", "Largest speed of a particle now");
+  const fastest = cell("Largest speed", "Present maximum particle speed");
   const chainage = cell("Front at", "Chainage of the front");
   const particles = cell("Particles", "Particles in the simulation");
   const steps = cell("Steps", "Time steps computed per second");
@@ -44,7 +44,7 @@ export function runCard(twin: Twin): HTMLElement {
 
 export function balance(twin: Twin): HTMLElement {
   const parts = [["volume_held_m3", "Held, not yet released", "#c9cfd4"], ["volume_moving_m3", "Moving", "#3b83b5"], ["volume_deposited_m3", "Deposited", "#b49a6c"],
-    ["volume_left_m3", "Left the terrain", "#a3262a"]] as const;
+    ["volume_left_m3", "Outflow", "#a3262a"]] as const;
   const bar = h("div", { class: "balance-bar", "aria-hidden": "true" });
   const body = h("tbody", {});
   const table = h("table", { class: "plain" }, body);
@@ -71,7 +71,7 @@ export function balance(twin: Twin): HTMLElement {
     const error = s.volume_released_m3 + s.volume_entrained_m3 - s.volume_held_m3 - s.volume_moving_m3 - s.volume_deposited_m3 - s.volume_left_m3;
     body.replaceChildren(...parts.map(([key, label, colour]) => row(label, `${fixed(s[key], 1)} m³`, colour)), row("All releases", `${fixed(s.volume_released_m3, 1)} m³`),
       ...(s.volume_entrained_m3 > 0 ? [row("Picked up from the bed", `${fixed(s.volume_entrained_m3, 1)} m³`)] : []),
-      row("Unaccounted for", `${fixed(Math.abs(error) < 0.05 ? 0 : error, 1)} m³`));
+      row("Residual", `${fixed(Math.abs(error) < 0.05 ? 0 : error, 1)} m³`));
     more.tBodies[0]?.replaceChildren(row("Step", live ? count(s.step) : "–"), row("Compression, mean", `${fixed(100 * s.mean_compression, 2)} %`),
       row("Compression, largest", `${fixed(100 * s.max_compression, 2)} %`), row("Recording", `${s.recording.frames} frames, ${bytes(s.recording.bytes)}`),
       row("State hash", live ? (s.hash ?? "while paused") : "–"));

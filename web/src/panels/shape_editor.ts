@@ -37,7 +37,7 @@ function editor(twin: Twin, drawing: Drawing, item: Item, holder: HTMLElement): 
   const trigger = shape === "release"
     ? button("Trigger", { icon: "trigger", class: "primary small", onclick: () => void twin.act({ action: "trigger_release", id }) }) : null;
   const restart = shape === "bed" || shape === "inflow"
-    ? button("Restart", { icon: "restart", class: "small", title: "Back to time 0 with the setup as it is now", onclick: () => void twin.restart() }) : null;
+    ? button("Restart", { icon: "restart", class: "small", title: "Back to time 0 with the present setup", onclick: () => void twin.restart() }) : null;
   const away = button("Remove", { icon: "remove", class: "small", onclick: () => void remove(twin, now()) });
   const corners = h("div", { class: "corners" });
   const table = h("details", {}, h("summary", {}, "Coordinates"), corners);
@@ -77,10 +77,10 @@ const waits = (item: Item): boolean => (item.shape === "bed" || item.shape === "
 
 function noteOf(item: Item): string {
   const said: string[] = [];
-  if (item.shape === "release" && item.status === "released") said.push("Already released: changes hold from the next restart.");
-  if (waits(item)) said.push("From the next restart.");
-  if (item.shape === "zone" && !hasOutline(item)) said.push("A raster says where it is: its values can be changed here, its shape cannot.");
-  if (item.shape === "bed" && !hasOutline(item)) said.push("It lies everywhere, or where a raster says: its values can be changed here, its shape cannot.");
+  if (item.shape === "release" && item.status === "released") said.push("Already released: changes take effect at the next restart.");
+  if (waits(item)) said.push("Takes effect at the next restart.");
+  if (item.shape === "zone" && !hasOutline(item)) said.push("Its shape comes from a raster: its values can be changed here, its shape cannot.");
+  if (item.shape === "bed" && !hasOutline(item)) said.push("It covers all ground, or its shape comes from a raster: its values can be changed here, its shape cannot.");
   return said.join(" ");
 }
 
@@ -117,7 +117,7 @@ function fillCorners(twin: Twin, item: Item, holder: HTMLElement, now: () => Ite
       if (by.every(Number.isFinite)) send({ move_m: by });
       else twin.notice("To move it, give metres to the east and north.", "error");
     } });
-    holder.replaceChildren(h("p", { class: "hint" }, "Has several parts or a courtyard: moves as a whole, metres to the east and north."),
+    holder.replaceChildren(h("p", { class: "hint" }, "Has several parts or a courtyard: it can be moved as a whole, by metres to the east and north."),
       h("div", { class: "row coordinates" }, east, north, move));
     return;
   }

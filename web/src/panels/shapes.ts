@@ -12,12 +12,12 @@ import { draftBox } from "./draft_box";
 import { showEditor } from "./shape_editor";
 
 const words: Record<Shape, { title: string; empty: string }> = {
-  release: { title: "Releases", empty: "No release. Draw one: debris starts from it when you trigger it." },
+  release: { title: "Releases", empty: "No release. Draw one, then trigger it to start its debris." },
   barrier: { title: "Barriers", empty: "No barrier. Draw a line across the path to hold debris back." },
   building: { title: "Buildings", empty: "No building." },
-  zone: { title: "Zones", empty: "No zone. Draw one where the ground resists in its own way, such as a forest." },
-  bed: { title: "Beds", empty: "No bed. Draw one where loose material lies that debris picks up." },
-  inflow: { title: "Inflows", empty: "No inflow. Draw one where debris comes in while the run goes on." },
+  zone: { title: "Zones", empty: "No zone. Draw one where ground resistance differs, such as a forest." },
+  bed: { title: "Beds", empty: "No bed. Draw one where debris can pick up loose material." },
+  inflow: { title: "Inflows", empty: "No inflow. Draw one where debris enters during the run." },
 };
 /** Longer ones (the houses of a village) are picked in the view. */
 const longestList = 6;

@@ -13,9 +13,9 @@ const speeds: [string, string][] = [
 export function transport(twin: Twin, playback: Playback): HTMLElement {
   const run = button("Run", { class: "primary run", icon: "run", onclick: () => void toggle(twin) });
   const step = button("Step", { icon: "step", bare: true, title: "One step (period key)", onclick: () => void twin.act({ action: "step" }) });
-  const restart = button("Restart", { icon: "restart", bare: true, title: "Back to time 0 with the setup as it is now",
+  const restart = button("Restart", { icon: "restart", bare: true, title: "Back to time 0 with the present setup",
     onclick: () => void twin.restart() });
-  const speed = h("select", { "aria-label": "Speed of the simulation", title: "Speed of the simulation; “Fastest” is as fast as it goes", onchange: () =>
+  const speed = h("select", { "aria-label": "Speed of the simulation", title: "Speed of the simulation; “Fastest” is without limit", onchange: () =>
     void twin.act({ action: "set_speed", factor: speed.value === "" ? null : Number(speed.value) }) },
     ...speeds.map(([value, text]) => h("option", { value }, text)));
 

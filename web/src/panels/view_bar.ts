@@ -1,4 +1,4 @@
-// What is shown and from where: camera, debris, layers.
+// Display options and from where: camera, debris, layers.
 import { layerNames, type ShownLayer } from "../protocol/messages";
 import { ensembleLayer, ensembleTitle, infoOf, isEnsembleLayer, layerInfo } from "../scene/layers";
 import type { CameraMode, Viewpoint } from "../scene/rig";
@@ -35,7 +35,7 @@ export function viewBar(twin: Twin, stage: Stage): ViewBar {
     saved.replaceChildren(h("option", { value: "" }, count === 0 ? "No views" : "Views"),
       ...views().map((_, i) => h("option", { value: i + 1 }, `View ${i + 1}`)));
     saved.disabled = count === 0;
-    saved.title = count === 0 ? "Save the present view first" : "Go to a saved view";
+    saved.title = count === 0 ? "Save a view first" : "Go to a saved view";
   };
   const recall = (number: number): void => {
     const view = views()[number - 1];
@@ -96,7 +96,7 @@ export function viewBar(twin: Twin, stage: Stage): ViewBar {
   const camera = h("div", { class: "bar camera", role: "toolbar", "aria-label": "Camera" }, ...buttons,
     button("Top view", { icon: "top", bare: true, title: "Top view, north up (T)", onclick: () => stage.rig.top() }),
     button("Fit", { icon: "fit", bare: true, title: "Whole scene (F)", onclick: () => stage.rig.fit() }), save, saved);
-  const show = h("div", { class: "bar show", role: "toolbar", "aria-label": "What is shown" },
+  const show = h("div", { class: "bar show", role: "toolbar", "aria-label": "Display options" },
     h("label", { class: "check" }, particles, "Particles"), surface, layer, opacity, differenceLabel,
     photoLabel, h("label", { class: "check" }, contours, "Contours"), h("label", { class: "check" }, names, "Names"));
   setMode("orbit");

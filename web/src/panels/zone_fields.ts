@@ -48,5 +48,5 @@ export function newZoneFields(onset: (zone: ZoneSet) => void): HTMLElement {
     onset({ ...kinds[kind] });
   };
   choose(chosen);
-  return h("div", {}, choice("What is different in the zone", [["friction", "Friction"], ["forest", "Forest"]], chosen, choose), ...all.map((f) => f.field.element));
+  return h("div", {}, choice("Properties of the zone", [["friction", "Friction"], ["forest", "Forest"]], chosen, choose), ...all.map((f) => f.field.element));
 }

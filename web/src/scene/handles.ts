@@ -43,7 +43,7 @@ export class Handles {
       const isWhole = k === points.length;
       const button = h("button", { type: "button", class: isWhole ? "handle whole" : "handle",
         "aria-label": `${isWhole ? "Whole of" : `Corner ${k + 1} of`} ${name}; arrow keys move it by ${nudge_m} m`,
-        title: isWhole ? "Drag to move the whole" : "Drag to move this corner" });
+        title: isWhole ? "Drag to move the whole shape" : "Drag to move this corner" });
       button.addEventListener("pointerdown", (event) => this.drag(event, button, k, events));
       button.addEventListener("keydown", (event) => {
         const step: Record<string, Point> = { ArrowUp: [0, nudge_m], ArrowDown: [0, -nudge_m], ArrowLeft: [-nudge_m, 0], ArrowRight: [nudge_m, 0] };

@@ -19,9 +19,9 @@ export const layerInfo: Record<LayerName, LayerInfo> = {
   peak_depth: { title: "Peak depth", unit: "m", ramp: ramps.peak_depth, help: "Largest flow depth so far, vertical" },
   peak_speed: { title: "Peak speed", unit: "m/s", ramp: ramps.peak_speed, help: "Largest depth-averaged speed so far" },
   peak_pressure: { title: "Peak pressure", unit: "kPa", ramp: ramps.peak_pressure, help: "Largest impact pressure so far: rest density times speed squared" },
-  arrival_time: { title: "Arrival time", unit: "s", ramp: ramps.arrival_time, help: "When debris first came" },
+  arrival_time: { title: "Arrival time", unit: "s", ramp: ramps.arrival_time, help: "Time when debris first arrived" },
   deposit_depth: { title: "Deposit depth", unit: "m", ramp: ramps.deposit_depth, help: "Depth of debris as it lies" },
-  erosion_depth: { title: "Erosion", unit: "m", ramp: ramps.erosion_depth, help: "Depth that debris picked up from the bed, vertical: the ground has sunk by it" },
+  erosion_depth: { title: "Erosion", unit: "m", ramp: ramps.erosion_depth, help: "Depth that debris picked up from the bed, vertical: the ground is lower by it" },
 };
 
 export const isEnsembleLayer = (name: ShownLayer | "none"): name is EnsembleLayer => name.startsWith("ensemble/");
@@ -52,7 +52,7 @@ export function infoOf(name: ShownLayer, ensembles: readonly Ensemble[]): LayerI
     from: ensembleTitle(ensemble) + (ensemble.same_terrain ? "" : ", other terrain") + (map.greatest === null ? ": nowhere" : ""),
   };
 }
-/** What is shown of an ensemble's map, NaN elsewhere; a place that no run reached is not part of it. */
+/** Display options of an ensemble's map, NaN elsewhere; a place that no run reached is not part of it. */
 export function shownOfMap(map: EnsembleMap, grid: Grid): Float32Array {
   return grid.values.map((v) => (v >= (map.kind === "probability" ? 1e-6 : least[map.of]) ? v : NaN));
 }

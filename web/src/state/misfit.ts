@@ -69,6 +69,6 @@ export function progressText(status: CalibrationStatus): string {
     case "cancelling": return `${done}${failed} · ends after the present step`;
     case "cancelled": return `Cancelled after ${status.runs.length} runs${failed}`;
     case "failed": return `Ended after ${status.runs.length} runs${failed}: ${status.message}`;
-    case "done": return `${status.runs.length} runs${failed}${status.result?.settled ? "; more would tell nothing new" : ", as many as allowed"}${status.message ? `. ${status.message}` : ""}`;
+    case "done": return `${status.runs.length} runs${failed}${status.result?.settled ? ": no further gain expected" : "; stopped at the maximum number"}${status.message ? `. ${status.message}` : ""}`;
   }
 }

@@ -112,10 +112,10 @@ export class Twin {
   }
   /** Why this person cannot change anything now; null: they can. */
   get hindrance(): string | null {
-    if (this.connection.value.state !== "open") return "The connection is lost; it comes back by itself.";
+    if (this.connection.value.state !== "open") return "The connection is lost; reconnecting automatically.";
     const you = this.you.value;
     if (you === null) return "Joining the session.";
-    if (you.role === "viewer") return "This is a viewer's link: you see everything and change nothing.";
+    if (you.role === "viewer") return "This is a viewer's link: you can see everything but change nothing.";
     if (this.controller.value === you.id) return null;
     const holder = this.people.value.find((p) => p.id === this.controller.value);
     return holder ? `${holder.name} has control. Ask for it to change anything.` : "Nobody has control. Take it to change anything.";
@@ -130,7 +130,7 @@ export class Twin {
       return null;
     }
   }
-  /** Back to time 0 with the setup as it is now, on display too. */
+  /** Back to time 0 with the present setup, on display too. */
   async restart(): Promise<void> {
     if (this.replay_s.value !== null) {
       this.replay_s.value = null;
