@@ -94,9 +94,7 @@ void add_thresholds(CLI::App& command, std::string& depths, std::string& speeds,
 Result<EnsemblePlan> read_arguments(const EnsembleArguments& arguments) {
     EnsemblePlan plan;
     if (!arguments.plan.empty()) {
-        Result<EnsemblePlan> read = read_plan(arguments.plan);
-        if (!read) return read;
-        plan = *std::move(read);
+        TALUS_ASSIGN(plan, read_plan(arguments.plan));
     }
     for (const std::string& factor : arguments.factors) {
         TALUS_TRY(add_factor(plan, factor));

@@ -76,7 +76,7 @@ Result<Json> read_definition(const fs::path& folder, const std::string& kind) {
     std::ifstream in(folder / "ensemble.json");
     Json json = Json::parse(in, nullptr, false);
     if (!json.is_object() || json.value("program", Json()) != "talus" || json.value("kind", Json()) != kind) {
-        return Error{fmt::format("{}: is no {} of talus (no ensemble.json of its own)", folder.string(), kind)};
+        return Error{fmt::format("{}: is not a {} of talus (it has no ensemble.json)", folder.string(), kind)};
     }
     return json;
 }
@@ -110,7 +110,7 @@ Result<EnsembleFolder> EnsembleFolder::open(const fs::path& path, const Json& de
     }
     const bool fresh = !fs::exists(path, error) || fs::is_empty(path, error);
     if (!fresh && !fs::exists(path / "ensemble.json", error) && !fs::exists(path / "lock", error)) {
-        return Error{path.string() + ": is there and holds no ensemble; name another output folder"};
+        return Error{path.string() + ": exists and contains no ensemble; name another output folder"};
     }
     fs::create_directories(path / "runs", error);
     if (error) return Error{fmt::format("{}: cannot be made: {}", path.string(), error.message())};

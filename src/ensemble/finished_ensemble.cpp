@@ -83,7 +83,7 @@ Result<FinishedEnsemble> read_finished_ensemble(const fs::path& folder) {
         for (const double level : mapped_percentiles) add_map(made, folder, EnsembleMap::Kind::percentile, map, level);
     }
     if (made.maps.empty()) {
-        return Error{fmt::format("{}: has no maps; debris came nowhere, or they were taken away", folder.string())};
+        return Error{fmt::format("{}: has no maps; debris reached no cell, or they were removed", folder.string())};
     }
     return made;
 }

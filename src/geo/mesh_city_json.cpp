@@ -139,8 +139,7 @@ class CityReader {
     Status read_faces(const std::string& id, const json& lists, int depth, std::vector<MeshFace>& faces) {
         if (!lists.is_array()) return Error{fmt::format("{}: \"{}\": its boundaries are no list", file_, id)};
         for (const json& entry : lists) {
-            Status s = depth > 1 ? read_faces(id, entry, depth - 1, faces) : read_face(id, entry, faces);
-            if (!s) return s;
+            TALUS_TRY(depth > 1 ? read_faces(id, entry, depth - 1, faces) : read_face(id, entry, faces));
         }
         return {};
     }

@@ -39,7 +39,7 @@ Status check_replaceable(const fs::path& path, bool force) {
     if (fs::is_empty(path, failed) && !failed) return {};
     if (is_result_folder(path)) return {};
     return Error{
-        fmt::format("{}: is not a result of talus (no manifest.json of its own) and is not replaced; name another "
+        fmt::format("{}: is not a result of talus (it has no manifest.json) and is not replaced; name another "
                     "output folder",
                     path.string())};
 }

@@ -74,7 +74,7 @@ Result<CalibrationPlan> read_plan(const json& wanted) {
     for (const json& entry : *list) {
         TALUS_ASSIGN(auto factor, read_factor(entry));
         for (const Factor& other : plan.factors) {
-            if (other.key == factor.key) return Error{fmt::format("parameters: {} is there twice", other.key)};
+            if (other.key == factor.key) return Error{fmt::format("parameters: {} is given twice", other.key)};
         }
         plan.factors.push_back(std::move(factor));
     }

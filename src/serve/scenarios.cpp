@@ -91,8 +91,7 @@ Result<twin::Done> Scenarios::steer(const std::string& name, const json& action)
     twin::Done done;
     if (name == "set_speed") {
         const auto factor = action.find("factor");
-        if (factor == action.end())
-            return Error{"set_speed needs the key factor: a number, or null for as fast as it goes"};
+        if (factor == action.end()) return Error{"set_speed needs the key factor: a number, or null for no limit"};
         if (factor->is_null()) {
             pace_.set_factor({});
             done.sentence = "as fast as it goes";

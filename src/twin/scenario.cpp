@@ -31,7 +31,7 @@ constexpr std::size_t most_undo = 200;
 std::vector<std::string> obstacle_notes(const LiveRun& run) {
     std::vector<std::string> notes;
     for (const LiveRun::Removed& gone : run.removed()) {
-        notes.push_back(fmt::format("{} \"{}\": taken away at {:.2f} s", gone.barrier ? "barrier" : "building",
+        notes.push_back(fmt::format("{} \"{}\": removed at {:.2f} s", gone.barrier ? "barrier" : "building",
                                     gone.body->name, gone.impact.removed_time));
     }
     return notes;
