@@ -1,46 +1,51 @@
 #pragma once
 
 #include <cassert>
-#include <optional>
 #include <string>
+#include <type_traits>
 #include <utility>
 #include <variant>
 
 namespace talus {
 
-/// What went wrong with somebody's input, in one line a person can act on:
+/// What is wrong with an input, in one line that says what to change:
 /// the file, the line, the key, the value and the allowed range, as far as they apply.
 struct Error {
     std::string message;
 };
 
-/// A value, or the Error that kept it from being made. Bad input travels in these; bugs are assertions.
+/// A value, or the Error that kept it from being made; Result<void> has no value, only success. Bad input travels in
+/// these; bugs are assertions. TALUS_TRY and TALUS_ASSIGN (try.hpp) pass an Error on.
 template <class T>
 class [[nodiscard]] Result {
+    using Value = std::conditional_t<std::is_void_v<T>, std::monostate, T>;
+
   public:
-    Result(T value) : content_(std::move(value)) {}
+    Result() requires std::is_void_v<T>
+    = default;
+    Result(Value value) : content_(std::move(value)) {}
     Result(Error error) : content_(std::move(error)) {}
 
-    [[nodiscard]] bool ok() const { return std::holds_alternative<T>(content_); }
+    [[nodiscard]] bool ok() const { return std::holds_alternative<Value>(content_); }
     explicit operator bool() const { return ok(); }
 
-    [[nodiscard]] T& value() & {
+    [[nodiscard]] Value& value() & {
         assert(ok());
-        return std::get<T>(content_);
+        return std::get<Value>(content_);
     }
-    [[nodiscard]] const T& value() const& {
+    [[nodiscard]] const Value& value() const& {
         assert(ok());
-        return std::get<T>(content_);
+        return std::get<Value>(content_);
     }
-    [[nodiscard]] T&& value() && {
+    [[nodiscard]] Value&& value() && {
         assert(ok());
-        return std::get<T>(std::move(content_));
+        return std::get<Value>(std::move(content_));
     }
-    T& operator*() & { return value(); }
-    const T& operator*() const& { return value(); }
-    T&& operator*() && { return std::move(*this).value(); }
-    T* operator->() { return &value(); }
-    const T* operator->() const { return &value(); }
+    Value& operator*() & { return value(); }
+    const Value& operator*() const& { return value(); }
+    Value&& operator*() && { return std::move(*this).value(); }
+    Value* operator->() { return &value(); }
+    const Value* operator->() const { return &value(); }
 
     [[nodiscard]] const Error& error() const {
         assert(!ok());
@@ -48,24 +53,10 @@ class [[nodiscard]] Result {
     }
 
   private:
-    std::variant<T, Error> content_;
+    std::variant<Value, Error> content_;
 };
 
-/// Success, or the Error; TALUS_TRY (try.hpp) passes it on.
-class [[nodiscard]] Status {
-  public:
-    Status() = default;
-    Status(Error error) : error_(std::move(error)) {}
-
-    [[nodiscard]] bool ok() const { return !error_.has_value(); }
-    explicit operator bool() const { return ok(); }
-    [[nodiscard]] const Error& error() const {
-        assert(error_.has_value());
-        return *error_;
-    }
-
-  private:
-    std::optional<Error> error_;
-};
+/// Success, or the Error.
+using Status = Result<void>;
 
 }  // namespace talus
