@@ -11,7 +11,7 @@ namespace talus::bench {
 /// relative to it can be compared between hours, and roughly between machines of one instruction set.
 ///
 /// A unit gathers 48 rows of 16 bytes by an index list and adds up products of them, out of arrays that stay in a
-/// core's second-level cache. It has kernels of its own: one that was shared with the solver would get faster with it.
+/// core's second-level cache. It has its own kernels: one shared with the solver would get faster with it.
 class Calibration {
   public:
     Calibration();

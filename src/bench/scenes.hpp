@@ -16,7 +16,7 @@ namespace talus::bench {
 ///   sham_tseng  600 m3 on the scar of the built-in scene, with its terrain, houses and flow path
 [[nodiscard]] const std::vector<std::string>& scene_names();
 
-/// The fewest and the most particles that a scene can be asked for.
+/// The minimum and maximum number of particles of a scene.
 inline constexpr int fewest_particles = 500, most_particles = 4000000;
 
 /// What a measurement begins with: the same for every method and number of threads.

@@ -28,9 +28,9 @@ struct ObservationResult {
     double prior_low = 0, prior_high = 0;  ///< 5th and 95th percentile of the design's runs
     double median = 0, low = 0, high = 0;  ///< of runs that the posterior expects, with 95 %
     double left_out = 0;                   ///< root mean square error of the emulator for a run that it does not know
-    double explained = 0;                  ///< share of the runs' variance that it tells beforehand
+    double explained = 0;                  ///< share of the runs' variance that it explains
     double noise = 0;                      ///< standard deviation of runs around the emulator
-    double reach_told = 1;                 ///< share of the runs of which the emulator tells whether debris came there
+    double reach_told = 1;  ///< share of the runs for which the emulator predicts correctly whether debris arrives
 };
 
 /// All numbers of a calibration.
@@ -43,7 +43,7 @@ struct CalibrationSummary {
 };
 [[nodiscard]] CalibrationSummary summarise(const Calibration& calibration);
 
-/// Misfit over the first two factors, by the emulators, at the best values of all others that were looked at
+/// Misfit over the first two factors, by the emulators, at the best values found for all others
 /// (between rounds, when there is no posterior yet: of fewer).
 struct MisfitMap {
     std::size_t cells = 0;       ///< along each factor

@@ -34,7 +34,7 @@ struct Recovery {
 /// Draws values from the priors, runs the scene with them, takes its predictions with a normal error of each
 /// observation's uncertainty as observed, and calibrates; `seeds` times, in folders seed_01, ... of `folder`, with the
 /// runs with known values in `truths`. Values whose debris does not come to every place where something was observed
-/// are drawn again: nothing would have been observed there. Goes on with what the folders have. `on_seed` is told which
+/// are drawn again: nothing would have been observed there. Resumes with the runs in the folders. `on_seed` gets which
 /// seed begins. Errors: as calibrate; hardly any values bring debris to all observations.
 [[nodiscard]] Result<Recovery> recover(const CalibrationPlan& plan, const PlannedRuns& runs, const SceneSource& source,
                                        const Scene& base, const std::string& scene_name,

@@ -54,7 +54,7 @@ struct SearchResult {
     double improvement = 0;     ///< most that was still expected of another run when the search ended, in misfit
     double emulator_share = 0;  ///< mean of Fit::emulator_share over the posterior at the end
     double shift = 0;           ///< of the posterior's medians by the checks, most, in standard deviations
-    bool settled = false;       ///< the search ended because nothing more was to be learned
+    bool settled = false;       ///< the search ended because no further gain was expected
     bool interrupted = false;
 };
 

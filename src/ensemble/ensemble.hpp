@@ -38,7 +38,7 @@ struct EnsembleOutcome {
 };
 
 /// Computes what the folder lacks of this process's share of the runs. A run that fails is recorded with its fault and
-/// the rest go on. Errors: a record cannot be written.
+/// the rest continue. Errors: a record cannot be written.
 [[nodiscard]] Result<EnsembleOutcome> run_ensemble(const PlannedRuns& runs, const SceneSource& source,
                                                    const EnsembleFolder& folder, const EnsembleOptions& options);
 

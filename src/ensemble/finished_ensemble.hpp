@@ -27,7 +27,7 @@ struct FinishedEnsemble {
     std::string name;  ///< of the folder
     std::size_t complete = 0, failed = 0;
     std::vector<Factor> factors;
-    std::string terrain_hash;  ///< checksum of the terrain that it was computed on; empty: not told
+    std::string terrain_hash;  ///< checksum of the terrain that it was computed on; empty: unknown
     std::vector<FinishedMap> maps;
 };
 

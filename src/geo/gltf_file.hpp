@@ -28,8 +28,8 @@ struct GltfAccessor {
 };
 
 /// A glTF 2.0 file (Khronos Group 2021, ISO/IEC 12113), as JSON or in the binary container, with its buffers: embedded,
-/// or files in its folder or below. Pictures are not looked at, and nothing is fetched from anywhere. Sizes are checked
-/// against what there is before anything is made of them.
+/// or files in its folder or below. Images are ignored, and nothing is fetched from elsewhere. Sizes are checked
+/// against the data before they are used.
 class GltfFile {
   public:
     [[nodiscard]] static Result<GltfFile> open(const std::string& file);

@@ -14,7 +14,7 @@ namespace talus {
 /// docs/scene-reference.md.
 [[nodiscard]] std::string scene_reference_markdown();
 
-/// web/src/protocol/schema.ts: what people can change while a run goes on, as types and as the fields of forms.
+/// web/src/protocol/schema.ts: what can be changed during a run, as types and as the fields of forms.
 [[nodiscard]] std::string scene_typescript();
 
 /// The reference for a terminal.

@@ -4,7 +4,7 @@
 
 namespace talus {
 
-/// The machine that a run was made on, as far as the system tells.
+/// The machine that a run was made on, as reported by the system.
 struct Hardware {
     std::string cpu;  ///< "" where the system does not say
     int logical_cores = 0;

@@ -11,7 +11,7 @@ namespace talus::report {
 /// Writes SVG: elements with their attributes, all text escaped.
 class Svg {
   public:
-    /// An empty text stands for no attribute.
+    /// An empty text means no attribute.
     struct Attribute {
         std::string_view name;
         std::string value;

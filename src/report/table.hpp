@@ -31,7 +31,7 @@ struct Column {
 ///   sample         style of a curve, drawn before it
 ///   link           a place in the page
 ///   verdict        "pass", "fail", "other": a badge
-/// Beside columns a row may have `row_style` and `heading` with `heading_note`: a line of its own above.
+/// Beside columns a row may have `row_style` and `heading` with `heading_note`: a separate line above.
 [[nodiscard]] Json table(const std::vector<Column>& columns, std::string_view style = {});
 
 /// The table as the template `table` wants it: text in all cells.

@@ -28,7 +28,7 @@ struct CalibrationSettings {
     bool keep = false;             ///< the folders stay, with tables and report
 };
 
-/// One calibration at a time, on a thread of its own beside the live run: it makes way for that one's steps. What it
+/// One calibration at a time, on a separate thread of lower priority than the live run. What it
 /// finds stays until the next begins. Functions may be called from any thread.
 class Calibrations {
   public:
@@ -44,7 +44,7 @@ class Calibrations {
     void start(const nlohmann::json& wanted, const std::string& by, const Respond& respond);
     /// The run under way is dropped. Error: none runs.
     [[nodiscard]] Status cancel();
-    /// Ends the thread; nobody is told any more.
+    /// Ends the thread; nothing is sent any more.
     void close();
 
     /// As `GET /api/calibration`.
@@ -65,7 +65,7 @@ class Calibrations {
     void take_progress(const CalibrationProgress& now);
     void take_result(const Calibration& made);
     void end(const Ending& ending);
-    /// Under the lock: sends what there is now.
+    /// Under the lock: sends the present state.
     void tell_now();
     [[nodiscard]] std::filesystem::path new_folder() const;
 

@@ -24,7 +24,7 @@ class Ensembles {
 
     /// As `GET /api/ensembles`.
     [[nodiscard]] nlohmann::json describe() const;
-    /// A grid message, in the unit that describe() tells. nullptr: there is no such map.
+    /// A grid message, in the unit that describe() gives. nullptr: no such map.
     [[nodiscard]] Bytes map(const std::string& ensemble, const std::string& name) const;
 
   private:

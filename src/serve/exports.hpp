@@ -10,8 +10,8 @@
 
 namespace talus::serve {
 
-/// The result files of the runs so far, written when somebody asks for one and kept until the run has gone on. Steps go
-/// on meanwhile: a thread of its own writes what the run was when it was asked for.
+/// The result files of the runs so far, written on request and kept until the run has continued. Meanwhile
+/// steps continue: a separate thread writes the run as it was at the request.
 class Exports {
   public:
     /// `folder`: an existing one to write into; it is not removed.

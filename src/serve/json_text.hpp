@@ -9,10 +9,10 @@
 
 namespace talus::serve {
 
-/// How deep arrays and objects may lie in each other in what somebody sends.
+/// How deep arrays and objects of a received text may be nested.
 inline constexpr int deepest_json = 32;
 
-/// Parses what somebody has sent. Errors: not JSON (with the place), nested too deeply, not UTF-8.
+/// Parses a received text. Errors: not JSON (with the place), nested too deeply, not UTF-8.
 [[nodiscard]] Result<nlohmann::json> parse_json(std::string_view text);
 
 /// As UTF-8, whatever the strings hold; numbers that are not finite become null.

@@ -20,7 +20,7 @@ class Loop {
   public:
     using Task = std::function<void(Scenarios&)>;
 
-    /// Opens the scene as scenario A, paused at time 0. Threads as `solver.thread_count` says. `watcher` is told from
+    /// Opens the scene as scenario A, paused at time 0. Threads as `solver.thread_count` says. `watcher` is called from
     /// the loop's thread, `failed` is called there once if memory runs out or the like; nothing runs after that.
     /// Errors: as twin::Scenario::open.
     [[nodiscard]] static Result<std::unique_ptr<Loop>> start(std::shared_ptr<const Scene> scene,

@@ -22,7 +22,7 @@ struct Request {
     std::string method;
     std::string path;      ///< decoded, without the query
     Arguments query;       ///< decoded
-    Arguments parameters;  ///< what stands for {name} in the route's pattern
+    Arguments parameters;  ///< the values of {name} in the route's pattern
     std::string body;
     std::string person;  ///< header Talus-Person: the id that a page got on its WebSocket; empty: a program
     Role role = Role::nobody;

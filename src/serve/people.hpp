@@ -20,13 +20,13 @@ struct Person {
     bool away = false;                          ///< the connection has gone; comes back or is forgotten
 };
 
-/// Who is in the session, and which controller has control. Knows no connections; time is told.
+/// Who is in the session, and which controller has control. Does not depend on connections; time is an argument.
 class People {
   public:
     using Time = std::chrono::steady_clock::time_point;
     /// How long the holder of control may leave a request unanswered.
     static constexpr std::chrono::seconds answer_time{10};
-    /// How long somebody whose connection broke keeps place and control, unless another asks.
+    /// How long a person whose connection broke keeps place and control, unless somebody asks for it.
     static constexpr std::chrono::seconds return_time{3};
 
     /// `former`: the id that a connection had before it broke; empty or unknown: somebody new. The first controller

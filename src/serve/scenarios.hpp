@@ -29,7 +29,7 @@ struct FrameSet {
     std::vector<std::pair<unsigned, twin::FramePtr>> frames;
 };
 
-/// Is told what happens to the scenarios; on the thread that owns them.
+/// Is notified of changes of the scenarios; on the thread that owns them.
 class Watcher {
   public:
     virtual ~Watcher() = default;
@@ -72,7 +72,7 @@ class Scenarios {
     /// An entry per scenario; those without one have no audience.
     void set_audience(const std::vector<Audience>& audience);
 
-    /// Takes a step if one is due, and tells the watcher what is due. When to be called again; nothing: not before
+    /// Takes a step if one is due, and notifies the watcher. When to be called again; nothing: not before
     /// something else was called.
     std::optional<Clock::time_point> work(Clock::time_point now);
 

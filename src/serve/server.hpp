@@ -28,7 +28,7 @@ struct ServerOptions {
     bool run = false;                              ///< begin at once
     CalibrationSettings calibration;               ///< without a scene file there are none
     std::vector<std::filesystem::path> ensembles;  ///< folders of finished ensembles whose maps are shown
-    std::function<void(std::string)> on_failure;   ///< the simulation cannot go on: out of memory; from any thread
+    std::function<void(std::string)> on_failure;   ///< the simulation cannot continue: out of memory; from any thread
 };
 
 /// A session that people and programs reach over HTTP and WebSocket, as docs/protocol.md has it. Runs on threads of its

@@ -35,7 +35,7 @@ struct Thread {
     std::function<void(std::chrono::milliseconds)> tick_after;  ///< calls Session::tick once, after a while
 };
 
-/// What all connections share: the scenarios, the people, and who looks at what. Everything but the functions of
+/// What all connections share: the scenarios, the people, and what each viewer watches. Everything but the functions of
 /// Watcher is for the server's thread.
 class Session final : public Watcher {
   public:
@@ -47,7 +47,7 @@ class Session final : public Watcher {
     /// Ends the threads; what they were asked is not answered.
     void close();
 
-    /// Sends the newcomer all there is to know. Until `leave`, `viewer` is told what happens.
+    /// Sends the present state to a new viewer. Until `leave`, `viewer` gets every change.
     void join(Viewer& viewer, Role role, const std::string& name, const std::string& former);
     void leave(Viewer& viewer);
     /// What a viewer has sent. False: it is not in the protocol, and the connection is to end.
@@ -64,7 +64,7 @@ class Session final : public Watcher {
     /// As `GET /api/session`.
     [[nodiscard]] nlohmann::json describe(Role role) const;
 
-    /// What everybody is told of a calibration, and those who join later; from any thread.
+    /// Sends the state of a calibration to everybody, also to those who join later; from any thread.
     void calibration(nlohmann::json status);
 
     // Watcher, from the loop's thread.

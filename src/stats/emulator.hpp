@@ -11,7 +11,7 @@ namespace talus {
 /// (Rasmussen & Williams 2006, "Gaussian Processes for Machine Learning", chapters 2, 4 and 5).
 ///
 /// Values are scaled to mean 0 and variance 1. Their covariance is that of a linear trend with broad coefficients, and
-/// a Matern 5/2 function with a length per factor; each run adds noise of its own, as particles fall differently.
+/// a Matern 5/2 function with a length per factor; each run adds independent noise, as particles fall differently.
 /// Lengths, strength and noise are the most probable ones given the runs and broad log-normal priors.
 class Emulator {
   public:
@@ -30,7 +30,7 @@ class Emulator {
     [[nodiscard]] Estimate at(const std::vector<double>& point) const;
     /// The mean alone, much cheaper.
     [[nodiscard]] double mean_at(const std::vector<double>& point) const;
-    /// The same process with one more run; nothing is fitted anew.
+    /// The same process with one more run; nothing is fitted again.
     [[nodiscard]] Emulator with(const std::vector<double>& point, double value) const;
     /// Every run from the others with the same lengths (Dubrule 1983, "Cross validation of kriging in a unique
     /// neighborhood").

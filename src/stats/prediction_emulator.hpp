@@ -17,7 +17,7 @@ class PredictionEmulator {
         Emulator::Estimate value;
     };
 
-    /// `values`: one per point, NaN where the run gives none; `unreached` stands for those.
+    /// `values`: one per point, NaN where the run gives none; `unreached` replaces those.
     [[nodiscard]] static PredictionEmulator fit(const Points& points, const std::vector<double>& values,
                                                 double unreached);
 

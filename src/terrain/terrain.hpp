@@ -47,7 +47,7 @@ class Terrain {
         return inside && !std::isnan(corner_sum(c.index));
     }
 
-    /// Ground height and normal at a local plan position. Outside the grid, the nearest edge cell's plane goes on.
+    /// Ground height and normal at a local plan position. Outside the grid, the nearest edge cell's plane continues.
     template <class Real>
     [[nodiscard]] TALUS_INLINE GroundSample<Real> sample(Real x, Real y) const {
         using std::sqrt;
@@ -84,7 +84,7 @@ class Terrain {
     [[nodiscard]] std::size_t cell_at(float x, float y) const;
     /// Cosine of the slope at the centre of a cell that has data.
     [[nodiscard]] double slope_cosine_of(std::size_t cell) const;
-    /// Sets the world elevation of a cell, which has data, anew; the surface changes up to two cells around. Copies of
+    /// Changes the world elevation of a cell, which has data; the surface changes up to two cells around. Copies of
     /// this terrain stay as they are: what they share with it is copied before.
     void set_elevation(std::size_t cell, float elevation);
 
@@ -112,7 +112,8 @@ class Terrain {
         Real value{}, slope{}, value_rise{}, slope_rise{};
     };
 
-    /// Cubic Hermite basis at a fraction of the cell. Beyond the cell the basis of its end goes on as a straight line.
+    /// Cubic Hermite basis at a fraction of the cell. Beyond the cell the basis of its end continues as a straight
+    /// line.
     template <class Real>
     struct Basis {
         explicit Basis(Real fraction) {

@@ -32,7 +32,7 @@ struct Frame {
     }
 };
 
-/// Frames do not change once they are made: other threads may read them while the run goes on.
+/// Frames do not change once they are made: other threads may read them during the run.
 using FramePtr = std::shared_ptr<const Frame>;
 
 /// `slots`: more than any id. Every `stride`-th id is in the frame.

@@ -44,14 +44,14 @@ struct Journal {
 /// A sentence for every input of the scene that is not as it was in the session.
 [[nodiscard]] std::vector<std::string> changed_inputs(const Journal& journal, const Scene& scene);
 
-/// What a journal led to when it was run again.
+/// The result of a replay of a journal.
 struct Replayed {
     std::uint64_t steps = 0;
     double time = 0;   ///< s
     std::string hash;  ///< as in the journal
 };
 
-/// Runs a journal on its scene. `on_step` is told the step after each; false stops. Errors: the setup does not fit the
+/// Runs a journal on its scene. `on_step` gets the number of each step; false stops. Errors: the setup does not fit the
 /// scene, an action cannot be done, the run ends before the journal does.
 [[nodiscard]] Result<Replayed> replay(const Journal& journal, std::shared_ptr<const Scene> scene,
                                       const std::function<bool(std::uint64_t step)>& on_step = {});

@@ -33,7 +33,7 @@ struct Scenario::Parts {
     std::vector<JournalEntry> entries;
 
     [[nodiscard]] const Setup& setup() const { return run->setup(); }
-    /// Starts, or starts anew, with a setup.
+    /// Starts, or restarts, with a setup.
     [[nodiscard]] Status start(const Setup& setup);
     /// Brings the run to a setup. What holds from time 0 on does so at once as long as no step was taken.
     [[nodiscard]] Status bring_to(const Setup& next);

@@ -22,10 +22,10 @@ namespace talus::twin {
 
 struct ReleaseSetup {
     std::string id;
-    std::shared_ptr<const Release> body;  ///< a drawn one has no start time of its own (infinity)
-    int scene_index = -1;                 ///< of the scene's; -1: made by somebody
+    std::shared_ptr<const Release> body;  ///< a drawn one has no start time (infinity)
+    int scene_index = -1;                 ///< in the scene; -1: made in the page
     bool as_in_scene = false;             ///< of the scene, and its body not changed
-    bool triggered = false;               ///< by somebody, whatever its start time
+    bool triggered = false;               ///< in the page, whatever its start time
 };
 
 struct BarrierSetup {
@@ -39,7 +39,7 @@ struct BarrierSetup {
 struct BuildingSetup {
     std::string id;
     std::shared_ptr<const Building> body;
-    int scene_index = -1;  ///< of the scene's; -1: made by somebody
+    int scene_index = -1;  ///< in the scene; -1: made in the page
     bool as_in_scene = false;
 };
 
@@ -48,7 +48,7 @@ struct ZoneSetup {
     std::string id;
     std::shared_ptr<const Zone> body;
     double area = 0;       ///< m2 in plan
-    int scene_index = -1;  ///< of the scene's; -1: made by somebody
+    int scene_index = -1;  ///< in the scene; -1: made in the page
     bool as_in_scene = false;
 };
 
@@ -85,7 +85,7 @@ struct NextNumbers {
 /// The scene as it was loaded; `next` is set to what comes behind it.
 [[nodiscard]] Setup setup_of(const Scene& scene, NextNumbers& next);
 
-/// The scene with what a setup has instead of its own.
+/// The scene with the parts of a setup instead of its own.
 [[nodiscard]] Scene scene_of(const Scene& scene, const Setup& setup);
 
 /// The entry of that id; nullptr: none.

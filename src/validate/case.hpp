@@ -68,7 +68,7 @@ struct Outcome {
     std::vector<std::string> notes;  ///< what a reader of the numbers must know: a fault, how many particles
 };
 
-/// What a running case is told and asked.
+/// Options and callbacks of a running case.
 struct Watch {
     std::function<void(const std::string&)> on_progress;  ///< called with what is computed now
     const std::atomic<bool>* stop_requested = nullptr;
@@ -94,7 +94,7 @@ struct Case {
     Computation compute;
 };
 
-/// What a kind of case may be asked for.
+/// A quantity that a kind of case measures.
 struct Quantity {
     enum class Site { none, chainage, building, place };
     std::string_view name;

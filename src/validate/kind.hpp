@@ -19,7 +19,7 @@ struct Setting {
     std::vector<Expectation> expectations;
 };
 
-/// A kind of case: a set-up, what is measured in it, and the law it is held against.
+/// A kind of case: a set-up, what is measured in it, and the law for comparison.
 struct Kind {
     std::string_view name;
     std::string_view summary;

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-/// Exact solutions and laboratory laws that cases are held against. SI units, angles in radians.
+/// Exact solutions and laboratory laws that cases are compared with. SI units, angles in radians.
 namespace talus::validate {
 
 /// Run-out of a collapsing column of granular material, (final - initial extent) / initial extent, by its aspect ratio
@@ -23,8 +23,8 @@ struct ColumnHeights {
 [[nodiscard]] double column_height_planar(double aspect);
 
 /// A dam of infinite length breaks on a slope with Coulomb friction (Mangeney, Heinrich, Roche 2000, in the form of
-/// Faccanoni & Mangeney 2013, test 2): the debris lies at x < 0 along the slope, `depth` thick, and is let go at t = 0.
-/// Without slope and friction it is Ritter's (1892).
+/// Faccanoni & Mangeney 2013, test 2): the debris lies at x < 0 along the slope, `depth` thick, and is released at t =
+/// 0. Without slope and friction it is Ritter's (1892).
 class DamBreak {
   public:
     DamBreak(double slope, double friction_angle, double depth, double gravity);
@@ -45,7 +45,7 @@ class DamBreak {
 /// Siegel, Savage, Nohguchi 1993, similarity solution), with earth pressure coefficient 1: no internal friction.
 class SpreadingCap {
   public:
-    /// `end`: the latest time that may be asked for.
+    /// `end`: the latest valid time.
     SpreadingCap(double slope, double friction_angle, double length, double height, double gravity, double end);
 
     /// Thickness at a place along and across the slope, from the cap's centre at t = 0.

@@ -8,7 +8,7 @@
 
 namespace talus::cpu {
 
-/// How many particles stand above each place in plan: a sparse grid of columns, filled anew in each step. Shares of
+/// How many particles stand above each place in plan: a sparse grid of columns, filled again in each step. Shares of
 /// particles are whole numbers, so that sums do not depend on the number of threads.
 class Columns {
   public:

@@ -12,7 +12,7 @@ namespace talus::cpu {
 
 /// For every particle the particles nearer than the support radius, without itself. The lists of a block lie side by
 /// side, entry after entry, so that its particles go through theirs together; a list that is shorter than the block's
-/// longest goes on with the particle itself, which is at distance zero and so adds nothing but density.
+/// longest is filled with the particle itself, which is at distance zero and so adds nothing but density.
 struct NeighbourLists {
     explicit NeighbourLists(std::size_t capacity);
 

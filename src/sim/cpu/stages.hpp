@@ -14,7 +14,7 @@ using StageFunction = void (*)(const StageData& data, std::size_t first, std::si
 /// The stages of a step, compiled for one instruction set and one kernel.
 struct ParticleStages {
     StageFunction drag;         ///< what speed itself takes from velocities; only where there is such drag
-    StageFunction predict;      ///< velocity, and where it leads: work.predicted
+    StageFunction predict;      ///< velocity, and the position that it leads to: work.predicted
     StageFunction begin;        ///< work as of the step's start, for particles in their new order, those asleep too
     StageFunction pack_motion;  ///< positions and velocities in rows, for neighbours to read
     StageFunction resist;       ///< how every particle is held; only where that differs between them

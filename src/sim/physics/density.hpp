@@ -33,8 +33,8 @@ Real gradient_square(const Sums& sums, const Share& boundary, Real softness) {
 /// pair sums give them at the predicted positions; `softness` in 1/m2.
 ///
 /// At a free surface a particle lacks neighbours on one side. Left alone, it would bear no pressure before the debris
-/// below had packed closer; so, as with the ghost air of Schechter & Bridson (2012), the lattice is taken to go on
-/// beyond the surface: as a half-space, at the distance that the gradient of the density tells.
+/// below had packed closer; so, as with the ghost air of Schechter & Bridson (2012), the lattice is assumed to
+/// continue beyond the surface: as a half-space, at the distance given by the gradient of the density.
 template <class Real, class Sums, class Share>
 DensityConstraint<Real> linearise_density(const Model& model, const Sums& sums, const Share& boundary,
                                           const Vec3<Real>& displacement, Real softness) {
