@@ -16,7 +16,8 @@ Model with_method(Model model, InternalFriction method) {
 
 }  // namespace
 
-Debris::Debris(int particles) : start(*bench::make_start("slab", particles, "")), simulation(start.model, start.state) {
+Debris::Debris(int particles)
+    : start(*bench::make_start("slab", particles, "")), simulation(start.model, start.ground, start.state) {
     for (int step = 0; step < steps; ++step) (void)simulation.advance();
 }
 
@@ -62,6 +63,7 @@ Stages::Stages(const Model& model) {
 
 Step::Step(const Debris& debris, InternalFriction method)
     : model_(with_method(debris.model(), method)),
+      ground_(debris.ground()),
       state_(debris.state()),
       work_(state_.count),
       neighbours_(state_.count),
@@ -90,7 +92,7 @@ void Step::run_until(std::size_t place) {
 }
 
 void Step::run(const Stage& stage) {
-    stage.run({model_, state_, work_, neighbours_}, 0, (state_.count + block_size - 1) / block_size);
+    stage.run({model_, ground_, state_, work_, neighbours_}, 0, (state_.count + block_size - 1) / block_size);
 }
 
 void Step::remember() {

@@ -20,6 +20,7 @@ struct Debris {
     explicit Debris(int particles);
 
     [[nodiscard]] const Model& model() const { return simulation.model(); }
+    [[nodiscard]] const Ground& ground() const { return simulation.ground(); }
     [[nodiscard]] const State& state() const { return simulation.state(); }
 
     bench::Start start;
@@ -62,6 +63,7 @@ class Step {
     void find_neighbours();
 
     Model model_;
+    Ground ground_;
     State state_;
     cpu::Work work_;
     cpu::NeighbourLists neighbours_;

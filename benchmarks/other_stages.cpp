@@ -69,18 +69,18 @@ BENCHMARK(write_neighbours)->Apply(sizes)->UseRealTime();
 /// Maps, front and impact, of a state that does not move.
 void observe(benchmark::State& run) {
     const Debris& debris = debris_of(run.range(0));
-    Observer observer(debris.model(), debris.state(), debris.start.flow_path, debris.start.outputs,
-                      default_map_cell(debris.model().terrain.cell(), debris.model().particle_spacing));
-    for (auto _ : run) observer.after_step(debris.model(), debris.state(), 0);
+    Observer observer(debris.model(), debris.ground(), debris.state(), debris.start.flow_path, debris.start.outputs,
+                      default_map_cell(debris.ground().terrain.cell(), debris.model().particle_spacing));
+    for (auto _ : run) observer.after_step(debris.model(), debris.ground(), debris.state(), 0);
     per_particle(run, debris);
 }
 BENCHMARK(observe)->Apply(sizes)->UseRealTime();
 
-void sample_all(benchmark::State& run, const Debris& debris, const Model& model) {
+void sample_all(benchmark::State& run, const Debris& debris, const Ground& ground) {
     const State& state = debris.state();
     for (auto _ : run) {
         for (std::uint32_t i = 0; i < state.count; ++i) {
-            benchmark::DoNotOptimize(sample_boundary(model, state.position.at(i)));
+            benchmark::DoNotOptimize(sample_boundary(debris.model(), ground, state.position.at(i)));
         }
     }
     per_particle(run, debris);
@@ -88,17 +88,14 @@ void sample_all(benchmark::State& run, const Debris& debris, const Model& model)
 
 void boundary_with_buildings(benchmark::State& run) {
     const Debris& debris = debris_of(run.range(0));
-    if (debris.model().solids.empty()) run.SkipWithError("there are no buildings");
-    sample_all(run, debris, debris.model());
+    if (debris.ground().solids.empty()) run.SkipWithError("there are no buildings");
+    sample_all(run, debris, debris.ground());
 }
 BENCHMARK(boundary_with_buildings)->Apply(sizes);
 
 void boundary_of_ground_alone(benchmark::State& run) {
     const Debris& debris = debris_of(run.range(0));
-    Model bare = debris.model();
-    bare.buildings.clear();
-    bare.solids = {};
-    sample_all(run, debris, bare);
+    sample_all(run, debris, Ground(debris.ground().terrain));
 }
 BENCHMARK(boundary_of_ground_alone)->Apply(sizes);
 
@@ -108,7 +105,8 @@ void contacts_one_by_one(benchmark::State& run) {
     const State& state = debris.state();
     const auto dt = static_cast<float>(state.time_step);
     std::vector<Boundary<float>> boundary(state.count);
-    for (std::uint32_t i = 0; i < state.count; ++i) boundary[i] = sample_boundary(debris.model(), state.position.at(i));
+    for (std::uint32_t i = 0; i < state.count; ++i)
+        boundary[i] = sample_boundary(debris.model(), debris.ground(), state.position.at(i));
     for (auto _ : run) {
         for (std::uint32_t i = 0; i < state.count; ++i) {
             ContactMemories<float> memories;
@@ -127,7 +125,8 @@ void free_end_one_by_one(benchmark::State& run) {
     const auto dt = static_cast<float>(state.time_step);
     for (auto _ : run) {
         for (std::uint32_t i = 0; i < state.count; ++i) {
-            benchmark::DoNotOptimize(free_end(debris.model(), state.position.at(i), state.velocity.at(i) * dt));
+            benchmark::DoNotOptimize(
+                free_end(debris.model(), debris.ground(), state.position.at(i), state.velocity.at(i) * dt));
         }
     }
     per_particle(run, debris);

@@ -95,8 +95,8 @@ class Onlooker {
         options_.on_progress = [this](const Progress& now) { report(now); };
         if (job.input.scene.spec.outputs.particle_series_interval <= 0) return;
         series_.emplace(job.output.path() / "particles");
-        options_.on_frame = [this](const Model& model, const State& state) {
-            if (series_status_) series_status_ = series_->write_frame(model, state);
+        options_.on_frame = [this](const LocalFrame& frame, const State& state) {
+            if (series_status_) series_status_ = series_->write_frame(frame, state);
             if (!series_status_) watch_.request_stop();
         };
     }

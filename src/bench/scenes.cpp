@@ -34,7 +34,7 @@ struct World {
 };
 
 /// Ground around the world's origin, with cells of 1 m.
-Terrain make_ground(double x_min, double x_max, double y_max, double slope) {
+Terrain make_terrain(double x_min, double x_max, double y_max, double slope) {
     const int columns = static_cast<int>(std::ceil(x_max - x_min)), rows = 2 * static_cast<int>(std::ceil(y_max));
     Grid<float> grid(GridGeometry{x_min, -rows / 2.0, 1, columns, rows});
     for (int row = 0; row < rows; ++row) {
@@ -73,7 +73,7 @@ World slab(int particles) {
     // Twice as long as wide, in whole columns of particles.
     const double columns = particles * std::cos(slope) / layers, across = std::round(std::sqrt(columns / 2));
     const double width = across * world.spacing, length = std::round(columns / across) * world.spacing;
-    world.terrain = make_ground(-length - 10, 60, width / 2 + 15, slope);
+    world.terrain = make_terrain(-length - 10, 60, width / 2 + 15, slope);
     world.releases = {block(rectangle(-length, -width / 2, 0, width / 2), thickness)};
     for (const double middle : {-width / 4, width / 4}) {
         world.buildings.push_back(house(world.spacing, middle - width / 12, width / 6));
@@ -89,7 +89,7 @@ World column(int particles) {
     const double across = std::round(std::sqrt(particles / std::min(std::cbrt(particles), highest)));
     const double height = particles / (across * across) * world.spacing, width = across * world.spacing;
     const double reach = width / 2 + 5 * height + 5;
-    world.terrain = make_ground(-reach, reach, reach, 0);
+    world.terrain = make_terrain(-reach, reach, reach, 0);
     world.releases = {block(rectangle(-width / 2, -width / 2, width / 2, width / 2), height)};
     world.buildings = {house(width / 2 + world.spacing, -width / 4, width / 2)};
     world.flow_path = FlowPath({{0, 0}, {reach - 1, 0}}, 2 * reach);
@@ -116,8 +116,8 @@ Result<World> sham_tseng(int particles, const std::filesystem::path& builtin_sce
 /// Debris of one release, in columns on the spacing's lattice as seed_releases() stacks them.
 class Stack {
   public:
-    Stack(const Model& model, const Release& release, double speed, State& state)
-        : model_(model), release_(release), speed_(speed), state_(state) {}
+    Stack(const Model& model, const Terrain& terrain, const Release& release, double speed, State& state)
+        : model_(model), terrain_(terrain), release_(release), speed_(speed), state_(state) {}
 
     /// Adds the release's particles to the state, until that has `most`.
     void fill(std::uint32_t most) {
@@ -139,10 +139,10 @@ class Stack {
 
   private:
     void add_column(const PlanPoint& centre, double threshold, std::uint32_t most) {
-        const double thickness = release_.thickness_at(centre), cosine = model_.terrain.slope_cosine_at(centre);
+        const double thickness = release_.thickness_at(centre), cosine = terrain_.slope_cosine_at(centre);
         if (!(thickness > 0) || !(cosine > 0)) return;
-        const LocalPoint plan = model_.terrain.frame().to_local({centre.x, centre.y, 0});
-        const GroundSample<float> ground = model_.terrain.sample(plan.x, plan.y);
+        const LocalPoint plan = terrain_.frame().to_local({centre.x, centre.y, 0});
+        const GroundSample<float> ground = terrain_.sample(plan.x, plan.y);
         const LocalPoint velocity = downhill(ground.normal);
         const double spacing = model_.particle_spacing, depth = thickness / cosine;
         const int layers = static_cast<int>(depth / spacing + threshold);
@@ -165,6 +165,7 @@ class Stack {
     }
 
     const Model& model_;
+    const Terrain& terrain_;
     const Release& release_;
     double speed_;
     State& state_;
@@ -176,15 +177,15 @@ Start fill(std::string_view scene, World world, int particles) {
     start.flow_path = std::move(world.flow_path);
     start.outputs = world.outputs;
     place_buildings(world.terrain, world.buildings);
-    start.model =
-        make_model(world.material, world.solver, std::move(world.terrain), std::move(world.buildings), world.spacing);
+    start.model = make_model(world.material, world.solver, world.spacing);
+    start.ground = Ground(std::move(world.terrain), std::move(world.buildings), start.model.support_radius);
     // Columns on an outline make it a few particles more or fewer than asked for.
     const auto most = static_cast<std::uint32_t>(1.05 * particles);
     State& state = start.state;
     state.resize(most);
     for (const Release& release : world.releases) {
         const std::uint32_t first = state.count;
-        Stack(start.model, release, world.speed, state).fill(most);
+        Stack(start.model, start.ground.terrain, release, world.speed, state).fill(most);
         start.model.releases.push_back({release.name, 0, first, state.count});
     }
     state.seeded = state.count;

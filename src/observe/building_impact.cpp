@@ -7,26 +7,26 @@
 
 namespace talus {
 
-ImpactRecorder::ImpactRecorder(const Model& model, const State& state, double filter_window)
+ImpactRecorder::ImpactRecorder(const Model& model, const Ground& ground, const State& state, double filter_window)
     : window_(filter_window), particle_area_(model.particle_spacing * model.particle_spacing) {
-    follow(model, state);
+    follow(model, ground, state);
     jumped_ = false;
 }
 
-void ImpactRecorder::follow(const Model& model, const State& state) {
+void ImpactRecorder::follow(const Model& model, const Ground& ground, const State& state) {
     jumped_ = true;
-    impacts_.resize(model.buildings.size());
-    records_.resize(model.buildings.size());
-    crossings_.resize(model.buildings.size());
+    impacts_.resize(ground.buildings.size());
+    records_.resize(ground.buildings.size());
+    crossings_.resize(ground.buildings.size());
     for (std::size_t b = 0; b < impacts_.size(); ++b) {
-        impacts_[b].name = model.buildings[b].name;
-        const std::optional<BarrierSpec>& barrier = model.buildings[b].barrier;
+        impacts_[b].name = ground.buildings[b].name;
+        const std::optional<BarrierSpec>& barrier = ground.buildings[b].barrier;
         impacts_[b].is_barrier = barrier.has_value();
         impacts_[b].passing_share = barrier ? barrier->passing_share.value_or(never) : never;
-        if (!stands(model.buildings[b])) {
+        if (!stands(ground.buildings[b])) {
             crossings_[b].reset();
         } else if (!crossings_[b]) {
-            watch(model, state, b);
+            watch(model, ground, state, b);
         } else {
             crossings_[b]->follow(state);
         }
@@ -55,28 +55,28 @@ void ImpactRecorder::expect(std::uint32_t particles) {
     }
 }
 
-void ImpactRecorder::watch(const Model& model, const State& state, std::size_t building) {
-    const std::optional<BarrierSpec>& barrier = model.buildings[building].barrier;
+void ImpactRecorder::watch(const Model& model, const Ground& ground, const State& state, std::size_t building) {
+    const std::optional<BarrierSpec>& barrier = ground.buildings[building].barrier;
     if (!barrier) return;
-    crossings_[building] = std::make_unique<Overtopping>(model, *barrier);
+    crossings_[building] = std::make_unique<Overtopping>(model, ground.terrain, *barrier);
     crossings_[building]->follow(state);
     crossings_[building]->after_step(state);  // where debris is now
 }
 
-void ImpactRecorder::forget(const Model& model, const State& state, std::size_t building) {
+void ImpactRecorder::forget(const Model& model, const Ground& ground, const State& state, std::size_t building) {
     impacts_[building] = {.name = impacts_[building].name,
                           .is_barrier = impacts_[building].is_barrier,
                           .passing_share = impacts_[building].passing_share};
     records_[building] = {};
     crossings_[building].reset();
-    watch(model, state, building);
+    watch(model, ground, state, building);
     for (LastTouch& last : last_touch_) {
         if (last.building == static_cast<std::int32_t>(building)) last = {};
     }
 }
 
-void ImpactRecorder::add_contact(const Model& model, const State& state, const BuildingContact& contact,
-                                 const MapAccumulator& maps) {
+void ImpactRecorder::add_contact(const Model& model, const Ground& ground, const State& state,
+                                 const BuildingContact& contact, const MapAccumulator& maps) {
     const auto building = static_cast<std::size_t>(contact.building);
     BuildingImpact& impact = impacts_[building];
     Record& record = records_[building];
@@ -101,7 +101,7 @@ void ImpactRecorder::add_contact(const Model& model, const State& state, const B
     last = {contact.building, state.time};
 
     const LocalPoint p = state.position.at(contact.particle);
-    const double depth = p.z + model.particle_spacing / 2 - model.terrain.sample(p.x, p.y).height;
+    const double depth = p.z + model.particle_spacing / 2 - ground.terrain.sample(p.x, p.y).height;
     impact.peak_depth = std::max(impact.peak_depth, depth);
     const double speed = maps.speed_at(p);
     impact.peak_dynamic_pressure = std::max(impact.peak_dynamic_pressure, maps.density_at(p) * speed * speed);
@@ -118,7 +118,7 @@ double ImpactRecorder::filtered_force(const Record& record, double time) const {
     return impulse / window_;
 }
 
-void ImpactRecorder::update_peaks(const Model& model, std::size_t building, const State& state) {
+void ImpactRecorder::update_peaks(const Ground& ground, std::size_t building, const State& state) {
     Record& record = records_[building];
     record.events.push_back({state.time, state.time_step, record.impulse});
     std::erase_if(record.events, [&](const Event& e) { return e.end <= state.time - window_; });
@@ -130,7 +130,7 @@ void ImpactRecorder::update_peaks(const Model& model, std::size_t building, cons
     impact.peak_force = std::max(impact.peak_force, force);
     impact.peak_pressure = std::max(impact.peak_pressure, pressure);
 
-    const Building& body = model.buildings[building];
+    const Building& body = ground.buildings[building];
     const bool broken = body.barrier && force > body.resistance.force_per_metre * length_of(body.barrier->line);
     if (std::isnan(impact.failure_time) && (broken || pressure > body.resistance.pressure)) {
         impact.failure_time = state.time;
@@ -147,14 +147,15 @@ void ImpactRecorder::take_overtopping(std::size_t building) {
     impact.passed_volume = crossings->passed_volume();
 }
 
-void ImpactRecorder::after_step(const Model& model, const State& state, const MapAccumulator& maps) {
+void ImpactRecorder::after_step(const Model& model, const Ground& ground, const State& state,
+                                const MapAccumulator& maps) {
     touched_.clear();
     failed_.clear();
     if (last_touch_.size() < state.seeded) last_touch_.resize(state.seeded + state.seeded / 2);
-    for (const BuildingContact& contact : state.building_contacts) add_contact(model, state, contact, maps);
+    for (const BuildingContact& contact : state.building_contacts) add_contact(model, ground, state, contact, maps);
     // Between touches the filtered force only falls: nothing to do for the other buildings.
     for (const std::size_t building : touched_) {
-        update_peaks(model, building, state);
+        update_peaks(ground, building, state);
         records_[building].touched = false;
     }
     for (std::size_t b = 0; b < crossings_.size(); ++b) {

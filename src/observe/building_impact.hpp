@@ -7,6 +7,7 @@
 #include "observe/map_accumulator.hpp"
 #include "observe/observation.hpp"
 #include "observe/overtopping.hpp"
+#include "sim/ground.hpp"
 #include "sim/model.hpp"
 #include "sim/state.hpp"
 
@@ -21,19 +22,19 @@ namespace talus {
 class ImpactRecorder {
   public:
     /// `filter_window` in s.
-    ImpactRecorder(const Model& model, const State& state, double filter_window);
+    ImpactRecorder(const Model& model, const Ground& ground, const State& state, double filter_window);
 
     /// Call when model or state were changed between two steps. Buildings keep their index; new ones come behind.
-    void follow(const Model& model, const State& state);
+    void follow(const Model& model, const Ground& ground, const State& state);
     /// Call when particles came in between two steps and nothing else was changed.
     void follow_inflow(const State& state);
     /// Makes room for so many particles.
     void expect(std::uint32_t particles);
     /// Begins a building's record anew, as for one that was moved.
-    void forget(const Model& model, const State& state, std::size_t building);
+    void forget(const Model& model, const Ground& ground, const State& state, std::size_t building);
 
     /// `maps` as of this step.
-    void after_step(const Model& model, const State& state, const MapAccumulator& maps);
+    void after_step(const Model& model, const Ground& ground, const State& state, const MapAccumulator& maps);
 
     /// Adds a sample to the history of what has been hit.
     void add_row(const State& state);
@@ -64,13 +65,13 @@ class ImpactRecorder {
         double time = 0;
     };
 
-    void add_contact(const Model& model, const State& state, const BuildingContact& contact,
+    void add_contact(const Model& model, const Ground& ground, const State& state, const BuildingContact& contact,
                      const MapAccumulator& maps);
-    void update_peaks(const Model& model, std::size_t building, const State& state);
+    void update_peaks(const Ground& ground, std::size_t building, const State& state);
     /// Of the window that ends now, N.
     [[nodiscard]] double filtered_force(const Record& record, double time) const;
     /// Begins to watch a barrier's line, if it is one and stands.
-    void watch(const Model& model, const State& state, std::size_t building);
+    void watch(const Model& model, const Ground& ground, const State& state, std::size_t building);
     void take_overtopping(std::size_t building);
 
     double window_ = 0, particle_area_ = 0;

@@ -6,11 +6,11 @@
 
 namespace talus {
 
-Erosion measure_erosion(const Model& model, const FlowPath& flow_path, double chainage_interval) {
+Erosion measure_erosion(const Ground& ground, const FlowPath& flow_path, double chainage_interval) {
     Erosion erosion;
-    const Bed& bed = model.bed;
+    const Bed& bed = ground.bed;
     if (bed.empty()) return erosion;
-    const GridGeometry& g = model.terrain.elevation().geometry;
+    const GridGeometry& g = ground.terrain.elevation().geometry;
     const double area = g.cell * g.cell;
     if (!flow_path.empty()) {
         const auto bins = static_cast<std::size_t>(flow_path.length() / chainage_interval) + 2;

@@ -22,8 +22,8 @@ std::uint32_t front_particle_count(const State& state) {
     return std::max(1U, std::min(released, std::max(5U, share)));
 }
 
-FrontTracker::FrontTracker(const Model& model, const State& state, FlowPath flow_path, double chainage_interval,
-                           double velocity_window)
+FrontTracker::FrontTracker(const Model& model, const Ground& ground, const State& state, FlowPath flow_path,
+                           double chainage_interval, double velocity_window)
     : flow_path_(std::move(flow_path)),
       interval_(chainage_interval),
       window_(velocity_window),
@@ -34,7 +34,7 @@ FrontTracker::FrontTracker(const Model& model, const State& state, FlowPath flow
     const auto bins = static_cast<std::size_t>(flow_path_.length() / interval_) + 1;
     arrival_.assign(bins, never);
     speed_.assign(bins, never);
-    held_ = find_front(model, state);
+    held_ = find_front(ground, state);
     farthest_ = current_;
 }
 
@@ -46,10 +46,10 @@ void FrontTracker::follow(const State& state) {
                                                      [](std::uint8_t held) { return held != 0; }));
 }
 
-std::uint32_t FrontTracker::find_candidates(const Model& model, const State& state, double from) {
+std::uint32_t FrontTracker::find_candidates(const Ground& ground, const State& state, double from) {
     // Debris behind the front is seen to be there without locating it: not in the rectangle around the path beyond, not
     // in a cell of the path's table that reaches so far.
-    const WorldPoint& origin = model.terrain.frame().origin;
+    const WorldPoint& origin = ground.terrain.frame().origin;
     const Extent beyond = flow_path_.extent_beyond(from).grown(0.01);  // for the rounding to float
     const auto x_min = static_cast<float>(beyond.x_min - origin.x), x_max = static_cast<float>(beyond.x_max - origin.x);
     const auto y_min = static_cast<float>(beyond.y_min - origin.y), y_max = static_cast<float>(beyond.y_max - origin.y);
@@ -93,10 +93,10 @@ std::uint32_t FrontTracker::find_candidates(const Model& model, const State& sta
         std::plus<>{});
 }
 
-std::uint32_t FrontTracker::find_front(const Model& model, const State& state) {
+std::uint32_t FrontTracker::find_front(const Ground& ground, const State& state) {
     std::uint32_t held = 0;
     const auto find_enough = [&](double from) {
-        held = find_candidates(model, state, from);
+        held = find_candidates(ground, state, from);
         return candidate_count_ >= front_count_;
     };
     // The front hardly moves within a step: debris well behind where it was need not be located.
@@ -127,12 +127,12 @@ double FrontTracker::speed_behind(double front, const State& state) {
     return sum / static_cast<double>(count);
 }
 
-void FrontTracker::after_step(const Model& model, const State& state) {
+void FrontTracker::after_step(const Ground& ground, const State& state) {
     if (flow_path_.empty()) return;
     front_count_ = front_particle_count(state);
     if (candidates_.size() < state.count) candidates_.resize(state.count + state.count / 2);
     const double before = current_;
-    const std::uint32_t held = find_front(model, state);
+    const std::uint32_t held = find_front(ground, state);
     const bool release_started = held != held_;
     held_ = held;
     if (std::isnan(current_) || current_ <= farthest_) return;

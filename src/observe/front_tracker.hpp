@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "observe/observation.hpp"
+#include "sim/ground.hpp"
 #include "sim/model.hpp"
 #include "sim/state.hpp"
 #include "terrain/flow_path.hpp"
@@ -20,10 +21,10 @@ namespace talus {
 class FrontTracker {
   public:
     /// `flow_path` may be empty: then nothing is tracked. Intervals and window in m of chainage.
-    FrontTracker(const Model& model, const State& state, FlowPath flow_path, double chainage_interval,
-                 double velocity_window);
+    FrontTracker(const Model& model, const Ground& ground, const State& state, FlowPath flow_path,
+                 double chainage_interval, double velocity_window);
 
-    void after_step(const Model& model, const State& state);
+    void after_step(const Ground& ground, const State& state);
     /// Call when the state was changed between two steps.
     void follow(const State& state);
     /// Makes room for so many particles.
@@ -45,9 +46,9 @@ class FrontTracker {
     };
 
     /// Finds the candidates beyond `from` and returns how many particles are held.
-    std::uint32_t find_candidates(const Model& model, const State& state, double from);
+    std::uint32_t find_candidates(const Ground& ground, const State& state, double from);
     /// Sets current_ and returns how many particles are held.
-    std::uint32_t find_front(const Model& model, const State& state);
+    std::uint32_t find_front(const Ground& ground, const State& state);
     [[nodiscard]] double speed_behind(double front, const State& state);
     [[nodiscard]] double fitted_velocity(std::size_t middle) const;
 

@@ -49,17 +49,18 @@ struct AxisShares {
 
 }  // namespace
 
-MapAccumulator::MapAccumulator(const Model& model, const State& state, double map_cell, double arrival_depth)
+MapAccumulator::MapAccumulator(const Model& model, const Ground& ground, const State& state, double map_cell,
+                               double arrival_depth)
     : inverse_cell_(1 / map_cell),
       particle_volume_(model.particle_volume()),
       rest_density_(model.rest_density),
       arrival_depth_(arrival_depth) {
-    const Extent extent = model.terrain.elevation().geometry.extent();
+    const Extent extent = ground.terrain.elevation().geometry.extent();
     const auto cells = [&](double length) {
         return std::max(1, static_cast<int>(std::ceil(length / map_cell - 1e-6)));
     };
     geometry_ = {extent.x_min, extent.y_min, map_cell, cells(extent.width()), cells(extent.height())};
-    const WorldPoint& origin = model.terrain.frame().origin;
+    const WorldPoint& origin = ground.terrain.frame().origin;
     x_offset_ = origin.x - geometry_.x_min;
     y_offset_ = origin.y - geometry_.y_min;
     depth_of_unit_ = particle_volume_ / one_particle / (map_cell * map_cell);

@@ -10,6 +10,7 @@
 
 #include "core/grid.hpp"
 #include "observe/observation.hpp"
+#include "sim/ground.hpp"
 #include "sim/model.hpp"
 #include "sim/state.hpp"
 
@@ -27,7 +28,7 @@ namespace talus {
 class MapAccumulator {
   public:
     /// The map's corner is the terrain grid's. `arrival_depth`, `map_cell` in m.
-    MapAccumulator(const Model& model, const State& state, double map_cell, double arrival_depth);
+    MapAccumulator(const Model& model, const Ground& ground, const State& state, double map_cell, double arrival_depth);
 
     /// Call when model or state were changed between two steps. Peak pressures so far stay those of the density so far.
     void follow(const Model& model, const State& state);

@@ -112,7 +112,7 @@ struct Observation {
     Erosion erosion;
     std::vector<FrontSample> front;  ///< by chainage
     RunOut run_out;
-    std::vector<BuildingImpact> buildings;  ///< as in Model::buildings
+    std::vector<BuildingImpact> buildings;  ///< as in Ground::buildings
     std::vector<TimeSample> timeseries;
     double volume_released = 0;  ///< m3, without what was taken away again
     /// Compression, max(0, density / rest density - 1), as the last iteration of every step found it: the mean over all

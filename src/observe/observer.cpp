@@ -75,12 +75,13 @@ TimeSample make_sample(const Model& model, const State& state, double deposited_
 }  // namespace
 
 struct Observer::Parts {
-    Parts(const Model& model, const State& state, const FlowPath& flow_path, const OutputSpec& o, double map_cell)
+    Parts(const Model& model, const Ground& ground, const State& state, const FlowPath& flow_path, const OutputSpec& o,
+          double map_cell)
         : outputs(o),
-          maps(model, state, map_cell, o.arrival_depth),
-          front(model, state, flow_path, o.chainage_interval, o.front_velocity_window),
-          impact(model, state, o.impact_filter_window),
-          released(measure_release(model, state, flow_path)) {
+          maps(model, ground, state, map_cell, o.arrival_depth),
+          front(model, ground, state, flow_path, o.chainage_interval, o.front_velocity_window),
+          impact(model, ground, state, o.impact_filter_window),
+          released(measure_release(ground, state, flow_path)) {
         keep_starts(state, 0);
     }
 
@@ -94,7 +95,7 @@ struct Observer::Parts {
     }
 
     /// The debris of all releases that there are, as it lay at its start.
-    [[nodiscard]] ReleasedMass measure_starts(const Model& model) const {
+    [[nodiscard]] ReleasedMass measure_starts(const Model& model, const Ground& ground) const {
         State lay;
         lay.resize(start.size());
         const auto add = [&](std::uint32_t first, std::uint32_t last) {
@@ -102,7 +103,7 @@ struct Observer::Parts {
         };
         for (const ReleaseGroup& release : model.releases) add(release.first_particle, release.last_particle);
         for (const auto& [first, last] : came_in) add(first, last);
-        return measure_release(model, lay, front.flow_path());
+        return measure_release(ground, lay, front.flow_path());
     }
 
     void watch_compression(const State& state) {
@@ -140,24 +141,24 @@ struct Observer::Parts {
     double compressed_time = 0;  ///< s
 };
 
-Observer::Observer(const Model& model, const State& state, const FlowPath& flow_path, const OutputSpec& outputs,
-                   double map_cell)
-    : parts_(std::make_unique<Parts>(model, state, flow_path, outputs, map_cell)) {
+Observer::Observer(const Model& model, const Ground& ground, const State& state, const FlowPath& flow_path,
+                   const OutputSpec& outputs, double map_cell)
+    : parts_(std::make_unique<Parts>(model, ground, state, flow_path, outputs, map_cell)) {
     parts_->maps.add(state);
     parts_->add_row(model, state);
 }
 
 Observer::~Observer() = default;
 
-void Observer::observe(const Model& model, const State& state) {
-    after_step(model, state, parts_->rate.update(state.step));
+void Observer::observe(const Model& model, const Ground& ground, const State& state) {
+    after_step(model, ground, state, parts_->rate.update(state.step));
 }
 
-void Observer::after_step(const Model& model, const State& state, double steps_per_second) {
+void Observer::after_step(const Model& model, const Ground& ground, const State& state, double steps_per_second) {
     Parts& p = *parts_;
     p.maps.add(state);
-    p.front.after_step(model, state);
-    p.impact.after_step(model, state, p.maps);
+    p.front.after_step(ground, state);
+    p.impact.after_step(model, ground, state, p.maps);
     p.watch_compression(state);
     p.steps_per_second = steps_per_second;
     // Rows at multiples of the interval, or right after where a step is longer; a millionth of it absorbs rounding.
@@ -168,14 +169,14 @@ void Observer::after_step(const Model& model, const State& state, double steps_p
     }
 }
 
-void Observer::follow(const Model& model, const State& state, std::uint32_t first_new_id) {
+void Observer::follow(const Model& model, const Ground& ground, const State& state, std::uint32_t first_new_id) {
     Parts& p = *parts_;
     p.keep_starts(state, first_new_id);
-    p.released = p.measure_starts(model);
+    p.released = p.measure_starts(model, ground);
     p.maps.follow(model, state);
     p.maps.add(state);
     p.front.follow(state);
-    p.impact.follow(model, state);
+    p.impact.follow(model, ground, state);
 }
 
 void Observer::follow_inflow(const State& state, std::uint32_t first_new_id) {
@@ -199,8 +200,8 @@ void Observer::expect(std::uint32_t particles) {
     parts_->impact.expect(particles);
 }
 
-void Observer::forget_building(const Model& model, const State& state, std::size_t building) {
-    parts_->impact.forget(model, state, building);
+void Observer::forget_building(const Model& model, const Ground& ground, const State& state, std::size_t building) {
+    parts_->impact.forget(model, ground, state, building);
 }
 
 const std::vector<std::size_t>& Observer::failed_buildings() const {
@@ -240,17 +241,17 @@ const MapAccumulator& Observer::maps() const {
     return parts_->maps;
 }
 
-Observation Observer::finish(const Model& model, const State& state) const {
+Observation Observer::finish(const Model& model, const Ground& ground, const State& state) const {
     const Parts& p = *parts_;
     Observation observation;
     observation.maps = p.maps.maps();
     observation.front = p.front.samples();
-    const ReleasedMass released = p.came_in.empty() ? p.released : p.measure_starts(model);
-    observation.run_out = measure_run_out(model, state, p.front.flow_path(), released, p.front.farthest());
+    const ReleasedMass released = p.came_in.empty() ? p.released : p.measure_starts(model, ground);
+    observation.run_out = measure_run_out(ground, state, p.front.flow_path(), released, p.front.farthest());
     observation.buildings = p.impact.complete(state);
     observation.timeseries = p.timeseries;
     if (p.timeseries.back().time != state.time) observation.timeseries.push_back(sample(model, state));
-    observation.erosion = measure_erosion(model, p.front.flow_path(), p.outputs.chainage_interval);
+    observation.erosion = measure_erosion(ground, p.front.flow_path(), p.outputs.chainage_interval);
     observation.volume_released = state.released() * model.particle_volume();
     observation.worst_mean_compression = p.worst_mean_compression;
     observation.worst_max_compression = p.worst_max_compression;

@@ -9,6 +9,7 @@
 #include "observe/observation.hpp"
 #include "observe/overtopping.hpp"
 #include "params/spec.hpp"
+#include "sim/ground.hpp"
 #include "sim/model.hpp"
 #include "sim/state.hpp"
 #include "sim/step_watcher.hpp"
@@ -21,24 +22,25 @@ namespace talus {
 class Observer final : public StepWatcher {
   public:
     /// `flow_path` may be empty: then there is no front against chainage. `map_cell` in m.
-    Observer(const Model& model, const State& state, const FlowPath& flow_path, const OutputSpec& outputs,
-             double map_cell);
+    Observer(const Model& model, const Ground& ground, const State& state, const FlowPath& flow_path,
+             const OutputSpec& outputs, double map_cell);
     ~Observer() override;
 
     /// As a stage of a step: after_step() with the steps per second of wall time.
-    void observe(const Model& model, const State& state) override;
+    void observe(const Model& model, const Ground& ground, const State& state) override;
     void follow_inflow(const State& state, std::uint32_t first_new_id) override;
     [[nodiscard]] const std::vector<std::size_t>& failed_buildings() const override;
 
     /// Measures a step that was taken. `steps_per_second` goes into the time series as it is.
-    void after_step(const Model& model, const State& state, double steps_per_second);
+    void after_step(const Model& model, const Ground& ground, const State& state, double steps_per_second);
 
-    /// Call when model or state were changed between two steps: particles with ids from `first_new_id` on are new.
-    void follow(const Model& model, const State& state, std::uint32_t first_new_id);
+    /// Call when model, ground or state were changed between two steps: particles with ids from `first_new_id` on are
+    /// new.
+    void follow(const Model& model, const Ground& ground, const State& state, std::uint32_t first_new_id);
     /// Makes room for so many particles, so that their coming in allocates nothing.
     void expect(std::uint32_t particles);
     /// Begins what is known of a building anew, as for one that was moved.
-    void forget_building(const Model& model, const State& state, std::size_t building);
+    void forget_building(const Model& model, const Ground& ground, const State& state, std::size_t building);
 
     /// What has crossed a barrier's line; nullptr: not a barrier, or none that stands.
     [[nodiscard]] const Overtopping* overtopping(std::size_t building) const;
@@ -54,11 +56,11 @@ class Observer final : public StepWatcher {
     // What has been measured so far.
     [[nodiscard]] const std::vector<TimeSample>& timeseries() const;
     [[nodiscard]] std::vector<FrontSample> front() const;
-    [[nodiscard]] const std::vector<BuildingImpact>& impacts() const;  ///< as in Model::buildings
+    [[nodiscard]] const std::vector<BuildingImpact>& impacts() const;  ///< as in Ground::buildings
     [[nodiscard]] const MapAccumulator& maps() const;
 
     /// All of it, with the debris as it lies now for the deposit.
-    [[nodiscard]] Observation finish(const Model& model, const State& state) const;
+    [[nodiscard]] Observation finish(const Model& model, const Ground& ground, const State& state) const;
 
   private:
     struct Parts;

@@ -33,13 +33,13 @@ PlanPoint point_at(const std::vector<PlanPoint>& line, double chainage) {
 
 }  // namespace
 
-Overtopping::Overtopping(const Model& model, const BarrierSpec& shape)
+Overtopping::Overtopping(const Model& model, const Terrain& terrain, const BarrierSpec& shape)
     : particle_volume_(model.particle_volume()),
       section_(4 * model.particle_spacing),
       half_thickness_(shape.thickness / 2) {
-    const WorldPoint& origin = model.terrain.frame().origin;
-    const double height = shape.crest_elevation ? *shape.crest_elevation - highest_ground(model.terrain, shape.line)
-                                                : shape.height.value_or(0);
+    const WorldPoint& origin = terrain.frame().origin;
+    const double height =
+        shape.crest_elevation ? *shape.crest_elevation - highest_ground(terrain, shape.line) : shape.height.value_or(0);
     reach_ = std::max(5 * height, half_thickness_ + section_);
     for (const PlanPoint& p : shape.line) {
         const PlanPoint local{p.x - origin.x, p.y - origin.y};
@@ -48,14 +48,14 @@ Overtopping::Overtopping(const Model& model, const BarrierSpec& shape)
         line_.push_back({static_cast<float>(local.x), static_cast<float>(local.y)});
     }
     for (const BarrierOpeningSpec& opening : shape.openings) {
-        const double ground = model.terrain.elevation_at(point_at(shape.line, opening.position));
+        const double ground = terrain.elevation_at(point_at(shape.line, opening.position));
         openings_.push_back({opening.position - opening.width / 2, opening.position + opening.width / 2,
                              shape.crest_elevation.value_or(ground + shape.height.value_or(0)) - origin.z});
     }
     if (shape.clearance) {  // the gap below follows the ground: a row of openings, a metre wide each
         const double length = length_of(shape.line);
         for (double chainage = 0; chainage < length; ++chainage) {
-            const double ground = model.terrain.elevation_at(point_at(shape.line, std::min(chainage + 0.5, length)));
+            const double ground = terrain.elevation_at(point_at(shape.line, std::min(chainage + 0.5, length)));
             openings_.push_back({chainage - 1e-3, chainage + 1, ground + *shape.clearance - origin.z});
         }
     }
@@ -63,7 +63,7 @@ Overtopping::Overtopping(const Model& model, const BarrierSpec& shape)
         passing_share_ = static_cast<float>(*shape.passing_share);
         const double length = length_of(shape.line);
         for (double chainage = 0; chainage < length + 1; ++chainage) {
-            const double ground = model.terrain.elevation_at(point_at(shape.line, std::min(chainage, length)));
+            const double ground = terrain.elevation_at(point_at(shape.line, std::min(chainage, length)));
             crest_.push_back(shape.crest_elevation.value_or(ground + shape.height.value_or(0)) - origin.z);
         }
     }

@@ -6,6 +6,7 @@
 
 #include "core/geometry.hpp"
 #include "observe/observation.hpp"
+#include "sim/ground.hpp"
 #include "sim/model.hpp"
 #include "sim/state.hpp"
 
@@ -16,7 +17,7 @@ namespace talus {
 /// is neither. Looks at debris in a rectangle around the line only.
 class Overtopping {
   public:
-    Overtopping(const Model& model, const BarrierSpec& shape);
+    Overtopping(const Model& model, const Terrain& terrain, const BarrierSpec& shape);
 
     /// Makes room for so many particles, so that no step has to.
     void follow(const State& state) { tracks_.resize(std::max<std::size_t>(tracks_.size(), state.seeded)); }

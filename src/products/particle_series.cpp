@@ -63,7 +63,7 @@ std::string frame_name(std::size_t number) {
 
 ParticleSeries::ParticleSeries(std::filesystem::path folder) : folder_(std::move(folder)) {}
 
-Status ParticleSeries::write_frame(const Model& model, const State& state) {
+Status ParticleSeries::write_frame(const LocalFrame& frame, const State& state) {
     std::error_code failed;
     std::filesystem::create_directories(folder_, failed);
     if (failed) return Error{fmt::format("{}: cannot be made: {}", folder_.string(), failed.message())};
@@ -84,7 +84,7 @@ Status ParticleSeries::write_frame(const Model& model, const State& state) {
     const std::string held = data.add("UInt8", "held", 1, first(state.held, count));
     const std::string vertices = data.add("Int64", "connectivity", 1, connectivity);
     const std::string ends = data.add("Int64", "offsets", 1, offsets);
-    const WorldPoint origin = model.terrain.frame().origin;
+    const WorldPoint origin = frame.origin;
 
     std::string text = fmt::format(
         R"(<?xml version="1.0"?>

@@ -3,8 +3,8 @@
 #include <filesystem>
 #include <vector>
 
+#include "core/geometry.hpp"
 #include "core/result.hpp"
-#include "sim/model.hpp"
 #include "sim/state.hpp"
 
 namespace talus {
@@ -14,7 +14,7 @@ namespace talus {
 class ParticleSeries {
   public:
     explicit ParticleSeries(std::filesystem::path folder);
-    [[nodiscard]] Status write_frame(const Model& model, const State& state);
+    [[nodiscard]] Status write_frame(const LocalFrame& frame, const State& state);
     [[nodiscard]] Status finish();
 
   private:

@@ -27,21 +27,21 @@ Result<std::unique_ptr<Run>> Run::start(const Scene& scene, std::optional<double
     const SceneSpec& spec = scene.spec;
     const double spacing = particle_spacing.value_or(choose_particle_spacing(spec.solver, total_volume(scene)));
     return Threads(spec.solver.thread_count).execute([&]() -> Result<std::unique_ptr<Run>> {
-        Model model =
-            make_model(spec.material, spec.solver, scene.terrain, scene.buildings, spacing, scene.cover, scene.bed);
-        TALUS_ASSIGN(State state, seed_releases(model, scene.releases));
-        InflowFeeder inflow(model, scene.inflows);
+        Model model = make_model(spec.material, spec.solver, spacing, scene.cover);
+        Ground ground(scene.terrain, scene.buildings, model.support_radius, scene.bed);
+        TALUS_ASSIGN(State state, seed_releases(model, ground, scene.releases));
+        InflowFeeder inflow(model, ground.terrain.frame(), scene.inflows);
         TALUS_TRY(check_particle_count(model, state.count, inflow.to_come()));
-        return std::make_unique<Run>(
-            RunStart{std::move(model), std::move(state), std::move(inflow), scene.flow_path, spec.outputs});
+        return std::make_unique<Run>(RunStart{std::move(model), std::move(ground), std::move(state), std::move(inflow),
+                                              scene.flow_path, spec.outputs});
     });
 }
 
 Run::Run(RunStart start)
     : threads_(start.model.solver.thread_count),
-      simulation_(std::move(start.model), std::move(start.state), std::move(start.inflow)),
-      observer_(model(), state(), start.flow_path, start.outputs,
-                start.outputs.map_cell.value_or(default_map_cell(model().terrain.cell(), model().particle_spacing))),
+      simulation_(std::move(start.model), std::move(start.ground), std::move(start.state), std::move(start.inflow)),
+      observer_(model(), ground(), state(), start.flow_path, start.outputs,
+                start.outputs.map_cell.value_or(default_map_cell(ground().terrain.cell(), model().particle_spacing))),
       rest_(model().solver),
       endless_(start.endless),
       smallest_time_step_(model().solver.end_time) {
@@ -81,7 +81,7 @@ void Run::take_step() {
     largest_time_step_ = std::max(largest_time_step_, state().time_step);
     if (!stepped) {
         // Who goes on all the same needs measurements without a hole.
-        if (endless_) observer_.observe(model(), state());
+        if (endless_) observer_.observe(model(), ground(), state());
         return stop(RunPhase::fault, stepped.error().message);
     }
     if (endless_) return;
@@ -94,10 +94,10 @@ void Run::take_step() {
     }
 }
 
-void Run::change(const std::function<Change(Model&, State&)>& edit) {
+void Run::change(const std::function<Change(Model&, Ground&, State&)>& edit) {
     Change change{};
-    simulation_.change([&](Model& model, State& state) { change = edit(model, state); });
-    observer_.follow(model(), state(), change.first_new_id);
+    simulation_.change([&](Model& model, Ground& ground, State& state) { change = edit(model, ground, state); });
+    observer_.follow(model(), ground(), state(), change.first_new_id);
     if (change.released) {
         rest_.begin_anew(state().time);
     } else {
@@ -113,7 +113,7 @@ RunResult Run::result(const std::string& unfinished) const {
                                                 : RunStatus::complete;
     result.stop_reason =
         phase_ == RunPhase::ready ? fmt::format("{} at t = {:.4g} s", unfinished, state().time) : stop_reason_;
-    result.observation = threads_.execute([&] { return observer_.finish(model(), state()); });
+    result.observation = threads_.execute([&] { return observer_.finish(model(), ground(), state()); });
     result.stage_times = simulation_.stage_times();
     result.hash = hash_state(state());
     result.particles = state().released();

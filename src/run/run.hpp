@@ -20,6 +20,7 @@ namespace talus {
 /// What a run begins with.
 struct RunStart {
     Model model;
+    Ground ground;
     State state;
     InflowFeeder inflow = {};
     FlowPath flow_path = {};  ///< empty: no front against chainage
@@ -51,15 +52,16 @@ class Run {
         std::uint32_t first_new_id;  ///< particles with ids from this on are new
         bool released;               ///< debris was set free: what moved before no longer counts for coming to rest
     };
-    /// Lets `edit` change model and state, as Simulation::change() does; a run at rest is ready again.
-    void change(const std::function<Change(Model&, State&)>& edit);
+    /// Lets `edit` change model, ground and state, as Simulation::change() does; a run at rest is ready again.
+    void change(const std::function<Change(Model&, Ground&, State&)>& edit);
     /// Begins what is known of a building anew, as for one that was moved.
-    void forget_building(std::size_t building) { observer_.forget_building(model(), state(), building); }
+    void forget_building(std::size_t building) { observer_.forget_building(model(), ground(), state(), building); }
 
     [[nodiscard]] RunPhase phase() const { return phase_; }
     /// Why it is at rest, ended or at fault; empty while ready.
     [[nodiscard]] const std::string& stop_reason() const { return stop_reason_; }
     [[nodiscard]] const Model& model() const { return simulation_.model(); }
+    [[nodiscard]] const Ground& ground() const { return simulation_.ground(); }
     [[nodiscard]] const State& state() const { return simulation_.state(); }
     [[nodiscard]] const Simulation& simulation() const { return simulation_; }
     [[nodiscard]] const Observer& observer() const { return observer_; }

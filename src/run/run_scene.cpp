@@ -32,7 +32,7 @@ Result<RunResult> run_scene(const Scene& scene, const RunOptions& options) {
     double next_frame = 0;
     const auto show_frame = [&] {
         if (!options.on_frame || frame_interval <= 0 || run.state().time < next_frame - 1e-9) return;
-        options.on_frame(run.model(), run.state());
+        options.on_frame(run.ground().terrain.frame(), run.state());
         next_frame += frame_interval;
     };
     const auto stopped = [&] { return options.stop_requested && options.stop_requested->load(); };

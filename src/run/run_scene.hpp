@@ -24,9 +24,9 @@ struct Progress {
 };
 
 struct RunOptions {
-    std::function<void(const Progress&)> on_progress;          ///< called after every step
-    std::function<void(const Model&, const State&)> on_frame;  ///< called every particle_series_interval
-    const std::atomic<bool>* stop_requested = nullptr;         ///< ends the run as interrupted
+    std::function<void(const Progress&)> on_progress;               ///< called after every step
+    std::function<void(const LocalFrame&, const State&)> on_frame;  ///< called every particle_series_interval
+    const std::atomic<bool>* stop_requested = nullptr;              ///< ends the run as interrupted
 };
 
 /// Runs a scene from beginning to end: until debris rests, end_time, a fault, or stop_requested.

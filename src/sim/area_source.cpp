@@ -16,13 +16,13 @@ constexpr double most_tries = 2e7;  ///< places that are looked at to find sites
 
 }  // namespace
 
-AreaSource::AreaSource(const Model& model, Inflow inflow)
+AreaSource::AreaSource(const Model& model, const LocalFrame& frame, Inflow inflow)
     : inflow_(std::move(inflow)),
       spacing_(model.particle_spacing),
       particle_volume_(model.particle_volume()),
       total_(static_cast<std::uint32_t>(std::lround(inflow_.volume() / particle_volume_))),
       last_time_(inflow_.hydrograph.front().time) {
-    place_sites(model.terrain.frame());
+    place_sites(frame);
 }
 
 /// On a lattice, and finer than the particles' own where an area is too small for any of that.
@@ -96,9 +96,9 @@ void AreaSource::find_tops(const State& state) {
     }
 }
 
-LocalPoint AreaSource::place_at(const Model& model, const LocalPoint& site) const {
-    const GroundSample<double> ground = model.terrain.sample(static_cast<double>(site.x), static_cast<double>(site.y));
-    double z = ground.height + model.contact_distance() / ground.normal.z;
+LocalPoint AreaSource::place_at(const Model& model, const Ground& ground, const LocalPoint& site) const {
+    const GroundSample<double> below = ground.terrain.sample(static_cast<double>(site.x), static_cast<double>(site.y));
+    double z = below.height + model.contact_distance() / below.normal.z;
     const auto spacing = static_cast<float>(spacing_);
     for (const float y : {site.y - bin_, site.y, site.y + bin_}) {
         for (const float x : {site.x - bin_, site.x, site.x + bin_}) {
@@ -113,19 +113,19 @@ LocalPoint AreaSource::place_at(const Model& model, const LocalPoint& site) cons
     return {site.x, site.y, static_cast<float>(z)};
 }
 
-LocalPoint AreaSource::take_site(const Model& model) {
+LocalPoint AreaSource::take_site(const Model& model, const Ground& ground) {
     LocalPoint place;
     for (std::size_t tries = 0; tries < sites_.size(); ++tries) {
-        place = place_at(model, sites_[site_]);
+        place = place_at(model, ground, sites_[site_]);
         site_ = (site_ + stride_) % sites_.size();
-        if (model.solids.empty() || !model.solids.inside(place)) return place;
+        if (ground.solids.empty() || !ground.solids.inside(place)) return place;
     }
-    put_out_of_solids(model, place, largest_grain, [](const LocalPoint&) {});
+    put_out_of_solids(model, ground, place, largest_grain, [](const LocalPoint&) {});
     return place;
 }
 
-LocalPoint AreaSource::velocity_at(const Model& model, const LocalPoint& p, double time) const {
-    const Vec3<double> normal = model.terrain.sample(static_cast<double>(p.x), static_cast<double>(p.y)).normal;
+LocalPoint AreaSource::velocity_at(const Ground& ground, const LocalPoint& p, double time) const {
+    const Vec3<double> normal = ground.terrain.sample(static_cast<double>(p.x), static_cast<double>(p.y)).normal;
     Vec3<double> level{normal.x, normal.y, 0};
     if (inflow_.direction) level = {std::sin(*inflow_.direction), std::cos(*inflow_.direction), 0};
     Vec3<double> along = level - normal * dot(level, normal);
@@ -135,13 +135,13 @@ LocalPoint AreaSource::velocity_at(const Model& model, const LocalPoint& p, doub
     return {static_cast<float>(along.x), static_cast<float>(along.y), static_cast<float>(along.z)};
 }
 
-void AreaSource::inject(const Model& model, State& state) {
+void AreaSource::inject(const Model& model, const Ground& ground, State& state) {
     if (!due(state.time)) return;
     find_tops(state);
     const double density = inflow_.has_density() ? inflow_.density_between(last_time_, state.time) : 0;
     while (due(state.time)) {
-        const LocalPoint place = take_site(model);
-        const std::uint32_t i = add_particle(state, place, velocity_at(model, place, state.time), 0);
+        const LocalPoint place = take_site(model, ground);
+        const std::uint32_t i = add_particle(state, place, velocity_at(ground, place, state.time), 0);
         if (density > 0) set_density(state, i, density);
         if (near_sites(place.x, place.y)) add_top(place);
         ++injected_;

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "sim/ground.hpp"
 #include "sim/model.hpp"
 #include "sim/state.hpp"
 #include "terrain/inflow.hpp"
@@ -15,13 +16,13 @@ namespace talus {
 /// other: nothing comes in denser than at rest, so nothing pops apart.
 class AreaSource {
   public:
-    AreaSource(const Model& model, Inflow inflow);
+    AreaSource(const Model& model, const LocalFrame& frame, Inflow inflow);
 
     /// Particles that it has yet to bring.
     [[nodiscard]] std::uint32_t to_come() const { return total_ - injected_; }
     [[nodiscard]] bool due(double time) const;
     /// Injects what is due at the state's time; the state's arrays have room.
-    void inject(const Model& model, State& state);
+    void inject(const Model& model, const Ground& ground, State& state);
 
   private:
     struct Top {  ///< of a particle that lies where one may be let in
@@ -35,9 +36,9 @@ class AreaSource {
     [[nodiscard]] std::size_t bin_of(float x, float y) const;
     [[nodiscard]] bool near_sites(float x, float y) const;
     /// Where the next particle comes to lie: at a site that is not in a wall, if there is one.
-    LocalPoint take_site(const Model& model);
-    [[nodiscard]] LocalPoint place_at(const Model& model, const LocalPoint& site) const;
-    [[nodiscard]] LocalPoint velocity_at(const Model& model, const LocalPoint& p, double time) const;
+    LocalPoint take_site(const Model& model, const Ground& ground);
+    [[nodiscard]] LocalPoint place_at(const Model& model, const Ground& ground, const LocalPoint& site) const;
+    [[nodiscard]] LocalPoint velocity_at(const Ground& ground, const LocalPoint& p, double time) const;
 
     Inflow inflow_;
     double spacing_ = 0, particle_volume_ = 0;

@@ -64,14 +64,14 @@ void wake(State& state, const Extent& local) {
     }
 }
 
-void clear_solids(const Model& model, State& state, const Extent& local) {
+void clear_solids(const Model& model, const Ground& ground, State& state, const Extent& local) {
     std::vector<std::uint32_t> moved;
     Extent around;
     for (std::uint32_t i = 0; i < state.count; ++i) {
         LocalPoint p = state.position.at(i), v = state.velocity.at(i);
         const float rank = grain_rank(state.id[i]);
-        if (state.held[i] != 0 || !local.contains({p.x, p.y}) || !model.solids.inside(p, rank)) continue;
-        put_out_of_solids(model, p, rank, [&](const LocalPoint& normal) {
+        if (state.held[i] != 0 || !local.contains({p.x, p.y}) || !ground.solids.inside(p, rank)) continue;
+        put_out_of_solids(model, ground, p, rank, [&](const LocalPoint& normal) {
             const float into = dot(v, normal);
             if (into < 0) v -= normal * into;
         });
@@ -104,7 +104,7 @@ void clear_solids(const Model& model, State& state, const Extent& local) {
         source_of_id[state.id[i]] = i;
         part.held[k] = state.held[i] != 0 || !yields.contains({state.position.x[i], state.position.y[i]});
     }
-    push_apart(model, part);
+    push_apart(model, ground, part);
     for (std::uint32_t k = 0; k < part.count; ++k) {
         if (part.held[k] != 0) continue;
         const std::uint32_t i = source_of_id.at(part.id[k]);
@@ -114,8 +114,8 @@ void clear_solids(const Model& model, State& state, const Extent& local) {
 }
 
 void remove_building(const Model& model, Ground& ground, State& state, std::size_t building) {
-    const WorldPoint& origin = model.terrain.frame().origin;
-    const Extent e = extent_of(model.buildings[building]);
+    const WorldPoint& origin = ground.terrain.frame().origin;
+    const Extent e = extent_of(ground.buildings[building]);
     ground.remove_solid(building, model.support_radius);
     const Extent local{e.x_min - origin.x, e.y_min - origin.y, e.x_max - origin.x, e.y_max - origin.y};
     wake(state, local.grown(2 * model.support_radius));

@@ -4,6 +4,7 @@
 #include <cstdint>
 
 #include "core/geometry.hpp"
+#include "sim/ground.hpp"
 #include "sim/model.hpp"
 #include "sim/state.hpp"
 
@@ -28,10 +29,9 @@ void wake(State& state, const Extent& local);
 /// Moves debris out of solids that came to stand where it lies, within a rectangle of local plan coordinates. Nothing
 /// gains speed: velocity into a wall is lost, and what then lies too close is pushed apart without inertia. Held
 /// particles stay.
-void clear_solids(const Model& model, State& state, const Extent& local);
+void clear_solids(const Model& model, const Ground& ground, State& state, const Extent& local);
 
 /// Removes a building's solid; debris that rested on it or against it wakes.
-/// `ground` is that of the model.
 void remove_building(const Model& model, Ground& ground, State& state, std::size_t building);
 
 }  // namespace talus

@@ -57,20 +57,20 @@ class BinSet {
 
 }  // namespace
 
-void Entrainment::find_shear_rates(const Model& model, const State& state) {
-    const Bed& bed = model.bed;
+void Entrainment::find_shear_rates(const Model& model, const Ground& ground, const State& state) {
+    const Bed& bed = ground.bed;
     for (std::uint32_t i = 0; i < state.count; ++i) {
         if (state.held[i] != 0) continue;
-        const std::size_t cell = model.terrain.cell_at(state.position.x[i], state.position.y[i]);
+        const std::size_t cell = ground.terrain.cell_at(state.position.x[i], state.position.y[i]);
         if (bed.material_at[cell] == 0) continue;
         if (bed.materials[bed.material_at[cell] - 1].law != EntrainmentLaw::shear) continue;
         if (count_[cell]++ == 0) touched_.push_back(cell);
     }
-    const double area = model.terrain.cell() * model.terrain.cell();
+    const double area = ground.terrain.cell() * ground.terrain.cell();
     for (const std::size_t cell : touched_) {
         const BedMaterial& material = bed.materials[bed.material_at[cell] - 1];
         const double depth = count_[cell] * model.particle_volume() / area;
-        const double cosine = model.terrain.slope_cosine_of(cell);
+        const double cosine = ground.terrain.slope_cosine_of(cell);
         const double sine = std::sqrt(std::max(0.0, 1 - cosine * cosine));
         const double shear_stress = model.rest_density * model.gravity * depth * cosine * sine;
         const double max_depth = material.depth_per_shear * (shear_stress - material.critical_shear_stress);
@@ -82,8 +82,8 @@ void Entrainment::find_shear_rates(const Model& model, const State& state) {
     touched_.clear();
 }
 
-std::size_t Entrainment::find(const Model& model, const State& state) {
-    const Bed& bed = model.bed;
+std::size_t Entrainment::find(const Model& model, const Ground& ground, const State& state) {
+    const Bed& bed = ground.bed;
     sites_.clear();
     if (bed.empty()) return 0;
     if (loose_.empty()) {
@@ -91,10 +91,10 @@ std::size_t Entrainment::find(const Model& model, const State& state) {
         count_.resize(bed.depth.size());
         rate_.resize(bed.depth.size());
     }
-    find_shear_rates(model, state);
+    find_shear_rates(model, ground, state);
 
-    const GridGeometry& g = model.terrain.elevation().geometry;
-    const double volume = model.particle_volume(), area = model.terrain.cell() * model.terrain.cell();
+    const GridGeometry& g = ground.terrain.elevation().geometry;
+    const double volume = model.particle_volume(), area = ground.terrain.cell() * ground.terrain.cell();
     const double slowest = moving_speed(model);
     for (std::uint32_t i = 0; i < state.awake && i < state.count; ++i) {
         if (state.held[i] != 0) continue;
@@ -102,7 +102,7 @@ std::size_t Entrainment::find(const Model& model, const State& state) {
         const double square = dot(v, v);
         if (!(square > slowest * slowest)) continue;
         const LocalPoint p = state.position.at(i);
-        const std::size_t cell = model.terrain.cell_at(p.x, p.y);
+        const std::size_t cell = ground.terrain.cell_at(p.x, p.y);
         if (bed.material_at[cell] == 0) continue;
         const double ahead = head_start(g, cell);
         if ((bed.eroded[cell] - bed.depth[cell]) * area + volume > ahead * volume) continue;  // nothing remains
@@ -110,21 +110,21 @@ std::size_t Entrainment::find(const Model& model, const State& state) {
         loose_[cell] += material.law == EntrainmentLaw::growth
                             ? material.growth_rate * volume * std::sqrt(square) * state.time_step
                             : rate_[cell];
-        if (loose_[cell] + ahead * volume < volume || !is_clear(model, p)) continue;
+        if (loose_[cell] + ahead * volume < volume || !is_clear(model, ground, p)) continue;
         loose_[cell] -= volume;
-        sites_.push_back({i, cell, {p.x, p.y, model.terrain.sample(p.x, p.y).height}, {}});
+        sites_.push_back({i, cell, {p.x, p.y, ground.terrain.sample(p.x, p.y).height}, {}});
     }
     return sites_.size();
 }
 
-bool Entrainment::is_clear(const Model& model, const LocalPoint& p) const {
+bool Entrainment::is_clear(const Model& model, const Ground& ground, const LocalPoint& p) const {
     const auto apart = static_cast<float>(sites_apart * model.particle_spacing);
     for (const Site& site : sites_) {
         const float x = site.foot.x - p.x, y = site.foot.y - p.y;
         if (x * x + y * y < apart * apart) return false;
     }
-    if (!model.solids.near(p.x, p.y)) return true;
-    const SolidSample<float> wall = model.solids.nearest(p);
+    if (!ground.solids.near(p.x, p.y)) return true;
+    const SolidSample<float> wall = ground.solids.nearest(p);
     return wall.building < 0 || wall.distance > static_cast<float>(model.particle_spacing);
 }
 
@@ -160,7 +160,7 @@ void Entrainment::find_neighbours(const Model& model, const State& state) {
     std::sort(neighbours_.begin(), neighbours_.end());
 }
 
-void Entrainment::choose_foot(const Model& model, const State& state, std::size_t index) {
+void Entrainment::choose_foot(const Model& model, const Ground& ground, const State& state, std::size_t index) {
     Site& site = sites_[index];
     const auto spacing = static_cast<float>(model.particle_spacing), touching = spacing / 2;
     const LocalPoint above = site.foot;
@@ -171,9 +171,9 @@ void Entrainment::choose_foot(const Model& model, const State& state, std::size_
         const float angle = static_cast<float>(spoke) * 2 * std::numbers::pi_v<float> / around;
         const float offset = foot_offset * spacing * static_cast<float>(ring) / rings;
         const float x = above.x + offset * std::cos(angle), y = above.y + offset * std::sin(angle);
-        if (!model.terrain.covers(x, y)) continue;
-        const GroundSample<float> ground = model.terrain.sample(x, y);
-        const LocalPoint foot{x, y, ground.height}, place = foot + ground.normal * touching;
+        if (!ground.terrain.covers(x, y)) continue;
+        const GroundSample<float> below = ground.terrain.sample(x, y);
+        const LocalPoint foot{x, y, below.height}, place = foot + below.normal * touching;
         float nearest = std::numeric_limits<float>::max();
         for (const Neighbour& neighbour : neighbours_of(index)) {
             const LocalPoint away = state.position.at(neighbour.particle) - place;
@@ -182,7 +182,7 @@ void Entrainment::choose_foot(const Model& model, const State& state, std::size_
         if (nearest <= best) continue;
         best = nearest;
         site.foot = foot;
-        site.normal = ground.normal;
+        site.normal = below.normal;
     }
 }
 
@@ -193,7 +193,7 @@ std::span<const Entrainment::Neighbour> Entrainment::neighbours_of(std::size_t s
     return {first, last};
 }
 
-void Entrainment::make_room(const Model& model, State& state, std::size_t index) const {
+void Entrainment::make_room(const Model& model, const Ground& ground, State& state, std::size_t index) const {
     const Site& site = sites_[index];
     const auto spacing = static_cast<float>(model.particle_spacing), reach = reach_in_spacings * spacing;
     const auto room =
@@ -205,8 +205,8 @@ void Entrainment::make_room(const Model& model, State& state, std::size_t index)
         const float distance = length(away);
         if (!(distance > 0) || distance > reach) continue;
         p += away * (std::cbrt(distance * distance * distance + room) / distance - 1);
-        if (!model.terrain.covers(p.x, p.y)) continue;
-        put_out_of_solids(model, p, grain_rank(state.id[i]), [](const LocalPoint&) {});
+        if (!ground.terrain.covers(p.x, p.y)) continue;
+        put_out_of_solids(model, ground, p, grain_rank(state.id[i]), [](const LocalPoint&) {});
         state.position.set(i, p);
         if (distance > 2 * spacing) continue;
         state.asleep[i] = 0;
@@ -216,13 +216,13 @@ void Entrainment::make_room(const Model& model, State& state, std::size_t index)
 
 void Entrainment::apply(const Model& model, Ground& ground, State& state) {
     if (sites_.empty()) return;
-    const double area = model.terrain.cell() * model.terrain.cell(), depth = model.particle_volume() / area;
+    const double area = ground.terrain.cell() * ground.terrain.cell(), depth = model.particle_volume() / area;
     find_neighbours(model, state);
     for (std::size_t s = 0; s < sites_.size(); ++s) {
         Site& site = sites_[s];
         ground.erode(site.cell, depth);
-        choose_foot(model, state, s);
-        make_room(model, state, s);
+        choose_foot(model, ground, state, s);
+        make_room(model, ground, state, s);
         add_particle(state, site.foot + site.normal * static_cast<float>(model.contact_distance()), {},
                      state.multiplier[site.particle]);
         ++state.entrained;

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/geometry.hpp"
+#include "sim/ground.hpp"
 #include "sim/model.hpp"
 #include "sim/state.hpp"
 
@@ -22,10 +23,9 @@ class Entrainment {
   public:
     /// Where particles come loose in the step of state.time_step that was just taken, three and a half spacings apart;
     /// what has no room waits. Returns how many there are.
-    std::size_t find(const Model& model, const State& state);
+    std::size_t find(const Model& model, const Ground& ground, const State& state);
 
-    /// Turns ground into particles where find() found; `ground` is that of the model. The arrays of `state` have room
-    /// for them.
+    /// Turns ground into particles where find() found. The arrays of `state` have room for them.
     void apply(const Model& model, Ground& ground, State& state);
 
   private:
@@ -42,12 +42,12 @@ class Entrainment {
         }
     };
 
-    void find_shear_rates(const Model& model, const State& state);
-    [[nodiscard]] bool is_clear(const Model& model, const LocalPoint& p) const;
+    void find_shear_rates(const Model& model, const Ground& ground, const State& state);
+    [[nodiscard]] bool is_clear(const Model& model, const Ground& ground, const LocalPoint& p) const;
     void find_neighbours(const Model& model, const State& state);
     [[nodiscard]] std::span<const Neighbour> neighbours_of(std::size_t site) const;
-    void choose_foot(const Model& model, const State& state, std::size_t index);
-    void make_room(const Model& model, State& state, std::size_t index) const;
+    void choose_foot(const Model& model, const Ground& ground, const State& state, std::size_t index);
+    void make_room(const Model& model, const Ground& ground, State& state, std::size_t index) const;
 
     std::vector<double> loose_;         // m3 that have come loose, less those that became particles, by cell
     std::vector<std::uint32_t> count_;  // particles over a cell, of beds that go by shear; 0 between steps

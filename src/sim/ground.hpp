@@ -12,6 +12,15 @@ namespace talus {
 
 /// What debris runs over and against, and all of it that a run changes: debris picks up its bed, structures fail.
 struct Ground {
+    Ground() = default;
+    explicit Ground(Terrain terrain_) : terrain(std::move(terrain_)) {}
+    /// `range`: as of BuildingSolids, the model's support radius.
+    Ground(Terrain terrain_, std::vector<Building> buildings_, double range, Bed bed_ = {})
+        : terrain(std::move(terrain_)),
+          bed(std::move(bed_)),
+          buildings(std::move(buildings_)),
+          solids(terrain, buildings, range) {}
+
     Terrain terrain;
     Bed bed;
     std::vector<Building> buildings;

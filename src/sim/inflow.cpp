@@ -9,10 +9,10 @@
 
 namespace talus {
 
-InflowFeeder::InflowFeeder(const Model& model, const std::vector<Inflow>& inflows) {
+InflowFeeder::InflowFeeder(const Model& model, const LocalFrame& frame, const std::vector<Inflow>& inflows) {
     for (const Inflow& inflow : inflows) {
         if (inflow.over_area()) {
-            areas_.emplace_back(model, inflow);
+            areas_.emplace_back(model, frame, inflow);
             continue;
         }
         Source source;
@@ -58,32 +58,32 @@ double InflowFeeder::Source::next_time(double time) const {
     return late;
 }
 
-void InflowFeeder::inject(const Model& model, State& state) {
+void InflowFeeder::inject(const Model& model, const Ground& ground, State& state) {
     if (state.room() < state.count + to_come()) state.resize(state.count + to_come());
     for (Source& source : sources_) {
-        source.lead(model, state);
+        source.lead(ground, state);
         while (source.due(state.time)) {
             const double before = source.last_time;
             source.last_time = source.next_time(state.time);
             const std::uint32_t first = state.count;
-            source.add_row(model, state, state.time - source.last_time);
+            source.add_row(model, ground, state, state.time - source.last_time);
             ++source.rows;
             if (!source.inflow.has_density()) continue;
             const double density = source.inflow.density_between(before, source.last_time);
             for (std::uint32_t i = first; i < state.count; ++i) set_density(state, i, density);
         }
     }
-    for (AreaSource& area : areas_) area.inject(model, state);
+    for (AreaSource& area : areas_) area.inject(model, ground, state);
 }
 
-void InflowFeeder::Source::lead(const Model& model, State& state) {
+void InflowFeeder::Source::lead(const Ground& ground, State& state) {
     if (!leads()) return;
     const double early = inflow.volume_until(state.time - state.time_step), now = inflow.volume_until(state.time);
     if (state.time >= end() || !(now > early)) {  // between surges nothing drives what came in
         led = {};
         return;
     }
-    const WorldPoint& origin = model.terrain.frame().origin;
+    const WorldPoint& origin = ground.terrain.frame().origin;
     const double dx = inflow.to.x - inflow.from.x, dy = inflow.to.y - inflow.from.y, width = std::hypot(dx, dy);
     const Vec3<double> level{dy / width, -dx / width, 0};
     const Vec3<double> from{inflow.from.x - origin.x, inflow.from.y - origin.y, 0};
@@ -104,18 +104,18 @@ void InflowFeeder::Source::lead(const Model& model, State& state) {
             const Vec3<double> place{p.x, p.y, p.z};
             const double beyond = dot(place - from, level);
             const Vec3<double> at_line = place - level * beyond;
-            const GroundSample<double> below = model.terrain.sample(at_line.x, at_line.y);
+            const GroundSample<double> below = ground.terrain.sample(at_line.x, at_line.y);
             Vec3<double> along = level - below.normal * dot(level, below.normal);
             along = along * (1 / length(along));
             const Vec3<double> plan = at_line + along * way;
-            const GroundSample<double> here = model.terrain.sample(place.x, place.y);
-            const GroundSample<double> there = model.terrain.sample(plan.x, plan.y);
+            const GroundSample<double> here = ground.terrain.sample(place.x, place.y);
+            const GroundSample<double> there = ground.terrain.sample(plan.x, plan.y);
             // As high above the ground, normal to it, as the solver left it.
             const Vec3<double> target =
                 Vec3<double>{plan.x, plan.y, there.height} + there.normal * ((place.z - here.height) * here.normal.z);
             const LocalPoint led_to{static_cast<float>(target.x), static_cast<float>(target.y),
                                     static_cast<float>(target.z)};
-            if (!model.solids.empty() && model.solids.inside(led_to, grain_rank(state.id[i]))) continue;
+            if (!ground.solids.empty() && ground.solids.inside(led_to, grain_rank(state.id[i]))) continue;
             const double lacks = velocity - (v.x * along.x + v.y * along.y + v.z * along.z);
             state.position.set(i, led_to);
             state.velocity.set(i, {static_cast<float>(v.x + lacks * along.x), static_cast<float>(v.y + lacks * along.y),
@@ -126,13 +126,13 @@ void InflowFeeder::Source::lead(const Model& model, State& state) {
 }
 
 /// `since`: s, how long ago the row passed the line.
-void InflowFeeder::Source::add_row(const Model& model, State& state, double since) {
+void InflowFeeder::Source::add_row(const Model& model, const Ground& ground, State& state, double since) {
     const double in = inflow.volume_until(last_time) / particle_volume;
     const std::uint32_t reached = last_time >= end() ? total : static_cast<std::uint32_t>(std::lround(in));
     const std::uint32_t count = std::min(reached, total) - std::min(injected, reached);
     led[rows % led_rows] = {state.seeded, state.seeded + count};
     if (count == 0) return;
-    const WorldPoint& origin = model.terrain.frame().origin;
+    const WorldPoint& origin = ground.terrain.frame().origin;
     const double dx = inflow.to.x - inflow.from.x, dy = inflow.to.y - inflow.from.y, width = std::hypot(dx, dy);
     const auto columns = static_cast<std::uint32_t>(std::max(1L, std::lround(width / spacing)));
     const double column_width = width / columns, layer = spacing * spacing / column_width;
@@ -150,24 +150,23 @@ void InflowFeeder::Source::add_row(const Model& model, State& state, double sinc
         const std::uint32_t layers = full + (extra ? 1 : 0);
         const double across = (c + 0.5) / columns;
         const Vec3<double> at_line{inflow.from.x + across * dx - origin.x, inflow.from.y + across * dy - origin.y, 0};
-        const GroundSample<double> below = model.terrain.sample(at_line.x, at_line.y);
+        const GroundSample<double> below = ground.terrain.sample(at_line.x, at_line.y);
         const Vec3<double> level{dy / width, -dx / width, 0};
         Vec3<double> along = level - below.normal * dot(level, below.normal);
         along = along * (1 / length(along));
         const Vec3<double> plan = at_line + along * (velocity * since);
-        const GroundSample<double> ground = model.terrain.sample(plan.x, plan.y);
+        const GroundSample<double> base = ground.terrain.sample(plan.x, plan.y);
         for (std::uint32_t k = 0; k < layers; ++k) {
-            const Vec3<double> place =
-                Vec3<double>{plan.x, plan.y, ground.height} + ground.normal * ((k + 0.5) * layer);
+            const Vec3<double> place = Vec3<double>{plan.x, plan.y, base.height} + base.normal * ((k + 0.5) * layer);
             LocalPoint p{static_cast<float>(place.x), static_cast<float>(place.y), static_cast<float>(place.z)};
-            if (!model.solids.empty()) {
-                put_out_of_solids(model, p, grain_rank(state.seeded), [](const LocalPoint&) {});
+            if (!ground.solids.empty()) {
+                put_out_of_solids(model, ground, p, grain_rank(state.seeded), [](const LocalPoint&) {});
             }
             const double above = (layers - k - 0.5) * layer;
             add_particle(state, p,
                          {static_cast<float>(along.x * velocity), static_cast<float>(along.y * velocity),
                           static_cast<float>(along.z * velocity)},
-                         static_cast<float>(-model.gravity * ground.normal.z * above * previous * previous));
+                         static_cast<float>(-model.gravity * base.normal.z * above * previous * previous));
             ++injected;
         }
     }

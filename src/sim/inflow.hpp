@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "sim/area_source.hpp"
+#include "sim/ground.hpp"
 #include "sim/model.hpp"
 #include "sim/state.hpp"
 #include "terrain/inflow.hpp"
@@ -25,7 +26,7 @@ class InflowFeeder {
   public:
     /// Of nothing.
     InflowFeeder() = default;
-    InflowFeeder(const Model& model, const std::vector<Inflow>& inflows);
+    InflowFeeder(const Model& model, const LocalFrame& frame, const std::vector<Inflow>& inflows);
 
     /// Particles that all inflows together have yet to bring.
     [[nodiscard]] std::uint32_t to_come() const;
@@ -33,7 +34,7 @@ class InflowFeeder {
     [[nodiscard]] bool due(double time) const;
     /// Leads what came in lately and injects what is due at the state's time, within Simulation::change(). Allocates
     /// nothing if the state's arrays have room.
-    void inject(const Model& model, State& state);
+    void inject(const Model& model, const Ground& ground, State& state);
 
   private:
     static constexpr std::uint64_t led_rows = 3;
@@ -52,13 +53,13 @@ class InflowFeeder {
             return inflow.way_until(time) - static_cast<double>(row + 1) * spacing;
         }
         [[nodiscard]] bool leads() const;
-        void lead(const Model& model, State& state);
+        void lead(const Ground& ground, State& state);
 
         [[nodiscard]] double end() const { return inflow.hydrograph.back().time; }
         [[nodiscard]] bool due(double time) const;
         /// When the next row is due; `time` is known to be later.
         [[nodiscard]] double next_time(double time) const;
-        void add_row(const Model& model, State& state, double since);
+        void add_row(const Model& model, const Ground& ground, State& state, double since);
     };
     std::vector<Source> sources_;
     std::vector<AreaSource> areas_;

@@ -7,7 +7,6 @@
 
 #include "core/geometry.hpp"
 #include "params/spec.hpp"
-#include "sim/ground.hpp"
 #include "sim/physics/boundary_table.hpp"
 #include "sim/physics/kernel.hpp"
 #include "terrain/ground_cover.hpp"
@@ -30,9 +29,9 @@ struct InertialFriction {
     double grain_size = 0;  ///< m, diameter x sqrt(grain density / bulk density)
 };
 
-/// What a step reads and never writes: parameters and tables, and the ground. A run gets at the ground alone to change
-/// it, as a Ground; the rest is changed by nobody but Simulation::change().
-struct Model : Ground {
+/// What no step of a run changes: parameters and tables. Nobody but Simulation::change() changes them between two
+/// steps. What a run does change beside its State is its Ground.
+struct Model {
     std::vector<ReleaseGroup> releases;
 
     double particle_spacing = 0;               ///< m

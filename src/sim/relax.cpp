@@ -13,11 +13,11 @@ namespace {
 
 /// Runs rounds of a step without inertia until `done` says so: velocities are forgotten after each.
 template <class Done>
-void creep(const Model& model, State& state, int max_rounds, Done done) {
+void creep(const Model& model, const Ground& ground, State& state, int max_rounds, Done done) {
     cpu::Backend backend(model, state.count);
     StageTimes times;
     for (int round = 0; round < max_rounds; ++round) {
-        step(backend, model, state, times);
+        step(backend, model, ground, state, times);
         for (auto* component : {&state.velocity.x, &state.velocity.y, &state.velocity.z}) {
             std::fill(component->begin(), component->end(), 0.0f);
         }
@@ -59,14 +59,15 @@ Model without_forces(const Model& model) {
 
 }  // namespace
 
-void relax(const Model& model, State& state, const std::vector<float>& overburden) {
+void relax(const Model& model, const Ground& ground, State& state, const std::vector<float>& overburden) {
     constexpr double dense_enough = 0.005;
     constexpr int max_rounds = 400, loading_rounds = 200;
     Model still = without_forces(model);
-    still.solids.close_nets();
+    Ground closed = ground;
+    closed.solids.close_nets();
     for (ReleaseGroup& release : still.releases) release.start_time = 0;
     state.time_step = model.solver.largest_time_step;
-    creep(still, state, max_rounds, [](const State& s) { return s.max_compression < dense_enough; });
+    creep(still, closed, state, max_rounds, [](const State& s) { return s.max_compression < dense_enough; });
 
     still.gravity = model.gravity;
     still.internal_friction_coefficient = model.internal_friction_coefficient;
@@ -80,18 +81,18 @@ void relax(const Model& model, State& state, const std::vector<float>& overburde
     for (std::uint32_t i = 0; i < state.count; ++i) {
         state.multiplier[i] = static_cast<float>(scale * overburden[state.id[i]]);
     }
-    creep(still, state, loading_rounds, LoadWatch());
+    creep(still, closed, state, loading_rounds, LoadWatch());
     state.time = 0;
     state.step = 0;
 }
 
-void push_apart(const Model& model, State& state) {
+void push_apart(const Model& model, const Ground& ground, State& state) {
     constexpr double dense_enough = 0.02;
     constexpr int max_rounds = 100;
     Model still = without_forces(model);
     still.releases = {{"", std::numeric_limits<double>::infinity(), 0, std::numeric_limits<std::uint32_t>::max()}};
     state.time_step = model.solver.largest_time_step;
-    creep(still, state, max_rounds, [](const State& s) { return s.max_compression < dense_enough; });
+    creep(still, ground, state, max_rounds, [](const State& s) { return s.max_compression < dense_enough; });
 }
 
 }  // namespace talus

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <vector>
 
+#include "sim/ground.hpp"
 #include "sim/model.hpp"
 #include "sim/state.hpp"
 
@@ -12,15 +13,16 @@ namespace talus {
 /// Moves a local position out of the solids that it lies in, to where it touches their surface, and up to the ground.
 /// `on_wall` is told the normal of every surface that it is put out of.
 template <class OnWall>
-void put_out_of_solids(const Model& model, LocalPoint& p, float grain_rank, const OnWall& on_wall) {
+void put_out_of_solids(const Model& model, const Ground& ground, LocalPoint& p, float grain_rank,
+                       const OnWall& on_wall) {
     const auto touching = static_cast<float>(model.contact_distance());
     // Once per wall at most in a corner; buildings that touch act as one solid.
-    for (int wall = 0; wall < 4 && model.solids.inside(p, grain_rank); ++wall) {
-        const SolidSample<float> nearest = model.solids.nearest(p, grain_rank);
+    for (int wall = 0; wall < 4 && ground.solids.inside(p, grain_rank); ++wall) {
+        const SolidSample<float> nearest = ground.solids.nearest(p, grain_rank);
         p += nearest.normal * (touching - nearest.distance);
         on_wall(nearest.normal);
     }
-    p.z = std::max(p.z, model.terrain.sample(p.x, p.y).height);
+    p.z = std::max(p.z, ground.terrain.sample(p.x, p.y).height);
 }
 
 /// Brings the seeded lattice to rest: first pushed apart, without gravity, until it is nowhere denser than rest; then
@@ -28,10 +30,10 @@ void put_out_of_solids(const Model& model, LocalPoint& p, float grain_rank, cons
 /// hardly moves meanwhile. Without the second part friction would find no pressure to work with in the first steps, and
 /// the mass would start with a jolt. Nets hold all of it meanwhile. `overburden`, by id: thickness above a particle, m,
 /// whose weight along the normal is the first guess of its pressure.
-void relax(const Model& model, State& state, const std::vector<float>& overburden);
+void relax(const Model& model, const Ground& ground, State& state, const std::vector<float>& overburden);
 
 /// Pushes what is denser than at rest apart, without gravity, friction or inertia, until it hardly is any more; held
 /// particles stay where they are. Positions change, time and velocities are lost.
-void push_apart(const Model& model, State& state);
+void push_apart(const Model& model, const Ground& ground, State& state);
 
 }  // namespace talus

@@ -81,18 +81,18 @@ std::vector<Column> fill_columns(const Terrain& terrain, const Release& release,
 }
 
 /// A column's particles lie in its middle, which can be behind a wall that cuts its edge.
-void put_out_of_buildings(const Model& model, State& state) {
-    if (model.solids.empty()) return;
+void put_out_of_buildings(const Model& model, const Ground& ground, State& state) {
+    if (ground.solids.empty()) return;
     for (std::uint32_t i = 0; i < state.count; ++i) {
         LocalPoint p = state.position.at(i);
-        put_out_of_solids(model, p, largest_grain, [](const LocalPoint&) {});
+        put_out_of_solids(model, ground, p, largest_grain, [](const LocalPoint&) {});
         state.position.set(i, p);
     }
 }
 
 }  // namespace
 
-void find_pressures(const Model& model, State& state) {
+void find_pressures(const Model& model, const Ground& ground, State& state) {
     constexpr int rounds = 100;
     const State start = state;
     Model awake = model;
@@ -101,7 +101,7 @@ void find_pressures(const Model& model, State& state) {
     StageTimes times;
     state.time_step = model.solver.largest_time_step / 4;
     for (int round = 0; round < rounds; ++round) {
-        step(backend, awake, state, times);
+        step(backend, awake, ground, state, times);
         for (std::uint32_t i = 0; i < state.count; ++i) {
             state.position.set(i, start.position.at(state.id[i]));
             state.velocity.set(i, start.velocity.at(state.id[i]));
@@ -142,8 +142,7 @@ void set_material(Model& model, const MaterialSpec& material) {
     }
 }
 
-Model make_model(const MaterialSpec& material, const SolverSpec& solver, Terrain terrain,
-                 std::vector<Building> buildings, double particle_spacing, GroundCover cover, Bed bed) {
+Model make_model(const MaterialSpec& material, const SolverSpec& solver, double particle_spacing, GroundCover cover) {
     Model model;
     model.particle_spacing = particle_spacing;
     model.support_radius = solver.support_ratio * particle_spacing;
@@ -151,15 +150,11 @@ Model make_model(const MaterialSpec& material, const SolverSpec& solver, Terrain
     model.kernel = make_kernel(solver.kernel, particle_spacing, model.support_radius);
     model.boundary = BoundaryTable(model.kernel, particle_spacing);
     set_material(model, material);
-    model.solids = BuildingSolids(terrain, buildings, model.support_radius);
-    model.buildings = std::move(buildings);
-    model.terrain = std::move(terrain);
     model.cover = std::move(cover);
-    model.bed = std::move(bed);
     return model;
 }
 
-Result<State> seed_releases(Model& model, const std::vector<Release>& releases) {
+Result<State> seed_releases(Model& model, const Ground& ground, const std::vector<Release>& releases) {
     const double spacing = model.particle_spacing;
     std::vector<long> targets;
     double volume = 0, particles = 0;
@@ -191,15 +186,15 @@ Result<State> seed_releases(Model& model, const std::vector<Release>& releases) 
     std::uint32_t next = 0;
     for (std::size_t r = 0; r < releases.size(); ++r) {
         const std::uint32_t first = next;
-        for (const Column& column : fill_columns(model.terrain, releases[r], spacing, targets[r])) {
-            const LocalPoint plan = model.terrain.frame().to_local({column.centre.x, column.centre.y, 0});
-            const GroundSample<float> ground = model.terrain.sample(plan.x, plan.y);
+        for (const Column& column : fill_columns(ground.terrain, releases[r], spacing, targets[r])) {
+            const LocalPoint plan = ground.terrain.frame().to_local({column.centre.x, column.centre.y, 0});
+            const GroundSample<float> below = ground.terrain.sample(plan.x, plan.y);
             // The first particle touches the ground: half a spacing along the normal.
-            const double bottom = ground.height + spacing / 2 / ground.normal.z;
+            const double bottom = below.height + spacing / 2 / below.normal.z;
             for (int layer = 0; layer < column.particles && next < count; ++layer, ++next) {
                 state.position.set(next, {plan.x, plan.y, static_cast<float>(bottom + layer * spacing)});
                 const double above = (column.particles - layer - 0.5) * spacing;
-                overburden[next] = static_cast<float>(above * ground.normal.z * ground.normal.z);
+                overburden[next] = static_cast<float>(above * below.normal.z * below.normal.z);
             }
         }
         model.releases.push_back(
@@ -207,8 +202,8 @@ Result<State> seed_releases(Model& model, const std::vector<Release>& releases) 
     }
     state.seeded = state.count = next;
     if (state.count == 0) return state;
-    put_out_of_buildings(model, state);
-    relax(model, state, overburden);
+    put_out_of_buildings(model, ground, state);
+    relax(model, ground, state, overburden);
     for (std::uint32_t i = 0; i < state.count; ++i) {
         for (const ReleaseGroup& release : model.releases) {
             const bool own = state.id[i] >= release.first_particle && state.id[i] < release.last_particle;

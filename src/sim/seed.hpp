@@ -4,6 +4,7 @@
 
 #include "core/result.hpp"
 #include "params/spec.hpp"
+#include "sim/ground.hpp"
 #include "sim/model.hpp"
 #include "sim/state.hpp"
 #include "terrain/release.hpp"
@@ -17,9 +18,8 @@ namespace talus {
 void set_material(Model& model, const MaterialSpec& material);
 
 /// Everything constant, from the scene's material and solver sections.
-[[nodiscard]] Model make_model(const MaterialSpec& material, const SolverSpec& solver, Terrain terrain,
-                               std::vector<Building> buildings, double particle_spacing, GroundCover cover = {},
-                               Bed bed = {});
+[[nodiscard]] Model make_model(const MaterialSpec& material, const SolverSpec& solver, double particle_spacing,
+                               GroundCover cover = {});
 
 /// Fills the releases with particles at rest, and the model's release groups.
 ///
@@ -28,10 +28,10 @@ void set_material(Model& model, const MaterialSpec& material);
 /// it is nowhere denser than rest: started over-dense, it would be thrown apart within a step.
 /// Errors: more particles than the solver's limit (says how many, and which spacing would fit); a release that is
 /// smaller than one particle.
-[[nodiscard]] Result<State> seed_releases(Model& model, const std::vector<Release>& releases);
+[[nodiscard]] Result<State> seed_releases(Model& model, const Ground& ground, const std::vector<Release>& releases);
 
 /// The multipliers and stresses with which a state, in the order of its ids, would begin to move; it does not move.
 /// Those it comes with are where the search begins.
-void find_pressures(const Model& model, State& state);
+void find_pressures(const Model& model, const Ground& ground, State& state);
 
 }  // namespace talus

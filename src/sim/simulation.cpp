@@ -28,19 +28,20 @@ struct Simulation::OwnStages {
     }
     [[nodiscard]] Status entrain_bed() const { return self.entrain_bed(); }
     void observe() const {
-        if (watcher != nullptr) watcher->observe(self.model_, self.state_);
+        if (watcher != nullptr) watcher->observe(self.model_, self.ground_, self.state_);
     }
     void remove_failed() const {
         if (watcher == nullptr) return;
         for (const std::size_t building : watcher->failed_buildings()) {
-            remove_building(self.model_, self.ground(), self.state_, building);
+            remove_building(self.model_, self.ground_, self.state_, building);
             self.follow_change();
         }
     }
 };
 
-Simulation::Simulation(Model model, State state, InflowFeeder inflow)
+Simulation::Simulation(Model model, Ground ground, State state, InflowFeeder inflow)
     : model_(std::move(model)),
+      ground_(std::move(ground)),
       state_(std::move(state)),
       inflow_(std::move(inflow)),
       expected_(inflow_.to_come()),
@@ -61,20 +62,20 @@ void Simulation::measure_energy_and_speed() {
 }
 
 Status Simulation::advance(StepWatcher* watcher) {
-    return step(*backend_, model_, state_, times_, OwnStages{*this, watcher});
+    return step(*backend_, model_, ground_, state_, times_, OwnStages{*this, watcher});
 }
 
 void Simulation::inject_inflow(StepWatcher* watcher) {
     if (!inflow_.due(state_.time)) return;
     const std::uint32_t first = state_.seeded;
-    inflow_.inject(model_, state_);
+    inflow_.inject(model_, ground_, state_);
     follow_change();
     if (watcher != nullptr) watcher->follow_inflow(state_, first);
 }
 
 Status Simulation::entrain_bed() {
-    if (model_.bed.empty()) return {};
-    const std::size_t loose = entrainment_.find(model_, state_);
+    if (ground_.bed.empty()) return {};
+    const std::size_t loose = entrainment_.find(model_, ground_, state_);
     if (loose == 0) return {};
     const std::size_t count = state_.count + loose, limit = static_cast<std::size_t>(model_.solver.particle_limit);
     if (count > limit) {
@@ -85,7 +86,7 @@ Status Simulation::entrain_bed() {
     }
     // With room to spare: growing takes everything anew.
     if (count > capacity_) make_room(static_cast<std::uint32_t>(std::min(limit, count + count / 2)));
-    entrainment_.apply(model_, ground(), state_);
+    entrainment_.apply(model_, ground_, state_);
     return {};
 }
 
@@ -97,8 +98,8 @@ void Simulation::make_room(std::uint32_t count) {
     backend_.emplace(model_, capacity_);
 }
 
-void Simulation::change(const std::function<void(Model&, State&)>& edit) {
-    edit(model_, state_);
+void Simulation::change(const std::function<void(Model&, Ground&, State&)>& edit) {
+    edit(model_, ground_, state_);
     follow_change();
 }
 

@@ -7,6 +7,7 @@
 #include "core/result.hpp"
 #include "sim/cpu/backend.hpp"
 #include "sim/entrainment.hpp"
+#include "sim/ground.hpp"
 #include "sim/inflow.hpp"
 #include "sim/model.hpp"
 #include "sim/stage_times.hpp"
@@ -15,11 +16,11 @@
 
 namespace talus {
 
-/// A model, its state, what flows in, and the backend that moves it.
+/// A model, its ground and state, what flows in, and the backend that moves it.
 class Simulation {
   public:
     /// There is room from the beginning for what `inflow` will bring.
-    Simulation(Model model, State state, InflowFeeder inflow = {});
+    Simulation(Model model, Ground ground, State state, InflowFeeder inflow = {});
 
     /// Takes one step, in which `watcher` takes part if there is one. Returns why the step cannot be trusted, if it
     /// cannot; the state is then as that step left it.
@@ -28,11 +29,13 @@ class Simulation {
     /// Adds what inflows have brought by now. A step begins with it.
     void inject_inflow(StepWatcher* watcher = nullptr);
 
-    /// Lets a user's `edit` change model and state between two steps; nothing else changes a model in a run. What it
-    /// must leave as it is: terrain, particle spacing, kernel, time. The contacts of the last step are forgotten.
-    void change(const std::function<void(Model&, State&)>& edit);
+    /// Lets a user's `edit` change model, ground and state between two steps; nothing else changes a model in a run.
+    /// What it must leave as it is: terrain, particle spacing, kernel, time. The contacts of the last step are
+    /// forgotten.
+    void change(const std::function<void(Model&, Ground&, State&)>& edit);
 
     [[nodiscard]] const Model& model() const { return model_; }
+    [[nodiscard]] const Ground& ground() const { return ground_; }
     [[nodiscard]] const State& state() const { return state_; }
     [[nodiscard]] const InflowFeeder& inflow() const { return inflow_; }
     [[nodiscard]] const StageTimes& stage_times() const { return times_; }
@@ -41,13 +44,13 @@ class Simulation {
   private:
     struct OwnStages;
 
-    [[nodiscard]] Ground& ground() { return model_; }
     void follow_change();
     void measure_energy_and_speed();
     void make_room(std::uint32_t count);
     [[nodiscard]] Status entrain_bed();
 
-    Model model_;
+    Model model_;  // const but to change()
+    Ground ground_;
     State state_;
     InflowFeeder inflow_;
     std::uint32_t expected_ = 0;           // particles that inflow brings in all

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "core/try.hpp"
+#include "sim/ground.hpp"
 #include "sim/model.hpp"
 #include "sim/stage_times.hpp"
 
@@ -20,7 +21,7 @@ struct MotionAlone {
 /// One step of the method, a line per stage, for any backend: CPU, and the double-precision reference that checks it.
 /// Returns why the step cannot be trusted, if it cannot; the state is then as it left it.
 template <class Backend, class State, class Run>
-Status step(Backend& backend, const Model& model, State& state, StageTimes& times, Run&& run) {
+Status step(Backend& backend, const Model& model, const Ground& ground, State& state, StageTimes& times, Run&& run) {
     const auto timed = [&](Stage stage, auto&& f) {
         const StageTimer timer(times, stage);
         return f();
@@ -28,26 +29,28 @@ Status step(Backend& backend, const Model& model, State& state, StageTimes& time
     timed(Stage::inject_inflow, [&] { run.inject_inflow(); });
     timed(Stage::choose_time_step, [&] { run.choose_time_step(); });
     timed(Stage::release_held, [&] { backend.release_held(model, state); });
-    timed(Stage::apply_drag, [&] { backend.apply_drag(model, state); });
-    timed(Stage::predict_positions, [&] { backend.predict_positions(model, state); });
+    timed(Stage::apply_drag, [&] { backend.apply_drag(model, ground, state); });
+    timed(Stage::predict_positions, [&] { backend.predict_positions(model, ground, state); });
     timed(Stage::sort_particles, [&] { backend.sort_particles(model, state); });
     timed(Stage::find_neighbours, [&] { backend.find_neighbours(model, state); });
-    timed(Stage::prepare_particles, [&] { backend.prepare_particles(model, state); });
-    timed(Stage::warm_start, [&] { backend.warm_start(model, state); });
+    timed(Stage::prepare_particles, [&] { backend.prepare_particles(model, ground, state); });
+    timed(Stage::warm_start, [&] { backend.warm_start(model, ground, state); });
     // The shear of the first iteration must already know what the ground holds back.
-    timed(Stage::solve_contacts, [&] { backend.solve_contacts(model, state); });
+    timed(Stage::solve_contacts, [&] { backend.solve_contacts(model, ground, state); });
     for (int iteration = 0; iteration < model.solver.iteration_count; ++iteration) {
-        timed(Stage::solve_density, [&] { backend.solve_density(model, state); });    // density and internal friction
-        timed(Stage::solve_contacts, [&] { backend.solve_contacts(model, state); });  // ground, buildings, friction
+        timed(Stage::solve_density,
+              [&] { backend.solve_density(model, ground, state); });  // density and internal friction
+        timed(Stage::solve_contacts,
+              [&] { backend.solve_contacts(model, ground, state); });  // ground, buildings, friction
     }
     timed(Stage::measure_compression, [&] { backend.measure_compression(model, state); });
-    timed(Stage::undo_overlaps, [&] { backend.undo_overlaps(model, state); });
-    timed(Stage::enforce_boundaries, [&] { backend.enforce_boundaries(model, state); });
-    timed(Stage::update_velocities, [&] { backend.update_velocities(model, state); });
-    timed(Stage::measure_impacts, [&] { backend.measure_impacts(model, state); });
-    timed(Stage::apply_viscosity, [&] { backend.apply_viscosity(model, state); });
-    timed(Stage::update_sleep, [&] { backend.update_sleep(model, state); });
-    timed(Stage::remove_outflow, [&] { backend.remove_outflow(model, state); });
+    timed(Stage::undo_overlaps, [&] { backend.undo_overlaps(model, ground, state); });
+    timed(Stage::enforce_boundaries, [&] { backend.enforce_boundaries(model, ground, state); });
+    timed(Stage::update_velocities, [&] { backend.update_velocities(model, ground, state); });
+    timed(Stage::measure_impacts, [&] { backend.measure_impacts(model, ground, state); });
+    timed(Stage::apply_viscosity, [&] { backend.apply_viscosity(model, ground, state); });
+    timed(Stage::update_sleep, [&] { backend.update_sleep(model, ground, state); });
+    timed(Stage::remove_outflow, [&] { backend.remove_outflow(model, ground, state); });
     state.time += state.time_step;
     ++state.step;
     TALUS_TRY(timed(Stage::check_faults, [&] { return run.check_faults(); }));
@@ -58,8 +61,8 @@ Status step(Backend& backend, const Model& model, State& state, StageTimes& time
 }
 
 template <class Backend, class State>
-void step(Backend& backend, const Model& model, State& state, StageTimes& times) {
-    (void)step(backend, model, state, times, MotionAlone{});  // which finds no fault
+void step(Backend& backend, const Model& model, const Ground& ground, State& state, StageTimes& times) {
+    (void)step(backend, model, ground, state, times, MotionAlone{});  // which finds no fault
 }
 
 }  // namespace talus

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "sim/ground.hpp"
 #include "sim/model.hpp"
 #include "sim/state.hpp"
 
@@ -21,7 +22,7 @@ class StepWatcher {
     /// Inflow brought the particles with ids from `first_new_id` on.
     virtual void follow_inflow(const State& state, std::uint32_t first_new_id) = 0;
     /// A step was taken.
-    virtual void observe(const Model& model, const State& state) = 0;
+    virtual void observe(const Model& model, const Ground& ground, const State& state) = 0;
     /// Buildings whose resistance was exceeded in the step that was observed last: they are removed.
     [[nodiscard]] virtual const std::vector<std::size_t>& failed_buildings() const = 0;
 };

@@ -51,7 +51,7 @@ void LiveRun::record() {
     if (!recording_.due(state().time)) return;
     recording_.add(frame(1, 0));
     record_impacts();
-    erosion_history_.add(state().time, state().entrained, model().bed.eroded);
+    erosion_history_.add(state().time, state().entrained, ground().bed.eroded);
 }
 
 void LiveRun::record_impacts() {
@@ -91,7 +91,7 @@ BuildingImpact LiveRun::impact_on(const std::string& obstacle_id, std::optional<
 
 std::vector<float> LiveRun::eroded(std::optional<double> time) const {
     if (state().entrained == 0) return {};
-    return time ? erosion_history_.at(*time) : model().bed.eroded;
+    return time ? erosion_history_.at(*time) : ground().bed.eroded;
 }
 
 std::vector<LiveRun::Removed> LiveRun::removed() const {

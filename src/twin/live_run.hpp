@@ -42,6 +42,7 @@ class LiveRun {
     [[nodiscard]] RunPhase phase() const { return run_->phase(); }
     [[nodiscard]] const std::string& message() const { return run_->stop_reason(); }
     [[nodiscard]] const Model& model() const { return run_->model(); }
+    [[nodiscard]] const Ground& ground() const { return run_->ground(); }
     [[nodiscard]] const State& state() const { return run_->state(); }
     [[nodiscard]] const Observer& observer() const { return run_->observer(); }
     [[nodiscard]] const Recording& recording() const { return recording_; }
@@ -74,7 +75,7 @@ class LiveRun {
         std::string id;
         bool begun = false;  ///< a step was taken in which its debris could move
     };
-    struct Obstacle {  ///< beside Model::buildings, which only grows
+    struct Obstacle {  ///< beside Ground::buildings, which only grows
         std::string id;
         std::shared_ptr<const Building> body;  ///< also of one that was taken away
         bool barrier = false;

@@ -47,7 +47,7 @@ std::array<double, 6> holding_back(const Model& model) {
 /// What a change of setup comes to.
 struct LiveRun::Change {
     std::vector<Obstacle> obstacles;
-    std::optional<std::vector<Building>> buildings;  ///< of the model, if any changes
+    std::optional<std::vector<Building>> buildings;  ///< of the ground, if any changes
     std::optional<BuildingSolids> solids;            ///< likewise
     std::vector<Extent> touched;                     ///< world, of obstacles that came, went or were moved
     std::vector<std::size_t> renewed;                ///< obstacles whose record begins anew
@@ -65,7 +65,7 @@ struct LiveRun::Change {
 void LiveRun::plan_obstacles(const Setup& next, Change& change) const {
     change.obstacles = obstacles_;
     if (same_bodies(setup_.buildings, next.buildings) && same_bodies(setup_.barriers, next.barriers)) return;
-    std::vector<Building>& buildings = change.buildings.emplace(model().buildings);
+    std::vector<Building>& buildings = change.buildings.emplace(ground().buildings);
     for (std::size_t k = 0; k < obstacles_.size(); ++k) {
         Obstacle& obstacle = change.obstacles[k];
         const bool wanted =
@@ -98,7 +98,7 @@ void LiveRun::plan_obstacles(const Setup& next, Change& change) const {
     };
     for (const BuildingSetup& building : next.buildings) put(building, false);
     for (const BarrierSetup& barrier : next.barriers) put(barrier, true);
-    if (!change.touched.empty()) change.solids.emplace(model().terrain, buildings, model().support_radius);
+    if (!change.touched.empty()) change.solids.emplace(ground().terrain, buildings, model().support_radius);
 }
 
 Status LiveRun::plan_releases(const Setup& next, Change& change) const {
@@ -124,7 +124,8 @@ Status LiveRun::plan_releases(const Setup& next, Change& change) const {
 
     Model alone = model();
     set_material(alone, next.material);
-    if (change.solids) alone.solids = *change.solids;
+    Ground around = ground();
+    if (change.solids) around.solids = *change.solids;
     double particles = state().count;
     for (std::uint32_t i = 0; i < state().count; ++i) {
         for (std::size_t g = 0; g < groups_.size(); ++g) {
@@ -141,7 +142,7 @@ Status LiveRun::plan_releases(const Setup& next, Change& change) const {
                 "that, and is {}",
                 release->body->name, release->body->volume, particles, model().solver.particle_limit)};
         }
-        TALUS_ASSIGN(State seeded, seed_releases(alone, {*release->body}));
+        TALUS_ASSIGN(State seeded, seed_releases(alone, around, {*release->body}));
         change.seeds.push_back({release, std::move(seeded)});
     }
     return {};
@@ -151,7 +152,7 @@ Result<LiveRun::Change> LiveRun::plan(const Setup& next) const {
     Change change;
     plan_obstacles(next, change);
     if (!same_shapes(setup_.zones, next.zones)) {
-        change.cover = lay_zones(bodies_of(next.zones), model().terrain).cover;
+        change.cover = lay_zones(bodies_of(next.zones), ground().terrain).cover;
     }
     TALUS_TRY(plan_releases(next, change));
     return change;
@@ -218,12 +219,12 @@ void LiveRun::set_start_times(Model& model, const State& state, const Setup& nex
 
 void LiveRun::carry_out(Change& change, const Setup& next) {
     const auto held_back = holding_back(model());
-    const WorldPoint origin = model().terrain.frame().origin;
-    run_->change([&](Model& model, State& state) -> Run::Change {
+    const WorldPoint origin = ground().terrain.frame().origin;
+    run_->change([&](Model& model, Ground& ground, State& state) -> Run::Change {
         bool let_go = false;
         set_material(model, next.material);
-        if (change.buildings) model.buildings = std::move(*change.buildings);
-        if (change.solids) model.solids = std::move(*change.solids);
+        if (change.buildings) ground.buildings = std::move(*change.buildings);
+        if (change.solids) ground.solids = std::move(*change.solids);
         replace_releases(model, state, change);
         set_start_times(model, state, next, let_go);
         std::uint32_t first_new = state.seeded;
@@ -231,7 +232,7 @@ void LiveRun::carry_out(Change& change, const Setup& next) {
         for (const Extent& e : change.touched) {
             const Extent local{e.x_min - origin.x, e.y_min - origin.y, e.x_max - origin.x, e.y_max - origin.y};
             wake(state, local.grown(2 * model.support_radius));
-            clear_solids(model, state, local);
+            clear_solids(model, ground, state, local);
         }
         if (change.cover) model.cover = std::move(*change.cover);
         if (change.cover || held_back != holding_back(model)) wake(state, {-infinity, -infinity, infinity, infinity});

@@ -249,7 +249,7 @@ Result<std::function<Grid<float>()>> Scenario::layer(const std::string& name, st
     if (time && frames.empty()) return Error{fmt::format("nothing is recorded at or before time_s = {}", *time)};
     if (name == "erosion_depth") {
         const auto then = time ? std::optional(frames.back()->time) : std::nullopt;
-        return std::function<Grid<float>()>([terrain = run.model().terrain.elevation().geometry,
+        return std::function<Grid<float>()>([terrain = run.ground().terrain.elevation().geometry,
                                              eroded = run.eroded(then)] { return erosion_layer(terrain, eroded); });
     }
     if (!time) return std::function<Grid<float>()>([grid = present_layer(maps, name)] { return grid; });

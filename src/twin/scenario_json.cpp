@@ -97,7 +97,7 @@ json Scenario::scene_json() const {
     const Scene& scene = this->scene();
     const LiveRun& run = *parts_->run;
     const Model& model = run.model();
-    const WorldPoint origin = model.terrain.frame().origin;
+    const WorldPoint origin = run.ground().terrain.frame().origin;
     const Extent e = scene.terrain.elevation().geometry.extent();
     const auto [lowest, highest] = elevation_range(scene.terrain);
     const GridGeometry& map = run.observer().maps().geometry();

@@ -8,7 +8,7 @@
 
 namespace talus::validate {
 
-Terrain make_ground(double length, double width, double cell, const std::function<double(double, double)>& elevation) {
+Terrain make_terrain(double length, double width, double cell, const std::function<double(double, double)>& elevation) {
     // One cell more on each side than asked for: ground is known between cell centres only.
     const int columns = static_cast<int>(std::ceil(length / cell)) + 2;
     const int rows = static_cast<int>(std::ceil(width / cell)) + 2;
@@ -23,7 +23,7 @@ Terrain make_ground(double length, double width, double cell, const std::functio
 }
 
 Incline::Incline(double slope, double length, double width)
-    : terrain_(make_ground(length, width, 1, [&](double x, double) { return -std::tan(slope) * x; })),
+    : terrain_(make_terrain(length, width, 1, [&](double x, double) { return -std::tan(slope) * x; })),
       sine_(std::sin(slope)),
       cosine_(std::cos(slope)),
       origin_{0, 0, terrain_.sample(0.0F, 0.0F).height} {}
@@ -89,8 +89,8 @@ State state_at_rest(const std::vector<LocalPoint>& points) {
     return state;
 }
 
-State state_under_weight(const Model& model, const std::vector<LocalPoint>& points, const Incline& incline,
-                         const std::function<double(double, double)>& thickness) {
+State state_under_weight(const Model& model, const Ground& ground, const std::vector<LocalPoint>& points,
+                         const Incline& incline, const std::function<double(double, double)>& thickness) {
     State state = state_at_rest(points);
     const double gravity = model.gravity * incline.cosine();
     state.previous_time_step = 1;  // s: multipliers are pressure over density, times its square
@@ -99,7 +99,7 @@ State state_under_weight(const Model& model, const std::vector<LocalPoint>& poin
         state.multiplier[i] = static_cast<float>(-gravity * std::max(0.0, above));
     }
     // What stands free at its sides has less pressure there.
-    find_pressures(model, state);
+    find_pressures(model, ground, state);
     return state;
 }
 

@@ -6,6 +6,7 @@
 
 #include "core/geometry.hpp"
 #include "run/run.hpp"
+#include "sim/ground.hpp"
 #include "sim/model.hpp"
 #include "sim/state.hpp"
 #include "terrain/buildings.hpp"
@@ -17,8 +18,8 @@ namespace talus::validate {
 
 /// Ground over a rectangle around the world's origin, `length` along x and `width` along y, with elevations in m from a
 /// function of world x and y.
-[[nodiscard]] Terrain make_ground(double length, double width, double cell,
-                                  const std::function<double(double x, double y)>& elevation);
+[[nodiscard]] Terrain make_terrain(double length, double width, double cell,
+                                   const std::function<double(double x, double y)>& elevation);
 
 /// A plane that falls towards +x, and coordinates along it, across it and normal to it, m. Their origin is the ground
 /// in the middle.
@@ -60,7 +61,7 @@ class Incline {
 
 /// The same under the weight of what lies above, as debris is that has long stood behind a gate: `thickness` as in
 /// fill_lattice. Without it a tall column falls into itself before its pressure has built up.
-[[nodiscard]] State state_under_weight(const Model& model, const std::vector<LocalPoint>& points,
+[[nodiscard]] State state_under_weight(const Model& model, const Ground& ground, const std::vector<LocalPoint>& points,
                                        const Incline& incline, const std::function<double(double, double)>& thickness);
 
 enum class OnFault {
@@ -80,6 +81,7 @@ class Trial {
     bool advance_to(double time, const std::function<void()>& after_step = {});
 
     [[nodiscard]] const Model& model() const { return run_.model(); }
+    [[nodiscard]] const Ground& ground() const { return run_.ground(); }
     [[nodiscard]] const State& state() const { return run_.state(); }
     [[nodiscard]] const Observer& observer() const { return run_.observer(); }
     /// The first fault, or that the user wants to stop; empty: none.

@@ -35,8 +35,8 @@ TEST_P(Scenes, HasAllThatARunHas) {
     const Result<Start> start = make(5000);
     ASSERT_TRUE(start) << start.error().message;
     EXPECT_EQ(start->scene, GetParam());
-    EXPECT_FALSE(start->model.buildings.empty());
-    EXPECT_FALSE(start->model.solids.empty());
+    EXPECT_FALSE(start->ground.buildings.empty());
+    EXPECT_FALSE(start->ground.solids.empty());
     EXPECT_FALSE(start->flow_path.empty());
     EXPECT_GT(start->model.friction_coefficient, 0);
     EXPECT_GT(start->model.viscosity, 0);
@@ -49,8 +49,8 @@ TEST_P(Scenes, DebrisLiesFreelyOnKnownGroundUnderItsOwnWeight) {
     const State& state = start->state;
     for (std::uint32_t i = 0; i < state.count; ++i) {
         const LocalPoint p = state.position.at(i);
-        ASSERT_TRUE(start->model.terrain.covers(p.x, p.y));
-        ASSERT_TRUE(is_free(start->model, p));
+        ASSERT_TRUE(start->ground.terrain.covers(p.x, p.y));
+        ASSERT_TRUE(is_free(start->ground, p));
         ASSERT_EQ(state.id[i], i);
     }
     const auto& multiplier = state.multiplier;

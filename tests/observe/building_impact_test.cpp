@@ -12,22 +12,23 @@ namespace {
 using test::advance;
 using test::block;
 
-Model model_with_buildings() {
-    Model model = test::make_model(0.4);
-    model.buildings.resize(2);
-    model.buildings[0].name = "untouched";
-    model.buildings[1].name = "house";
-    return model;
+Ground ground_with_buildings() {
+    Ground ground = test::make_ground();
+    ground.buildings.resize(2);
+    ground.buildings[0].name = "untouched";
+    ground.buildings[1].name = "house";
+    return ground;
 }
 
 /// Debris moving at `speed` against building 1: `count` particles touch it in every step and give it `force` together.
 struct Collision {
-    Model model = model_with_buildings();
+    Model model = test::make_model(0.4);
+    Ground ground = ground_with_buildings();
     State state = block(0.4, -8, -8, 40, 40, 3, {});
-    MapAccumulator maps{model, state, 1, 0.1};
+    MapAccumulator maps{model, ground, state, 1, 0.1};
     ImpactRecorder recorder;
 
-    explicit Collision(double window) : recorder(model, state, window) {}
+    explicit Collision(double window) : recorder(model, ground, state, window) {}
 
     void step(double time_step, double force, std::uint32_t first, std::uint32_t count) {
         advance(state, time_step);
@@ -36,7 +37,7 @@ struct Collision {
             state.building_contacts.push_back({i, 1, static_cast<float>(force * time_step / count)});
         }
         maps.add(state);
-        recorder.after_step(model, state, maps);
+        recorder.after_step(model, ground, state, maps);
     }
     const BuildingImpact& house() const { return recorder.impacts()[1]; }
 };
@@ -119,7 +120,7 @@ TEST(ImpactRecorder, impulse_is_that_of_all_steps_and_its_history_falls_to_no_fo
 
 TEST(ImpactRecorder, resistance_is_exceeded_once_by_the_filtered_pressure) {
     Collision c(0.2);
-    c.model.buildings[1].resistance.pressure = 20000;  // of 10 x 0.16 m2: 32 kN
+    c.ground.buildings[1].resistance.pressure = 20000;  // of 10 x 0.16 m2: 32 kN
     for (int i = 0; i < 50; ++i) c.step(0.01, 31000, 0, 10);
     EXPECT_TRUE(c.recorder.failed().empty());
     EXPECT_TRUE(std::isnan(c.house().failure_time));
@@ -139,12 +140,12 @@ TEST(ImpactRecorder, resistance_is_exceeded_once_by_the_filtered_pressure) {
 TEST(ImpactRecorder, buildings_come_behind_and_records_begin_anew) {
     Collision c(0.2);
     for (int k = 0; k < 10; ++k) c.step(0.05, 50000, 0, 10);
-    c.model.buildings.emplace_back().name = "new";
-    c.recorder.follow(c.model, c.state);
+    c.ground.buildings.emplace_back().name = "new";
+    c.recorder.follow(c.model, c.ground, c.state);
     ASSERT_EQ(c.recorder.impacts().size(), 3U);
     EXPECT_EQ(c.recorder.impacts()[2].name, "new");
     EXPECT_NEAR(c.house().peak_force, 50000, 1);
-    c.recorder.forget(c.model, c.state, 1);
+    c.recorder.forget(c.model, c.ground, c.state, 1);
     EXPECT_FALSE(c.house().hit);
     EXPECT_EQ(c.house().peak_force, 0);
     EXPECT_EQ(c.house().name, "house");

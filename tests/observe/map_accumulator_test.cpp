@@ -27,9 +27,10 @@ float value_at(const Grid<float>& map, double x, double y) {
 
 TEST(MapAccumulator, depth_of_a_slab_is_its_layers_thick_wherever_it_lies_on_the_map) {
     const Model model = test::make_model(0.4);
+    const Ground ground = test::make_ground();
     for (const double shift : {0.0, 0.13, 0.27, 0.5, 0.71}) {
         const State state = block(0.4, -12 + shift, -12 + shift, 60, 60, 5);
-        MapAccumulator maps(model, state, 1, 0.1);
+        MapAccumulator maps(model, ground, state, 1, 0.1);
         maps.add(state);
         const HazardMaps result = maps.maps();
         for (double x = -9.5; x < 9; ++x) {
@@ -41,9 +42,10 @@ TEST(MapAccumulator, depth_of_a_slab_is_its_layers_thick_wherever_it_lies_on_the
 
 TEST(MapAccumulator, the_map_holds_exactly_the_volume_of_the_particles) {
     const Model model = test::make_model(0.4);
+    const Ground ground = test::make_ground();
     State state = block(0.4, -3.17, -3.03, 17, 13, 3, {1.3F, 0.2F, 0});
     test::add_particle(state, {99.9F, -99.9F, 0});  // in the map's corner
-    MapAccumulator maps(model, state, 1, 0.1);
+    MapAccumulator maps(model, ground, state, 1, 0.1);
     for (int step = 0; step < 30; ++step) {
         maps.add(state);
         EXPECT_EQ(maps.volume(), state.count * model.particle_volume());
@@ -53,6 +55,7 @@ TEST(MapAccumulator, the_map_holds_exactly_the_volume_of_the_particles) {
 
 TEST(MapAccumulator, debris_in_any_order_makes_the_same_maps) {
     const Model model = test::make_model(0.4);
+    const Ground ground = test::make_ground();
     State state;
     std::mt19937 random(5);
     std::uniform_real_distribution<float> place(-100, 100), speed(0, 30);
@@ -60,7 +63,7 @@ TEST(MapAccumulator, debris_in_any_order_makes_the_same_maps) {
         test::add_particle(state, {place(random), place(random), 0}, {speed(random), speed(random), 0});
     }
     const auto maps_of = [&] {
-        MapAccumulator maps(model, state, 0.4, 0.1);
+        MapAccumulator maps(model, ground, state, 0.4, 0.1);
         maps.add(state);
         EXPECT_EQ(maps.volume(), state.count * model.particle_volume());
         return maps.maps();
@@ -96,8 +99,9 @@ TEST(MapAccumulator, debris_in_any_order_makes_the_same_maps) {
 
 TEST(MapAccumulator, deposit_is_where_debris_lies_at_the_end_and_keeps_its_volume) {
     const Model model = test::make_model(0.4);
+    const Ground ground = test::make_ground();
     State state = block(0.4, -20, -4, 20, 20, 4, {10, 0, 0});
-    MapAccumulator maps(model, state, 1, 0.1);
+    MapAccumulator maps(model, ground, state, 1, 0.1);
     for (int step = 0; step <= 20; ++step) {
         if (step > 0) advance(state, 0.1);
         maps.add(state);
@@ -113,11 +117,12 @@ TEST(MapAccumulator, deposit_is_where_debris_lies_at_the_end_and_keeps_its_volum
 
 TEST(MapAccumulator, speed_is_averaged_over_depth_and_pressure_follows_from_it) {
     const Model model = test::make_model(0.4);
+    const Ground ground = test::make_ground();
     State state = block(0.4, -8, -8, 40, 40, 4);
     for (std::uint32_t i = 0; i < state.count; ++i) {  // 2 m/s in the lowest layer, 8 in the highest
         state.velocity.x[i] = 2 + 2 * std::floor(state.position.z[i] / 0.4F);
     }
-    MapAccumulator maps(model, state, 1, 0.1);
+    MapAccumulator maps(model, ground, state, 1, 0.1);
     maps.add(state);
     const HazardMaps result = maps.maps();
     EXPECT_NEAR(value_at(result.peak_speed, 0.5, 0.5), 5, 1e-3);
@@ -128,8 +133,9 @@ TEST(MapAccumulator, speed_is_averaged_over_depth_and_pressure_follows_from_it) 
 
 TEST(MapAccumulator, peaks_are_over_all_steps_and_speed_and_volume_of_the_last_step_alone) {
     const Model model = test::make_model(0.4);
+    const Ground ground = test::make_ground();
     State state = block(0.4, -8, -8, 40, 40, 2, {3, 0, 0});
-    MapAccumulator maps(model, state, 1, 0.1);
+    MapAccumulator maps(model, ground, state, 1, 0.1);
     maps.add(state);
     for (float& v : state.velocity.x) v = 1;
     maps.add(state);
@@ -143,8 +149,9 @@ TEST(MapAccumulator, peaks_are_over_all_steps_and_speed_and_volume_of_the_last_s
 
 TEST(MapAccumulator, debris_arrives_when_it_is_deeper_than_the_arrival_depth) {
     const Model model = test::make_model(0.4);
+    const Ground ground = test::make_ground();
     State state = block(0.4, -30, -8, 50, 40, 4, {5, 0, 0});  // front edge at x = -10, 1.6 m deep
-    MapAccumulator maps(model, state, 1, 0.8);
+    MapAccumulator maps(model, ground, state, 1, 0.8);
     maps.add(state);
     for (int step = 0; step < 400; ++step) {
         advance(state, 0.01);
@@ -158,9 +165,10 @@ TEST(MapAccumulator, debris_arrives_when_it_is_deeper_than_the_arrival_depth) {
 
 TEST(MapAccumulator, a_lone_particle_makes_no_peak) {
     const Model model = test::make_model(0.4);
+    const Ground ground = test::make_ground();
     State state = block(0.4, -8, -8, 40, 40, 2);
     test::add_particle(state, {40.1F, 0.1F, 0}, {50, 0, 0});
-    MapAccumulator maps(model, state, 1, 0.1);
+    MapAccumulator maps(model, ground, state, 1, 0.1);
     for (int step = 0; step < 50; ++step) {
         maps.add(state);
         advance(state, 0.003);
@@ -170,21 +178,23 @@ TEST(MapAccumulator, a_lone_particle_makes_no_peak) {
 
 TEST(MapAccumulator, held_and_broken_particles_do_not_count) {
     const Model model = test::make_model(0.4);
+    const Ground ground = test::make_ground();
     State state = block(0.4, -8, -8, 10, 10, 2);
     state.held.assign(state.count, 1);
     state.held[0] = 0;
     state.held[1] = 0;
     state.position.x[1] = std::nanf("");
     state.velocity.y[0] = std::nanf("");
-    MapAccumulator maps(model, state, 1, 0.1);
+    MapAccumulator maps(model, ground, state, 1, 0.1);
     maps.add(state);
     EXPECT_EQ(maps.volume(), model.particle_volume());
 }
 
 TEST(MapAccumulator, maps_share_a_frame_on_the_terrains_raster_around_the_debris) {
     const Model model = test::make_model(0.4);
+    const Ground ground = test::make_ground();
     const State state = block(0.4, 0, 0, 25, 25, 2);  // 10 m square
-    MapAccumulator maps(model, state, 0.5, 0.1);
+    MapAccumulator maps(model, ground, state, 0.5, 0.1);
     maps.add(state);
     const HazardMaps result = maps.maps();
     const GridGeometry& g = result.peak_depth.geometry;
@@ -202,13 +212,14 @@ TEST(MapAccumulator, maps_share_a_frame_on_the_terrains_raster_around_the_debris
 
 TEST(MapAccumulator, maps_end_at_the_terrain_and_exist_even_without_debris) {
     const Model model = test::make_model(0.4);
+    const Ground ground = test::make_ground();
     State state = block(0.4, -99, -99, 10, 10, 2);
-    MapAccumulator near_corner(model, state, 1, 0.1);
+    MapAccumulator near_corner(model, ground, state, 1, 0.1);
     near_corner.add(state);
     EXPECT_EQ(near_corner.maps().peak_depth.geometry.x_min, 900);
     EXPECT_EQ(near_corner.maps().peak_depth.geometry.y_min, 1900);
     state.held.assign(state.count, 1);
-    MapAccumulator nothing(model, state, 1, 0.1);
+    MapAccumulator nothing(model, ground, state, 1, 0.1);
     nothing.add(state);
     const HazardMaps result = nothing.maps();
     EXPECT_GT(result.peak_depth.geometry.size(), 4U);
@@ -217,8 +228,9 @@ TEST(MapAccumulator, maps_end_at_the_terrain_and_exist_even_without_debris) {
 
 TEST(MapAccumulator, shows_debris_as_it_lies_now) {
     const Model model = test::make_model(0.4);
+    const Ground ground = test::make_ground();
     State state = block(0.4, 0, 0, 40, 40, 5, {3, 0, 0});
-    MapAccumulator maps(model, state, 1, 0.1);
+    MapAccumulator maps(model, ground, state, 1, 0.1);
     maps.add(state);
     test::advance(state, 10);
     maps.add(state);
@@ -233,14 +245,15 @@ TEST(MapAccumulator, shows_debris_as_it_lies_now) {
     const auto column = static_cast<int>(1038 - window.x_min), row = static_cast<int>(2008 - window.y_min);
     EXPECT_NEAR(now.depth.at(column, row), 2, 0.1);
     EXPECT_NEAR(now.speed.at(column, row), 3, 0.01);
-    const MapAccumulator nothing(model, state, 1, 0.1);
+    const MapAccumulator nothing(model, ground, state, 1, 0.1);
     EXPECT_EQ(nothing.present().depth.values.size(), 0U);
 }
 
 TEST(MapAccumulator, peak_pressures_are_of_the_density_at_their_time) {
     Model model = test::make_model(0.4);
+    const Ground ground = test::make_ground();
     State state = block(0.4, 0, 0, 40, 40, 5, {4, 0, 0});
-    MapAccumulator maps(model, state, 1, 0.1);
+    MapAccumulator maps(model, ground, state, 1, 0.1);
     maps.add(state);
     model.rest_density = 3000;
     maps.follow(model, state);

@@ -20,11 +20,12 @@ using test::block;
 /// A cloud that disperses eastward, some of it against a house.
 struct Cloud {
     Model model = test::make_model(0.4);
+    Ground ground = test::make_ground();
     State state;
     std::mt19937 random{11};
 
     Cloud() {
-        model.buildings.resize(1);
+        ground.buildings.resize(1);
         state = block(0.4, -80, -10, 40, 50, 5);
         std::normal_distribution<float> spread(0, 2);
         for (std::uint32_t i = 0; i < state.count; ++i) state.velocity.set(i, {10 + spread(random), spread(random), 0});
@@ -46,12 +47,12 @@ void add(StateHash& hash, const Grid<float>& map) {
 std::uint64_t hash_of_run(int threads) {
     const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads));
     Cloud cloud;
-    Observer observer(cloud.model, cloud.state, test::straight_path(), OutputSpec{}, 1);
+    Observer observer(cloud.model, cloud.ground, cloud.state, test::straight_path(), OutputSpec{}, 1);
     for (int step = 0; step < 60; ++step) {
         cloud.step();
-        observer.after_step(cloud.model, cloud.state, 0);
+        observer.after_step(cloud.model, cloud.ground, cloud.state, 0);
     }
-    const Observation o = observer.finish(cloud.model, cloud.state);
+    const Observation o = observer.finish(cloud.model, cloud.ground, cloud.state);
     StateHash hash;
     for (const auto* map :
          {&o.maps.peak_depth, &o.maps.peak_speed, &o.maps.peak_pressure, &o.maps.arrival_time, &o.maps.deposit_depth}) {
@@ -78,20 +79,20 @@ TEST(Observer, watching_a_step_allocates_nothing_once_debris_moves_where_it_was)
     Cloud cloud;
     OutputSpec outputs;
     outputs.sample_interval = 1000;
-    Observer observer(cloud.model, cloud.state, test::straight_path(), outputs, 1);
+    Observer observer(cloud.model, cloud.ground, cloud.state, test::straight_path(), outputs, 1);
     for (int step = 0; step < 40; ++step) {
         cloud.step();
-        observer.after_step(cloud.model, cloud.state, 0);
+        observer.after_step(cloud.model, cloud.ground, cloud.state, 0);
     }
     for (std::uint32_t i = 0; i < cloud.state.count; ++i) cloud.state.velocity.set(i, {});
     for (int step = 0; step < 30; ++step) {
         advance(cloud.state, 0.01);
-        observer.after_step(cloud.model, cloud.state, 0);
+        observer.after_step(cloud.model, cloud.ground, cloud.state, 0);
     }
     const long before = test::allocation_count();
     for (int step = 0; step < 100; ++step) {
         advance(cloud.state, 0.01);
-        observer.after_step(cloud.model, cloud.state, 0);
+        observer.after_step(cloud.model, cloud.ground, cloud.state, 0);
     }
     EXPECT_EQ(test::allocation_count() - before, 0);
 }
@@ -100,35 +101,37 @@ TEST(Observer, rows_come_at_the_interval_with_the_first_and_the_last) {
     Cloud cloud;
     OutputSpec outputs;
     outputs.sample_interval = 0.1;
-    Observer observer(cloud.model, cloud.state, test::straight_path(), outputs, 1);
+    Observer observer(cloud.model, cloud.ground, cloud.state, test::straight_path(), outputs, 1);
     EXPECT_EQ(observer.latest().time, 0);
     for (int step = 0; step < 55; ++step) {
         cloud.step();
-        observer.after_step(cloud.model, cloud.state, 120);
+        observer.after_step(cloud.model, cloud.ground, cloud.state, 120);
     }
     EXPECT_NEAR(observer.latest().time, 0.5, 1e-9);
     EXPECT_EQ(observer.latest().steps_per_second, 120);
-    const Observation o = observer.finish(cloud.model, cloud.state);
+    const Observation o = observer.finish(cloud.model, cloud.ground, cloud.state);
     ASSERT_EQ(o.timeseries.size(), 7U);
     for (std::size_t i = 0; i < 6; ++i) EXPECT_NEAR(o.timeseries[i].time, 0.1 * static_cast<double>(i), 1e-9);
     EXPECT_NEAR(o.timeseries.back().time, 0.55, 1e-9);
-    EXPECT_EQ(observer.finish(cloud.model, cloud.state).timeseries.size(), 7U) << "asking twice adds no row";
+    EXPECT_EQ(observer.finish(cloud.model, cloud.ground, cloud.state).timeseries.size(), 7U)
+        << "asking twice adds no row";
 }
 
 TEST(Observer, steps_longer_than_the_interval_make_a_row_each) {
     Cloud cloud;
     OutputSpec outputs;
     outputs.sample_interval = 0.004;
-    Observer observer(cloud.model, cloud.state, {}, outputs, 1);
+    Observer observer(cloud.model, cloud.ground, cloud.state, {}, outputs, 1);
     for (int step = 0; step < 10; ++step) {
         cloud.step();
-        observer.after_step(cloud.model, cloud.state, 0);
+        observer.after_step(cloud.model, cloud.ground, cloud.state, 0);
     }
-    EXPECT_EQ(observer.finish(cloud.model, cloud.state).timeseries.size(), 11U);
+    EXPECT_EQ(observer.finish(cloud.model, cloud.ground, cloud.state).timeseries.size(), 11U);
 }
 
 TEST(Observer, volumes_and_energies_are_those_of_the_particles) {
-    Model model = test::make_model(0.5);
+    const Model model = test::make_model(0.5);
+    const Ground ground = test::make_ground();
     State state;
     const double volume = 0.125, mass = 250;
     test::add_particle(state, {0, 0, 3}, {3, 4, 0});
@@ -138,7 +141,7 @@ TEST(Observer, volumes_and_energies_are_those_of_the_particles) {
     state.seeded = 9;
     state.outflow = 5;
     state.mean_compression = 0.01;
-    Observer observer(model, state, {}, OutputSpec{}, 1);
+    Observer observer(model, ground, state, {}, OutputSpec{}, 1);
     const TimeSample& row = observer.latest();
     EXPECT_EQ(row.volume_moving, 1 * volume);
     EXPECT_EQ(row.volume_deposited, 2 * volume);
@@ -147,28 +150,29 @@ TEST(Observer, volumes_and_energies_are_those_of_the_particles) {
     EXPECT_NEAR(row.kinetic_energy, 0.5 * mass * (25 + 0.0025), 1e-3);
     EXPECT_NEAR(row.potential_energy, mass * 9.80665 * 6, 1e-6);
     EXPECT_TRUE(std::isnan(row.front_chainage));
-    EXPECT_EQ(observer.finish(model, state).volume_released, 9 * volume);
+    EXPECT_EQ(observer.finish(model, ground, state).volume_released, 9 * volume);
 }
 
 TEST(Observer, says_how_far_debris_was_compressed_and_when) {
-    Model model = test::make_model(0.5);
+    const Model model = test::make_model(0.5);
+    const Ground ground = test::make_ground();
     State state;
     test::add_particle(state, {0, 0, 3}, {3, 4, 0});
     state.seeded = 1;
-    Observer observer(model, state, {}, OutputSpec{}, 1);
+    Observer observer(model, ground, state, {}, OutputSpec{}, 1);
     const auto step = [&](double time_step, double mean, double max) {
         state.time += time_step;
         state.time_step = time_step;
         state.mean_compression = mean;
         state.max_compression = max;
-        observer.after_step(model, state, 0);
+        observer.after_step(model, ground, state, 0);
     };
     step(0.25, 0.002, 0.02);
-    EXPECT_TRUE(within_compression_limits(observer.finish(model, state)));
+    EXPECT_TRUE(within_compression_limits(observer.finish(model, ground, state)));
     step(0.5, 0.02, 0.025);
     step(0.25, 0.005, 0.3);
     step(1, 0, 0);
-    const Observation o = observer.finish(model, state);
+    const Observation o = observer.finish(model, ground, state);
     EXPECT_EQ(o.worst_mean_compression, 0.02);
     EXPECT_EQ(o.worst_mean_time, 0.75);
     EXPECT_EQ(o.worst_max_compression, 0.3);
@@ -179,16 +183,17 @@ TEST(Observer, says_how_far_debris_was_compressed_and_when) {
 
 TEST(Observer, reports_the_front_as_it_goes) {
     Cloud cloud;
-    Observer observer(cloud.model, cloud.state, test::straight_path(), OutputSpec{}, 1);
+    Observer observer(cloud.model, cloud.ground, cloud.state, test::straight_path(), OutputSpec{}, 1);
     const double start = observer.front_chainage();
     EXPECT_NEAR(start, 26, 0.5);
     for (int step = 0; step < 100; ++step) {
         cloud.step();
-        observer.after_step(cloud.model, cloud.state, 0);
+        observer.after_step(cloud.model, cloud.ground, cloud.state, 0);
     }
     EXPECT_GT(observer.front_chainage(), start + 10);
     EXPECT_EQ(observer.latest().front_chainage, observer.front_chainage());
-    EXPECT_EQ(observer.finish(cloud.model, cloud.state).run_out.front_chainage, observer.front_chainage());
+    EXPECT_EQ(observer.finish(cloud.model, cloud.ground, cloud.state).run_out.front_chainage,
+              observer.front_chainage());
 }
 
 TEST(DefaultMapCell, fits_the_terrains_cells_and_the_particles) {

@@ -41,7 +41,7 @@ TEST(Overtopping, tells_what_goes_over_the_crest_from_what_goes_through_a_slot) 
     };
     // The slot is 2 m wide around the middle of the line, y = 0; the crest is 2 m above the ground.
     for (const Case& c : {Case{5, 3, 1, 0}, Case{0, 0.2F, 0, 1}, Case{0, 2.5F, 1, 0}, Case{0.9F, 1, 0, 1}}) {
-        Overtopping watch(model, dam({{10, 2, 0}}));
+        Overtopping watch(model, test::make_ground().terrain, dam({{10, 2, 0}}));
         State state = runner(c.y, c.z);
         run(watch, state, 30);
         EXPECT_NEAR(watch.volume(), c.over * volume, 1e-12) << c.y << " " << c.z;
@@ -56,7 +56,7 @@ TEST(Overtopping, what_a_net_lets_through_below_its_crest_has_passed) {
     net.passing_share = 0.5;
     for (std::uint32_t id = 0; id < 20; ++id) {
         for (const float z : {0.2F, 1.9F, 2.1F}) {
-            Overtopping watch(model, net);
+            Overtopping watch(model, test::make_ground().terrain, net);
             State state = runner(5, z);
             state.id[0] = id;
             state.seeded = 20;
@@ -71,7 +71,7 @@ TEST(Overtopping, what_a_net_lets_through_below_its_crest_has_passed) {
 
 TEST(Overtopping, what_comes_back_does_not_count) {
     const Model model = test::make_model(0.4);
-    Overtopping watch(model, dam({{10, 2, 0}}));
+    Overtopping watch(model, test::make_ground().terrain, dam({{10, 2, 0}}));
     State state = runner(0, 0.2F);
     run(watch, state, 30);
     EXPECT_GT(watch.passed_volume(), 0);
@@ -83,7 +83,7 @@ TEST(Overtopping, what_comes_back_does_not_count) {
 
 TEST(Overtopping, filling_is_the_depth_at_the_upstream_face) {
     const Model model = test::make_model(0.4);
-    Overtopping watch(model, dam());
+    Overtopping watch(model, test::make_ground().terrain, dam());
     // 4 m long, 8 m wide and 1.2 m deep behind the face, which is half a metre west of the line.
     State state = test::block(0.4, -4.5, -4, 10, 20, 3);
     watch.follow(state);

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 
+#include "sim/ground.hpp"
 #include "sim/model.hpp"
 #include "sim/state.hpp"
 #include "terrain/flow_path.hpp"
@@ -9,14 +10,14 @@
 namespace talus::test {
 
 /// Ground of 200 x 200 m at `slope` (rising westward, so that debris runs east), its middle the world's (1000, 2000).
-inline Terrain ground(double slope = 0, double cell = 2) {
+inline Ground make_ground(double slope = 0, double cell = 2) {
     const int cells = static_cast<int>(200 / cell);
     Grid<float> grid(GridGeometry{900, 1900, cell, cells, cells});
     for (int r = 0; r < cells; ++r) {
         for (int c = 0; c < cells; ++c)
             grid.at(c, r) = static_cast<float>(50 + slope * (1100 - grid.geometry.centre(c, r).x));
     }
-    return Terrain(grid);
+    return Ground(Terrain(grid));
 }
 
 /// Eastward along that ground's middle.
@@ -24,9 +25,8 @@ inline FlowPath straight_path() {
     return FlowPath({{910, 2000}, {1090, 2000}}, 40);
 }
 
-inline Model make_model(double spacing = 0.4, double slope = 0) {
+inline Model make_model(double spacing = 0.4) {
     Model model;
-    model.terrain = ground(slope);
     model.particle_spacing = spacing;
     model.support_radius = 2.2 * spacing;
     model.rest_density = 2000;

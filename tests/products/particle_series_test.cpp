@@ -8,17 +8,15 @@
 #include <gtest/gtest.h>
 
 #include "support/fixtures.hpp"
+#include "terrain/terrain.hpp"
 
 namespace talus {
 namespace {
 
 using test::TemporaryFolder;
 
-Model model_with_origin() {
-    Model model;
-    Grid<float> flat({824000, 825000, 2, 50, 40}, 100);
-    model.terrain = Terrain(flat);
-    return model;
+LocalFrame far_frame() {
+    return Terrain(Grid<float>({824000, 825000, 2, 50, 40}, 100)).frame();
 }
 
 State three_particles() {
@@ -62,8 +60,8 @@ bool is_xml(const std::string& text) {
 TEST(ParticleSeries, FramesHoldEveryParticleAtTheDeclaredOffsets) {
     const TemporaryFolder folder;
     ParticleSeries series(folder.path() / "particles");
-    const Model model = model_with_origin();
-    ASSERT_TRUE(series.write_frame(model, three_particles()).ok());
+    const LocalFrame frame = far_frame();
+    ASSERT_TRUE(series.write_frame(frame, three_particles()).ok());
 
     const std::string file = test::read_text(folder.path() / "particles" / "particles_000000.vtp");
     EXPECT_EQ(array_of<float>(file, "position"), (std::vector<float>{0, 10, 20, 1, 11, 21, 2, 12, 22}));
@@ -75,7 +73,7 @@ TEST(ParticleSeries, FramesHoldEveryParticleAtTheDeclaredOffsets) {
     EXPECT_EQ(array_of<std::int64_t>(file, "offsets"), (std::vector<std::int64_t>{1, 2, 3}));
     EXPECT_NE(file.find("NumberOfPoints=\"3\""), std::string::npos);
 
-    const WorldPoint origin = model.terrain.frame().origin;
+    const WorldPoint origin = frame.origin;
     std::smatch match;
     ASSERT_TRUE(std::regex_search(file, match, std::regex("Name=\"origin_m\"[^>]*>([0-9.]+) ([0-9.]+) ([0-9.]+)<")));
     EXPECT_DOUBLE_EQ(std::stod(match[1]), origin.x);
@@ -91,10 +89,10 @@ TEST(ParticleSeries, CollectionListsTheFramesWithTheirTimes) {
     const TemporaryFolder folder;
     ParticleSeries series(folder.path());
     State state = three_particles();
-    ASSERT_TRUE(series.write_frame(model_with_origin(), state).ok());
+    ASSERT_TRUE(series.write_frame(far_frame(), state).ok());
     state.time = 3;
     state.count = 0;
-    ASSERT_TRUE(series.write_frame(model_with_origin(), state).ok()) << "all debris may have left";
+    ASSERT_TRUE(series.write_frame(far_frame(), state).ok()) << "all debris may have left";
     ASSERT_TRUE(series.finish().ok());
     const std::string text = test::read_text(folder.path() / "particles.pvd");
     EXPECT_TRUE(is_xml(text));
@@ -104,7 +102,7 @@ TEST(ParticleSeries, CollectionListsTheFramesWithTheirTimes) {
 }
 
 TEST(ParticleSeries, FailureNamesTheFile) {
-    const Status status = ParticleSeries("/proc/talus").write_frame(model_with_origin(), three_particles());
+    const Status status = ParticleSeries("/proc/talus").write_frame(far_frame(), three_particles());
     ASSERT_FALSE(status.ok());
     EXPECT_EQ(status.error().message.rfind("/proc/talus: cannot be made: ", 0), 0U) << status.error().message;
 }

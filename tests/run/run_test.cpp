@@ -57,7 +57,7 @@ TEST_F(RunOfAScene, TakesWhatTheSceneHas) {
         "polygon = \"824100 825050, 824150 825050, 824150 825100, 824100 825100\"\nfriction_coefficient = 0.9\n");
     const auto run = talus::Run::start(scene);
     ASSERT_TRUE(run) << run.error().message;
-    EXPECT_FALSE((*run)->model().bed.empty());
+    EXPECT_FALSE((*run)->ground().bed.empty());
     EXPECT_FALSE((*run)->model().cover.empty());
 }
 
@@ -89,7 +89,7 @@ TEST_F(RunOfAScene, AChangeBringsItBackFromRest) {
     while (run.advance()) continue;
     ASSERT_EQ(run.phase(), RunPhase::at_rest) << run.stop_reason();
     EXPECT_THAT(run.stop_reason(), StartsWith("debris came to rest (momentum below "));
-    run.change([](Model&, State& state) -> talus::Run::Change { return {state.seeded, false}; });
+    run.change([](Model&, Ground&, State& state) -> talus::Run::Change { return {state.seeded, false}; });
     EXPECT_EQ(run.phase(), RunPhase::ready);
     EXPECT_EQ(run.stop_reason(), "");
     EXPECT_EQ(run.result().status, RunStatus::interrupted);
@@ -107,10 +107,10 @@ TEST(EndlessRun, GoesOnBeyondItsEndAndAfterAFault) {
     SolverSpec solver;
     solver.end_time = 0.01;
     const Grid<float> level(GridGeometry{0, 0, 1, 20, 20}, 0.0F);
-    RunStart start{make_model({}, solver, Terrain(level), {}, 0.5), State{}};
+    RunStart start{make_model({}, solver, 0.5), Ground(Terrain(level)), State{}};
     start.state.resize(1);
     start.state.count = start.state.seeded = 1;
-    start.state.position.set(0, start.model.terrain.frame().to_local({10, 10, 3}));
+    start.state.position.set(0, start.ground.terrain.frame().to_local({10, 10, 3}));
     talus::Run ends(start);
     for (int step = 0; step < 20; ++step) (void)ends.advance();
     EXPECT_EQ(ends.phase(), RunPhase::ended);

@@ -39,8 +39,9 @@ TEST(Step, allocates_nothing_while_debris_presses_on_a_wall) {
 TEST(Step, allocates_nothing_while_debris_flows_in) {
     const Inflow gully{"gully", {20, 17}, {20, 23}, {{0, 30, 4}, {60, 30, 4}}};
     const Inflow spring{"spring", {}, {}, {{0, 10, 1}, {60, 10, 1}}, {rectangle(30, 17, 36, 23)}};
-    const Model model = make_model({}, {}, inclined_plane(25), {}, testing::fine_spacing);
-    Simulation simulation(model, State{}, InflowFeeder(model, {gully, spring}));
+    const Model model = make_model({}, {}, testing::fine_spacing);
+    const Ground ground(inclined_plane(25));
+    Simulation simulation(model, ground, State{}, InflowFeeder(model, ground.terrain.frame(), {gully, spring}));
     EXPECT_EQ(allocations_of(simulation, 100, 0), 0);
     const std::uint32_t before = simulation.state().count;
     EXPECT_EQ(allocations_of(simulation, 0, 50), 0);
@@ -51,8 +52,9 @@ TEST(Step, allocates_nothing_while_debris_picks_up_its_bed) {
     const Terrain terrain = inclined_plane(25);
     MaterialSpec moving;
     moving.friction_coefficient = 0.2;
-    Model model = make_model(moving, {}, terrain, {}, testing::coarse_spacing);
-    Result<State> state = seed_releases(model, {block(terrain, rectangle(8, 15, 14, 25), 1.5)});
+    Model model = make_model(moving, {}, testing::coarse_spacing);
+    Ground ground(terrain);
+    Result<State> state = seed_releases(model, ground, {block(terrain, rectangle(8, 15, 14, 25), 1.5)});
     BedMaterial growing, sheared;
     growing.growth_rate = 0.02;
     sheared.law = EntrainmentLaw::shear;
@@ -60,12 +62,12 @@ TEST(Step, allocates_nothing_while_debris_picks_up_its_bed) {
     sheared.erosion_rate = 0.1;
     sheared.depth_per_shear = 1e-5;
     const std::size_t cells = terrain.elevation().values.size();
-    model.bed = {{growing, sheared},
-                 std::vector<std::uint8_t>(cells, 1),
-                 std::vector<float>(cells, 1),
-                 std::vector<float>(cells, 0)};
-    for (std::size_t cell = 0; cell < cells; cell += 2) model.bed.material_at[cell] = 2;
-    Simulation simulation(std::move(model), *std::move(state));
+    ground.bed = {{growing, sheared},
+                  std::vector<std::uint8_t>(cells, 1),
+                  std::vector<float>(cells, 1),
+                  std::vector<float>(cells, 0)};
+    for (std::size_t cell = 0; cell < cells; cell += 2) ground.bed.material_at[cell] = 2;
+    Simulation simulation(std::move(model), std::move(ground), *std::move(state));
     EXPECT_EQ(allocations_of(simulation, 120, 0), 0);
     const std::uint32_t before = simulation.state().entrained;
     // Its lists grow when more comes loose in a step than ever before, not in every step.

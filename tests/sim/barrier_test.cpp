@@ -14,39 +14,43 @@ namespace {
 using testing::state_of;
 using testing::terrain_of;
 
+Model wall_model() {
+    MaterialSpec material;
+    material.friction_coefficient = 0.2;
+    return make_model(material, {}, 0.5);
+}
+
 /// Level ground with a thin wall across it at x = 20, its slot 2 m wide around y = 20.
-Model walled(double spacing, bool slot) {
+Ground walled(bool slot) {
     const Terrain terrain = terrain_of(60, 40, 1, [](double, double) { return 10; });
     BarrierSpec shape{{{20, 2}, {21, 20}, {20, 38}}, 6, {}, 0.3, {}};
     if (slot) shape.openings = {{std::hypot(1, 18), 2, 0}};
     const auto wall = make_barrier(terrain, "wall", shape);
     EXPECT_TRUE(wall);
-    MaterialSpec material;
-    material.friction_coefficient = 0.2;
-    return make_model(material, {}, terrain, {*wall}, spacing);
+    return {terrain, {*wall}, wall_model().support_radius};
 }
 
 /// Where the wall's middle is at a plan y, local.
-double wall_x(const Model& model, float y) {
-    const WorldPoint origin = model.terrain.frame().origin;
+double wall_x(const Ground& ground, float y) {
+    const WorldPoint origin = ground.terrain.frame().origin;
     return 20 + 1 - std::abs(y + origin.y - 20) / 18 - origin.x;
 }
 
 TEST(Barrier, nothing_gets_through_it_at_any_speed) {
-    const Model model = walled(0.5, false);
+    const Model model = wall_model();
+    const Ground ground = walled(false);
     std::mt19937 random(7);
     std::uniform_real_distribution<float> along(-15, 15), height(0.1F, 5), speed(1, 3000);
     for (int k = 0; k < 20000; ++k) {
-        const LocalPoint start{static_cast<float>(wall_x(model, 0)) - 4, along(random), height(random)};
+        const LocalPoint start{static_cast<float>(wall_x(ground, 0)) - 4, along(random), height(random)};
         const LocalPoint way = {0.05F * speed(random), 0.2F * along(random), 0};
-        const LocalPoint end = free_end(model, start, way);
-        ASSERT_LT(end.x, wall_x(model, end.y)) << way.x << " m in a step from y = " << start.y << ", z = " << start.z;
+        const LocalPoint end = free_end(model, ground, start, way);
+        ASSERT_LT(end.x, wall_x(ground, end.y)) << way.x << " m in a step from y = " << start.y << ", z = " << start.z;
     }
 }
 
 TEST(Barrier, a_run_leaves_debris_only_through_its_slot) {
     for (const bool slot : {false, true}) {
-        Model model = walled(0.5, slot);
         std::vector<LocalPoint> points;
         for (int k = 0; k < 3; ++k) {
             for (int j = 0; j < 24; ++j) {
@@ -57,7 +61,7 @@ TEST(Barrier, a_run_leaves_debris_only_through_its_slot) {
             }
         }
         State start = state_of(points, std::vector<LocalPoint>(points.size(), {60, 0, 0}));
-        Simulation simulation(std::move(model), std::move(start));
+        Simulation simulation(wall_model(), walled(slot), std::move(start));
         std::uint32_t beyond = 0;
         for (int step = 0; step < 400; ++step) {
             EXPECT_TRUE(simulation.advance());
@@ -65,9 +69,9 @@ TEST(Barrier, a_run_leaves_debris_only_through_its_slot) {
             beyond = 0;
             for (std::uint32_t i = 0; i < state.count; ++i) {
                 const LocalPoint p = state.position.at(i);
-                ASSERT_FALSE(simulation.model().solids.inside(p));
+                ASSERT_FALSE(simulation.ground().solids.inside(p));
                 // Splashes may go over it: 6 m.
-                beyond += p.x > wall_x(simulation.model(), p.y) && p.z < 5;
+                beyond += p.x > wall_x(simulation.ground(), p.y) && p.z < 5;
             }
             if (!slot) {
                 ASSERT_LE(beyond, simulation.state().count / 4);
@@ -80,7 +84,6 @@ TEST(Barrier, a_run_leaves_debris_only_through_its_slot) {
 }
 
 TEST(TakeDown, frees_what_lay_against_a_wall) {
-    Model model = walled(0.5, false);
     std::vector<LocalPoint> points;
     for (int k = 0; k < 4; ++k) {
         for (int j = 0; j < 8; ++j) {
@@ -90,11 +93,11 @@ TEST(TakeDown, frees_what_lay_against_a_wall) {
             }
         }
     }
-    Simulation simulation(std::move(model), state_of(points));
+    Simulation simulation(wall_model(), walled(false), state_of(points));
     for (int step = 0; step < 200; ++step) EXPECT_TRUE(simulation.advance());
-    simulation.change([](Model& m, State& s) { remove_building(m, m, s, 0); });
-    EXPECT_FALSE(stands(simulation.model().buildings[0]));
-    EXPECT_TRUE(simulation.model().solids.empty());
+    simulation.change([](Model& m, Ground& g, State& s) { remove_building(m, g, s, 0); });
+    EXPECT_FALSE(stands(simulation.ground().buildings[0]));
+    EXPECT_TRUE(simulation.ground().solids.empty());
     for (int step = 0; step < 200; ++step) EXPECT_TRUE(simulation.advance());
     float farthest = -100;
     for (std::uint32_t i = 0; i < simulation.state().count; ++i) {

@@ -17,9 +17,10 @@ struct Slide {
     Slide() {
         MaterialSpec material;
         material.friction_coefficient = 0.2;
-        Model model = make_model(material, {}, terrain, {}, coarse_spacing);
-        Result<State> state = seed_releases(model, {block(terrain, rectangle(8, 15, 14, 25), 1.5)});
-        simulation.emplace(std::move(model), *std::move(state));
+        Model model = make_model(material, {}, coarse_spacing);
+        Ground ground(terrain);
+        Result<State> state = seed_releases(model, ground, {block(terrain, rectangle(8, 15, 14, 25), 1.5)});
+        simulation.emplace(std::move(model), std::move(ground), *std::move(state));
     }
     void run(int steps) {
         for (int k = 0; k < steps; ++k) {
@@ -29,7 +30,7 @@ struct Slide {
     }
     [[nodiscard]] State more(double x_min) const {
         Model model = simulation->model();
-        return *seed_releases(model, {block(terrain, rectangle(x_min, 15, x_min + 3, 25), 1)});
+        return *seed_releases(model, simulation->ground(), {block(terrain, rectangle(x_min, 15, x_min + 3, 25), 1)});
     }
 
     Terrain terrain = inclined_plane(25);
@@ -46,14 +47,14 @@ TEST(Change, adds_more_particles_than_there_was_room_for) {
     slide.run(20);
     const std::uint32_t before = slide.simulation->state().count;
     const State more = slide.more(40);
-    slide.simulation->change([&](Model&, State& state) {
+    slide.simulation->change([&](Model&, Ground&, State& state) {
         append_particles(state, more, before);
         std::fill(state.held.begin() + before, state.held.begin() + state.count, 1);
     });
     EXPECT_EQ(slide.simulation->state().seeded, before + more.count);
     std::vector<LocalPoint> start(more.count);
     for (std::uint32_t k = 0; k < more.count; ++k) start[more.id[k]] = more.position.at(k);
-    slide.simulation->change([&](Model& model, State&) {
+    slide.simulation->change([&](Model& model, Ground&, State&) {
         model.releases.push_back({"held", std::numeric_limits<double>::infinity(), before, before + more.count});
     });
     slide.run(20);
@@ -63,7 +64,7 @@ TEST(Change, adds_more_particles_than_there_was_room_for) {
         if (state.id[i] < before) continue;
         EXPECT_EQ(state.position.x[i], start[state.id[i] - before].x) << "held debris stays";
     }
-    slide.simulation->change([&](Model& model, State& s) { model.releases.back().start_time = s.time; });
+    slide.simulation->change([&](Model& model, Ground&, State& s) { model.releases.back().start_time = s.time; });
     slide.run(40);
     EXPECT_GT(slide.simulation->state().max_speed, 1);
     EXPECT_EQ(std::count(slide.simulation->state().held.begin(),
@@ -75,7 +76,7 @@ TEST(Change, takes_particles_away_and_keeps_the_balance) {
     Slide slide;
     slide.run(20);
     const std::uint32_t before = slide.simulation->state().count;
-    slide.simulation->change([&](Model&, State& state) { remove_particles(state, 100, 500); });
+    slide.simulation->change([&](Model&, Ground&, State& state) { remove_particles(state, 100, 500); });
     const State& state = slide.simulation->state();
     EXPECT_EQ(state.count, before - 400);
     EXPECT_EQ(state.removed, 400U);
@@ -85,7 +86,7 @@ TEST(Change, takes_particles_away_and_keeps_the_balance) {
     // What was taken makes room for others, up to what there was.
     const State more = slide.more(40);
     ASSERT_LE(more.count, 400U);
-    slide.simulation->change([&](Model&, State& s) { append_particles(s, more, s.seeded); });
+    slide.simulation->change([&](Model&, Ground&, State& s) { append_particles(s, more, s.seeded); });
     slide.run(20);
     EXPECT_EQ(slide.simulation->state().count, before - 400 + more.count);
 }
@@ -95,7 +96,7 @@ TEST(Change, without_any_leaves_the_run_as_it_is) {
     for (int k = 0; k < 30; ++k) {
         changed.run(1);
         unchanged.run(1);
-        changed.simulation->change([](Model&, State&) {});
+        changed.simulation->change([](Model&, Ground&, State&) {});
     }
     EXPECT_EQ(hash_state(changed.simulation->state()), hash_state(unchanged.simulation->state()));
 }
@@ -121,16 +122,14 @@ TEST(Change, clears_solids_without_giving_speed_or_packing_debris) {
     const auto inside = [&] {
         const Simulation& s = *slide.simulation;
         std::uint32_t count = 0;
-        for (std::uint32_t i = 0; i < s.state().count; ++i) count += s.model().solids.inside(s.state().position.at(i));
+        for (std::uint32_t i = 0; i < s.state().count; ++i) count += s.ground().solids.inside(s.state().position.at(i));
         return count;
     };
-    slide.simulation->change([&](Model& model, State&) {
-        model.buildings = buildings;
-        model.solids = BuildingSolids(model.terrain, buildings, model.support_radius);
-    });
+    slide.simulation->change(
+        [&](Model& model, Ground& ground, State&) { ground = Ground(slide.terrain, buildings, model.support_radius); });
     ASSERT_GT(inside(), 20U) << "the test is about debris that is in the way";
-    slide.simulation->change([&](Model& model, State& state) {
-        clear_solids(model, state,
+    slide.simulation->change([&](Model& model, Ground& ground, State& state) {
+        clear_solids(model, ground, state,
                      {16 - frame.origin.x, 17 - frame.origin.y, 18 - frame.origin.x, 23 - frame.origin.y});
     });
     EXPECT_EQ(inside(), 0U);

@@ -26,28 +26,33 @@ Model free_space(KernelChoice kernel = KernelChoice::wendland_c2,
     SolverSpec solver;
     solver.kernel = kernel;
     solver.internal_friction = friction;
-    Model model = make_model({}, solver, testing::terrain_of(40, 40, 1, [](double, double) { return 0; }), {}, 0.4);
+    Model model = make_model({}, solver, 0.4);
     model.gravity = 0;
     return model;
+}
+
+Ground level_ground() {
+    return Ground(testing::terrain_of(40, 40, 1, [](double, double) { return 0; }));
 }
 
 TEST(DensityConstraint, gradient_agrees_with_finite_differences) {
     for (const KernelChoice kernel : {KernelChoice::wendland_c2, KernelChoice::cubic_spline, KernelChoice::spiky}) {
         const Model model = free_space(kernel);
+        const Ground ground = level_ground();
         std::vector<Vector> points;
         // Close to the ground, so that its share of the gradient is tested as well.
         for (const LocalPoint& p : random_points(40, {-0.6F, -0.6F, 0.1F}, {0.6F, 0.6F, 1.0F}, 5)) {
             points.push_back({p.x, p.y, p.z});
         }
         for (std::size_t k = 0; k < points.size(); ++k) {
-            const Vector gradient = reference::constraint_gradient(model, points, 3, k);
+            const Vector gradient = reference::constraint_gradient(model, ground, points, 3, k);
             const double components[] = {gradient.x, gradient.y, gradient.z};
             for (int axis = 0; axis < 3; ++axis) {
                 constexpr double h = 1e-5;
                 const auto shifted = [&](double by) {
                     auto moved = points;
                     (axis == 0 ? moved[k].x : axis == 1 ? moved[k].y : moved[k].z) += by;
-                    return reference::constraint(model, moved, 3);
+                    return reference::constraint(model, ground, moved, 3);
                 };
                 EXPECT_NEAR(components[axis], (shifted(h) - shifted(-h)) / (2 * h), 2e-3)
                     << "particle " << k << " axis " << axis;
@@ -59,6 +64,7 @@ TEST(DensityConstraint, gradient_agrees_with_finite_differences) {
 /// Momentum of compressed, shearing debris in free space before and after some steps, per particle.
 void expect_momentum_kept(InternalFriction friction) {
     Model model = free_space(KernelChoice::wendland_c2, friction);
+    const Ground ground = level_ground();
     const auto points = random_points(800, {-1.7F, -1.7F, 8}, {1.7F, 1.7F, 11.4F}, 6);
     const auto velocities = random_points(800, {-1, -1, -1}, {3, 1, 1}, 7);
     State state = state_of(points, velocities);
@@ -75,7 +81,7 @@ void expect_momentum_kept(InternalFriction friction) {
     const Vec3<double> before = momentum();
     double compression = 0;
     for (int i = 0; i < 10; ++i) {
-        step(backend, model, state, times);
+        step(backend, model, ground, state, times);
         compression = std::max(compression, state.mean_compression);
     }
     const Vec3<double> change = momentum() - before;
@@ -135,19 +141,20 @@ void expect_agreement(InternalFriction friction, KernelChoice kernel, int steps,
     std::vector<Building> buildings{house};
     place_buildings(terrain, buildings);
     if (net) buildings.push_back(net_on(terrain));
-    Model model = make_model(material, solver, terrain, buildings, 0.4);
+    Model model = make_model(material, solver, 0.4);
+    Ground ground(terrain, buildings, model.support_radius);
     if (zones) model.cover = half_and_half(terrain);
     Result<State> seeded =
-        seed_releases(model, {testing::block(terrain, testing::rectangle(17.5, 18.5, 20.5, 21.5), 1.2)});
+        seed_releases(model, ground, {testing::block(terrain, testing::rectangle(17.5, 18.5, 20.5, 21.5), 1.2)});
     ASSERT_TRUE(seeded);
-    Simulation simulation(std::move(model), *std::move(seeded));
+    Simulation simulation(std::move(model), std::move(ground), *std::move(seeded));
     reference::State exact(simulation.state());
     reference::Backend backend;
     StageTimes times;
     for (int i = 0; i < steps; ++i) {
         EXPECT_TRUE(simulation.advance());
         exact.time_step = simulation.state().time_step;
-        step(backend, simulation.model(), exact, times);
+        step(backend, simulation.model(), simulation.ground(), exact, times);
     }
     const State& state = simulation.state();
     double worst = 0;
@@ -169,7 +176,7 @@ class InstructionSet : public ::testing::TestWithParam<const char*> {
     void SetUp() override {
         const Status chosen = simd::choose_instruction_set(GetParam());
         if (!chosen) GTEST_SKIP() << chosen.error().message;
-        const Model model = make_model({}, {}, testing::inclined_plane(25), {}, 0.4);
+        const Model model = make_model({}, {}, 0.4);
         ASSERT_EQ(cpu::Backend(model, 1).instruction_set(), GetParam());
     }
     void TearDown() override { ASSERT_TRUE(simd::choose_instruction_set(simd::instruction_sets().front())); }
@@ -215,10 +222,11 @@ TEST_P(FasterInstructionSet, gives_the_same_bits_as_the_baseline) {
         std::vector<Building> buildings{house};
         place_buildings(terrain, buildings);
         if (net) buildings.push_back(net_on(terrain));
-        Model model = make_model(material, solver, terrain, buildings, 0.3);
+        Model model = make_model(material, solver, 0.3);
+        Ground ground(terrain, buildings, model.support_radius);
         Result<State> seeded =
-            seed_releases(model, {testing::block(terrain, testing::rectangle(17.5, 18.5, 20.5, 21.5), 1.2)});
-        Simulation simulation(std::move(model), *std::move(seeded));
+            seed_releases(model, ground, {testing::block(terrain, testing::rectangle(17.5, 18.5, 20.5, 21.5), 1.2)});
+        Simulation simulation(std::move(model), std::move(ground), *std::move(seeded));
         EXPECT_EQ(simulation.backend().instruction_set(), set);
         for (int i = 0; i < 30; ++i) EXPECT_TRUE(simulation.advance());
         return hash_state(simulation.state());
@@ -238,7 +246,7 @@ INSTANTIATE_TEST_SUITE_P(CpuBackend, InstructionSet, ::testing::Values("SCALAR",
 INSTANTIATE_TEST_SUITE_P(CpuBackend, FasterInstructionSet, ::testing::Values("SSE4", "AVX2", "AVX3"), name_of_set);
 
 TEST(InstructionSets, that_are_not_there_are_refused_by_name) {
-    const Model model = make_model({}, {}, testing::inclined_plane(25), {}, 0.4);
+    const Model model = make_model({}, {}, 0.4);
     const std::string baseline = simd::instruction_sets().back();
     ASSERT_TRUE(simd::choose_instruction_set(baseline));
     for (const char* name : {"", "avx2", "AVX4"}) {

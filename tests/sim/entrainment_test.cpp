@@ -29,12 +29,12 @@ BedMaterial sheared(double critical) {
 }
 
 /// Lays material on the whole ground.
-void lay(Model& model, const BedMaterial& material, float depth) {
-    const std::size_t cells = model.terrain.elevation().values.size();
-    model.bed = {{material},
-                 std::vector<std::uint8_t>(cells, 1),
-                 std::vector<float>(cells, depth),
-                 std::vector<float>(cells, 0)};
+void lay(Ground& ground, const BedMaterial& material, float depth) {
+    const std::size_t cells = ground.terrain.elevation().values.size();
+    ground.bed = {{material},
+                  std::vector<std::uint8_t>(cells, 1),
+                  std::vector<float>(cells, depth),
+                  std::vector<float>(cells, 0)};
 }
 
 /// A block on a plane of 25 degrees, steeper than its friction angle.
@@ -42,15 +42,16 @@ Simulation slide(const BedMaterial& material, float depth) {
     const Terrain terrain = inclined_plane(25);
     MaterialSpec moving;
     moving.friction_coefficient = 0.2;
-    Model model = make_model(moving, {}, terrain, {}, coarse_spacing);
-    Result<State> state = seed_releases(model, {block(terrain, rectangle(8, 15, 14, 25), 1.5)});
-    lay(model, material, depth);
-    return {std::move(model), *std::move(state)};
+    Model model = make_model(moving, {}, coarse_spacing);
+    Ground ground(terrain);
+    Result<State> state = seed_releases(model, ground, {block(terrain, rectangle(8, 15, 14, 25), 1.5)});
+    lay(ground, material, depth);
+    return {std::move(model), std::move(ground), *std::move(state)};
 }
 
-double eroded_volume(const Model& model) {
-    const double area = model.terrain.cell() * model.terrain.cell();
-    return area * std::accumulate(model.bed.eroded.begin(), model.bed.eroded.end(), 0.0);
+double eroded_volume(const Ground& ground) {
+    const double area = ground.terrain.cell() * ground.terrain.cell();
+    return area * std::accumulate(ground.bed.eroded.begin(), ground.bed.eroded.end(), 0.0);
 }
 
 LocalPoint momentum(const State& state) {
@@ -63,6 +64,7 @@ TEST(Entrainment, grows_by_the_law_and_takes_it_from_the_ground) {
     Simulation simulation = slide(growing(0.02), 1);
     const State& state = simulation.state();
     const Model& model = simulation.model();
+    const Ground& ground = simulation.ground();
     const std::uint32_t released = state.count;
     double expected = 0;
     for (int k = 0; k < 120; ++k) {
@@ -76,11 +78,11 @@ TEST(Entrainment, grows_by_the_law_and_takes_it_from_the_ground) {
     EXPECT_EQ(state.released(), released);
     EXPECT_NEAR(state.entrained, expected, 0.1 * expected) << "but for what has come loose and is no particle yet";
     const double gained = state.entrained * model.particle_volume();
-    EXPECT_NEAR(eroded_volume(model), gained, 1e-4 * gained);
+    EXPECT_NEAR(eroded_volume(ground), gained, 1e-4 * gained);
     const Terrain untouched = inclined_plane(25);
     double sunk = 0;
-    for (std::size_t cell = 0; cell < model.bed.eroded.size(); ++cell) {
-        sunk += untouched.elevation().values[cell] - model.terrain.elevation().values[cell];
+    for (std::size_t cell = 0; cell < ground.bed.eroded.size(); ++cell) {
+        sunk += untouched.elevation().values[cell] - ground.terrain.elevation().values[cell];
     }
     EXPECT_NEAR(sunk, gained, 0.01 * gained) << "cells of 1 m2; elevations are float";
 }
@@ -88,16 +90,17 @@ TEST(Entrainment, grows_by_the_law_and_takes_it_from_the_ground) {
 TEST(Entrainment, keeps_momentum_and_everybody_elses_speed) {
     Simulation simulation = slide(growing(0.05), 1);
     for (int k = 0; k < 60; ++k) ASSERT_TRUE(simulation.advance());
-    Model model = simulation.model();
+    const Model& model = simulation.model();
+    Ground ground = simulation.ground();
     State state = simulation.state();
     state.resize(2 * state.count);
     Entrainment entrainment;
     std::size_t found = 0;
-    for (int k = 0; k < 200 && found == 0; ++k) found = entrainment.find(model, state);
+    for (int k = 0; k < 200 && found == 0; ++k) found = entrainment.find(model, ground, state);
     ASSERT_GT(found, 0U);
     const LocalPoint before = momentum(state);
     const std::uint32_t count = state.count;
-    entrainment.apply(model, model, state);
+    entrainment.apply(model, ground, state);
     EXPECT_EQ(state.count, count + found);
     const LocalPoint after = momentum(state);
     EXPECT_EQ(after.x, before.x);
@@ -105,17 +108,18 @@ TEST(Entrainment, keeps_momentum_and_everybody_elses_speed) {
     for (std::uint32_t i = count; i < state.count; ++i) {
         EXPECT_EQ(length(state.velocity.at(i)), 0);
         const LocalPoint p = state.position.at(i);
-        EXPECT_NEAR(p.z, model.terrain.sample(p.x, p.y).height + coarse_spacing / 2, 0.2 * coarse_spacing)
+        EXPECT_NEAR(p.z, ground.terrain.sample(p.x, p.y).height + coarse_spacing / 2, 0.2 * coarse_spacing)
             << "it lies on the ground";
     }
 }
 
 TEST(Entrainment, makes_room_without_a_pop) {
     const Terrain level = terrain_of(30, 30, 1, [](double, double) { return 10; });
-    Model model = make_model({}, {}, level, {}, coarse_spacing);
-    Result<State> seeded = seed_releases(model, {block(level, rectangle(5, 5, 25, 25), 2)});
+    Model model = make_model({}, {}, coarse_spacing);
+    Ground ground(level);
+    Result<State> seeded = seed_releases(model, ground, {block(level, rectangle(5, 5, 25, 25), 2)});
     // Debris that seems to move picks up its bed for a moment, and lies still again.
-    lay(model, growing(0.02), 1);
+    lay(ground, growing(0.02), 1);
     State state = *seeded;
     state.resize(2 * state.count);
     state.awake = state.count;
@@ -123,13 +127,13 @@ TEST(Entrainment, makes_room_without_a_pop) {
     std::fill(state.velocity.x.begin(), state.velocity.x.end(), 3.0F);
     Entrainment entrainment;
     for (int k = 0; k < 8; ++k) {
-        if (entrainment.find(model, state) > 0) entrainment.apply(model, model, state);
+        if (entrainment.find(model, ground, state) > 0) entrainment.apply(model, ground, state);
     }
     ASSERT_GT(state.entrained, 20U);
     std::fill(state.velocity.x.begin(), state.velocity.x.end(), 0.0F);
     state.resize(state.count);
-    model.bed = {};
-    Simulation simulation(model, std::move(state));
+    ground.bed = {};
+    Simulation simulation(model, std::move(ground), std::move(state));
     // The block falls apart at its sides; in its middle nothing may happen.
     double fastest = 0, worst = 0;
     for (int k = 0; k < 15; ++k) {
@@ -149,7 +153,7 @@ TEST(Entrainment, ends_where_the_bed_does) {
     constexpr float depth = 0.2F;
     Simulation simulation = slide(growing(0.5), depth);
     for (int k = 0; k < 150; ++k) ASSERT_TRUE(simulation.advance());
-    const Bed& bed = simulation.model().bed;
+    const Bed& bed = simulation.ground().bed;
     const double particle_depth = simulation.model().particle_volume();  // over a cell of 1 m2
     float deepest = 0;
     for (const float eroded : bed.eroded) deepest = std::max(deepest, eroded);
@@ -175,7 +179,7 @@ TEST(Entrainment, by_shear_needs_the_critical_stress) {
     EXPECT_GT(weak.state().entrained, 5U);
     // No deeper than the law allows for the greatest stress there can have been.
     const double most = 1e-5 * (30e3 - 5e3) + weak.model().particle_volume();
-    for (const float eroded : weak.model().bed.eroded) EXPECT_LE(eroded, most);
+    for (const float eroded : weak.ground().bed.eroded) EXPECT_LE(eroded, most);
 }
 
 TEST(Entrainment, does_not_depend_on_the_number_of_threads) {
@@ -192,7 +196,7 @@ TEST(Entrainment, does_not_depend_on_the_number_of_threads) {
 TEST(Entrainment, stops_the_run_at_the_particle_limit) {
     Simulation simulation = slide(growing(0.2), 1);
     simulation.change(
-        [](Model& model, State& state) { model.solver.particle_limit = static_cast<int>(state.count) + 10; });
+        [](Model& model, Ground&, State& state) { model.solver.particle_limit = static_cast<int>(state.count) + 10; });
     Status stepped;
     for (int k = 0; k < 150 && stepped; ++k) stepped = simulation.advance();
     ASSERT_FALSE(stepped);
@@ -201,7 +205,7 @@ TEST(Entrainment, stops_the_run_at_the_particle_limit) {
 
 TEST(Entrainment, without_a_bed_finds_nothing) {
     Simulation simulation = slide(growing(0.2), 1);
-    simulation.change([](Model& model, State&) { model.bed = {}; });
+    simulation.change([](Model&, Ground& ground, State&) { ground.bed = {}; });
     for (int k = 0; k < 60; ++k) ASSERT_TRUE(simulation.advance());
     EXPECT_EQ(simulation.state().entrained, 0U);
 }

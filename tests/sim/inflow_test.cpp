@@ -19,8 +19,8 @@ Inflow inflow(std::vector<InflowSample> hydrograph) {
     return {"gully", {20, 17}, {20, 23}, std::move(hydrograph)};
 }
 
-Model plane() {
-    return make_model({}, {}, inclined_plane(25), {}, testing::fine_spacing);
+Ground plane() {
+    return Ground(inclined_plane(25));
 }
 
 TEST(Inflow, integrates_the_hydrograph_exactly) {
@@ -53,21 +53,22 @@ Inflow rain(std::vector<InflowSample> hydrograph, std::optional<double> directio
 
 TEST(AreaSource, brings_the_volume_to_the_particle_evenly_over_the_area) {
     for (const double step : {0.001, 0.0137, 0.4}) {
-        const Model model = plane();
+        const Model model = make_model({}, {}, testing::fine_spacing);
+        const Ground ground = plane();
         const Inflow source = rain({{0.5, 0, 0}, {1, 8, 1}, {2, 0, 1}, {3, 4, 2}, {3.3, 0, 2}});
-        InflowFeeder feeder(model, {source});
+        InflowFeeder feeder(model, ground.terrain.frame(), {source});
         const std::uint32_t all = feeder.to_come();
         EXPECT_EQ(all, std::lround(source.volume() / model.particle_volume()));
         State state;
         state.resize(all);
         for (state.time = 0; state.time < 4; state.time += step) {
-            if (feeder.due(state.time)) feeder.inject(model, state);
+            if (feeder.due(state.time)) feeder.inject(model, ground, state);
             EXPECT_EQ(state.count, std::floor(source.volume_until(state.time) / model.particle_volume() + 0.5));
         }
         EXPECT_EQ(state.count, all) << step;
         int upper = 0;
         for (std::uint32_t i = 0; i < state.count; ++i) {
-            const WorldPoint p = model.terrain.frame().to_world(state.position.at(i));
+            const WorldPoint p = ground.terrain.frame().to_world(state.position.at(i));
             EXPECT_TRUE(contains(source.area.front(), {p.x, p.y})) << p.x << " " << p.y;
             upper += p.x < 24 ? 1 : 0;
             for (std::uint32_t j = 0; j < i; ++j) {
@@ -79,14 +80,16 @@ TEST(AreaSource, brings_the_volume_to_the_particle_evenly_over_the_area) {
 }
 
 TEST(AreaSource, debris_moves_down_the_slope_or_where_it_is_told) {
-    const Model model = plane();
+    const Model model = make_model({}, {}, testing::fine_spacing);
+    const Ground ground = plane();
     const double cosine = std::cos(25 * M_PI / 180), sine = std::sin(25 * M_PI / 180);
     for (const bool told : {false, true}) {
-        InflowFeeder feeder(model, {rain({{0, 10, 3}, {1, 10, 3}}, told ? std::optional(0.0) : std::nullopt)});
+        InflowFeeder feeder(model, ground.terrain.frame(),
+                            {rain({{0, 10, 3}, {1, 10, 3}}, told ? std::optional(0.0) : std::nullopt)});
         State state;
         state.resize(feeder.to_come());
         state.time = 0.5;
-        feeder.inject(model, state);
+        feeder.inject(model, ground, state);
         ASSERT_GT(state.count, 50U);
         for (std::uint32_t i = 0; i < state.count; ++i) {
             const LocalPoint v = state.velocity.at(i);
@@ -101,9 +104,10 @@ TEST(AreaSource, does_not_pop_apart_even_where_debris_piles_up) {
     // 60 m3 onto 35 m2 in 4 s, with friction enough for it to stay: it lies in layers on top of each other.
     MaterialSpec rough;
     rough.friction_coefficient = 0.9;
-    const Model model = make_model(rough, {}, inclined_plane(25), {}, testing::fine_spacing);
-    InflowFeeder feeder(model, {rain({{0, 15, 0}, {4, 15, 0}})});
-    Simulation simulation(model, State{}, std::move(feeder));
+    const Model model = make_model(rough, {}, testing::fine_spacing);
+    const Ground ground = plane();
+    InflowFeeder feeder(model, ground.terrain.frame(), {rain({{0, 15, 0}, {4, 15, 0}})});
+    Simulation simulation(model, ground, State{}, std::move(feeder));
     double worst = 0, fastest = 0;
     while (simulation.state().time < 4.5) {
         EXPECT_TRUE(simulation.advance());
@@ -118,12 +122,13 @@ TEST(AreaSource, does_not_pop_apart_even_where_debris_piles_up) {
 TEST(AreaSource, an_area_smaller_than_a_particle_still_brings_its_volume) {
     Inflow spring = rain({{0, 2, 1}, {2, 2, 1}});
     spring.area = {testing::rectangle(20.01, 20.01, 20.06, 20.05)};
-    const Model model = plane();
-    InflowFeeder feeder(model, {spring});
+    const Model model = make_model({}, {}, testing::fine_spacing);
+    const Ground ground = plane();
+    InflowFeeder feeder(model, ground.terrain.frame(), {spring});
     State state;
     state.resize(feeder.to_come());
     state.time = 3;
-    feeder.inject(model, state);
+    feeder.inject(model, ground, state);
     EXPECT_EQ(state.count, std::lround(4 / model.particle_volume()));
 }
 
@@ -131,12 +136,13 @@ TEST(InflowFeeder, gives_particles_the_density_of_the_hydrograph) {
     for (const bool over_area : {false, true}) {
         const std::vector<InflowSample> rows{{0, 20, 4, 1400}, {1, 20, 4, 2200}, {2, 20, 4, 1800}};
         const Inflow surge = over_area ? rain(rows) : inflow(rows);
-        const Model model = plane();
-        InflowFeeder feeder(model, {surge});
+        const Model model = make_model({}, {}, testing::fine_spacing);
+        const Ground ground = plane();
+        InflowFeeder feeder(model, ground.terrain.frame(), {surge});
         State state;
         state.resize(feeder.to_come());
         for (state.time = 0; state.time < 2.5; state.time += 0.01) {
-            if (feeder.due(state.time)) feeder.inject(model, state);
+            if (feeder.due(state.time)) feeder.inject(model, ground, state);
         }
         double mass = 0;
         for (std::uint32_t i = 0; i < state.count; ++i) mass += density_of(model, state, i) * model.particle_volume();
@@ -150,15 +156,16 @@ TEST(InflowFeeder, gives_particles_the_density_of_the_hydrograph) {
 
 TEST(InflowFeeder, brings_the_volume_to_the_particle_whatever_the_steps) {
     for (const double step : {0.001, 0.0137, 0.4}) {
-        const Model model = plane();
+        const Model model = make_model({}, {}, testing::fine_spacing);
+        const Ground ground = plane();
         const Inflow surges = inflow({{0.5, 0, 3}, {1, 20, 5}, {2, 0, 4}, {2.5, 0, 0}, {3, 10, 2}, {3.3, 0, 2}});
-        InflowFeeder feeder(model, {surges});
+        InflowFeeder feeder(model, ground.terrain.frame(), {surges});
         const std::uint32_t all = feeder.to_come();
         EXPECT_EQ(all, std::lround(surges.volume() / model.particle_volume()));
         State state;
         state.resize(all);
         for (state.time = 0; state.time < 4; state.time += step) {
-            if (feeder.due(state.time)) feeder.inject(model, state);
+            if (feeder.due(state.time)) feeder.inject(model, ground, state);
             EXPECT_EQ(state.count, state.seeded);
             // What has not filled a row yet is still outside.
             const double in = surges.volume_until(state.time) / model.particle_volume();
@@ -170,11 +177,12 @@ TEST(InflowFeeder, brings_the_volume_to_the_particle_whatever_the_steps) {
 }
 
 TEST(InflowFeeder, new_debris_is_no_denser_than_at_rest_and_moves_with_the_inflow) {
-    const Model model = plane();
+    const Model model = make_model({}, {}, testing::fine_spacing);
+    const Ground ground = plane();
     const double thickness = 1.2, velocity = 5;
-    InflowFeeder feeder(model,
+    InflowFeeder feeder(model, ground.terrain.frame(),
                         {inflow({{0, 6 * thickness * velocity, velocity}, {9, 6 * thickness * velocity, velocity}})});
-    Simulation simulation(model, State{}, std::move(feeder));
+    Simulation simulation(model, ground, State{}, std::move(feeder));
     double worst = 0, fastest = 0;
     while (simulation.state().time < 2) {
         EXPECT_TRUE(simulation.advance());
@@ -182,7 +190,7 @@ TEST(InflowFeeder, new_debris_is_no_denser_than_at_rest_and_moves_with_the_inflo
         for (std::uint32_t i = 0; i < simulation.state().count; ++i) {
             const LocalPoint v = simulation.state().velocity.at(i);
             const double x =
-                simulation.state().position.x[i] - simulation.model().terrain.frame().to_local({20, 0, 0}).x;
+                simulation.state().position.x[i] - simulation.ground().terrain.frame().to_local({20, 0, 0}).x;
             if (x < 2 * testing::fine_spacing) fastest = std::max<double>(fastest, length(v));
         }
     }
@@ -192,9 +200,10 @@ TEST(InflowFeeder, new_debris_is_no_denser_than_at_rest_and_moves_with_the_inflo
 }
 
 TEST(InflowFeeder, allocates_nothing_while_it_runs) {
-    const Model model = plane();
-    InflowFeeder feeder(model, {inflow({{0, 30, 5}, {5, 30, 5}})});
-    Simulation simulation(model, State{}, std::move(feeder));
+    const Model model = make_model({}, {}, testing::fine_spacing);
+    const Ground ground = plane();
+    InflowFeeder feeder(model, ground.terrain.frame(), {inflow({{0, 30, 5}, {5, 30, 5}})});
+    Simulation simulation(model, ground, State{}, std::move(feeder));
     while (simulation.state().time < 1.5) {
         EXPECT_TRUE(simulation.advance());
     }

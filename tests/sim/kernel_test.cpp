@@ -103,8 +103,7 @@ TEST(Viscosity, smoothing_is_proportional_to_the_step_and_never_overshoots) {
 TEST(Viscosity, may_be_given_as_kinematic_and_is_then_the_same_at_every_spacing) {
     MaterialSpec material;
     material.kinematic_viscosity = 0.05;
-    const Terrain flat(Grid<float>(GridGeometry{0, 0, 1, 4, 4}, 0.0F));
-    const Model coarse = make_model(material, {}, flat, {}, 0.4), fine = make_model(material, {}, flat, {}, 0.2);
+    const Model coarse = make_model(material, {}, 0.4), fine = make_model(material, {}, 0.2);
     EXPECT_NEAR(coarse.kinematic_viscosity, 0.05, 1e-12);
     EXPECT_NEAR(fine.kinematic_viscosity, 0.05, 1e-12);
     EXPECT_NEAR(fine.viscosity / coarse.viscosity, 4, 1e-9);

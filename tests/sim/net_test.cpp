@@ -35,8 +35,14 @@ TEST(GrainRank, is_spread_evenly_over_any_run_of_ids) {
     EXPECT_LT(grain_rank(0xffffffffU), 1);
 }
 
+Model net_model(const SolverSpec& solver = {}) {
+    MaterialSpec material;
+    material.friction_coefficient = 0.2;
+    return make_model(material, solver, 0.5);
+}
+
 /// Level ground with a net of 6 m across it at x = 20.
-Model netted(std::optional<double> passing_share, const SolverSpec& solver = {}, bool stands = true) {
+Ground netted(std::optional<double> passing_share, bool stands = true) {
     const Terrain terrain = terrain_of(60, 40, 1, [](double, double) { return 10; });
     std::vector<Building> buildings;
     if (stands) {
@@ -44,19 +50,17 @@ Model netted(std::optional<double> passing_share, const SolverSpec& solver = {},
         EXPECT_TRUE(net);
         buildings.push_back(*net);
     }
-    MaterialSpec material;
-    material.friction_coefficient = 0.2;
-    return make_model(material, solver, terrain, buildings, 0.5);
+    return {terrain, buildings, net_model().support_radius};
 }
 
 /// Where the net's middle is at a plan y, local.
-double net_x(const Model& model, float y) {
-    const WorldPoint origin = model.terrain.frame().origin;
+double net_x(const Ground& ground, float y) {
+    const WorldPoint origin = ground.terrain.frame().origin;
     return 20 + 1 - std::abs(y + origin.y - 20) / 18 - origin.x;
 }
 
 /// Debris thrown at the net.
-Simulation thrown(Model model, float speed = 15) {
+Simulation thrown(Ground ground, const SolverSpec& solver = {}, float speed = 15) {
     std::vector<LocalPoint> points;
     for (int k = 0; k < 3; ++k) {
         for (int j = 0; j < 24; ++j) {
@@ -67,22 +71,23 @@ Simulation thrown(Model model, float speed = 15) {
         }
     }
     State start = state_of(points, std::vector<LocalPoint>(points.size(), {speed, 0, 0}));
-    return {std::move(model), std::move(start)};
+    return {net_model(solver), std::move(ground), std::move(start)};
 }
 
 TEST(Net, stops_coarse_grains_at_any_speed_and_fine_ones_at_none) {
-    const Model model = netted(0.4);
+    const Model model = net_model();
+    const Ground ground = netted(0.4);
     std::mt19937 random(7);
     std::uniform_real_distribution<float> along(-15, 15), height(0.1F, 5), speed(1, 3000), rank(0, 1);
     for (int k = 0; k < 20000; ++k) {
-        const LocalPoint start{static_cast<float>(net_x(model, 0)) - 4, along(random), height(random)};
+        const LocalPoint start{static_cast<float>(net_x(ground, 0)) - 4, along(random), height(random)};
         const LocalPoint way = {0.05F * speed(random), 0.2F * along(random), 0};
         const float grain = rank(random);
-        const LocalPoint end = free_end(model, start, way, grain);
+        const LocalPoint end = free_end(model, ground, start, way, grain);
         if (grain < 0.4F) {
             ASSERT_EQ(end.x, start.x + way.x);
         } else {
-            ASSERT_LT(end.x, net_x(model, end.y)) << way.x << " m in a step from y = " << start.y;
+            ASSERT_LT(end.x, net_x(ground, end.y)) << way.x << " m in a step from y = " << start.y;
         }
     }
 }
@@ -90,14 +95,14 @@ TEST(Net, stops_coarse_grains_at_any_speed_and_fine_ones_at_none) {
 TEST(Net, holds_coarse_grains_that_a_step_would_carry_past_it) {
     SolverSpec solver;
     solver.time_step = 0.02;
-    Simulation simulation = thrown(netted(0.4, solver), 150);  // 3 m in a step
+    Simulation simulation = thrown(netted(0.4), solver, 150);  // 3 m in a step
     std::uint32_t fine_beyond = 0;
     for (int step = 0; step < 5; ++step) {
         (void)simulation.advance();  // such an impact may be a fault
         const State& state = simulation.state();
         for (std::uint32_t i = 0; i < state.count; ++i) {
             const LocalPoint p = state.position.at(i);
-            if (p.x < net_x(simulation.model(), p.y) || p.z > 5) continue;
+            if (p.x < net_x(simulation.ground(), p.y) || p.z > 5) continue;
             ASSERT_LT(grain_rank(state.id[i]), 0.4F) << "step " << step;
             ++fine_beyond;
         }
@@ -109,7 +114,7 @@ TEST(Net, holds_its_share_of_a_run_and_lets_some_of_the_rest_through) {
     for (const InternalFriction friction : {InternalFriction::stress, InternalFriction::pair}) {
         SolverSpec solver;
         solver.internal_friction = friction;
-        Simulation simulation = thrown(netted(0.5, solver));
+        Simulation simulation = thrown(netted(0.5), solver);
         std::uint32_t through = 0;
         double impulse = 0;
         std::vector<bool> beyond(simulation.state().seeded);
@@ -126,8 +131,8 @@ TEST(Net, holds_its_share_of_a_run_and_lets_some_of_the_rest_through) {
                 const LocalPoint p = state.position.at(i);
                 const std::uint32_t id = state.id[i];
                 const float rank = grain_rank(id);
-                ASSERT_FALSE(simulation.model().solids.inside(p, rank));
-                const bool now = p.x > net_x(simulation.model(), p.y);
+                ASSERT_FALSE(simulation.ground().solids.inside(p, rank));
+                const bool now = p.x > net_x(simulation.ground(), p.y);
                 // Splashes may go over it: 6 m.
                 const bool crosses = now && !beyond[id] && std::max(p.z, height[id]) < 5;
                 ASSERT_FALSE(crosses && rank >= 0.5F) << "step " << step;
@@ -141,16 +146,16 @@ TEST(Net, holds_its_share_of_a_run_and_lets_some_of_the_rest_through) {
     }
 }
 
-std::uint64_t hash_after(Model model, int threads = 0) {
+std::uint64_t hash_after(Ground ground, int threads = 0) {
     const tbb::global_control limit(tbb::global_control::max_allowed_parallelism,
                                     static_cast<std::size_t>(threads > 0 ? threads : 2));
-    Simulation simulation = thrown(std::move(model));
+    Simulation simulation = thrown(std::move(ground));
     for (int step = 0; step < 120; ++step) EXPECT_TRUE(simulation.advance());
     return hash_state(simulation.state());
 }
 
 TEST(Net, without_meshes_is_a_wall_and_with_meshes_for_everything_is_not_there) {
-    const std::uint64_t wall = hash_after(netted({})), none = hash_after(netted({}, {}, false));
+    const std::uint64_t wall = hash_after(netted({})), none = hash_after(netted({}, false));
     EXPECT_EQ(hash_after(netted(0)), wall);
     EXPECT_EQ(hash_after(netted(1)), none);
     EXPECT_NE(wall, none);
@@ -163,7 +168,6 @@ TEST(Net, gives_the_same_bits_on_1_and_2_threads) {
 }
 
 TEST(Net, put_up_in_debris_pushes_only_what_it_holds_aside) {
-    Model model = netted(0.5, {}, false);
     std::vector<LocalPoint> points;
     for (int k = 0; k < 4; ++k) {
         for (int j = 0; j < 12; ++j) {
@@ -173,21 +177,19 @@ TEST(Net, put_up_in_debris_pushes_only_what_it_holds_aside) {
             }
         }
     }
-    Simulation simulation(std::move(model), state_of(points));
+    Simulation simulation(net_model(), netted(0.5, false), state_of(points));
     for (int step = 0; step < 60; ++step) EXPECT_TRUE(simulation.advance());
-    simulation.change([&](Model& m, State& s) {
-        const Model with = netted(0.5);
-        m.buildings = with.buildings;
-        m.solids = with.solids;
-        clear_solids(m, s, {-100, -100, 100, 100});
+    simulation.change([&](Model& m, Ground& g, State& s) {
+        g = netted(0.5);
+        clear_solids(m, g, s, {-100, -100, 100, 100});
     });
     const State& state = simulation.state();
     int fine_within = 0;
     for (std::uint32_t i = 0; i < state.count; ++i) {
         const LocalPoint p = state.position.at(i);
         const float rank = grain_rank(state.id[i]);
-        EXPECT_FALSE(simulation.model().solids.inside(p, rank));
-        fine_within += rank < 0.5F && simulation.model().solids.inside(p);
+        EXPECT_FALSE(simulation.ground().solids.inside(p, rank));
+        fine_within += rank < 0.5F && simulation.ground().solids.inside(p);
     }
     EXPECT_GT(fine_within, 10);
 }

@@ -53,17 +53,18 @@ TEST(Boundaries, particles_thrown_at_100_mps_never_get_through) {
     for (const double time_step : {1.0 / 20, 1.0 / 60, 1.0 / 240}) {
         SolverSpec solver;
         solver.time_step = time_step;
-        Model model = make_model({}, solver, terrain, buildings, 0.5);
+        Model model = make_model({}, solver, 0.5);
+        Ground ground(terrain, buildings, model.support_radius);
         auto points = testing::random_points(3000, {-50, -50, 0}, {50, 50, 45}, 11);
-        std::erase_if(points, [&](const LocalPoint& p) { return !is_free(model, p); });
+        std::erase_if(points, [&](const LocalPoint& p) { return !is_free(ground, p); });
         auto velocities = testing::random_points(points.size(), {-1, -1, -1}, {1, 1, 1}, 12);
         for (LocalPoint& v : velocities) v = v * (100 / (length(v) + 1e-6F));
-        Simulation simulation(model, testing::state_of(points, velocities));
+        Simulation simulation(model, ground, testing::state_of(points, velocities));
         for (int i = 0; i < 40; ++i) {
             EXPECT_TRUE(simulation.advance());
             const State& state = simulation.state();
             for (std::uint32_t k = 0; k < state.count; ++k) {
-                ASSERT_TRUE(is_free(model, state.position.at(k)))
+                ASSERT_TRUE(is_free(ground, state.position.at(k)))
                     << "particle " << state.id[k] << " in step " << i << " of " << time_step << " s";
             }
         }
@@ -80,9 +81,11 @@ TEST(Boundaries, a_thin_wall_holds_what_is_thrown_at_it) {
     place_buildings(terrain, buildings);
     SolverSpec solver;
     solver.time_step = 1.0 / 30;
-    Model model = make_model({}, solver, terrain, buildings, 0.4);
+    Model model = make_model({}, solver, 0.4);
+    Ground ground(terrain, buildings, model.support_radius);
     const auto points = testing::random_points(200, {-10, -10, 1}, {-5, 10, 10}, 13);
-    Simulation simulation(model, testing::state_of(points, std::vector<LocalPoint>(points.size(), {100, 3, 0})));
+    Simulation simulation(model, ground,
+                          testing::state_of(points, std::vector<LocalPoint>(points.size(), {100, 3, 0})));
     for (int i = 0; i < 30; ++i) {
         EXPECT_TRUE(simulation.advance());
         for (std::uint32_t k = 0; k < simulation.state().count; ++k) {
@@ -127,7 +130,9 @@ TEST(Boundaries, both_walls_of_a_corner_bear_what_stands_in_it) {
     const std::vector<Building> buildings = pit(terrain, 4);
     MaterialSpec water;
     water.friction_coefficient = 0;
-    Simulation simulation(make_model(water, {}, terrain, buildings, 0.5), testing::state_of(lattice(8, 10, 0.5F)));
+    const Model model = make_model(water, {}, 0.5);
+    Simulation simulation(model, Ground(terrain, buildings, model.support_radius),
+                          testing::state_of(lattice(8, 10, 0.5F)));
     double height = 0;
     while (simulation.state().time < 4) ASSERT_TRUE(simulation.advance());
     const State& state = simulation.state();
@@ -156,10 +161,12 @@ TEST(Boundaries, walls_rub_with_their_own_friction_where_it_is_set_apart) {
         MaterialSpec material;
         material.friction_coefficient = 0.6;
         material.building_friction_coefficient = building_friction;
-        const Model model = make_model(material, {}, terrain, buildings, 0.4);
+        const Model model = make_model(material, {}, 0.4);
+        const Ground ground(terrain, buildings, model.support_radius);
         ContactMemories<double> contacts;
-        const Vec3<double> end = resolve_contacts<double>(model, sample_boundary<double>(model, {1.79, 0, 5}), {},
-                                                          {0.03, 0.05, 0}, 0, uniform_grip<double>(model), contacts);
+        const Vec3<double> end =
+            resolve_contacts<double>(model, sample_boundary<double>(model, ground, {1.79, 0, 5}), {}, {0.03, 0.05, 0},
+                                     0, uniform_grip<double>(model), contacts);
         EXPECT_NEAR(contacts[1].normal, 0.02, 1e-6);
         EXPECT_NEAR(end.x, 0.01, 1e-6);
         return end.y;
@@ -174,7 +181,8 @@ TEST(Step, is_shortened_while_debris_is_deeper_than_pressure_can_follow) {
     const Terrain terrain = testing::terrain_of(20, 20, 1, [](double, double) { return 0; });
     MaterialSpec water;
     water.friction_coefficient = 0;
-    Simulation simulation(make_model(water, {}, terrain, pit(terrain, 1), 0.25),
+    const Model model = make_model(water, {}, 0.25);
+    Simulation simulation(model, Ground(terrain, pit(terrain, 1), model.support_radius),
                           testing::state_of(lattice(4, 60, 0.25F)));
     double shortest = 1, worst = 0;
     while (simulation.state().time < 1) {
@@ -237,7 +245,7 @@ TEST(TimeStep, keeps_a_particle_from_moving_more_than_the_displacement_limit) {
 }
 
 TEST(Fault, names_the_time_and_the_parameter_to_change) {
-    Model model = make_model({}, {}, inclined_plane(10, 20, 20), {}, 0.5);
+    Model model = make_model({}, {}, 0.5);
     State state = testing::state_of({{0, 0, 5}});
     state.time = 3.25;
     EXPECT_TRUE(find_fault(model, state, 6));

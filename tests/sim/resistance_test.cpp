@@ -20,7 +20,7 @@ using testing::simulate;
 constexpr float none = std::numeric_limits<float>::quiet_NaN();
 
 Model model_of(const MaterialSpec& material, double spacing = 0.1) {
-    return make_model(material, {}, inclined_plane(0, 10, 10), {}, spacing);
+    return make_model(material, {}, spacing);
 }
 
 GroundSample<double> level() {
@@ -88,7 +88,8 @@ double speed_of_thin_layer(double start, double apart, const MaterialSpec& mater
     constexpr double spacing = 0.1;
     constexpr int side = 24;
     const Terrain terrain = inclined_plane(slope * 180 / M_PI, 60, 8);
-    Model model = make_model(material, {}, terrain, {}, spacing);
+    Model model = make_model(material, {}, spacing);
+    Ground ground(terrain);
     std::vector<LocalPoint> points, velocities;
     for (int i = 0; i < side; ++i) {
         for (int j = 0; j < side; ++j) {
@@ -99,7 +100,7 @@ double speed_of_thin_layer(double start, double apart, const MaterialSpec& mater
                 {static_cast<float>(start * std::cos(slope)), 0, static_cast<float>(-start * std::sin(slope))});
         }
     }
-    Simulation simulation(std::move(model), testing::state_of(points, velocities));
+    Simulation simulation(std::move(model), std::move(ground), testing::state_of(points, velocities));
     while (simulation.state().time < 3) EXPECT_TRUE(simulation.advance());
     double sum = 0;
     int inside = 0;
@@ -131,10 +132,11 @@ TEST(VoellmyDrag, leaves_what_walls_take_out_of_the_area_of_a_column) {
     walls[0].footprint = {rectangle(10, 2, 18, 18)};
     walls[0].height = 5;
     place_buildings(terrain, walls);
-    const Model model = make_model({}, {}, terrain, walls, 0.5);
+    const Model model = make_model({}, {}, 0.5);
+    const Ground ground(terrain, walls, model.support_radius);
     const auto open_at = [&](double x) {
         const LocalPoint p = terrain.frame().to_local({x, 10, 200.25});
-        return open_share(model, Vec3<double>{p.x, p.y, p.z}, largest_grain);
+        return open_share(model, ground, Vec3<double>{p.x, p.y, p.z}, largest_grain);
     };
     EXPECT_NEAR(open_at(10), 0.5, 1e-4) << "on the wall half of a column is beyond it";
     EXPECT_NEAR(open_at(9), 1 - 1.0 / 24, 1e-4) << "a column's width, two spacings, away";
@@ -179,7 +181,7 @@ TEST(InertialFriction, limits_what_rough_ground_holds) {
 
 TEST(ForestDrag, is_that_of_cylinders_across_the_flow) {
     Model model = model_of({});
-    Grid<CoverCell> cells(model.terrain.elevation().geometry, {none, none, none, 0});
+    Grid<CoverCell> cells(inclined_plane(0, 10, 10).elevation().geometry, {none, none, none, 0});
     cells.at(5, 5).stem_drag = 0.5F * 1.2F * 0.08F * 0.3F;  // C_D n D / 2
     model.cover = GroundCover(cells);
     ASSERT_TRUE(slows_by_speed(model));
@@ -317,16 +319,18 @@ TEST(RoughZone, stops_debris_that_runs_elsewhere) {
     MaterialSpec material;
     material.friction_coefficient = 0.1;
     material.internal_friction_coefficient = 0.6;
-    Model model = make_model(material, {}, terrain, {}, 0.25);
+    Model model = make_model(material, {}, 0.25);
+    Ground ground(terrain);
     Grid<CoverCell> cells(terrain.elevation().geometry, {none, none, none, 0});
     for (int row = 0; row < 20; ++row) {
         for (int column = 0; column < 60; ++column) cells.at(column, row).friction_coefficient = 0.8F;
     }
     model.cover = GroundCover(cells);
     auto seeded = seed_releases(
-        model, {block(terrain, rectangle(10, 6, 16, 14), 0.75), block(terrain, rectangle(10, 26, 16, 34), 0.75)});
+        model, ground,
+        {block(terrain, rectangle(10, 6, 16, 14), 0.75), block(terrain, rectangle(10, 26, 16, 34), 0.75)});
     ASSERT_TRUE(seeded);
-    Simulation simulation(std::move(model), *std::move(seeded));
+    Simulation simulation(std::move(model), std::move(ground), *std::move(seeded));
     while (simulation.state().time < 2) ASSERT_TRUE(simulation.advance());
     double rough = 0, smooth = 1e9;
     int in_rough = 0;

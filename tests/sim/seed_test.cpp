@@ -16,8 +16,9 @@ TEST(Seeding, matches_the_requested_volume_within_one_per_cent) {
     for (const double degrees : {0.0, 20.0, 40.0}) {
         const Terrain terrain = inclined_plane(degrees, 40, 30);
         const Release release = block(terrain, rectangle(5.3, 5.1, 12.9, 11.7), 1.1);
-        Model model = make_model({}, {}, terrain, {}, 0.33);
-        const Result<State> state = seed_releases(model, {release});
+        Model model = make_model({}, {}, 0.33);
+        const Ground ground(terrain);
+        const Result<State> state = seed_releases(model, ground, {release});
         ASSERT_TRUE(state.ok());
         EXPECT_NEAR(state->count * model.particle_volume() / release.volume, 1, 0.01);
     }
@@ -48,7 +49,7 @@ TEST(Seeding, puts_no_particle_into_a_building_at_the_rim) {
         testing::simulate({}, {}, terrain, {block(terrain, rectangle(6, 6, 12, 12), 1)}, 0.5, {house});
     for (int i = 0; i < 10; ++i) {
         for (std::uint32_t k = 0; k < simulation.state().count; ++k) {
-            ASSERT_TRUE(is_free(simulation.model(), simulation.state().position.at(k))) << "before step " << i;
+            ASSERT_TRUE(is_free(simulation.ground(), simulation.state().position.at(k))) << "before step " << i;
         }
         ASSERT_TRUE(simulation.advance());
     }
@@ -66,8 +67,9 @@ TEST(Seeding, too_many_particles_say_how_many_and_which_spacing_fits) {
     const Terrain terrain = inclined_plane(0, 30, 30);
     SolverSpec solver;
     solver.particle_limit = 1000;
-    Model model = make_model({}, solver, terrain, {}, 0.1);
-    const Result<State> state = seed_releases(model, {block(terrain, rectangle(5, 5, 15, 15), 1)});
+    Model model = make_model({}, solver, 0.1);
+    const Ground ground(terrain);
+    const Result<State> state = seed_releases(model, ground, {block(terrain, rectangle(5, 5, 15, 15), 1)});
     ASSERT_FALSE(state.ok());
     EXPECT_NE(state.error().message.find("100000 particles"), std::string::npos) << state.error().message;
     EXPECT_NE(state.error().message.find("0.465"), std::string::npos) << state.error().message;
@@ -75,8 +77,9 @@ TEST(Seeding, too_many_particles_say_how_many_and_which_spacing_fits) {
 
 TEST(Seeding, a_release_smaller_than_a_particle_is_an_error) {
     const Terrain terrain = inclined_plane(0, 30, 30);
-    Model model = make_model({}, {}, terrain, {}, 5);
-    EXPECT_FALSE(seed_releases(model, {block(terrain, rectangle(5, 5, 6, 6), 1)}).ok());
+    Model model = make_model({}, {}, 5);
+    const Ground ground(terrain);
+    EXPECT_FALSE(seed_releases(model, ground, {block(terrain, rectangle(5, 5, 6, 6), 1)}).ok());
 }
 
 TEST(Seeding, a_release_waits_for_its_start_time) {

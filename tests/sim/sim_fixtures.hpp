@@ -51,9 +51,10 @@ inline Release block(const Terrain& terrain, const Polygon& polygon, double thic
 inline Simulation simulate(const MaterialSpec& material, const SolverSpec& solver, const Terrain& terrain,
                            const std::vector<Release>& releases, double spacing, std::vector<Building> buildings = {}) {
     place_buildings(terrain, buildings);
-    Model model = make_model(material, solver, terrain, std::move(buildings), spacing);
-    Result<State> state = seed_releases(model, releases);
-    return {std::move(model), *std::move(state)};
+    Model model = make_model(material, solver, spacing);
+    Ground ground(terrain, std::move(buildings), model.support_radius);
+    Result<State> state = seed_releases(model, ground, releases);
+    return {std::move(model), std::move(ground), *std::move(state)};
 }
 
 /// A state of given particles, without any release.

@@ -29,12 +29,12 @@ class Notebook : public StepWatcher {
         came_in += state.seeded - first_new_id;
         EXPECT_EQ(observed, state.step) << "inflow comes before the step is observed";
     }
-    void observe(const Model& model, const State& state) override {
+    void observe(const Model&, const Ground& ground, const State& state) override {
         ++observed;
         EXPECT_EQ(observed, state.step);
         failed.clear();
         if (observed == 3) failed.push_back(0);
-        solids_empty.push_back(model.solids.empty());
+        solids_empty.push_back(ground.solids.empty());
     }
     [[nodiscard]] const std::vector<std::size_t>& failed_buildings() const override { return failed; }
 
@@ -51,9 +51,10 @@ TEST(Step, brings_inflow_in_tells_its_watcher_and_removes_what_failed) {
     const Terrain terrain = testing::inclined_plane(25);
     std::vector<Building> buildings{house};
     place_buildings(terrain, buildings);
-    const Model model = make_model({}, {}, terrain, buildings, testing::fine_spacing);
+    const Model model = make_model({}, {}, testing::fine_spacing);
+    const Ground ground(terrain, buildings, model.support_radius);
     const Inflow inflow{"gully", {20, 17}, {20, 23}, {{0, 30, 5}, {5, 30, 5}}};
-    Simulation simulation(model, State{}, InflowFeeder(model, {inflow}));
+    Simulation simulation(model, ground, State{}, InflowFeeder(model, ground.terrain.frame(), {inflow}));
     const std::uint32_t all = simulation.inflow().to_come();
     Notebook notebook;
     for (int k = 0; k < 40; ++k) ASSERT_TRUE(simulation.advance(&notebook));

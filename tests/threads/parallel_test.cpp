@@ -35,27 +35,30 @@ std::pair<std::uint64_t, std::vector<float>> run_on(int threads, const Setting& 
         MaterialSpec material;
         SolverSpec solver;
         setting.spec(material, solver);
-        Model model = make_model(material, solver, terrain, houses, 0.5);
+        Model model = make_model(material, solver, 0.5);
+        Ground ground(terrain, houses, model.support_radius);
         if (setting.bed) {
             BedMaterial gravel;
             gravel.growth_rate = 0.1;
             const std::size_t cells = terrain.elevation().values.size();
-            model.bed = {{gravel},
-                         std::vector<std::uint8_t>(cells, 1),
-                         std::vector<float>(cells, 1),
-                         std::vector<float>(cells, 0)};
+            ground.bed = {{gravel},
+                          std::vector<std::uint8_t>(cells, 1),
+                          std::vector<float>(cells, 1),
+                          std::vector<float>(cells, 0)};
         }
         std::vector<Inflow> inflows;
         if (setting.inflow) inflows = {{"gully", {5, 8}, {5, 12}, {{0, 20, 4}, {9, 20, 4}}}};
-        Result<State> state = seed_releases(model, {testing::block(terrain, testing::rectangle(6, 10, 16, 22), 1)});
-        InflowFeeder feeder(model, inflows);
-        Simulation simulation(std::move(model), *std::move(state), std::move(feeder));
+        Result<State> state =
+            seed_releases(model, ground, {testing::block(terrain, testing::rectangle(6, 10, 16, 22), 1)});
+        InflowFeeder feeder(model, terrain.frame(), inflows);
+        Simulation simulation(std::move(model), std::move(ground), *std::move(state), std::move(feeder));
         const FlowPath path({{8, 16}, {55, 16}}, 30);
-        Observer observer(simulation.model(), simulation.state(), path, {}, 1);
+        Observer observer(simulation.model(), simulation.ground(), simulation.state(), path, {}, 1);
         for (int i = 0; i < 20; ++i) EXPECT_TRUE(simulation.advance(&observer));
         EXPECT_EQ(simulation.state().entrained > 0, setting.bed);
-        return std::pair(hash_state(simulation.state()),
-                         observer.finish(simulation.model(), simulation.state()).maps.peak_depth.values);
+        return std::pair(
+            hash_state(simulation.state()),
+            observer.finish(simulation.model(), simulation.ground(), simulation.state()).maps.peak_depth.values);
     });
 }
 

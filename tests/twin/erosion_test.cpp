@@ -43,7 +43,7 @@ TEST(ErosionLayer, is_what_the_bed_has_lost_in_every_cell_of_the_terrain) {
     ASSERT_TRUE(scenario->has_erosion());
 
     const Grid<float> eroded = layer(*scenario, "erosion_depth");
-    const Bed& bed = (*run)->model().bed;
+    const Bed& bed = (*run)->ground().bed;
     const GridGeometry& g = scene.terrain.elevation().geometry;
     int cells = 0;
     double volume = 0;

@@ -52,15 +52,15 @@ Backend::Backend(const Model& model, std::size_t capacity)
     grid_.start.reserve(capacity + 1);
 }
 
-void Backend::run(StageFunction stage, const Model& model, State& state, Blocks blocks) {
-    const StageData data{model, state, work_, neighbours_};
+void Backend::run(StageFunction stage, const Model& model, const Ground& ground, State& state, Blocks blocks) {
+    const StageData data{model, ground, state, work_, neighbours_};
     simd::parallel_ranges(blocks.last - blocks.first, block_grain, [&](std::size_t first, std::size_t last) {
         stage(data, blocks.first + first, blocks.first + last);
     });
 }
 
-void Backend::run(StageFunction stage, const Model& model, State& state) {
-    run(stage, model, state, awake(state));
+void Backend::run(StageFunction stage, const Model& model, const Ground& ground, State& state) {
+    run(stage, model, ground, state, awake(state));
 }
 
 void Backend::release_held(const Model& model, State& state) {
@@ -71,22 +71,23 @@ void Backend::release_held(const Model& model, State& state) {
     });
 }
 
-void Backend::apply_drag(const Model& model, State& state) {
+void Backend::apply_drag(const Model& model, const Ground& ground, State& state) {
     if (!slows_by_speed(model)) return;
-    count_columns(model, state);
-    run(particle_stages_.drag, model, state, everything(state));
+    count_columns(model, ground, state);
+    run(particle_stages_.drag, model, ground, state, everything(state));
 }
 
-void Backend::predict_positions(const Model& model, State& state) {
-    run(particle_stages_.predict, model, state, everything(state));
+void Backend::predict_positions(const Model& model, const Ground& ground, State& state) {
+    run(particle_stages_.predict, model, ground, state, everything(state));
 }
 
-void Backend::count_columns(const Model& model, const State& state) {
+void Backend::count_columns(const Model& model, const Ground& ground, const State& state) {
     columns_.count(state.position, state.count, column_width(model));
     simd::parallel_ranges(state.count, particle_grain, [&](std::size_t first, std::size_t last) {
         for (std::size_t i = first; i < last; ++i) {
             const Vec3<float> p = state.position.at(i);
-            work_.column_particles[i] = columns_.particles_at(p.x, p.y) / open_share(model, p, grain_rank(state.id[i]));
+            work_.column_particles[i] =
+                columns_.particles_at(p.x, p.y) / open_share(model, ground, p, grain_rank(state.id[i]));
         }
     });
 }
@@ -103,11 +104,11 @@ void Backend::find_neighbours(const Model& model, State& state) {
     search_.write(neighbours_);
 }
 
-void Backend::prepare_particles(const Model& model, State& state) {
-    run(particle_stages_.begin, model, state, everything(state));
+void Backend::prepare_particles(const Model& model, const Ground& ground, State& state) {
+    run(particle_stages_.begin, model, ground, state, everything(state));
     // Of what is awake the positions at the step's start matter to pair friction alone; then the step's end is packed.
-    run(particle_stages_.pack_motion, model, state, keeps_stress(model) ? asleep(state) : everything(state));
-    if (resists_by_particle(model)) run(particle_stages_.resist, model, state);
+    run(particle_stages_.pack_motion, model, ground, state, keeps_stress(model) ? asleep(state) : everything(state));
+    if (resists_by_particle(model)) run(particle_stages_.resist, model, ground, state);
 }
 
 void Backend::reorder(State& state, std::span<const std::uint32_t> order) {
@@ -124,42 +125,42 @@ bool Backend::keeps_stress(const Model& model) {
     return model.solver.internal_friction == InternalFriction::stress;
 }
 
-void Backend::warm_start(const Model& model, State& state) {
+void Backend::warm_start(const Model& model, const Ground& ground, State& state) {
     if (keeps_stress(model)) {
-        run(stress_stages_.linearise, model, state);
-        run(stress_stages_.press_asleep, model, state, asleep(state));
-        run(stress_stages_.apply, model, state);
-        run(stress_stages_.clear_asleep, model, state, asleep(state));
+        run(stress_stages_.linearise, model, ground, state);
+        run(stress_stages_.press_asleep, model, ground, state, asleep(state));
+        run(stress_stages_.apply, model, ground, state);
+        run(stress_stages_.clear_asleep, model, ground, state, asleep(state));
     } else {
-        run(pair_stages_.find_tolerated, model, state);
+        run(pair_stages_.find_tolerated, model, ground, state);
     }
     state.previous_time_step = state.time_step;
 }
 
-void Backend::solve_density(const Model& model, State& state) {
+void Backend::solve_density(const Model& model, const Ground& ground, State& state) {
     if (keeps_stress(model)) {
-        run(stress_stages_.solve, model, state);
-        run(stress_stages_.apply, model, state);
+        run(stress_stages_.solve, model, ground, state);
+        run(stress_stages_.apply, model, ground, state);
     } else {
-        run(pair_stages_.update_multipliers, model, state);
-        run(pair_stages_.apply, model, state);
+        run(pair_stages_.update_multipliers, model, ground, state);
+        run(pair_stages_.apply, model, ground, state);
     }
 }
 
-void Backend::solve_contacts(const Model& model, State& state) {
-    run(particle_stages_.contacts, model, state);
+void Backend::solve_contacts(const Model& model, const Ground& ground, State& state) {
+    run(particle_stages_.contacts, model, ground, state);
 }
 
-void Backend::undo_overlaps(const Model& model, State& state) {
+void Backend::undo_overlaps(const Model& model, const Ground& ground, State& state) {
     if (keeps_stress(model)) {
-        run(stress_stages_.find_spread, model, state);
-        run(stress_stages_.spread, model, state);
+        run(stress_stages_.find_spread, model, ground, state);
+        run(stress_stages_.spread, model, ground, state);
     }
-    run(particle_stages_.undo_overlaps, model, state);
+    run(particle_stages_.undo_overlaps, model, ground, state);
 }
 
-void Backend::enforce_boundaries(const Model& model, State& state) {
-    run(particle_stages_.enforce_boundaries, model, state);
+void Backend::enforce_boundaries(const Model& model, const Ground& ground, State& state) {
+    run(particle_stages_.enforce_boundaries, model, ground, state);
 }
 
 void Backend::measure_compression(const Model&, State& state) const {
@@ -183,8 +184,8 @@ void Backend::measure_compression(const Model&, State& state) const {
     state.max_compression = compression.max;
 }
 
-void Backend::update_velocities(const Model& model, State& state) {
-    const StageData data{model, state, work_, neighbours_};
+void Backend::update_velocities(const Model& model, const Ground& ground, State& state) {
+    const StageData data{model, ground, state, work_, neighbours_};
     state.max_speed = simd::reduce_ranges(
         awake(state).last, block_grain, 0.0f,
         [&](std::size_t first, std::size_t last, float max) {
@@ -193,9 +194,9 @@ void Backend::update_velocities(const Model& model, State& state) {
         greater_or_unknown);
 }
 
-void Backend::measure_impacts(const Model& model, State& state) const {
+void Backend::measure_impacts(const Model& model, const Ground& ground, State& state) const {
     state.building_contacts.clear();
-    if (model.solids.empty()) return;
+    if (ground.solids.empty()) return;
     for (std::uint32_t i = 0; i < state.awake; ++i) {
         if (!work_.has_walls[i]) continue;
         const double mass = density_of(model, state, i) * model.particle_volume();
@@ -210,20 +211,20 @@ void Backend::measure_impacts(const Model& model, State& state) const {
     }
 }
 
-void Backend::apply_viscosity(const Model& model, State& state) {
-    if (model.viscosity > 0) run(particle_stages_.apply_viscosity, model, state);
+void Backend::apply_viscosity(const Model& model, const Ground& ground, State& state) {
+    if (model.viscosity > 0) run(particle_stages_.apply_viscosity, model, ground, state);
 }
 
-void Backend::update_sleep(const Model& model, State& state) {
-    if (model.solver.rest_duration > 0) run(particle_stages_.update_sleep, model, state);
+void Backend::update_sleep(const Model& model, const Ground& ground, State& state) {
+    if (model.solver.rest_duration > 0) run(particle_stages_.update_sleep, model, ground, state);
 }
 
-void Backend::remove_outflow(const Model& model, State& state) {
+void Backend::remove_outflow(const Model&, const Ground& ground, State& state) {
     const bool any = simd::reduce_ranges(
         state.count, 4096, false,
         [&](std::size_t first, std::size_t last, bool found) {
             for (std::size_t i = first; i < last; ++i) {
-                gone_[i] = !model.terrain.covers(state.position.x[i], state.position.y[i]);
+                gone_[i] = !ground.terrain.covers(state.position.x[i], state.position.y[i]);
                 found = found || gone_[i];
             }
             return found;

@@ -10,6 +10,7 @@
 #include "sim/cpu/neighbours.hpp"
 #include "sim/cpu/stages.hpp"
 #include "sim/cpu/work.hpp"
+#include "sim/ground.hpp"
 #include "sim/model.hpp"
 #include "sim/state.hpp"
 
@@ -34,22 +35,22 @@ class Backend {
     Backend(const Model& model, std::size_t capacity);
 
     void release_held(const Model& model, State& state);
-    void apply_drag(const Model& model, State& state);
-    void predict_positions(const Model& model, State& state);
+    void apply_drag(const Model& model, const Ground& ground, State& state);
+    void predict_positions(const Model& model, const Ground& ground, State& state);
     void sort_particles(const Model& model, State& state);
     void find_neighbours(const Model& model, State& state);
-    void prepare_particles(const Model& model, State& state);
-    void warm_start(const Model& model, State& state);
-    void solve_density(const Model& model, State& state);
-    void solve_contacts(const Model& model, State& state);
+    void prepare_particles(const Model& model, const Ground& ground, State& state);
+    void warm_start(const Model& model, const Ground& ground, State& state);
+    void solve_density(const Model& model, const Ground& ground, State& state);
+    void solve_contacts(const Model& model, const Ground& ground, State& state);
     void measure_compression(const Model& model, State& state) const;
-    void undo_overlaps(const Model& model, State& state);
-    void enforce_boundaries(const Model& model, State& state);
-    void update_velocities(const Model& model, State& state);
-    void measure_impacts(const Model& model, State& state) const;
-    void apply_viscosity(const Model& model, State& state);
-    void update_sleep(const Model& model, State& state);
-    void remove_outflow(const Model& model, State& state);
+    void undo_overlaps(const Model& model, const Ground& ground, State& state);
+    void enforce_boundaries(const Model& model, const Ground& ground, State& state);
+    void update_velocities(const Model& model, const Ground& ground, State& state);
+    void measure_impacts(const Model& model, const Ground& ground, State& state) const;
+    void apply_viscosity(const Model& model, const Ground& ground, State& state);
+    void update_sleep(const Model& model, const Ground& ground, State& state);
+    void remove_outflow(const Model& model, const Ground& ground, State& state);
 
     /// The lists of the last step, by the order it left the particles in (before any was removed).
     [[nodiscard]] const NeighbourLists& neighbours() const { return neighbours_; }
@@ -58,9 +59,9 @@ class Backend {
 
   private:
     static bool keeps_stress(const Model& model);
-    void run(StageFunction stage, const Model& model, State& state, Blocks blocks);
-    void run(StageFunction stage, const Model& model, State& state);  ///< on all that is awake
-    void count_columns(const Model& model, const State& state);
+    void run(StageFunction stage, const Model& model, const Ground& ground, State& state, Blocks blocks);
+    void run(StageFunction stage, const Model& model, const Ground& ground, State& state);  ///< on all that is awake
+    void count_columns(const Model& model, const Ground& ground, const State& state);
     void reorder(State& state, std::span<const std::uint32_t> order);
 
     ParticleStages particle_stages_;

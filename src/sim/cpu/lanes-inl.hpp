@@ -175,32 +175,32 @@ struct BoundaryShare {
     V3 gradient;
 };
 
-HWY_INLINE Mask near_walls(const Model& model, const V3& p) {
+HWY_INLINE Mask near_walls(const Ground& ground, const V3& p) {
     Mask near;
-    if (model.solids.empty()) return near;
+    if (ground.solids.empty()) return near;
     for (int lane = 0; lane < lane_count; ++lane) {
-        near.bits[lane] = model.solids.near(p.x.at(lane), p.y.at(lane)) ? -1 : 0;
+        near.bits[lane] = ground.solids.near(p.x.at(lane), p.y.at(lane)) ? -1 : 0;
     }
     return near;
 }
 
 /// Samples ground and walls of particles at `p`, `displacement` from where they started the step.
-HWY_INLINE BoundaryShare sample_boundary_at(const Model& model, const State& state, Work& work, std::size_t i,
-                                            const V3& p, const V3& displacement) {
-    const GroundFace<L> ground = sample_ground(model, p);
-    BoundaryShare share{ground.density, ground.normal * ground.slope};
-    store(ground.distance - dot(displacement, ground.normal), work.ground_distance, i);
-    store(ground.slope, work.ground_slope, i);
-    store(ground.normal, work.ground_normal, i);
+HWY_INLINE BoundaryShare sample_boundary_at(const Model& model, const Ground& ground, const State& state, Work& work,
+                                            std::size_t i, const V3& p, const V3& displacement) {
+    const GroundFace<L> base = sample_ground(model, ground.terrain, p);
+    BoundaryShare share{base.density, base.normal * base.slope};
+    store(base.distance - dot(displacement, base.normal), work.ground_distance, i);
+    store(base.slope, work.ground_slope, i);
+    store(base.normal, work.ground_normal, i);
     store(share.gradient, work.boundary_gradient, i);
-    if (model.solids.empty()) return share;
-    const Mask near = near_walls(model, p);
+    if (ground.solids.empty()) return share;
+    const Mask near = near_walls(ground, p);
     std::fill_n(work.has_walls.begin() + static_cast<std::ptrdiff_t>(i), lane_count, 0);
     if (!any(near)) return share;
     for (int lane = 0; lane < lane_count; ++lane) {
         if (!near.at(lane)) continue;
         share.density.set(lane,
-                          sample_walls(model, state, work, i + static_cast<std::size_t>(lane),
+                          sample_walls(model, ground, state, work, i + static_cast<std::size_t>(lane),
                                        {p.x.at(lane), p.y.at(lane), p.z.at(lane)},
                                        {displacement.x.at(lane), displacement.y.at(lane), displacement.z.at(lane)}));
     }

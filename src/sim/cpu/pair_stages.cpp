@@ -32,12 +32,12 @@ TALUS_STAGE void find_tolerated(const StageData& data, std::size_t first, std::s
             density += select(remaining > L(0), Kernel::value(q), L(0));
         });
         density = L(scale.value_scale) * (density + Kernel::value(L(0)));
-        const L start = density + sample_boundary_at(model, state, work, i, p, V3{}).density - L(1);
+        const L start = density + sample_boundary_at(model, data.ground, state, work, i, p, V3{}).density - L(1);
         store(larger(L(0), start - undone), work.tolerated_compression, i);
         store(L(0), state.multiplier, i);
         // The first contacts come before the first iteration.
         const auto [predicted, moved] = load(work.displaced, i);
-        sample_boundary_at(model, state, work, i, vector_of(predicted), vector_of(moved));
+        sample_boundary_at(model, data.ground, state, work, i, vector_of(predicted), vector_of(moved));
     });
 }
 
@@ -72,7 +72,7 @@ TALUS_STAGE void update_multipliers(const StageData& data, std::size_t first, st
         });
         sums.density = L(scale.value_scale) * (sums.density + Kernel::value(L(0)));
 
-        const BoundaryShare boundary = sample_boundary_at(model, state, work, i, p, vector_of(moved));
+        const BoundaryShare boundary = sample_boundary_at(model, data.ground, state, work, i, p, vector_of(moved));
         const L compression = sums.density + boundary.density - L(1);
         const L before = load(state.multiplier, i), mobile = load(work.mobile, i);
         const L after = next_multiplier(before, compression - load(work.tolerated_compression, i),

@@ -29,7 +29,7 @@ TALUS_STAGE void drag(const StageData& data, std::size_t first, std::size_t last
     const L dt(state.time_step);
     for_each_lanes(first, last, [&](std::size_t i) {
         const V3 velocity = load(state.velocity, i), p = load(state.position, i);
-        const GroundSample<L> below = model.terrain.sample(p.x, p.y);
+        const GroundSample<L> below = data.ground.terrain.sample(p.x, p.y);
         const L distance = (p.z - below.height) * below.normal.z;
         const L thickness = flow_thickness(model, below, load(data.work.column_particles, i));
         const V3 slower = slowed_by_drag(model, ground_resistance(model, p), below, distance, thickness, velocity, dt);
@@ -52,7 +52,6 @@ TALUS_STAGE void predict(const StageData& data, std::size_t first, std::size_t l
 }
 
 TALUS_STAGE void begin(const StageData& data, std::size_t first, std::size_t last) {
-    const Model& model = data.model;
     State& state = data.state;
     Work& work = data.work;
     const L dt(state.time_step);
@@ -66,7 +65,7 @@ TALUS_STAGE void begin(const StageData& data, std::size_t first, std::size_t las
         store(displacement, work.corrected, i);
         store(L(0), work.contact_normal, i);
         store(V3{}, work.contact_friction, i);
-        if (model.solids.empty()) return;
+        if (data.ground.solids.empty()) return;
         for (std::size_t lane = 0; lane < lane_count; ++lane) work.walls[i + lane].contacts = {};
     });
 }
@@ -95,7 +94,7 @@ TALUS_STAGE void resist(const StageData& data, std::size_t first, std::size_t la
         const GroundResistance<L> ground = ground_resistance(model, p);
         L friction = ground.friction_coefficient;
         if (model.inertial_friction.on) {
-            const GroundSample<L> below = model.terrain.sample(p.x, p.y);
+            const GroundSample<L> below = data.ground.terrain.sample(p.x, p.y);
             const L speed = length(velocity - below.normal * dot(velocity, below.normal));
             friction = friction_beside_ground(model, friction, speed, (p.z - below.height) * below.normal.z,
                                               load(state.multiplier, i) * pressure_scale * share);
@@ -153,16 +152,17 @@ TALUS_STAGE void undo_overlaps(const StageData& data, std::size_t first, std::si
     const L max_shift(model.particle_spacing / 4), touching(model.contact_distance());
     for_each_lanes(first, last, [&](std::size_t i) {
         const V3 p = vector_of(load_low(work.displaced, i));
-        const GroundSample<L> ground = model.terrain.sample(p.x, p.y);
+        const GroundSample<L> ground = data.ground.terrain.sample(p.x, p.y);
         const L overlap = touching - (p.z - ground.height) * ground.normal.z;
         // Not so for the NaN of unknown ground.
         V3 shift = ground.normal * select(overlap > L(0), smaller(overlap, max_shift), L(0));
-        const Mask near = near_walls(model, p);
+        const Mask near = near_walls(data.ground, p);
         if (any(near)) {
             for (int l = 0; l < lane_count; ++l) {
                 if (!near.at(l)) continue;
-                const Vec3<float> one = undo_overlap_near_walls(model, data.state, i + static_cast<std::size_t>(l),
-                                                                {p.x.at(l), p.y.at(l), p.z.at(l)}, max_shift.at(l));
+                const Vec3<float> one =
+                    undo_overlap_near_walls(model, data.ground, data.state, i + static_cast<std::size_t>(l),
+                                            {p.x.at(l), p.y.at(l), p.z.at(l)}, max_shift.at(l));
                 shift.x.set(l, one.x);
                 shift.y.set(l, one.y);
                 shift.z.set(l, one.z);
@@ -183,7 +183,7 @@ TALUS_STAGE void enforce_boundaries(const StageData& data, std::size_t first, st
     Work& work = data.work;
     constexpr int max_parts = 4;
     const L max_part(model.particle_spacing / 4);
-    const auto below_ground = [&](const V3& p) { return p.z < model.terrain.sample(p.x, p.y).height; };
+    const auto below_ground = [&](const V3& p) { return p.z < data.ground.terrain.sample(p.x, p.y).height; };
     for_each_lanes(first, last, [&](std::size_t i) {
         const V3 start = load(state.position, i), displacement = vector_of(load_high(work.displaced, i));
         const V3 end = start + displacement, shift = load(work.shift, i);
@@ -198,13 +198,14 @@ TALUS_STAGE void enforce_boundaries(const StageData& data, std::size_t first, st
             doubtful = doubtful | (on_the_way & below_ground(select(L(part) == parts, end, p)));
         }
         const V3 shifted = end + shift;
-        doubtful = doubtful | below_ground(shifted) | near_walls(model, end);
+        doubtful = doubtful | below_ground(shifted) | near_walls(data.ground, end);
         const L mobile = load(work.mobile, i);
         doubtful = doubtful & (mobile > L(0));
         store(select(mobile > L(0), shifted, start), work.end, i);
         if (!any(doubtful)) return;
         for (int lane = 0; lane < lane_count; ++lane) {
-            if (doubtful.at(lane)) enforce_particle(model, state, work, i + static_cast<std::size_t>(lane));
+            if (doubtful.at(lane))
+                enforce_particle(model, data.ground, state, work, i + static_cast<std::size_t>(lane));
         }
     });
 }
@@ -257,7 +258,7 @@ TALUS_STAGE void apply_viscosity(const StageData& data, std::size_t first, std::
         const L mobile = load(work.mobile, i);
         V3 after = own + change * (smoothing * mobile);
         if (model.viscosity_on_ground) {
-            const GroundSample<L> below = model.terrain.sample(p.x, p.y);
+            const GroundSample<L> below = data.ground.terrain.sample(p.x, p.y);
             after = slowed_by_ground(model, below, (p.z - below.height) * below.normal.z, after, smoothing * mobile);
         }
         store(after, state.velocity, i);

@@ -91,7 +91,7 @@ TALUS_STAGE void linearise(const StageData& data, std::size_t first, std::size_t
         const Octs<L> displaced = load(work.displaced, i);
         const V3 p = vector_of(displaced.low), moved = vector_of(displaced.high);
         const PairSums sums = sum_pairs<Kernel>(scale, LaneLists(neighbours, i), work, p, moved);
-        const BoundaryShare boundary = sample_boundary_at(model, state, work, i, p, moved);
+        const BoundaryShare boundary = sample_boundary_at(model, data.ground, state, work, i, p, moved);
         const DensityConstraint<L> constraint = linearise_density(model, sums, boundary, moved, softness);
         store(constraint.start, work.constraint_start, i);
         store(constraint.surface_share, work.surface_share, i);

@@ -10,13 +10,13 @@ Work::Work(std::size_t capacity) {
 #undef TALUS_RESIZE
 }
 
-float sample_walls(const Model& model, const State& state, Work& work, std::size_t i, const Vec3<float>& p,
-                   const Vec3<float>& displacement) {
-    const Boundary<float> boundary = sample_boundary(model, p, grain_rank(state.id[i]));
-    const BoundaryFace<float>& ground = boundary.faces[0];
-    work.ground_distance[i] = ground.distance - dot(displacement, ground.normal);
-    work.ground_slope[i] = ground.slope;
-    work.ground_normal.set(i, ground.normal);
+float sample_walls(const Model& model, const Ground& ground, const State& state, Work& work, std::size_t i,
+                   const Vec3<float>& p, const Vec3<float>& displacement) {
+    const Boundary<float> boundary = sample_boundary(model, ground, p, grain_rank(state.id[i]));
+    const BoundaryFace<float>& base = boundary.faces[0];
+    work.ground_distance[i] = base.distance - dot(displacement, base.normal);
+    work.ground_slope[i] = base.slope;
+    work.ground_normal.set(i, base.normal);
     work.boundary_gradient.set(i, boundary.gradient);
     work.has_walls[i] = boundary.faces[1].building >= 0;
     if (work.has_walls[i]) {
@@ -43,18 +43,18 @@ Vec3<float> resolve_wall_contacts(const Model& model, Work& work, std::size_t i,
     return displacement;
 }
 
-Vec3<float> undo_overlap_near_walls(const Model& model, const State& state, std::size_t i, const Vec3<float>& p,
-                                    float max_shift) {
-    return undo_overlap(model, p, max_shift, grain_rank(state.id[i]));
+Vec3<float> undo_overlap_near_walls(const Model& model, const Ground& ground, const State& state, std::size_t i,
+                                    const Vec3<float>& p, float max_shift) {
+    return undo_overlap(model, ground, p, max_shift, grain_rank(state.id[i]));
 }
 
-void enforce_particle(const Model& model, const State& state, Work& work, std::size_t i) {
+void enforce_particle(const Model& model, const Ground& ground, const State& state, Work& work, std::size_t i) {
     std::array<float, 8>& displaced = work.displaced[i].v;
     const Vec3<float> start = state.position.at(i), displacement{displaced[4], displaced[5], displaced[6]};
     const Vec3<float> wanted = start + displacement;
     const float rank = grain_rank(state.id[i]);
-    const Vec3<float> end = free_end(model, start, displacement, rank);
-    work.end.set(i, free_end(model, end, work.shift.at(i), rank));
+    const Vec3<float> end = free_end(model, ground, start, displacement, rank);
+    work.end.set(i, free_end(model, ground, end, work.shift.at(i), rank));
     if (end.x == wanted.x && end.y == wanted.y && end.z == wanted.z) return;
     // What puts a particle back above ground must not speed it up.
     const Vec3<float> reached = end - start;

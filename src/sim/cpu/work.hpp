@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "sim/cpu/neighbours.hpp"
+#include "sim/ground.hpp"
 #include "sim/model.hpp"
 #include "sim/physics/contact.hpp"
 #include "sim/state.hpp"
@@ -72,6 +73,7 @@ struct Work {
 /// What a stage works on.
 struct StageData {
     const Model& model;
+    const Ground& ground;
     State& state;
     Work& work;
     NeighbourLists& neighbours;
@@ -81,15 +83,15 @@ struct StageData {
 
 /// Samples ground and walls of particle `i` at `p`, `displacement` from where it started the step.
 /// Returns their share of the density; the rest is in `work`.
-float sample_walls(const Model& model, const State& state, Work& work, std::size_t i, const Vec3<float>& p,
-                   const Vec3<float>& displacement);
+float sample_walls(const Model& model, const Ground& ground, const State& state, Work& work, std::size_t i,
+                   const Vec3<float>& p, const Vec3<float>& displacement);
 /// Resolves the contacts with the walls; returns the new displacement.
 Vec3<float> resolve_wall_contacts(const Model& model, Work& work, std::size_t i, float multiplier,
                                   Vec3<float> displacement);
 /// undo_overlap() of particle `i`.
-Vec3<float> undo_overlap_near_walls(const Model& model, const State& state, std::size_t i, const Vec3<float>& p,
-                                    float max_shift);
+Vec3<float> undo_overlap_near_walls(const Model& model, const Ground& ground, const State& state, std::size_t i,
+                                    const Vec3<float>& p, float max_shift);
 /// Where the particle ends its step, swept; keeps what puts it back above ground from speeding it up.
-void enforce_particle(const Model& model, const State& state, Work& work, std::size_t i);
+void enforce_particle(const Model& model, const Ground& ground, const State& state, Work& work, std::size_t i);
 
 }  // namespace talus::cpu

@@ -3,6 +3,7 @@
 #include <array>
 
 #include "core/geometry.hpp"
+#include "sim/ground.hpp"
 #include "sim/model.hpp"
 #include "sim/physics/net.hpp"
 
@@ -36,8 +37,8 @@ struct GroundFace {
 };
 
 template <class Real>
-GroundFace<Real> sample_ground(const Model& model, const Vec3<Real>& p) {
-    const GroundSample<Real> below = model.terrain.sample(p.x, p.y);
+GroundFace<Real> sample_ground(const Model& model, const Terrain& terrain, const Vec3<Real>& p) {
+    const GroundSample<Real> below = terrain.sample(p.x, p.y);
     const Real distance = (p.z - below.height) * below.normal.z;  // exact for a plane
     const auto share = model.boundary.at(distance);
     return {distance, below.normal, share.density, share.slope};
@@ -46,25 +47,26 @@ GroundFace<Real> sample_ground(const Model& model, const Vec3<Real>& p) {
 /// Where faces meet, their shares overlap. For a kernel close to a Gaussian and faces at right angles the shared part
 /// is the product of the shares. `grain_rank` decides which nets are walls (see net.hpp).
 template <class Real>
-Boundary<Real> sample_boundary(const Model& model, const Vec3<Real>& p, float grain_rank = largest_grain) {
+Boundary<Real> sample_boundary(const Model& model, const Ground& ground, const Vec3<Real>& p,
+                               float grain_rank = largest_grain) {
     Boundary<Real> result;
-    auto& [ground, wall, second_wall] = result.faces;
-    const GroundFace<Real> ground_share = sample_ground(model, p);
-    ground = {ground_share.distance, ground_share.normal, ground_share.slope, -1};
+    auto& [base, wall, second_wall] = result.faces;
+    const GroundFace<Real> ground_share = sample_ground(model, ground.terrain, p);
+    base = {ground_share.distance, ground_share.normal, ground_share.slope, -1};
     result.density = ground_share.density;
-    result.gradient = ground.normal * ground.slope;
-    if (model.solids.empty()) return result;
-    const SolidSample<Real> nearest = model.solids.nearest(p, grain_rank);
+    result.gradient = base.normal * base.slope;
+    if (ground.solids.empty()) return result;
+    const SolidSample<Real> nearest = ground.solids.nearest(p, grain_rank);
     if (nearest.building < 0) return result;
-    const SolidSample<Real> second = model.solids.second_nearest(p, nearest, grain_rank);
+    const SolidSample<Real> second = ground.solids.second_nearest(p, nearest, grain_rank);
     const auto share = model.boundary.at(nearest.distance);
     const auto second_share = second.building < 0 ? decltype(share){} : model.boundary.at(second.distance);
     const Real free = 1 - ground_share.density, wall_free = 1 - share.density, second_free = 1 - second_share.density;
     wall = {nearest.distance, nearest.normal, share.slope * free * second_free, nearest.building};
     second_wall = {second.distance, second.normal, second_share.slope * free * wall_free, second.building};
-    ground.slope *= wall_free * second_free;
+    base.slope *= wall_free * second_free;
     result.density = 1 - free * wall_free * second_free;
-    result.gradient = ground.normal * ground.slope + wall.normal * wall.slope + second_wall.normal * second_wall.slope;
+    result.gradient = base.normal * base.slope + wall.normal * wall.slope + second_wall.normal * second_wall.slope;
     return result;
 }
 

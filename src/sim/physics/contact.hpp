@@ -89,9 +89,10 @@ Vec3<Real> resolve_contacts(const Model& model, const Boundary<Real>& boundary, 
 
 /// What brings a particle that overlaps ground or a wall back to touching it, at most `max_shift` metres of it.
 template <class Real>
-Vec3<Real> undo_overlap(const Model& model, const Vec3<Real>& p, Real max_shift, float grain_rank = largest_grain) {
+Vec3<Real> undo_overlap(const Model& model, const Ground& ground, const Vec3<Real>& p, Real max_shift,
+                        float grain_rank = largest_grain) {
     const Real touching = Real(model.contact_distance());
-    const Boundary<Real> now = sample_boundary(model, p, grain_rank);
+    const Boundary<Real> now = sample_boundary(model, ground, p, grain_rank);
     Vec3<Real> shift{};
     for (std::size_t f = 0; f < face_count; ++f) {
         const BoundaryFace<Real>& face = now.faces[f];
@@ -105,16 +106,16 @@ Vec3<Real> undo_overlap(const Model& model, const Vec3<Real>& p, Real max_shift,
 
 /// Whether a position is free: not below ground that is known, not inside a building, or a net that stops the grain.
 template <class Real>
-bool is_free(const Model& model, const Vec3<Real>& p, float grain_rank = largest_grain) {
-    if (p.z < model.terrain.sample(p.x, p.y).height) return false;
-    return model.solids.empty() || !model.solids.inside(p, grain_rank);
+bool is_free(const Ground& ground, const Vec3<Real>& p, float grain_rank = largest_grain) {
+    if (p.z < ground.terrain.sample(p.x, p.y).height) return false;
+    return ground.solids.empty() || !ground.solids.inside(p, grain_rank);
 }
 
 /// Where a particle may end its step: `start + displacement` if the way there is free, else a place on this side of
 /// what it would have run through. Swept in parts of at most a quarter spacing, so it holds at any speed and step.
 /// `start` must be free; the result is.
 template <class Real>
-Vec3<Real> free_end(const Model& model, const Vec3<Real>& start, const Vec3<Real>& displacement,
+Vec3<Real> free_end(const Model& model, const Ground& ground, const Vec3<Real>& start, const Vec3<Real>& displacement,
                     float grain_rank = largest_grain) {
     const Vec3<Real> end = start + displacement;
     const Real max_part = Real(model.particle_spacing / 4);
@@ -124,7 +125,7 @@ Vec3<Real> free_end(const Model& model, const Vec3<Real>& start, const Vec3<Real
     Real blocked = -1;
     for (int part = 1; part <= parts; ++part) {
         const Real share = Real(part) / Real(parts);
-        if (!is_free(model, part == parts ? end : start + displacement * share, grain_rank)) {
+        if (!is_free(ground, part == parts ? end : start + displacement * share, grain_rank)) {
             blocked = share;
             break;
         }
@@ -133,18 +134,18 @@ Vec3<Real> free_end(const Model& model, const Vec3<Real>& start, const Vec3<Real
     if (blocked < 0) return end;
     if (parts == 1) {
         // A small step that ends below ground: lift it along the normal, which costs it no tangential motion.
-        const GroundSample<Real> ground = model.terrain.sample(end.x, end.y);
-        const Real depth = (ground.height - end.z) * ground.normal.z;
-        Vec3<Real> lifted = end + ground.normal * (depth > 0 ? depth : Real(0));
-        const Real height = model.terrain.sample(lifted.x, lifted.y).height;
+        const GroundSample<Real> below = ground.terrain.sample(end.x, end.y);
+        const Real depth = (below.height - end.z) * below.normal.z;
+        Vec3<Real> lifted = end + below.normal * (depth > 0 ? depth : Real(0));
+        const Real height = ground.terrain.sample(lifted.x, lifted.y).height;
         if (lifted.z < height && height - lifted.z < max_part) lifted.z = height;
-        if (is_free(model, lifted, grain_rank)) return lifted;
+        if (is_free(ground, lifted, grain_rank)) return lifted;
     }
     Vec3<Real> reached = start + displacement * clear;
     for (int bisection = 0; bisection < 12; ++bisection) {
         const Real middle = (clear + blocked) / 2;
         const Vec3<Real> p = start + displacement * middle;
-        if (is_free(model, p, grain_rank)) {
+        if (is_free(ground, p, grain_rank)) {
             clear = middle;
             reached = p;
         } else {

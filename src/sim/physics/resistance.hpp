@@ -124,17 +124,17 @@ inline double column_width(const Model& model) {
 /// between them, what is near counts with the weight of a cubic B-spline, two of their widths to either side; a wall
 /// takes what is beyond it.
 template <class Real>
-Real open_share(const Model& model, const Vec3<Real>& p, float grain_rank) {
-    if (model.solids.empty()) return 1;
+Real open_share(const Model& model, const Ground& ground, const Vec3<Real>& p, float grain_rank) {
+    if (ground.solids.empty()) return 1;
     const auto beyond = [&](const SolidSample<Real>& wall) {
         if (wall.building < 0 || wall.normal.z > Real(0.5)) return Real(0);
         const Real s = std::clamp(wall.distance / Real(column_width(model)), Real(0), Real(2)), rest = Real(2) - s;
         return s < Real(1) ? Real(0.5) - s * (Real(2.0 / 3) - s * s * (Real(1.0 / 3) - s / 8))
                            : rest * rest * rest * rest / 24;
     };
-    const SolidSample<Real> nearest = model.solids.nearest(p, grain_rank);
+    const SolidSample<Real> nearest = ground.solids.nearest(p, grain_rank);
     if (nearest.building < 0) return 1;
-    return (1 - beyond(nearest)) * (1 - beyond(model.solids.second_nearest(p, nearest, grain_rank)));
+    return (1 - beyond(nearest)) * (1 - beyond(ground.solids.second_nearest(p, nearest, grain_rank)));
 }
 
 /// Thickness of the flow at right angles to the ground, m, where a column holds so many particles. What the depth is in

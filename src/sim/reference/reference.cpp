@@ -77,17 +77,18 @@ State::State(const talus::State& state)
     }
 }
 
-double constraint(const Model& model, const std::vector<Vector>& points, std::size_t i) {
+double constraint(const Model& model, const Ground& ground, const std::vector<Vector>& points, std::size_t i) {
     double density = own_value(model);
     for_each_neighbour(
         model, points.size(), i, [&](std::size_t k) { return points[k]; },
         [&](std::size_t, const Pair& pair) { density += pair.value; });
-    return density + sample_boundary(model, points[i]).density - 1;
+    return density + sample_boundary(model, ground, points[i]).density - 1;
 }
 
-Vector constraint_gradient(const Model& model, const std::vector<Vector>& points, std::size_t i, std::size_t k) {
+Vector constraint_gradient(const Model& model, const Ground& ground, const std::vector<Vector>& points, std::size_t i,
+                           std::size_t k) {
     if (k != i) return pair_of(model, points[i] - points[k]).gradient * -1.0;
-    Vector gradient = sample_boundary(model, points[i]).gradient;
+    Vector gradient = sample_boundary(model, ground, points[i]).gradient;
     for_each_neighbour(
         model, points.size(), i, [&](std::size_t j) { return points[j]; },
         [&](std::size_t, const Pair& pair) { gradient += pair.gradient; });
@@ -103,22 +104,22 @@ void Backend::release_held(const Model& model, State& state) {
     }
 }
 
-void Backend::apply_drag(const Model& model, State& state) {
+void Backend::apply_drag(const Model& model, const Ground& ground, State& state) {
     if (!slows_by_speed(model)) return;
     for (std::size_t id = 0; id < state.particles.size(); ++id) {
         Particle& p = state.particles[id];
         if (p.held) continue;
-        const GroundSample<double> below = model.terrain.sample(p.position.x, p.position.y);
+        const GroundSample<double> below = ground.terrain.sample(p.position.x, p.position.y);
         const double distance = (p.position.z - below.height) * below.normal.z;
         const double particles =
-            particles_in_column(model, state, p.position) / open_share(model, p.position, rank_of(id));
+            particles_in_column(model, state, p.position) / open_share(model, ground, p.position, rank_of(id));
         const double thickness = flow_thickness(model, below, particles);
         p.velocity = slowed_by_drag(model, ground_resistance(model, p.position), below, distance, thickness, p.velocity,
                                     state.time_step);
     }
 }
 
-void Backend::predict_positions(const Model& model, State& state) {
+void Backend::predict_positions(const Model& model, const Ground&, State& state) {
     for (Particle& p : state.particles) {
         p.displacement = {};
         if (p.held) continue;
@@ -127,20 +128,20 @@ void Backend::predict_positions(const Model& model, State& state) {
     }
 }
 
-void Backend::prepare_particles(const Model& model, State& state) {
+void Backend::prepare_particles(const Model& model, const Ground& ground, State& state) {
     for (std::size_t id = 0; id < state.particles.size(); ++id) {
         Particle& p = state.particles[id];
         p.effective_share = effective_share(model, id, state.time);
-        const GroundResistance<double> ground = ground_resistance(model, p.position);
-        const GroundSample<double> below = model.terrain.sample(p.position.x, p.position.y);
+        const GroundResistance<double> resistance = ground_resistance(model, p.position);
+        const GroundSample<double> below = ground.terrain.sample(p.position.x, p.position.y);
         const double speed = length(p.velocity - below.normal * dot(p.velocity, below.normal));
         const double before = state.previous_time_step;
         const double pressure = before > 0 ? -p.multiplier / (before * before) * p.effective_share : 0;
-        const double friction = friction_beside_ground(model, ground.friction_coefficient, speed,
+        const double friction = friction_beside_ground(model, resistance.friction_coefficient, speed,
                                                        (p.position.z - below.height) * below.normal.z, pressure);
-        p.ground_shear = model.inertial_friction.on ? shear_beside_ground(model, ground.friction_coefficient) : 0;
+        p.ground_shear = model.inertial_friction.on ? shear_beside_ground(model, resistance.friction_coefficient) : 0;
         p.grip = {friction * p.effective_share, model.building_friction_coefficient * p.effective_share,
-                  ground.cohesion * strength_per_pascal(model, state.time_step)};
+                  resistance.cohesion * strength_per_pascal(model, state.time_step)};
         p.contacts = {};
     }
 }
@@ -244,7 +245,7 @@ void solve_stress(const Model& model, State& state) {
     apply_stress_changes(model, state);
 }
 
-void solve_pairs(const Model& model, State& state) {
+void solve_pairs(const Model& model, const Ground& ground, State& state) {
     const double factor = jacobi_factor(model.solver.under_relaxation, model.kernel);
     const double softness = model.solver.constraint_relaxation * model.kernel.rest_gradient_sum;
     const auto point = [&](std::size_t k) { return state.particles[k].predicted(); };
@@ -252,7 +253,7 @@ void solve_pairs(const Model& model, State& state) {
         Particle& p = state.particles[i];
         p.multiplier_change = 0;
         if (p.held) continue;
-        p.boundary = sample_boundary(model, p.predicted(), rank_of(i));
+        p.boundary = sample_boundary(model, ground, p.predicted(), rank_of(i));
         p.sampled_at = p.displacement;
         const Sums sums = sums_at(model, state, point, i);
         const auto constraint = linearise_density(model, sums, p.boundary, p.displacement, softness);
@@ -266,7 +267,7 @@ void solve_pairs(const Model& model, State& state) {
 
 }  // namespace
 
-void Backend::warm_start(const Model& model, State& state) {
+void Backend::warm_start(const Model& model, const Ground& ground, State& state) {
     const double ratio = state.previous_time_step > 0 ? state.time_step / state.previous_time_step : 0;
     const double scale = ratio * ratio;
     state.previous_time_step = state.time_step;
@@ -274,7 +275,7 @@ void Backend::warm_start(const Model& model, State& state) {
         Particle& p = state.particles[i];
         p.sampled_at = p.displacement;
         p.linearised_at = p.predicted();
-        p.boundary = sample_boundary(model, p.linearised_at, rank_of(i));
+        p.boundary = sample_boundary(model, ground, p.linearised_at, rank_of(i));
     }
     if (keeps_stress(model)) {
         const double softness = model.solver.constraint_relaxation * model.kernel.rest_gradient_sum;
@@ -297,19 +298,19 @@ void Backend::warm_start(const Model& model, State& state) {
     for (std::size_t i = 0; i < points.size(); ++i) {
         Particle& p = state.particles[i];
         p.multiplier = 0;
-        p.tolerated_compression = std::max(0.0, constraint(model, points, i) - undone);
+        p.tolerated_compression = std::max(0.0, constraint(model, ground, points, i) - undone);
     }
 }
 
-void Backend::solve_density(const Model& model, State& state) {
+void Backend::solve_density(const Model& model, const Ground& ground, State& state) {
     if (keeps_stress(model)) {
         solve_stress(model, state);
     } else {
-        solve_pairs(model, state);
+        solve_pairs(model, ground, state);
     }
 }
 
-void Backend::solve_contacts(const Model& model, State& state) {
+void Backend::solve_contacts(const Model& model, const Ground&, State& state) {
     for (Particle& p : state.particles) {
         if (p.held) continue;
         p.displacement =
@@ -317,7 +318,7 @@ void Backend::solve_contacts(const Model& model, State& state) {
     }
 }
 
-void Backend::undo_overlaps(const Model& model, State& state) {
+void Backend::undo_overlaps(const Model& model, const Ground& ground, State& state) {
     const double factor = jacobi_factor(model.solver.under_relaxation, model.kernel);
     const double share = spreading_share(state.time_step), max_shift = model.particle_spacing / 4;
     const auto point = [&](std::size_t k) { return state.particles[k].linearised_at; };
@@ -336,22 +337,22 @@ void Backend::undo_overlaps(const Model& model, State& state) {
                 p.shift += pair.gradient * (spread[i] + spread[j]);
             });
         }
-        p.shift += undo_overlap(model, p.predicted(), max_shift, rank_of(i));
+        p.shift += undo_overlap(model, ground, p.predicted(), max_shift, rank_of(i));
         const double size = length(p.shift);
         if (size > max_shift) p.shift = p.shift * (max_shift / size);
     }
 }
 
-void Backend::enforce_boundaries(const Model& model, State& state) {
+void Backend::enforce_boundaries(const Model& model, const Ground& ground, State& state) {
     for (std::size_t i = 0; i < state.particles.size(); ++i) {
         Particle& p = state.particles[i];
         if (p.held) continue;
-        p.displacement = free_end(model, p.position, p.displacement, rank_of(i)) - p.position;
-        p.shift = free_end(model, p.predicted(), p.shift, rank_of(i)) - p.predicted();
+        p.displacement = free_end(model, ground, p.position, p.displacement, rank_of(i)) - p.position;
+        p.shift = free_end(model, ground, p.predicted(), p.shift, rank_of(i)) - p.predicted();
     }
 }
 
-void Backend::update_velocities(const Model&, State& state) {
+void Backend::update_velocities(const Model&, const Ground&, State& state) {
     for (Particle& p : state.particles) {
         if (p.held) continue;
         p.velocity = p.displacement * (1 / state.time_step);
@@ -359,7 +360,7 @@ void Backend::update_velocities(const Model&, State& state) {
     }
 }
 
-void Backend::apply_viscosity(const Model& model, State& state) {
+void Backend::apply_viscosity(const Model& model, const Ground& ground, State& state) {
     const double smoothing = step_smoothing(model.viscosity, state.time_step);
     std::vector<Vector> changes(state.particles.size());
     for (std::size_t i = 0; i < changes.size(); ++i) {
@@ -374,7 +375,7 @@ void Backend::apply_viscosity(const Model& model, State& state) {
         Particle& p = state.particles[i];
         p.velocity += changes[i];
         if (p.held || !model.viscosity_on_ground) continue;
-        const GroundSample<double> below = model.terrain.sample(p.position.x, p.position.y);
+        const GroundSample<double> below = ground.terrain.sample(p.position.x, p.position.y);
         p.velocity =
             slowed_by_ground(model, below, (p.position.z - below.height) * below.normal.z, p.velocity, smoothing);
     }

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "core/geometry.hpp"
+#include "sim/ground.hpp"
 #include "sim/model.hpp"
 #include "sim/physics/contact.hpp"
 #include "sim/physics/density.hpp"
@@ -41,33 +42,34 @@ struct State {
 };
 
 /// The density constraint G of a particle (eq. 1), every other particle looked at.
-[[nodiscard]] double constraint(const Model& model, const std::vector<Vector>& points, std::size_t i);
+[[nodiscard]] double constraint(const Model& model, const Ground& ground, const std::vector<Vector>& points,
+                                std::size_t i);
 
 /// Its gradient with respect to the position of particle k.
-[[nodiscard]] Vector constraint_gradient(const Model& model, const std::vector<Vector>& points, std::size_t i,
-                                         std::size_t k);
+[[nodiscard]] Vector constraint_gradient(const Model& model, const Ground& ground, const std::vector<Vector>& points,
+                                         std::size_t i, std::size_t k);
 
 /// The stages of a step in double precision and in O(N^2), as plainly as the laws allow: what the fast backends are
 /// tested against. Nobody's run uses it.
 class Backend {
   public:
     void release_held(const Model& model, State& state);
-    void apply_drag(const Model& model, State& state);
-    void predict_positions(const Model& model, State& state);
+    void apply_drag(const Model& model, const Ground& ground, State& state);
+    void predict_positions(const Model& model, const Ground& ground, State& state);
     void sort_particles(const Model&, State&) {}
     void find_neighbours(const Model&, State&) {}
-    void prepare_particles(const Model& model, State& state);
-    void warm_start(const Model& model, State& state);
-    void solve_density(const Model& model, State& state);
-    void solve_contacts(const Model& model, State& state);
+    void prepare_particles(const Model& model, const Ground& ground, State& state);
+    void warm_start(const Model& model, const Ground& ground, State& state);
+    void solve_density(const Model& model, const Ground& ground, State& state);
+    void solve_contacts(const Model& model, const Ground& ground, State& state);
     void measure_compression(const Model&, State&) {}
-    void undo_overlaps(const Model& model, State& state);
-    void enforce_boundaries(const Model& model, State& state);
-    void update_velocities(const Model& model, State& state);
-    void measure_impacts(const Model&, State&) {}
-    void apply_viscosity(const Model& model, State& state);
-    void update_sleep(const Model&, State&) {}
-    void remove_outflow(const Model&, State&) {}
+    void undo_overlaps(const Model& model, const Ground& ground, State& state);
+    void enforce_boundaries(const Model& model, const Ground& ground, State& state);
+    void update_velocities(const Model& model, const Ground& ground, State& state);
+    void measure_impacts(const Model&, const Ground&, State&) {}
+    void apply_viscosity(const Model& model, const Ground& ground, State& state);
+    void update_sleep(const Model&, const Ground&, State&) {}
+    void remove_outflow(const Model&, const Ground&, State&) {}
 };
 
 }  // namespace talus::reference

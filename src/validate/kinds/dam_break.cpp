@@ -44,13 +44,13 @@ Measured measure(const DamSpec& spec, double spacing, const Setting& setting, co
     MaterialSpec material = setting.material;
     material.friction_coefficient = std::tan(spec.friction_angle);
     material.building_friction_coefficient = 0;
-    Model model = make_model(material, setting.solver, incline.terrain(),
-                             make_slice(incline.terrain(), width, 3 * spec.depth), spacing);
+    Model model = make_model(material, setting.solver, spacing);
+    Ground ground(incline.terrain(), make_slice(incline.terrain(), width, 3 * spec.depth), model.support_radius);
     const auto columns = static_cast<int>(std::lround(reservoir / spacing));
     const auto thickness = [&](double, double) { return spec.depth; };
     const auto points = fill_lattice(incline, spacing, -columns * spacing, columns, -width / 2, spec.width, thickness);
-    State start = state_under_weight(model, points, incline, thickness);
-    Trial trial({std::move(model), std::move(start)}, watch);
+    State start = state_under_weight(model, ground, points, incline, thickness);
+    Trial trial({std::move(model), std::move(ground), std::move(start)}, watch);
     const State& state = trial.state();
     Measured measured;
     measured.particles = state.count;

@@ -113,13 +113,14 @@ std::vector<LocalPoint> fill_behind_gate(const FlumeSpec& spec, const Bed& bed, 
 Measured measure(const FlumeSpec& spec, Obstacle obstacle, double spacing, const Setting& setting, const Watch& watch) {
     const Bed bed(spec, obstacle);
     const Terrain terrain =
-        make_ground(bed.length() - 1, spec.width + 4, 0.25, [&](double x, double) { return bed.at(bed.along(x)).y; });
+        make_terrain(bed.length() - 1, spec.width + 4, 0.25, [&](double x, double) { return bed.at(bed.along(x)).y; });
     std::vector<Building> walls = make_slice(terrain, spec.width, 5);
     const Extent e = terrain.elevation().geometry.extent();
     if (obstacle == Obstacle::wall) {
         walls.push_back(make_wall(terrain, bed.at(spec.obstacle).x, e.y_min, e.x_max, e.y_max, 5));
     }
-    Model model = make_model(setting.material, setting.solver, terrain, walls, spacing);
+    Model model = make_model(setting.material, setting.solver, spacing);
+    Ground ground(terrain, walls, model.support_radius);
     std::vector<double> above;
     const auto points = fill_behind_gate(spec, bed, terrain, spacing, above);
     State start = state_at_rest(points);
@@ -127,7 +128,7 @@ Measured measure(const FlumeSpec& spec, Obstacle obstacle, double spacing, const
     for (std::uint32_t i = 0; i < start.count; ++i) {
         start.multiplier[i] = static_cast<float>(-model.gravity * std::cos(spec.slope) * above[i]);
     }
-    find_pressures(model, start);
+    find_pressures(model, ground, start);
     // The lattice may be a little wider or narrower than its particles: what it holds is what was asked for.
     const double mass_per_particle = spec.volume / static_cast<double>(points.size());
 
@@ -137,7 +138,7 @@ Measured measure(const FlumeSpec& spec, Obstacle obstacle, double spacing, const
     measured.thicknesses.assign(spec.samples.size(), not_computed);
     measured.time.resize(spec.stations.size());
     measured.depth.resize(spec.stations.size());
-    Trial trial({std::move(model), std::move(start)}, watch, OnFault::note);
+    Trial trial({std::move(model), std::move(ground), std::move(start)}, watch, OnFault::note);
     const State& state = trial.state();
     constexpr double window = 0.5, arrived = 0.02;
     const double delay = spec.gate_time / 2;
@@ -145,7 +146,7 @@ Measured measure(const FlumeSpec& spec, Obstacle obstacle, double spacing, const
         int inside = 0;
         for (std::uint32_t i = 0; i < state.count; ++i) {
             inside +=
-                std::abs(bed.along(state.position.x[i] + trial.model().terrain.frame().origin.x) - s) < window / 2;
+                std::abs(bed.along(state.position.x[i] + trial.ground().terrain.frame().origin.x) - s) < window / 2;
         }
         return inside * mass_per_particle / (window * spec.width);
     };

@@ -23,10 +23,10 @@ constexpr Quantity quantities[] = {
      "the same with the share of friction that bent ground adds: f times the ground's whole normal force"},
 };
 
-enum class Ground { plane, bowl, scene };
+enum class Surface { plane, bowl, scene };
 
 struct EnergySpec {
-    Ground ground = Ground::plane;
+    Surface surface = Surface::plane;
     double slope = 0;                // rad, of the plane
     double radius = 0, start = 0;    // m, of the bowl; rad from its bottom
     double side = 0, thickness = 0;  // m, of the block that is released
@@ -49,18 +49,18 @@ Release block_at(const Terrain& terrain, double x, double side, double thickness
 }
 
 Result<World> make_world(const EnergySpec& spec) {
-    if (spec.ground == Ground::scene) {
+    if (spec.surface == Surface::scene) {
         TALUS_ASSIGN(Scene scene, load_scene(spec.scene));
         return World{scene.terrain, scene.releases};
     }
     World world;
-    if (spec.ground == Ground::plane) {
+    if (spec.surface == Surface::plane) {
         const double length = Model{}.gravity * std::sin(spec.slope) * spec.time * spec.time + 40;
-        world.terrain = make_ground(length, 60, 1, [&](double x, double) { return -std::tan(spec.slope) * x; });
+        world.terrain = make_terrain(length, 60, 1, [&](double x, double) { return -std::tan(spec.slope) * x; });
         world.releases.push_back(block_at(world.terrain, -length / 2 + 20, spec.side, spec.thickness));
     } else {
         const double across = 2 * spec.radius * std::sin(std::min(1.2 * spec.start, 1.4));
-        world.terrain = make_ground(across, across, 1, [&](double x, double y) {
+        world.terrain = make_terrain(across, across, 1, [&](double x, double y) {
             return spec.radius - std::sqrt(std::max(0.0, spec.radius * spec.radius - x * x - y * y));
         });
         world.releases.push_back(
@@ -108,7 +108,7 @@ class Ways {
         for (std::uint32_t i = 0; i < state.count; ++i) {
             Way& way = ways_[state.id[i]];
             const LocalPoint p = state.position.at(i), v = state.velocity.at(i);
-            const LocalPoint normal = trial_.model().terrain.sample(p.x, p.y).normal;
+            const LocalPoint normal = trial_.ground().terrain.sample(p.x, p.y).normal;
             if (time_step != nullptr) {
                 const LocalPoint moved = p - way.position;
                 way.way += std::hypot(moved.x, moved.y);
@@ -127,9 +127,10 @@ class Ways {
 
 Result<Outcome> compute(const EnergySpec& spec, const Setting& setting, const Watch& watch) {
     TALUS_ASSIGN(World world, make_world(spec));
-    Model model = make_model(setting.material, setting.solver, world.terrain, {}, spec.spacing);
-    TALUS_ASSIGN(State seeded, seed_releases(model, world.releases));
-    Trial trial({std::move(model), std::move(seeded)}, watch);
+    Model model = make_model(setting.material, setting.solver, spec.spacing);
+    Ground ground(world.terrain);
+    TALUS_ASSIGN(State seeded, seed_releases(model, ground, world.releases));
+    Trial trial({std::move(model), std::move(ground), std::move(seeded)}, watch);
     const State& state = trial.state();
     const double friction = setting.material.friction_coefficient;
 
@@ -173,9 +174,9 @@ Computation prepare(Parameters& parameters, const Setting& setting) {
     constexpr Range angles{.low = 1, .high = 70};
     EnergySpec spec;
     const std::string ground = parameters.choice("ground", {"plane", "bowl", "scene"}, "plane");
-    if (ground == "bowl") spec.ground = Ground::bowl;
+    if (ground == "bowl") spec.surface = Surface::bowl;
     if (ground == "scene") {
-        spec.ground = Ground::scene;
+        spec.surface = Surface::scene;
         spec.scene = parameters.path("scene");
     }
     spec.slope = parameters.number("slope_deg", angles, 30) * to_radians;

@@ -41,10 +41,11 @@ Result<Outcome> compute(const FallSpec& spec, const Setting& setting, const Watc
     const double run = spec.speed * flight_time * 3 + spec.length * spec.spacing + 10;
     // The edge lies between the last cell centre above and the first below: a face as steep as the raster can make it.
     const Terrain terrain =
-        make_ground(2 * run, width + 4, spec.cell, [&](double x, double) { return x < 0 ? spec.height : 0; });
+        make_terrain(2 * run, width + 4, spec.cell, [&](double x, double) { return x < 0 ? spec.height : 0; });
     MaterialSpec material = setting.material;
     material.building_friction_coefficient = 0;
-    Model model = make_model(material, setting.solver, terrain, make_slice(terrain, width, spec.height), spec.spacing);
+    Model model = make_model(material, setting.solver, spec.spacing);
+    Ground ground(terrain, make_slice(terrain, width, spec.height), model.support_radius);
     std::vector<LocalPoint> points;
     for (int k = 0; k < spec.layers; ++k) {
         for (int j = 0; j < spec.width; ++j) {
@@ -57,7 +58,7 @@ Result<Outcome> compute(const FallSpec& spec, const Setting& setting, const Watc
     }
     State start = state_at_rest(points);
     for (std::uint32_t i = 0; i < start.count; ++i) start.velocity.x[i] = static_cast<float>(spec.speed);
-    Trial trial({std::move(model), std::move(start)}, watch);
+    Trial trial({std::move(model), std::move(ground), std::move(start)}, watch);
     const State& state = trial.state();
 
     std::vector<Flight> flights(state.count);

@@ -80,7 +80,8 @@ Measured measure(const ColumnSpec& spec, double aspect, double resolution, const
         const Extent extent = flat.terrain().elevation().geometry.extent();
         walls.push_back(make_wall(flat.terrain(), extent.x_min, extent.y_min, 0, extent.y_max, 2 * height));
     }
-    Model model = make_model(material, setting.solver, flat.terrain(), walls, spacing);
+    Model model = make_model(material, setting.solver, spacing);
+    Ground ground(flat.terrain(), walls, model.support_radius);
     const auto half = static_cast<int>(std::ceil(resolution));
     const auto thickness = [&](double x, double y) {
         return spec.planar || std::hypot(x, y) < spec.extent ? height : 0;
@@ -88,8 +89,8 @@ Measured measure(const ColumnSpec& spec, double aspect, double resolution, const
     const auto points =
         spec.planar ? fill_lattice(flat, spacing, 0, half, -width / 2, spec.width, thickness)
                     : fill_lattice(flat, spacing, -half * spacing, 2 * half, -half * spacing, 2 * half, thickness);
-    State start = state_under_weight(model, points, flat, thickness);
-    Trial trial({std::move(model), std::move(start)}, watch);
+    State start = state_under_weight(model, ground, points, flat, thickness);
+    Trial trial({std::move(model), std::move(ground), std::move(start)}, watch);
 
     const State& state = trial.state();
     const auto distance = [&](std::uint32_t i) {

@@ -37,14 +37,14 @@ struct GrowthLaw {
     }
 };
 
-void lay_bed(Model& model, const GrowthSpec& spec) {
-    const std::size_t cells = model.terrain.elevation().values.size();
+void lay_bed(Ground& ground, const GrowthSpec& spec) {
+    const std::size_t cells = ground.terrain.elevation().values.size();
     BedMaterial material;
     material.growth_rate = spec.growth_rate;
-    model.bed.materials = {material};
-    model.bed.material_at.assign(cells, 1);
-    model.bed.depth.assign(cells, static_cast<float>(spec.depth));
-    model.bed.eroded.assign(cells, 0);
+    ground.bed.materials = {material};
+    ground.bed.material_at.assign(cells, 1);
+    ground.bed.depth.assign(cells, static_cast<float>(spec.depth));
+    ground.bed.eroded.assign(cells, 0);
 }
 
 void compute_one(const GrowthSpec& spec, double spacing, const Setting& setting, const Watch& watch, Outcome& outcome) {
@@ -57,14 +57,15 @@ void compute_one(const GrowthSpec& spec, double spacing, const Setting& setting,
     const GrowthLaw law{acceleration, spec.growth_rate};
     const double furthest = 0.5 * acceleration * spec.end * spec.end;
     const Incline incline(spec.slope, 2 * (spec.length + furthest) + 10, spec.width + 4);
-    Model model = make_model(material, setting.solver, incline.terrain(),
-                             make_slice(incline.terrain(), spec.width, 3 * spec.thickness), spacing);
-    lay_bed(model, spec);
+    Model model = make_model(material, setting.solver, spacing);
+    Ground ground(incline.terrain(), make_slice(incline.terrain(), spec.width, 3 * spec.thickness),
+                  model.support_radius);
+    lay_bed(ground, spec);
     const auto columns = static_cast<int>(std::lround(spec.length / spacing));
     const auto across = static_cast<int>(std::lround(spec.width / spacing));
     const auto points = fill_lattice(incline, spacing, -columns * spacing / 2, columns, -spec.width / 2, across,
                                      [&](double, double) { return spec.thickness; });
-    Trial trial({std::move(model), state_at_rest(points)}, watch);
+    Trial trial({std::move(model), std::move(ground), state_at_rest(points)}, watch);
     const State& state = trial.state();
     const LocalPoint down = incline.down(1);
     const auto speed = [&] {
@@ -86,7 +87,7 @@ void compute_one(const GrowthSpec& spec, double spacing, const Setting& setting,
     }
     const double area = incline.terrain().cell() * incline.terrain().cell();
     double lost = 0;
-    for (const float eroded : trial.model().bed.eroded) lost += eroded * area;
+    for (const float eroded : trial.ground().bed.eroded) lost += eroded * area;
     const double gained = state.entrained * trial.model().particle_volume();
     outcome.measurements.push_back({"volume", name, grown.y.back(), law.volume(state.time)});
     outcome.measurements.push_back({"speed", name, computed.y.back(), law.speed(state.time)});

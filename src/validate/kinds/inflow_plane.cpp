@@ -32,8 +32,8 @@ Result<Outcome> compute(const PlaneSpec& spec, const Setting& setting, const Wat
     MaterialSpec material = setting.material;
     material.building_friction_coefficient = 0;
     material.friction_coefficient = std::tan(spec.slope);  // what drives the stream is what holds it back
-    Model model = make_model(material, setting.solver, incline.terrain(),
-                             make_slice(incline.terrain(), width, 20 * spec.thickness), spec.spacing);
+    Model model = make_model(material, setting.solver, spec.spacing);
+    Ground ground(incline.terrain(), make_slice(incline.terrain(), width, 20 * spec.thickness), model.support_radius);
     Inflow inflow;
     const LocalPoint line = incline.point(-reach / 2, 0, 0);
     const WorldPoint at = incline.terrain().frame().to_world(line);
@@ -41,9 +41,9 @@ Result<Outcome> compute(const PlaneSpec& spec, const Setting& setting, const Wat
     inflow.to = {at.x, at.y + width / 2};
     const double discharge = spec.thickness * spec.velocity * width;
     inflow.hydrograph = {{0, discharge, spec.velocity}, {spec.time, discharge, spec.velocity}};
-    InflowFeeder feeder(model, {inflow});
+    InflowFeeder feeder(model, incline.terrain().frame(), {inflow});
     watch.say(fmt::format("{} particles", feeder.to_come()));
-    Trial trial({std::move(model), State{}, std::move(feeder)}, watch);
+    Trial trial({std::move(model), std::move(ground), State{}, std::move(feeder)}, watch);
     const State& state = trial.state();
     double fastest = 0;
     Outcome outcome;

@@ -28,19 +28,19 @@ struct LakeSpec {
 };
 
 /// A shape of the ground: its height over x in [-1, 1], from 0 to 1.
-struct Ground {
+struct Shape {
     const char* name;
     double (*height)(double x, double riser);  ///< riser: length of a step's face over half the lake's length
 };
 
-constexpr std::array grounds = {
-    Ground{"flat", [](double, double) { return 0.0; }},
-    Ground{"stepped at 30 degrees",
-           [](double x, double riser) {  // two equal steps
-               return 0.5 * std::clamp((x + 1.0 / 3) / riser, 0.0, 1.0) +
-                      0.5 * std::clamp((x - 1.0 / 3) / riser, 0.0, 1.0);
-           }},
-    Ground{"curved", [](double x, double) { return x * x; }},
+constexpr std::array shapes = {
+    Shape{"flat", [](double, double) { return 0.0; }},
+    Shape{"stepped at 30 degrees",
+          [](double x, double riser) {  // two equal steps
+              return 0.5 * std::clamp((x + 1.0 / 3) / riser, 0.0, 1.0) +
+                     0.5 * std::clamp((x - 1.0 / 3) / riser, 0.0, 1.0);
+          }},
+    Shape{"curved", [](double x, double) { return x * x; }},
 };
 
 struct Measured {
@@ -49,17 +49,18 @@ struct Measured {
     std::vector<double> place, level, bed;
 };
 
-Measured measure(const LakeSpec& spec, const Ground& ground, const Setting& setting, const Watch& watch) {
+Measured measure(const LakeSpec& spec, const Shape& shape, const Setting& setting, const Watch& watch) {
     const double half = spec.length / 2, width = spec.width * spec.spacing;
     const double riser = spec.relief / 2 / std::tan(std::numbers::pi / 6) / half;
-    const auto bed = [&](double x) { return spec.relief * ground.height(x / half, riser); };
+    const auto bed = [&](double x) { return spec.relief * shape.height(x / half, riser); };
     const Terrain terrain =
-        make_ground(spec.length + 4, width + 4, spec.spacing, [&](double x, double) { return bed(x); });
+        make_terrain(spec.length + 4, width + 4, spec.spacing, [&](double x, double) { return bed(x); });
     std::vector<Building> walls = make_slice(terrain, width, 2 * spec.depth);
     const Extent e = terrain.elevation().geometry.extent();
     walls.push_back(make_wall(terrain, e.x_min, e.y_min, -half, e.y_max, 2 * spec.depth));
     walls.push_back(make_wall(terrain, half, e.y_min, e.x_max, e.y_max, 2 * spec.depth));
-    Model model = make_model(setting.material, setting.solver, terrain, walls, spec.spacing);
+    Model model = make_model(setting.material, setting.solver, spec.spacing);
+    Ground ground(terrain, walls, model.support_radius);
 
     const auto columns = static_cast<int>(std::lround(spec.length / spec.spacing));
     std::vector<LocalPoint> points;
@@ -67,7 +68,7 @@ Measured measure(const LakeSpec& spec, const Ground& ground, const Setting& sett
         for (int i = 0; i < columns; ++i) {
             const auto x = static_cast<float>(-half + (i + 0.5) * spec.spacing);
             const auto y = static_cast<float>(-width / 2 + (j + 0.5) * spec.spacing);
-            const GroundSample<float> below = model.terrain.sample(x, y);
+            const GroundSample<float> below = terrain.sample(x, y);
             const double bottom = below.height + spec.spacing / 2 / below.normal.z;
             for (double z = bottom; z + spec.spacing / 2 < spec.depth + 1e-6; z += spec.spacing) {
                 points.push_back({x, y, static_cast<float>(z)});
@@ -76,8 +77,8 @@ Measured measure(const LakeSpec& spec, const Ground& ground, const Setting& sett
     }
     const Incline flat(0, spec.length, width);
     const auto surface = [&](double, double) { return spec.depth; };
-    State start = state_under_weight(model, points, flat, surface);
-    Trial trial({std::move(model), std::move(start)}, watch);
+    State start = state_under_weight(model, ground, points, flat, surface);
+    Trial trial({std::move(model), std::move(ground), std::move(start)}, watch);
     const State& state = trial.state();
     Measured measured;
     if (!trial.advance_to(spec.time)) {
@@ -123,16 +124,16 @@ Measured measure(const LakeSpec& spec, const Ground& ground, const Setting& sett
 
 Result<Outcome> compute(const LakeSpec& spec, const Setting& setting, const Watch& watch) {
     Outcome outcome;
-    for (const Ground& ground : grounds) {
-        watch.say(ground.name);
-        const Measured m = measure(spec, ground, setting, watch);
-        if (!m.problem.empty()) outcome.notes.push_back(std::string(ground.name) + ": " + m.problem);
-        outcome.measurements.push_back({"depth", ground.name, m.depth, m.expected_depth});
-        outcome.measurements.push_back({"unevenness", ground.name, m.unevenness, {}});
-        outcome.measurements.push_back({"residual_speed", ground.name, m.speed, {}});
+    for (const Shape& shape : shapes) {
+        watch.say(shape.name);
+        const Measured m = measure(spec, shape, setting, watch);
+        if (!m.problem.empty()) outcome.notes.push_back(std::string(shape.name) + ": " + m.problem);
+        outcome.measurements.push_back({"depth", shape.name, m.depth, m.expected_depth});
+        outcome.measurements.push_back({"unevenness", shape.name, m.unevenness, {}});
+        outcome.measurements.push_back({"residual_speed", shape.name, m.speed, {}});
         outcome.charts.push_back(
-            {ground.name,
-             fmt::format("Surface of a lake at rest, ground {}", ground.name),
+            {shape.name,
+             fmt::format("Surface of a lake at rest, ground {}", shape.name),
              "place, m",
              "elevation, m",
              {{"surface", Series::Style::line, m.place, m.level}, {"ground", Series::Style::dashed, m.place, m.bed}}});

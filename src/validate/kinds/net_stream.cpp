@@ -45,7 +45,7 @@ Measured measure(const NetSpec& spec, double passing, double spacing, const Sett
     const double width = across * spacing, wave = std::sqrt(Model{}.gravity * spec.depth);
     const double speed = spec.froude * wave, stream = columns * spacing;
     const double top = 4 * momentum_jump(spec.froude) * spec.depth;
-    const Terrain terrain = make_ground(2 * (stream + 8 * spec.depth), width + 4, 1, [](double, double) { return 0; });
+    const Terrain terrain = make_terrain(2 * (stream + 8 * spec.depth), width + 4, 1, [](double, double) { return 0; });
     std::vector<Building> solids = make_slice(terrain, width, top);
     const double thickness = 2 * spacing, x = thickness / 2;
     const auto net =
@@ -58,7 +58,8 @@ Measured measure(const NetSpec& spec, double passing, double spacing, const Sett
     solids.push_back(*net);
     MaterialSpec material = setting.material;
     material.building_friction_coefficient = 0;
-    Model model = make_model(material, setting.solver, terrain, solids, spacing);
+    Model model = make_model(material, setting.solver, spacing);
+    Ground ground(terrain, solids, model.support_radius);
     std::vector<LocalPoint> points;
     points.reserve(static_cast<std::size_t>(columns) * static_cast<std::size_t>(layers) *
                    static_cast<std::size_t>(across));
@@ -77,7 +78,7 @@ Measured measure(const NetSpec& spec, double passing, double spacing, const Sett
     OutputSpec outputs;
     outputs.sample_interval = 0.05 * stream / (speed + wave);
     outputs.map_cell = spec.depth;
-    Trial trial({std::move(model), std::move(start), {}, {}, outputs}, watch, OnFault::note);
+    Trial trial({std::move(model), std::move(ground), std::move(start), {}, {}, outputs}, watch, OnFault::note);
     const Observer& observer = trial.observer();
     const bool done = trial.advance_to(stream / (speed + wave));
     Measured measured;

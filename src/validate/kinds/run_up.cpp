@@ -37,15 +37,16 @@ Measured measure(const RunUpSpec& spec, bool ramp, double froude, const Setting&
     const double stream = spec.length * spec.depth;
     const double reach = stream + 5 * spec.depth + 2 * momentum_jump(froude) * spec.depth / std::tan(spec.ramp_angle);
     const double slope = std::tan(spec.ramp_angle);
-    const Terrain terrain = make_ground(2 * reach, width + 4, spec.depth / 4,
-                                        [&](double x, double) { return ramp && x > 0 ? slope * x : 0; });
+    const Terrain terrain = make_terrain(2 * reach, width + 4, spec.depth / 4,
+                                         [&](double x, double) { return ramp && x > 0 ? slope * x : 0; });
     const double top = 4 * momentum_jump(froude) * spec.depth;
     std::vector<Building> walls = make_slice(terrain, width, top);
     const Extent e = terrain.elevation().geometry.extent();
     if (!ramp) walls.push_back(make_wall(terrain, 0, e.y_min, e.x_max, e.y_max, top));
     MaterialSpec material = setting.material;
     material.building_friction_coefficient = 0;
-    Model model = make_model(material, setting.solver, terrain, walls, spec.spacing);
+    Model model = make_model(material, setting.solver, spec.spacing);
+    Ground ground(terrain, walls, model.support_radius);
     const auto columns = static_cast<int>(std::lround(stream / spec.spacing));
     const auto layers = static_cast<int>(std::lround(spec.depth / spec.spacing));
     std::vector<LocalPoint> points;
@@ -61,7 +62,7 @@ Measured measure(const RunUpSpec& spec, bool ramp, double froude, const Setting&
     State start = state_at_rest(points);
     for (std::uint32_t i = 0; i < start.count; ++i) start.velocity.x[i] = static_cast<float>(speed);
     // Jets at the obstacle are faster than a fall explains. The run-up is what is asked for, so it goes on.
-    Trial trial({std::move(model), std::move(start)}, watch, OnFault::note);
+    Trial trial({std::move(model), std::move(ground), std::move(start)}, watch, OnFault::note);
     const State& state = trial.state();
     const double cell = spec.depth / 2;
     const int cells = ramp ? static_cast<int>(reach / cell) : 1;

@@ -43,7 +43,8 @@ Measured measure(const ShearSpec& spec, double viscosity, double time_step, doub
     material.internal_friction_coefficient = 0;
     SolverSpec solver = setting.solver;
     solver.time_step = time_step;
-    Model model = make_model(material, solver, flat.terrain(), {}, spacing);
+    Model model = make_model(material, solver, spacing);
+    Ground ground(flat.terrain());
     model.gravity = 0;
     std::vector<LocalPoint> points = fill_lattice(flat, spacing, -width / 2, spec.width, -width / 2, spec.width,
                                                   [&](double, double) { return height; });
@@ -55,7 +56,7 @@ Measured measure(const ShearSpec& spec, double viscosity, double time_step, doub
         start.velocity.x[i] = static_cast<float>(fastest * std::cos(wave_number * points[i].z));
         start.position.z[i] += static_cast<float>(above);
     }
-    Trial trial({std::move(model), std::move(start)}, watch);
+    Trial trial({std::move(model), std::move(ground), std::move(start)}, watch);
     const State& state = trial.state();
     const auto amplitude = [&] {
         double sum = 0;

@@ -81,12 +81,8 @@ Measured measure(const SheetSpec& spec, double slope, double start_share, const 
     const SheetFlow sheet{slope, thickness, Model{}.gravity};
     MaterialSpec material = setting.material;
     material.building_friction_coefficient = 0;
-    const auto make = [&](const Incline& incline) {
-        return make_model(material, setting.solver, incline.terrain(),
-                          make_slice(incline.terrain(), width, 2 * thickness), spec.spacing);
-    };
-    const Model numbers = make(Incline(slope, 4, width + 4));
-    const auto law = [&](double height) { return law_velocity(spec, sheet, numbers, setting.material, height); };
+    Model model = make_model(material, setting.solver, spec.spacing);
+    const auto law = [&](double height) { return law_velocity(spec, sheet, model, setting.material, height); };
     Measured measured;
     if (!(law(thickness) > 0)) {
         measured.problem = "the law has no steady flow on this slope";
@@ -98,15 +94,15 @@ Measured measure(const SheetSpec& spec, double slope, double start_share, const 
     const auto even = [&](double, double) { return thickness; };
     const auto points =
         fill_lattice(incline, spec.spacing, -columns * spec.spacing / 2, columns, -width / 2, spec.width, even);
-    Model model = make(incline);
-    State start = state_under_weight(model, points, incline, [&](double along, double) {
+    Ground ground(incline.terrain(), make_slice(incline.terrain(), width, 2 * thickness), model.support_radius);
+    State start = state_under_weight(model, ground, points, incline, [&](double along, double) {
         return std::abs(along) < spec.length / 2 ? thickness : 0;
     });
     const LocalPoint down = incline.down(1);
     for (std::uint32_t i = 0; i < start.count; ++i) {
         start.velocity.set(i, incline.down(start_share * law(incline.normal(start.position.at(i)))));
     }
-    Trial trial({std::move(model), std::move(start)}, watch);
+    Trial trial({std::move(model), std::move(ground), std::move(start)}, watch);
     Layers layers(spec.layers);
     const bool trusted = trial.advance_to(spec.start) && trial.advance_to(spec.end, [&] {
         layers.add(trial.state(), incline, down, spec.length, spec.spacing);

@@ -60,11 +60,11 @@ Measured measure(const SlabSpec& spec, const Variant& variant, const Setting& se
     MaterialSpec material = setting.material;
     material.friction_coefficient = variant.friction;
     material.building_friction_coefficient = 0;
-    Model model = make_model(material, variant.solver, incline.terrain(),
-                             make_slice(incline.terrain(), width, thickness), variant.spacing);
+    Model model = make_model(material, variant.solver, variant.spacing);
+    Ground ground(incline.terrain(), make_slice(incline.terrain(), width, thickness), model.support_radius);
     const auto points = fill_lattice(incline, variant.spacing, -columns * variant.spacing / 2, columns, -width / 2,
                                      spec.width, [&](double, double) { return thickness; });
-    Trial trial({std::move(model), state_at_rest(points)}, watch);
+    Trial trial({std::move(model), std::move(ground), state_at_rest(points)}, watch);
 
     // The ends spread; the middle is what the law speaks of.
     std::vector<std::uint8_t> middle(points.size()), lowest(points.size());

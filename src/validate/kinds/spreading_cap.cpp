@@ -82,12 +82,13 @@ Measured measure(const CapSpec& spec, double spacing, const Setting& setting, co
     const Incline incline(spec.slope, 2.2 * furthest, 2.4 * law.half_width(spec.time));
     MaterialSpec material = setting.material;
     material.friction_coefficient = std::tan(spec.friction_angle);
-    Model model = make_model(material, setting.solver, incline.terrain(), {}, spacing);
+    Model model = make_model(material, setting.solver, spacing);
+    Ground ground(incline.terrain());
     const auto half = static_cast<int>(std::ceil(spec.length / spacing));
     const auto thickness = [&](double s, double y) { return law.thickness(s, y, 0); };
     const auto points = fill_lattice(incline, spacing, -half * spacing, 2 * half, -half * spacing, 2 * half, thickness);
-    State start = state_under_weight(model, points, incline, thickness);
-    Trial trial({std::move(model), std::move(start)}, watch);
+    State start = state_under_weight(model, ground, points, incline, thickness);
+    Trial trial({std::move(model), std::move(ground), std::move(start)}, watch);
     Measured measured;
     measured.particles = trial.state().count;
     if (trial.advance_to(spec.time)) {

@@ -67,14 +67,15 @@ Measured measure(const HeapSpec& spec, double share, double time_step, const Set
     const Incline flat(0, 6 * radius, 6 * radius);
     SolverSpec solver = setting.solver;
     solver.time_step = time_step;
-    Model model = make_model(setting.material, solver, flat.terrain(), {}, spec.spacing);
-    Result<State> seeded = seed_releases(model, {make_cone(flat.terrain(), radius, height)});
+    Model model = make_model(setting.material, solver, spec.spacing);
+    Ground ground(flat.terrain());
+    Result<State> seeded = seed_releases(model, ground, {make_cone(flat.terrain(), radius, height)});
     if (!seeded) {
         measured.problem = seeded.error().message;
         return measured;
     }
     measured.particles = seeded->count;
-    Trial trial({std::move(model), *std::move(seeded)}, watch);
+    Trial trial({std::move(model), std::move(ground), *std::move(seeded)}, watch);
     const State& state = trial.state();
     // What is to flow flows from the first step; what is to stand is a heap once its lattice has settled.
     const double begin = share < 1 ? spec.settling_time : 0;

@@ -41,14 +41,15 @@ double momentum_along(const Model& model, const State& state) {
 Measured measure(const ImpactSpec& spec, double froude, const Setting& setting, const Watch& watch) {
     const double width = spec.width * spec.spacing, wave = std::sqrt(Model{}.gravity * spec.depth);
     const double speed = froude * wave, stream = spec.length * spec.depth;
-    const Terrain terrain = make_ground(2 * (stream + 8 * spec.depth), width + 4, 1, [](double, double) { return 0; });
+    const Terrain terrain = make_terrain(2 * (stream + 8 * spec.depth), width + 4, 1, [](double, double) { return 0; });
     const double top = 4 * momentum_jump(froude) * spec.depth;
     std::vector<Building> walls = make_slice(terrain, width, top);
     const Extent e = terrain.elevation().geometry.extent();
     walls.push_back(make_wall(terrain, 0, e.y_min, e.x_max, e.y_max, top));
     MaterialSpec material = setting.material;
     material.building_friction_coefficient = 0;
-    Model model = make_model(material, setting.solver, terrain, walls, spec.spacing);
+    Model model = make_model(material, setting.solver, spec.spacing);
+    Ground ground(terrain, walls, model.support_radius);
     std::vector<LocalPoint> points;
     const auto columns = static_cast<int>(std::lround(stream / spec.spacing));
     const auto layers = static_cast<int>(std::lround(spec.depth / spec.spacing));
@@ -70,7 +71,7 @@ Measured measure(const ImpactSpec& spec, double froude, const Setting& setting, 
     outputs.impact_filter_window = 0.2 * spec.depth / wave;
     outputs.sample_interval = 0.05 * stream / (speed + wave);
     outputs.map_cell = spec.depth;
-    Trial trial({std::move(model), std::move(start), {}, {}, outputs}, watch, OnFault::note);
+    Trial trial({std::move(model), std::move(ground), std::move(start), {}, {}, outputs}, watch, OnFault::note);
     const Observer& observer = trial.observer();
     // As long as the stream's other end has not been heard of at the wall; the splash of the first fifth apart.
     const double end = stream / (speed + wave);

@@ -48,12 +48,13 @@ Result<Outcome> compute(const ColumnSpec& spec, const Setting& setting, const Wa
         std::vector<Building> walls = make_slice(flat.terrain(), width, 2 * height);
         const Extent extent = flat.terrain().elevation().geometry.extent();
         walls.push_back(make_wall(flat.terrain(), extent.x_min, extent.y_min, 0, extent.y_max, 2 * height));
-        Model model = make_model(setting.material, setting.solver, flat.terrain(), walls, spacing);
+        Model model = make_model(setting.material, setting.solver, spacing);
+        Ground ground(flat.terrain(), walls, model.support_radius);
         const auto depth = [&](double, double) { return height; };
         const auto points =
             fill_lattice(flat, spacing, 0, static_cast<int>(std::lround(resolution)), -width / 2, spec.width, depth);
-        State start = state_under_weight(model, points, flat, depth);
-        Trial trial({std::move(model), std::move(start)}, watch);
+        State start = state_under_weight(model, ground, points, flat, depth);
+        Trial trial({std::move(model), std::move(ground), std::move(start)}, watch);
         const State& state = trial.state();
         // Where the water still covers the bed; drops ahead of it are not the front.
         const auto front = [&] {
