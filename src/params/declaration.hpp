@@ -81,8 +81,9 @@ class Declaration {
     }
 
     /// A key that always has a value.
-    template <class Member>
-    Parameter& key(std::string name, std::string unit, Member Struct::*member, Range range, std::string help) {
+    template <class Holder, class Member>
+    Parameter& key(std::string name, std::string unit, Member Holder::*member, Range range, std::string help) {
+        static_assert(std::is_base_of_v<Holder, Struct>);
         Parameter& p = add(std::move(name), std::move(unit), kind_of<Member>(), range, std::move(help));
         p.get = [part = part_, member](const SceneSpec& spec, std::size_t index) {
             return to_value(part(const_cast<SceneSpec&>(spec), index).*member);
@@ -185,10 +186,20 @@ class Declaration {
 };
 
 /// Friction by pairs has no such law.
-[[nodiscard]] inline std::optional<Violation> needs_stress(const char* key, bool used, const SceneSpec& scene) {
-    if (!used || scene.solver.internal_friction == InternalFriction::stress) return {};
-    return Violation{key, ": needs solver.internal_friction = \"stress\"; friction by pairs has no such law"};
+[[nodiscard]] inline Need stress(bool even_at_0 = false) {
+    return {"solver.internal_friction", "stress", "friction by pairs has no such law", even_at_0};
 }
+
+/// Where debris comes from.
+[[nodiscard]] Section declare_release();
+[[nodiscard]] Section declare_inflow();
+[[nodiscard]] Section declare_hydrograph();
+[[nodiscard]] Section declare_bed();
+
+/// What stands in its way.
+[[nodiscard]] Section declare_buildings();
+[[nodiscard]] Section declare_barrier();
+[[nodiscard]] Section declare_barrier_opening();
 
 /// What moves, and ground that differs.
 [[nodiscard]] Section declare_material();

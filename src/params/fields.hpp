@@ -12,7 +12,7 @@
 
 #include "params/spec.hpp"
 
-/// The field table: every tunable of a scene, declared once in fields.cpp. The parser, the scene writer, --help,
+/// The field table: every tunable of a scene, declared once in *fields.cpp. The parser, the scene writer, --help,
 /// docs/scene-reference.md and the manifest all read it. Defaults are the member initialisers in spec.hpp.
 namespace talus {
 
@@ -45,7 +45,15 @@ struct Form {
     double factor = 1;   ///< with a unit of its own only
 };
 
-/// One key of a scene file.
+/// Another key that a value is nothing without.
+struct Need {
+    std::string key, value;  ///< "solver.internal_friction", "stress"
+    std::string why;
+    bool even_at_0 = false;  ///< a value of 0 needs it, too
+};
+
+/// One key of a scene file. What ties it to others stands here where it can be said without code: the page shows it
+/// beside the field; all else is a Rule.
 struct Parameter {
     std::string key;   ///< with its unit: "particle_spacing_m"
     std::string unit;  ///< "m", "" for a pure number or text
@@ -57,6 +65,24 @@ struct Parameter {
     std::string help;    ///< one sentence
     std::string live;    ///< the key by which people change it while a run goes on; empty: they cannot
     std::optional<Form> form;
+    double spacings = 0;       ///< it must be at least so many particle spacings
+    std::string spacings_why;  ///< what happens otherwise
+    std::string below;         ///< key of the section that it must be below, where that is given
+    std::optional<Need> need;
+
+    Parameter& at_least_spacings(double count, std::string why) {
+        spacings = count;
+        spacings_why = std::move(why);
+        return *this;
+    }
+    Parameter& below_key(std::string other) {
+        below = std::move(other);
+        return *this;
+    }
+    Parameter& needs(Need what) {
+        need = std::move(what);
+        return *this;
+    }
 
     /// Lets people change it while a run goes on, by this key or, where left out, its own.
     Parameter& live_as(std::string json_key = "") {
@@ -110,6 +136,12 @@ inline constexpr std::pair<const char*, std::vector<Spec> SceneSpec::*> section_
 template <>
 inline constexpr std::pair section_of<ReleaseSpec>{"release", &SceneSpec::releases};
 template <>
+inline constexpr std::pair section_of<InflowSpec>{"inflow", &SceneSpec::inflows};
+template <>
+inline constexpr std::pair section_of<InflowSample>{"hydrograph", &SceneSpec::hydrograph};
+template <>
+inline constexpr std::pair section_of<BuildingSpec>{"buildings", &SceneSpec::buildings};
+template <>
 inline constexpr std::pair section_of<BarrierSpec>{"barrier", &SceneSpec::barriers};
 template <>
 inline constexpr std::pair section_of<BarrierOpeningSpec>{"barrier_opening", &SceneSpec::barrier_openings};
@@ -122,6 +154,14 @@ inline constexpr std::pair section_of<BedSpec>{"bed", &SceneSpec::beds};
 [[nodiscard]] const std::vector<Section>& scene_sections();
 [[nodiscard]] const Section* find_section(std::string_view name);
 
+/// All that people can change while a run goes on has its keys in one of these: the sections of a scene file, and
+/// tables that have a file of their own.
+[[nodiscard]] const std::vector<Section>& live_sections();
+[[nodiscard]] const Section& live_section(std::string_view name);
+
+/// The declaration of a key that there is.
+[[nodiscard]] const Parameter& parameter_of(std::string_view section, std::string_view key);
+
 /// The default, monostate where there is none.
 [[nodiscard]] ParameterValue default_value(const Section& section, const Parameter& parameter);
 
@@ -132,7 +172,7 @@ inline constexpr std::pair section_of<BedSpec>{"bed", &SceneSpec::beds};
 [[nodiscard]] std::optional<Violation> wrong_choice(const Section& section, const SceneSpec& spec, std::size_t index,
                                                     bool live_only);
 
-/// The first rule that an entry breaks.
+/// The first rule that an entry breaks. `particle_spacing`: m, 0 as long as it is not known.
 [[nodiscard]] std::optional<Violation> broken_rule(const Section& section, const SceneSpec& spec, std::size_t index,
                                                    double particle_spacing);
 

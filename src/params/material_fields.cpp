@@ -21,12 +21,14 @@ void declare_resistance(Declaration<MaterialSpec>& s) {
          "cohesion_Pa", "Pa", &MaterialSpec::cohesion, at_least(0),
          "Shear strength that needs no pressure, on the ground and inside: the yield stress of a mud where friction is "
          "0.")
-        .live_as();
+        .live_as()
+        .needs(stress());
     s.key(
          "pore_pressure_ratio", "", &MaterialSpec::pore_pressure_ratio, between(0, 1),
          "r_u, pore pressure over the total normal stress when debris starts: friction on ground, buildings and inside "
          "is 1 - r_u of what it is in dry debris.")
-        .live_as();
+        .live_as()
+        .needs(stress());
     s.optional_key("pore_pressure_decay_time_s", "s", &MaterialSpec::pore_pressure_decay_time, above(0),
                    "pore pressure stays", "Time since a body's start in which its pore-pressure ratio falls to 1/e.");
     s.key("rest_density_kgpm3", "kg/m3", &MaterialSpec::rest_density, above_to(0, 30000), "Bulk density of the debris.")
@@ -34,7 +36,8 @@ void declare_resistance(Declaration<MaterialSpec>& s) {
     s.optional_key("inertial_friction_coefficient", "", &MaterialSpec::inertial_friction_coefficient, between(0, 10),
                    "friction does not depend on the shear rate",
                    "Internal friction that is neared as shear gets fast (mu(I) law); at slow shear it is "
-                   "internal_friction_coefficient.");
+                   "internal_friction_coefficient.")
+        .needs(stress(true));
     s.key("inertial_number", "", &MaterialSpec::inertial_number, above(0),
           "Inertial number at which internal friction has risen half way to inertial_friction_coefficient.");
     s.key("grain_diameter_m", "m", &MaterialSpec::grain_diameter, above_to(0, 100),
@@ -72,15 +75,6 @@ Section declare_material() {
         return Violation{"inertial_friction_coefficient",
                          fmt::format(" = {} is refused; it must be at least the internal friction of slow shear, {}",
                                      *material.inertial_friction_coefficient, slow)};
-    });
-    s.rule([](const MaterialSpec& material, const SceneSpec& scene, double) {
-        return needs_stress("cohesion_Pa", material.cohesion > 0, scene);
-    });
-    s.rule([](const MaterialSpec& material, const SceneSpec& scene, double) {
-        return needs_stress("pore_pressure_ratio", material.pore_pressure_ratio > 0, scene);
-    });
-    s.rule([](const MaterialSpec& material, const SceneSpec& scene, double) {
-        return needs_stress("inertial_friction_coefficient", material.inertial_friction_coefficient.has_value(), scene);
     });
     return s.take();
 }
@@ -126,7 +120,8 @@ Section declare_zone() {
                   .slider_high = 10,
                   .first = 1,
                   .tick = "Cohesion",
-                  .tick_help = "Cohesion of its own; unticked: as elsewhere"});
+                  .tick_help = "Cohesion of its own; unticked: as elsewhere"})
+        .needs(stress(true));
     s.key("stem_density_pm2", "1/m2", &ZoneSpec::stem_density, at_least(0),
           "Stems of a forest per square metre that stand the flow; each drags on it as a cylinder.")
         .live_in({.label = "Stems",
@@ -154,9 +149,6 @@ Section declare_zone() {
         return Violation{"friction_coefficient",
                          ": the zone says nothing; give friction_coefficient, turbulent_friction_mps2, cohesion_Pa, "
                          "stem_density_pm2 or raster_holds"};
-    });
-    s.rule([](const ZoneSpec& zone, const SceneSpec& scene, double) {
-        return needs_stress("cohesion_Pa", zone.cohesion.has_value(), scene);
     });
     return s.take();
 }

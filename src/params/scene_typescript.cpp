@@ -48,6 +48,20 @@ std::string field_of(const Parameter& parameter) {
         form.tick.empty() ? "null" : toml_text(form.tick), toml_text(form.tick_help), toml_text(parameter.help));
 }
 
+/// What ties the key to others; "" where nothing does.
+std::string tie_of(const Parameter& parameter) {
+    std::string tie;
+    if (parameter.spacings > 0) {
+        tie += fmt::format("\n      spacings: {:.8g}, why: {},", parameter.spacings, toml_text(parameter.spacings_why));
+    }
+    if (!parameter.below.empty()) tie += fmt::format("\n      below: {},", toml_text(parameter.below));
+    if (const auto& need = parameter.need) {
+        tie += fmt::format("\n      needs: {{ key: {}, value: {}, why: {} }},", toml_text(need->key),
+                           toml_text(need->value), toml_text(need->why));
+    }
+    return tie.empty() ? "" : fmt::format("    {}: {{{}\n    }},\n", parameter.live, tie);
+}
+
 /// "barrier_opening" -> "BarrierOpeningValues".
 std::string interface_name(const std::string& section) {
     std::string name;
@@ -62,19 +76,21 @@ std::string interface_name(const std::string& section) {
 }  // namespace
 
 std::string scene_typescript() {
-    std::string types, fields;
-    for (const Section& section : scene_sections()) {
-        std::string members, of_section;
+    std::string types, fields, ties;
+    for (const Section& section : live_sections()) {
+        std::string members, of_section, ties_of_section;
         for (const Parameter& parameter : section.parameters) {
             if (parameter.live.empty()) continue;
             const std::string absent = parameter.absent.empty() ? "" : " null: " + parameter.absent + ".";
             members +=
                 fmt::format("  /** {}{} */\n  {}: {};\n", parameter.help, absent, parameter.live, type_of(parameter));
             if (parameter.form) of_section += field_of(parameter);
+            ties_of_section += tie_of(parameter);
         }
         if (members.empty()) continue;
         types += fmt::format("/** {} */\nexport interface {} {{\n{}}}\n\n", section.help, interface_name(section.name),
                              members);
+        if (!ties_of_section.empty()) ties += fmt::format("  {}: {{\n{}  }},\n", section.name, ties_of_section);
         if (!of_section.empty()) fields += fmt::format("  {}: {{\n{}  }},\n", section.name, of_section);
     }
     return "// Generated from the field table by `talus scene reference --typescript`; a test keeps it current.\n\n" +
@@ -86,7 +102,15 @@ std::string scene_typescript() {
            "  label: string; unit: string; factor: number; low: number; high: number; sliderLow: number; sliderHigh: "
            "number; first: number;\n  tick: string | null; tickHelp: string; help: string;\n}\n\n"
            "/** By section and key. */\nexport const fields = {\n" +
-           fields + "} as const satisfies Record<string, Record<string, FieldDescription>>;\n";
+           fields +
+           "} as const satisfies Record<string, Record<string, FieldDescription>>;\n\n"
+           "/** What ties a value to others. `spacings`: it is at least so many particle spacings; `below`: the key "
+           "that it "
+           "is below, where that is given; `needs`: a key of the scene without which the value is refused. */\n"
+           "export interface Tie {\n  spacings?: number; why?: string;\n  below?: string;\n"
+           "  needs?: { key: string; value: string; why: string };\n}\n\n"
+           "/** By section and key. */\nexport const ties: Record<string, Record<string, Tie>> = {\n" +
+           ties + "};\n";
 }
 
 }  // namespace talus

@@ -48,6 +48,7 @@ struct ReleaseSpec {
     std::optional<double> volume;               ///< m3, spread as a uniform thickness
     double start_time = 0;                      ///< s
     std::optional<double> pore_pressure_ratio;  ///< r_u; absent: that of the material
+    bool operator==(const ReleaseSpec&) const = default;
 };
 
 /// `[[bed]]`: loose material that debris picks up; exactly one of depth, depth_attribute, depth_raster.
@@ -72,15 +73,31 @@ struct InflowSpec {
     std::string polygon_file;
     std::optional<double> direction;  ///< degrees clockwise from north, of what comes in over an area; absent: downhill
     std::string hydrograph;           ///< CSV
+    [[nodiscard]] bool over_area() const { return !polygon.empty() || !polygon_file.empty(); }
+    bool operator==(const InflowSpec&) const = default;
+};
+
+/// A row of a hydrograph; between rows all change linearly.
+struct InflowSample {
+    double time = 0;       ///< s
+    double discharge = 0;  ///< m3/s of bulk debris at its own density
+    double velocity = 0;   ///< m/s, along the ground
+    double density = 0;    ///< kg/m3; 0 in every row: that of the material
+    bool operator==(const InflowSample&) const = default;
+};
+
+/// What every building has of its own; [buildings] gives it to those whose data do not.
+struct BuildingSpec {
+    double height = 6;  ///< m above the mean ground of the footprint
+    bool operator==(const BuildingSpec&) const = default;
 };
 
 /// `[buildings]`: no file means no buildings.
-struct BuildingsSpec {
+struct BuildingsSpec : BuildingSpec {
     std::string file;
     std::string layer;
     std::string height_attribute;
     std::string name_attribute;
-    double default_height = 6;  ///< m, where the attribute is absent or empty
     std::string resistance_attribute;
     std::optional<double> resistance;  ///< Pa; absent: they stand whatever happens
 };
@@ -286,6 +303,8 @@ struct SceneSpec {
     std::vector<ReleaseSpec> releases;
     std::vector<BedSpec> beds;
     std::vector<InflowSpec> inflows;
+    std::vector<InflowSample>
+        hydrograph;  ///< of one inflow while it is read; a file of its own, no section of the scene's
     BuildingsSpec buildings;
     std::vector<BarrierSpec> barriers;
     std::vector<BarrierOpeningSpec> barrier_openings;

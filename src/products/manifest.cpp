@@ -56,7 +56,7 @@ Json resolved(const Scene& scene, const RunResult& result) {
     Json releases = Json::array();
     for (const Release& release : scene.releases) {
         releases.push_back(
-            {{"name", release.name}, {"start_time_s", release.start_time}, {"volume_m3", release.volume}});
+            {{"name", release.name}, {"start_time_s", release.spec.start_time}, {"volume_m3", release.volume}});
     }
     Json inflows = Json::array();
     for (const Inflow& inflow : scene.inflows) {

@@ -73,7 +73,8 @@ Status write_releases(const Scene& scene, const std::string& file) {
         for (const ReleasePatch& patch : release.patches) {
             // Where a raster gives the thickness there is no single value.
             const double thickness = release.thickness_raster ? never : patch.thickness;
-            features.push_back({{patch.polygon}, {}, {release.name, release.start_time, thickness, release.volume}});
+            features.push_back(
+                {{patch.polygon}, {}, {release.name, release.spec.start_time, thickness, release.volume}});
         }
     }
     return write_geopackage_layer(file, "release",

@@ -1,6 +1,5 @@
 // What came in while the run went on.
 #include <algorithm>
-#include <numbers>
 #include <string>
 #include <vector>
 
@@ -21,9 +20,8 @@ std::string way_in(const Inflow& inflow) {
     double area = 0;
     for (const Polygon& part : inflow.area) area += plan_area(part);
     return fmt::format("over {} m², {}", fixed(area, 0),
-                       inflow.direction
-                           ? fmt::format("towards {}° from north", fixed(*inflow.direction * 180 / std::numbers::pi, 0))
-                           : "down the slope");
+                       inflow.spec.direction ? fmt::format("towards {}° from north", fixed(*inflow.spec.direction, 0))
+                                             : "down the slope");
 }
 
 Json mass_of(const Inflow& inflow) {

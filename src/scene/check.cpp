@@ -37,7 +37,7 @@ std::string release_line(const Scene& scene, const Release& release) {
     const double slope_area = release_volume(scene.terrain, unit);
     return fmt::format(
         "release     \"{}\": {:.6g} m3, {:.6g} m2 in plan, mean thickness {:.3g} m, starts at {:.4g} s\n", release.name,
-        release.volume, plan, slope_area > 0 ? release.volume / slope_area : 0, release.start_time);
+        release.volume, plan, slope_area > 0 ? release.volume / slope_area : 0, release.spec.start_time);
 }
 
 std::string particle_line(const Scene& scene, double volume, double spacing) {

@@ -1,11 +1,13 @@
 #include "scene/hydrograph.hpp"
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <cstddef>
 #include <filesystem>
 #include <fstream>
 #include <sstream>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -15,10 +17,6 @@
 
 namespace talus {
 namespace {
-
-constexpr std::size_t most_rows = 1'000'000;
-constexpr std::size_t needed_columns = 3;
-constexpr const char* columns[] = {"time_s", "discharge_m3ps", "velocity_mps", "density_kgpm3"};
 
 std::string trimmed(const std::string& text) {
     const std::size_t first = text.find_first_not_of(" \t\r\"");
@@ -41,71 +39,61 @@ bool read_number(const std::string& text, double& value) {
 
 }  // namespace
 
-std::string problem_with_row(const InflowSample& row, const InflowSample* before, const HydrographKind& kind) {
-    const double values[] = {row.time, row.discharge, row.velocity};
-    for (std::size_t c = 0; c < needed_columns; ++c) {
-        if (std::isfinite(values[c]) && values[c] >= 0) continue;
-        return fmt::format("{} = {:.6g} is refused; it must be a number of at least 0", columns[c], values[c]);
-    }
-    if (kind.has_density) {
-        const std::string allowed = problem_with(*find_section("material")->find("rest_density_kgpm3"), row.density);
-        if (!allowed.empty()) {
-            return fmt::format("density_kgpm3 = {:.6g} is refused; it must be {}", row.density, allowed);
-        }
-    }
-    if (before != nullptr && row.time <= before->time) {
-        return fmt::format("time_s = {:.6g} is refused; it must be above that of the row before, {:.6g}", row.time,
-                           before->time);
-    }
-    if (row.discharge > 0 && !(row.velocity > 0) && !kind.may_be_still) {
-        return fmt::format("velocity_mps = {:.6g} is refused; it must be above 0 where there is discharge",
-                           row.velocity);
-    }
-    return "";
-}
-
-Result<std::vector<InflowSample>> read_hydrograph(const std::string& file, bool may_be_still) {
+Result<std::vector<InflowSample>> read_hydrograph(const InflowSpec& inflow) {
+    const std::string& file = inflow.hydrograph;
     std::ifstream in(file, std::ios::binary);
     std::error_code code;
     if (!in || std::filesystem::is_directory(file, code)) return Error{file + ": no such file, or it cannot be opened"};
     std::string line;
     std::getline(in, line);
     const std::vector<std::string> header = fields_of(line.substr(0, 1000));
-    std::size_t place[4] = {}, count = 4;
-    for (std::size_t c = 0; c < 4; ++c) {
-        while (place[c] < header.size() && header[place[c]] != columns[c]) ++place[c];
-        if (place[c] < header.size()) continue;
-        if (c >= needed_columns) {
-            count = needed_columns;
-            break;
+    const Section& table = live_section("hydrograph");
+    std::vector<std::pair<const Parameter*, std::size_t>> columns;  // and its place in a line
+    for (const Parameter& column : table.parameters) {
+        const auto found = std::find(header.begin(), header.end(), column.key);
+        if (found != header.end()) {
+            columns.emplace_back(&column, found - header.begin());
+        } else if (column.required) {
+            return Error{
+                fmt::format("{}:1: there is no column {}; the first line must name time_s, discharge_m3ps and "
+                            "velocity_mps, separated by commas",
+                            file, column.key)};
         }
-        return Error{
-            fmt::format("{}:1: there is no column {}; the first line must name time_s, discharge_m3ps and "
-                        "velocity_mps, separated by commas",
-                        file, columns[c])};
     }
-    std::vector<InflowSample> rows;
+    SceneSpec read;
+    read.inflows.push_back(inflow);
     for (std::size_t number = 2; std::getline(in, line); ++number) {
         if (trimmed(line).empty()) continue;
-        if (rows.size() >= most_rows) return Error{fmt::format("{}: has more than {} rows", file, most_rows)};
+        const std::size_t row = read.hydrograph.size();
+        if (row >= most_rows) return Error{fmt::format("{}: has more than {} rows", file, most_rows)};
         const std::vector<std::string> fields = fields_of(line.substr(0, 1000));
-        double values[4] = {};
-        for (std::size_t c = 0; c < count; ++c) {
-            const std::string text = place[c] < fields.size() ? fields[place[c]] : "";
-            if (!read_number(text, values[c]) || values[c] < 0) {
-                return Error{fmt::format("{}:{}: {} = \"{}\" is refused; it must be a number of at least 0", file,
-                                         number, columns[c], one_line(text, 40))};
+        read.hydrograph.emplace_back();
+        for (const auto& [column, place] : columns) {
+            const std::string text = place < fields.size() ? fields[place] : "";
+            double value = 0;
+            if (!read_number(text, value) || !problem_with(*column, value).empty()) {
+                return Error{fmt::format("{}:{}: {} = \"{}\" is refused; it must be {}", file, number, column->key,
+                                         one_line(text, 40), allowed_text(*column))};
             }
+            column->set(read, row, value);
         }
-        const InflowSample row{values[0], values[1], values[2], values[3]};
-        const std::string problem =
-            problem_with_row(row, rows.empty() ? nullptr : &rows.back(), {may_be_still, count > needed_columns});
-        if (!problem.empty()) return Error{fmt::format("{}:{}: {}", file, number, problem)};
-        rows.push_back(row);
+        if (const auto broken = broken_rule(table, read, row, 0)) {
+            return Error{fmt::format("{}:{}: {}{}", file, number, broken->key, broken->text)};
+        }
     }
-    if (rows.size() < 2)
-        return Error{fmt::format("{}: has {} rows of values; it must have at least 2", file, rows.size())};
-    return rows;
+    if (read.hydrograph.size() < fewest_rows) {
+        return Error{fmt::format("{}: has {} rows of values; it must have at least {}", file, read.hydrograph.size(),
+                                 fewest_rows)};
+    }
+    return std::move(read.hydrograph);
+}
+
+Status check_hydrograph(const Inflow& inflow, const SolverSpec& solver, const std::string& at) {
+    if (!(inflow.volume() > 0)) return Error{at + ": brings no debris at all"};
+    const double start = inflow.hydrograph.front().time;
+    if (start < solver.end_time) return {};
+    return Error{fmt::format("{}: begins at {:.6g} s; that must be below solver.end_time_s = {:.6g}", at, start,
+                             solver.end_time)};
 }
 
 Status check_line(const Inflow& inflow, const Terrain& terrain, const std::string& at) {

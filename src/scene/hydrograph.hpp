@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <string>
 #include <vector>
 
@@ -10,18 +11,15 @@
 /// What inflows are made of, read and checked.
 namespace talus {
 
-struct HydrographKind {
-    bool may_be_still = false;  ///< debris may come in without a velocity: over an area
-    bool has_density = false;
-};
+/// Rows that a hydrograph must and may have.
+inline constexpr std::size_t fewest_rows = 2, most_rows = 1'000'000;
 
-/// What is wrong with a row, such as "time_s = 3 is refused; it must be above ..."; empty: nothing. `before`: the row
-/// before it; nullptr: it is the first.
-[[nodiscard]] std::string problem_with_row(const InflowSample& row, const InflowSample* before,
-                                           const HydrographKind& kind);
+/// Reads a CSV as inflow.hydrograph has it: its columns are the keys of the hydrograph table. Errors name file, line,
+/// column and what is allowed.
+[[nodiscard]] Result<std::vector<InflowSample>> read_hydrograph(const InflowSpec& inflow);
 
-/// Reads a CSV as inflow.hydrograph has it. Errors name file, line, column and what is allowed.
-[[nodiscard]] Result<std::vector<InflowSample>> read_hydrograph(const std::string& file, bool may_be_still);
+/// That it brings debris, and does so before the run ends. Errors begin with `at`.
+[[nodiscard]] Status check_hydrograph(const Inflow& inflow, const SolverSpec& solver, const std::string& at);
 
 /// That the line has a length and lies on known ground. Errors begin with `at`.
 [[nodiscard]] Status check_line(const Inflow& inflow, const Terrain& terrain, const std::string& at);

@@ -10,33 +10,11 @@
 #include "core/hash.hpp"
 #include "core/try.hpp"
 #include "geo/orthophoto.hpp"
-#include "sim/physics/kernel.hpp"
-#include "sim/physics/viscosity.hpp"
+#include "scene/viscosity_limit.hpp"
 #include "sim/seed.hpp"
 
 namespace talus {
 namespace {
-
-/// What a step smooths beyond the whole difference between neighbours would drive them apart.
-Status check_viscosity(const ParsedScene& parsed, const Scene& scene) {
-    const SolverSpec& solver = scene.spec.solver;
-    const MaterialSpec& material = scene.spec.material;
-    const double spacing = choose_particle_spacing(solver, total_volume(scene));
-    const double longest_step = solver.time_step.value_or(solver.largest_time_step);
-    double given = material.viscosity, most = viscosity_reference_step / longest_step;
-    std::string key = "material.viscosity";
-    if (material.kinematic_viscosity) {
-        const Kernel kernel = make_kernel(solver.kernel, spacing, solver.support_ratio * spacing);
-        given = *material.kinematic_viscosity;
-        most = kinematic_viscosity(most, kernel.second_moment);
-        key = "material.kinematic_viscosity_m2ps";
-    }
-    if (given <= most) return {};
-    return Error{
-        fmt::format("{} = {:.4g} is refused; with particles of {:.3g} m and steps of up to {:.3g} s it must be at "
-                    "most {:.4g}; larger particles or shorter steps allow more",
-                    parsed.at(key), given, spacing, longest_step, std::floor(1e4 * most) / 1e4)};
-}
 
 /// "scene.toml" in the folder "valley" is called valley, "valley.toml" too.
 std::string title_from(const std::filesystem::path& file) {
@@ -169,7 +147,10 @@ Result<Scene> assemble_scene(const ParsedScene& parsed) {
     TALUS_TRY(load_releases(parsed, scene));
     TALUS_TRY(load_bed(parsed, scene));
     TALUS_TRY(load_inflows(parsed, scene));
-    TALUS_TRY(check_viscosity(parsed, scene));
+    const double spacing = choose_particle_spacing(scene.spec.solver, total_volume(scene));
+    if (const auto broken = too_viscous(scene.spec.material, scene.spec.solver, spacing)) {
+        return Error{parsed.at("material." + broken->key) + broken->text};
+    }
     TALUS_TRY(load_buildings(parsed, scene));
     TALUS_TRY(load_barriers(parsed, scene));
     TALUS_TRY(load_flow_path(parsed, scene));

@@ -7,12 +7,11 @@
 #include "core/try.hpp"
 #include "geo/vector.hpp"
 #include "scene/attributes.hpp"
+#include "scene/known_ground.hpp"
 #include "scene/load.hpp"
 
 namespace talus {
 namespace {
-
-constexpr double deepest = 100;  // m, as bed.depth_m allows
 
 Status load_one(const ParsedScene& parsed, std::size_t index, Scene& scene) {
     BedSpec& spec = scene.spec.beds[index];
@@ -21,6 +20,7 @@ Status load_one(const ParsedScene& parsed, std::size_t index, Scene& scene) {
     const auto refused = [&](const char* key, const Error& error) {
         return Error{parsed.at(fmt::format("bed[{}].{}", index, key)) + ": " + error.message};
     };
+    const double deepest = parameter_of("bed", "depth_m").range.high;
     BedLayer bed;
     if (!spec.depth_raster.empty()) {
         Result<Raster> read = read_value_raster(spec.depth_raster, scene.crs);
@@ -52,8 +52,7 @@ Status load_one(const ParsedScene& parsed, std::size_t index, Scene& scene) {
     }
     if (!(amount.volume > 0)) {
         return refused(bed.depth_raster != nullptr ? "depth_raster" : "file",
-                       Error{fmt::format("{} covers the centre of no cell of the terrain, {}", label,
-                                         extent_text(covered_extent(scene.terrain)))});
+                       Error{label + " " + covers_no_cell(scene.terrain)});
     }
     scene.notes.push_back(
         fmt::format("{}: {:.6g} m3 on the ground, in cells of {:.4g} m", label, amount.volume, scene.terrain.cell()));

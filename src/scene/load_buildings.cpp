@@ -9,24 +9,22 @@
 #include "core/try.hpp"
 #include "geo/mesh.hpp"
 #include "geo/vector.hpp"
+#include "scene/known_ground.hpp"
 #include "scene/load.hpp"
 #include "scene/polygons.hpp"
 
 namespace talus {
 namespace {
 
-constexpr double highest_building = 1000;  // m, as buildings.default_height_m allows
+/// m, of any building.
+double highest_building() {
+    return parameter_of("buildings", "default_height_m").range.high;
+}
 
 /// Whether any part of the footprint stands on known ground.
 bool on_terrain(const PolygonFeature& feature, const Terrain& terrain) {
-    bool covered = false;
-    const auto test = [&](const PlanPoint& p) { covered = covered || !std::isnan(terrain.elevation_at(p)); };
-    for (const Polygon& part : feature.parts) {
-        for_each_on_rings(part, terrain.cell() / 2, test);
-        if (!covered) for_each_inside(part, terrain.cell() / 2, test);
-        if (covered) return true;
-    }
-    return false;
+    return std::any_of(feature.parts.begin(), feature.parts.end(),
+                       [&](const Polygon& part) { return known_ground(part, terrain).any; });
 }
 
 bool any_has(const PolygonLayer& layer, const std::string& attribute) {
@@ -108,6 +106,8 @@ Status load_mesh_buildings(const ParsedScene& parsed, Scene& scene, std::size_t&
     for (const MeshBuilding& mesh : *meshes) {
         PolygonFeature plan;
         Building building;
+        static_cast<BuildingSpec&>(building) = spec;
+        building.height = 0;  // of the ground, until that is known
         double highest = -std::numeric_limits<double>::infinity();
         for (const RoofFace& roof : mesh.roofs) {
             plan.parts.push_back(roof.outline);
@@ -127,11 +127,11 @@ Status load_mesh_buildings(const ParsedScene& parsed, Scene& scene, std::size_t&
             ++sunk;
             continue;
         }
-        if (building.height > highest_building) {
+        if (building.height > highest_building()) {
             return Error{
                 fmt::format("{}: {}: \"{}\" is {:.6g} m higher than its ground; it must be at most {:.0f} m; are its "
                             "elevations those of the terrain?",
-                            parsed.at("buildings.file"), spec.file, mesh.name, building.height, highest_building)};
+                            parsed.at("buildings.file"), spec.file, mesh.name, building.height, highest_building())};
         }
         const std::string name = attribute_of(mesh, spec.name_attribute);
         building.name = name.empty() ? mesh.name : name;
@@ -169,25 +169,27 @@ Status load_footprints(const ParsedScene& parsed, Scene& scene, std::size_t& out
         Building building;
         building.name = name_of(feature, spec.name_attribute, i + 1);
         building.footprint = feature.parts;
-        building.height = number_of(feature, spec.height_attribute);
+        static_cast<BuildingSpec&>(building) = spec;
+        const double height = number_of(feature, spec.height_attribute);
         const double resistance = number_of(feature, spec.resistance_attribute);
         if (spec.resistance) building.resistance.pressure = *spec.resistance;
         if (resistance > 0) building.resistance.pressure = resistance;
-        if (!(building.height > 0)) {
-            building.height = spec.default_height;
+        if (!(height > 0)) {
             building.height_assumed = true;
             ++assumed;
-        } else if (building.height > highest_building) {
+        } else if (height > highest_building()) {
             return Error{
                 fmt::format("{}: {}: feature {} (\"{}\") has {} = {:.6g}; it must be a height of at most {:.0f} (m)",
                             parsed.at("buildings.height_attribute"), spec.file, i + 1, building.name,
-                            spec.height_attribute, building.height, highest_building)};
+                            spec.height_attribute, height, highest_building())};
+        } else {
+            building.height = height;
         }
         scene.buildings.push_back(std::move(building));
     }
     if (assumed > 0) {
         scene.notes.push_back(fmt::format("buildings: the height of {} of {} is assumed to be {:.6g} m", assumed,
-                                          scene.buildings.size(), spec.default_height));
+                                          scene.buildings.size(), spec.height));
     }
     place_buildings(scene.terrain, scene.buildings);
     return {};

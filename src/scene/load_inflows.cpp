@@ -1,15 +1,12 @@
 #include <cmath>
-#include <numbers>
-#include <optional>
 
 #include <fmt/format.h>
 
 #include "core/try.hpp"
 #include "geo/vector.hpp"
 #include "scene/hydrograph.hpp"
+#include "scene/known_ground.hpp"
 #include "scene/load.hpp"
-#include "scene/polygons.hpp"
-#include "terrain/barrier.hpp"
 
 namespace talus {
 namespace {
@@ -48,20 +45,7 @@ Status load_area(const InflowSpec& spec, const std::string& at, const std::strin
             inflow.area.insert(inflow.area.end(), feature.parts.begin(), feature.parts.end());
         }
     }
-    for (const Polygon& part : inflow.area) {
-        if (!(plan_area(part) > 0)) return Error{at + ": the corners span no area"};
-        if (meets_itself(part.outer)) return Error{at + ": the outline of the area crosses itself"};
-        std::optional<PlanPoint> bare;
-        const auto test = [&](const PlanPoint& p) {
-            if (!bare && std::isnan(scene.terrain.elevation_at(p))) bare = p;
-        };
-        for_each_on_rings(part, scene.terrain.cell() / 2, test);
-        for_each_inside(part, scene.terrain.cell() / 2, test);
-        if (!bare) continue;
-        return Error{fmt::format("{}: is not on known ground at {}; the terrain covers {}", at, place_text(*bare),
-                                 extent_text(covered_extent(scene.terrain)))};
-    }
-    if (spec.direction) inflow.direction = *spec.direction * std::numbers::pi / 180;
+    for (const Polygon& part : inflow.area) TALUS_TRY(check_area(scene.terrain, part, at, true));
     return {};
 }
 
@@ -69,10 +53,9 @@ std::string where_from(const Inflow& inflow, const Terrain& terrain) {
     if (inflow.over_area()) {
         double area = 0;
         for (const Polygon& part : inflow.area) area += plan_area(part);
-        return fmt::format("over {:.4g} m2, {}", area,
-                           inflow.direction
-                               ? fmt::format("towards {:.4g} degrees", *inflow.direction * 180 / std::numbers::pi)
-                               : "down the slope");
+        return fmt::format(
+            "over {:.4g} m2, {}", area,
+            inflow.spec.direction ? fmt::format("towards {:.4g} degrees", *inflow.spec.direction) : "down the slope");
     }
     const double width = std::hypot(inflow.to.x - inflow.from.x, inflow.to.y - inflow.from.y);
     const PlanPoint middle{(inflow.from.x + inflow.to.x) / 2, (inflow.from.y + inflow.to.y) / 2};
@@ -91,17 +74,18 @@ Result<Inflow> load_inflow(const ParsedScene& parsed, std::size_t index, Scene& 
     Inflow inflow;
     inflow.name = spec.name.empty() ? fmt::format("inflow {}", index + 1) : spec.name;
     const std::string label = fmt::format("inflow \"{}\"", inflow.name);
-    const bool over_area = !spec.polygon.empty() || !spec.polygon_file.empty();
+    inflow.spec = spec;
     const std::string at = parsed.at(path + (!spec.line.empty()      ? "line_m"
                                              : !spec.file.empty()    ? "file"
                                              : !spec.polygon.empty() ? "polygon_m"
                                                                      : "polygon_file"));
-    TALUS_TRY(over_area ? load_area(spec, at, label, inflow, scene) : load_line(spec, at, label, inflow, scene));
-    Result<std::vector<InflowSample>> rows = read_hydrograph(spec.hydrograph, over_area);
-    if (!rows) return Error{parsed.at(path + "hydrograph") + ": " + rows.error().message};
+    TALUS_TRY(spec.over_area() ? load_area(spec, at, label, inflow, scene) : load_line(spec, at, label, inflow, scene));
+    const std::string at_hydrograph = parsed.at(path + "hydrograph");
+    Result<std::vector<InflowSample>> rows = read_hydrograph(spec);
+    if (!rows) return Error{at_hydrograph + ": " + rows.error().message};
     record_input(label + " hydrograph", spec.hydrograph, scene);
     inflow.hydrograph = std::move(*rows);
-    if (!(inflow.volume() > 0)) return Error{parsed.at(path + "hydrograph") + ": brings no debris at all"};
+    TALUS_TRY(check_hydrograph(inflow, scene.spec.solver, at_hydrograph));
     scene.notes.push_back(fmt::format("{}: {:.6g} m3 {}", label, inflow.volume(), where_from(inflow, scene.terrain)));
     return Result<Inflow>(std::move(inflow));
 }
@@ -111,11 +95,6 @@ Result<Inflow> load_inflow(const ParsedScene& parsed, std::size_t index, Scene& 
 Status load_inflows(const ParsedScene& parsed, Scene& scene) {
     for (std::size_t index = 0; index < scene.spec.inflows.size(); ++index) {
         TALUS_ASSIGN(Inflow inflow, load_inflow(parsed, index, scene));
-        if (inflow.hydrograph.front().time >= scene.spec.solver.end_time) {
-            return Error{fmt::format("{}: begins at {:.6g} s; that must be below solver.end_time_s = {:.6g}",
-                                     parsed.at(fmt::format("inflow[{}].hydrograph", index)),
-                                     inflow.hydrograph.front().time, scene.spec.solver.end_time)};
-        }
         scene.inflows.push_back(std::move(inflow));
     }
     return {};

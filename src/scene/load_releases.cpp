@@ -7,28 +7,27 @@
 #include "core/try.hpp"
 #include "geo/vector.hpp"
 #include "scene/attributes.hpp"
+#include "scene/known_ground.hpp"
 #include "scene/load.hpp"
 #include "scene/polygons.hpp"
 
 namespace talus {
 namespace {
 
-constexpr double thickest = 1000;  // m, as release.thickness_m allows
+/// m, of any release.
+double thickest() {
+    return parameter_of("release", "thickness_m").range.high;
+}
 
 Result<double> feature_thickness(const ReleaseSpec& spec, const PolygonLayer& layer, std::size_t feature) {
     if (spec.thickness) return *spec.thickness;
     if (spec.thickness_attribute.empty()) return 1.0;  // a raster replaces it, a target volume scales it
-    return read_length(spec.file, layer, feature, {spec.thickness_attribute, "thickness", thickest});
+    return read_length(spec.file, layer, feature, {spec.thickness_attribute, "thickness", thickest()});
 }
 
 /// Every point of the polygon must lie on known ground.
 Status check_covered(const Polygon& polygon, const std::string& label, const Scene& scene) {
-    std::optional<PlanPoint> bare;
-    const auto test = [&](const PlanPoint& p) {
-        if (!bare && std::isnan(scene.terrain.elevation_at(p))) bare = p;
-    };
-    for_each_on_rings(polygon, scene.terrain.cell() / 2, test);
-    for_each_inside(polygon, scene.terrain.cell() / 2, test);
+    const std::optional<PlanPoint> bare = known_ground(polygon, scene.terrain).bare;
     if (!bare) return {};
     const Extent hull = covered_extent(scene.terrain);
     if (hull.contains(*bare)) {
@@ -63,9 +62,9 @@ Status check_thickness_raster(const ReleaseSpec& spec, const std::string& label,
         return Error{
             fmt::format("{}: has no thickness above 0 inside the polygons of {}", spec.thickness_raster, spec.file)};
     }
-    if (thickest_here > thickest) {
+    if (thickest_here > thickest()) {
         return Error{fmt::format("{}: holds a thickness of {:.6g}; it must be at most {:.0f} (m)",
-                                 spec.thickness_raster, thickest_here, thickest)};
+                                 spec.thickness_raster, thickest_here, thickest())};
     }
     if (with_thickness < points) {
         const auto bare = static_cast<double>(points - with_thickness) / static_cast<double>(points);
@@ -79,11 +78,11 @@ Status check_thickness_raster(const ReleaseSpec& spec, const std::string& label,
 Status spread_volume(const ReleaseSpec& spec, const std::string& label, Release& release, Scene& scene) {
     const double slope_area = release_volume(scene.terrain, release);  // the patches are 1 m thick so far
     const double thickness = slope_area > 0 ? *spec.volume / slope_area : 0;
-    if (!(thickness > 0) || thickness > thickest) {
+    if (!(thickness > 0) || thickness > thickest()) {
         return Error{
             fmt::format("{} of {:.6g} m3 over {:.6g} m2 of slope would be {:.6g} m thick; it must be above 0 to "
                         "{:.0f} m",
-                        label, *spec.volume, slope_area, thickness, thickest)};
+                        label, *spec.volume, slope_area, thickness, thickest())};
     }
     for (ReleasePatch& patch : release.patches) patch.thickness = thickness;
     scene.notes.push_back(fmt::format("{}: {:.6g} m3 over {:.4g} m2 of slope is a uniform thickness of {:.4g} m", label,
@@ -107,8 +106,7 @@ Result<Release> load_release(const ParsedScene& parsed, std::size_t index, Scene
 
     Release release;
     release.name = spec.name;
-    release.start_time = spec.start_time;
-    release.pore_pressure_ratio = spec.pore_pressure_ratio;
+    release.spec = spec;
     for (std::size_t feature = 0; feature < layer->features.size(); ++feature) {
         const Result<double> thickness = feature_thickness(spec, *layer, feature);
         if (!thickness) return refused("thickness_attribute", thickness.error());
@@ -152,22 +150,17 @@ Status check_overlaps(const ParsedScene& parsed, const Scene& scene) {
             const Item &first = items[i], &second = items[k];
             const Polygon& a = scene.releases[first.release].patches[first.patch].polygon;
             const Polygon& b = scene.releases[second.release].patches[second.patch].polygon;
-            const Overlap overlap = overlap_of(a, b);
-            if (!is_true_overlap(overlap, a, b)) continue;
-            const std::string where = fmt::format("by {:.4g} m2 around {}", overlap.area, place_text(overlap.place));
+            const std::string shared = shared_ground(a, b);
+            if (shared.empty()) continue;
             const std::size_t later = std::max(first.release, second.release);
             const std::size_t earlier = std::min(first.release, second.release);
             const std::string at = parsed.at(fmt::format("release[{}].file", later));
             if (later == earlier) {
-                return Error{
-                    fmt::format("{}: polygons of release \"{}\" overlap {}; the same ground cannot fail twice, "
-                                "merge or trim them",
-                                at, scene.releases[later].name, where)};
+                return Error{fmt::format("{}: polygons of release \"{}\" overlap {}, merge or trim them", at,
+                                         scene.releases[later].name, shared)};
             }
-            return Error{
-                fmt::format("{}: releases \"{}\" and \"{}\" overlap {}; the same ground cannot fail twice, trim "
-                            "one of them",
-                            at, scene.releases[earlier].name, scene.releases[later].name, where)};
+            return Error{fmt::format("{}: releases \"{}\" and \"{}\" overlap {}, trim one of them", at,
+                                     scene.releases[earlier].name, scene.releases[later].name, shared)};
         }
     }
     return {};

@@ -9,6 +9,7 @@
 #include "core/try.hpp"
 #include "geo/vector.hpp"
 #include "params/fields.hpp"
+#include "scene/known_ground.hpp"
 #include "scene/load.hpp"
 #include "scene/polygons.hpp"
 
@@ -52,10 +53,10 @@ Result<std::vector<Polygon>> read_outline(const ZoneSpec& spec, const std::strin
     return parts;
 }
 
-/// The range that a coefficient may have, also where it comes from a raster.
-const Parameter& parameter_of(ZoneRaster raster) {
-    return *find_section("zone")->find(raster == ZoneRaster::friction_coefficient ? "friction_coefficient"
-                                                                                  : "turbulent_friction_mps2");
+/// The key whose range a coefficient has, also where it comes from a raster.
+const Parameter& key_of(ZoneRaster raster) {
+    return parameter_of(
+        "zone", raster == ZoneRaster::friction_coefficient ? "friction_coefficient" : "turbulent_friction_mps2");
 }
 
 /// The cells of the terrain that the raster says, with its values. Errors: a coefficient out of range.
@@ -72,7 +73,7 @@ Result<ZoneCells> read_cells(const ZoneSpec& spec, const Grid<float>& raster, co
             cells.cell.push_back(terrain.index(column, row));
             cells.value.push_back(value);
             if (spec.raster_holds == ZoneRaster::zone_number) continue;
-            const std::string allowed = problem_with(parameter_of(spec.raster_holds), double{value});
+            const std::string allowed = problem_with(key_of(spec.raster_holds), double{value});
             if (!allowed.empty()) {
                 return Error{
                     fmt::format("{}: holds {:.6g} at {}; it must be {}", spec.raster, value, place_text(p), allowed)};
@@ -107,10 +108,7 @@ Status load_zone(const ParsedScene& parsed, std::size_t index, Scene& scene) {
     }
     const double area = area_of(zone, terrain);
     if (!(area > 0)) {
-        return refused(
-            Error{fmt::format("{} covers the centre of no cell of the terrain, {} in cells of {:.6g} m; leave "
-                              "it out or redraw it",
-                              label, extent_text(terrain.extent()), terrain.cell)});
+        return refused(Error{label + " " + covers_no_cell(scene.terrain) + "; leave it out or redraw it"});
     }
     scene.notes.push_back(fmt::format("{}: {:.0f} cells of the terrain, {:.6g} m2 in plan", label,
                                       area / (terrain.cell * terrain.cell), area));

@@ -26,7 +26,7 @@ Schema schema_of(const Parameter& parameter) {
 /// Calls f(parameter) for what people can change in the section while a run goes on.
 template <class F>
 void for_each_live(const std::string& section, const F& f) {
-    for (const Parameter& parameter : find_section(section)->parameters) {
+    for (const Parameter& parameter : live_section(section).parameters) {
         if (!parameter.live.empty()) f(parameter);
     }
 }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <numeric>
 
 #include "sim/change.hpp"
@@ -127,7 +128,10 @@ LocalPoint AreaSource::take_site(const Model& model, const Ground& ground) {
 LocalPoint AreaSource::velocity_at(const Ground& ground, const LocalPoint& p, double time) const {
     const Vec3<double> normal = ground.terrain.sample(static_cast<double>(p.x), static_cast<double>(p.y)).normal;
     Vec3<double> level{normal.x, normal.y, 0};
-    if (inflow_.direction) level = {std::sin(*inflow_.direction), std::cos(*inflow_.direction), 0};
+    if (inflow_.spec.direction) {
+        const double azimuth = *inflow_.spec.direction * std::numbers::pi / 180;
+        level = {std::sin(azimuth), std::cos(azimuth), 0};
+    }
     Vec3<double> along = level - normal * dot(level, normal);
     const double size = length(along);
     if (!(size > 1e-6)) return {};  // level ground has no way down

@@ -198,7 +198,7 @@ Result<State> seed_releases(Model& model, const Ground& ground, const std::vecto
             }
         }
         model.releases.push_back(
-            {releases[r].name, releases[r].start_time, first, next, releases[r].pore_pressure_ratio});
+            {releases[r].name, releases[r].spec.start_time, first, next, releases[r].spec.pore_pressure_ratio});
     }
     state.seeded = state.count = next;
     if (state.count == 0) return state;

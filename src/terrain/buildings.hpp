@@ -22,10 +22,9 @@ struct Resistance {
 
 /// A solid with vertical walls and a flat roof, from below the ground up to `roof_elevation` (not finite: no solid).
 /// Its parts may have a roof each, as those of a wall whose crest follows the ground.
-struct Building {
+struct Building : BuildingSpec {
     std::string name;
     std::vector<Polygon> footprint;              ///< world plan coordinates
-    double height = 0;                           ///< m above the mean ground of the footprint
     bool height_assumed = false;                 ///< from the default, not from the data
     double roof_elevation = 0;                   ///< m, world; set by place_buildings
     std::vector<double> part_roof_elevations{};  ///< m, world, per part of the footprint; empty: one roof for all

@@ -1,21 +1,12 @@
 #pragma once
 
-#include <optional>
 #include <string>
 #include <vector>
 
 #include "core/geometry.hpp"
+#include "params/spec.hpp"
 
 namespace talus {
-
-/// A row of a hydrograph; between rows all change linearly.
-struct InflowSample {
-    double time = 0;       ///< s
-    double discharge = 0;  ///< m3/s of bulk debris at its own density
-    double velocity = 0;   ///< m/s, along the ground
-    double density = 0;    ///< kg/m3; 0 in every row: that of the material
-    bool operator==(const InflowSample&) const = default;
-};
 
 /// Debris that comes in across a straight line, at right angles to it and towards its right, seen from `from` to `to`;
 /// or all over an area.
@@ -24,7 +15,7 @@ struct Inflow {
     PlanPoint from, to;                    ///< world
     std::vector<InflowSample> hydrograph;  ///< by time, two rows or more
     std::vector<Polygon> area = {};        ///< world; empty: across the line
-    std::optional<double> direction = {};  ///< over an area: azimuth clockwise from north; absent: down the slope
+    InflowSpec spec = {};                  ///< all else that the scene or people say of it, but for its name
 
     [[nodiscard]] bool over_area() const { return !area.empty(); }
     [[nodiscard]] bool has_density() const { return hydrograph.front().density > 0; }

@@ -6,6 +6,7 @@
 
 #include "core/geometry.hpp"
 #include "core/grid.hpp"
+#include "params/spec.hpp"
 #include "terrain/terrain.hpp"
 
 namespace talus {
@@ -20,11 +21,10 @@ struct ReleasePatch {
 /// A body of debris that starts to move at one moment.
 struct Release {
     std::string name;
-    double start_time = 0;                        ///< s
     std::vector<ReleasePatch> patches;            ///< not overlapping
     std::optional<Grid<float>> thickness_raster;  ///< if present, replaces the patches' thickness (NaN, <= 0: none)
     double volume = 0;                            ///< m3, as integrated by release_volume
-    std::optional<double> pore_pressure_ratio;    ///< absent: that of the material
+    ReleaseSpec spec;                             ///< all else that the scene or people say of it, but for its name
 
     /// Thickness normal to the slope at a world plan position; 0 outside the patches.
     [[nodiscard]] double thickness_at(const PlanPoint& p) const;

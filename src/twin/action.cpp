@@ -12,7 +12,7 @@
 #include <fmt/format.h>
 
 #include "core/try.hpp"
-#include "sim/physics/viscosity.hpp"
+#include "scene/viscosity_limit.hpp"
 #include "terrain/barrier.hpp"
 #include "twin/json_keys.hpp"
 #include "twin/put.hpp"
@@ -46,7 +46,6 @@ class ActionReader {
     Status set_parameter(const json& entry);
     [[nodiscard]] Result<std::string> id() const;
     [[nodiscard]] static Error no_such(const std::string& id, const char* what);
-    [[nodiscard]] double highest_viscosity() const;
     /// Changes the entry that the action names, or adds one. `read(existing, name)` makes the body of `existing`, which
     /// is nullptr for a new one; `add(body)` makes an entry of it; `tell(entry, existing)` says what is done.
     template <class Entry, class Read, class Add, class Tell>
@@ -90,12 +89,6 @@ Error ActionReader::no_such(const std::string& id, const char* what) {
     return Error{fmt::format("id = {}: there is no such {}", shown(json(id)), what)};
 }
 
-/// What a step smooths beyond the whole difference between neighbours would drive them apart (see load_scene).
-double ActionReader::highest_viscosity() const {
-    const SolverSpec& solver = context_.scene.spec.solver;
-    return viscosity_reference_step / solver.time_step.value_or(solver.largest_time_step);
-}
-
 Status ActionReader::set_parameter() {
     TALUS_TRY(check_keys(action_, {"action", "key", "value"}));
     return set_parameter(action_);
@@ -126,12 +119,7 @@ Status ActionReader::set_parameter(const json& entry) {
             fmt::format("key = {}: must be one of {}", shown(entry.value("key", json())), fmt::join(names, ", "))};
     }
     const Parameter& parameter = **found;
-    Range range = parameter.range;
-    if (parameter.key == "viscosity" && highest_viscosity() < range.high) {
-        range.high = std::floor(1e4 * highest_viscosity()) / 1e4;
-        range.high_included = true;
-    }
-    const auto value = read_number(entry, "value", range, parameter.unit);
+    const auto value = read_number(entry, "value", parameter.range, parameter.unit);
     if (!value) return Error{fmt::format("{}: {}", *key, value.error().message)};
     const bool may_follow = !parameter.absent.empty();  // null: as what it follows
     if (!*value && (!may_follow || !entry.contains("value"))) {
@@ -141,12 +129,15 @@ Status ActionReader::set_parameter(const json& entry) {
     SceneSpec spec;
     spec.material = edit_.setup.material;
     parameter.set(spec, 0, *value ? ParameterValue(**value) : ParameterValue());
+    if (parameter.key == "viscosity") spec.material.kinematic_viscosity.reset();
     spec.solver = context_.scene.spec.solver;
     if (Status s = check_live_rules(*find_section("material"), spec, context_.particle_spacing); !s) {
         return Error{"material." + s.error().message};
     }
+    if (const auto broken = too_viscous(spec.material, spec.solver, context_.particle_spacing)) {
+        return Error{"material." + broken->key + broken->text};
+    }
     edit_.setup.material = spec.material;
-    if (parameter.key == "viscosity") edit_.setup.material.kinematic_viscosity.reset();
     const double after = value_in_force(edit_.setup.material, parameter, context_.viscosity);
     const auto shown_value = [](double number) { return std::isnan(number) ? "none" : fmt::format("{:.6g}", number); };
     if (!edit_.sentence.empty()) edit_.sentence += ", ";

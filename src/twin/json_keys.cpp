@@ -100,4 +100,10 @@ json to_json(const Polygon& polygon) {
     return rings;
 }
 
+json polygons_json(const std::vector<Polygon>& polygons) {
+    json list = json::array();
+    for (const Polygon& polygon : polygons) list.push_back(to_json(polygon));
+    return list;
+}
+
 }  // namespace talus::twin

@@ -46,5 +46,6 @@ namespace talus::twin {
 
 /// The outer ring, then holes.
 [[nodiscard]] nlohmann::json to_json(const Polygon& polygon);
+[[nodiscard]] nlohmann::json polygons_json(const std::vector<Polygon>& polygons);
 
 }  // namespace talus::twin

@@ -111,7 +111,7 @@ Status LiveRun::plan_releases(const Setup& next, Change& change) const {
         if (group != nullptr && !group->begun) {
             seed = !same_shape(before->body, release.body) || overlaps_any(release.body->extent(), change.touched);
         } else if (group != nullptr && before->triggered && !release.triggered) {
-            seed = release.body->start_time > state().time;  // its start is taken back
+            seed = release.body->spec.start_time > state().time;  // its start is taken back
         }
         if (!seed) continue;
         to_seed.push_back(&release);
@@ -198,8 +198,8 @@ void LiveRun::replace_releases(Model& model, State& state, Change& change) {
         const std::uint32_t first = state.seeded;
         append_particles(state, seed.state, first);
         groups.push_back({seed.release->id, false});
-        ranges.push_back({seed.release->body->name, seed.release->body->start_time, first, state.seeded,
-                          seed.release->body->pore_pressure_ratio});
+        ranges.push_back({seed.release->body->name, seed.release->body->spec.start_time, first, state.seeded,
+                          seed.release->body->spec.pore_pressure_ratio});
     }
     groups_ = std::move(groups);
     model.releases = std::move(ranges);
@@ -212,7 +212,8 @@ void LiveRun::set_start_times(Model& model, const State& state, const Setup& nex
         const ReleaseSetup& release = *find_id(next.releases, groups_[g].id);
         double& start_time = model.releases[g].start_time;
         const double before = start_time;
-        start_time = release.triggered ? std::min(release.body->start_time, state.time) : release.body->start_time;
+        start_time =
+            release.triggered ? std::min(release.body->spec.start_time, state.time) : release.body->spec.start_time;
         let_go = let_go || (start_time <= state.time && before > state.time);
     }
 }

@@ -18,25 +18,14 @@ constexpr std::size_t most_openings = 100;
 
 /// As it is in the barrier, where the action has none.
 Status read_openings(const json& action, const ActionContext& context, BarrierSpec& barrier) {
-    if (!action.contains("openings") || action["openings"].is_null()) return {};
+    if (!gives(action, "openings")) return {};
     const json& list = action["openings"];
     if (!list.is_array() || list.size() > most_openings) {
         return Error{fmt::format("openings = {}: must be a list of at most {}", shown(list), most_openings)};
     }
-    barrier.openings.clear();
-    for (std::size_t k = 0; k < list.size(); ++k) {
-        const json& entry = list[k].is_object() ? list[k] : json::object();
-        BarrierOpeningSpec opening;
-        Status s = check_keys(entry, live_keys("barrier_opening"), {});
-        if (s) s = read_values(entry, opening);
-        if (s && !(entry.contains("position_m") && entry.contains("width_m"))) {
-            s = Error{
-                fmt::format("{}: must have position_m and width_m; sill_height_m may be left out", shown(list[k]))};
-        }
-        if (s) s = check_rules(opening, context.scene.spec.solver, context.particle_spacing);
-        if (!s) return Error{fmt::format("openings[{}]: {}", k, s.error().message)};
-        barrier.openings.push_back(std::move(opening));
-    }
+    SceneSpec read;
+    TALUS_TRY(read_live_list(list, "openings", live_section("barrier_opening"), read, context.particle_spacing));
+    barrier.openings = std::move(read.barrier_openings);
     return {};
 }
 

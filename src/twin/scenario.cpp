@@ -271,7 +271,7 @@ std::function<Status(const std::filesystem::path&)> Scenario::products() const {
     setup.inflows = p.run->begun_with().inflows;
     Scene scene = scene_of(*p.scene, setup);
     for (std::size_t k = 0; k < setup.releases.size(); ++k) {
-        scene.releases[k].start_time = p.run->start_time_of(setup.releases[k].id);
+        scene.releases[k].spec.start_time = p.run->start_time_of(setup.releases[k].id);
     }
     for (const LiveRun::Removed& removed : p.run->removed()) scene.buildings.push_back(*removed.body);
     for (std::string& note : obstacle_notes(*p.run)) scene.notes.push_back(std::move(note));

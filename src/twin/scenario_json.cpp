@@ -6,6 +6,7 @@
 
 #include "core/hash.hpp"
 #include "core/number_or_null.hpp"
+#include "scene/viscosity_limit.hpp"
 #include "twin/intensity.hpp"
 #include "twin/json_keys.hpp"
 #include "twin/scenario_parts.hpp"
@@ -22,6 +23,31 @@ json range_json(const Range& range) {
             {"high_included", range.high_included}};
 }
 
+/// What a value may be in this scene, whatever the others are.
+Range range_in(const Scene& scene, const Parameter& parameter) {
+    Range range = parameter.range;
+    const double highest = std::floor(1e4 * highest_viscosity(scene.spec.solver)) / 1e4;
+    if (parameter.key == "viscosity" && highest < range.high) {
+        range.high = highest;
+        range.high_included = true;
+    }
+    return range;
+}
+
+/// Keys of the scene that others need, with their values.
+json settings_json(const Scene& scene) {
+    json settings = json::object();
+    for (const Section& section : live_sections()) {
+        for (const Parameter& parameter : section.parameters) {
+            if (parameter.live.empty() || !parameter.need) continue;
+            const std::string& path = parameter.need->key;
+            const std::size_t dot = path.find('.');
+            settings[path] = plain_text(parameter_of(path.substr(0, dot), path.substr(dot + 1)).get(scene.spec, 0));
+        }
+    }
+    return settings;
+}
+
 json live_parameters_json(const Scene& scene, const Model& model, const MaterialSpec& now) {
     json list = json::array();
     for (const Parameter* parameter : live_parameters()) {
@@ -33,7 +59,7 @@ json live_parameters_json(const Scene& scene, const Model& model, const Material
              {"label", label_of(*parameter)},
              {"unit", parameter->unit},
              {"default", number_or_null<json>(value_in_force(scene.spec.material, *parameter, scene_viscosity))},
-             {"range", range_json(parameter->range)},
+             {"range", range_json(range_in(scene, *parameter))},
              {"help", parameter->help},
              {"value", number_or_null<json>(value_in_force(now, *parameter, model.viscosity))}});
     }
@@ -132,6 +158,7 @@ json Scenario::scene_json() const {
             {"flow_path", flow_path_json(scene)},
             {"observations", observations},
             {"parameters", live_parameters_json(scene, model, parts_->setup().material)},
+            {"settings", settings_json(scene)},
             {"intensity", intensity_json()}};
 }
 

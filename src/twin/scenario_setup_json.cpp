@@ -1,14 +1,12 @@
 // The setup as docs/protocol.md has it.
-#include <numbers>
+#include <algorithm>
 #include <utility>
 
 #include "core/number_or_null.hpp"
 #include "terrain/barrier.hpp"
-#include "twin/hydrograph_json.hpp"
 #include "twin/json_keys.hpp"
 #include "twin/scenario_parts.hpp"
 #include "twin/section_values.hpp"
-#include "twin/setup_file.hpp"
 
 namespace talus::twin {
 namespace {
@@ -21,8 +19,7 @@ json zone_json(const ZoneSetup& zone) {
     json entry = values_json(zone.body->spec);
     entry["id"] = zone.id;
     entry["name"] = zone.body->spec.name;
-    entry["polygons"] = json::array();
-    for (const Polygon& part : zone.body->outline) entry["polygons"].push_back(to_json(part));
+    entry["polygons"] = polygons_json(zone.body->outline);
     entry["area_m2"] = zone.area;
     entry["from_scene"] = zone.scene_index >= 0;
     return entry;
@@ -53,16 +50,63 @@ json bed_json(const BedSetup& bed) {
 
 json inflow_json(const InflowSetup& inflow) {
     const Inflow& body = *inflow.body;
-    json polygons = json::array();
-    for (const Polygon& part : body.area) polygons.push_back(to_json(part));
-    return {{"id", inflow.id},
-            {"name", body.name},
-            {"line", body.over_area() ? json() : to_json(std::vector<PlanPoint>{body.from, body.to})},
-            {"polygons", polygons},
-            {"direction_deg", body.direction ? json(*body.direction * 180 / std::numbers::pi) : json()},
-            {"hydrograph", body.hydrograph.size() <= longest_table ? to_json(body.hydrograph) : json()},
-            {"volume_m3", body.volume()},
-            {"from_scene", inflow.scene_index >= 0}};
+    json entry = values_json(body.spec);
+    entry["id"] = inflow.id;
+    entry["name"] = body.name;
+    entry["line"] = body.over_area() ? json() : to_json(std::vector<PlanPoint>{body.from, body.to});
+    entry["polygons"] = polygons_json(body.area);
+    entry["hydrograph"] = body.hydrograph.size() <= longest_table ? list_json(body.hydrograph) : json();
+    entry["volume_m3"] = body.volume();
+    entry["from_scene"] = inflow.scene_index >= 0;
+    return entry;
+}
+
+/// NaN where it differs from place to place.
+double thickness_of(const Release& release) {
+    if (release.patches.empty() || release.thickness_raster) return never;
+    const double thickness = release.patches.front().thickness;
+    const bool same = std::all_of(release.patches.begin(), release.patches.end(),
+                                  [&](const ReleasePatch& patch) { return patch.thickness == thickness; });
+    return same ? thickness : never;
+}
+
+json release_json(const ReleaseSetup& release, const LiveRun& run) {
+    const Release& body = *release.body;
+    json entry = values_json(body.spec), polygons = json::array();
+    for (const ReleasePatch& patch : body.patches) polygons.push_back(to_json(patch.polygon.outer));
+    entry["id"] = release.id;
+    entry["name"] = body.name;
+    entry["polygons"] = std::move(polygons);
+    entry["thickness_m"] = number_or_null<json>(thickness_of(body));
+    entry["volume_m3"] = body.volume;
+    entry["from_scene"] = release.scene_index >= 0;
+    entry["status"] = release.triggered || run.has_begun(release.id) ? "released" : "held";
+    entry["start_time_s"] = number_or_null<json>(run.start_time_of(release.id));
+    return entry;
+}
+
+json barrier_json(const BarrierSetup& barrier) {
+    json entry = values_json(barrier.shape());
+    entry["id"] = barrier.id;
+    entry["name"] = barrier.body->name;
+    entry["line"] = to_json(barrier.shape().line);
+    entry["height_m"] = barrier.body->height;
+    entry["openings"] = list_json(barrier.shape().openings);
+    entry["crest_length_m"] = length_of(barrier.shape().line);
+    entry["from_scene"] = barrier.from_scene;
+    return entry;
+}
+
+json building_json(const BuildingSetup& building) {
+    const Building& body = *building.body;
+    json entry = values_json<BuildingSpec>(body);
+    entry["id"] = building.id;
+    entry["name"] = body.name;
+    entry["footprint"] = polygons_json(body.footprint);
+    entry["base_m"] = number_or_null<json>(body.roof_elevation - body.height);
+    entry["roof_m"] = number_or_null<json>(body.roof_elevation);
+    entry["from_scene"] = building.scene_index >= 0;
+    return entry;
 }
 
 template <class Entry>
@@ -81,47 +125,9 @@ json Scenario::setup_json() const {
         parameters["material." + parameter->key] =
             number_or_null<json>(value_in_force(setup.material, *parameter, p.run->model().viscosity));
     }
-    for (const ReleaseSetup& release : setup.releases) {
-        json polygons = json::array();
-        const Release& body = *release.body;
-        double thickness = body.patches.empty() || body.thickness_raster ? never : body.patches.front().thickness;
-        for (const ReleasePatch& patch : body.patches) {
-            polygons.push_back(to_json(patch.polygon.outer));
-            if (patch.thickness != thickness) thickness = never;
-        }
-        const bool released = release.triggered || p.run->has_begun(release.id);
-        releases.push_back({{"id", release.id},
-                            {"name", body.name},
-                            {"polygons", polygons},
-                            {"thickness_m", number_or_null<json>(thickness)},
-                            {"volume_m3", body.volume},
-                            {"from_scene", release.scene_index >= 0},
-                            {"status", released ? "released" : "held"},
-                            {"start_time_s", number_or_null<json>(p.run->start_time_of(release.id))}});
-    }
-    for (const BarrierSetup& barrier : setup.barriers) {
-        json entry = values_json(barrier.shape());
-        entry.update({{"id", barrier.id},
-                      {"name", barrier.body->name},
-                      {"line", to_json(barrier.shape().line)},
-                      {"height_m", barrier.body->height},
-                      {"openings", openings_json(barrier.shape())},
-                      {"crest_length_m", length_of(barrier.shape().line)},
-                      {"from_scene", barrier.from_scene}});
-        barriers.push_back(std::move(entry));
-    }
-    for (const BuildingSetup& building : setup.buildings) {
-        const Building& body = *building.body;
-        json footprint = json::array();
-        for (const Polygon& part : body.footprint) footprint.push_back(to_json(part));
-        buildings.push_back({{"id", building.id},
-                             {"name", body.name},
-                             {"footprint", footprint},
-                             {"height_m", body.height},
-                             {"base_m", number_or_null<json>(body.roof_elevation - body.height)},
-                             {"roof_m", number_or_null<json>(body.roof_elevation)},
-                             {"from_scene", building.scene_index >= 0}});
-    }
+    for (const ReleaseSetup& release : setup.releases) releases.push_back(release_json(release, *p.run));
+    for (const BarrierSetup& barrier : setup.barriers) barriers.push_back(barrier_json(barrier));
+    for (const BuildingSetup& building : setup.buildings) buildings.push_back(building_json(building));
     json zones = json::array(), beds = json::array(), inflows = json::array();
     for (const ZoneSetup& zone : setup.zones) zones.push_back(zone_json(zone));
     for (const BedSetup& bed : setup.beds) {

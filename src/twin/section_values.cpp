@@ -33,19 +33,28 @@ Result<ParameterValue> read_value(const json& object, const Parameter& parameter
     return Error{fmt::format("{} = {}: must be {}", key, shown(object[key]), allowed_text(parameter))};
 }
 
+/// Whether of alternatives this is the only key that people can change: nothing else can stand for it.
+bool stands_alone(const Section& section, const Parameter& parameter) {
+    const auto live = [&](const std::string& key) { return !section.find(key)->live.empty(); };
+    return std::any_of(section.alternatives.begin(), section.alternatives.end(), [&](const Alternatives& choice) {
+        return std::count(choice.keys.begin(), choice.keys.end(), parameter.key) > 0 &&
+               std::count_if(choice.keys.begin(), choice.keys.end(), live) == 1;
+    });
+}
+
 /// What is given takes the place of its alternatives.
-Status drop_alternatives(const json& object, const Section& section, SceneSpec& spec) {
+Status drop_alternatives(const json& object, const Section& section, SceneSpec& spec, std::size_t index) {
     for (const Alternatives& choice : section.alternatives) {
         std::vector<std::string> given;
         for (const std::string& key : choice.keys) {
             const std::string& live = section.find(key)->live;
-            if (!live.empty() && object.contains(live) && !object[live].is_null()) given.push_back(key);
+            if (!live.empty() && gives(object, live)) given.push_back(key);
         }
         if (given.size() > 1) {
             return Error{fmt::format("{}: only one of {} can be given", given.back(), fmt::join(given, ", "))};
         }
         for (const std::string& key : choice.keys) {
-            if (given.size() == 1 && key != given.front()) section.find(key)->set(spec, 0, {});
+            if (given.size() == 1 && key != given.front()) section.find(key)->set(spec, index, {});
         }
     }
     return {};
@@ -53,28 +62,74 @@ Status drop_alternatives(const json& object, const Section& section, SceneSpec& 
 
 }  // namespace
 
+bool gives(const json& object, const std::string& key) {
+    const auto found = object.find(key);
+    return found != object.end() && !found->is_null();
+}
+
 std::vector<std::string> live_keys(const char* section) {
     std::vector<std::string> keys;
-    for (const Parameter& parameter : find_section(section)->parameters) {
+    for (const Parameter& parameter : live_section(section).parameters) {
         if (!parameter.live.empty()) keys.push_back(parameter.live);
     }
     return keys;
 }
 
-json live_values(const Section& section, const SceneSpec& spec) {
+Status check_complete(const json& object, const char* section, const char* what) {
+    const Section& table = live_section(section);
+    for (const Parameter& parameter : table.parameters) {
+        if (parameter.live.empty() || !(parameter.required || stands_alone(table, parameter))) continue;
+        if (!gives(object, parameter.live)) {
+            return Error{fmt::format("{}: missing; a new {} needs it", parameter.live, what)};
+        }
+    }
+    return {};
+}
+
+json live_values(const Section& section, const SceneSpec& spec, std::size_t index) {
     json values = json::object();
     for (const Parameter& parameter : section.parameters) {
-        if (!parameter.live.empty()) values[parameter.live] = value_json(parameter.get(spec, 0));
+        if (!parameter.live.empty()) values[parameter.live] = value_json(parameter.get(spec, index));
     }
     return values;
 }
 
-Status read_live_values(const json& object, const Section& section, SceneSpec& spec) {
-    TALUS_TRY(drop_alternatives(object, section, spec));
+json live_list(const Section& section, const SceneSpec& spec) {
+    json list = json::array();
+    for (std::size_t index = 0; index < section.count(spec); ++index) list.push_back(live_values(section, spec, index));
+    return list;
+}
+
+Status read_live_values(const json& object, const Section& section, SceneSpec& spec, std::size_t index) {
+    TALUS_TRY(drop_alternatives(object, section, spec, index));
     for (const Parameter& parameter : section.parameters) {
         if (parameter.live.empty() || !object.contains(parameter.live)) continue;
+        if (object[parameter.live].is_null() && stands_alone(section, parameter)) continue;
         TALUS_ASSIGN(const ParameterValue value, read_value(object, parameter));
-        parameter.set(spec, 0, value);
+        parameter.set(spec, index, value);
+    }
+    return {};
+}
+
+Status read_live_list(const json& list, const char* key, const Section& section, SceneSpec& spec,
+                      double particle_spacing) {
+    if (!list.is_array()) return Error{fmt::format("{} = {}: must be a list", key, shown(list))};
+    const std::vector<std::string> keys = live_keys(section.name.c_str());
+    for (std::size_t k = 0; k < list.size(); ++k) {
+        const json& entry = list[k];
+        if (!entry.is_object()) {
+            return Error{
+                fmt::format("{}[{}] = {}: must be an object with {}", key, k, shown(entry), fmt::join(keys, ", "))};
+        }
+        section.append(spec);
+        const std::size_t index = section.count(spec) - 1;
+        Status s = check_keys(entry, keys, {});
+        if (s) s = check_complete(entry, section.name.c_str(), "entry");
+        if (s) s = read_live_values(entry, section, spec, index);
+        if (!s) return Error{fmt::format("{}[{}]: {}", key, k, s.error().message)};
+        if (const auto broken = broken_rule(section, spec, index, particle_spacing)) {
+            return Error{fmt::format("{}[{}]: {}{}", key, k, broken->key, broken->text)};
+        }
     }
     return {};
 }

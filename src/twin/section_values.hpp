@@ -9,44 +9,74 @@
 #include "params/fields.hpp"
 #include "params/spec.hpp"
 
-/// The keys of a section that people change while a run goes on, in JSON: keys, ranges and rules of the scene file.
+/// The keys of a section that people change while a run goes on, in JSON: keys, ranges and rules of the field table.
 namespace talus::twin {
 
 [[nodiscard]] std::vector<std::string> live_keys(const char* section);
 
-[[nodiscard]] nlohmann::json live_values(const Section& section, const SceneSpec& spec);
-[[nodiscard]] Status read_live_values(const nlohmann::json& object, const Section& section, SceneSpec& spec);
+[[nodiscard]] nlohmann::json live_values(const Section& section, const SceneSpec& spec, std::size_t index = 0);
+[[nodiscard]] nlohmann::json live_list(const Section& section, const SceneSpec& spec);
+[[nodiscard]] Status read_live_values(const nlohmann::json& object, const Section& section, SceneSpec& spec,
+                                      std::size_t index = 0);
+/// Adds the entries of a list to the section: keys known, those that are required there, every rule kept. Errors begin
+/// with "key[index]".
+[[nodiscard]] Status read_live_list(const nlohmann::json& list, const char* key, const Section& section,
+                                    SceneSpec& spec, double particle_spacing);
 [[nodiscard]] Status check_live_rules(const Section& section, const SceneSpec& spec, double particle_spacing);
+
+/// That a new entry has what it needs: required keys, and the one live key of alternatives.
+[[nodiscard]] Status check_complete(const nlohmann::json& object, const char* section, const char* what);
+
+/// Whether there is such a key, and no null.
+[[nodiscard]] bool gives(const nlohmann::json& object, const std::string& key);
+
+/// A scene with this entry alone in its section.
+template <class Spec>
+[[nodiscard]] SceneSpec scene_with(const Spec& entry) {
+    SceneSpec spec;
+    auto& place = spec.*section_of<Spec>.second;
+    if constexpr (requires { place.push_back(entry); }) {
+        place.push_back(entry);
+    } else {
+        static_cast<Spec&>(place) = entry;
+    }
+    return spec;
+}
 
 /// The values of those keys; null: not given.
 template <class Spec>
 [[nodiscard]] nlohmann::json values_json(const Spec& entry) {
-    const auto& [section, place] = section_of<Spec>;
+    return live_values(live_section(section_of<Spec>.first), scene_with(entry));
+}
+template <class Spec>
+[[nodiscard]] nlohmann::json list_json(const std::vector<Spec>& entries) {
     SceneSpec spec;
-    spec.*place = {entry};
-    return live_values(*find_section(section), spec);
+    spec.*section_of<Spec>.second = entries;
+    return live_list(live_section(section_of<Spec>.first), spec);
 }
 
 /// Takes what the object gives; a null takes a value away that may be left out, a value takes away its alternatives.
 /// Errors name key, value and what is allowed.
 template <class Spec>
 [[nodiscard]] Status read_values(const nlohmann::json& object, Spec& entry) {
-    const auto& [section, place] = section_of<Spec>;
-    SceneSpec spec;
-    spec.*place = {entry};
-    Status read = read_live_values(object, *find_section(section), spec);
-    if (read) entry = (spec.*place).front();
+    SceneSpec spec = scene_with(entry);
+    Status read = read_live_values(object, live_section(section_of<Spec>.first), spec);
+    if (!read) return read;
+    auto& place = spec.*section_of<Spec>.second;
+    if constexpr (requires { place.front(); }) {
+        entry = place.front();
+    } else {
+        entry = place;
+    }
     return read;
 }
 
 /// The rules of the section, in a scene with this solver and particles of this spacing, m.
 template <class Spec>
 [[nodiscard]] Status check_rules(const Spec& entry, const SolverSpec& solver, double particle_spacing) {
-    const auto& [section, place] = section_of<Spec>;
-    SceneSpec spec;
+    SceneSpec spec = scene_with(entry);
     spec.solver = solver;
-    spec.*place = {entry};
-    return check_live_rules(*find_section(section), spec, particle_spacing);
+    return check_live_rules(live_section(section_of<Spec>.first), spec, particle_spacing);
 }
 
 }  // namespace talus::twin

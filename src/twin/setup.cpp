@@ -8,6 +8,20 @@
 #include "twin/section_values.hpp"
 
 namespace talus::twin {
+namespace {
+
+/// What else a release says than how thick it is, which is in its patches.
+ReleaseSpec beside_thickness(ReleaseSpec spec) {
+    spec.name.clear();
+    spec.thickness.reset();
+    spec.volume.reset();
+    spec.thickness_attribute.clear();
+    spec.thickness_raster.clear();
+    return spec;
+}
+
+}  // namespace
+
 Setup setup_of(const Scene& scene, NextNumbers& next) {
     Setup setup;
     setup.material = scene.spec.material;
@@ -74,11 +88,12 @@ bool same_shape(const std::shared_ptr<const Release>& a, const std::shared_ptr<c
         r.has_value() == s.has_value() &&
         (!r || (r->geometry == s->geometry &&
                 std::equal(r->values.begin(), r->values.end(), s->values.begin(), s->values.end(), same_value)));
-    return a->start_time == b->start_time && same_raster && a->patches == b->patches;
+    return beside_thickness(a->spec) == beside_thickness(b->spec) && same_raster && a->patches == b->patches;
 }
 
 bool same_shape(const std::shared_ptr<const Building>& a, const std::shared_ptr<const Building>& b) {
-    return a == b || (a->barrier == b->barrier && a->resistance == b->resistance && a->height == b->height &&
+    const auto values = [](const Building& building) -> const BuildingSpec& { return building; };
+    return a == b || (a->barrier == b->barrier && a->resistance == b->resistance && values(*a) == values(*b) &&
                       a->roof_elevation == b->roof_elevation && a->part_roof_elevations == b->part_roof_elevations &&
                       a->footprint == b->footprint);
 }
@@ -93,8 +108,8 @@ bool same_shape(const std::shared_ptr<const BedLayer>& a, const std::shared_ptr<
 }
 
 bool same_shape(const std::shared_ptr<const Inflow>& a, const std::shared_ptr<const Inflow>& b) {
-    return a == b || (a->from == b->from && a->to == b->to && a->direction == b->direction && a->area == b->area &&
-                      a->hydrograph == b->hydrograph);
+    return a == b || (values_json(a->spec) == values_json(b->spec) && a->from == b->from && a->to == b->to &&
+                      a->area == b->area && a->hydrograph == b->hydrograph);
 }
 
 bool begin_alike(const Setup& a, const Setup& b) {

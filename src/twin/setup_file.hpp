@@ -12,8 +12,6 @@ namespace talus::twin {
 
 [[nodiscard]] nlohmann::json write_setup(const Setup& setup);
 
-/// As actions and setups have them.
-[[nodiscard]] nlohmann::json openings_json(const BarrierSpec& shape);
 /// Errors name key and value.
 [[nodiscard]] Result<Setup> read_setup(const nlohmann::json& file, const Scene& scene);
 

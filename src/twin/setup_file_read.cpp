@@ -1,5 +1,6 @@
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 #include <fmt/format.h>
 
@@ -14,6 +15,20 @@ namespace talus::twin {
 namespace {
 
 using nlohmann::json;
+
+/// Journals once had directions in radians. The degrees that give the very same ones again, so that a replay is exact.
+double degrees_of(double radians) {
+    const double middle = radians * 180 / std::numbers::pi;
+    double low = middle, high = middle;
+    for (int k = 0; k < 8; ++k) {
+        for (const double degrees : {low, high}) {
+            if (degrees * std::numbers::pi / 180 == radians) return degrees;
+        }
+        low = std::nextafter(low, -360.0);
+        high = std::nextafter(high, 720.0);
+    }
+    return middle;
+}
 
 /// Reads what write_setup wrote; whatever does not fit ends in an Error.
 class SetupReader {
@@ -36,10 +51,14 @@ class SetupReader {
     }
     static Result<Polygon> read_polygon(const json& rings);
     static Result<std::vector<Polygon>> read_polygons(const json& file, const char* key);
+    /// Outlines, each with a number of its own.
+    template <class Part>
+    static Status read_parts(const json& file, const char* key, const char* number, double Part::*value,
+                             std::vector<Part>& parts);
+    static Result<std::string> read_name(const json& file);
     /// The id, and which of `count` of the scene's it is; `key`: what only one that was changed has.
     template <class Entry>
     static Status read_origin(const json& file, const char* key, std::size_t count, Entry& setup);
-    static Result<std::vector<BarrierOpeningSpec>> read_openings(const json& file);
     static Result<int> read_index(const json& object, std::size_t count);
 
     const Scene& scene_;
@@ -88,108 +107,35 @@ Status SetupReader::read_material(const json& file, MaterialSpec& material) cons
     return {};
 }
 
-Result<ReleaseSetup> SetupReader::read_release(const json& file) const {
-    if (!file.is_object() || !file.contains("id") || !file["id"].is_string()) return bad("id", file);
-    TALUS_ASSIGN(const int index, read_index(file, scene_.releases.size()));
-    ReleaseSetup setup;
-    setup.id = file["id"];
-    setup.scene_index = index;
-    setup.as_in_scene = !file.contains("patches");
-    setup.triggered = file.contains("triggered") && file["triggered"] == true;
-    Release release;
-    release.start_time = std::numeric_limits<double>::infinity();
-    if (index >= 0) release = scene_.releases[static_cast<std::size_t>(index)];
-    if (!setup.as_in_scene) {
-        TALUS_ASSIGN(const auto name, read_text(file, "name", 1000));
-        release.name = name.value_or("");
-        if (!file.contains("raster")) release.thickness_raster.reset();
-        release.patches.clear();
-        if (!file["patches"].is_array()) return bad("patches", file);
-        for (const json& patch : file["patches"]) {
-            const auto thickness = read_number(patch.is_object() ? patch : json::object(), "thickness_m", {}, "m");
-            if (!thickness || !*thickness || !patch.contains("rings")) return bad("patches", file);
-            TALUS_ASSIGN(auto polygon, read_polygon(patch["rings"]));
-            release.patches.push_back({std::move(polygon), **thickness});
-        }
-        release.volume = release_volume(scene_.terrain, release);
-    } else if (index < 0) {
-        return bad("patches", file);
-    }
-    setup.body = std::make_shared<const Release>(std::move(release));
-    return setup;
-}
-
-/// None where the key is absent: journals older than openings.
-Result<std::vector<BarrierOpeningSpec>> SetupReader::read_openings(const json& file) {
-    std::vector<BarrierOpeningSpec> openings;
-    if (!file.contains("openings")) return openings;
-    if (!file["openings"].is_array()) return bad("openings", file);
-    for (const json& entry : file["openings"]) {
-        BarrierOpeningSpec opening;
-        if (!entry.is_object() || !read_values(entry, opening)) return bad("openings", file);
-        openings.push_back(std::move(opening));
-    }
-    return openings;
-}
-
-Result<BarrierSetup> SetupReader::read_barrier(const json& file) const {
-    if (!file.is_object() || !file.contains("id") || !file["id"].is_string()) return bad("id", file);
-    auto line = read_points(file, "line", false, 2, 1'000'000);
+Result<std::string> SetupReader::read_name(const json& file) {
     const auto name = read_text(file, "name", 1000);
-    if (!line) return line.error();
-    if (!*line) return bad("line", file);
     if (!name || !*name) return bad("name", file);
-    TALUS_ASSIGN(auto openings, read_openings(file));
-    BarrierSpec barrier;
-    barrier.line = std::move(**line);
-    barrier.openings = std::move(openings);
-    json values = file;  // an older journal gives a level crest a height of 0, too
-    if (file.contains("crest_elevation_m") && !file["crest_elevation_m"].is_null()) values.erase("height_m");
-    Status s = read_values(values, barrier);
-    if (s) s = check_rules(barrier, scene_.spec.solver, 0);
-    if (!s) return s.error();
-    TALUS_ASSIGN(auto body, make_barrier(scene_.terrain, **name, barrier));
-    return BarrierSetup{file["id"], std::make_shared<const Building>(std::move(body)), file.value("from_scene", false)};
-}
-
-Result<BuildingSetup> SetupReader::read_building(const json& file) const {
-    if (!file.is_object() || !file.contains("id") || !file["id"].is_string()) return bad("id", file);
-    TALUS_ASSIGN(const int index, read_index(file, scene_.buildings.size()));
-    BuildingSetup setup;
-    setup.id = file["id"];
-    setup.scene_index = index;
-    setup.as_in_scene = !file.contains("footprint");
-    if (setup.as_in_scene) {
-        if (index < 0) return bad("footprint", file);
-        setup.body = std::make_shared<const Building>(scene_.buildings[static_cast<std::size_t>(index)]);
-        return setup;
-    }
-    const auto name = read_text(file, "name", 1000);
-    const auto height = read_number(file, "height_m", {}, "m");
-    if (!name || !*name) return bad("name", file);
-    if (!height || !*height) return bad("height_m", file);
-    if (!file["footprint"].is_array()) return bad("footprint", file);
-    Building building;
-    building.name = **name;
-    building.height = **height;
-    for (const json& rings : file["footprint"]) {
-        TALUS_ASSIGN(auto polygon, read_polygon(rings));
-        building.footprint.push_back(std::move(polygon));
-    }
-    std::vector<Building> placed{std::move(building)};
-    place_buildings(scene_.terrain, placed);
-    setup.body = std::make_shared<const Building>(std::move(placed.front()));
-    return setup;
+    return **name;
 }
 
 Result<std::vector<Polygon>> SetupReader::read_polygons(const json& file, const char* key) {
     std::vector<Polygon> polygons;
-    if (!file[key].is_array()) return bad(key, file);
+    if (!file.contains(key) || !file[key].is_array()) return bad(key, file);
     for (const json& rings : file[key]) {
         TALUS_ASSIGN(auto polygon, read_polygon(rings));
         polygons.push_back(std::move(polygon));
     }
     return polygons;
+}
+
+template <class Part>
+Status SetupReader::read_parts(const json& file, const char* key, const char* number, double Part::*value,
+                               std::vector<Part>& parts) {
+    parts.clear();
+    if (!file[key].is_array()) return bad(key, file);
+    for (const json& entry : file[key]) {
+        const auto given = read_number(entry.is_object() ? entry : json::object(), number, {}, "m");
+        if (!given || !*given || !entry.contains("rings")) return bad(key, file);
+        Part& part = parts.emplace_back();
+        TALUS_ASSIGN(part.polygon, read_polygon(entry["rings"]));
+        part.*value = **given;
+    }
+    return {};
 }
 
 template <class Entry>
@@ -202,15 +148,72 @@ Status SetupReader::read_origin(const json& file, const char* key, std::size_t c
     return setup.as_in_scene && index < 0 ? Status(bad(key, file)) : Status();
 }
 
+Result<ReleaseSetup> SetupReader::read_release(const json& file) const {
+    ReleaseSetup setup;
+    TALUS_TRY(read_origin(file, "patches", scene_.releases.size(), setup));
+    setup.triggered = file.contains("triggered") && file["triggered"] == true;
+    Release release;
+    release.spec.start_time = std::numeric_limits<double>::infinity();
+    if (setup.scene_index >= 0) release = scene_.releases[static_cast<std::size_t>(setup.scene_index)];
+    if (!setup.as_in_scene) {
+        TALUS_ASSIGN(release.name, read_name(file));
+        TALUS_TRY(read_values(file, release.spec));
+        if (!file.contains("raster")) release.thickness_raster.reset();
+        TALUS_TRY(read_parts(file, "patches", "thickness_m", &ReleasePatch::thickness, release.patches));
+        release.volume = release_volume(scene_.terrain, release);
+    }
+    setup.body = std::make_shared<const Release>(std::move(release));
+    return setup;
+}
+
+Result<BarrierSetup> SetupReader::read_barrier(const json& file) const {
+    if (!file.is_object() || !file.contains("id") || !file["id"].is_string()) return bad("id", file);
+    auto line = read_points(file, "line", false, 2, 1'000'000);
+    if (!line) return line.error();
+    if (!*line) return bad("line", file);
+    TALUS_ASSIGN(const std::string name, read_name(file));
+    SceneSpec read;
+    if (file.contains("openings")) {  // not in journals older than openings
+        TALUS_TRY(read_live_list(file["openings"], "openings", live_section("barrier_opening"), read, 0));
+    }
+    BarrierSpec barrier;
+    barrier.line = std::move(**line);
+    barrier.openings = std::move(read.barrier_openings);
+    json values = file;  // an older journal gives a level crest a height of 0, too
+    if (gives(file, "crest_elevation_m")) values.erase("height_m");
+    Status s = read_values(values, barrier);
+    if (s) s = check_rules(barrier, scene_.spec.solver, 0);
+    if (!s) return s.error();
+    TALUS_ASSIGN(auto body, make_barrier(scene_.terrain, name, barrier));
+    return BarrierSetup{file["id"], std::make_shared<const Building>(std::move(body)), file.value("from_scene", false)};
+}
+
+Result<BuildingSetup> SetupReader::read_building(const json& file) const {
+    BuildingSetup setup;
+    TALUS_TRY(read_origin(file, "footprint", scene_.buildings.size(), setup));
+    if (setup.as_in_scene) {
+        setup.body = std::make_shared<const Building>(scene_.buildings[static_cast<std::size_t>(setup.scene_index)]);
+        return setup;
+    }
+    if (!gives(file, "height_m")) return bad("height_m", file);
+    Building building;
+    BuildingSpec& values = building;
+    TALUS_ASSIGN(building.name, read_name(file));
+    TALUS_TRY(read_values(file, values));
+    TALUS_ASSIGN(building.footprint, read_polygons(file, "footprint"));
+    std::vector<Building> placed{std::move(building)};
+    place_buildings(scene_.terrain, placed);
+    setup.body = std::make_shared<const Building>(std::move(placed.front()));
+    return setup;
+}
+
 Result<ZoneSetup> SetupReader::read_zone(const json& file) const {
     ZoneSetup setup;
     TALUS_TRY(read_origin(file, "polygons", scene_.zones.size(), setup));
     Zone zone;
     if (setup.scene_index >= 0) zone = scene_.zones[static_cast<std::size_t>(setup.scene_index)];
     if (!setup.as_in_scene) {
-        const auto name = read_text(file, "name", 1000);
-        if (!name || !*name) return bad("name", file);
-        zone.spec.name = **name;
+        TALUS_ASSIGN(zone.spec.name, read_name(file));
         TALUS_TRY(read_values(file, zone.spec));
         TALUS_ASSIGN(zone.outline, read_polygons(file, "polygons"));
     }
@@ -225,19 +228,10 @@ Result<BedSetup> SetupReader::read_bed(const json& file) const {
     BedLayer layer;
     if (setup.scene_index >= 0) layer = scene_.bed_layers[static_cast<std::size_t>(setup.scene_index)];
     if (!setup.as_in_scene) {
-        const auto name = read_text(file, "name", 1000);
-        if (!name || !*name) return bad("name", file);
-        layer.spec.name = **name;
+        TALUS_ASSIGN(layer.spec.name, read_name(file));
         TALUS_TRY(read_values(file, layer.spec));
         if (!file.contains("raster")) layer.depth_raster = nullptr;
-        layer.parts.clear();
-        if (!file["parts"].is_array()) return bad("parts", file);
-        for (const json& part : file["parts"]) {
-            const auto depth = read_number(part.is_object() ? part : json::object(), "depth_m", {}, "m");
-            if (!depth || !*depth || !part.contains("rings")) return bad("parts", file);
-            TALUS_ASSIGN(auto polygon, read_polygon(part["rings"]));
-            layer.parts.push_back({std::move(polygon), **depth});
-        }
+        TALUS_TRY(read_parts(file, "parts", "depth_m", &BedLayer::Part::depth, layer.parts));
     }
     setup.amount = amount_of(layer, scene_.terrain);
     setup.body = std::make_shared<const BedLayer>(std::move(layer));
@@ -252,22 +246,22 @@ Result<InflowSetup> SetupReader::read_inflow(const json& file) const {
         return setup;
     }
     Inflow inflow;
-    const auto name = read_text(file, "name", 1000);
     const auto line = read_points(file, "line", false, 2, 2);
-    const auto direction = read_number(file, "direction", {}, "rad");
-    auto area = read_polygons(file, "polygons");
-    if (!name || !*name) return bad("name", file);
-    if (!area) return area.error();
-    if (!line || (line->has_value() != area->empty())) return bad("line", file);
-    if (!direction) return direction.error();
-    inflow.name = **name;
+    const auto radians = read_number(file, "direction", {}, "rad");
+    TALUS_ASSIGN(inflow.name, read_name(file));
+    TALUS_ASSIGN(inflow.area, read_polygons(file, "polygons"));
+    if (!line || (line->has_value() != inflow.area.empty())) return bad("line", file);
+    if (!radians) return radians.error();
     if (*line) {
         inflow.from = (**line)[0];
         inflow.to = (**line)[1];
+        inflow.spec.line = **line;
+    } else {
+        inflow.spec.polygon = inflow.area.front().outer;
     }
-    inflow.area = std::move(*area);
-    inflow.direction = *direction;
-    TALUS_ASSIGN(inflow.hydrograph, read_hydrograph_rows(file.value("hydrograph", json()), inflow.over_area()));
+    TALUS_TRY(read_values(file, inflow.spec));
+    if (*radians) inflow.spec.direction = degrees_of(**radians);
+    TALUS_ASSIGN(inflow.hydrograph, read_hydrograph_rows(file.value("hydrograph", json()), inflow.spec));
     setup.body = std::make_shared<const Inflow>(std::move(inflow));
     return setup;
 }

@@ -1,8 +1,4 @@
-#include <fmt/format.h>
-
-#include "core/number_or_null.hpp"
 #include "params/fields.hpp"
-#include "twin/hydrograph_json.hpp"
 #include "twin/json_keys.hpp"
 #include "twin/section_values.hpp"
 #include "twin/setup_file.hpp"
@@ -28,61 +24,63 @@ json material_json(const MaterialSpec& material) {
     return values;
 }
 
-json polygons_json(const std::vector<Polygon>& polygons) {
+/// Outlines with what each of them has of its own.
+template <class Part>
+json parts_json(const std::vector<Part>& parts, const char* key, double Part::*value) {
     json list = json::array();
-    for (const Polygon& polygon : polygons) list.push_back(to_json(polygon));
+    for (const Part& part : parts) list.push_back({{"rings", to_json(part.polygon)}, {key, part.*value}});
     return list;
 }
 
-/// The id, and which of the scene's it is.
+json body_json(const Release& release) {
+    json body = values_json(release.spec);
+    body["name"] = release.name;
+    body["patches"] = parts_json(release.patches, "thickness_m", &ReleasePatch::thickness);
+    if (release.thickness_raster) body["raster"] = true;
+    return body;
+}
+
+json body_json(const Building& building) {
+    json body = values_json<BuildingSpec>(building);
+    body["name"] = building.name;
+    body["footprint"] = polygons_json(building.footprint);
+    return body;
+}
+
+json body_json(const Zone& zone) {
+    json body = values_json(zone.spec);
+    body["name"] = zone.spec.name;
+    body["polygons"] = polygons_json(zone.outline);
+    return body;
+}
+
+json body_json(const BedLayer& layer) {
+    json body = values_json(layer.spec);
+    body["name"] = layer.spec.name;
+    body["parts"] = parts_json(layer.parts, "depth_m", &BedLayer::Part::depth);
+    if (layer.depth_raster != nullptr) body["raster"] = true;
+    return body;
+}
+
+json body_json(const Inflow& inflow) {
+    json body = values_json(inflow.spec);
+    body["name"] = inflow.name;
+    if (!inflow.over_area()) body["line"] = to_json(std::vector<PlanPoint>{inflow.from, inflow.to});
+    body["polygons"] = polygons_json(inflow.area);
+    body["hydrograph"] = list_json(inflow.hydrograph);
+    return body;
+}
+
+/// The id, and which of the scene's it is; the body of one that was changed.
 template <class Entry>
-json origin_json(const Entry& setup) {
+json entry_json(const Entry& setup) {
     json entry = {{"id", setup.id}};
     if (setup.scene_index >= 0) entry["scene"] = setup.scene_index;
-    return entry;
-}
-
-json zone_entry(const ZoneSetup& zone) {
-    json entry = origin_json(zone);
-    if (zone.as_in_scene) return entry;
-    entry.update(values_json(zone.body->spec));
-    entry["name"] = zone.body->spec.name;
-    entry["polygons"] = polygons_json(zone.body->outline);
-    return entry;
-}
-
-json bed_entry(const BedSetup& bed) {
-    json entry = origin_json(bed);
-    if (bed.as_in_scene) return entry;
-    entry.update(values_json(bed.body->spec));
-    entry["name"] = bed.body->spec.name;
-    entry["parts"] = json::array();
-    for (const BedLayer::Part& part : bed.body->parts) {
-        entry["parts"].push_back({{"rings", to_json(part.polygon)}, {"depth_m", part.depth}});
-    }
-    if (bed.body->depth_raster != nullptr) entry["raster"] = true;
-    return entry;
-}
-
-json inflow_entry(const InflowSetup& inflow) {
-    json entry = origin_json(inflow);
-    if (inflow.as_in_scene) return entry;
-    const Inflow& body = *inflow.body;
-    entry["name"] = body.name;
-    if (!body.over_area()) entry["line"] = to_json(std::vector<PlanPoint>{body.from, body.to});
-    entry["polygons"] = polygons_json(body.area);
-    entry["direction"] = body.direction ? json(*body.direction) : json();
-    entry["hydrograph"] = to_json(body.hydrograph);
+    if (!setup.as_in_scene) entry.update(body_json(*setup.body));
     return entry;
 }
 
 }  // namespace
-
-json openings_json(const BarrierSpec& barrier) {
-    json openings = json::array();
-    for (const BarrierOpeningSpec& opening : barrier.openings) openings.push_back(values_json(opening));
-    return openings;
-}
 
 json write_setup(const Setup& setup) {
     json file = {{"material", material_json(setup.material)},
@@ -93,17 +91,8 @@ json write_setup(const Setup& setup) {
                  {"beds", json::array()},
                  {"inflows", json::array()}};
     for (const ReleaseSetup& release : setup.releases) {
-        json entry = {{"id", release.id}};
-        if (release.scene_index >= 0) entry["scene"] = release.scene_index;
+        json entry = entry_json(release);
         if (release.triggered) entry["triggered"] = true;
-        if (!release.as_in_scene) {
-            entry["name"] = release.body->name;
-            entry["patches"] = json::array();
-            for (const ReleasePatch& patch : release.body->patches) {
-                entry["patches"].push_back({{"rings", to_json(patch.polygon)}, {"thickness_m", patch.thickness}});
-            }
-            if (release.body->thickness_raster) entry["raster"] = true;
-        }
         file["releases"].push_back(std::move(entry));
     }
     for (const BarrierSetup& barrier : setup.barriers) {
@@ -111,24 +100,14 @@ json write_setup(const Setup& setup) {
         entry.update({{"id", barrier.id},
                       {"name", barrier.body->name},
                       {"line", to_json(barrier.shape().line)},
-                      {"openings", openings_json(barrier.shape())},
+                      {"openings", list_json(barrier.shape().openings)},
                       {"from_scene", barrier.from_scene}});
         file["barriers"].push_back(std::move(entry));
     }
-    for (const BuildingSetup& building : setup.buildings) {
-        json entry = {{"id", building.id}};
-        if (building.scene_index >= 0) entry["scene"] = building.scene_index;
-        if (!building.as_in_scene) {
-            entry["name"] = building.body->name;
-            entry["height_m"] = building.body->height;
-            entry["footprint"] = json::array();
-            for (const Polygon& part : building.body->footprint) entry["footprint"].push_back(to_json(part));
-        }
-        file["buildings"].push_back(std::move(entry));
-    }
-    for (const ZoneSetup& zone : setup.zones) file["zones"].push_back(zone_entry(zone));
-    for (const BedSetup& bed : setup.beds) file["beds"].push_back(bed_entry(bed));
-    for (const InflowSetup& inflow : setup.inflows) file["inflows"].push_back(inflow_entry(inflow));
+    for (const BuildingSetup& building : setup.buildings) file["buildings"].push_back(entry_json(building));
+    for (const ZoneSetup& zone : setup.zones) file["zones"].push_back(entry_json(zone));
+    for (const BedSetup& bed : setup.beds) file["beds"].push_back(entry_json(bed));
+    for (const InflowSetup& inflow : setup.inflows) file["inflows"].push_back(entry_json(inflow));
     return file;
 }
 

@@ -46,7 +46,8 @@ TEST(Inflow, integrates_mass_exactly) {
 
 /// 8 x 5 m of the plane, some 35 m2 of it beside a hole.
 Inflow rain(std::vector<InflowSample> hydrograph, std::optional<double> direction = {}) {
-    Inflow over{"slope", {}, {}, std::move(hydrograph), {testing::rectangle(20.03, 17.53, 28.05, 22.56)}, direction};
+    Inflow over{"slope", {}, {}, std::move(hydrograph), {testing::rectangle(20.03, 17.53, 28.05, 22.56)}};
+    over.spec.direction = direction;
     over.area.front().holes.push_back({{22, 19}, {24.5, 19}, {24.5, 21}, {22, 21}});
     return over;
 }

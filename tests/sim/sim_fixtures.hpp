@@ -41,7 +41,7 @@ inline Polygon rectangle(double x_min, double y_min, double x_max, double y_max)
 inline Release block(const Terrain& terrain, const Polygon& polygon, double thickness, double start_time = 0) {
     Release release;
     release.name = "block";
-    release.start_time = start_time;
+    release.spec.start_time = start_time;
     release.patches.push_back({polygon, thickness});
     release.volume = release_volume(terrain, release);
     return release;

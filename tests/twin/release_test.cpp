@@ -26,7 +26,7 @@ json release_of(const Scenario& scenario, const std::string& id) {
 
 TEST(DrawnRelease, waits_until_it_is_triggered) {
     Scene scene = channel_scene();
-    scene.releases[0].start_time = 20;  // nothing else moves
+    scene.releases[0].spec.start_time = 20;  // nothing else moves
     const auto scenario = open(scene);
     const double held = number(*scenario, "volume_held_m3");
     run_until(*scenario, 0.3);

@@ -18,8 +18,27 @@ async function testOpening(run) {
   await server.stop();
 }
 
+/** A scene whose solver has no law for some of the parameters. */
+async function testHindrances(run) {
+  const server = await run.start(["--set", "solver.internal_friction=pair"]);
+  const page = await run.open(server.controller, { name: "Eve" });
+  await inControl(page);
+  await run.check("a parameter that the scene's solver has no law for is disabled, and the reason stands beside it", async () => {
+    const field = page.locator(".field", { has: page.locator("label:text-is('Cohesion')") });
+    const number = field.locator("input[type=number]");
+    await until(() => number.isDisabled(), (off) => off, "cohesion is off");
+    const why = /^Needs solver\.internal_friction = "stress": friction by pairs has no such law\.$/;
+    assert.match(await field.locator(".hint").textContent(), why);
+    assert.match(await field.getAttribute("title"), why);
+    assert.equal(await page.locator(".field", { hasText: "riction" }).first().locator("input[type=number]").isDisabled(), false);
+  });
+  await page.context().close();
+  await server.stop();
+}
+
 export async function testControls(run) {
   await testOpening(run);
+  await testHindrances(run);
   const server = await run.start();
   const page = await run.open(server.controller, { name: "Ada" });
   await inControl(page);
@@ -163,6 +182,27 @@ export async function testControls(run) {
     await until(setup, (s) => s.releases.length === known, "removed by Delete");
   });
 
+  await run.check("a rule between keys stands beside its field before anything is sent", async () => {
+    const before = await setup();
+    const { particle_spacing_m } = await server.ask("scene");
+    await page.click("[data-draw=barrier]");
+    const field = page.locator(".draft:visible .field", { hasText: "Thickness" });
+    const hint = await field.locator(".hint").textContent();
+    assert.match(hint, /^At least [\d.]+ m: debris on both sides would feel each other through it\.$/);
+    const least = Number(hint.match(/[\d.]+/)[0]);
+    assert.ok(Math.abs(least - particle_spacing_m / 2) < 0.01, `${least} m with particles of ${particle_spacing_m} m`);
+    const number = field.locator("input[type=number]");
+    await number.fill(String(0.9 * least));
+    await number.press("Enter");
+    assert.match(await field.locator(".field-note").textContent(), /Thickness is .*allowed is/);
+    assert.equal(await number.getAttribute("aria-invalid"), "true");
+    await number.fill("1");
+    await number.press("Enter");
+    assert.equal(await number.getAttribute("aria-invalid"), "false");
+    assert.equal((await setup()).revision, before.revision);
+    await page.click(".draft:visible button:has-text('Cancel')");
+  });
+
   await run.check("an action that the server refuses is told beside the control", async () => {
     const first = (await setup()).barriers.length;
     await page.click("[data-draw=barrier]");
@@ -172,15 +212,14 @@ export async function testControls(run) {
     assert.match(await page.locator(".draft:visible .field-note").first().textContent(), /Height is 900; allowed/);
     await height.fill("3");
     await height.press("Enter");
-    // What depends on the particle spacing only the server knows.
-    await thickness.fill("0.01");
+    await thickness.fill("1");
     await thickness.press("Enter");
-    await clickGround(page, 0.42, 0.62);
-    await clickGround(page, 0.52, 0.62);
+    // That a line must not cross itself only the server knows.
+    for (const [u, v] of [[0.42, 0.62], [0.52, 0.62], [0.5, 0.66], [0.46, 0.58]]) await clickGround(page, u, v);
     await page.click(".draft:visible button:has-text('Finish')");
     const toast = page.locator(".toast.error");
     await toast.waitFor();
-    assert.match(await toast.textContent(), /thickness_m.*0\.01/);
+    assert.match(await toast.textContent(), /crosses itself/);
     await toast.locator("button").click();
     assert.equal(await page.locator(".toast.error").count(), 0);
     assert.equal((await setup()).barriers.length, first);

@@ -2,6 +2,7 @@
 import type { BarrierOpening } from "../protocol/messages";
 import { fields as described } from "../protocol/schema";
 import { openingsWith, type BarrierSet } from "../state/barriers";
+import { leastOf, limitsOf, type Given } from "../state/rules";
 import { button, h } from "../ui/dom";
 import { valueField } from "../ui/value_field";
 
@@ -12,12 +13,13 @@ export interface BarrierFields {
 }
 
 /** `onset` gets what the server is to be told; null takes a value away. */
-export function barrierFields(value: BarrierSet, narrowest_m: number, onset: (change: Partial<BarrierSet>) => void): BarrierFields {
+export function barrierFields(value: BarrierSet, scene: Given, onset: (change: Partial<BarrierSet>) => void): BarrierFields {
   let openings: readonly BarrierOpening[] = value.openings ?? [];
   let length = 0;
   let hindered: string | null = null;
   const keys = Object.keys(described.barrier) as (keyof typeof described.barrier)[];
   const values = keys.map((key) => ({ key, field: valueField(described.barrier[key], null, (v) => onset({ [key]: v })) }));
+  const narrowest_m = leastOf("barrier_opening", "width_m", scene);
   const list = h("div", { class: "corners" });
   const add = button("Add an opening", { class: "small", onclick: () => {
     openings = [...openings, { position_m: Number((length / 2).toFixed(2)), width_m: Math.max(2, narrowest_m), sill_height_m: 0 }];
@@ -27,8 +29,8 @@ export function barrierFields(value: BarrierSet, narrowest_m: number, onset: (ch
     if (list.contains(document.activeElement) && document.activeElement instanceof HTMLInputElement) return;
     list.replaceChildren(...openings.map((opening, k) => {
       const input = (key: keyof BarrierOpening, name: string): HTMLInputElement => {
-        const field = h("input", { type: "number", step: "0.1", min: "0", value: String(opening[key]), disabled: hindered !== null, title: `${name}, m`,
-          "aria-label": `Opening ${k + 1}: ${name}, m`, onchange: () => onset({ openings: openingsWith(openings, k, key, field.valueAsNumber) }) });
+        const field = h("input", { type: "number", step: "0.1", min: key === "width_m" ? narrowest_m : 0, value: String(opening[key]), disabled: hindered !== null, title: `${name}, m`,
+          "aria-label": `Opening ${k + 1}: ${name}, m`, onchange: () => onset({ openings: openingsWith(openings, k, key, Math.max(field.valueAsNumber, Number(field.min))) }) });
         return field;
       };
       return h("div", { class: "row coordinates" }, h("span", { class: "muted" }, String(k + 1)),
@@ -39,9 +41,12 @@ export function barrierFields(value: BarrierSet, narrowest_m: number, onset: (ch
   };
   const fields: BarrierFields = {
     element: h("div", {}, ...values.map(({ field }) => field.element),
-      h("details", {}, h("summary", {}, "Openings"), h("p", { class: "hint" }, "Position of the middle along the line, width, sill height, in metres."), list, add)),
+      h("details", {}, h("summary", {}, "Openings"), h("p", { class: "hint" }, `Position of the middle along the line, width (at least ${narrowest_m} m), sill height, in metres.`), list, add)),
     show(fresh, length_m) {
-      for (const { key, field } of values) field.show(fresh[key]);
+      for (const { key, field } of values) {
+        field.limit(limitsOf("barrier", key, scene, fresh));
+        field.show(fresh[key]);
+      }
       openings = fresh.openings ?? [];
       length = length_m;
       refill();

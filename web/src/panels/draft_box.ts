@@ -1,6 +1,7 @@
 // Display options while a new shape is drawn: how to, sizes, live measures, and a way without a mouse.
 import type { Drawing } from "../scene/drawing";
 import { number, quantity } from "../state/format";
+import { limitsOf } from "../state/rules";
 import { area, drawnAsLine, fewestPoints, length, releaseVolume } from "../state/shapes";
 import type { Shape, Twin } from "../state/twin";
 import { fields as described, type FieldDescription } from "../protocol/schema";
@@ -19,26 +20,29 @@ function howTo(shape: Shape, byLine: boolean): string {
 function newFields(twin: Twin, shape: Shape, changed: () => void): HTMLElement[] {
   const sizes = twin.newShape;
   /** A field for one of the sizes. */
-  const field = <Values extends object>(about: FieldDescription, values: Values, key: keyof Values & string): HTMLElement =>
-    valueField(about, values[key] as number, (v) => {
+  const field = <Values extends object>(section: keyof typeof described, values: Values, key: keyof Values & string): HTMLElement => {
+    const made = valueField((described[section] as Record<string, FieldDescription>)[key], values[key] as number, (v) => {
       Object.assign(values, { [key]: v });
       changed();
-    }).element;
+    });
+    made.limit(limitsOf(section, key, twin.scene, values));
+    return made.element;
+  };
   switch (shape) {
     case "release":
-      return [field(described.release.thickness_m, sizes.release, "thickness_m")];
+      return [field("release", sizes.release, "thickness_m")];
     case "barrier":
-      return [field(described.barrier.height_m, sizes.barrier, "height_m"), field(described.barrier.thickness_m, sizes.barrier, "thickness_m"),
+      return [field("barrier", sizes.barrier, "height_m"), field("barrier", sizes.barrier, "thickness_m"),
         h("label", { class: "check", title: "At first half of the debris passes its meshes; change the share in its editor" },
           h("input", { type: "checkbox", onchange: (event: Event) => {
             sizes.barrier.passing_share = (event.currentTarget as HTMLInputElement).checked ? 0.5 : null;
           } }), "Net")];
     case "building":
-      return [field(described.buildings.height_m, sizes.building, "height_m")];
+      return [field("buildings", sizes.building, "height_m")];
     case "zone":
       return [newZoneFields((zone) => (sizes.zone = zone))];
     case "bed":
-      return [field(described.bed.depth_m, sizes.bed, "depth_m"), field(described.bed.growth_rate_per_m, sizes.bed, "growth_rate_per_m")];
+      return [field("bed", sizes.bed, "depth_m"), field("bed", sizes.bed, "growth_rate_per_m")];
     case "inflow":
       return [choice("Where debris enters", [["line", "Across a line"], ["area", "Over an area"]], "line", (where) => {
         twin.inflowByLine.value = where === "line";

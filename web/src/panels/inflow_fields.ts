@@ -2,7 +2,7 @@
 import { Chart } from "../charts/chart";
 import type { HydrographRow, Inflow } from "../protocol/messages";
 import { fields as described } from "../protocol/schema";
-import { hasDensity, rowsAndOne, rowsOfDensity, rowsWith, rowsWithout, told, type HydrographKey } from "../state/inflows";
+import { hasDensity, hydrographKeys, rowsAndOne, rowsOfDensity, rowsWith, rowsWithout, told, type HydrographKey } from "../state/inflows";
 import { unitText } from "../state/format";
 import { button, h } from "../ui/dom";
 import { valueField } from "../ui/value_field";
@@ -15,7 +15,7 @@ export interface InflowFields {
 }
 export interface InflowChange { hydrograph?: HydrographRow[]; direction_deg?: number | null; turn?: true }
 
-const columns: [HydrographKey, string, string][] = [["time_s", "Time", "s"], ["discharge_m3ps", "Discharge", "m3/s"], ["velocity_mps", "Velocity", "m/s"], ["density_kgpm3", "Density", "kg/m3"]];
+const columns = hydrographKeys.map((key): [HydrographKey, string, string] => [key, described.hydrograph[key].label, described.hydrograph[key].unit]);
 const text = (value: number | null | undefined): string => (value === null || value === undefined ? "" : String(Number(value.toPrecision(6))));
 
 /** downhill_deg: what a direction begins with; restDensity: what a density of its own begins with. */
@@ -40,7 +40,7 @@ export function inflowFields(inflow: Inflow, downhill_deg: number, restDensity: 
   const form = h("div", {}, table, h("div", { class: "row" }, add, h("label", { class: "check", title: "Otherwise the debris has the material's rest density" }, density, "Density")), chart.element);
 
   const cell = (row: number, [key, label, unit]: (typeof columns)[number]): HTMLElement => {
-    const input = h("input", { type: "number", step: "any", min: "0", value: text(rows[row][key]), disabled: hindered !== null, "data-cell": `${row} ${key}`,
+    const input = h("input", { type: "number", step: "any", min: described.hydrograph[key].low, value: text(rows[row][key]), disabled: hindered !== null, "data-cell": `${row} ${key}`,
       "aria-label": `Row ${row + 1}: ${label.toLowerCase()}, ${unitText(unit)}`, onchange: () => {
         const next = rowsWith(rows, row, key, input.valueAsNumber);
         // A change comes before the focus moves on: the table is made anew, or put in order, after that.

@@ -2,6 +2,7 @@
 import type { Parameter } from "../protocol/messages";
 import { watchAll } from "../state/cell";
 import { quantity, unitText } from "../state/format";
+import { hindranceOf } from "../state/rules";
 import type { Twin } from "../state/twin";
 import { button, h } from "../ui/dom";
 import { numberField } from "../ui/field";
@@ -42,13 +43,16 @@ export function parameterFields(twin: Twin): HTMLElement {
     field.element.firstElementChild?.after(h("span", { class: "field-tools" }, more, reset));
     field.element.append(help);
     group.append(field.element);
+    const key = parameter.key.slice("material.".length);
+    const needed = hindranceOf("material", key, twin.scene);
+    field.limit({ low: parameter.range.low ?? -1e12, high: parameter.range.high ?? 1e12, hindrance: needed, hint: needed });
     watchAll([twin.edited, twin.cells.A.setup, twin.cells.B.setup, twin.you, twin.controller, twin.connection], () => {
       const value = twin.now.setup.value?.parameters[parameter.key];
       field.show(value === undefined ? parameter.value : value);
       field.enable(twin.hindrance);
       const now = value === undefined ? parameter.value : value;
       reset.hidden = usual === null || now === usual;
-      reset.disabled = twin.hindrance !== null;
+      reset.disabled = (twin.hindrance ?? needed) !== null;
       field.element.classList.toggle("changed", usual !== null && now !== usual);
     });
   }

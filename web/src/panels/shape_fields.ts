@@ -28,11 +28,11 @@ export function shapeFields(twin: Twin, item: Item, now: () => Item, onset: (wha
     case "building":
       return one(valueField(described.buildings.height_m, item.height_m, (height_m) => onset({ height_m })), (fresh) => (fresh.shape === "building" ? fresh.height_m : null));
     case "barrier": {
-      const fields = barrierFields(item, 2 * twin.scene.particle_spacing_m, onset);
+      const fields = barrierFields(item, twin.scene, onset);
       return { ...fields, show: (fresh) => fresh.shape === "barrier" && fields.show(fresh, fresh.crest_length_m) };
     }
     case "zone": {
-      const fields = zoneFields(onset);
+      const fields = zoneFields(twin.scene, onset);
       return { ...fields, show: (fresh) => fresh.shape === "zone" && fields.show(fresh) };
     }
     case "bed": {

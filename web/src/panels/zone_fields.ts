@@ -1,6 +1,7 @@
 // What only zones have: resistances that differ from elsewhere, each behind a tick, and the stems of a forest.
 import { fields as described } from "../protocol/schema";
 import { usualZone, type ZoneSet } from "../state/ground";
+import { limitsOf, type Given } from "../state/rules";
 import { choice } from "../ui/choice";
 import { h } from "../ui/dom";
 import { valueField, type ValueField } from "../ui/value_field";
@@ -14,10 +15,11 @@ export interface ZoneFields {
 type Key = keyof typeof described.zone;
 
 /** `onset` gets what the server is to be told; null: as elsewhere. */
-export function zoneFields(onset: (change: ZoneSet) => void): ZoneFields {
+export function zoneFields(scene: Given, onset: (change: ZoneSet) => void): ZoneFields {
   const made = new Map<Key, ValueField>();
   const make = (key: Key, more: HTMLElement[] = []): HTMLElement => {
     const field = valueField(described.zone[key], null, (v) => onset({ [key]: v }), key === "stem_density_pm2" ? 0 : null, more);
+    field.limit(limitsOf("zone", key, scene, {}));
     made.set(key, field);
     return field.element;
   };

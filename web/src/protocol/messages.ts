@@ -1,6 +1,6 @@
 // JSON of docs/protocol.md.
 import type { ScenarioName } from "./frame";
-import type { BarrierOpeningValues, BarrierValues, BedValues, BuildingsValues, InflowValues, ReleaseValues, ZoneValues } from "./schema";
+import type { BarrierOpeningValues, BarrierValues, BedValues, BuildingsValues, HydrographValues, InflowValues, ReleaseValues, ZoneValues } from "./schema";
 
 export type Point = [number, number];
 export type Place = [number, number, number];
@@ -53,6 +53,8 @@ export interface SceneInfo {
   /** Whether there is a picture of the ground to drape. */
   orthophoto: boolean;
   parameters: Parameter[];
+  /** Keys of the scene that others need, with their values. */
+  settings: Record<string, string>;
   intensity: { classes: IntensityClass[]; rule: string; source: string };
 }
 
@@ -134,7 +136,7 @@ export interface Bed extends BedValues {
   in_force: boolean;
 }
 /** density_kgpm3: null or left out is the material's rest density. */
-export interface HydrographRow { time_s: number; discharge_m3ps: number; velocity_mps: number; density_kgpm3?: number | null }
+export type HydrographRow = Omit<HydrographValues, "density_kgpm3"> & Partial<HydrographValues>;
 /** Debris that comes in while the run goes on: to the right of a line, seen along it, or all over an area. */
 export interface Inflow extends InflowValues {
   id: string;

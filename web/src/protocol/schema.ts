@@ -12,6 +12,18 @@ export interface InflowValues {
   direction_deg: number | null;
 }
 
+/** A row of an inflow's hydrograph, a CSV of its own in a scene; linear between rows. */
+export interface HydrographValues {
+  /** Simulated time; above that of the row before. */
+  time_s: number;
+  /** Bulk debris that comes in per second. */
+  discharge_m3ps: number;
+  /** Along the ground; above 0 where debris comes in across a line. */
+  velocity_mps: number;
+  /** Bulk density of what comes in; in every row or in none. null: the material's rest density. */
+  density_kgpm3: number | null;
+}
+
 /** Loose material on the ground that debris picks up where it moves over it. */
 export interface BedValues {
   /** Uniform depth of the bed, vertical; debris picks up no more. null: one of the other two is given. */
@@ -118,6 +130,24 @@ export const fields = {
       tick: "Set direction", tickHelp: "Where debris moves as it comes in; unticked: downhill", help: "Over an area: where the debris moves as it comes in, clockwise from north.",
     },
   },
+  hydrograph: {
+    time_s: {
+      label: "Time", unit: "s", factor: 1, low: 0, high: Infinity, sliderLow: 0, sliderHigh: 60, first: 0,
+      tick: null, tickHelp: "", help: "Simulated time; above that of the row before.",
+    },
+    discharge_m3ps: {
+      label: "Discharge", unit: "m3/s", factor: 1, low: 0, high: Infinity, sliderLow: 0, sliderHigh: 50, first: 0,
+      tick: null, tickHelp: "", help: "Bulk debris that comes in per second.",
+    },
+    velocity_mps: {
+      label: "Velocity", unit: "m/s", factor: 1, low: 0, high: Infinity, sliderLow: 0, sliderHigh: 20, first: 0,
+      tick: null, tickHelp: "", help: "Along the ground; above 0 where debris comes in across a line.",
+    },
+    density_kgpm3: {
+      label: "Density", unit: "kg/m3", factor: 1, low: 0.1, high: 30000, sliderLow: 1000, sliderHigh: 2500, first: 2000,
+      tick: null, tickHelp: "", help: "Bulk density of what comes in; in every row or in none.",
+    },
+  },
   bed: {
     depth_m: {
       label: "Depth", unit: "m", factor: 1, low: 0.0001, high: 100, sliderLow: 0.1, sliderHigh: 5.1, first: 1,
@@ -195,3 +225,41 @@ export const fields = {
     },
   },
 } as const satisfies Record<string, Record<string, FieldDescription>>;
+
+/** What ties a value to others. `spacings`: it is at least so many particle spacings; `below`: the key that it is below, where that is given; `needs`: a key of the scene without which the value is refused. */
+export interface Tie {
+  spacings?: number; why?: string;
+  below?: string;
+  needs?: { key: string; value: string; why: string };
+}
+
+/** By section and key. */
+export const ties: Record<string, Record<string, Tie>> = {
+  barrier: {
+    thickness_m: {
+      spacings: 0.5, why: "debris on both sides would feel each other through it",
+    },
+    clearance_m: {
+      spacings: 1, why: "nothing would get through a lower gap; smaller particles allow less",
+      below: "height_m",
+    },
+  },
+  barrier_opening: {
+    width_m: {
+      spacings: 2, why: "nothing would get through a narrower one; smaller particles allow less",
+    },
+  },
+  material: {
+    cohesion_Pa: {
+      needs: { key: "solver.internal_friction", value: "stress", why: "friction by pairs has no such law" },
+    },
+    pore_pressure_ratio: {
+      needs: { key: "solver.internal_friction", value: "stress", why: "friction by pairs has no such law" },
+    },
+  },
+  zone: {
+    cohesion_Pa: {
+      needs: { key: "solver.internal_friction", value: "stress", why: "friction by pairs has no such law" },
+    },
+  },
+};

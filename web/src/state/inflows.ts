@@ -1,16 +1,19 @@
 // Hydrographs and the way in which an inflow goes.
 import type { HydrographRow, Inflow, Point } from "../protocol/messages";
+import { fields } from "../protocol/schema";
 import type { Relief } from "../scene/relief";
 import { quantity, tick } from "./format";
 
 export type HydrographKey = keyof HydrographRow;
+export const hydrographKeys = Object.keys(fields.hydrograph) as HydrographKey[];
 
 /** A surge that rises, stays and falls: 200 m3. */
 export const usualHydrograph: readonly HydrographRow[] = [[0, 0], [5, 10], [20, 10], [25, 0]].map(([time_s, discharge_m3ps]) => ({ time_s, discharge_m3ps, velocity_mps: 5 }));
 
 /** With one number of one row changed, in the order of time; null where that is no number that could hold. */
 export function rowsWith(rows: readonly HydrographRow[], index: number, key: HydrographKey, value: number): HydrographRow[] | null {
-  if (!Number.isFinite(value) || value < 0) return null;
+  const { low, high } = fields.hydrograph[key];
+  if (!(value >= low && value <= high)) return null;
   return rows.map((row, k) => (k === index ? { ...row, [key]: value } : row)).sort((a, b) => a.time_s - b.time_s);
 }
 /** With one more row at the end, as far after the last as that is after the one before. */

@@ -1,5 +1,6 @@
 // A number with its unit: a slider and a number field that hold the same value.
 import { unitText } from "../state/format";
+import type { Limits } from "../state/rules";
 import { freshId, h } from "./dom";
 
 export interface NumberField {
@@ -8,6 +9,10 @@ export interface NumberField {
   /** Shows a value that came from elsewhere; does nothing while the user is at it. */
   show(value: number | null): void;
   enable(hindrance: string | null): void;
+  /** Narrows what is allowed; a hindrance of its own disables the field. */
+  limit(limits: Limits): void;
+  /** The nearest value that is allowed. */
+  allowed(value: number): number;
   complain(sentence: string | null): void;
 }
 
@@ -37,7 +42,11 @@ export function numberField(options: NumberFieldOptions): NumberField {
   const slider = options.slider === false ? null
     : h("input", { type: "range", min: low, max: high, step, "aria-label": `${options.label}, slider`, tabindex: "0" });
   const note = h("div", { class: "field-note", id: `${id}-note`, role: "alert" });
+  const hint = h("p", { class: "hint" });
+  hint.hidden = true;
   let shown: number | null = null;
+  let limits: Limits = { low: options.low, high: options.high, hindrance: null, hint: null };
+  let hindered: string | null = null;
 
   const text = (value: number): string => String(Number(value.toPrecision(6)));
   const complain = (sentence: string | null): void => {
@@ -45,8 +54,8 @@ export function numberField(options: NumberFieldOptions): NumberField {
     input.setAttribute("aria-invalid", String(sentence !== null));
   };
   const set = (value: number): void => {
-    if (!Number.isFinite(value) || value < options.low || value > options.high) {
-      complain(`${options.label} is ${Number.isFinite(value) ? text(value) : "no number"}; allowed is ${options.high === Infinity ? `at least ${text(options.low)}` : `${text(options.low)} to ${text(options.high)}`} ${unitText(options.unit)}`.trim());
+    if (!Number.isFinite(value) || value < limits.low || value > limits.high) {
+      complain(`${options.label} is ${Number.isFinite(value) ? text(value) : "no number"}; allowed is ${limits.high === Infinity ? `at least ${text(limits.low)}` : `${text(limits.low)} to ${text(limits.high)}`} ${unitText(options.unit)}`.trim());
       return;
     }
     complain(null);
@@ -73,7 +82,7 @@ export function numberField(options: NumberFieldOptions): NumberField {
     h("label", { for: id, title: options.help ?? null }, options.label.slice(0, 1).toUpperCase() + options.label.slice(1)),
     h("div", { class: "field-value" }, input, h("span", { class: "unit" }, unitText(options.unit))),
     slider ? h("div", { class: "field-slider" }, slider) : null,
-    note);
+    note, hint);
   if (slider && options.usual !== undefined && options.usual !== null && options.usual >= low && options.usual <= high) {
     const mark = h("i", { class: "usual", title: `Default ${text(options.usual)} ${unitText(options.unit)}` });
     mark.style.left = `calc(7px + (100% - 14px) * ${(options.usual - low) / (high - low)})`;
@@ -91,10 +100,19 @@ export function numberField(options: NumberFieldOptions): NumberField {
       complain(null);
     },
     enable(hindrance) {
-      input.disabled = hindrance !== null;
-      if (slider) slider.disabled = hindrance !== null;
-      element.title = hindrance ?? "";
+      hindered = hindrance;
+      const why = hindrance ?? limits.hindrance;
+      input.disabled = why !== null;
+      if (slider) slider.disabled = why !== null;
+      element.title = why ?? "";
     },
+    limit(fresh) {
+      limits = fresh;
+      hint.textContent = fresh.hint ?? "";
+      hint.hidden = fresh.hint === null;
+      field.enable(hindered);
+    },
+    allowed: (value) => Math.min(limits.high, Math.max(limits.low, value)),
     complain,
   };
   field.show(options.value);

@@ -1,4 +1,5 @@
 // A tick before a number: without it there is none.
+import type { Limits } from "../state/rules";
 import { freshId, h } from "./dom";
 import { numberField, type NumberField, type NumberFieldOptions } from "./field";
 
@@ -6,6 +7,7 @@ export interface OptionalField {
   element: HTMLElement;
   show(value: number | null): void;
   enable(hindrance: string | null): void;
+  limit(limits: Limits): void;
 }
 
 /** usual: what the tick begins with. More fields that go with the number come and go with it. */
@@ -16,21 +18,38 @@ export function optionalField(label: string, title: string, usual: number, field
     for (const element of [number.element, ...more]) element.hidden = !on;
   };
   const box = h("input", { type: "checkbox", id, onchange: () => {
+    const first = number.allowed(usual);
     reveal(box.checked);
-    if (box.checked) number.show(usual);
-    onset(box.checked ? usual : null);
+    if (box.checked) number.show(first);
+    onset(box.checked ? first : null);
   } });
   const number: NumberField = numberField({ ...field, onset: (v) => onset(v) });
-  return {
-    element: h("div", { class: "optional" }, h("label", { class: "check", for: id, title }, box, label), number.element, ...more),
+  const name = h("label", { class: "check", for: id, title }, box, label);
+  const why = h("p", { class: "hint" });
+  why.hidden = true;
+  let refused: string | null = null;
+  let hindered: string | null = null;
+  const whole: OptionalField = {
+    element: h("div", { class: "optional" }, name, why, number.element, ...more),
     show(value) {
       box.checked = value !== null;
       reveal(value !== null);
       if (value !== null) number.show(value);
     },
     enable(hindrance) {
-      box.disabled = hindrance !== null;
+      hindered = hindrance;
+      box.disabled = hindrance !== null || refused !== null;
+      name.title = refused ?? title;
       number.enable(hindrance);
     },
+    limit(limits) {
+      refused = limits.hindrance;
+      // Beside the tick, which is all that is to be seen of a value that cannot be given.
+      why.textContent = refused ?? "";
+      why.hidden = refused === null;
+      number.limit(limits);
+      whole.enable(hindered);
+    },
   };
+  return whole;
 }

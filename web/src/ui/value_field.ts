@@ -1,6 +1,7 @@
 // A field for a key of the scene, as the field table describes it.
 import type { FieldDescription } from "../protocol/schema";
 import { shownAs, toldAs } from "../state/format";
+import type { Limits } from "../state/rules";
 import { numberField } from "./field";
 import { optionalField } from "./optional_field";
 
@@ -8,6 +9,7 @@ export interface ValueField {
   element: HTMLElement;
   show(value: number | null | undefined): void;
   enable(hindrance: string | null): void;
+  limit(limits: Limits): void;
 }
 
 /** `onset` gets values in the unit of the key; `none`: the value of an optional one that is unticked. Fields of `more` come and go with it. */
@@ -18,5 +20,5 @@ export function valueField(about: FieldDescription, value: number | null, onset:
   const field = about.tick === null ? numberField({ ...options, onset: tell }) : optionalField(about.tick, about.tickHelp, about.first, options, tell, more);
   const show = (v: number | null | undefined): void => field.show(v === null || v === undefined || (about.tick !== null && v === none) ? null : shownAs(about, v));
   show(value);
-  return { element: field.element, show, enable: field.enable };
+  return { element: field.element, show, enable: field.enable, limit: field.limit };
 }

@@ -1,0 +1,17 @@
+#pragma once
+
+#include <optional>
+
+#include "params/fields.hpp"
+
+/// What a step smooths beyond the whole difference between neighbours would drive them apart.
+namespace talus {
+
+/// The highest material.viscosity that the solver's longest step allows.
+[[nodiscard]] double highest_viscosity(const SolverSpec& solver);
+
+/// Whether viscosity, or kinematic viscosity where that is given, is above what the step allows.
+[[nodiscard]] std::optional<Violation> too_viscous(const MaterialSpec& material, const SolverSpec& solver,
+                                                   double particle_spacing);
+
+}  // namespace talus
