@@ -5,6 +5,7 @@
 #include "observe/observer.hpp"
 #include "sim/physics/contact.hpp"
 #include "sizes.hpp"
+#include "terrain/map_cell.hpp"
 
 namespace talus::benchmarks {
 namespace {

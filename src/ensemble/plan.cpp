@@ -8,9 +8,9 @@
 #include <fmt/format.h>
 
 #include "core/try.hpp"
-#include "observe/observer.hpp"
 #include "params/fields.hpp"
 #include "sim/seed.hpp"
+#include "terrain/map_cell.hpp"
 
 namespace talus {
 namespace {

@@ -261,10 +261,4 @@ Observation Observer::finish(const Model& model, const Ground& ground, const Sta
     return observation;
 }
 
-double default_map_cell(double terrain_cell, double particle_spacing) {
-    const double wanted = 2.5 * particle_spacing;
-    if (wanted < terrain_cell) return terrain_cell / std::max(1.0, std::round(terrain_cell / wanted));
-    return terrain_cell * std::max(1.0, std::round(wanted / terrain_cell));
-}
-
 }  // namespace talus

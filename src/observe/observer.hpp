@@ -67,7 +67,4 @@ class Observer final : public StepWatcher {
     std::unique_ptr<Parts> parts_;
 };
 
-/// The default map cell, m: a whole fraction or multiple of the terrain's cell, near 2.5 particle spacings.
-[[nodiscard]] double default_map_cell(double terrain_cell, double particle_spacing);
-
 }  // namespace talus

@@ -8,6 +8,7 @@
 
 #include "core/try.hpp"
 #include "sim/seed.hpp"
+#include "terrain/map_cell.hpp"
 
 namespace talus {
 namespace {

@@ -6,8 +6,8 @@
 
 #include <fmt/format.h>
 
-#include "observe/observer.hpp"
 #include "sim/seed.hpp"
+#include "terrain/map_cell.hpp"
 
 namespace talus {
 namespace {

@@ -8,8 +8,8 @@ import pathlib
 import re
 import sys
 
-# A layer may include those named here and itself; terrain and simd, sim and geo do not know each
-# other, nor do ensemble, validate, bench and twin, which stand beside each other on products.
+# A layer may include those named here and itself; terrain and simd, sim and geo, observe and scene do
+# not know each other, nor do ensemble, validate, bench and twin, which stand beside each other on products.
 BELOW = {
     "core": [],
     "params": ["core"],
@@ -18,7 +18,7 @@ BELOW = {
     "sim": ["core", "params", "terrain", "simd"],
     "geo": ["core", "params", "terrain"],
     "observe": ["core", "params", "terrain", "simd", "sim", "geo"],
-    "scene": ["core", "params", "terrain", "simd", "sim", "geo", "observe"],
+    "scene": ["core", "params", "terrain", "simd", "sim", "geo"],
     "run": ["core", "params", "terrain", "simd", "sim", "geo", "observe", "scene"],
     "report": ["core", "params", "terrain", "simd", "sim", "geo", "observe", "scene", "run"],
     "products": ["core", "params", "terrain", "simd", "sim", "geo", "observe", "scene", "run", "report"],
@@ -87,7 +87,7 @@ def check(root):
 
 def self_test():
     rejected = [("core", "params/spec.hpp"), ("core", "fmt/format.h"), ("sim", "geo/raster.hpp"),
-                ("geo", "sim/state.hpp"), ("core", "simd/lanes.hpp"), ("terrain", "simd/lanes.hpp"), ("observe", "run/run.hpp"), ("scene", "run/run.hpp"),
+                ("geo", "sim/state.hpp"), ("core", "simd/lanes.hpp"), ("terrain", "simd/lanes.hpp"), ("observe", "run/run.hpp"), ("scene", "run/run.hpp"), ("scene", "observe/observer.hpp"),
                 ("run", "products/products.hpp"), ("scene", "products/products.hpp"), ("report", "products/products.hpp"),
                 ("products", "gdal_priv.h"), ("apps", "ogrsf_frmts.h"), ("scene", "cpl_conv.h"), ("products", "proj.h"),
                 ("sim", "gtest/gtest.h"), ("scene", "support/fixtures.hpp"), ("sim", "../core/grid.hpp"),
