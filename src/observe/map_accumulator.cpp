@@ -7,6 +7,7 @@
 #include <limits>
 #include <mutex>
 
+#include "observe/map_units.hpp"
 #include "simd/lanes.hpp"
 #include "simd/parallel.hpp"
 
@@ -14,12 +15,9 @@ namespace talus {
 namespace {
 
 constexpr float one = 1 << 12;  ///< a weight of 1 along one axis
-constexpr double one_particle = static_cast<double>(one) * one;
-constexpr float speed_units = 1024;  ///< per m/s
+static_assert(one * one == map_units::particle);
 constexpr float fastest = 1000;      ///< m/s; with up to 500 particles of a broken state in a cell its sums are whole
-constexpr double margin = 20;        ///< m around the reached cells
 constexpr std::size_t grain = 2048;  ///< particles per task
-constexpr float not_a_number = std::numeric_limits<float>::quiet_NaN();
 
 using L = simd::Lanes<4>;
 constexpr std::size_t chunk = 16;  ///< particles whose shares are worked out at once
@@ -63,7 +61,7 @@ MapAccumulator::MapAccumulator(const Model& model, const Ground& ground, const S
     const WorldPoint& origin = ground.terrain.frame().origin;
     x_offset_ = origin.x - geometry_.x_min;
     y_offset_ = origin.y - geometry_.y_min;
-    depth_of_unit_ = particle_volume_ / one_particle / (map_cell * map_cell);
+    depth_of_unit_ = particle_volume_ / map_units::particle / (map_cell * map_cell);
     thinnest_depth_ = 0.1 * model.particle_spacing;
 
     // Tiles also hold the cells just off the map's rim, which never get a share: every particle has its nine cells.
@@ -132,7 +130,7 @@ void MapAccumulator::find_shares(const State& state, std::size_t first, bool den
                 vz = L::load(&state.velocity.z[i]);
         const L speed = sqrt(vx * vx + vy * vy + vz * vz);
         const L limited = select(speed < L(fastest), speed, L(fastest));
-        from_index<L>(truncated(limited * L(speed_units) + L(0.5))).store(&shares.speed[k]);
+        from_index<L>(truncated(limited * L(map_units::speed) + L(0.5))).store(&shares.speed[k]);
     }
     if (!densities) return;
     for (std::size_t k = 0; k < chunk; ++k) {
@@ -178,7 +176,7 @@ MapAccumulator::Tile& MapAccumulator::tile_at(unsigned tile_column, unsigned til
     Tile& made = *tiles_.emplace_back(std::make_unique<Tile>());
     made.column = static_cast<int>(tile_column * tile_size) - 1;
     made.row = static_cast<int>(tile_row * tile_size) - 1;
-    made.arrival_time.fill(not_a_number);
+    made.arrival_time.fill(std::numeric_limits<float>::quiet_NaN());
     tile.store(&made, std::memory_order_release);
     return made;
 }
@@ -246,11 +244,11 @@ void MapAccumulator::update_peaks(Tile& tile, double time) const {
         const CellSum& sum = tile.sums[cell];
         const double now = depth(sum.volume());
         if (now < thinnest_depth_) continue;
-        if (sum.momentum() > sum.volume() * tile.peak_speed[cell] * speed_units) {
-            tile.peak_speed[cell] = static_cast<float>(sum.momentum() / sum.volume() / speed_units);
+        if (sum.momentum() > sum.volume() * tile.peak_speed[cell] * map_units::speed) {
+            tile.peak_speed[cell] = static_cast<float>(sum.momentum() / sum.volume() / map_units::speed);
         }
         if (density_changed_) {
-            const double speed = sum.momentum() / sum.volume() / speed_units;
+            const double speed = sum.momentum() / sum.volume() / map_units::speed;
             const auto pressure = static_cast<float>(density_in(tile, cell) * speed * speed);
             tile.peak_pressure[cell] = std::max(tile.peak_pressure[cell], pressure);
         }
@@ -294,121 +292,6 @@ void MapAccumulator::add(const State& state) {
     simd::parallel_ranges(active_count_, 16, [&](std::size_t first, std::size_t last) {
         for (std::size_t k = first; k < last; ++k) update_peaks(*active_[k], state.time);
     });
-}
-
-MapAccumulator::CellSum MapAccumulator::sum_of(const Tile& tile, std::size_t cell) const {
-    return tile.added == adds_ ? tile.sums[cell] : CellSum{};
-}
-
-MapAccumulator::TileCell MapAccumulator::cell_at(const LocalPoint& p) const {
-    const auto cell_along = [&](double along, int cells) {  // counted from the one before the map's first
-        return static_cast<unsigned>(std::clamp(along * inverse_cell_, 0.0, cells - 1.0)) + 1;
-    };
-    const unsigned column = cell_along(p.x + x_offset_, geometry_.columns);
-    const unsigned row = cell_along(p.y + y_offset_, geometry_.rows);
-    return {tile_at_[std::size_t{row / tile_size} * tile_columns_ + column / tile_size],
-            row % tile_size * tile_size + column % tile_size};
-}
-
-double MapAccumulator::speed_at(const LocalPoint& p) const {
-    const TileCell at = cell_at(p);
-    if (at.tile == nullptr) return 0;
-    const CellSum sum = sum_of(*at.tile, at.cell);
-    return depth(sum.volume()) < thinnest_depth_ ? 0 : sum.momentum() / sum.volume() / speed_units;
-}
-
-double MapAccumulator::density_at(const LocalPoint& p) const {
-    const TileCell at = cell_at(p);
-    return at.tile == nullptr ? rest_density_ : density_in(*at.tile, at.cell);
-}
-
-double MapAccumulator::volume() const {
-    double sum = 0;
-    for (const auto& tile : tiles_) {
-        for (std::size_t cell = 0; cell < tile_cells; ++cell) sum += sum_of(*tile, cell).volume();
-    }
-    return sum / one_particle * particle_volume_;
-}
-
-MapAccumulator::Present MapAccumulator::present() const {
-    int first_column = geometry_.columns, first_row = geometry_.rows, last_column = -1, last_row = -1;
-    const auto edge = static_cast<int>(tile_size);
-    for (std::uint32_t t = 0; t < active_count_; ++t) {
-        const Tile& tile = *active_[t];
-        first_column = std::min(first_column, std::max(tile.column, 0));
-        first_row = std::min(first_row, std::max(tile.row, 0));
-        last_column = std::max(last_column, std::min(tile.column + edge, geometry_.columns) - 1);
-        last_row = std::max(last_row, std::min(tile.row + edge, geometry_.rows) - 1);
-    }
-    Present present;
-    if (last_column < first_column || last_row < first_row) return present;
-    present.first_column = first_column;
-    present.first_row = first_row;
-    const GridGeometry window{geometry_.x_min + first_column * geometry_.cell,
-                              geometry_.y_min + first_row * geometry_.cell, geometry_.cell,
-                              last_column - first_column + 1, last_row - first_row + 1};
-    present.depth = present.speed = Grid<float>(window);
-    const bool own_densities =
-        std::any_of(tiles_.begin(), tiles_.end(), [](const auto& tile) { return !tile->density.empty(); });
-    if (own_densities) present.density = Grid<float>(window, static_cast<float>(rest_density_));
-    for (std::uint32_t t = 0; t < active_count_; ++t) {
-        const Tile& tile = *active_[t];
-        for (std::size_t cell = 0; cell < tile_cells; ++cell) {
-            const CellSum& sum = tile.sums[cell];
-            if (sum.volume() == 0) continue;  // those off the rim of the map, too
-            const std::size_t k =
-                window.index(tile.column + column_of(cell) - first_column, tile.row + row_of(cell) - first_row);
-            present.depth.values[k] = static_cast<float>(depth(sum.volume()));
-            if (own_densities) present.density.values[k] = static_cast<float>(density_in(tile, cell));
-            if (present.depth.values[k] < thinnest_depth_) continue;
-            present.speed.values[k] = static_cast<float>(sum.momentum() / sum.volume() / speed_units);
-        }
-    }
-    return present;
-}
-
-Extent MapAccumulator::reached_cells() const {
-    const double none = std::numeric_limits<double>::infinity();
-    Extent reached{none, none, -none, -none};
-    for (const auto& tile : tiles_) {
-        for (std::size_t cell = 0; cell < tile_cells; ++cell) {
-            if (tile->peak_depth[cell] == 0) continue;
-            reached.include(geometry_.centre(tile->column + column_of(cell), tile->row + row_of(cell)));
-        }
-    }
-    if (reached.x_min > reached.x_max) {
-        return {first_particle_.x, first_particle_.y, first_particle_.x, first_particle_.y};
-    }
-    return reached;
-}
-
-HazardMaps MapAccumulator::maps() const {
-    const Extent frame = reached_cells().grown(margin);
-    const auto cell_at = [&](double x, double x_min, int cells) {
-        return static_cast<int>(std::clamp(std::floor((x - x_min) * inverse_cell_), 0.0, cells - 1.0));
-    };
-    const int first_column = cell_at(frame.x_min, geometry_.x_min, geometry_.columns);
-    const int last_column = cell_at(frame.x_max, geometry_.x_min, geometry_.columns);
-    const int first_row = cell_at(frame.y_min, geometry_.y_min, geometry_.rows);
-    const int last_row = cell_at(frame.y_max, geometry_.y_min, geometry_.rows);
-    const GridGeometry g{geometry_.x_min + first_column * geometry_.cell, geometry_.y_min + first_row * geometry_.cell,
-                         geometry_.cell, last_column - first_column + 1, last_row - first_row + 1};
-
-    const Grid<float> empty(g, not_a_number);
-    HazardMaps maps{empty, empty, empty, empty, empty};
-    for (const auto& tile : tiles_) {
-        for (std::size_t cell = 0; cell < tile_cells; ++cell) {
-            if (tile->peak_depth[cell] == 0) continue;
-            const std::size_t k =
-                g.index(tile->column + column_of(cell) - first_column, tile->row + row_of(cell) - first_row);
-            maps.peak_depth.values[k] = tile->peak_depth[cell];
-            maps.peak_speed.values[k] = tile->peak_speed[cell];
-            maps.peak_pressure.values[k] = peak_pressure(*tile, cell);
-            maps.arrival_time.values[k] = tile->arrival_time[cell];
-            maps.deposit_depth.values[k] = static_cast<float>(depth(sum_of(*tile, cell).volume()));
-        }
-    }
-    return maps;
 }
 
 }  // namespace talus

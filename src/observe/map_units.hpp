@@ -1,0 +1,9 @@
+#pragma once
+
+/// The whole numbers that map cells are summed in.
+namespace talus::map_units {
+
+inline constexpr double particle = 1 << 24;  ///< of a particle's volume
+inline constexpr float speed = 1 << 10;      ///< of 1 m/s
+
+}  // namespace talus::map_units
