@@ -175,10 +175,8 @@ void add_calibrate(CLI::App& program, std::vector<Command>& commands) {
     app->add_option("--recover", arguments->recover, "repeat N times with observations from runs with known values")
         ->type_name("N")
         ->check(CLI::Range(1, 1000));
-    app->add_option("--set", arguments->overrides, "set a value of the scene; may be repeated")
-        ->type_name("SECTION.KEY=VALUE")
-        ->allow_extra_args(false);
-    app->add_option("--data", arguments->data, "folder for ${TALUS_DATA} in the paths of a scene")->type_name("DIR");
+    add_overrides(*app, arguments->overrides);
+    add_data_folder(*app, arguments->data);
     app->add_option("--threads", arguments->threads, "runs in parallel, one thread each; default: all cores")
         ->type_name("N")
         ->check(CLI::Range(1, 4096));

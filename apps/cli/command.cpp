@@ -33,6 +33,13 @@ void add_overrides(CLI::App& command, std::vector<std::string>& overrides) {
     command.add_option("--set", overrides, "set a value of the scene; may be repeated")
         ->type_name("SECTION.KEY=VALUE")
         ->allow_extra_args(false);
+    // After --set, which would replace what is there, and in front of it: what is set by hand goes before.
+    command
+        .add_option_function<std::string>(
+            "--variant",
+            [&overrides](const std::string& name) { overrides.insert(overrides.begin(), "variant=" + name); },
+            "take the values of the scene's [[variant]] of that name; --set goes before them")
+        ->type_name("NAME");
 }
 
 void add_data_folder(CLI::App& command, std::string& data) {

@@ -27,8 +27,9 @@ void add_calibrate(CLI::App& program, std::vector<Command>& commands);
 void add_bench(CLI::App& program, std::vector<Command>& commands);
 
 // What several commands share.
-void add_overrides(CLI::App& command, std::vector<std::string>& overrides);  ///< --set SECTION.KEY=VALUE
-void add_data_folder(CLI::App& command, std::string& data);                  ///< --data DIR
+void add_overrides(CLI::App& command,
+                   std::vector<std::string>& overrides);     ///< --set SECTION.KEY=VALUE, --variant NAME
+void add_data_folder(CLI::App& command, std::string& data);  ///< --data DIR
 
 /// Prints "talus: error: MESSAGE" as exactly one line on stderr and returns `code`.
 int fail(int code, const std::string& message);

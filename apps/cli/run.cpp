@@ -34,8 +34,8 @@ constexpr const char* run_help = R"(
 Every value of the scene can be set with --set section.key=value. The result folder holds maps (GeoTIFF with QGIS
 styles), front.csv, timeseries.csv, buildings.csv, results.gpkg, results.json, manifest.json and report.html.
 
---convergence and --vary compare front velocity at every observation, arrival (first building hit; if there is none, the
-front at 90 % of its chainage) and run-out with the scene as given: on the terminal, in convergence.csv and
+--convergence, --vary and --variants compare front velocity at every observation, arrival (first building hit; if there
+is none, the front at 90 % of its chainage) and run-out with the scene as given: on the terminal, in convergence.csv and
 variants.csv, in the report, the manifest and --json. --convergence passes if nothing changes by more than 5 %.
 )";
 
@@ -185,6 +185,8 @@ void add_run(CLI::App& program, std::vector<Command>& commands) {
     add_overrides(*app, run->overrides);
     app->add_flag("--convergence", run->convergence,
                   "run again with half the time step, double the iterations, three times the particles; compare");
+    app->add_flag("--variants", run->named_variants, "run again as every [[variant]] of the scene; compare")
+        ->excludes(app->get_option("--variant"));
     app->add_option("--vary", run->variations, "run again with each of the values; compare; may be repeated")
         ->type_name("SECTION.KEY=VALUE,VALUE")
         ->allow_extra_args(false);

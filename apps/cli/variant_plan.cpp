@@ -20,6 +20,13 @@ Result<VariantPlan> VariantPlan::make(const RunArguments& arguments, const Scene
     std::vector<Variant> wanted;
     if (arguments.convergence) wanted = refinements(scene);
     const std::size_t refinement_count = wanted.size();
+    if (arguments.named_variants) {
+        if (scene.spec.variants.empty()) {
+            return Error{"--variants: the scene has no [[variant]]"};
+        }
+        const std::vector<Variant> named = named_variants(scene.spec);
+        wanted.insert(wanted.end(), named.begin(), named.end());
+    }
     for (const std::string& text : arguments.variations) {
         TALUS_ASSIGN(const auto more, variations(text));
         wanted.insert(wanted.end(), more.begin(), more.end());

@@ -20,6 +20,7 @@ struct RunArguments {
     std::string data;                    ///< value of TALUS_DATA; empty: as in the environment
     bool quiet = false, json = false;
     bool convergence = false;             ///< run three refinements too and compare
+    bool named_variants = false;          ///< run every [[variant]] of the scene too and compare
     std::vector<std::string> variations;  ///< "section.key=value,value": run with each value too and compare
 };
 
@@ -44,7 +45,7 @@ class VariantPlan {
     VariantPlan(SceneSource source, std::vector<Variant> variants, std::size_t refinement_count);
 
     SceneSource source_;
-    std::vector<Variant> variants_;  // refinements, then variations
+    std::vector<Variant> variants_;  // refinements, then named ones and variations
     std::size_t refinement_count_;
     SeriesClock clock_;
 };

@@ -8,9 +8,8 @@
 namespace talus {
 namespace {
 
-constexpr double gravity = 9.81;                                     // m/s2
-constexpr double velocity_share = 0.2, superelevation_share = 0.25;  // usual uncertainty over the value
-constexpr double time_share = 0.2;
+constexpr double gravity = 9.81;                                 // m/s2
+constexpr double superelevation_share = 0.25, time_share = 0.2;  // usual uncertainty over the value
 
 std::string label(const std::string& name, const std::string& otherwise) {
     return name.empty() ? otherwise : otherwise + " (" + name + ")";
@@ -98,7 +97,7 @@ std::vector<ObservedValue> observed_values(const Scene& scene) {
     for (std::size_t i = 0; i < spec.observations.size(); ++i) {
         const ObservationSpec& o = spec.observations[i];
         add("observation", i, "front_velocity_mps", fmt::format("Front velocity at {:.6g} m", o.chainage), "m/s",
-            o.front_velocity, o.uncertainty.value_or(velocity_share * o.front_velocity));
+            o.front_velocity, o.standard_deviation());
     }
     for (std::size_t i = 0; i < spec.superelevations.size(); ++i) {
         const SuperelevationSpec& o = spec.superelevations[i];

@@ -134,6 +134,27 @@ Section declare_outputs() {
     return s.take();
 }
 
+Section declare_variant() {
+    Declaration<VariantSpec> s("variant",
+                               "Values that the scene may be run with in place of its own, such as those of another "
+                               "author: --variant NAME takes them, talus run --variants runs all of them and compares.",
+                               &SceneSpec::variants);
+    s.text("name", &VariantSpec::name, "", "Name on the command line and in the report.").required = true;
+    s.key("set", "", &VariantSpec::set, anything(),
+          "What it sets, each as on the command line: \"section.key=value\"; \"none\" as the value removes an "
+          "optional key.")
+        .required = true;
+    s.text("notes", &VariantSpec::notes, "none", "What it stands for, printed in the report.");
+    s.text("source", &VariantSpec::source, "none", "Where its values come from, printed in the report.");
+    s.rule([](const VariantSpec& variant, const SceneSpec& scene, double) -> std::optional<Violation> {
+        const auto same = std::count_if(scene.variants.begin(), scene.variants.end(),
+                                        [&](const VariantSpec& other) { return other.name == variant.name; });
+        if (same == 1) return {};
+        return Violation{"name", fmt::format(" = \"{}\" is refused; {} variants have that name", variant.name, same)};
+    });
+    return s.take();
+}
+
 }  // namespace
 
 const std::vector<Section>& scene_sections() {
@@ -143,6 +164,7 @@ const std::vector<Section>& scene_sections() {
             declare_buildings(), declare_barrier(), declare_barrier_opening(), declare_flow_path(), declare_material(),
             declare_zone(),      declare_solver(),  declare_outputs()};
         for (Section& section : declare_observations()) all.push_back(std::move(section));
+        all.push_back(declare_variant());
         return all;
     }();
     return sections;

@@ -231,6 +231,9 @@ struct ObservationSpec {
     double front_velocity = 0;  ///< m/s
     std::string source;
     std::optional<double> uncertainty = {};  ///< m/s, one standard deviation; absent: a fifth of the velocity
+
+    /// m/s
+    [[nodiscard]] double standard_deviation() const { return uncertainty.value_or(front_velocity / 5); }
 };
 
 /// `[[superelevation]]`: marks on both sides of a bend, from which the velocity follows.
@@ -297,6 +300,14 @@ struct DepositOutlineSpec {
     std::string source;
 };
 
+/// `[[variant]]`: values that the scene may be run with in place of its own.
+struct VariantSpec {
+    std::string name;
+    std::vector<std::string> set;  ///< "section.key=value"
+    std::string notes;
+    std::string source;
+};
+
 struct SceneSpec {
     SceneInfo scene;
     TerrainSpec terrain;
@@ -321,6 +332,7 @@ struct SceneSpec {
     std::vector<DamageSpec> damages;
     std::vector<ObservedRunOutSpec> observed_run_outs;
     std::vector<DepositOutlineSpec> deposit_outlines;
+    std::vector<VariantSpec> variants;
 };
 
 }  // namespace talus

@@ -33,6 +33,10 @@ constexpr int results_version = 1;
 [[nodiscard]] Json force_chart(const RunResult& result);
 /// Front velocity, ground profile and arrival time against chainage, one below the other.
 [[nodiscard]] Json front_chart(const Scene& scene, const RunResult& result);
+/// Both grow to hold the front velocities observed in the field.
+void include_observations(const Scene& scene, ValueRange& chainages, ValueRange& speeds);
+/// These velocities with a standard deviation to both sides.
+void mark_observations(const Scene& scene, Plot& velocity);
 /// Energy, volumes, largest speed and compression over time.
 [[nodiscard]] Json time_chart(const RunResult& result);
 [[nodiscard]] Json zones(const Scene& scene);

@@ -119,10 +119,7 @@ Json chart(const Comparison& comparison, const Scene& scene, const RunResult& ba
         for (const double t : front.arrival) times.include(t);
     }
     if (!(x.high > 0)) return {};
-    for (const ObservationSpec& o : scene.spec.observations) {
-        x.include(o.chainage);
-        speeds.include(o.front_velocity);
-    }
+    include_observations(scene, x, speeds);
     x.high *= 1.03;
     speeds.high *= 1.08;
     times.high *= 1.08;
@@ -138,7 +135,7 @@ Json chart(const Comparison& comparison, const Scene& scene, const RunResult& ba
         velocity.line(front.chainage, front.velocity, front.style, front.name);
         arrival.line(front.chainage, front.arrival, front.style);
     }
-    for (const ObservationSpec& o : scene.spec.observations) velocity.mark(o.chainage, o.front_velocity, "observation");
+    mark_observations(scene, velocity);
     return chart_json({"Front velocity and arrival time against chainage, all runs",
                        1000,
                        527,
@@ -154,6 +151,12 @@ Json comparison(const Comparison& comparison, const Scene& scene, const RunResul
     for (const Quantity& q : comparison.quantities) {
         if (!q.not_measured.empty()) not_measured.push_back({{"name", q.name}, {"why", q.not_measured}});
     }
+    Json named = Json::array();
+    for (const Comparison::Row& row : comparison.rows) {
+        const Variant& variant = row.run.variant;
+        if (variant.about.empty()) continue;
+        named.push_back({{"name", variant.name}, {"sets", variant.overrides}, {"about", variant.about}});
+    }
     const bool velocities = std::any_of(comparison.quantities.begin(), comparison.quantities.end(),
                                         [](const Quantity& q) { return q.unit == "m/s"; });
     return {{"kind_of_comparison", judged ? "convergence" : "sensitivity"},
@@ -164,6 +167,8 @@ Json comparison(const Comparison& comparison, const Scene& scene, const RunResul
             {"limit_percent", refinement_limit_percent},
             {"table", rows_of(comparison, base)},
             {"not_measured", std::move(not_measured)},
+            {"has_named", !named.empty()},
+            {"named", std::move(named)},
             {"without_velocities", !velocities},
             {"with_observations", !scene.spec.observations.empty()},
             {"chart", chart(comparison, scene, base)}};

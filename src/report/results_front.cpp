@@ -127,18 +127,36 @@ void draw_profile(Plot& plot, const Scene& scene, const RunResult& result, const
 
 }  // namespace
 
+void include_observations(const Scene& scene, ValueRange& chainages, ValueRange& speeds) {
+    for (const ObservationSpec& o : scene.spec.observations) {
+        chainages.include(o.chainage);
+        speeds.include(o.front_velocity + o.standard_deviation());
+    }
+}
+
+void mark_observations(const Scene& scene, Plot& velocity) {
+    const double cap = 4 * (velocity.x_range.high - velocity.x_range.low) / velocity.width;  // half of it, 4 SVG units
+    for (const ObservationSpec& o : scene.spec.observations) {
+        const double low = std::max(0.0, o.front_velocity - o.standard_deviation());
+        const double high = o.front_velocity + o.standard_deviation();
+        const std::vector<double> middle(2, o.chainage), ends{o.chainage - cap, o.chainage + cap};
+        velocity.line(middle, std::vector<double>{low, high}, "whisker");
+        for (const double end : {low, high}) velocity.line(ends, std::vector<double>(2, end), "whisker");
+        velocity.mark(o.chainage, o.front_velocity, "observation");
+    }
+}
+
 Json front_chart(const Scene& scene, const RunResult& result) {
     const Columns front = front_columns(result.observation);
-    double last = front.chainage.empty() ? 0 : front.chainage.back();
-    for (const ObservationSpec& o : scene.spec.observations) last = std::max(last, o.chainage);
+    ValueRange reached{0, front.chainage.empty() ? 0 : front.chainage.back()}, speeds{0, 1}, times{0, 1};
+    include_observations(scene, reached, speeds);
+    const double last = reached.high;
     if (scene.flow_path.empty() || !(last > 0)) return {};
     const double end = std::min(1.12 * last, std::max(last, scene.flow_path.length()));
     const ValueRange x{0, end};
 
-    ValueRange speeds{0, 1}, times{0, 1};
     for (const double v : front.velocity) speeds.include(v);
     for (const double v : front.speed) speeds.include(v);
-    for (const ObservationSpec& o : scene.spec.observations) speeds.include(o.front_velocity);
     for (const double t : front.arrival) times.include(t);
     speeds.high *= scene.spec.observations.empty() ? 1.1 : 1.4;
     times.high *= 1.08;
@@ -151,7 +169,6 @@ Json front_chart(const Scene& scene, const RunResult& result) {
     std::vector<double> row_ends;  // SVG x up to which each row of labels is taken
     for (const ObservationSpec& o : scene.spec.observations) {
         velocity.vertical(o.chainage, "observation-line");
-        velocity.mark(o.chainage, o.front_velocity, "observation");
         // Labels stand above the curves; one that would run into its neighbour's goes a row down.
         const std::string value = fmt::format("observed {} m/s at {} m", plain(o.front_velocity), plain(o.chainage));
         const std::string name = shortened(o.name, 40), source = shortened(o.source, 40);
@@ -168,6 +185,8 @@ Json front_chart(const Scene& scene, const RunResult& result) {
         velocity.label(o.chainage, speeds.high, dx, dy + 15, anchor, "note", name);
         velocity.label(o.chainage, speeds.high, dx, dy + 29, anchor, "note", source);
     }
+
+    mark_observations(scene, velocity);
 
     const Profile profile = profile_along(scene, end);
     ValueRange heights = profile.range;

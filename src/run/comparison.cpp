@@ -157,7 +157,10 @@ std::string Comparison::verdict_text() const {
     const std::string missing =
         counts.missing_runs > 0 ? fmt::format("{} of {} runs missing", counts.missing_runs, rows.size()) : "";
     if (kind == ComparisonKind::sensitivity) {
-        return missing.empty() ? fmt::format("{} variants, one value changed in each", rows.size()) : missing;
+        if (!missing.empty()) return missing;
+        const bool single =
+            std::all_of(rows.begin(), rows.end(), [](const Row& row) { return row.run.variant.overrides.size() == 1; });
+        return fmt::format("{} variants{}", rows.size(), single ? ", one value changed in each" : "");
     }
     const std::size_t all = counts.pass + counts.fail;
     switch (converged()) {

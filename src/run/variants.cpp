@@ -114,6 +114,16 @@ Result<std::vector<Variant>> variations(std::string_view text) {
     return variants;
 }
 
+std::vector<Variant> named_variants(const SceneSpec& scene) {
+    std::vector<Variant> variants;
+    for (const VariantSpec& named : scene.variants) {
+        std::string about = named.notes;
+        if (!named.source.empty()) about += fmt::format("{}Source: {}", about.empty() ? "" : " ", named.source);
+        variants.push_back({.name = named.name, .overrides = named.set, .about = std::move(about)});
+    }
+    return variants;
+}
+
 Result<std::vector<Variant>> prepare_variants(const SceneSource& source, const Scene& base,
                                               std::vector<Variant> variants) {
     for (Variant& variant : variants) {

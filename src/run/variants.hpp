@@ -17,6 +17,7 @@ struct Variant {
     std::string name;                    ///< "half the time step", "material.friction_coefficient = 0.3"
     std::vector<std::string> overrides;  ///< "section.key=value", applied after those of the base
     double effort = 1;                   ///< wall time of its run over that of the base, an estimate
+    std::string about{};                 ///< what it stands for and whose it is, of a variant with a name
 };
 
 /// A variant's run, or why there is none.
@@ -38,6 +39,9 @@ struct SceneSource {
 /// A variant per value of "section.key=value,value,...", or "section[index].key=..."; commas in brackets or quotes do
 /// not separate. Errors: no key, no value.
 [[nodiscard]] Result<std::vector<Variant>> variations(std::string_view text);
+
+/// Those that the scene file names.
+[[nodiscard]] std::vector<Variant> named_variants(const SceneSpec& scene);
 
 /// Loads every variant once, so that what cannot run is refused before hours of the base's run, and fills in `effort`.
 /// Errors: as of load_scene, and more particles than the limit.

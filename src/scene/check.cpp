@@ -5,6 +5,7 @@
 #include <limits>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "sim/seed.hpp"
 #include "terrain/map_cell.hpp"
@@ -92,6 +93,9 @@ std::string describe_scene(const Scene& scene) {
                ? "flow path   none\n"
                : fmt::format("flow path   {:.0f} m, {}\n", scene.flow_path.length(),
                              scene.flow_path_traced ? "traced downhill from the release" : "from its file");
+    for (const VariantSpec& variant : scene.spec.variants) {
+        out += fmt::format("variant     {}: {}\n", variant.name, fmt::join(variant.set, ", "));
+    }
     if (!scene.notes.empty()) out += "notes\n";
     for (const std::string& note : scene.notes) out += "  - " + note + "\n";
     return out;

@@ -3,6 +3,7 @@
 #include <optional>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <toml++/toml.h>
 
 #include "core/try.hpp"
@@ -39,6 +40,8 @@ std::string unknown_section(std::string_view name) {
                        nearest_word(name, names));
 }
 
+constexpr std::string_view variant_override = "variant=";
+
 class SceneReader {
   public:
     explicit SceneReader(const std::filesystem::path& file) : name_(file.string()) { scene_.file = file; }
@@ -52,9 +55,38 @@ class SceneReader {
         return {};
     }
 
-    /// "section.key=value" or "section[index].key=value".
+    /// What every variant sets is there and allowed, whether it is run or not.
+    [[nodiscard]] Status check_variants() const {
+        for (std::size_t i = 0; i < scene_.spec.variants.size(); ++i) {
+            SceneReader tried(*this);
+            TALUS_TRY(tried.use_variant(i));
+        }
+        return {};
+    }
+
+    /// "section.key=value", "section[index].key=value", or "variant=NAME" for all that the variant sets.
     Status read_override(const std::string& text) {
-        const std::string where = "--set " + one_line(text, 120);
+        if (!text.starts_with(variant_override)) return read_value(text, "--set " + one_line(text, 120));
+        const std::string name = text.substr(variant_override.size());
+        std::vector<std::string> names;
+        for (std::size_t i = 0; i < scene_.spec.variants.size(); ++i) {
+            if (scene_.spec.variants[i].name == name) return use_variant(i);
+            names.push_back(toml_text(scene_.spec.variants[i].name));
+        }
+        return Error{fmt::format("--variant {}: the scene has no [[variant]] of that name; {}", one_line(name, 80),
+                                 names.empty() ? "it has none" : fmt::format("it has {}", fmt::join(names, ", ")))};
+    }
+
+    Status use_variant(std::size_t index) {
+        const VariantSpec variant = scene_.spec.variants[index];
+        const std::string where =
+            fmt::format("{} \"{}\"", scene_.at(fmt::format("variant[{}].set", index)), variant.name);
+        for (const std::string& text : variant.set) TALUS_TRY(read_value(text, where));
+        return {};
+    }
+
+    /// "section.key=value" or "section[index].key=value".
+    Status read_value(const std::string& text, const std::string& where) {
         const std::size_t equals = text.find('=');
         const std::size_t dot = text.find('.');
         if (equals == std::string::npos || dot == std::string::npos || dot > equals) {
@@ -211,6 +243,7 @@ Result<ParsedScene> parse_scene_with_places(const std::filesystem::path& file,
     TALUS_ASSIGN(const toml::table root, read_toml_file(file, "scene"));
     SceneReader reader(file);
     TALUS_TRY(reader.read_file(root));
+    TALUS_TRY(reader.check_variants());
     for (const std::string& override_text : overrides) {
         TALUS_TRY(reader.read_override(override_text));
     }

@@ -21,7 +21,7 @@ struct ParsedScene {
     [[nodiscard]] std::string at(const std::string& key_path) const;
 };
 
-/// As parse_scene, with the places.
+/// As parse_scene, with the places. An override may also be "variant=NAME": all that a `[[variant]]` sets.
 [[nodiscard]] Result<ParsedScene> parse_scene_with_places(const std::filesystem::path& file,
                                                           const std::vector<std::string>& overrides);
 

@@ -102,6 +102,76 @@ TEST(Vary, RunsOncePerValueOneAtATime) {
     EXPECT_FALSE(last_event(outcome).contains("convergence"));
 }
 
+/// The plane with two variants of its friction.
+class NamedVariants : public testing::Test {
+  protected:
+    NamedVariants() {
+        scene_.replace("[[observation]]", R"([[variant]]
+name = "slippery"
+set = ["material.friction_coefficient=0.1", "material.viscosity=0.2"]
+notes = "Like wet clay."
+source = "A report."
+
+[[variant]]
+name = "rough"
+set = ["material.friction_coefficient=0.3"]
+
+[[observation]])");
+    }
+    [[nodiscard]] ProgramOutcome run(const std::vector<std::string>& more) const {
+        std::vector<std::string> arguments{"run", "slope.toml", "--json", "--force", "-o", "result"};
+        arguments.insert(arguments.end(), more.begin(), more.end());
+        return run_program(arguments, {.folder = scene_.folder()});
+    }
+    [[nodiscard]] nlohmann::json hash(const std::vector<std::string>& more) const {
+        const auto outcome = run(more);
+        EXPECT_EQ(outcome.exit_code, 0) << outcome.error;
+        return last_event(outcome).at("hash");
+    }
+    SmallScene scene_;
+};
+
+TEST_F(NamedVariants, AreTheSceneWithWhatTheySet) {
+    const auto set_by_hand = hash({"--set", "material.friction_coefficient=0.1", "--set", "material.viscosity=0.2"});
+    EXPECT_EQ(hash({"--variant", "slippery"}), set_by_hand);
+    EXPECT_NE(hash({}), set_by_hand);
+    EXPECT_EQ(hash({"--set", "material.viscosity=0.1", "--variant", "slippery"}),
+              hash({"--set", "material.friction_coefficient=0.1", "--set", "material.viscosity=0.1"}))
+        << "what is set by hand goes before";
+}
+
+TEST_F(NamedVariants, AreAllRunAndComparedInOneFigure) {
+    const auto outcome = run({"--variants", "--vary", "material.viscosity=0.3"});
+    ASSERT_EQ(outcome.exit_code, 0) << outcome.error;
+    const auto variants = last_event(outcome).at("sensitivity").at("variants");
+    ASSERT_EQ(variants.size(), 3U);
+    EXPECT_EQ(variants.at(0).at("name"), "slippery");
+    EXPECT_EQ(variants.at(0).at("result_hash"), hash({"--variant", "slippery"}));
+    EXPECT_EQ(variants.at(1).at("name"), "rough");
+    EXPECT_EQ(variants.at(2).at("name"), "material.viscosity = 0.3");
+    (void)run({"--variants"});
+    const std::string report = read_text(scene_.folder() / "result/report.html");
+    for (const char* part : {"<b>slippery</b>", "material.viscosity=0.2", "Like wet clay. Source: A report."}) {
+        EXPECT_THAT(report, HasSubstr(part));
+    }
+    EXPECT_THAT(read_text(scene_.folder() / "result/variants.csv"), HasSubstr("\nslippery,"));
+}
+
+TEST_F(NamedVariants, AreListedWhereANameIsWrong) {
+    const auto wrong = run({"--variant", "sliperry"});
+    EXPECT_EQ(wrong.exit_code, 2);
+    EXPECT_THAT(wrong.error, HasSubstr("--variant sliperry: the scene has no [[variant]] of that name; it has "
+                                       "\"slippery\", \"rough\""));
+    EXPECT_EQ(lines_of(wrong.error).size(), 1U);
+    const auto check = run_program({"scene", "check", "slope.toml", "--variant", "rough"}, {.folder = scene_.folder()});
+    EXPECT_EQ(check.exit_code, 0) << check.error;
+    EXPECT_THAT(check.out,
+                HasSubstr("variant     slippery: material.friction_coefficient=0.1, material.viscosity=0.2"));
+    scene_.write(SmallScene::text());
+    EXPECT_THAT(run({"--variants"}).error, HasSubstr("--variants: the scene has no [[variant]]"));
+    EXPECT_THAT(run({"--variant", "rough"}).error, HasSubstr("it has none"));
+}
+
 class InterruptedVariants : public testing::Test {
   protected:
     InterruptedVariants() { scene_.replace("end_time_s = 1", "end_time_s = 2"); }
