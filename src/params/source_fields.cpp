@@ -26,6 +26,11 @@ Section declare_release() {
                    "Volume to release, spread as a uniform thickness over the polygons.");
     s.key("start_time_s", "s", &ReleaseSpec::start_time, at_least(0),
           "When the body starts to move; until then it is held in place.");
+    s.key("shift_along_m", "m", &ReleaseSpec::shift_along, between(-1e5, 1e5),
+          "How far its polygons, with the raster of their thickness, are moved in plan down the mean slope under them; "
+          "negative: uphill. For places that are not known well.");
+    s.key("shift_across_m", "m", &ReleaseSpec::shift_across, between(-1e5, 1e5),
+          "The same across that slope: to the left as seen looking downhill; negative: to the right.");
     s.optional_key("pore_pressure_ratio", "", &ReleaseSpec::pore_pressure_ratio, between(0, 1), "that of the material",
                    "Pore-pressure ratio r_u of this body when it starts.")
         .needs(stress());

@@ -47,6 +47,7 @@ struct ReleaseSpec {
     std::string thickness_raster;
     std::optional<double> volume;               ///< m3, spread as a uniform thickness
     double start_time = 0;                      ///< s
+    double shift_along = 0, shift_across = 0;   ///< m in plan, down the slope and to the left of that
     std::optional<double> pore_pressure_ratio;  ///< r_u; absent: that of the material
     bool operator==(const ReleaseSpec&) const = default;
 };

@@ -90,6 +90,49 @@ Status spread_volume(const ReleaseSpec& spec, const std::string& label, Release&
     return {};
 }
 
+/// Downhill in plan, on average under the patches. Errors: the ground is level.
+Result<PlanPoint> downhill(const Release& release, const Terrain& terrain) {
+    const double h = terrain.cell();
+    double east = 0, north = 0, points = 0;  // rises per metre, summed up
+    for (const ReleasePatch& patch : release.patches) {
+        for_each_inside(patch.polygon, h / 2, [&](const PlanPoint& p) {
+            const double rise_east = terrain.elevation_at({p.x + h, p.y}) - terrain.elevation_at({p.x - h, p.y});
+            const double rise_north = terrain.elevation_at({p.x, p.y + h}) - terrain.elevation_at({p.x, p.y - h});
+            if (std::isnan(rise_east + rise_north)) return;
+            east += rise_east / (2 * h);
+            north += rise_north / (2 * h);
+            ++points;
+        });
+    }
+    const double steepness = std::hypot(east, north);
+    if (steepness < 1e-3 * points || points == 0) {
+        return Error{"is refused; the ground under the release is level, so that nothing is along it or across it"};
+    }
+    return PlanPoint{-east / steepness, -north / steepness};
+}
+
+void move(Polygon& polygon, const PlanPoint& by) {
+    const auto move_ring = [&](Ring& ring) {
+        for (PlanPoint& p : ring) p = {p.x + by.x, p.y + by.y};
+    };
+    move_ring(polygon.outer);
+    for (Ring& hole : polygon.holes) move_ring(hole);
+}
+
+/// Moves the patches along and across the slope. What they were moved by.
+Result<PlanPoint> shift(const ReleaseSpec& spec, const std::string& label, Release& release, Scene& scene) {
+    if (spec.shift_along == 0 && spec.shift_across == 0) return PlanPoint{0, 0};
+    TALUS_ASSIGN(const PlanPoint down, downhill(release, scene.terrain));
+    const PlanPoint by{spec.shift_along * down.x - spec.shift_across * down.y,
+                       spec.shift_along * down.y + spec.shift_across * down.x};
+    for (ReleasePatch& patch : release.patches) move(patch.polygon, by);
+    scene.notes.push_back(
+        fmt::format("{}: moved by {:.4g} m to the east and {:.4g} m to the north, {:.4g} m down the "
+                    "slope and {:.4g} m to the left",
+                    label, by.x, by.y, spec.shift_along, spec.shift_across));
+    return by;
+}
+
 Result<Release> load_release(const ParsedScene& parsed, std::size_t index, Scene& scene) {
     ReleaseSpec& spec = scene.spec.releases[index];
     if (spec.name.empty()) spec.name = fmt::format("release {}", index + 1);
@@ -112,14 +155,21 @@ Result<Release> load_release(const ParsedScene& parsed, std::size_t index, Scene
         if (!thickness) return refused("thickness_attribute", thickness.error());
         for (const Polygon& part : layer->features[feature].parts) release.patches.push_back({part, *thickness});
     }
+    const char* const moved = spec.shift_along != 0 ? "shift_along_m" : "shift_across_m";
+    const Result<PlanPoint> by = shift(spec, label, release, scene);
+    if (!by) return refused(moved, by.error());
+    const bool as_drawn = by->x == 0 && by->y == 0;
     for (const ReleasePatch& patch : release.patches) {
-        if (Status s = check_covered(patch.polygon, label, scene); !s) return refused("file", s.error());
+        if (Status s = check_covered(patch.polygon, label, scene); !s)
+            return refused(as_drawn ? "file" : moved, s.error());
     }
     if (!spec.thickness_raster.empty()) {
         Result<Raster> raster = read_value_raster(spec.thickness_raster, scene.crs);
         if (!raster) return refused("thickness_raster", raster.error());
         record_input(label + " thickness", spec.thickness_raster, scene);
         release.thickness_raster = std::move(raster->grid);
+        release.thickness_raster->geometry.x_min += by->x;
+        release.thickness_raster->geometry.y_min += by->y;
         if (Status s = check_thickness_raster(spec, label, release, scene); !s) {
             return refused("thickness_raster", s.error());
         }

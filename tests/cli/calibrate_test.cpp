@@ -63,6 +63,40 @@ TEST(Calibrate, WritesWhatItFoundAndASceneThatRunsIt) {
     EXPECT_EQ(manifest.at("result_hash"), event.at("best_hash"));
 }
 
+/// Where debris started follows from when it came to two places, even if the drawing is 9 m off.
+TEST(Calibrate, RecoversHowFarTheReleaseWasMoved) {
+    const FlowingScene scene;
+    const ProgramOptions here{.folder = scene.folder()};
+    // A path of its own: one that is traced would begin at the crown, wherever that is.
+    write_text(scene.input("path.geojson"),
+               R"({"type": "FeatureCollection", "crs": {"type": "name", "properties": {"name": )"
+               R"("urn:ogc:def:crs:EPSG::2326"}}, "features": [{"type": "Feature", "properties": {}, "geometry": )"
+               R"({"type": "LineString", "coordinates": [[824240, 825100], [824020, 825100]]}}]})");
+    scene.replace("[buildings]\nfile = \"buildings.geojson\"\n", "[flow_path]\nfile = \"path.geojson\"\n");
+    const auto truth =
+        run_program({"run", "slope.toml", "-o", "truth", "--quiet", "--set", "release.shift_along_m=9"}, here);
+    ASSERT_EQ(truth.exit_code, 0) << truth.error;
+    std::string observations;
+    for (const std::string& line : lines_of(read_text(scene.folder() / "truth/front.csv"))) {
+        for (const std::string chainage : {"55", "60"}) {
+            if (!line.starts_with(chainage + ",")) continue;
+            const std::string time =
+                line.substr(chainage.size() + 1, line.find(',', chainage.size() + 1) - chainage.size() - 1);
+            observations += "[[arrival]]\nchainage_m = " + chainage + "\ntime_s = " + time + "\nuncertainty_s = 0.05\n";
+        }
+    }
+    scene.replace("[[observation]]\nchainage_m = 24\nfront_velocity_mps = 3\n", observations);
+    const auto outcome = run_program({"calibrate", "slope.toml", "--vary", "release.shift_along_m=-20:20", "--runs",
+                                      "14", "--checks", "2", "-o", "result", "--json"},
+                                     here);
+    ASSERT_EQ(outcome.exit_code, 0) << outcome.error;
+    const auto shift = nlohmann::json::parse(lines_of(outcome.out).back()).at("factors")[0];
+    EXPECT_NEAR(shift.at("median").get<double>(), 9, 1.5);
+    EXPECT_LT(shift.at("interval_95")[0].get<double>(), 9);
+    EXPECT_GT(shift.at("interval_95")[1].get<double>(), 9);
+    EXPECT_LT(shift.at("interval_95")[1].get<double>() - shift.at("interval_95")[0].get<double>(), 10);
+}
+
 TEST(Calibrate, AnInterruptedOneGoesOnToTheSameResult) {
     const FlowingScene scene;
     const ProgramOptions here{.folder = scene.folder()};
