@@ -96,6 +96,14 @@ std::string Parameters::choice(const std::string& key, const std::vector<std::st
     return fallback;
 }
 
+std::string Parameters::text(const std::string& key, const std::string& fallback) {
+    const Entry* entry = find(key);
+    if (entry == nullptr) return fallback;
+    const auto* value = std::get_if<std::string>(&entry->value);
+    if (value == nullptr || value->empty()) refuse(key, *entry, "a text, not empty");
+    return value == nullptr ? fallback : *value;
+}
+
 std::filesystem::path Parameters::path(const std::string& key) {
     const std::string allowed = "a file, relative to the case's folder";
     const Entry* entry = find(key);

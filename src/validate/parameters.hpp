@@ -36,6 +36,7 @@ class Parameters {
     /// Pairs of numbers, `[[1, 2], [3, 4]]`; none where the key is absent and not required.
     std::vector<NumberPair> pairs(const std::string& key, const Range& range, bool required);
     std::string choice(const std::string& key, const std::vector<std::string>& choices, const std::string& fallback);
+    std::string text(const std::string& key, const std::string& fallback);
     /// A file, relative to the case's folder; required.
     std::filesystem::path path(const std::string& key);
 

@@ -86,8 +86,12 @@ double measure(const Expectation& e, const Scene& scene, const Observation& obse
     return e.quantity == "mean_compression" ? observation.worst_mean_compression : observation.worst_max_compression;
 }
 
-Result<Outcome> compute(const std::filesystem::path& file, const Setting& setting, const Watch& watch) {
-    std::vector<std::string> overrides = setting.overrides;
+/// `variant`: of the scene; empty: the scene as given.
+Result<Outcome> compute(const std::filesystem::path& file, const std::string& variant, const Setting& setting,
+                        const Watch& watch) {
+    std::vector<std::string> overrides;
+    if (!variant.empty()) overrides.push_back("variant=" + variant);
+    overrides.insert(overrides.end(), setting.overrides.begin(), setting.overrides.end());
     if (watch.thread_count > 0) overrides.push_back(fmt::format("solver.thread_count={}", watch.thread_count));
     TALUS_ASSIGN(const Scene scene, load_scene(file, overrides));
     RunOptions options;
@@ -121,7 +125,8 @@ Result<Outcome> compute(const std::filesystem::path& file, const Setting& settin
 
 Computation prepare(Parameters& parameters, const Setting& setting) {
     const std::filesystem::path file = parameters.path("scene");
-    return [file, setting](const Watch& watch) { return compute(file, setting, watch); };
+    const std::string variant = parameters.text("variant", "");
+    return [file, variant, setting](const Watch& watch) { return compute(file, variant, setting, watch); };
 }
 
 }  // namespace scene_run
