@@ -35,7 +35,7 @@ std::string buildings_text(const Observation& observation) {
     std::string text = fmt::format("{} of {}", hit.size(), observation.buildings.size());
     for (std::size_t i = 0; i < std::min(hit.size(), longest_list); ++i) {
         text += fmt::format("{}{} ({:.1f} s, {:.0f} kPa)", i == 0 ? ": " : ", ", hit[i]->name, hit[i]->first_hit_time,
-                            hit[i]->peak_pressure / 1000);
+                            hit[i]->peak_impact_pressure / 1000);
     }
     if (hit.size() > longest_list) text += fmt::format(" and {} more in buildings.csv", hit.size() - longest_list);
     return text;
@@ -148,7 +148,7 @@ std::string summary_json(const Scene& scene, const RunResult& result, const std:
     for (const BuildingImpact* building : buildings_hit(seen)) {
         buildings.push_back({{"name", building->name},
                              {"first_hit_s", number_or_null<nlohmann::ordered_json>(building->first_hit_time)},
-                             {"peak_pressure_kPa", building->peak_pressure / 1000},
+                             {"peak_impact_pressure_kPa", building->peak_impact_pressure / 1000},
                              {"peak_depth_m", building->peak_depth}});
     }
     nlohmann::ordered_json event = {

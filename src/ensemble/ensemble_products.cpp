@@ -34,7 +34,7 @@ struct QuantityWords {
 constexpr std::array<QuantityWords, 3> threshold_words = {{
     {"depth", "peak depth", "m", "m"},
     {"speed", "peak speed", "m/s", "mps"},
-    {"pressure", "peak pressure", "kPa", "kPa"},
+    {"pressure", "peak dynamic pressure", "kPa", "kPa"},
 }};
 
 std::string run_csv(const EnsembleResult& result) {
@@ -57,7 +57,8 @@ std::string building_csv(const EnsembleResult& result) {
     std::string header = "name,probability_hit";
     for (const double p : result.runs->plan().thresholds.pressure) header += fmt::format(",probability_above_{}kPa", p);
     Csv csv(header +
-            ",peak_pressure_p50_kPa,peak_pressure_p95_kPa,peak_depth_p50_m,peak_depth_p95_m,first_hit_p05_s,first_hit_"
+            ",peak_impact_pressure_p50_kPa,peak_impact_pressure_p95_kPa,peak_depth_p50_m,peak_depth_p95_m,first_hit_"
+            "p05_s,first_hit_"
             "p50_s");
     for (const BuildingOdds& b : result.reduction.buildings) {
         csv.word(b.name).number(b.hit);
@@ -228,8 +229,8 @@ Json statistics_json(const EnsembleResult& result) {
         buildings.push_back({{"name", b.name},
                              {"probability_hit", b.hit},
                              {"probability_above_threshold", b.over_pressure},
-                             {"peak_pressure_p50_kPa", b.median_pressure / 1e3},
-                             {"peak_pressure_p95_kPa", b.high_pressure / 1e3},
+                             {"peak_impact_pressure_p50_kPa", b.median_pressure / 1e3},
+                             {"peak_impact_pressure_p95_kPa", b.high_pressure / 1e3},
                              {"first_hit_p50_s", number_or_null<Json>(b.median_hit)}});
     }
     const Thresholds& t = result.runs->plan().thresholds;

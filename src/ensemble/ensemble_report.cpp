@@ -152,7 +152,7 @@ MapContent content_of(const EnsembleResult& result) {
             fmt::format("Share of the complete runs in which the {} exceeds {}. Below 1 % nothing is drawn.",
                         map.map == 0   ? "flow depth"
                         : map.map == 1 ? "depth-averaged speed"
-                                       : "impact pressure of the free flow",
+                                       : "dynamic pressure of the free flow",
                         over),
             0);
     }
@@ -166,7 +166,7 @@ MapContent content_of(const EnsembleResult& result) {
     percentile_map(0, 50, "Peak depth that half of the runs do not exceed.", 2);
     percentile_map(0, 95, "Peak depth that 95 % of the runs do not exceed.", 2);
     percentile_map(1, 95, "Peak speed that 95 % of the runs do not exceed.", 1);
-    percentile_map(2, 95, "Peak pressure of the free flow that 95 % of the runs do not exceed.", 0);
+    percentile_map(2, 95, "Peak dynamic pressure of the free flow that 95 % of the runs do not exceed.", 0);
     percentile_map(3, 5, "Time by which debris has arrived in the earliest 5 % of the runs.", 1);
     percentile_map(4, 50, "Deposit depth that half of the runs do not exceed. Below 0.05 m nothing is drawn.", 2);
 

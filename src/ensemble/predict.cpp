@@ -60,7 +60,7 @@ double predict_deposit_depth(const Observation& run, const PlanPoint& place) {
 
 double predict_building_pressure(const Observation& run, const std::string& building) {
     for (const BuildingImpact& impact : run.buildings) {
-        if (impact.name == building) return impact.hit ? impact.peak_pressure : 0;
+        if (impact.name == building) return impact.hit ? impact.peak_impact_pressure : 0;
     }
     return never;
 }

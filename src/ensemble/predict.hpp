@@ -34,7 +34,7 @@ inline constexpr double run_up_radius = 15;  ///< m, in which debris near a run-
 /// m, vertical deposit at a place; 0 where there is none.
 [[nodiscard]] double predict_deposit_depth(const Observation& run, const PlanPoint& place);
 
-/// Pa, filtered peak pressure on the building of that name; 0 if it was not hit, NaN if there is none.
+/// Pa, peak impact pressure on the building of that name; 0 if it was not hit, NaN if there is none.
 [[nodiscard]] double predict_building_pressure(const Observation& run, const std::string& building);
 
 /// Area that both the outline and deposit deeper than `depth` m cover, over the area that either does: 0 to 1, by map

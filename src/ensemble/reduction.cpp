@@ -180,7 +180,7 @@ BuildingOdds odds_of(const std::vector<RunRecord>& runs, std::size_t building, c
     if (count == 0) return odds;
     const auto n = static_cast<double>(count);
     odds.hit = static_cast<double>(hits) / n;
-    std::vector<double> pressures = values_of(runs, building, &BuildingImpact::peak_pressure, 0);
+    std::vector<double> pressures = values_of(runs, building, &BuildingImpact::peak_impact_pressure, 0);
     for (const double limit : thresholds.pressure) {
         const auto over = std::count_if(pressures.begin(), pressures.end(), [&](double p) { return p > 1e3 * limit; });
         odds.over_pressure.push_back(static_cast<double>(over) / n);

@@ -26,7 +26,7 @@ struct EnsembleMap {
 struct BuildingOdds {
     std::string name;
     double hit = 0;                     ///< share of runs
-    std::vector<double> over_pressure;  ///< share of runs with a filtered pressure above each pressure threshold
+    std::vector<double> over_pressure;  ///< share of runs with an impact pressure above each pressure threshold
     double median_pressure = 0, high_pressure = 0;  ///< Pa, 50th and 95th percentile; runs that miss it count as 0
     double median_depth = 0, high_depth = 0;        ///< m, likewise
     double early_hit = never, median_hit = never;   ///< s, 5th and 50th percentile; NaN: hit by fewer runs

@@ -40,7 +40,7 @@ Json building_json(const BuildingImpact& b) {
             b.hit,
             number_or_null<Json>(b.first_hit_time),
             number_or_null<Json>(b.peak_force),
-            number_or_null<Json>(b.peak_pressure),
+            number_or_null<Json>(b.peak_impact_pressure),
             number_or_null<Json>(b.peak_depth),
             number_or_null<Json>(b.peak_dynamic_pressure)};
 }

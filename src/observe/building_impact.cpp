@@ -6,9 +6,21 @@
 #include "terrain/barrier.hpp"
 
 namespace talus {
+namespace {
 
-ImpactRecorder::ImpactRecorder(const Model& model, const Ground& ground, const State& state, double filter_window)
-    : window_(filter_window), particle_area_(model.particle_spacing * model.particle_spacing) {
+/// Width of what a particle presses on, in spacings. The debris that it stands for reaches as far as its kernel, some
+/// two spacings around: with a single spacing the highest of all patches would be that of the most ragged front, and
+/// higher the fewer particles there are.
+constexpr double contact_spacings = 2;
+
+}  // namespace
+
+ImpactRecorder::ImpactRecorder(const Model& model, const Ground& ground, const State& state, const OutputSpec& outputs)
+    : edge_(outputs.impact_patch_edge),
+      contact_size_(std::max(edge_, contact_spacings * model.particle_spacing)),
+      least_depth_(outputs.arrival_depth),
+      approach_(edge_),
+      sums_(outputs.impact_filter_window) {
     follow(model, ground, state);
     jumped_ = false;
 }
@@ -33,23 +45,19 @@ void ImpactRecorder::follow(const Model& model, const Ground& ground, const Stat
     }
     touched_.reserve(impacts_.size());
     failed_.reserve(impacts_.size());
-    if (impacts_.empty()) return;
-    const std::uint32_t greatest =
-        state.count == 0 ? 0 : *std::max_element(state.id.begin(), state.id.begin() + state.count);
-    last_touch_.resize(std::max({last_touch_.size(), std::size_t{state.seeded}, std::size_t{greatest} + 1}));
+    patches_ = WallPatches(ground.terrain, ground.buildings, edge_, contact_size_ / 2 + edge_);
+    for (std::size_t b = 0; b < records_.size(); ++b) {
+        if (records_[b].first_slot != no_slot && records_[b].patches != patches_.patches_of(b)) drop_slots(b);
+    }
 }
 
 void ImpactRecorder::follow_inflow(const State& state) {
-    if (impacts_.empty()) return;
-    last_touch_.resize(std::max<std::size_t>(last_touch_.size(), state.seeded));
     for (const auto& crossings : crossings_) {
         if (crossings) crossings->follow(state);
     }
 }
 
 void ImpactRecorder::expect(std::uint32_t particles) {
-    if (impacts_.empty()) return;
-    last_touch_.reserve(particles);
     for (const auto& crossings : crossings_) {
         if (crossings) crossings->expect(particles);
     }
@@ -67,68 +75,90 @@ void ImpactRecorder::forget(const Model& model, const Ground& ground, const Stat
     impacts_[building] = {.name = impacts_[building].name,
                           .is_barrier = impacts_[building].is_barrier,
                           .passing_share = impacts_[building].passing_share};
+    drop_slots(building);
     records_[building] = {};
     crossings_[building].reset();
     watch(model, ground, state, building);
-    for (LastTouch& last : last_touch_) {
-        if (last.building == static_cast<std::int32_t>(building)) last = {};
-    }
 }
 
-void ImpactRecorder::add_contact(const Model& model, const Ground& ground, const State& state,
-                                 const BuildingContact& contact, const MapAccumulator& maps) {
+void ImpactRecorder::give_slots(std::size_t building) {
+    Record& record = records_[building];
+    record.first_slot = sums_.size();
+    record.patches = patches_.patches_of(building);
+    sums_.resize(record.first_slot + 1 + record.patches);
+    slot_building_.resize(sums_.size(), static_cast<std::uint32_t>(building));
+}
+
+void ImpactRecorder::drop_slots(std::size_t building) {
+    Record& record = records_[building];
+    if (record.first_slot != no_slot) sums_.clear(record.first_slot, 1 + std::size_t{record.patches});
+    record.first_slot = no_slot;
+}
+
+void ImpactRecorder::add_contact(const State& state, const BuildingContact& contact) {
     const auto building = static_cast<std::size_t>(contact.building);
     BuildingImpact& impact = impacts_[building];
     Record& record = records_[building];
-    const double begin = state.time - window_;
     if (!record.touched) {
         record.touched = true;
-        record.impulse = 0;
+        record.pressure = 0;
         touched_.push_back(building);
-        // Before this step's touches: a particle that comes back must not be counted twice.
-        std::erase_if(record.touches, [&](std::uint32_t id) {
-            return last_touch_[id].building != contact.building || last_touch_[id].time <= begin;
-        });
     }
-    record.impulse += contact.impulse;
+    if (record.first_slot == no_slot) give_slots(building);
+    const double impulse = contact.impulse;
+    sums_.add(record.first_slot, impulse);
+    const std::size_t first = record.first_slot + 1;
+    patches_.spread(contact.building, contact.place, contact_size_,
+                    [&](std::uint32_t patch, double share) { sums_.add(first + patch, share * impulse); });
+    impact.impulse += impulse;
     if (!impact.hit) {
         impact.hit = true;
         impact.first_hit_time = state.time;
     }
-    const std::uint32_t id = state.id[contact.particle];
-    LastTouch& last = last_touch_[id];
-    if (last.building != contact.building || last.time <= begin) record.touches.push_back(id);
-    last = {contact.building, state.time};
-
-    const LocalPoint p = state.position.at(contact.particle);
-    const double depth = p.z + model.particle_spacing / 2 - ground.terrain.sample(p.x, p.y).height;
-    impact.peak_depth = std::max(impact.peak_depth, depth);
-    const double speed = maps.speed_at(p);
-    impact.peak_dynamic_pressure = std::max(impact.peak_dynamic_pressure, maps.density_at(p) * speed * speed);
-    impact.peak_speed = std::max(impact.peak_speed, speed);
 }
 
-double ImpactRecorder::filtered_force(const Record& record, double time) const {
-    const double begin = time - window_;
-    double impulse = 0;
-    for (const Event& e : record.events) {
-        // The oldest step may straddle the edge of the window, or lie before it.
-        impulse += e.impulse * std::clamp((e.end - begin) / e.duration, 0.0, 1.0);
+double ImpactRecorder::force_on(const Record& record) const {
+    return record.first_slot == no_slot ? 0 : sums_.rate(record.first_slot);
+}
+
+double ImpactRecorder::highest_pressure(const Record& record) const {
+    if (record.first_slot == no_slot) return 0;
+    double highest = 0;
+    for (std::uint32_t k = 0; k < record.patches; ++k) {
+        highest = std::max(highest, sums_.rate(record.first_slot + 1 + k));
     }
-    return impulse / window_;
+    return highest;
+}
+
+void ImpactRecorder::take_approach(const Model& model, const Ground& ground, const State& state) {
+    for (Record& record : records_) record.depth = record.dynamic_pressure = 0;
+    approach_.update(model, state, patches_);
+    for (const WallApproach::Flow& flow : approach_.flows()) {
+        const auto building = static_cast<std::size_t>(flow.building);
+        if (!stands(ground.buildings[building])) continue;
+        Record& record = records_[building];
+        record.depth = std::max(record.depth, flow.depth);
+        record.peak_depth = std::max(record.peak_depth, flow.depth);
+        if (flow.depth < least_depth_) continue;
+        const double to_wall = std::max(0.0, flow.to_wall), pressure = flow.density * to_wall * to_wall;
+        record.dynamic_pressure = std::max(record.dynamic_pressure, pressure);
+        record.peak_dynamic_pressure = std::max(record.peak_dynamic_pressure, pressure);
+        record.peak_speed = std::max(record.peak_speed, flow.speed);
+    }
+    for (std::size_t b = 0; b < impacts_.size(); ++b) {
+        if (!impacts_[b].hit) continue;
+        impacts_[b].peak_depth = records_[b].peak_depth;
+        impacts_[b].peak_dynamic_pressure = records_[b].peak_dynamic_pressure;
+        impacts_[b].peak_speed = records_[b].peak_speed;
+    }
 }
 
 void ImpactRecorder::update_peaks(const Ground& ground, std::size_t building, const State& state) {
-    Record& record = records_[building];
-    record.events.push_back({state.time, state.time_step, record.impulse});
-    std::erase_if(record.events, [&](const Event& e) { return e.end <= state.time - window_; });
-    const double force = filtered_force(record, state.time);
-    const double area = static_cast<double>(record.touches.size()) * particle_area_;
-    const double pressure = area > 0 ? force / area : 0;
+    const Record& record = records_[building];
+    const double force = force_on(record), pressure = record.pressure;
     BuildingImpact& impact = impacts_[building];
-    impact.impulse += record.impulse;
     impact.peak_force = std::max(impact.peak_force, force);
-    impact.peak_pressure = std::max(impact.peak_pressure, pressure);
+    impact.peak_impact_pressure = std::max(impact.peak_impact_pressure, pressure);
 
     const Building& body = ground.buildings[building];
     const bool broken = body.barrier && force > body.resistance.force_per_metre * length_of(body.barrier->line);
@@ -147,13 +177,18 @@ void ImpactRecorder::take_overtopping(std::size_t building) {
     impact.passed_volume = crossings->passed_volume();
 }
 
-void ImpactRecorder::after_step(const Model& model, const Ground& ground, const State& state,
-                                const MapAccumulator& maps) {
+void ImpactRecorder::after_step(const Model& model, const Ground& ground, const State& state) {
     touched_.clear();
     failed_.clear();
-    if (last_touch_.size() < state.seeded) last_touch_.resize(state.seeded + state.seeded / 2);
-    for (const BuildingContact& contact : state.building_contacts) add_contact(model, ground, state, contact, maps);
-    // Between touches the filtered force only falls: nothing to do for the other buildings.
+    if (impacts_.empty()) return;
+    for (const BuildingContact& contact : state.building_contacts) add_contact(state, contact);
+    sums_.advance(state.time, state.time_step);
+    take_approach(model, ground, state);
+    for (const std::uint32_t slot : sums_.added()) {
+        Record& record = records_[slot_building_[slot]];
+        if (slot != record.first_slot) record.pressure = std::max(record.pressure, sums_.rate(slot));
+    }
+    // Between touches filtered forces only fall: nothing to do for the other buildings.
     for (const std::size_t building : touched_) {
         update_peaks(ground, building, state);
         records_[building].touched = false;
@@ -174,20 +209,22 @@ void ImpactRecorder::add_row(const State& state) {
     for (std::size_t b = 0; b < impacts_.size(); ++b) {
         BuildingImpact& impact = impacts_[b];
         if (!impact.hit) continue;
+        StructureSample sample{.time = state.time,
+                               .force = force_on(records_[b]),
+                               .impact_pressure = highest_pressure(records_[b]),
+                               .depth = records_[b].depth,
+                               .dynamic_pressure = records_[b].dynamic_pressure,
+                               .impulse = impact.impulse,
+                               .overtopped_volume = impact.overtopped_volume,
+                               .passed_volume = impact.passed_volume};
         if (crossings_[b]) {
             const Overtopping::Filling filling = crossings_[b]->filling(state);
-            impact.held_volume = filling.volume;
+            sample.held_volume = impact.held_volume = filling.volume;
+            sample.filling_height = filling.height;
             impact.peak_held_volume = std::max(impact.peak_held_volume, filling.volume);
             impact.peak_filling_height = std::max(impact.peak_filling_height, filling.height);
-            impact.history.push_back({state.time, filtered_force(records_[b], state.time), impact.impulse,
-                                      impact.overtopped_volume, impact.passed_volume, filling.volume, filling.height});
-        } else {
-            impact.history.push_back({.time = state.time,
-                                      .force = filtered_force(records_[b], state.time),
-                                      .impulse = impact.impulse,
-                                      .overtopped_volume = impact.overtopped_volume,
-                                      .passed_volume = impact.passed_volume});
         }
+        impact.history.push_back(sample);
     }
 }
 

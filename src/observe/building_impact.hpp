@@ -4,9 +4,12 @@
 #include <memory>
 #include <vector>
 
-#include "observe/map_accumulator.hpp"
+#include "observe/moving_sums.hpp"
 #include "observe/observation.hpp"
 #include "observe/overtopping.hpp"
+#include "observe/wall_approach.hpp"
+#include "observe/wall_patches.hpp"
+#include "params/spec.hpp"
 #include "sim/ground.hpp"
 #include "sim/model.hpp"
 #include "sim/state.hpp"
@@ -16,13 +19,14 @@ namespace talus {
 /// What debris does to buildings and barriers, from the impulses of every step and from what crosses a barrier's line.
 ///
 /// Force is the impulse of the last `filter_window` seconds divided by the window: the force of a single step depends
-/// on its length, an average over a fixed time does not. Pressure is that force over the wall area touched within the
-/// same window, one spacing^2 per particle that touched it. The area is not averaged: a first particle's knock would
-/// then count at its unfiltered pressure.
+/// on its length, an average over a fixed time does not. Pressure is the same of a patch of the wall over its area. A
+/// particle presses on a square two spacings wide, and at least as wide as the patches' edge: with particles larger
+/// than patches the pressure would otherwise be that of a particle, with far smaller ones that of where they happen to
+/// touch. Depth and velocity are those of the flow in front of the wall.
 class ImpactRecorder {
   public:
-    /// `filter_window` in s.
-    ImpactRecorder(const Model& model, const Ground& ground, const State& state, double filter_window);
+    /// Of `outputs`, the filter window, the edge of the patches and the depth from which debris has a velocity.
+    ImpactRecorder(const Model& model, const Ground& ground, const State& state, const OutputSpec& outputs);
 
     /// Call when model or state were changed between two steps. Buildings keep their index; new ones come behind.
     void follow(const Model& model, const Ground& ground, const State& state);
@@ -33,8 +37,7 @@ class ImpactRecorder {
     /// Begins a building's record anew, as for one that was moved.
     void forget(const Model& model, const Ground& ground, const State& state, std::size_t building);
 
-    /// `maps` as of this step.
-    void after_step(const Model& model, const Ground& ground, const State& state, const MapAccumulator& maps);
+    void after_step(const Model& model, const Ground& ground, const State& state);
 
     /// Adds a sample to the history of what has been hit.
     void add_row(const State& state);
@@ -49,35 +52,35 @@ class ImpactRecorder {
     [[nodiscard]] const Overtopping* overtopping(std::size_t building) const { return crossings_[building].get(); }
 
   private:
-    /// A step in which a building was touched.
-    struct Event {
-        double end, duration;  // s
-        double impulse;        // kg m/s
-    };
+    static constexpr std::size_t no_slot = static_cast<std::size_t>(-1);
     struct Record {
-        double impulse = 0;                  // of this step, kg m/s
-        bool touched = false;                // in this step
-        std::vector<Event> events;           // within the window
-        std::vector<std::uint32_t> touches;  // ids of particles that touched within the window
-    };
-    struct LastTouch {
-        std::int32_t building = -1;
-        double time = 0;
+        std::size_t first_slot = no_slot;  // of the whole structure; those of its patches follow. From the first hit on
+        std::uint32_t patches = 0;
+        bool touched = false;                    // in this step
+        double pressure = 0;                     // Pa, highest of the patches touched in this step
+        double depth = 0, dynamic_pressure = 0;  // of the flow in front of it, now
+        double peak_depth = 0, peak_dynamic_pressure = 0, peak_speed = 0;  // so far, hit or not
     };
 
-    void add_contact(const Model& model, const Ground& ground, const State& state, const BuildingContact& contact,
-                     const MapAccumulator& maps);
+    void add_contact(const State& state, const BuildingContact& contact);
+    void give_slots(std::size_t building);
+    void drop_slots(std::size_t building);
+    void take_approach(const Model& model, const Ground& ground, const State& state);
     void update_peaks(const Ground& ground, std::size_t building, const State& state);
-    /// Of the window that ends now, N.
-    [[nodiscard]] double filtered_force(const Record& record, double time) const;
+    /// Now, of the patch where it is highest, Pa.
+    [[nodiscard]] double highest_pressure(const Record& record) const;
+    [[nodiscard]] double force_on(const Record& record) const;  // N
     /// Begins to watch a barrier's line, if it is one and stands.
     void watch(const Model& model, const Ground& ground, const State& state, std::size_t building);
     void take_overtopping(std::size_t building);
 
-    double window_ = 0, particle_area_ = 0;
+    double edge_, contact_size_, least_depth_;  // m
+    WallPatches patches_;
+    WallApproach approach_;
+    MovingSums sums_;                           // impulse by structure, and per area by patch, of those that were hit
+    std::vector<std::uint32_t> slot_building_;  // whose it is
     std::vector<BuildingImpact> impacts_;
     std::vector<Record> records_;
-    std::vector<LastTouch> last_touch_;                    // by particle id
     std::vector<std::size_t> touched_;                     // buildings of this step
     std::vector<std::size_t> failed_;                      // in this step
     std::vector<std::unique_ptr<Overtopping>> crossings_;  // by building

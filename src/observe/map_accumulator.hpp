@@ -38,12 +38,6 @@ class MapAccumulator {
     /// Takes the present state into the peaks. Particles of releases that have not started do not count.
     void add(const State& state);
 
-    /// Depth-averaged speed, m/s, at a local position as of the last `add`; 0 where debris is too thin to tell.
-    [[nodiscard]] double speed_at(const LocalPoint& p) const;
-
-    /// Mean density, kg/m3, of the debris there as of the last `add`.
-    [[nodiscard]] double density_at(const LocalPoint& p) const;
-
     /// Volume on the map as of the last `add`, m3: exactly the particles added.
     [[nodiscard]] double volume() const;
 
@@ -90,11 +84,6 @@ class MapAccumulator {
         std::array<float, tile_cells> peak_pressure{};  // Pa; only where the density has changed
         std::vector<float> density;                     // mean, kg/m3, by cell; empty: the rest density
     };
-    /// A cell of a tile that is there.
-    struct TileCell {
-        const Tile* tile = nullptr;
-        std::size_t cell = 0;
-    };
     struct Shares;
     struct Patch;
     class Patches;
@@ -105,7 +94,6 @@ class MapAccumulator {
     void take_densities(const State& state);
     /// Peak pressures are kept from now on, as they no longer follow from peak speeds.
     void keep_pressures();
-    [[nodiscard]] TileCell cell_at(const LocalPoint& p) const;
     [[nodiscard]] double density_in(const Tile& tile, std::size_t cell) const {
         return tile.density.empty() ? rest_density_ : static_cast<double>(tile.density[cell]);
     }

@@ -12,28 +12,6 @@ MapAccumulator::CellSum MapAccumulator::sum_of(const Tile& tile, std::size_t cel
     return tile.added == adds_ ? tile.sums[cell] : CellSum{};
 }
 
-MapAccumulator::TileCell MapAccumulator::cell_at(const LocalPoint& p) const {
-    const auto cell_along = [&](double along, int cells) {  // counted from the one before the map's first
-        return static_cast<unsigned>(std::clamp(along * inverse_cell_, 0.0, cells - 1.0)) + 1;
-    };
-    const unsigned column = cell_along(p.x + x_offset_, geometry_.columns);
-    const unsigned row = cell_along(p.y + y_offset_, geometry_.rows);
-    return {tile_at_[std::size_t{row / tile_size} * tile_columns_ + column / tile_size],
-            row % tile_size * tile_size + column % tile_size};
-}
-
-double MapAccumulator::speed_at(const LocalPoint& p) const {
-    const TileCell at = cell_at(p);
-    if (at.tile == nullptr) return 0;
-    const CellSum sum = sum_of(*at.tile, at.cell);
-    return depth(sum.volume()) < thinnest_depth_ ? 0 : sum.momentum() / sum.volume() / map_units::speed;
-}
-
-double MapAccumulator::density_at(const LocalPoint& p) const {
-    const TileCell at = cell_at(p);
-    return at.tile == nullptr ? rest_density_ : density_in(*at.tile, at.cell);
-}
-
 double MapAccumulator::volume() const {
     double sum = 0;
     for (const auto& tile : tiles_) {

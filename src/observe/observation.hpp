@@ -16,7 +16,7 @@ inline constexpr double never = std::numeric_limits<double>::quiet_NaN();
 struct HazardMaps {
     Grid<float> peak_depth;     ///< vertical flow depth, m
     Grid<float> peak_speed;     ///< depth-averaged speed, m/s
-    Grid<float> peak_pressure;  ///< density * speed^2, Pa
+    Grid<float> peak_pressure;  ///< dynamic: density * speed^2, Pa
     Grid<float> arrival_time;   ///< first time above the arrival depth, s
     Grid<float> deposit_depth;  ///< depth at the end of the run, m
 };
@@ -42,6 +42,9 @@ struct RunOut {
 struct StructureSample {
     double time = 0;               ///< s
     double force = 0;              ///< N, normal to the walls, filtered
+    double impact_pressure = 0;    ///< Pa, filtered, of the patch where it is highest
+    double depth = 0;              ///< m, of the flow in front of the wall where it is deepest
+    double dynamic_pressure = 0;   ///< Pa, density * speed^2 of the flow towards the wall where it is highest
     double impulse = 0;            ///< N s, of all debris so far
     double overtopped_volume = 0;  ///< m3, this and what follows of barriers only
     double passed_volume = 0;      ///< m3, through openings and meshes
@@ -55,10 +58,10 @@ struct BuildingImpact {
     bool hit = false;
     double first_hit_time = never;     ///< s
     double peak_force = 0;             ///< N, normal to the walls, filtered
-    double peak_pressure = 0;          ///< Pa, filtered force over the wall area in contact
-    double peak_depth = 0;             ///< m, highest debris at the walls above the ground
-    double peak_dynamic_pressure = 0;  ///< Pa, density * speed^2 of debris within a cell of the walls
-    double peak_speed = 0;             ///< m/s, depth-averaged, of debris within a cell of the walls
+    double peak_impact_pressure = 0;   ///< Pa, filtered force on a patch of the wall over its area, the highest
+    double peak_depth = 0;             ///< m, of the flow in front of the walls
+    double peak_dynamic_pressure = 0;  ///< Pa, density * speed^2 of the flow in front of a wall towards it
+    double peak_speed = 0;             ///< m/s, depth-averaged, of the flow in front of the walls
     double removed_time = never;       ///< s, when it was taken away between two steps; NaN: it stands
     double impulse = 0;                ///< N s, normal to the walls, of the whole run
     double failure_time = never;       ///< s, when its resistance was exceeded and it was taken away

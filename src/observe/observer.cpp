@@ -80,7 +80,7 @@ struct Observer::Parts {
         : outputs(o),
           maps(model, ground, state, map_cell, o.arrival_depth),
           front(model, ground, state, flow_path, o.chainage_interval, o.front_velocity_window),
-          impact(model, ground, state, o.impact_filter_window),
+          impact(model, ground, state, o),
           released(measure_release(ground, state, flow_path)) {
         keep_starts(state, 0);
     }
@@ -158,7 +158,7 @@ void Observer::after_step(const Model& model, const Ground& ground, const State&
     Parts& p = *parts_;
     p.maps.add(state);
     p.front.after_step(ground, state);
-    p.impact.after_step(model, ground, state, p.maps);
+    p.impact.after_step(model, ground, state);
     p.watch_compression(state);
     p.steps_per_second = steps_per_second;
     // Rows at multiples of the interval, or right after where a step is longer; a millionth of it absorbs rounding.

@@ -127,7 +127,10 @@ Section declare_outputs() {
     s.key("arrival_depth_m", "m", &OutputSpec::arrival_depth, at_least(0),
           "Debris has arrived in a map cell once it is deeper than this.");
     s.key("impact_filter_window_s", "s", &OutputSpec::impact_filter_window, above(0),
-          "Averaging window of force and pressure on buildings.");
+          "Averaging window of force and impact pressure on structures.");
+    s.key("impact_patch_edge_m", "m", &OutputSpec::impact_patch_edge, between(0.1, 100),
+          "Edge of the square patches of walls and roofs, the reference area of impact pressure: a patch's filtered "
+          "force over its area, whatever the particles.");
     s.key("deposited_speed_mps", "m/s", &OutputSpec::deposited_speed, above(0), "Slower debris counts as deposited.");
     s.key("particle_series_interval_s", "s", &OutputSpec::particle_series_interval, at_least(0),
           "Simulated time between particle frames for ParaView; 0 writes none.");

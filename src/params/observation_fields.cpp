@@ -99,7 +99,7 @@ Section declare_damage() {
     s.text("building", &DamageSpec::building, "", "Name of the building.").required = true;
     s.key("damaged", "", &DamageSpec::damaged, anything(), "Whether it was damaged.");
     s.key("pressure_Pa", "Pa", &DamageSpec::pressure, above(0),
-          "Filtered pressure from which such a building is damaged.");
+          "Impact pressure (outputs.impact_patch_edge_m) from which such a building is damaged.");
     s.key("uncertainty_Pa", "Pa", &DamageSpec::uncertainty, above(0), "Standard deviation of that limit.");
     add_source(s);
     return s.take();

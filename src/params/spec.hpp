@@ -221,6 +221,7 @@ struct OutputSpec {
     double front_velocity_window = 10;    ///< m of chainage over which d(chainage)/dt is fitted
     double arrival_depth = 0.1;           ///< m, debris has arrived in a map cell above this depth
     double impact_filter_window = 0.2;    ///< s, averaging window of force and pressure on buildings
+    double impact_patch_edge = 1;         ///< m, of the squares of a wall over which impact pressure is averaged
     double deposited_speed = 0.1;         ///< m/s, slower debris counts as deposited
     double particle_series_interval = 0;  ///< s between ParaView frames; 0: none
 };

@@ -21,8 +21,9 @@ Section declare_buildings() {
         .live_in({.label = "Height", .slider_low = 0.5, .slider_high = 40, .first = 6}, "height_m");
     s.text("resistance_attribute", &BuildingsSpec::resistance_attribute, "every building has resistance_Pa",
            "Attribute that holds the pressure in Pa that a building stands.");
-    s.optional_key("resistance_Pa", "Pa", &BuildingsSpec::resistance, above(0), "buildings stand whatever happens",
-                   "Filtered pressure above which a building is destroyed: it is gone from then on.");
+    s.optional_key(
+        "resistance_Pa", "Pa", &BuildingsSpec::resistance, above(0), "buildings stand whatever happens",
+        "Impact pressure (outputs.impact_patch_edge_m) above which a building is destroyed: it is gone from then on.");
     return s.take();
 }
 
@@ -74,7 +75,7 @@ Section declare_barrier() {
                   .tick = "Fails under load",
                   .tick_help = "Beyond this mean force on its line it is gone"});
     s.optional_key("resistance_Pa", "Pa", &BarrierSpec::resistance_pressure, above(0), "it stands whatever happens",
-                   "Filtered pressure above which it is destroyed.")
+                   "Impact pressure (outputs.impact_patch_edge_m) above which it is destroyed.")
         .live_as();
     s.exactly_one_of({"line_m", "file"});
     s.exactly_one_of({"height_m", "crest_elevation_m"});

@@ -91,7 +91,9 @@ Json structures_json(const Observation& observation) {
                       {"kind", kind_of(b)},
                       {"first_hit_s", b.first_hit_time},
                       {"peak_force_kN", b.peak_force / 1e3},
-                      {"peak_pressure_kPa", b.peak_pressure / 1e3},
+                      {"peak_impact_pressure_kPa", b.peak_impact_pressure / 1e3},
+                      {"peak_dynamic_pressure_kPa", b.peak_dynamic_pressure / 1e3},
+                      {"peak_depth_m", b.peak_depth},
                       {"impulse_kNs", b.impulse / 1e3},
                       {"failed_s", b.failure_time}};
         if (b.is_barrier) {

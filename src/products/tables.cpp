@@ -26,14 +26,16 @@ std::string run_out_table(const RunOut& r) {
 
 std::string building_table(const Scene& scene, const Observation& observation) {
     Csv csv(
-        "name,hit,first_hit_time_s,peak_force_kN,peak_pressure_kPa,peak_dynamic_pressure_kPa,peak_depth_m,"
-        "filter_window_s,height_m,height_assumed,kind,impulse_kNs,failed_s,overtopped_m3,first_overtopped_s,passed_m3,"
+        "name,hit,first_hit_time_s,peak_force_kN,peak_impact_pressure_kPa,peak_dynamic_pressure_kPa,peak_depth_m,"
+        "filter_window_s,patch_edge_m,height_m,height_assumed,kind,impulse_kNs,failed_s,overtopped_m3,first_overtopped_"
+        "s,passed_m3,"
         "held_m3,peak_held_m3,peak_filling_height_m,removed_time_s");
     for (std::size_t i = 0; i < observation.buildings.size(); ++i) {
         const BuildingImpact& b = observation.buildings[i];
         csv.word(b.name).word(b.hit ? "yes" : "no").number(b.first_hit_time);
-        csv.number(b.peak_force / 1e3).number(b.peak_pressure / 1e3).number(b.peak_dynamic_pressure / 1e3);
+        csv.number(b.peak_force / 1e3).number(b.peak_impact_pressure / 1e3).number(b.peak_dynamic_pressure / 1e3);
         csv.number(b.peak_depth).number(scene.spec.outputs.impact_filter_window);
+        csv.number(scene.spec.outputs.impact_patch_edge);
         const Building* building = i < scene.buildings.size() ? &scene.buildings[i] : nullptr;
         csv.number(building != nullptr ? building->height : never);
         csv.word(building != nullptr && building->height_assumed ? "yes" : "no");
@@ -50,11 +52,14 @@ std::string building_table(const Scene& scene, const Observation& observation) {
 
 /// A row per structure that was hit and row of the time series from then on.
 std::string structure_table(const Observation& observation) {
-    Csv csv("name,time_s,force_kN,impulse_kNs,overtopped_m3,passed_m3,held_m3,filling_height_m");
+    Csv csv(
+        "name,time_s,force_kN,impact_pressure_kPa,depth_m,dynamic_pressure_kPa,impulse_kNs,overtopped_m3,passed_m3,"
+        "held_m3,filling_height_m");
     for (const BuildingImpact& b : observation.buildings) {
         const auto of_barrier = [&](double value) { return b.is_barrier ? value : never; };
         for (const StructureSample& s : b.history) {
-            csv.word(b.name).number(s.time).number(s.force / 1e3).number(s.impulse / 1e3);
+            csv.word(b.name).number(s.time).number(s.force / 1e3).number(s.impact_pressure / 1e3).number(s.depth);
+            csv.number(s.dynamic_pressure / 1e3).number(s.impulse / 1e3);
             csv.number(of_barrier(s.overtopped_volume)).number(of_barrier(s.passed_volume));
             csv.number(of_barrier(s.held_volume)).number(of_barrier(s.filling_height));
             csv.end_row();

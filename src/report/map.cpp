@@ -30,7 +30,8 @@ struct Words {
 constexpr std::array<Words, 5> map_words = {{
     {"Peak depth", "Greatest vertical flow depth at each place during the run.", 2},
     {"Peak speed", "Greatest depth-averaged speed at each place during the run.", 1},
-    {"Peak pressure", "Greatest impact pressure of the free flow at each place: density times the square of the speed.",
+    {"Peak dynamic pressure",
+     "Greatest dynamic pressure of the free flow at each place: density times the square of the depth-averaged speed.",
      0},
     {"Arrival time", "Time from the start of the run until debris first stands at each place.", 1},
     {"Deposit", "Vertical depth of debris at the end of the run. Below 0.05 m nothing is drawn.", 2},
@@ -170,7 +171,7 @@ std::string building_title(const Building& building, const BuildingImpact& impac
     std::string title = building.name.empty() ? "Building" : building.name;
     if (!std::isnan(impact.removed_time)) title += fmt::format(" (until {} s)", fixed(impact.removed_time, 1));
     if (!impact.hit) return title + ": not reached";
-    return title + fmt::format(": {} kPa, first hit at {} s", significant(impact.peak_pressure / 1e3, 3),
+    return title + fmt::format(": {} kPa, first hit at {} s", significant(impact.peak_impact_pressure / 1e3, 3),
                                fixed(impact.first_hit_time, 1));
 }
 
@@ -183,7 +184,7 @@ Classes classes_of(const HazardMap& layer, double most) {
 
 int impact_class(const BuildingImpact& impact) {
     if (!impact.hit) return 0;
-    return impact.peak_pressure < 15e3 ? 1 : impact.peak_pressure < 30e3 ? 2 : 3;
+    return impact.peak_impact_pressure < 15e3 ? 1 : impact.peak_impact_pressure < 30e3 ? 2 : 3;
 }
 
 MapFrame map_frame(const Scene& scene, const MapContent& content) {
@@ -231,7 +232,7 @@ MapContent map_content(const Scene& scene, const RunResult& result) {
     content.reached = &observation.maps.peak_depth;
     content.farthest_chainage = observation.run_out.front_chainage;
     content.cell = result.map_cell > 0 ? result.map_cell : observation.maps.peak_depth.geometry.cell;
-    content.buildings.title = "Buildings, filtered pressure";
+    content.buildings.title = "Buildings, impact pressure";
     content.buildings.class_names = {"not reached", "hit, below 15 kPa", "hit, 15 – 30 kPa", "hit, over 30 kPa"};
     for (std::size_t i = 0; i < std::min(scene.buildings.size(), observation.buildings.size()); ++i) {
         const BuildingImpact& impact = observation.buildings[i];

@@ -125,20 +125,21 @@ Json key_figures(const Scene& scene, const RunResult& result) {
         ran ? fmt::format("travel angle of the centre of mass {}°", fixed(degrees(o.run_out.travel_angle), 1)) : "");
     const auto hit =
         std::count_if(o.buildings.begin(), o.buildings.end(), [](const BuildingImpact& b) { return b.hit; });
-    const auto worst = std::max_element(o.buildings.begin(), o.buildings.end(),
-                                        [](const auto& a, const auto& b) { return a.peak_pressure < b.peak_pressure; });
-    all.push_back(
-        key_figure("buildings_hit", "Buildings hit", hit, "f0", fmt::format("of {}", o.buildings.size()),
-                   hit > 0 ? fmt::format("highest pressure {} kPa, {}", significant(worst->peak_pressure / 1e3, 3),
-                                         worst->name.empty() ? "unnamed" : worst->name)
-                           : "no building was hit",
-                   hit > 0));
+    const auto worst = std::max_element(o.buildings.begin(), o.buildings.end(), [](const auto& a, const auto& b) {
+        return a.peak_impact_pressure < b.peak_impact_pressure;
+    });
+    all.push_back(key_figure(
+        "buildings_hit", "Buildings hit", hit, "f0", fmt::format("of {}", o.buildings.size()),
+        hit > 0 ? fmt::format("highest impact pressure {} kPa, {}", significant(worst->peak_impact_pressure / 1e3, 3),
+                              worst->name.empty() ? "unnamed" : worst->name)
+                : "no building was hit",
+        hit > 0));
     const Peak depth = peak_of(o.maps.peak_depth), speed = peak_of(o.maps.peak_speed),
                pressure = peak_of(o.maps.peak_pressure);
     add("peak_depth_m", "Peak flow depth", depth.value, "f1", "m", place(scene, depth));
     add("peak_speed_mps", "Peak speed", speed.value, "f1", "m/s", place(scene, speed));
-    add("peak_pressure_kPa", "Peak impact pressure", pressure.value / 1e3, "s3", "kPa",
-        place(scene, pressure) + ", ρv²");
+    add("peak_dynamic_pressure_kPa", "Peak dynamic pressure", pressure.value / 1e3, "s3", "kPa",
+        "ρv² of the free flow, " + place(scene, pressure));
     add("mass_balance", "Mass balance", mass.closes ? Json("closed") : Json(mass.residual), "f3",
         mass.closes ? "" : "m³ missing",
         fmt::format("deposited\u00a0{} · moving\u00a0{} · left\u00a0{}\u00a0m³{}", fixed(mass.deposited, 1),
@@ -236,6 +237,7 @@ Json run_results(const Scene& scene, const RunResult& result, const std::vector<
                 {"buildings", buildings(scene, result)},
                 {"barriers", barriers(result)},
                 {"impact_filter_window_s", scene.spec.outputs.impact_filter_window},
+                {"impact_patch_edge_m", scene.spec.outputs.impact_patch_edge},
                 {"force", force_chart(result)},
                 {"front", front_chart(scene, result)},
                 {"front_velocity_window_m", scene.spec.outputs.front_velocity_window},

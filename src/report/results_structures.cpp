@@ -102,14 +102,15 @@ Json net_chart(const RunResult& result) {
 }
 
 Json building_rows(const Scene& scene, const std::vector<BuildingImpact>& impacts, std::vector<std::size_t> hit) {
-    std::stable_sort(hit.begin(), hit.end(),
-                     [&](std::size_t a, std::size_t b) { return impacts[a].peak_pressure > impacts[b].peak_pressure; });
+    std::stable_sort(hit.begin(), hit.end(), [&](std::size_t a, std::size_t b) {
+        return impacts[a].peak_impact_pressure > impacts[b].peak_impact_pressure;
+    });
     Json rows = table({{"name", "Building", ""},
                        {"first_hit_s", "First hit", "s", "f1"},
                        {"peak_force_kN", "Peak force", "kN", "s3"},
-                       {"peak_pressure_kPa", "Peak pressure", "kPa, filtered", "s3", "", "–", true},
-                       {"peak_dynamic_pressure_kPa", "Peak ρv² beside it", "kPa", "s3"},
-                       {"peak_depth_m", "Peak depth at walls", "m", "f2"},
+                       {"peak_impact_pressure_kPa", "Impact pressure", "kPa, highest patch", "s3", "", "–", true},
+                       {"peak_dynamic_pressure_kPa", "Dynamic pressure", "kPa, ρv² to the wall", "s3"},
+                       {"peak_depth_m", "Depth at walls", "m", "f2"},
                        {"height_m", "Height", "m", "f1"}});
     for (std::size_t k = 0; k < std::min(most_rows, hit.size()); ++k) {
         const BuildingImpact& b = impacts[hit[k]];
@@ -123,7 +124,7 @@ Json building_rows(const Scene& scene, const std::vector<BuildingImpact>& impact
         rows["rows"].push_back({{"name", std::move(name)},
                                 {"first_hit_s", seconds(b.first_hit_time)},
                                 {"peak_force_kN", b.peak_force / 1e3},
-                                {"peak_pressure_kPa", b.peak_pressure / 1e3},
+                                {"peak_impact_pressure_kPa", b.peak_impact_pressure / 1e3},
                                 {"peak_dynamic_pressure_kPa", b.peak_dynamic_pressure / 1e3},
                                 {"peak_depth_m", b.peak_depth},
                                 {"height_m", std::move(height)}});

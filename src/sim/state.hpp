@@ -105,7 +105,8 @@ struct Particle {
 struct BuildingContact {
     std::uint32_t particle;  ///< sorted index
     std::int32_t building;
-    float impulse;  ///< kg m/s, normal to the wall
+    float impulse;       ///< kg m/s, normal to the wall
+    LocalPoint place{};  ///< where on the wall
 };
 
 /// Everything that changes during a run, as a structure of arrays in an order that every step finds anew: neighbours

@@ -16,7 +16,7 @@ namespace talus {
 /// What a structure stands, as the filtered force that debris exerts on it normal to its walls. Beyond it is gone.
 struct Resistance {
     double force_per_metre = std::numeric_limits<double>::infinity();  ///< N/m of a barrier's line
-    double pressure = std::numeric_limits<double>::infinity();         ///< Pa over the wall area in contact
+    double pressure = std::numeric_limits<double>::infinity();         ///< Pa, impact pressure on a patch of its walls
     bool operator==(const Resistance&) const = default;
 };
 

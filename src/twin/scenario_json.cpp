@@ -100,7 +100,7 @@ json impact_json(const std::string& id, const BuildingImpact& impact, bool barri
                 {"hit", impact.hit},
                 {"first_hit_s", number_or_null<json>(impact.first_hit_time)},
                 {"peak_force_kN", impact.peak_force / 1e3},
-                {"peak_pressure_kPa", impact.peak_pressure / 1e3},
+                {"peak_impact_pressure_kPa", impact.peak_impact_pressure / 1e3},
                 {"peak_depth_m", impact.peak_depth},
                 {"peak_speed_mps", impact.peak_speed},
                 {"peak_dynamic_pressure_kPa", impact.peak_dynamic_pressure / 1e3},

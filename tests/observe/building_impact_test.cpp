@@ -9,35 +9,52 @@
 namespace talus {
 namespace {
 
-using test::advance;
 using test::block;
 
+/// On level ground: a building that nothing touches and a house of 10 x 10 m whose western wall is at x = 4.
 Ground ground_with_buildings() {
     Ground ground = test::make_ground();
     ground.buildings.resize(2);
     ground.buildings[0].name = "untouched";
     ground.buildings[1].name = "house";
+    ground.buildings[1].footprint = {{{{1004, 1995}, {1014, 1995}, {1014, 2005}, {1004, 2005}}, {}}};
+    ground.buildings[1].roof_elevation = 56;
     return ground;
 }
 
+/// The middle of a patch of the western wall.
+constexpr LocalPoint patch_middle{4, 0.5F, 0.5F};
+
 /// Debris moving at `speed` against building 1: `count` particles touch it in every step and give it `force` together.
 struct Collision {
-    Model model = test::make_model(0.4);
+    Model model;
     Ground ground = ground_with_buildings();
-    State state = block(0.4, -8, -8, 40, 40, 3, {});
-    MapAccumulator maps{model, ground, state, 1, 0.1};
+    State state;
     ImpactRecorder recorder;
+    LocalPoint place = patch_middle;
 
-    explicit Collision(double window) : recorder(model, ground, state, window) {}
+    explicit Collision(double window, double spacing = 0.4, double patch_edge = 1)
+        : model(test::make_model(spacing)),
+          state(block(0.4, 0, -8, 10, 40, 3, {})),
+          recorder(model, ground, state, [&] {
+              OutputSpec outputs;
+              outputs.impact_filter_window = window;
+              outputs.impact_patch_edge = patch_edge;
+              return outputs;
+          }()) {}
 
     void step(double time_step, double force, std::uint32_t first, std::uint32_t count) {
-        advance(state, time_step);
+        begin(time_step);
+        for (std::uint32_t i = first; i < first + count; ++i) touch(i, force / count, place);
+        recorder.after_step(model, ground, state);
+    }
+    void begin(double time_step) {
+        state.time += time_step;
+        state.time_step = time_step;
         state.building_contacts.clear();
-        for (std::uint32_t i = first; i < first + count; ++i) {
-            state.building_contacts.push_back({i, 1, static_cast<float>(force * time_step / count)});
-        }
-        maps.add(state);
-        recorder.after_step(model, ground, state, maps);
+    }
+    void touch(std::uint32_t particle, double force, const LocalPoint& at) {
+        state.building_contacts.push_back({particle, 1, static_cast<float>(force * state.time_step), at});
     }
     const BuildingImpact& house() const { return recorder.impacts()[1]; }
 };
@@ -47,7 +64,7 @@ TEST(ImpactRecorder, a_constant_force_is_found_whatever_the_steps) {
         Collision c(0.2);
         for (double t = 0; t < 1; t += time_step) c.step(time_step, 50000, 0, 10);
         EXPECT_NEAR(c.house().peak_force, 50000, 1) << time_step;
-        EXPECT_NEAR(c.house().peak_pressure, 50000 / (10 * 0.16), 1) << time_step;
+        EXPECT_NEAR(c.house().peak_impact_pressure, 50000, 1) << time_step;
     }
 }
 
@@ -56,7 +73,7 @@ TEST(ImpactRecorder, a_short_knock_is_spread_over_the_window) {
         Collision c(0.2);
         c.step(time_step, 600 / time_step, 0, 2);  // 600 N s
         EXPECT_NEAR(c.house().peak_force, 3000, 0.1);
-        EXPECT_NEAR(c.house().peak_pressure, 3000 / (2 * 0.16), 0.1);
+        EXPECT_NEAR(c.house().peak_impact_pressure, 3000, 0.1);
     }
 }
 
@@ -69,39 +86,66 @@ TEST(ImpactRecorder, knocks_add_up_within_the_window_and_not_beyond) {
     for (int i = 0; i < 30; ++i) c.step(0.01, 0, 0, 0);
     c.step(0.01, 90000, 0, 2);
     EXPECT_NEAR(c.house().peak_force, 2 * 600 / 0.2, 0.1);
+    EXPECT_NEAR(c.house().peak_impact_pressure, 2 * 600 / 0.2, 0.1);
 }
 
-TEST(ImpactRecorder, particles_that_touch_in_turn_make_the_same_pressure_as_together) {
-    Collision c(0.2);
-    for (int i = 0; i < 200; ++i) c.step(0.005, 50000, i % 2 == 0 ? 0 : 5, 5);
-    EXPECT_NEAR(c.house().peak_force, 50000, 1);
-    // The first knock came before the second half had touched, but carries a fortieth of the window.
-    EXPECT_NEAR(c.house().peak_pressure, 50000 / (10 * 0.16), 1);
-}
-
-TEST(ImpactRecorder, particles_that_come_back_after_the_window_count_once) {
-    Collision c(0.2);
-    for (int round = 0; round < 5; ++round) {
-        c.step(0.01, 60000, 0, 4);
-        for (int i = 0; i < 40; ++i) c.step(0.01, 0, 0, 0);
+/// 20 kPa on the western wall, 10 x 6 m, by particles of this spacing.
+double pressure_of_even_load(double spacing, double patch_edge) {
+    Collision c(0.2, spacing, patch_edge);
+    for (int k = 0; k < 21; ++k) {
+        c.begin(0.01);
+        for (double y = -5 + spacing / 2; y < 5; y += spacing) {
+            for (double z = spacing / 2; z < 6; z += spacing) {
+                c.touch(0, 20000 * spacing * spacing, {4, static_cast<float>(y), static_cast<float>(z)});
+            }
+        }
+        c.recorder.after_step(c.model, c.ground, c.state);
     }
-    for (int i = 0; i < 100; ++i) c.step(0.01, 60000, 0, 4);
-    EXPECT_NEAR(c.house().peak_pressure, 60000 / (4 * 0.16), 1);
+    EXPECT_NEAR(c.house().peak_force, 20000 * 60, 20);
+    return c.house().peak_impact_pressure;
 }
 
-TEST(ImpactRecorder, first_hit_depth_and_dynamic_pressure_come_from_the_debris_that_touches) {
+TEST(ImpactRecorder, pressure_depends_on_the_patch_and_not_on_the_spacing) {
+    for (const double spacing : {2.0, 1.0, 0.5, 0.25}) {
+        EXPECT_NEAR(pressure_of_even_load(spacing, 1), 20000, 1) << spacing;
+        EXPECT_NEAR(pressure_of_even_load(spacing, 0.5), 20000, 1) << spacing;
+    }
+    EXPECT_NEAR(pressure_of_even_load(0.5, 10), 12000, 1) << "1200 kN on 10 x 10 m, though the wall is 6 m high";
+}
+
+TEST(ImpactRecorder, a_lone_particle_presses_on_no_less_than_the_reference_area) {
+    for (const float y : {0.5F, 0.9F, 1.0F, 4.99F, 5.0F}) {  // also at the corner
+        Collision c(0.2);
+        c.place = {4, y, 0.3F};
+        c.step(0.01, 1e5, 0, 1);
+        EXPECT_NEAR(c.house().peak_force, 5000, 1);
+        EXPECT_LE(c.house().peak_impact_pressure, 5001) << y;
+        EXPECT_GE(c.house().peak_impact_pressure, 5000 / 2.01) << y;
+    }
+}
+
+TEST(ImpactRecorder, depth_and_dynamic_pressure_are_those_of_the_flow_in_front_of_the_wall) {
     Collision c(0.2);
     for (float& x : c.state.velocity.x) x = 6;
+    for (float& y : c.state.velocity.y) y = 8;
     c.step(0.01, 0, 0, 0);
     EXPECT_FALSE(c.house().hit);
-    c.step(0.01, 1000, 40 * 40 + 810, 3);  // in the second layer, centres 0.6 m above the ground
+    EXPECT_EQ(c.house().peak_depth, 0);
+    c.step(0.01, 1000, 810, 3);
     EXPECT_TRUE(c.house().hit);
     EXPECT_NEAR(c.house().first_hit_time, 0.02, 1e-12);
-    EXPECT_NEAR(c.house().peak_depth, 0.8, 1e-5);
-    EXPECT_NEAR(c.house().peak_dynamic_pressure, 2000 * 36, 100);
+    EXPECT_NEAR(c.house().peak_depth, 1.2, 1e-5);
+    EXPECT_NEAR(c.house().peak_dynamic_pressure, 2000 * 36, 1) << "of the velocity towards the wall";
+    EXPECT_NEAR(c.house().peak_speed, 10, 1e-5);
     EXPECT_FALSE(c.recorder.impacts()[0].hit);
     EXPECT_TRUE(std::isnan(c.recorder.impacts()[0].first_hit_time));
     EXPECT_EQ(c.recorder.impacts()[0].name, "untouched");
+    for (float& x : c.state.position.x) x -= 1;
+    c.step(0.01, 0, 0, 0);
+    c.recorder.add_row(c.state);
+    ASSERT_EQ(c.house().history.size(), 1U);
+    EXPECT_EQ(c.house().history[0].depth, 0) << "it has gone back";
+    EXPECT_NEAR(c.house().history[0].impact_pressure, 1000 * 0.01 / 0.2, 1e-3);
 }
 
 TEST(ImpactRecorder, impulse_is_that_of_all_steps_and_its_history_falls_to_no_force) {
@@ -113,6 +157,7 @@ TEST(ImpactRecorder, impulse_is_that_of_all_steps_and_its_history_falls_to_no_fo
     c.recorder.add_row(c.state);
     ASSERT_EQ(c.house().history.size(), 2U);
     EXPECT_NEAR(c.house().history[0].force, 50000, 5);
+    EXPECT_NEAR(c.house().history[0].impact_pressure, 50000, 5);
     EXPECT_NEAR(c.house().history[1].force, 0, 1e-9);
     EXPECT_NEAR(c.house().history[1].impulse, 50000, 5);
     EXPECT_TRUE(c.recorder.impacts()[0].history.empty()) << "it was never hit";
@@ -120,7 +165,7 @@ TEST(ImpactRecorder, impulse_is_that_of_all_steps_and_its_history_falls_to_no_fo
 
 TEST(ImpactRecorder, resistance_is_exceeded_once_by_the_filtered_pressure) {
     Collision c(0.2);
-    c.ground.buildings[1].resistance.pressure = 20000;  // of 10 x 0.16 m2: 32 kN
+    c.ground.buildings[1].resistance.pressure = 32000;
     for (int i = 0; i < 50; ++i) c.step(0.01, 31000, 0, 10);
     EXPECT_TRUE(c.recorder.failed().empty());
     EXPECT_TRUE(std::isnan(c.house().failure_time));
@@ -151,7 +196,7 @@ TEST(ImpactRecorder, buildings_come_behind_and_records_begin_anew) {
     EXPECT_EQ(c.house().name, "house");
     for (int k = 0; k < 10; ++k) c.step(0.05, 20000, 0, 10);
     EXPECT_NEAR(c.house().peak_force, 20000, 1) << "nothing is left of the events before";
-    EXPECT_NEAR(c.house().peak_pressure, 20000 / (10 * 0.16), 1);
+    EXPECT_NEAR(c.house().peak_impact_pressure, 20000, 1);
 }
 
 }  // namespace

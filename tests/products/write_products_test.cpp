@@ -195,8 +195,8 @@ TEST_F(Products, BuildingTableUsesKilonewtonAndKilopascal) {
     const auto rows = rows_of(test::read_text(folder_->path() / "buildings.csv"));
     ASSERT_EQ(rows.size(), 6U);
     EXPECT_THAT(rows[0],
-                ElementsAre("name", "hit", "first_hit_time_s", "peak_force_kN", "peak_pressure_kPa",
-                            "peak_dynamic_pressure_kPa", "peak_depth_m", "filter_window_s", "height_m",
+                ElementsAre("name", "hit", "first_hit_time_s", "peak_force_kN", "peak_impact_pressure_kPa",
+                            "peak_dynamic_pressure_kPa", "peak_depth_m", "filter_window_s", "patch_edge_m", "height_m",
                             "height_assumed", "kind", "impulse_kNs", "failed_s", "overtopped_m3", "first_overtopped_s",
                             "passed_m3", "held_m3", "peak_held_m3", "peak_filling_height_m", "removed_time_s"));
     EXPECT_EQ(rows[1][0], "House 38");
@@ -205,7 +205,8 @@ TEST_F(Products, BuildingTableUsesKilonewtonAndKilopascal) {
     EXPECT_EQ(rows[1][4], "38.4");
     EXPECT_EQ(rows[1][5], "61");
     EXPECT_EQ(rows[1][7], "0.2");
-    EXPECT_EQ(rows[2][9], "yes");
+    EXPECT_EQ(rows[1][8], "1");
+    EXPECT_EQ(rows[2][10], "yes");
     EXPECT_EQ(rows[1].back(), "") << "it stands";
     EXPECT_EQ(rows[5][1], "no");
     EXPECT_EQ(rows[5][2], "") << "never hit: no time";
@@ -219,18 +220,20 @@ TEST_F(Products, BarriersHaveTheirVolumesAndTheirHistory) {
     dam.impulse = 81000;
     dam.failure_time = 12.5;
     dam.overtopped_volume = 7.25;
-    dam.history = {{11, 2000, 3000, 1, 0.5, 40, 1.5}, {12, 5000, 7000, 7.25, 0.5, 44, 2}};
+    dam.history = {{11, 2000, 900, 0.75, 600, 3000, 1, 0.5, 40, 1.5}, {12, 5000, 1100, 1.5, 0, 7000, 7.25, 0.5, 44, 2}};
     ASSERT_TRUE(write_tables(*scene_, result, folder.path()).ok());
     const auto rows = rows_of(test::read_text(folder.path() / "buildings.csv"));
-    EXPECT_EQ(rows[1][10], "barrier");
-    EXPECT_EQ(rows[1][11], "81");
-    EXPECT_EQ(rows[1][12], "12.5");
-    EXPECT_EQ(rows[1][13], "7.25");
-    EXPECT_EQ(rows[2][10], "building");
-    EXPECT_EQ(rows[2][13], "") << "no barrier: nothing goes over it";
-    EXPECT_EQ(test::read_text(folder.path() / "structures_over_time.csv"),
-              "name,time_s,force_kN,impulse_kNs,overtopped_m3,passed_m3,held_m3,filling_height_m\n"
-              "House 38,11,2,3,1,0.5,40,1.5\nHouse 38,12,5,7,7.25,0.5,44,2\n");
+    EXPECT_EQ(rows[1][11], "barrier");
+    EXPECT_EQ(rows[1][12], "81");
+    EXPECT_EQ(rows[1][13], "12.5");
+    EXPECT_EQ(rows[1][14], "7.25");
+    EXPECT_EQ(rows[2][11], "building");
+    EXPECT_EQ(rows[2][14], "") << "no barrier: nothing goes over it";
+    EXPECT_EQ(
+        test::read_text(folder.path() / "structures_over_time.csv"),
+        "name,time_s,force_kN,impact_pressure_kPa,depth_m,dynamic_pressure_kPa,impulse_kNs,overtopped_m3,passed_m3,"
+        "held_m3,filling_height_m\n"
+        "House 38,11,2,0.9,0.75,0.6,3,1,0.5,40,1.5\nHouse 38,12,5,1.1,1.5,0,7,7.25,0.5,44,2\n");
     const std::string report = test::report_page(*scene_, result);
     EXPECT_THAT(report, HasSubstr("House 38 failed at 12.50 s"));
     EXPECT_THAT(report, HasSubstr("Force on structures over time."));
@@ -241,7 +244,7 @@ TEST_F(Products, BarriersHaveTheirVolumesAndTheirHistory) {
     dam.held_volume = 44;
     dam.passed_volume = 8.75;
     ASSERT_TRUE(write_tables(*scene_, result, folder.path()).ok());
-    EXPECT_EQ(rows_of(test::read_text(folder.path() / "buildings.csv"))[1][10], "net");
+    EXPECT_EQ(rows_of(test::read_text(folder.path() / "buildings.csv"))[1][11], "net");
     const std::string of_net = test::report_page(*scene_, result);
     EXPECT_THAT(of_net, HasSubstr("What nets held and let through."));
     EXPECT_THAT(of_net, HasSubstr("its meshes let 40 % of the grains through"));

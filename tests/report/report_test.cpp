@@ -170,7 +170,7 @@ TEST(Report, ShowsThirtyOfManyBuildingsAndCountsTheRest) {
         BuildingImpact b;
         b.name = "house number " + std::to_string(i);
         b.hit = true;
-        b.peak_pressure = 1000.0 * i;
+        b.peak_impact_pressure = 1000.0 * i;
         s.result.observation.buildings.push_back(b);
     }
     const report::Json buildings = report::buildings(s.scene, s.result);
@@ -311,13 +311,13 @@ TEST(ReportMap, AWideTerrainIsCroppedToTheEvent) {
 
 TEST(ReportMap, CallsImpactsByTheirPressure) {
     BuildingImpact b;
-    b.peak_pressure = 50e3;
+    b.peak_impact_pressure = 50e3;
     EXPECT_EQ(report::impact_class(b), 0);  // not hit
     b.hit = true;
     EXPECT_EQ(report::impact_class(b), 3);
-    b.peak_pressure = 29e3;
+    b.peak_impact_pressure = 29e3;
     EXPECT_EQ(report::impact_class(b), 2);
-    b.peak_pressure = 14e3;
+    b.peak_impact_pressure = 14e3;
     EXPECT_EQ(report::impact_class(b), 1);
 }
 

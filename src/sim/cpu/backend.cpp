@@ -206,7 +206,11 @@ void Backend::measure_impacts(const Model& model, const Ground& ground, State& s
             if (wall.building < 0) break;
             const float normal = walls.contacts[f].normal + boundary_push(wall.slope, state.multiplier[i]);
             if (normal <= 0) continue;
-            state.building_contacts.push_back({i, wall.building, static_cast<float>(mass * normal / state.time_step)});
+            const std::array<float, 8>& displaced = work_.displaced[i].v;
+            const Vec3<float> end{displaced[0], displaced[1], displaced[2]};
+            const Vec3<float> displacement{displaced[4], displaced[5], displaced[6]};
+            state.building_contacts.push_back({i, wall.building, static_cast<float>(mass * normal / state.time_step),
+                                               end - wall.normal * (wall.distance + dot(displacement, wall.normal))});
         }
     }
 }

@@ -17,6 +17,7 @@ namespace talus::validate {
 [[nodiscard]] Kind run_up_kind();
 [[nodiscard]] Kind wall_impact_kind();
 [[nodiscard]] Kind net_stream_kind();
+[[nodiscard]] Kind structure_impact_kind();
 [[nodiscard]] Kind inflow_plane_kind();
 [[nodiscard]] Kind shear_decay_kind();
 [[nodiscard]] Kind sheet_flow_kind();

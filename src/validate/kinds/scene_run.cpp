@@ -26,7 +26,8 @@ constexpr Quantity quantities[] = {
     {"travel_angle", "deg", false, Quantity::Site::none, "between the centres of mass of release and deposit"},
     {"building_hit", "1", false, Quantity::Site::building, "1 if debris struck the building, else 0"},
     {"first_hit_time", "s", false, Quantity::Site::building, "when debris first struck the building"},
-    {"peak_impact_pressure", "kPa", false, Quantity::Site::building, "filtered force over the wall area in contact"},
+    {"peak_impact_pressure", "kPa", false, Quantity::Site::building,
+     "filtered force on a patch of the wall over its area"},
     {"peak_depth", "m", false, Quantity::Site::place, "greatest flow depth near a place"},
     {"height_reached", "m", false, Quantity::Site::place,
      "highest ground that debris reached near a place, above the flow path beside it: the height of marks on a bank"},
@@ -62,7 +63,7 @@ double measure_building(const Expectation& e, const Observation& observation) {
         if (building.name != e.building) continue;
         if (e.quantity == "building_hit") return building.hit ? 1 : 0;
         if (e.quantity == "first_hit_time") return building.first_hit_time;
-        return building.peak_pressure / 1000;
+        return building.peak_impact_pressure / 1000;
     }
     return not_computed;
 }

@@ -35,7 +35,7 @@ async function testMaps(run, page) {
     const legend = page.locator(".legend").last();
     const seen = new Set([bare.hash]);
     for (const [name, title, unit] of [["probability_depth_0.5m", "Probability of peak depth over 0.5 m", "%"], ["probability_speed_10mps", "Probability of peak speed over 10 m/s", "%"],
-      ["peak_depth_p95", "Peak depth, 95th percentile", "m"], ["peak_pressure_p50", "Peak impact pressure, 50th percentile", "kPa"], ["arrival_time_p05", "Arrival time, 5th percentile", "s"]]) {
+      ["peak_depth_p95", "Peak depth, 95th percentile", "m"], ["peak_pressure_p50", "Peak dynamic pressure, 50th percentile", "kPa"], ["arrival_time_p05", "Arrival time, 5th percentile", "s"]]) {
       await page.selectOption(layerSelect, `ensemble/1/${name}`);
       await until(() => legend.locator(".legend-title b").textContent(), (t) => t === title, `legend of ${name}`);
       assert.equal(await legend.locator(".legend-title span").textContent(), unit);

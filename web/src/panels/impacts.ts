@@ -11,7 +11,7 @@ interface Column<Row> { key: string; title: string; unit: string; value(row: Row
 
 const houseColumns: Column<Impact>[] = [
   { key: "name", title: "Building", unit: "", value: (r) => r.name },
-  { key: "pressure", title: "Pressure", unit: "kPa", value: (r) => r.peak_pressure_kPa, digits: 1 },
+  { key: "pressure", title: "Impact", unit: "kPa", value: (r) => r.peak_impact_pressure_kPa, digits: 1 },
   { key: "force", title: "Force", unit: "kN", value: (r) => r.peak_force_kN, digits: 0 },
   { key: "depth", title: "Depth", unit: "m", value: (r) => r.peak_depth_m, digits: 2 },
   { key: "first", title: "Hit at", unit: "s", value: (r) => r.first_hit_s, digits: 1 },
@@ -30,10 +30,10 @@ const barrierColumns: Column<BarrierImpact>[] = [
 export function impactColour(impact: Impact | undefined, by: HouseColour, scene: SceneInfo, most_kPa: number): string | null {
   if (!impact?.hit) return null;
   if (by === "intensity") return scene.intensity.classes.find((c) => c.name === impact.intensity)?.colour ?? null;
-  return css(rampAt(ramps.peak_pressure, (impact.peak_pressure_kPa ?? 0) / Math.max(most_kPa, 1e-6)));
+  return css(rampAt(ramps.peak_pressure, (impact.peak_impact_pressure_kPa ?? 0) / Math.max(most_kPa, 1e-6)));
 }
 export const largestPressure = (impacts: Impacts | null): number =>
-  (impacts?.buildings ?? []).reduce((most, b) => Math.max(most, b.peak_pressure_kPa ?? 0), 0);
+  (impacts?.buildings ?? []).reduce((most, b) => Math.max(most, b.peak_impact_pressure_kPa ?? 0), 0);
 
 class SortedTable<Row extends Impact> {
   readonly element = h("table", { class: "impacts" });
@@ -92,7 +92,7 @@ export function impactsPanel(twin: Twin, stage: Stage): HTMLElement {
     (row) => impactColour(row, twin.houseColour.value, twin.scene, largestPressure(twin.now.impacts.value)), selected);
   const barriers = new SortedTable(barrierColumns, go("barrier"), () => null, selected);
   const colouring = h("select", { "aria-label": "Colour of houses", onchange: () => (twin.houseColour.value = colouring.value as HouseColour) },
-    h("option", { value: "intensity" }, "by intensity class"), h("option", { value: "pressure" }, "by peak pressure"));
+    h("option", { value: "intensity" }, "by intensity class"), h("option", { value: "pressure" }, "by impact pressure"));
   const { intensity } = twin.scene;
   const classes = h("ul", { class: "classes" }, ...intensity.classes.map((c) => {
     const dot = h("i", { class: "dot" });
@@ -102,6 +102,7 @@ export function impactsPanel(twin: Twin, stage: Stage): HTMLElement {
     return h("li", {}, dot, h("b", {}, c.name), thresholds === "" ? null : h("span", { class: "muted" }, ` ${thresholds}`));
   }));
   const none = h("p", { class: "hint" }, "Nothing has been hit yet. Rows fill as debris reaches houses and barriers.");
+  const measured = h("p", { class: "hint" }, "Impact is the highest force on a patch of the walls over its area (1 m x 1 m unless the scene says otherwise); Force is that on all walls; Depth is that of the debris in front of them. The map's dynamic pressure, density times speed squared, is that of the free flow.");
   const barrierTitle = h("h3", {}, "Barriers");
   const goneTitle = h("h3", {}, "Taken away");
   const gone = h("ul", { class: "removed" });
@@ -112,7 +113,7 @@ export function impactsPanel(twin: Twin, stage: Stage): HTMLElement {
     barriers.show(impacts?.barriers ?? []);
     const removed = impacts?.removed ?? [];
     gone.replaceChildren(...removed.map((r) => h("li", {}, h("b", {}, r.name), ` until ${fixed(r.removed_s, 1)} s: `,
-      r.hit ? `${quantity(r.peak_pressure_kPa, "kPa")}, ${quantity(r.peak_force_kN, "kN")}` : "not hit",
+      r.hit ? `${quantity(r.peak_impact_pressure_kPa, "kPa")}, ${quantity(r.peak_force_kN, "kN")}` : "not hit",
       r.overtopped_m3 === undefined ? "" : `, ${quantity(r.overtopped_m3, "m3")} went over it, ${quantity(r.held_m3, "m3")} held`)));
     goneTitle.hidden = gone.hidden = removed.length === 0;
     then.hidden = twin.replay_s.value === null;
@@ -123,7 +124,7 @@ export function impactsPanel(twin: Twin, stage: Stage): HTMLElement {
     colouring.value = twin.houseColour.value;
   });
   return h("div", {}, then, none, barrierTitle, barriers.element, h("div", { class: "row" }, h("h3", { class: "grow" }, "Buildings"), h("label", { class: "check" }, "Colour", colouring)),
-    houses.element, goneTitle, gone, h("h3", {}, "Intensity classes"), classes, h("p", { class: "hint" }, intensity.rule), h("p", { class: "hint" }, `Source: ${intensity.source}`));
+    houses.element, measured, goneTitle, gone, h("h3", {}, "Intensity classes"), classes, h("p", { class: "hint" }, intensity.rule), h("p", { class: "hint" }, `Source: ${intensity.source}`));
 }
 
 /** "depth_m", 0.5 becomes "depth ≥ 0.5 m". */

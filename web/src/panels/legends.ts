@@ -25,7 +25,7 @@ export function presentLegends(twin: Twin, stage: Stage, layers: ShownLayers): L
   }
   const most = Math.max(...twin.scenarios.value.map((s) => largestPressure(twin.cells[s].impacts.value)));
   if (twin.houseColour.value === "pressure" && most > 0) {
-    list.push({ title: "Houses, peak pressure", unit: "kPa", low: 0, high: most, at: (s) => rampAt(ramps.peak_pressure, s) });
+    list.push({ title: "Houses, impact pressure", unit: "kPa", low: 0, high: most, at: (s) => rampAt(ramps.peak_pressure, s) });
   }
   const name = twin.layer.value;
   if (name !== "none") {

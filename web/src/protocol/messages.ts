@@ -171,7 +171,7 @@ export interface Impact {
   hit: boolean;
   first_hit_s: number | null;
   peak_force_kN: number | null;
-  peak_pressure_kPa: number | null;
+  peak_impact_pressure_kPa: number | null;
   peak_depth_m: number | null;
   peak_dynamic_pressure_kPa: number | null;
   impulse_kNs: number;

@@ -60,7 +60,7 @@ export interface BarrierValues {
   clearance_m: number | null;
   /** Filtered force per metre of the line above which it is destroyed: it is gone from then on. null: it stands whatever happens. */
   resistance_Npm: number | null;
-  /** Filtered pressure above which it is destroyed. null: it stands whatever happens. */
+  /** Impact pressure (outputs.impact_patch_edge_m) above which it is destroyed. null: it stands whatever happens. */
   resistance_Pa: number | null;
 }
 

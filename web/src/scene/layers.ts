@@ -18,7 +18,7 @@ export const layerInfo: Record<LayerName, LayerInfo> = {
   depth: { title: "Depth now", unit: "m", ramp: ramps.depth, help: "Flow depth, vertical, at this moment" },
   peak_depth: { title: "Peak depth", unit: "m", ramp: ramps.peak_depth, help: "Largest flow depth so far, vertical" },
   peak_speed: { title: "Peak speed", unit: "m/s", ramp: ramps.peak_speed, help: "Largest depth-averaged speed so far" },
-  peak_pressure: { title: "Peak pressure", unit: "kPa", ramp: ramps.peak_pressure, help: "Largest impact pressure so far: rest density times speed squared" },
+  peak_pressure: { title: "Peak dynamic pressure", unit: "kPa", ramp: ramps.peak_pressure, help: "Largest dynamic pressure of the free flow so far: density times speed squared" },
   arrival_time: { title: "Arrival time", unit: "s", ramp: ramps.arrival_time, help: "Time when debris first arrived" },
   deposit_depth: { title: "Deposit depth", unit: "m", ramp: ramps.deposit_depth, help: "Depth of debris as it lies" },
   erosion_depth: { title: "Erosion", unit: "m", ramp: ramps.erosion_depth, help: "Depth that debris picked up from the bed, vertical: the ground is lower by it" },

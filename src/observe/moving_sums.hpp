@@ -1,0 +1,52 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace talus {
+
+/// What steps added to numbered slots within a window of time that ends now. Cost follows what is added, not the
+/// number of slots. A step that straddles the window's begin, or is longer than it, counts with the share that lies
+/// within.
+class MovingSums {
+  public:
+    /// `window` in s.
+    explicit MovingSums(double window) : window_(window) {}
+
+    [[nodiscard]] double window() const { return window_; }
+    [[nodiscard]] std::size_t size() const { return slots_.size(); }
+    void resize(std::size_t slots) { slots_.resize(slots); }
+
+    /// Adds to the step that the next advance() ends.
+    void add(std::size_t slot, double amount);
+    /// Ends a step at `time`.
+    void advance(double time, double time_step);
+    /// Slots that the last step added to.
+    [[nodiscard]] const std::vector<std::uint32_t>& added() const { return added_; }
+    /// Mean rate over the window: the sum of a slot divided by the window.
+    [[nodiscard]] double rate(std::size_t slot) const { return slots_[slot].sum / window_; }
+    /// Sets `count` slots from `first` on to zero.
+    void clear(std::size_t first, std::size_t count);
+
+  private:
+    struct Slot {
+        double sum = 0, step = 0;   // within the window; of the step that goes on
+        std::uint32_t entries = 0;  // of the slot; 0: the sum is exactly zero
+        bool added = false;         // in the step that goes on
+    };
+    /// What a step added to a slot.
+    struct Entry {
+        double begin, end, amount;  // s, s
+        std::uint32_t slot;
+    };
+    void take_out(Entry& entry, double begin);
+
+    double window_;
+    std::vector<Slot> slots_;
+    std::vector<Entry> entries_;  // in the order of time, from first_ on
+    std::size_t first_ = 0;
+    std::vector<std::uint32_t> adding_, added_;
+};
+
+}  // namespace talus

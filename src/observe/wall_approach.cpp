@@ -1,0 +1,54 @@
+#include "observe/wall_approach.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "sim/particle_density.hpp"
+#include "simd/parallel.hpp"
+
+namespace talus {
+
+void WallApproach::update(const Model& model, const State& state, const WallPatches& patches) {
+    flows_.clear();
+    const std::vector<WallPatches::Column>& columns = patches.columns();
+    if (columns.empty()) return;
+    sums_.resize(columns.size());
+    if (near_.size() < state.count) near_.resize(std::max<std::size_t>(state.count, state.room()));
+    simd::parallel_ranges(state.count, 4096, [&](std::size_t first, std::size_t last) {
+        for (std::size_t i = first; i < last; ++i) {
+            near_[i] = !patches.near(state.position.x[i], state.position.y[i]).empty() && state.held[i] == 0;
+        }
+    });
+    const double size = model.particle_spacing, volume = model.particle_volume();
+    for (std::uint32_t i = 0; i < state.count; ++i) {
+        if (near_[i] == 0) continue;
+        const LocalPoint p = state.position.at(i), v = state.velocity.at(i);
+        const double density = density_of(model, state, i);
+        for (const std::uint32_t k : patches.near(p.x, p.y)) {
+            const WallPatches::Column& column = columns[k];
+            const WallPatches::Column::Place place = column.place_of(p);
+            if (column.roof || place.out <= 0) continue;
+            const double part = WallPatches::overlap(place.along, size, column.width) *
+                                WallPatches::overlap(place.out, size, edge_) / (size * size) * volume;
+            if (!(part > 0)) continue;
+            Sum& sum = sums_[k];
+            if (sum.volume == 0) wetted_.push_back(k);
+            sum.volume += part;
+            sum.mass += part * density;
+            sum.x += part * v.x;
+            sum.y += part * v.y;
+            sum.z += part * v.z;
+        }
+    }
+    for (const std::uint32_t k : wetted_) {
+        const WallPatches::Column& column = columns[k];
+        const Sum sum = std::exchange(sums_[k], {});
+        const double out = (sum.x * column.along_y - sum.y * column.along_x) / sum.volume;
+        flows_.push_back({column.building, sum.volume / (column.width * edge_), sum.mass / sum.volume,
+                          std::sqrt(sum.x * sum.x + sum.y * sum.y + sum.z * sum.z) / sum.volume, -out});
+    }
+    wetted_.clear();
+}
+
+}  // namespace talus

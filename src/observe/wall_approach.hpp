@@ -1,0 +1,45 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "observe/wall_patches.hpp"
+#include "sim/model.hpp"
+#include "sim/state.hpp"
+
+namespace talus {
+
+/// The flow in front of walls: for every column of the patches, the debris between the wall and one edge of the
+/// reference area away from it. A particle is as wide in plan as the spacing and counts with what of it lies there.
+class WallApproach {
+  public:
+    /// `edge` of the reference area, m.
+    explicit WallApproach(double edge) : edge_(edge) {}
+
+    /// Takes the debris as it is now.
+    void update(const Model& model, const State& state, const WallPatches& patches);
+
+    struct Flow {
+        std::int32_t building = -1;
+        double depth = 0;    ///< m, volume over area
+        double density = 0;  ///< kg/m3, mean
+        double speed = 0;    ///< m/s, depth-averaged
+        double to_wall = 0;  ///< m/s, its part towards the wall, normal to it; negative: away from it
+    };
+    /// Of the columns that debris stands before.
+    [[nodiscard]] const std::vector<Flow>& flows() const { return flows_; }
+
+  private:
+    struct Sum {
+        double volume = 0, mass = 0;  // m3, kg
+        double x = 0, y = 0, z = 0;   // volume times velocity
+    };
+    double edge_;
+    std::vector<std::uint8_t> near_;     // by particle
+    std::vector<Sum> sums_;              // by column
+    std::vector<std::uint32_t> wetted_;  // columns
+    std::vector<Flow> flows_;
+};
+
+}  // namespace talus

@@ -1,0 +1,136 @@
+#include "observe/wall_patches.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace talus {
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+int parts_of(double length, double edge) {
+    return std::max(1, static_cast<int>(length / edge));
+}
+
+/// Twice the signed area: positive where a ring runs counter-clockwise.
+double turning(const Ring& ring) {
+    double twice = 0;
+    for (std::size_t i = 0; i < ring.size(); ++i) {
+        const PlanPoint &a = ring[i], &b = ring[(i + 1) % ring.size()];
+        twice += (a.x - ring[0].x) * (b.y - ring[0].y) - (b.x - ring[0].x) * (a.y - ring[0].y);
+    }
+    return twice;
+}
+
+}  // namespace
+
+WallPatches::WallPatches(const Terrain& terrain, const std::vector<Building>& buildings, double edge, double reach)
+    : edge_(edge), patches_(buildings.size(), 0) {
+    const double origin_z = terrain.frame().origin.z;
+    for (std::size_t b = 0; b < buildings.size(); ++b) {
+        const Building& building = buildings[b];
+        if (!stands(building)) continue;
+        for (std::size_t p = 0; p < building.footprint.size(); ++p) {
+            const Polygon& part = building.footprint[p];
+            const double elevation =
+                building.part_roof_elevations.empty() ? building.roof_elevation : building.part_roof_elevations[p];
+            if (!std::isfinite(elevation)) continue;
+            const double clearance = building.barrier ? building.barrier->clearance.value_or(0) : 0;
+            const int index = static_cast<int>(b);
+            add_walls(terrain, part.outer, false, clearance, elevation - origin_z, index);
+            for (const Ring& hole : part.holes) {
+                add_walls(terrain, hole, true, clearance, elevation - origin_z, index);
+            }
+            add_roof(terrain, part, elevation - origin_z, index);
+        }
+    }
+    fill_bins(reach);
+}
+
+void WallPatches::add_column(Column column, double height) {
+    column.rows = parts_of(height, edge_);
+    column.row_height = height / column.rows;
+    column.area = std::max(column.width, edge_) * std::max(column.row_height, edge_);
+    std::uint32_t& patches = patches_[static_cast<std::size_t>(column.building)];
+    column.first_patch = patches;
+    patches += static_cast<std::uint32_t>(column.rows);
+    columns_.push_back(column);
+}
+
+/// `clearance` of the wall's foot above the ground, m.
+void WallPatches::add_walls(const Terrain& terrain, const Ring& ring, bool hole, double clearance, double roof,
+                            int building) {
+    const LocalFrame& frame = terrain.frame();
+    const bool turned = (turning(ring) < 0) != hole;  // the solid shall lie to the left
+    for (std::size_t i = 0; i < ring.size(); ++i) {
+        const PlanPoint &first = ring[i], &second = ring[(i + 1) % ring.size()];
+        const PlanPoint &a = turned ? second : first, &b = turned ? first : second;
+        const double length = std::hypot(b.x - a.x, b.y - a.y);
+        if (!(length > 0)) continue;
+        const double along_x = (b.x - a.x) / length, along_y = (b.y - a.y) / length;
+        const int parts = parts_of(length, edge_);
+        const double width = length / parts;
+        for (int k = 0; k < parts; ++k) {
+            const double x = a.x - frame.origin.x + k * width * along_x;
+            const double y = a.y - frame.origin.y + k * width * along_y;
+            const double ground = terrain.sample(x + width / 2 * along_x, y + width / 2 * along_y).height + clearance;
+            const double foot = ground < roof - 1e-3 ? ground : roof - edge_;  // or buried, or ground without data
+            add_column({x, y, foot, along_x, along_y, k * width, length, width, 0, 0, 0, building, 0, false},
+                       roof - foot);
+        }
+    }
+}
+
+void WallPatches::add_roof(const Terrain& terrain, const Polygon& part, double roof, int building) {
+    const LocalFrame& frame = terrain.frame();
+    const Extent extent = extent_of(part);
+    const int parts = parts_of(extent.width(), edge_);
+    const double width = extent.width() / parts;
+    for (int k = 0; k < parts; ++k) {
+        add_column({extent.x_min - frame.origin.x + k * width, extent.y_min - frame.origin.y, roof, 1, 0, k * width,
+                    extent.width(), width, 0, 0, 0, building, 0, true},
+                   extent.height());
+    }
+}
+
+void WallPatches::fill_bins(double reach) {
+    if (columns_.empty()) return;
+    const auto box = [&](const Column& c) {
+        const double height = c.roof ? c.rows * c.row_height : 0;
+        const PlanPoint end{c.x + c.width * c.along_x - height * c.along_y,
+                            c.y + c.width * c.along_y + height * c.along_x};
+        return Extent{std::min(c.x, end.x), std::min(c.y, end.y), std::max(c.x, end.x), std::max(c.y, end.y)}.grown(
+            reach);
+    };
+    Extent all{infinity, infinity, -infinity, -infinity};
+    for (const Column& column : columns_) {
+        const Extent e = box(column);
+        all.include({e.x_min, e.y_min});
+        all.include({e.x_max, e.y_max});
+    }
+    x_min_ = all.x_min;
+    y_min_ = all.y_min;
+    bin_ = std::max({reach, edge_, std::sqrt(all.width() * all.height() / 1e6)});  // about a million bins at most
+    bin_columns_ = static_cast<int>(all.width() / bin_) + 1;
+    bin_rows_ = static_cast<int>(all.height() / bin_) + 1;
+    const auto for_each_bin = [&](const Column& column, const auto& f) {
+        const Extent e = box(column);
+        for (int r = static_cast<int>((e.y_min - y_min_) / bin_); r <= static_cast<int>((e.y_max - y_min_) / bin_);
+             ++r) {
+            for (int c = static_cast<int>((e.x_min - x_min_) / bin_); c <= static_cast<int>((e.x_max - x_min_) / bin_);
+                 ++c) {
+                f(static_cast<std::size_t>(r) * static_cast<std::size_t>(bin_columns_) + static_cast<std::size_t>(c));
+            }
+        }
+    };
+    bin_start_.assign(static_cast<std::size_t>(bin_columns_) * static_cast<std::size_t>(bin_rows_) + 1, 0);
+    for (const Column& column : columns_) for_each_bin(column, [&](std::size_t bin) { ++bin_start_[bin + 1]; });
+    for (std::size_t bin = 1; bin < bin_start_.size(); ++bin) bin_start_[bin] += bin_start_[bin - 1];
+    bin_content_.resize(bin_start_.back());
+    std::vector<std::uint32_t> next = bin_start_;
+    for (std::uint32_t k = 0; k < columns_.size(); ++k) {
+        for_each_bin(columns_[k], [&](std::size_t bin) { bin_content_[next[bin]++] = k; });
+    }
+}
+
+}  // namespace talus

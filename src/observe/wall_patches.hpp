@@ -1,0 +1,128 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <span>
+#include <vector>
+
+#include "core/geometry.hpp"
+#include "terrain/buildings.hpp"
+#include "terrain/terrain.hpp"
+
+namespace talus {
+
+/// The walls and roofs of structures, cut into patches of a reference area, whatever the particles. A wall is divided
+/// along into equal columns no narrower than the area's edge, a column upward from the ground into equal patches no
+/// lower than that. What is smaller than the edge counts with the edge: no wall makes the reference area smaller.
+class WallPatches {
+  public:
+    /// A column of a wall, or a strip of a roof, local.
+    struct Column {
+        double x, y, z;           ///< lower end of the edge where the column begins
+        double along_x, along_y;  ///< unit, horizontal
+        double from, length;      ///< of the wall before the column, and of the whole wall
+        double width, row_height;
+        double area;  ///< m2, of a patch
+        std::int32_t rows;
+        std::int32_t building;
+        std::uint32_t first_patch;  ///< of the building's
+        bool roof;                  ///< its rows lie side by side in plan
+
+        /// Distance along, up (or across, on a roof), and out of the solid.
+        struct Place {
+            double along, up, out;
+        };
+        [[nodiscard]] Place place_of(const LocalPoint& p) const {
+            const double dx = p.x - x, dy = p.y - y, dz = p.z - z;
+            const double along = dx * along_x + dy * along_y, right = dx * along_y - dy * along_x;
+            return roof ? Place{along, -right, dz} : Place{along, dz, right};
+        }
+    };
+
+    WallPatches() = default;
+    /// `edge`: of the reference area, m. `reach`: how far from a wall, in plan, it is still found, m.
+    WallPatches(const Terrain& terrain, const std::vector<Building>& buildings, double edge, double reach);
+
+    [[nodiscard]] const std::vector<Column>& columns() const { return columns_; }
+    [[nodiscard]] std::uint32_t patches_of(std::size_t building) const { return patches_[building]; }
+
+    /// Columns within reach of a local plan position, and some more.
+    [[nodiscard]] std::span<const std::uint32_t> near(double x, double y) const {
+        const double u = (x - x_min_) / bin_, v = (y - y_min_) / bin_;
+        if (!(u >= 0 && v >= 0 && u < bin_columns_ && v < bin_rows_)) return {};  // NaN comes here too
+        const std::size_t bin =
+            static_cast<std::size_t>(v) * static_cast<std::size_t>(bin_columns_) + static_cast<std::size_t>(u);
+        return {bin_content_.data() + bin_start_[bin], bin_content_.data() + bin_start_[bin + 1]};
+    }
+
+    /// Calls f(patch, share / m2) for the patches of a building that a square of edge `size` covers whose middle
+    /// touches it at `at`. What goes beyond the wall's end, foot or top is folded back, so that the shares add up to 1
+    /// and an even load stays even.
+    template <class F>
+    void spread(std::int32_t building, const LocalPoint& at, double size, const F& f) const;
+
+    /// Length of [middle - size / 2, middle + size / 2] within [0, end].
+    [[nodiscard]] static double overlap(double middle, double size, double end) {
+        const double from = middle - size / 2, to = middle + size / 2;
+        return std::max(0.0, (to < end ? to : end) - (from > 0 ? from : 0));
+    }
+
+    /// The same of a strip [from, from + width] and a square folded back at 0 and `length`.
+    [[nodiscard]] static double folded_overlap(double middle, double size, double length, double from, double width) {
+        return overlap(middle - from, size, width) + overlap(-middle - from, size, width) +
+               overlap(2 * length - middle - from, size, width);
+    }
+
+  private:
+    void add_walls(const Terrain& terrain, const Ring& ring, bool hole, double clearance, double roof, int building);
+    void add_roof(const Terrain& terrain, const Polygon& part, double roof, int building);
+    void add_column(Column column, double height);
+    void fill_bins(double reach);
+
+    double edge_ = 1;
+    std::vector<Column> columns_;
+    std::vector<std::uint32_t> patches_;  // by building, how many
+    double x_min_ = 0, y_min_ = 0, bin_ = 1;
+    int bin_columns_ = 0, bin_rows_ = 0;
+    std::vector<std::uint32_t> bin_start_, bin_content_;
+};
+
+template <class F>
+void WallPatches::spread(std::int32_t building, const LocalPoint& at, double size, const F& f) const {
+    constexpr double same_plane = 0.01;  // m
+    // The walls that it touches are those nearest to it: two at a corner.
+    double nearest = std::numeric_limits<double>::infinity(), whole = 0;
+    const std::span<const std::uint32_t> candidates = near(at.x, at.y);
+    const auto for_each = [&](const auto& g) {
+        for (const std::uint32_t index : candidates) {
+            const Column& column = columns_[index];
+            if (column.building != building) continue;
+            const Column::Place place = column.place_of(at);
+            const double along =
+                folded_overlap(column.from + place.along, size, column.length, column.from, column.width);
+            const double height = column.rows * column.row_height;
+            const double up = folded_overlap(place.up, size, height, 0, height);
+            if (along > 0 && up > 0) g(column, place, along, up);
+        }
+    };
+    for_each([&](const Column&, const Column::Place& place, double, double) {
+        nearest = std::min(nearest, std::abs(place.out));
+    });
+    for_each([&](const Column&, const Column::Place& place, double along, double up) {
+        if (std::abs(place.out) <= nearest + same_plane) whole += along * up;
+    });
+    for_each([&](const Column& column, const Column::Place& place, double along, double) {
+        if (std::abs(place.out) > nearest + same_plane) return;
+        const double scale = along / (whole * column.area);
+        const double height = column.rows * column.row_height;
+        for (std::int32_t row = 0; row < column.rows; ++row) {
+            const double up = folded_overlap(place.up, size, height, row * column.row_height, column.row_height);
+            if (up > 0) f(column.first_patch + static_cast<std::uint32_t>(row), up * scale);
+        }
+    });
+}
+
+}  // namespace talus
