@@ -11,6 +11,7 @@
 #include "core/hash.hpp"
 #include "core/number_or_null.hpp"
 #include "products/results_json.hpp"
+#include "sim/compression.hpp"
 #include "variant_plan.hpp"
 
 namespace talus {
@@ -51,19 +52,20 @@ std::string speed_text(double speed) {
     return std::isfinite(speed) ? fmt::format("{:.1f} m/s", speed) : std::string("not known");
 }
 
-std::string compression_text(const Observation& seen) {
-    std::string text = fmt::format("mean {:.2f} % at worst (limit {:g} %), single particle {:.1f} % (limit {:g} %)",
-                                   100 * seen.worst_mean_compression, 100 * mean_compression_limit,
-                                   100 * seen.worst_max_compression, 100 * max_compression_limit);
-    if (within_compression_limits(seen)) return text;
-    return text + fmt::format(", at t = {:.1f} and {:.1f} s; above a limit {:.2g} % of the time", seen.worst_mean_time,
-                              seen.worst_max_time, 100 * seen.compressed_time_share);
+std::string compression_text(const Compression& c) {
+    std::string text = fmt::format(
+        "mean {:.2f} % at worst (limit {:g} %), above {:g} % in {:.2g} % of the particles "
+        "(limit {:g} %)",
+        100 * c.worst_mean, 100 * mean_compression_limit, 100 * squeezed_compression, 100 * c.worst_squeezed_share,
+        100 * squeezed_share_limit);
+    if (c.time_share_iterated > 0)
+        text += fmt::format(", extra iterations {:.2g} % of the time", 100 * c.time_share_iterated);
+    return text;
 }
 
 /// What to change where compression is above its limits.
 std::string remedy(const SolverSpec& solver) {
-    return fmt::format("compression above its limit: raise solver.iteration_count (now {}) or {}",
-                       solver.iteration_count,
+    return fmt::format("; raise solver.extra_iteration_count (now {}) or {}", solver.extra_iteration_count,
                        solver.time_step ? "lower solver.time_step_s"
                                         : "halve solver.largest_time_step_s and solver.displacement_limit");
 }
@@ -123,8 +125,13 @@ std::string summary_text(const Scene& scene, const RunResult& result, const std:
         if (b.is_barrier) text += line("barrier", barrier_text(b));
         if (!std::isnan(b.failure_time)) text += line("FAILED", fmt::format("{} at {:.2f} s", b.name, b.failure_time));
     }
-    text += line("compression", compression_text(seen));
-    if (!within_compression_limits(seen)) text += line("NOT CONVERGED", remedy(scene.spec.solver));
+    text += line("compression", compression_text(seen.compression));
+    const NumericalVerdict verdict = numerical_verdict(result, comparisons);
+    if (verdict.converged == Answer::no) {
+        const bool squeezed = !seen.compression.within_limits();
+        text += line("NOT CONVERGED",
+                     verdict.text.substr(verdict.text.find(": ") + 2) + (squeezed ? remedy(scene.spec.solver) : ""));
+    }
     for (const Comparison& comparison : comparisons) text += comparison_text(comparison, result);
     text += line("report", (output / "report.html").string());
     return text;

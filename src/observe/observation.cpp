@@ -4,9 +4,16 @@
 
 namespace talus {
 
-bool within_compression_limits(const Observation& observation) {
-    return observation.worst_mean_compression <= mean_compression_limit &&
-           observation.worst_max_compression <= max_compression_limit;
+Deposit measure_deposit(const Grid<float>& deposit_depth, double least_depth) {
+    std::vector<float> depths;
+    for (const float depth : deposit_depth.values) {
+        if (depth > least_depth) depths.push_back(depth);
+    }
+    if (depths.empty()) return {};
+    const double cell_area = deposit_depth.geometry.cell * deposit_depth.geometry.cell;
+    const auto high = depths.begin() + static_cast<std::ptrdiff_t>(9 * depths.size() / 10);
+    std::nth_element(depths.begin(), high, depths.end());
+    return {cell_area * static_cast<double>(depths.size()), *high};
 }
 
 FrontSample front_at(const Observation& observation, double chainage) {

@@ -96,7 +96,7 @@ struct TimeSample {
     double kinetic_energy = 0;    ///< J
     double potential_energy = 0;  ///< J, above the lowest terrain
     double largest_speed = 0;     ///< m/s
-    double mean_compression = 0, max_compression = 0;
+    double mean_compression = 0, max_compression = 0, squeezed_share = 0;
     double time_step = 0;         ///< s
     double steps_per_second = 0;  ///< of wall time
 };
@@ -110,26 +110,38 @@ struct Erosion {
     std::vector<double> upstream;  ///< m3, picked up so far downstream as that
 };
 
+/// How much denser than at rest debris was, as the last iteration of every step found it (sim/compression.hpp).
+struct Compression {
+    double worst_mean = 0, worst_max = 0, worst_squeezed_share = 0;  ///< of all steps: mean and largest over the debris
+    double worst_mean_time = never, worst_max_time = never, worst_squeezed_time = never;  ///< s, when that was
+    double time_share_above = 0;     ///< of the simulated time, with the mean or the squeezed share above its limit
+    double mean_iterations = 0;      ///< per step
+    double time_share_iterated = 0;  ///< of the simulated time, in which steps took extra iterations
+
+    /// Whether debris was too compressed in no more than a hundredth of the simulated time.
+    [[nodiscard]] bool within_limits() const { return time_share_above <= time_share_limit; }
+    static constexpr double time_share_limit = 0.01;
+};
+
+/// The deposit in two numbers, of the cells in which it is thicker than the arrival depth.
+struct Deposit {
+    double area = 0;       ///< m2
+    double depth = never;  ///< m, vertical, that nine tenths of the area stay below
+};
+
 struct Observation {
     HazardMaps maps;
+    Deposit deposit;
     Erosion erosion;
     std::vector<FrontSample> front;  ///< by chainage
     RunOut run_out;
     std::vector<BuildingImpact> buildings;  ///< as in Ground::buildings
     std::vector<TimeSample> timeseries;
     double volume_released = 0;  ///< m3, without what was taken away again
-    /// Compression, max(0, density / rest density - 1), as the last iteration of every step found it: the mean over all
-    /// particles in the worst step, and the worst particle of all steps.
-    double worst_mean_compression = 0, worst_max_compression = 0;
-    double worst_mean_time = never, worst_max_time = never;  ///< s, when that was
-    double compressed_time_share = 0;  ///< of the simulated time, in which either was above its limit
+    Compression compression;
 };
 
-/// Above either of these a run counts as not converged.
-inline constexpr double mean_compression_limit = 0.01, max_compression_limit = 0.03;
-
-/// Whether the worst compression of the run stayed within both limits.
-[[nodiscard]] bool within_compression_limits(const Observation& observation);
+[[nodiscard]] Deposit measure_deposit(const Grid<float>& deposit_depth, double least_depth);
 
 /// What the front did at a chainage, interpolated between samples; NaN where debris never came.
 [[nodiscard]] FrontSample front_at(const Observation& observation, double chainage);

@@ -10,6 +10,7 @@
 #include "observe/map_accumulator.hpp"
 #include "observe/run_out.hpp"
 #include "observe/step_rate.hpp"
+#include "sim/compression.hpp"
 #include "sim/particle_density.hpp"
 #include "simd/parallel.hpp"
 
@@ -67,6 +68,7 @@ TimeSample make_sample(const Model& model, const State& state, double deposited_
     sample.largest_speed = state.max_speed;
     sample.mean_compression = state.mean_compression;
     sample.max_compression = state.max_compression;
+    sample.squeezed_share = state.squeezed_share;
     sample.time_step = state.time_step;
     sample.steps_per_second = steps_per_second;
     return sample;
@@ -106,18 +108,19 @@ struct Observer::Parts {
         return measure_release(ground, lay, front.flow_path());
     }
 
-    void watch_compression(const State& state) {
-        if (state.mean_compression > worst_mean_compression) {
-            worst_mean_compression = state.mean_compression;
-            worst_mean_time = state.time;
-        }
-        if (state.max_compression > worst_max_compression) {
-            worst_max_compression = state.max_compression;
-            worst_max_time = state.time;
-        }
-        if (state.mean_compression > mean_compression_limit || state.max_compression > max_compression_limit) {
-            compressed_time += state.time_step;
-        }
+    void watch_compression(const Model& model, const State& state) {
+        const auto keep = [&](double value, double& worst, double& time) {
+            if (value <= worst) return;
+            worst = value;
+            time = state.time;
+        };
+        keep(state.mean_compression, compression.worst_mean, compression.worst_mean_time);
+        keep(state.max_compression, compression.worst_max, compression.worst_max_time);
+        keep(state.squeezed_share, compression.worst_squeezed_share, compression.worst_squeezed_time);
+        if (too_compressed(state)) compressed_time += state.time_step;
+        if (state.iterations > model.solver.iteration_count) iterated_time += state.time_step;
+        iterations += static_cast<std::uint64_t>(state.iterations);
+        ++steps;
     }
 
     void add_row(const Model& model, const State& state) {
@@ -136,9 +139,9 @@ struct Observer::Parts {
     std::uint64_t next_row = 1;  ///< due at next_row * sample_interval
     StepRate rate;
     double steps_per_second = 0;
-    double worst_mean_compression = 0, worst_max_compression = 0;
-    double worst_mean_time = never, worst_max_time = never;
-    double compressed_time = 0;  ///< s
+    Compression compression;                        ///< its worst values; finish() adds the rest
+    double compressed_time = 0, iterated_time = 0;  ///< s
+    std::uint64_t iterations = 0, steps = 0;
 };
 
 Observer::Observer(const Model& model, const Ground& ground, const State& state, const FlowPath& flow_path,
@@ -159,7 +162,7 @@ void Observer::after_step(const Model& model, const Ground& ground, const State&
     p.maps.add(state);
     p.front.after_step(ground, state);
     p.impact.after_step(model, ground, state);
-    p.watch_compression(state);
+    p.watch_compression(model, state);
     p.steps_per_second = steps_per_second;
     // Rows at multiples of the interval, or right after where a step is longer; a millionth of it absorbs rounding.
     const double intervals = state.time / p.outputs.sample_interval + 1e-6;
@@ -245,6 +248,7 @@ Observation Observer::finish(const Model& model, const Ground& ground, const Sta
     const Parts& p = *parts_;
     Observation observation;
     observation.maps = p.maps.maps();
+    observation.deposit = measure_deposit(observation.maps.deposit_depth, p.outputs.arrival_depth);
     observation.front = p.front.samples();
     const ReleasedMass released = p.came_in.empty() ? p.released : p.measure_starts(model, ground);
     observation.run_out = measure_run_out(ground, state, p.front.flow_path(), released, p.front.farthest());
@@ -253,11 +257,14 @@ Observation Observer::finish(const Model& model, const Ground& ground, const Sta
     if (p.timeseries.back().time != state.time) observation.timeseries.push_back(sample(model, state));
     observation.erosion = measure_erosion(ground, p.front.flow_path(), p.outputs.chainage_interval);
     observation.volume_released = state.released() * model.particle_volume();
-    observation.worst_mean_compression = p.worst_mean_compression;
-    observation.worst_max_compression = p.worst_max_compression;
-    observation.worst_mean_time = p.worst_mean_time;
-    observation.worst_max_time = p.worst_max_time;
-    observation.compressed_time_share = state.time > 0 ? p.compressed_time / state.time : 0;
+    observation.compression = p.compression;
+    if (state.time > 0) {
+        observation.compression.time_share_above = p.compressed_time / state.time;
+        observation.compression.time_share_iterated = p.iterated_time / state.time;
+    }
+    if (p.steps > 0) {
+        observation.compression.mean_iterations = static_cast<double>(p.iterations) / static_cast<double>(p.steps);
+    }
     return observation;
 }
 

@@ -73,6 +73,8 @@ Section declare_solver() {
     s.key("smallest_time_step_s", "s", &SolverSpec::smallest_time_step, above_to(0, 1),
           "An adaptive time step below this stops the run as a fault.");
     s.key("iteration_count", "", &SolverSpec::iteration_count, between(1, 1000), "Solver iterations per time step.");
+    s.key("extra_iteration_count", "", &SolverSpec::extra_iteration_count, between(0, 1000),
+          "Iterations that a step may take besides while debris is squeezed: past half of the limits of compression.");
     s.choice("kernel", &SolverSpec::kernel, {"wendland_c2", "cubic_spline", "spiky", "poly6_spiky"},
              "Smoothing kernel; poly6_spiky is the pair of Macklin & Mueller (2013): Poly6 for the density, Spiky for "
              "its gradient.");

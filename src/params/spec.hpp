@@ -199,6 +199,7 @@ struct SolverSpec {
     double largest_time_step = 1.0 / 60;     ///< s, upper bound of the adaptive step
     double smallest_time_step = 1.0 / 3840;  ///< s, an adaptive step below it stops the run as a fault
     int iteration_count = 4;
+    int extra_iteration_count = 12;  ///< that a step takes besides, at most, while debris is squeezed
     KernelChoice kernel = KernelChoice::wendland_c2;
     InternalFriction internal_friction = InternalFriction::stress;
     double support_ratio = 2.2;            ///< support radius / particle spacing

@@ -16,13 +16,13 @@ std::string header(const Comparison& comparison) {
     }
     return text +
            ",particles,particle_spacing_m,steps,simulated_time_s,wall_time_s,worst_mean_compression,"
-           "worst_max_compression";
+           "worst_squeezed_share";
 }
 
 void add_cost(Csv& csv, const RunResult& result) {
     csv.row({static_cast<double>(result.particles), result.particle_spacing, static_cast<double>(result.steps),
-             result.simulated_time, result.wall_time, result.observation.worst_mean_compression,
-             result.observation.worst_max_compression});
+             result.simulated_time, result.wall_time, result.observation.compression.worst_mean,
+             result.observation.compression.worst_squeezed_share});
 }
 
 std::string outcome(const Comparison& comparison, const Comparison::Row& row) {

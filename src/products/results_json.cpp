@@ -4,6 +4,7 @@
 
 #include "core/hash.hpp"
 #include "products/text_file.hpp"
+#include "sim/compression.hpp"
 
 namespace talus {
 
@@ -45,14 +46,13 @@ Json variant_json(const Comparison& comparison, const Comparison::Row& row) {
 
 Json comparison_json(const Comparison& comparison) {
     Json json = Json::object();
-    if (comparison.kind == ComparisonKind::convergence) {
-        json["converged"] = answer_json(comparison.converged());
-        json["limit_percent"] = refinement_limit_percent;
-    }
+    const bool judged = comparison.kind == ComparisonKind::convergence;
+    if (judged) json["converged"] = answer_json(comparison.converged());
     json["verdict"] = comparison.verdict_text();
     json["quantities"] = Json::array();
     for (const Quantity& quantity : comparison.quantities) {
         Json entry = {{"key", quantity.key}, {"name", quantity.name}, {"base_" + quantity.suffix, quantity.base}};
+        if (judged) entry["limit_percent"] = quantity.limit_percent;
         if (!quantity.not_measured.empty()) entry["not_measured"] = quantity.not_measured;
         json["quantities"].push_back(entry);
     }
@@ -64,14 +64,21 @@ Json comparison_json(const Comparison& comparison) {
 }  // namespace
 
 Json compression_json(const Observation& observation) {
-    return {{"within_limits", within_compression_limits(observation)},
-            {"worst_mean", observation.worst_mean_compression},
-            {"worst_mean_time_s", observation.worst_mean_time},
+    const Compression& c = observation.compression;
+    return {{"within_limits", c.within_limits()},
+            {"worst_mean", c.worst_mean},
+            {"worst_mean_time_s", c.worst_mean_time},
             {"mean_limit", mean_compression_limit},
-            {"worst_max", observation.worst_max_compression},
-            {"worst_max_time_s", observation.worst_max_time},
-            {"max_limit", max_compression_limit},
-            {"time_share_above_a_limit", observation.compressed_time_share}};
+            {"worst_squeezed_share", c.worst_squeezed_share},
+            {"worst_squeezed_time_s", c.worst_squeezed_time},
+            {"squeezed_share_limit", squeezed_share_limit},
+            {"squeezed_compression", squeezed_compression},
+            {"worst_max", c.worst_max},
+            {"worst_max_time_s", c.worst_max_time},
+            {"time_share_above_a_limit", c.time_share_above},
+            {"time_share_limit", Compression::time_share_limit},
+            {"mean_iterations", c.mean_iterations},
+            {"time_share_with_extra_iterations", c.time_share_iterated}};
 }
 
 Json comparisons_json(const std::vector<Comparison>& comparisons) {

@@ -277,8 +277,8 @@ Svg::Attribute clip() {
 }
 
 /// What all maps share, to be used by its name.
-std::string definitions(const Scene& scene, const BuildingMarks& buildings, const MapFrame& frame,
-                        const std::string& relief, double key_top, double& contour_interval) {
+std::string definitions(const Scene& scene, const MapContent& content, const MapFrame& frame, const std::string& relief,
+                        double key_top, double& contour_interval) {
     Svg svg;
     svg.open("svg", {{"class", "definitions"}, {"width", 0.0}, {"height", 0.0}, {"aria-hidden", "true"}});
     svg.open("defs", {});
@@ -292,12 +292,12 @@ std::string definitions(const Scene& scene, const BuildingMarks& buildings, cons
     svg.open("g", {{"id", "map-over"}});
     svg.open("g", {clip()});
     draw_contours(svg, scene, frame, contour_interval);
-    draw_vectors(svg, scene, buildings, frame);
+    draw_vectors(svg, scene, content.buildings, frame);
     svg.close("g");
-    draw_frame(svg, scene, frame);
+    draw_frame(svg, scene, content, frame);
     svg.close("g");
     svg.open("g", {{"id", "map-key"}, {"transform", translation(0, key_top)}});
-    draw_key(svg, scene, buildings, frame, contour_interval);
+    draw_key(svg, scene, content.buildings, frame, contour_interval);
     svg.close("g");
     svg.close("defs");
     svg.close("svg");
@@ -322,7 +322,7 @@ Result<Json> map_figures(const Scene& scene, const MapContent& content) {
     const double height = std::max(frame.bottom() + 30, key_top + key_height(scene));
 
     double contour_interval = 0;
-    Json out = {{"definitions", definitions(scene, content.buildings, frame, relief, key_top, contour_interval)},
+    Json out = {{"definitions", definitions(scene, content, frame, relief, key_top, contour_interval)},
                 {"layers", Json::array()}};
     out["contour_interval"] = contour_interval;
 

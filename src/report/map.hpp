@@ -55,6 +55,7 @@ struct MapContent {
     double cell = 0;                       ///< m
     BuildingMarks buildings;
     std::vector<MapLayer> layers;
+    bool not_converged = false;  ///< said on every map
 };
 
 /// The maps of a single run. `result` must outlive them.
@@ -80,7 +81,7 @@ struct MapContent {
 // The parts of the drawing that all maps share.
 void draw_contours(Svg& svg, const Scene& scene, const MapFrame& frame, double& interval);
 void draw_vectors(Svg& svg, const Scene& scene, const BuildingMarks& marks, const MapFrame& frame);
-void draw_frame(Svg& svg, const Scene& scene, const MapFrame& frame);
+void draw_frame(Svg& svg, const Scene& scene, const MapContent& content, const MapFrame& frame);
 void draw_key(Svg& svg, const Scene& scene, const BuildingMarks& marks, const MapFrame& frame, double contour_interval);
 /// A picture over an area of the frame, cut where the frame ends.
 void draw_image(Svg& svg, std::string_view css_class, double x, double y, double width, double height,

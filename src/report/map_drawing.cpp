@@ -208,7 +208,7 @@ void draw_vectors(Svg& svg, const Scene& scene, const BuildingMarks& marks, cons
     draw_labels(svg, std::move(labels));
 }
 
-void draw_frame(Svg& svg, const Scene& scene, const MapFrame& frame) {
+void draw_frame(Svg& svg, const Scene& scene, const MapContent& content, const MapFrame& frame) {
     const double step = round_step(std::max(frame.area.width(), frame.area.height()) / 6);
     const int digits = step < 1 ? 1 : 0;
     std::vector<double> east, north;
@@ -233,7 +233,10 @@ void draw_frame(Svg& svg, const Scene& scene, const MapFrame& frame) {
         svg.turned_text("grid-number", frame.left - 9, frame.y(n), -90, fixed(n, digits) + " N", "middle");
     }
     svg.rect("map-frame", frame.left, frame.top, frame.width(), frame.height());
-    if (scene.spec.scene.reconstruction) svg.text("map-flag", frame.left + 10, frame.top + 20, "RECONSTRUCTION");
+    const double left = frame.left + 10, first = frame.top + 20, line_height = 18;
+    const bool reconstruction = scene.spec.scene.reconstruction;
+    if (reconstruction) svg.text("map-flag", left, first, "RECONSTRUCTION");
+    if (content.not_converged) svg.text("map-flag", left, first + (reconstruction ? line_height : 0), "NOT CONVERGED");
 }
 
 double key_height(const Scene& scene) {

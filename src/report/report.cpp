@@ -7,7 +7,8 @@
 namespace talus::report {
 
 Result<std::string> run_report(const Scene& scene, const RunResult& result, const Json& results) {
-    const MapContent content = map_content(scene, result);
+    MapContent content = map_content(scene, result);
+    content.not_converged = results["verdict"]["not_converged"];
     TALUS_ASSIGN(auto maps, map_figures(scene, content));
     TALUS_ASSIGN(auto zone_map, zone_figure(scene, content, maps["contour_interval"]));
     Json page = results;

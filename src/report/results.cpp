@@ -1,6 +1,7 @@
 #include "report/results.hpp"
 
 #include <algorithm>
+#include <cctype>
 #include <chrono>
 #include <cmath>
 #include <numbers>
@@ -11,6 +12,7 @@
 #include "core/number_or_null.hpp"
 #include "report/hazard_map.hpp"
 #include "report/number_text.hpp"
+#include "sim/compression.hpp"
 
 namespace talus::report {
 namespace {
@@ -84,18 +86,34 @@ Json status(const RunResult& result) {
             {"simulated_time_s", result.simulated_time}};
 }
 
+Json verdict(const RunResult& result, const std::vector<Comparison>& comparisons) {
+    const NumericalVerdict said = numerical_verdict(result, comparisons);
+    const Json converged = said.converged == Answer::unknown ? Json() : Json(said.converged == Answer::yes);
+    std::string text = said.text;
+    text[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(text[0])));
+    return {{"converged", converged}, {"not_converged", said.converged == Answer::no}, {"text", text}};
+}
+
 Json compression(const Scene& scene, const RunResult& result) {
-    const Observation& o = result.observation;
-    return {{"within_limits", within_compression_limits(o)},
-            {"worst_mean_percent", 100 * o.worst_mean_compression},
-            {"worst_mean_time_s", o.worst_mean_time},
+    const Compression& c = result.observation.compression;
+    const SolverSpec& solver = scene.spec.solver;
+    return {{"within_limits", c.within_limits()},
+            {"worst_mean_percent", 100 * c.worst_mean},
+            {"worst_mean_time_s", c.worst_mean_time},
             {"mean_limit_percent", 100 * mean_compression_limit},
-            {"worst_percent", 100 * o.worst_max_compression},
-            {"worst_time_s", o.worst_max_time},
-            {"limit_percent", 100 * max_compression_limit},
-            {"time_above_a_limit_percent", 100 * o.compressed_time_share},
-            {"iteration_count", scene.spec.solver.iteration_count},
-            {"fixed_time_step", scene.spec.solver.time_step.has_value()}};
+            {"worst_squeezed_percent", 100 * c.worst_squeezed_share},
+            {"worst_squeezed_time_s", c.worst_squeezed_time},
+            {"squeezed_limit_percent", 100 * squeezed_share_limit},
+            {"squeezed_compression_percent", 100 * squeezed_compression},
+            {"worst_percent", 100 * c.worst_max},
+            {"worst_time_s", c.worst_max_time},
+            {"time_above_a_limit_percent", 100 * c.time_share_above},
+            {"time_limit_percent", 100 * Compression::time_share_limit},
+            {"iteration_count", solver.iteration_count},
+            {"extra_iteration_count", solver.extra_iteration_count},
+            {"mean_iterations", c.mean_iterations},
+            {"time_with_extra_iterations_percent", 100 * c.time_share_iterated},
+            {"fixed_time_step", solver.time_step.has_value()}};
 }
 
 Json key_figures(const Scene& scene, const RunResult& result) {
@@ -155,7 +173,7 @@ Json quality(const Scene& scene, const RunResult& result) {
                         : result.status == RunStatus::interrupted ? "partial: interrupted"
                                                                   : "partial: stopped by a fault";
     const MassBalance mass = mass_balance(o);
-    const bool within = within_compression_limits(o);
+    const Compression& c = o.compression;
     return {
         fact("Status", result.stop_reason.empty() ? state : state + ("; " + result.stop_reason)),
         fact("Simulated time",
@@ -166,15 +184,24 @@ Json quality(const Scene& scene, const RunResult& result) {
              significant(result.real_time_factor(), 3) + " (simulated over wall time; 1 is real time)"),
         fact("Particles", fmt::format("{}, spacing {} m", fixed(result.particles, 0), plain(result.particle_spacing))),
         fact("Compression",
-             fmt::format("worst mean over the debris {} % (at {} s; limit {} %), worst particle {} % (at {} s; limit "
-                         "{} %): ",
-                         fixed(100 * o.worst_mean_compression, 2), fixed(o.worst_mean_time, 1),
-                         fixed(100 * mean_compression_limit, 0), fixed(100 * o.worst_max_compression, 2),
-                         fixed(o.worst_max_time, 1), fixed(100 * max_compression_limit, 0)),
-             within ? "within limits"
-                    : fmt::format("not converged during {} % of the simulated time",
-                                  significant(100 * o.compressed_time_share, 2)),
-             within),
+             fmt::format(
+                 "worst mean over the debris {} % (at {} s; limit {} %), more than {} % in {} % of the particles "
+                 "at worst (limit {} %), worst particle {} %: ",
+                 fixed(100 * c.worst_mean, 2), fixed(c.worst_mean_time, 1), fixed(100 * mean_compression_limit, 0),
+                 fixed(100 * squeezed_compression, 0), fixed(100 * c.worst_squeezed_share, 2),
+                 fixed(100 * squeezed_share_limit, 0), fixed(100 * c.worst_max, 1)),
+             c.within_limits() ? "within limits"
+                               : fmt::format("above a limit during {} % of the simulated time",
+                                             significant(100 * c.time_share_above, 2)),
+             c.within_limits()),
+        fact("Iterations",
+             c.time_share_iterated > 0
+                 ? fmt::format(
+                       "{} per step, up to {} more while debris was squeezed: in {} % of the simulated time, {} on "
+                       "average",
+                       scene.spec.solver.iteration_count, scene.spec.solver.extra_iteration_count,
+                       significant(100 * c.time_share_iterated, 2), fixed(c.mean_iterations, 1))
+                 : fmt::format("{} per step", scene.spec.solver.iteration_count)),
         fact("Mass balance",
              fmt::format("released {}{} = held {} + moving {} + deposited {} + left {} m³", fixed(o.volume_released, 2),
                          scene.bed.empty() ? "" : fmt::format(" + picked up {}", fixed(mass.entrained, 2)),
@@ -230,6 +257,7 @@ Json results_head(std::string_view format, const Scene& scene) {
 Json run_results(const Scene& scene, const RunResult& result, const std::vector<Comparison>& comparisons) {
     Json all = results_head("talus results", scene);
     all.update({{"status", status(result)},
+                {"verdict", verdict(result, comparisons)},
                 {"compression", compression(scene, result)},
                 {"key_figures", key_figures(scene, result)},
                 {"observations", observations(scene, result)},

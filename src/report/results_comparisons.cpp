@@ -44,49 +44,84 @@ Json change_cell(const Quantity& quantity, const Change& change, bool judged) {
     return cell;
 }
 
-void add_cost(Json& row, const RunResult& result) {
-    const Observation& o = result.observation;
-    row["compression"] =
-        fmt::format("{} / {}", fixed(100 * o.worst_mean_compression, 2), fixed(100 * o.worst_max_compression, 1));
-    row["particles"] = result.particles;
-    row["wall_time_s"] = {{"value", result.wall_time}, {"format", result.wall_time < 10 ? "f1" : "f0"}};
+Json wall_time(const RunResult& result) {
+    return {{"value", result.wall_time}, {"format", result.wall_time < 10 ? "f1" : "f0"}};
 }
 
-Json result_cell(Verdict verdict) {
-    if (verdict == Verdict::pass) return {{"value", "pass"}, {"tone", "good"}};
-    if (verdict == Verdict::fail) return {{"value", "fail"}, {"tone", "bad"}};
-    return {};
+Json cost_of(const RunResult& result) {
+    const Compression& c = result.observation.compression;
+    return {
+        {"compression", fmt::format("{} / {}", fixed(100 * c.worst_mean, 2), fixed(100 * c.worst_squeezed_share, 1))},
+        {"particles", result.particles},
+        {"wall_time_s", wall_time(result)}};
 }
 
-Json rows_of(const Comparison& comparison, const RunResult& base) {
-    const bool judged = comparison.kind == ComparisonKind::convergence;
+Json missing_row(const std::vector<Column>& columns, Json row, const VariantRun& run) {
+    row["fills"] = columns[1].key;
+    row[columns[1].key] = "missing: " + run.missing;
+    return row;
+}
+
+/// A row per run: what each changes.
+Json rows_of_runs(const Comparison& comparison, const RunResult& base) {
     std::vector<Column> columns = {{"run", "Run", ""}};
     for (const Quantity& q : comparison.quantities)
         columns.push_back({q.key, heading(q), q.unit, "s3", "", "not measured"});
-    columns.push_back({"compression", "Compression", "mean / max, %", "", "n"});
+    columns.push_back({"compression", "Compression", "mean / squeezed, %", "", "n"});
     columns.push_back({"particles", "Particles", "", "f0"});
     columns.push_back({"wall_time_s", "Wall time", "s", "f0"});
-    if (judged) columns.push_back({"result", "Result", "", "", "result", "–", true});
     Json all = table(columns, "comparison");
-    Json first = {{"row_style", "base"}, {"run", {{"value", base_name}, {"sample", base_style}}}, {"result", ""}};
+    Json first = {{"row_style", "base"}, {"run", {{"value", base_name}, {"sample", base_style}}}};
     for (const Quantity& q : comparison.quantities) first[q.key] = number_or_null<Json>(q.base);
-    add_cost(first, base);
+    first.update(cost_of(base));
     all["rows"].push_back(std::move(first));
     for (std::size_t i = 0; i < comparison.rows.size(); ++i) {
         const Comparison::Row& given = comparison.rows[i];
         Json row = {{"run", {{"value", given.run.variant.name}, {"sample", variant_style(i)}}}};
-        if (given.run.result) {
-            for (std::size_t k = 0; k < comparison.quantities.size(); ++k) {
-                row[comparison.quantities[k].key] = change_cell(comparison.quantities[k], given.changes[k], judged);
-            }
-            add_cost(row, *given.run.result);
-            if (judged) row["result"] = result_cell(given.verdict());
-        } else {
-            row["fills"] = columns[1].key;
-            row[columns[1].key] = "missing: " + given.run.missing;
+        if (!given.run.result) {
+            all["rows"].push_back(missing_row(columns, std::move(row), given.run));
+            continue;
         }
+        for (std::size_t k = 0; k < comparison.quantities.size(); ++k) {
+            row[comparison.quantities[k].key] = change_cell(comparison.quantities[k], given.changes[k], false);
+        }
+        row.update(cost_of(*given.run.result));
         all["rows"].push_back(std::move(row));
     }
+    return all;
+}
+
+/// A row per quantity with its limit, a column per run: there are few runs and, with buildings, many quantities.
+Json rows_of_quantities(const Comparison& comparison, const RunResult& base) {
+    std::vector<Column> columns = {{"quantity", "Quantity", ""}, {"base", base_name, "", "s3", "", "not measured"}};
+    const auto key_of = [](std::size_t i) { return fmt::format("run_{}", i); };
+    for (std::size_t i = 0; i < comparison.rows.size(); ++i)
+        columns.push_back({key_of(i), capitalised(comparison.rows[i].run.variant.name), "", "s3"});
+    columns.push_back({"limit", "Limit", "%", "s3"});
+    Json all = table(columns, "comparison");
+    const auto add = [&](Json row, const auto& cell) {
+        for (std::size_t i = 0; i < comparison.rows.size(); ++i) {
+            const Comparison::Row& run = comparison.rows[i];
+            row[key_of(i)] = run.run.result ? cell(run) : Json("missing");
+        }
+        all["rows"].push_back(std::move(row));
+    };
+    for (std::size_t k = 0; k < comparison.quantities.size(); ++k) {
+        const Quantity& q = comparison.quantities[k];
+        Json row = {{"quantity", capitalised(q.name) + (q.unit.empty() ? "" : ", " + q.unit)},
+                    {"base", number_or_null<Json>(q.base)}};
+        row["limit"] = q.limit_percent > 0 ? Json(q.limit_percent) : Json("the same");
+        add(std::move(row), [&](const Comparison::Row& run) { return change_cell(q, run.changes[k], true); });
+    }
+    const auto squeezed = [](const RunResult& result) { return cost_of(result)["compression"]; };
+    add({{"quantity", "Compression, mean / squeezed, %"}, {"base", squeezed(base)}, {"limit", ""}},
+        [&](const Comparison::Row& run) { return squeezed(*run.run.result); });
+    add({{"quantity", "Particles"}, {"base", {{"value", base.particles}, {"format", "f0"}}}, {"limit", ""}},
+        [](const Comparison::Row& run) {
+            return Json{{"value", run.run.result->particles}, {"format", "f0"}};
+        });
+    add({{"quantity", "Wall time, s"}, {"base", wall_time(base)}, {"limit", ""}},
+        [](const Comparison::Row& run) { return wall_time(*run.run.result); });
     return all;
 }
 
@@ -162,10 +197,9 @@ Json comparison(const Comparison& comparison, const Scene& scene, const RunResul
     return {{"kind_of_comparison", judged ? "convergence" : "sensitivity"},
             {"convergence", judged},
             {"converged", converged},
-            {"unconverged", judged && !converged},
             {"verdict", capitalised(comparison.verdict_text())},
-            {"limit_percent", refinement_limit_percent},
-            {"table", rows_of(comparison, base)},
+            {"counting_force_percent", 100 * counting_force_share},
+            {"table", judged ? rows_of_quantities(comparison, base) : rows_of_runs(comparison, base)},
             {"not_measured", std::move(not_measured)},
             {"has_named", !named.empty()},
             {"named", std::move(named)},

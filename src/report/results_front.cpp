@@ -8,6 +8,7 @@
 
 #include "report/number_text.hpp"
 #include "report/results.hpp"
+#include "sim/compression.hpp"
 
 namespace talus::report {
 namespace {
@@ -208,15 +209,15 @@ Json time_chart(const RunResult& result) {
     const auto& rows = result.observation.timeseries;
     if (rows.size() < 2) return {};
     const std::size_t stride = std::max<std::size_t>(1, rows.size() / 800);
-    std::vector<double> t, kinetic, potential, total, speed, mean_compression, max_compression, zero, deposited, moving,
-        held, left;
+    std::vector<double> t, kinetic, potential, total, speed, mean_compression, squeezed, zero, deposited, moving, held,
+        left;
     double lowest = std::numeric_limits<double>::infinity(), most_energy = 0;
     for (const TimeSample& s : rows) lowest = std::min(lowest, s.potential_energy);
     for (const TimeSample& s : rows)
         most_energy = std::max(most_energy, s.kinetic_energy + s.potential_energy - lowest);
     const bool mega = most_energy >= 2e6;
     const double unit = mega ? 1e-6 : 1e-3;
-    ValueRange energies{0, 0}, speeds{0, 1}, compressions{0, 100 * max_compression_limit * 1.1};
+    ValueRange energies{0, 0}, speeds{0, 1}, compressions{0, 100 * squeezed_share_limit * 1.1};
     for (std::size_t i = 0; i < rows.size(); i += stride) {
         const TimeSample& s = rows[i];
         t.push_back(s.time);
@@ -227,8 +228,9 @@ Json time_chart(const RunResult& result) {
         speed.push_back(s.largest_speed);
         speeds.include(s.largest_speed);
         mean_compression.push_back(100 * s.mean_compression);
-        max_compression.push_back(100 * s.max_compression);
-        compressions.include(max_compression.back());
+        squeezed.push_back(100 * s.squeezed_share);
+        compressions.include(mean_compression.back());
+        compressions.include(squeezed.back());
         zero.push_back(0);
         deposited.push_back(s.volume_deposited);
         moving.push_back(deposited.back() + s.volume_moving);
@@ -260,11 +262,11 @@ Json time_chart(const RunResult& result) {
     fastest.line(t, speed, "series blue", "largest particle speed");
 
     Plot compressed(second, below, width, height, time, compressions);
-    compressed.axes("time, s", "compression, %");
-    compressed.line(t, mean_compression, "series blue", "mean");
-    compressed.line(t, max_compression, "series purple", "largest");
-    compressed.horizontal(100 * mean_compression_limit, "limit blue", "limits");
-    compressed.horizontal(100 * max_compression_limit, "limit purple");
+    compressed.axes("time, s", "compression and squeezed share, %");
+    compressed.line(t, mean_compression, "series blue", "mean compression");
+    compressed.line(t, squeezed, "series purple", "squeezed share");
+    static_assert(mean_compression_limit == squeezed_share_limit);  // one line for both
+    compressed.horizontal(100 * mean_compression_limit, "limit blue", "limit of both");
     return chart_json({"Energy, volumes, largest speed and compression over time",
                        1000,
                        600,

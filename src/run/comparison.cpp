@@ -13,6 +13,7 @@ namespace {
 struct Measure {
     Quantity quantity;
     std::function<double(const Observation&)> value;
+    std::function<bool(const Observation&)> same = {};  // where a number does not say it all: as in the base
 };
 
 double first_building_hit(const Observation& observation) {
@@ -71,7 +72,71 @@ Measure run_out() {
     return m;
 }
 
-std::vector<Measure> measures(const Scene& scene, const Observation& base) {
+Measure deposit_area() {
+    Measure m;
+    m.quantity = {.key = "deposit_area", .suffix = "m2", .name = "deposit area", .unit = "m²", .limit_percent = 10};
+    m.value = [](const Observation& o) { return o.deposit.area; };
+    return m;
+}
+
+Measure deposit_depth() {
+    Measure m;
+    m.quantity = {.key = "deposit_depth",
+                  .suffix = "m",
+                  .name = "deposit depth",
+                  .unit = "m",
+                  .limit_percent = 10,
+                  .not_measured = "nothing was deposited"};
+    m.value = [](const Observation& o) { return o.deposit.depth; };
+    return m;
+}
+
+double largest_force(const Observation& observation) {
+    double largest = 0;
+    for (const BuildingImpact& b : observation.buildings) largest = std::max(largest, b.peak_force);
+    return largest;
+}
+
+/// The buildings that took a share of the largest force that counts, by their place in the scene.
+std::vector<std::size_t> counting_hits(const Observation& observation) {
+    const double least = counting_force_share * largest_force(observation);
+    std::vector<std::size_t> hits;
+    for (std::size_t i = 0; i < observation.buildings.size(); ++i) {
+        const BuildingImpact& b = observation.buildings[i];
+        if (b.hit && b.peak_force >= least) hits.push_back(i);
+    }
+    return hits;
+}
+
+void add_buildings(const Observation& base, std::vector<Measure>& all) {
+    const std::vector<std::size_t> hits = counting_hits(base);
+    Measure list;
+    list.quantity = {
+        .key = "buildings_hit", .suffix = "count", .name = "buildings hit", .unit = "", .limit_percent = 0};
+    list.value = [](const Observation& o) { return static_cast<double>(counting_hits(o).size()); };
+    list.same = [hits](const Observation& o) { return counting_hits(o) == hits; };
+    all.push_back(std::move(list));
+    for (const std::size_t i : hits) {
+        const std::string name = base.buildings[i].name;
+        const auto add = [&](const char* key, const char* suffix, const char* what, const char* unit, double scale,
+                             double BuildingImpact::*member) {
+            Measure m;
+            m.quantity = {.key = fmt::format("{}_{}", key, i),
+                          .suffix = suffix,
+                          .name = fmt::format("{} on {}", what, name),
+                          .unit = unit,
+                          .limit_percent = 15};
+            m.value = [=](const Observation& o) {
+                return i < o.buildings.size() && o.buildings[i].hit ? o.buildings[i].*member / scale : never;
+            };
+            all.push_back(std::move(m));
+        };
+        add("peak_force", "kN", "force", "kN", 1e3, &BuildingImpact::peak_force);
+        add("peak_impact_pressure", "kPa", "impact pressure", "kPa", 1e3, &BuildingImpact::peak_impact_pressure);
+    }
+}
+
+std::vector<Measure> measures(ComparisonKind kind, const Scene& scene, const Observation& base) {
     std::vector<Measure> all;
     for (const ObservationSpec& observed : scene.spec.observations) {
         Measure m = front_velocity(scene, observed.chainage);
@@ -81,6 +146,9 @@ std::vector<Measure> measures(const Scene& scene, const Observation& base) {
     }
     all.push_back(arrival(scene, base));
     all.push_back(run_out());
+    all.push_back(deposit_area());
+    all.push_back(deposit_depth());
+    if (kind == ComparisonKind::convergence && !base.buildings.empty()) add_buildings(base, all);
     for (Measure& m : all) {
         m.quantity.base = m.value(base);
         if (std::isfinite(m.quantity.base)) m.quantity.not_measured.clear();
@@ -88,7 +156,8 @@ std::vector<Measure> measures(const Scene& scene, const Observation& base) {
     return all;
 }
 
-Change change_from(double base, double value) {
+Change change_from(const Measure& measure, const Observation& observation) {
+    const double base = measure.quantity.base, value = measure.value(observation);
     Change change{value, never, Verdict::fail};
     if (!std::isfinite(base) && !std::isfinite(value)) {
         change.verdict = Verdict::not_measured;
@@ -97,8 +166,9 @@ Change change_from(double base, double value) {
         change.verdict = Verdict::pass;
     } else if (std::isfinite(base) && std::isfinite(value) && base != 0) {
         change.percent = 100 * (value - base) / std::abs(base);
-        if (std::abs(change.percent) <= refinement_limit_percent) change.verdict = Verdict::pass;
+        if (std::abs(change.percent) <= measure.quantity.limit_percent) change.verdict = Verdict::pass;
     }
+    if (measure.same && !measure.same(observation)) change.verdict = Verdict::fail;
     return change;
 }
 
@@ -165,10 +235,10 @@ std::string Comparison::verdict_text() const {
     const std::size_t all = counts.pass + counts.fail;
     switch (converged()) {
         case Answer::yes:
-            return fmt::format("converged: no change above {:g} %", refinement_limit_percent);
+            return fmt::format("converged: none of {} changes above its limit", all);
         case Answer::no:
-            return fmt::format("not converged: {} of {} changes above {:g} %{}", counts.fail, all,
-                               refinement_limit_percent, missing.empty() ? "" : ", " + missing);
+            return fmt::format("not converged: {} of {} changes above {} limit{}", counts.fail, all,
+                               counts.fail == 1 ? "its" : "their", missing.empty() ? "" : ", " + missing);
         case Answer::unknown:
             break;
     }
@@ -176,19 +246,31 @@ std::string Comparison::verdict_text() const {
 }
 
 Comparison compare(ComparisonKind kind, const Scene& scene, const RunResult& base, std::vector<VariantRun> runs) {
-    const std::vector<Measure> all = measures(scene, base.observation);
+    const std::vector<Measure> all = measures(kind, scene, base.observation);
     Comparison comparison;
     comparison.kind = kind;
     for (const Measure& m : all) comparison.quantities.push_back(m.quantity);
     for (VariantRun& run : runs) {
         Comparison::Row row{std::move(run), {}};
         for (const Measure& m : all) {
-            row.changes.push_back(row.run.result ? change_from(m.quantity.base, m.value(row.run.result->observation))
-                                                 : Change{});
+            row.changes.push_back(row.run.result ? change_from(m, row.run.result->observation) : Change{});
         }
         comparison.rows.push_back(std::move(row));
     }
     return comparison;
+}
+
+NumericalVerdict numerical_verdict(const RunResult& result, const std::vector<Comparison>& comparisons) {
+    const Compression& compression = result.observation.compression;
+    if (!compression.within_limits()) {
+        return {Answer::no, fmt::format("not converged: debris too compressed during {:.2g} % of the simulated time",
+                                        100 * compression.time_share_above)};
+    }
+    for (const Comparison& comparison : comparisons) {
+        if (comparison.kind != ComparisonKind::convergence) continue;
+        return {comparison.converged(), comparison.verdict_text()};
+    }
+    return {Answer::unknown, "convergence not tested"};
 }
 
 }  // namespace talus

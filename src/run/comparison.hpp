@@ -12,12 +12,13 @@ namespace talus {
 
 /// A number that runs are compared by.
 struct Quantity {
-    std::string key;     ///< "front_velocity_at_121_m"
-    std::string suffix;  ///< unit in names of columns: "mps"
-    std::string name;    ///< "front velocity at 121 m"
-    std::string unit;    ///< "m/s"
+    std::string key;           ///< "front_velocity_at_121_m"
+    std::string suffix;        ///< unit in names of columns: "mps"
+    std::string name;          ///< "front velocity at 121 m"
+    std::string unit;          ///< "m/s"
+    double limit_percent = 5;  ///< change under refinement above which a scene is not converged
     double base = never;
-    std::string not_measured;  ///< why the base gives no value; empty where it does
+    std::string not_measured = {};  ///< why the base gives no value; empty where it does
 };
 
 enum class Verdict {
@@ -42,9 +43,6 @@ enum class ComparisonKind {
     sensitivity,  ///< inputs varied: changes are reported, not judged
 };
 
-/// Change of a result under refinement, in percent, above which a scene counts as not converged.
-inline constexpr double refinement_limit_percent = 5;
-
 enum class Answer { yes, no, unknown };
 
 struct Comparison {
@@ -59,16 +57,27 @@ struct Comparison {
     std::vector<Row> rows;
 
     [[nodiscard]] bool all_ran() const;
-    /// Whether every refinement ran and changed nothing by more than the limit; unknown where a run is missing or
-    /// nothing could be measured, unless a change already exceeds the limit.
+    /// Whether every refinement ran and changed nothing by more than its limit; unknown where a run is missing or
+    /// nothing could be measured, unless a change already exceeds its limit.
     [[nodiscard]] Answer converged() const;
-    /// The same as a sentence: "not converged: 2 of 12 changes exceed 5 %". For sensitivity: how many variants ran.
+    /// The same as a sentence: "not converged: 2 of 12 changes above their limits, the largest run-out, 12 %". For
+    /// sensitivity: how many variants ran.
     [[nodiscard]] std::string verdict_text() const;
 };
 
-/// Compares front velocity at every observation, arrival, and run-out. Arrival is the first hit of any building if the
-/// base hits one, else when the front passed 90 % of the chainage that it reached in the base.
+/// Compares front velocity at every observation, arrival, run-out, area and depth of the deposit; of a convergence also
+/// which buildings are hit, and force and pressure on each. Arrival is the first hit of any building if the base hits
+/// one, else when the front passed 90 % of the chainage that it reached in the base. A building counts as hit from
+/// `counting_force_share` of the largest force in the run on: a touch is no hit.
 [[nodiscard]] Comparison compare(ComparisonKind kind, const Scene& scene, const RunResult& base,
                                  std::vector<VariantRun> runs);
+inline constexpr double counting_force_share = 0.05;
+
+/// What may be said of the numerics of a run: one verdict, of its compression and of its convergence if that was tried.
+struct NumericalVerdict {
+    Answer converged = Answer::unknown;
+    std::string text;  ///< "not converged: debris too compressed during 12 % of the simulated time"
+};
+[[nodiscard]] NumericalVerdict numerical_verdict(const RunResult& result, const std::vector<Comparison>& comparisons);
 
 }  // namespace talus

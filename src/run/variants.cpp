@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "core/try.hpp"
+#include "observe/observer.hpp"
 #include "sim/physics/viscosity.hpp"
 #include "sim/seed.hpp"
 
@@ -91,10 +92,14 @@ std::vector<Variant> refinements(const Scene& base) {
     }
     Variant iterations{.name = "double the iterations",
                        .overrides = {fmt::format("solver.iteration_count={}", 2 * solver.iteration_count)}};
+    const double map_cell =
+        base.spec.outputs.map_cell.value_or(default_map_cell(base.terrain.cell(), spacing_of(base)));
     Variant particles{.name = "three times the particles",
                       .overrides = {fmt::format("solver.particle_spacing_m={}", spacing_of(base) / std::cbrt(3.0)),
                                     // The same smoothing would be another material at another spacing.
-                                    fmt::format("material.kinematic_viscosity_m2ps={}", kinematic_viscosity_of(base))}};
+                                    fmt::format("material.kinematic_viscosity_m2ps={}", kinematic_viscosity_of(base)),
+                                    // Areas and depths are compared on the same cells.
+                                    fmt::format("outputs.map_cell_m={}", map_cell)}};
     return {step, iterations, particles};
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "core/try.hpp"
+#include "sim/compression.hpp"
 #include "sim/ground.hpp"
 #include "sim/model.hpp"
 #include "sim/stage_times.hpp"
@@ -37,13 +38,16 @@ Status step(Backend& backend, const Model& model, const Ground& ground, State& s
     timed(Stage::warm_start, [&] { backend.warm_start(model, ground, state); });
     // The shear of the first iteration must already know what the ground holds back.
     timed(Stage::solve_contacts, [&] { backend.solve_contacts(model, ground, state); });
-    for (int iteration = 0; iteration < model.solver.iteration_count; ++iteration) {
+    const int fewest = model.solver.iteration_count, most = fewest + model.solver.extra_iteration_count;
+    for (state.iterations = 0; state.iterations < most;) {
         timed(Stage::solve_density,
               [&] { backend.solve_density(model, ground, state); });  // density and internal friction
         timed(Stage::solve_contacts,
               [&] { backend.solve_contacts(model, ground, state); });  // ground, buildings, friction
+        if (++state.iterations < fewest) continue;
+        timed(Stage::measure_compression, [&] { backend.measure_compression(model, state); });
+        if (!needs_iteration(state)) break;
     }
-    timed(Stage::measure_compression, [&] { backend.measure_compression(model, state); });
     timed(Stage::undo_overlaps, [&] { backend.undo_overlaps(model, ground, state); });
     timed(Stage::enforce_boundaries, [&] { backend.enforce_boundaries(model, ground, state); });
     timed(Stage::update_velocities, [&] { backend.update_velocities(model, ground, state); });

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "core/try.hpp"
+#include "sim/compression.hpp"
 
 namespace talus::twin {
 
@@ -36,13 +37,13 @@ double LiveRun::start_time_of(const std::string& release_id) const {
     return model().releases[static_cast<std::size_t>(group - groups_.data())].start_time;
 }
 
-bool LiveRun::not_converged() const {
-    return state().mean_compression > mean_compression_limit || state().max_compression > max_compression_limit;
+bool LiveRun::too_compressed() const {
+    return talus::too_compressed(state());
 }
 
 FramePtr LiveRun::frame(unsigned stride, unsigned flags) const {
     auto frame = std::make_shared<Frame>(make_frame(state(), observer().maps().present(), slots_, stride,
-                                                    flags | (not_converged() ? frame_not_converged : 0)));
+                                                    flags | (too_compressed() ? frame_too_compressed : 0)));
     frame->rest_density = model().rest_density;
     return frame;
 }

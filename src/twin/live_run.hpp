@@ -46,7 +46,7 @@ class LiveRun {
     [[nodiscard]] const State& state() const { return run_->state(); }
     [[nodiscard]] const Observer& observer() const { return run_->observer(); }
     [[nodiscard]] const Recording& recording() const { return recording_; }
-    [[nodiscard]] bool not_converged() const;
+    [[nodiscard]] bool too_compressed() const;
     [[nodiscard]] std::string instruction_set() const {
         return std::string(run_->simulation().backend().instruction_set());
     }

@@ -39,7 +39,7 @@ struct Done {
 };
 
 /// Bits of a frame's `flags`.
-inline constexpr unsigned frame_running = 1, frame_not_converged = 2, frame_recorded = 4;
+inline constexpr unsigned frame_running = 1, frame_too_compressed = 2, frame_recorded = 4;
 
 /// A run that can be changed while it runs. No thread, no socket: one caller at a time. docs/twin.md has the plan,
 /// docs/protocol.md the JSON of actions and answers.
@@ -88,7 +88,7 @@ class Scenario {
     [[nodiscard]] nlohmann::json recording_json() const;
 
     /// The present frame. `stride` >= 1: every stride-th particle. `flags`: frame_running; the frame adds
-    /// frame_not_converged itself.
+    /// frame_too_compressed itself.
     [[nodiscard]] FramePtr frame(unsigned stride, unsigned flags) const;
     /// The recorded frame at or before a time, s; nullptr: none.
     [[nodiscard]] FramePtr recorded_frame(double time) const;

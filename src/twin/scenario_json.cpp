@@ -188,7 +188,8 @@ json Scenario::state_json(bool with_hash) const {
                    {"largest_speed_mps", number_or_null<json>(state.max_speed)},
                    {"mean_compression", number_or_null<json>(state.mean_compression)},
                    {"max_compression", number_or_null<json>(state.max_compression)},
-                   {"converged", !run.not_converged()},
+                   {"squeezed_share", number_or_null<json>(state.squeezed_share)},
+                   {"too_compressed", state.step == 0 ? json() : json(run.too_compressed())},
                    {"recording",
                     {{"first_s", frames.empty() ? json() : json(frames.front()->time)},
                      {"last_s", frames.empty() ? json() : json(frames.back()->time)},
@@ -218,6 +219,7 @@ json Scenario::series_json() const {
     column("largest_speed_mps", &TimeSample::largest_speed);
     column("mean_compression", &TimeSample::mean_compression);
     column("max_compression", &TimeSample::max_compression);
+    column("squeezed_share", &TimeSample::squeezed_share);
     column("time_step_s", &TimeSample::time_step);
     const std::vector<FrontSample> samples = observer.front();
     json front = json::object();

@@ -1,6 +1,7 @@
 #include "observe/observation.hpp"
 
 #include <cmath>
+#include <limits>
 
 #include <gtest/gtest.h>
 
@@ -18,17 +19,25 @@ TEST(FrontAt, lies_between_the_samples_and_is_not_known_beyond_them) {
     EXPECT_TRUE(std::isnan(front_at({}, 0).arrival_time));
 }
 
-TEST(CompressionLimits, hold_for_mean_and_largest_apart) {
-    Observation o;
-    EXPECT_TRUE(within_compression_limits(o));
-    o.worst_mean_compression = mean_compression_limit;
-    o.worst_max_compression = max_compression_limit;
-    EXPECT_TRUE(within_compression_limits(o));
-    o.worst_mean_compression = 0.0101;
-    EXPECT_FALSE(within_compression_limits(o));
-    o.worst_mean_compression = 0;
-    o.worst_max_compression = 0.0301;
-    EXPECT_FALSE(within_compression_limits(o));
+TEST(CompressionLimits, are_for_a_time_and_not_for_a_single_step) {
+    Compression c;
+    EXPECT_TRUE(c.within_limits());
+    c.worst_max = 0.2;  // of one particle
+    c.time_share_above = 0.01;
+    EXPECT_TRUE(c.within_limits());
+    c.time_share_above = 0.0101;
+    EXPECT_FALSE(c.within_limits());
+}
+
+TEST(Deposit, is_area_and_depth_where_it_is_thick_enough) {
+    Grid<float> depth({0, 0, 2, 10, 2}, std::numeric_limits<float>::quiet_NaN());
+    for (int column = 0; column < 10; ++column) depth.at(column, 0) = 0.2f * static_cast<float>(column + 1);
+    depth.at(0, 1) = 0.05f;
+    const Deposit deposit = measure_deposit(depth, 0.1);
+    EXPECT_EQ(deposit.area, 10 * 4);
+    EXPECT_FLOAT_EQ(static_cast<float>(deposit.depth), 2.0f);
+    EXPECT_EQ(measure_deposit(depth, 5).area, 0);
+    EXPECT_TRUE(std::isnan(measure_deposit(depth, 5).depth));
 }
 
 }  // namespace

@@ -160,25 +160,31 @@ TEST(Observer, says_how_far_debris_was_compressed_and_when) {
     test::add_particle(state, {0, 0, 3}, {3, 4, 0});
     state.seeded = 1;
     Observer observer(model, ground, state, {}, OutputSpec{}, 1);
-    const auto step = [&](double time_step, double mean, double max) {
+    const auto step = [&](double time_step, double mean, double squeezed, double max, int iterations) {
         state.time += time_step;
         state.time_step = time_step;
         state.mean_compression = mean;
+        state.squeezed_share = squeezed;
         state.max_compression = max;
+        state.iterations = iterations;
         observer.after_step(model, ground, state, 0);
     };
-    step(0.25, 0.002, 0.02);
-    EXPECT_TRUE(within_compression_limits(observer.finish(model, ground, state)));
-    step(0.5, 0.02, 0.025);
-    step(0.25, 0.005, 0.3);
-    step(1, 0, 0);
-    const Observation o = observer.finish(model, ground, state);
-    EXPECT_EQ(o.worst_mean_compression, 0.02);
-    EXPECT_EQ(o.worst_mean_time, 0.75);
-    EXPECT_EQ(o.worst_max_compression, 0.3);
-    EXPECT_EQ(o.worst_max_time, 1);
-    EXPECT_DOUBLE_EQ(o.compressed_time_share, 0.75 / 2);
-    EXPECT_FALSE(within_compression_limits(o));
+    step(0.25, 0.002, 0.01, 0.3, 4);
+    EXPECT_TRUE(observer.finish(model, ground, state).compression.within_limits()) << "a single particle is no verdict";
+    step(0.5, 0.02, 0, 0.025, 16);
+    step(0.25, 0.005, 0.4, 0.1, 8);
+    step(1, 0, 0, 0, 4);
+    const Compression c = observer.finish(model, ground, state).compression;
+    EXPECT_EQ(c.worst_mean, 0.02);
+    EXPECT_EQ(c.worst_mean_time, 0.75);
+    EXPECT_EQ(c.worst_max, 0.3);
+    EXPECT_EQ(c.worst_max_time, 0.25);
+    EXPECT_EQ(c.worst_squeezed_share, 0.4);
+    EXPECT_EQ(c.worst_squeezed_time, 1);
+    EXPECT_DOUBLE_EQ(c.time_share_above, 0.75 / 2);
+    EXPECT_DOUBLE_EQ(c.time_share_iterated, 0.75 / 2);
+    EXPECT_DOUBLE_EQ(c.mean_iterations, 8);
+    EXPECT_FALSE(c.within_limits());
 }
 
 TEST(Observer, reports_the_front_as_it_goes) {

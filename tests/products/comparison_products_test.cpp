@@ -77,7 +77,7 @@ TEST_F(ComparisonProducts, StandInTheFolderAndInTheManifest) {
     EXPECT_THAT(manifest.at("files"), testing::IsSupersetOf({"convergence.csv", "variants.csv"}));
     const json& convergence = manifest.at("comparisons").at("convergence");
     EXPECT_EQ(convergence.at("converged"), false);
-    EXPECT_EQ(convergence.at("limit_percent"), 5);
+    EXPECT_EQ(convergence.at("quantities").at(0).at("limit_percent"), 5);
     EXPECT_EQ(convergence.at("variants").at(0).at("verdict"), "pass");
     EXPECT_NEAR(convergence.at("variants").at(1).at("values").at("front_velocity_at_121_m").at("change_percent"), -7,
                 1e-9);

@@ -264,10 +264,10 @@ inline RunResult sample_result(const Scene& scene) {
         s.steps_per_second = 210;
         o.timeseries.push_back(s);
     }
-    o.worst_mean_compression = 0.0066;
-    o.worst_max_compression = 0.0249;
-    o.worst_mean_time = 13;
-    o.worst_max_time = 14;
+    o.compression.worst_mean = 0.0066;
+    o.compression.worst_max = 0.0249;
+    o.compression.worst_mean_time = 13;
+    o.compression.worst_max_time = 14;
 
     for (std::size_t k = 0; k < result.stage_times.seconds.size(); ++k)
         result.stage_times.seconds[k] = 0.4 + 1.7 * static_cast<double>(k * k % 7);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sim/compression.hpp"
 #include "sim/particle_density.hpp"
 #include "sim/physics/contact.hpp"
 #include "simd/parallel.hpp"
@@ -167,6 +168,7 @@ void Backend::measure_compression(const Model&, State& state) const {
     struct Sum {
         double sum = 0;
         float max = 0;
+        std::uint32_t squeezed = 0;
     };
     const Sum compression = simd::reduce_ranges(
         state.awake, 4096, Sum{},
@@ -174,14 +176,16 @@ void Backend::measure_compression(const Model&, State& state) const {
             for (std::size_t i = first; i < last; ++i) {
                 s.sum += work_.compression[i];
                 s.max = std::max(s.max, work_.compression[i]);
+                s.squeezed += work_.compression[i] > static_cast<float>(squeezed_compression) ? 1 : 0;
             }
             return s;
         },
         [](const Sum& a, const Sum& b) {
-            return Sum{a.sum + b.sum, std::max(a.max, b.max)};
+            return Sum{a.sum + b.sum, std::max(a.max, b.max), a.squeezed + b.squeezed};
         });
     state.mean_compression = state.count > 0 ? compression.sum / state.count : 0;
     state.max_compression = compression.max;
+    state.squeezed_share = state.count > 0 ? static_cast<double>(compression.squeezed) / state.count : 0;
 }
 
 void Backend::update_velocities(const Model& model, const Ground& ground, State& state) {

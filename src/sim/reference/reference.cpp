@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sim/compression.hpp"
 #include "sim/physics/viscosity.hpp"
 
 namespace talus::reference {
@@ -316,6 +317,17 @@ void Backend::solve_contacts(const Model& model, const Ground&, State& state) {
         p.displacement =
             resolve_contacts(model, p.boundary, p.sampled_at, p.displacement, p.multiplier, p.grip, p.contacts);
     }
+}
+
+void Backend::measure_compression(const Model&, State& state) {
+    double sum = 0, squeezed = 0;
+    for (const Particle& p : state.particles) {
+        sum += p.compression;
+        squeezed += p.compression > squeezed_compression ? 1 : 0;
+    }
+    const auto count = static_cast<double>(std::max<std::size_t>(1, state.particles.size()));
+    state.mean_compression = sum / count;
+    state.squeezed_share = squeezed / count;
 }
 
 void Backend::undo_overlaps(const Model& model, const Ground& ground, State& state) {

@@ -36,6 +36,8 @@ struct State {
     double time = 0, time_step = 0, previous_time_step = 0;
     std::uint64_t step = 0;
     std::vector<Particle> particles;
+    double mean_compression = 0, squeezed_share = 0;  ///< of the last step; see compression.hpp
+    int iterations = 0;                               ///< that the step took
 
     State() = default;
     explicit State(const talus::State& state);
@@ -62,7 +64,7 @@ class Backend {
     void warm_start(const Model& model, const Ground& ground, State& state);
     void solve_density(const Model& model, const Ground& ground, State& state);
     void solve_contacts(const Model& model, const Ground& ground, State& state);
-    void measure_compression(const Model&, State&) {}
+    void measure_compression(const Model& model, State& state);
     void undo_overlaps(const Model& model, const Ground& ground, State& state);
     void enforce_boundaries(const Model& model, const Ground& ground, State& state);
     void update_velocities(const Model& model, const Ground& ground, State& state);

@@ -84,7 +84,7 @@ double measure(const Expectation& e, const Scene& scene, const Observation& obse
     if (e.quantity == "front_chainage") return observation.run_out.front_chainage;
     if (e.quantity == "runout_angle") return observation.run_out.runout_angle * to_degrees;
     if (e.quantity == "travel_angle") return observation.run_out.travel_angle * to_degrees;
-    return e.quantity == "mean_compression" ? observation.worst_mean_compression : observation.worst_max_compression;
+    return e.quantity == "mean_compression" ? observation.compression.worst_mean : observation.compression.worst_max;
 }
 
 /// `variant`: of the scene; empty: the scene as given.

@@ -5,7 +5,7 @@ import type { Twin } from "../state/twin";
 import { h } from "../ui/dom";
 
 const watched = (twin: Twin): Parameters<typeof watchAll>[0] =>
-  [twin.edited, twin.cells.A.state, twin.cells.B.state, twin.cells.A.series, twin.cells.B.series, twin.replay_s, twin.replayConverged];
+  [twin.edited, twin.cells.A.state, twin.cells.B.state, twin.cells.A.series, twin.cells.B.series, twin.replay_s, twin.replaySqueezed];
 
 export function runCard(twin: Twin): HTMLElement {
   const cell = (label: string, help: string): { element: HTMLElement; value: HTMLElement } => {
@@ -19,7 +19,7 @@ export function runCard(twin: Twin): HTMLElement {
   const steps = cell("Steps", "Time steps computed per second");
   const real = cell("Real time", "Simulated seconds per second");
   const message = h("p", { class: "run-message", role: "alert" });
-  const light = h("div", { class: "converged", role: "status" });
+  const light = h("div", { class: "compression", role: "status" });
   watchAll(watched(twin), () => {
     const s = twin.shownState();
     const live = twin.replay_s.value === null;
@@ -32,11 +32,13 @@ export function runCard(twin: Twin): HTMLElement {
     message.hidden = !s?.message;
     if (message.textContent !== (s?.message ?? "")) message.textContent = s?.message ?? "";
     message.classList.toggle("bad", s?.status === "fault");
-    const converged = live ? s?.converged !== false : twin.replayConverged.value;
-    light.className = `converged ${converged ? "good" : "bad"}`;
-    const text = `${converged ? "Converged" : "Not converged"}${live || twin.replay_s.value === null ? "" : ` at ${fixed(twin.replay_s.value, 1)} s`}`;
+    // Before the first step there is nothing to judge.
+    const squeezed = live ? s?.too_compressed ?? null : twin.replaySqueezed.value;
+    light.hidden = squeezed === null;
+    light.className = `compression ${squeezed ? "bad" : "good"}`;
+    const text = `${squeezed ? "Debris too compressed" : "Compression within limits"}${live || twin.replay_s.value === null ? "" : ` at ${fixed(twin.replay_s.value, 1)} s`}`;
     if (light.textContent !== text) light.textContent = text;
-    light.title = s ? `Compression: mean ${fixed(100 * s.mean_compression, 2)} %, largest ${fixed(100 * s.max_compression, 1)} %` : "";
+    light.title = s ? `Compression: mean ${fixed(100 * s.mean_compression, 2)} %, above 3 % in ${fixed(100 * s.squeezed_share, 1)} % of the particles; limits 1 % and 1 %` : "";
   });
   return h("section", { class: "run-card", "aria-label": "State of the run" },
     h("dl", {}, front.element, fastest.element, chainage.element, particles.element, steps.element, real.element), light, message);
@@ -73,7 +75,7 @@ export function balance(twin: Twin): HTMLElement {
       ...(s.volume_entrained_m3 > 0 ? [row("Picked up from the bed", `${fixed(s.volume_entrained_m3, 1)} m³`)] : []),
       row("Residual", `${fixed(Math.abs(error) < 0.05 ? 0 : error, 1)} m³`));
     more.tBodies[0]?.replaceChildren(row("Step", live ? count(s.step) : "–"), row("Compression, mean", `${fixed(100 * s.mean_compression, 2)} %`),
-      row("Compression, largest", `${fixed(100 * s.max_compression, 2)} %`), row("Recording", `${s.recording.frames} frames, ${bytes(s.recording.bytes)}`),
+      row("Particles above 3 %", `${fixed(100 * s.squeezed_share, 2)} %`), row("Compression, largest", `${fixed(100 * s.max_compression, 2)} %`), row("Recording", `${s.recording.frames} frames, ${bytes(s.recording.bytes)}`),
       row("State hash", live ? (s.hash ?? "while paused") : "–"));
   });
   const { scene } = twin;

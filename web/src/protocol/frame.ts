@@ -2,7 +2,7 @@
 
 export type ScenarioName = "A" | "B";
 
-export const frameFlag = { running: 1, notConverged: 2, recorded: 4 } as const;
+export const frameFlag = { running: 1, tooCompressed: 2, recorded: 4 } as const;
 
 /** Cells of the map grid that hold debris; rows run from south to north. */
 export interface DepthWindow {

@@ -81,7 +81,8 @@ export interface State {
   largest_speed_mps: number;
   mean_compression: number;
   max_compression: number;
-  converged: boolean;
+  squeezed_share: number;
+  too_compressed: boolean | null;
   recording: { first_s: number; last_s: number; frames: number; bytes: number };
   hash?: string;
 }

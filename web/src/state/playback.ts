@@ -4,7 +4,7 @@ import type { Twin } from "./twin";
 
 const playbackRate_hz = 12;
 /** Flag of a frame. */
-const notConverged = 2;
+const tooCompressed = 2;
 
 export class Playback {
   private wanted: number | null = null;
@@ -72,7 +72,7 @@ export class Playback {
           if (this.twin.replay_s.value === null) return;
           this.twin.showFrame(frame);
           cells[name].impacts.value = impacts;
-          if (name === this.twin.edited.value) this.twin.replayConverged.value = (frame.flags & notConverged) === 0;
+          if (name === this.twin.edited.value) this.twin.replaySqueezed.value = (frame.flags & tooCompressed) !== 0;
         }));
       });
       if (!fine) this.stop();

@@ -41,8 +41,8 @@ export class Twin {
   readonly cells: Record<ScenarioName, ScenarioCells> = { A: emptyCells(), B: emptyCells() };
   /** Time of the recording that is on display; null: live. */
   readonly replay_s = new Cell<number | null>(null);
-  /** Whether the frame of the recording that is on display was not converged. */
-  readonly replayConverged = new Cell(true);
+  /** Whether the frame of the recording that is on display is too compressed. */
+  readonly replaySqueezed = new Cell(false);
   readonly playing = new Cell(false);
   readonly layer = new Cell<ShownLayer | "none">("none");
   /** Finished ensembles whose maps can be shown. */
