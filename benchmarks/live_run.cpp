@@ -30,7 +30,7 @@ std::shared_ptr<const Scene> plane_scene(std::int64_t particles) {
     scene.releases.push_back(std::move(release));
     scene.flow_path = FlowPath({{20, 200}, {1580, 200}}, 60);
     scene.spec.solver.target_particle_count = static_cast<int>(particles);
-    scene.spec.solver.stop_momentum_fraction = 0;
+    scene.spec.solver.stop_moving_share = 0;
     scene.spec.solver.end_time = 1e9;
     scene.spec.material.friction_coefficient = 0.3;
     return std::make_shared<const Scene>(std::move(scene));

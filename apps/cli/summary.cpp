@@ -109,10 +109,11 @@ std::string summary_text(const Scene& scene, const RunResult& result, const std:
         text += line("front velocity", fmt::format("at {:g} m: {}; observed {:g} m/s", observed.chainage, computed,
                                                    observed.front_velocity));
     }
-    if (std::isfinite(seen.run_out.horizontal_distance)) {
-        text += line("run-out", fmt::format("{:.0f} m, drop {:.0f} m, runout angle {:.1f} degrees",
-                                            seen.run_out.horizontal_distance, seen.run_out.drop,
-                                            seen.run_out.runout_angle * degrees));
+    if (const RunOut& r = seen.run_out; std::isfinite(r.along_flow)) {
+        text += line("run-out", fmt::format("{}{:.0f} m along the flow, {:.0f} m straight, drop {:.0f} m, runout angle "
+                                            "{:.1f} degrees{}",
+                                            r.at_least ? "at least " : "", r.along_flow, r.straight, r.drop,
+                                            r.runout_angle * degrees, r.at_least ? "; debris left the terrain" : ""));
     }
     text += line("volume", fmt::format("{:.1f} m3 released: {:.1f} deposited, {:.1f} moving, {:.1f} left the terrain",
                                        seen.volume_released, end.volume_deposited, end.volume_moving + end.volume_held,
@@ -180,7 +181,9 @@ std::string summary_json(const Scene& scene, const RunResult& result, const std:
         {"volume_held_m3", end.volume_held},
         {"volume_left_m3", end.volume_left},
         {"front_chainage_m", number_or_null<nlohmann::ordered_json>(seen.run_out.front_chainage)},
-        {"run_out_m", number_or_null<nlohmann::ordered_json>(seen.run_out.horizontal_distance)},
+        {"run_out_along_flow_m", number_or_null<nlohmann::ordered_json>(seen.run_out.along_flow)},
+        {"run_out_straight_m", number_or_null<nlohmann::ordered_json>(seen.run_out.straight)},
+        {"run_out_at_least", seen.run_out.at_least},
         {"drop_m", number_or_null<nlohmann::ordered_json>(seen.run_out.drop)},
         {"runout_angle_deg", number_or_null<nlohmann::ordered_json>(seen.run_out.runout_angle * degrees)},
         {"observations", observations},

@@ -102,7 +102,8 @@ double greatest_of(const Grid<float>& grid) {
 }  // namespace
 
 std::vector<Measure> measures_of(const Scene& scene) {
-    std::vector<Measure> list = {{"run_out_m", "Run-out (chainage of the front)", "m"},
+    std::vector<Measure> list = {{"run_out_m", "Run-out along the flow", "m"},
+                                 {"run_out_straight_m", "Run-out in a straight line", "m"},
                                  {"drop_m", "Drop from crown to toe", "m"},
                                  {"runout_angle_deg", "Runout angle", "deg"},
                                  {"travel_angle_deg", "Travel angle of the centres of mass", "deg"},
@@ -117,10 +118,15 @@ std::vector<Measure> measures_of(const Scene& scene) {
 
 std::vector<double> measure(const Scene& scene, const RunResult& result) {
     const Observation& o = result.observation;
-    std::vector<double> values = {
-        o.run_out.front_chainage,         o.run_out.drop,       o.run_out.runout_angle * degrees,
-        o.run_out.travel_angle * degrees, reached_area(o.maps), greatest_of(o.maps.peak_depth),
-        greatest_of(o.maps.peak_speed),   result.simulated_time};
+    std::vector<double> values = {o.run_out.along_flow,
+                                  o.run_out.straight,
+                                  o.run_out.drop,
+                                  o.run_out.runout_angle * degrees,
+                                  o.run_out.travel_angle * degrees,
+                                  reached_area(o.maps),
+                                  greatest_of(o.maps.peak_depth),
+                                  greatest_of(o.maps.peak_speed),
+                                  result.simulated_time};
     if (!scene.buildings.empty()) {
         double hit = 0;
         for (const BuildingImpact& b : o.buildings) hit += b.hit ? 1 : 0;

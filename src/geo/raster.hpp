@@ -17,6 +17,7 @@ struct Raster {
     std::string vertical_unit;           ///< "m", or as stated; "not stated"
     double nodata_share = 0;             ///< 0 to 1
     std::optional<double> nodata_value;  ///< as stored
+    bool crs_assumed = false;            ///< the file states none: that of the terrain
 };
 
 /// Reads a band of any GDAL raster in a projected metric CRS. South-up rasters are turned, pixel-is-point is respected.
@@ -27,7 +28,8 @@ struct Raster {
 [[nodiscard]] Result<Raster> read_terrain_raster(const std::string& file, int band,
                                                  const std::optional<Extent>& extent);
 
-/// Reads a band of values (release thickness) that must be in the CRS of the terrain; otherwise as above.
+/// Reads a band of values (release thickness) that must be in the CRS of the terrain, and is taken to be if its file
+/// states none (.asc cannot); otherwise as above.
 [[nodiscard]] Result<Raster> read_value_raster(const std::string& file, const Crs& terrain_crs);
 
 /// A map that talus has written, to be laid over the terrain: as read_value_raster, but it may hold no data at all.

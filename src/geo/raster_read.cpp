@@ -169,6 +169,7 @@ Result<Raster> read_cells(const std::string& file, const RasterSource& source, c
     TALUS_ASSIGN(auto window, window_of(file, source, extent));
     Raster raster;
     raster.crs = source.crs;
+    raster.crs_assumed = source.crs_assumed;
     raster.vertical_unit = source.value_unit;
     raster.nodata_value = source.nodata;
     raster.grid = Grid<float>({.x_min = source.x_min + window.column * source.cell,
@@ -191,7 +192,7 @@ Result<Raster> read_cells(const std::string& file, const RasterSource& source, c
 
 /// A raster that has to be in the CRS of the terrain.
 Result<Raster> read_over_terrain(const std::string& file, const Crs& terrain_crs, Kind kind) {
-    TALUS_ASSIGN(auto source, open_raster(file, 1));
+    TALUS_ASSIGN(auto source, open_raster(file, 1, &terrain_crs));
     if (!same_crs(to_spatial_reference(source.crs), to_spatial_reference(terrain_crs))) {
         const std::string target = terrain_crs.epsg != 0 ? fmt::format("EPSG:{}", terrain_crs.epsg) : "EPSG:nnnn";
         return Error{

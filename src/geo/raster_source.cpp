@@ -221,7 +221,7 @@ std::string declare_nodata_command(const std::string& file, const std::string& d
                        mended_name(file, "_nodata", ".tif"));
 }
 
-Result<RasterSource> open_raster(const std::string& file, int band) {
+Result<RasterSource> open_raster(const std::string& file, int band, const Crs* otherwise) {
     RasterSource source;
     TALUS_ASSIGN(source.data, open_dataset(file, GDAL_OF_RASTER, "raster"));
     const GdalMessages messages;
@@ -250,6 +250,10 @@ Result<RasterSource> open_raster(const std::string& file, int band) {
 
     OGRSpatialReference reference;
     if (const OGRSpatialReference* stated = data.GetSpatialRef()) reference = *stated;
+    if (reference.IsEmpty() && otherwise != nullptr) {
+        reference = to_spatial_reference(*otherwise);
+        source.crs_assumed = true;
+    }
     Position position;
     if (data.GetGeoTransform(position.g.data()) != CE_None) {
         if (data.GetGCPCount() > 0) {

@@ -20,13 +20,15 @@ struct RasterSource {
     double cell = 0;              ///< m
     bool first_row_north = true, first_column_west = true;
     Crs crs;
+    bool crs_assumed = false;
     std::string value_unit;  ///< "m", as stated, or "not stated"
     double scale = 1, offset = 0;
     std::optional<double> nodata;  ///< as stored, before scale and offset
 };
 
-/// Opens a band of a raster on square north-aligned cells in a projected metric CRS; reads no cells yet.
-[[nodiscard]] Result<RasterSource> open_raster(const std::string& file, int band);
+/// Opens a band of a raster on square north-aligned cells in a projected metric CRS; reads no cells yet. `otherwise`:
+/// the CRS of a file that states none; without it that is an error.
+[[nodiscard]] Result<RasterSource> open_raster(const std::string& file, int band, const Crs* otherwise = nullptr);
 
 /// The command that declares `value` as the nodata value of a file, given the name of its driver.
 [[nodiscard]] std::string declare_nodata_command(const std::string& file, const std::string& driver, double value);

@@ -13,6 +13,9 @@ namespace talus {
 namespace {
 
 constexpr std::size_t group = 64;  ///< particles looked at together, most often to find that none matters
+/// A front is no faster than this times the fastest debris at it: on the inner side of a bend chainage grows faster
+/// than the way of the debris, by half where that is a third of the bend's radius inside.
+constexpr double fastest_front = 1.5;
 
 }  // namespace
 
@@ -33,7 +36,7 @@ FrontTracker::FrontTracker(const Model& model, const Ground& ground, const State
     candidates_.resize(state.count);
     const auto bins = static_cast<std::size_t>(flow_path_.length() / interval_) + 1;
     arrival_.assign(bins, never);
-    speed_.assign(bins, never);
+    head_.assign(bins, {});
     held_ = find_front(ground, state);
     farthest_ = current_;
 }
@@ -112,19 +115,21 @@ std::uint32_t FrontTracker::find_front(const Ground& ground, const State& state)
     return held;
 }
 
-double FrontTracker::speed_behind(double front, const State& state) {
+FrontTracker::Head FrontTracker::head_behind(double front, const State& state) {
     const auto from = static_cast<float>(std::max(0.0, front - head_length_));
     // Always in the same order: the sum would depend on it.
     const auto end = candidates_.begin() + candidate_count_;
     std::sort(candidates_.begin(), end, [](const Candidate& a, const Candidate& b) { return a.particle < b.particle; });
-    double sum = 0;
+    double sum = 0, fastest = 0;
     std::size_t count = 0;
     for (auto candidate = candidates_.begin(); candidate != end; ++candidate) {
         if (candidate->chainage < from) continue;
-        sum += length(state.velocity.at(candidate->particle));
+        const double speed = length(state.velocity.at(candidate->particle));
+        sum += speed;
+        fastest = std::max(fastest, speed);
         ++count;
     }
-    return sum / static_cast<double>(count);
+    return {sum / static_cast<double>(count), fastest};
 }
 
 void FrontTracker::after_step(const Ground& ground, const State& state) {
@@ -141,21 +146,28 @@ void FrontTracker::after_step(const Ground& ground, const State& state) {
         return;
     }
     const double from = std::isnan(before) ? farthest_ : before;
-    double speed = never;
+    Head head;
     for (auto bin = static_cast<std::size_t>(farthest_ / interval_) + 1;
          bin < arrival_.size() && static_cast<double>(bin) * interval_ <= current_; ++bin) {
         const double share = (static_cast<double>(bin) * interval_ - from) / (current_ - from);
         arrival_[bin] = state.time - state.time_step * (1 - share);
-        if (std::isnan(speed)) speed = speed_behind(current_, state);
-        speed_[bin] = speed;
+        if (std::isnan(head.mean)) head = head_behind(current_, state);
+        head_[bin] = head;
     }
     farthest_ = current_;
 }
 
+bool FrontTracker::jumped_to(std::size_t bin) const {
+    const double fastest = std::max(head_[bin].fastest, head_[bin - 1].fastest);
+    return interval_ > fastest_front * fastest * (arrival_[bin] - arrival_[bin - 1]);  // false without both arrivals
+}
+
 double FrontTracker::fitted_velocity(std::size_t middle) const {
     const auto half = static_cast<std::size_t>(std::max(1.0, std::floor(window_ / 2 / interval_)));
-    const std::size_t first = middle > half ? middle - half : 0;
-    const std::size_t last = std::min(middle + half, arrival_.size() - 1);
+    // Not across a jump.
+    std::size_t first = middle, last = middle;
+    while (first > 0 && middle - first < half && !jumped_to(first)) --first;
+    while (last + 1 < arrival_.size() && last - middle < half && !jumped_to(last + 1)) ++last;
     double count = 0, mean_time = 0, mean_chainage = 0;
     for (std::size_t bin = first; bin <= last; ++bin) {
         if (std::isnan(arrival_[bin])) continue;
@@ -179,7 +191,7 @@ std::vector<FrontSample> FrontTracker::samples() const {
     std::vector<FrontSample> samples;
     for (std::size_t bin = 0; bin < arrival_.size(); ++bin) {
         if (std::isnan(arrival_[bin])) continue;
-        samples.push_back({static_cast<double>(bin) * interval_, arrival_[bin], fitted_velocity(bin), speed_[bin]});
+        samples.push_back({static_cast<double>(bin) * interval_, arrival_[bin], fitted_velocity(bin), head_[bin].mean});
     }
     return samples;
 }

@@ -17,7 +17,8 @@ namespace talus {
 
 /// The front along the flow path: where it is, when it first reached each chainage and how fast it was there.
 ///
-/// A release covers part of the path when it starts; what it covers then is not an arrival.
+/// A release covers part of the path when it starts; what it covers then is not an arrival. Nor has a front a velocity
+/// where its chainage outruns the debris: chainage is a projection, and at a corner of the path it jumps.
 class FrontTracker {
   public:
     /// `flow_path` may be empty: then nothing is tracked. Intervals and window in m of chainage.
@@ -49,7 +50,14 @@ class FrontTracker {
     std::uint32_t find_candidates(const Ground& ground, const State& state, double from);
     /// Sets current_ and returns how many particles are held.
     std::uint32_t find_front(const Ground& ground, const State& state);
-    [[nodiscard]] double speed_behind(double front, const State& state);
+    /// Speeds of the debris at the front, m/s.
+    struct Head {
+        double mean = never, fastest = never;
+    };
+    [[nodiscard]] Head head_behind(double front, const State& state);
+    /// Whether the front came from the chainage before to this one faster than the debris there moves: over a corner of
+    /// the path, or as other debris came into its corridor.
+    [[nodiscard]] bool jumped_to(std::size_t bin) const;
     [[nodiscard]] double fitted_velocity(std::size_t middle) const;
 
     FlowPath flow_path_;
@@ -60,7 +68,7 @@ class FrontTracker {
     std::vector<Candidate> candidates_;  // the first candidate_count_, in any order
     std::uint32_t candidate_count_ = 0;
     std::vector<double> arrival_;  // by chainage / interval; NaN: not yet
-    std::vector<double> speed_;
+    std::vector<Head> head_;
 };
 
 }  // namespace talus

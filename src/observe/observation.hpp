@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "core/geometry.hpp"
 #include "core/grid.hpp"
 
 /// What a run measured: plain results in SI units, for products to write and people to read.
@@ -29,13 +30,18 @@ struct FrontSample {
     double particle_speed = never;  ///< m/s, mean speed of the debris at the front on arrival
 };
 
-/// How far debris ran. Angles in radians, from the crown (highest released debris) to the farthest debris.
+/// How far debris ran: distances in plan from the crown (highest released debris) to the farthest deposit. Angles in
+/// radians.
 struct RunOut {
-    double front_chainage = never;       ///< m, farthest chainage reached by the front
-    double horizontal_distance = never;  ///< m along the flow path (straight where there is none) from crown to toe
-    double drop = never;                 ///< m, from crown to toe
-    double runout_angle = never;         ///< atan(drop / distance along the path): Fahrboeschung
-    double travel_angle = never;         ///< the same between the centres of mass of release and deposit
+    double front_chainage = never;  ///< m, farthest chainage reached by the front
+    double along_flow = never;      ///< m, by the shortest way over the ground that debris covered
+    double straight = never;        ///< m, in a straight line
+    bool at_least = false;          ///< debris has left the terrain: both distances end at the terrain's edge
+    PlanPoint crown{never, never};  ///< highest released debris
+    PlanPoint toe{never, never};    ///< farthest deposit along the flow
+    double drop = never;            ///< m, from crown to toe
+    double runout_angle = never;    ///< atan(drop / distance along the flow): Fahrboeschung
+    double travel_angle = never;    ///< the same between the centres of mass of release and deposit
 };
 
 /// A structure at one moment.

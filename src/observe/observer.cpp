@@ -83,7 +83,7 @@ struct Observer::Parts {
           maps(model, ground, state, map_cell, o.arrival_depth),
           front(model, ground, state, flow_path, o.chainage_interval, o.front_velocity_window),
           impact(model, ground, state, o),
-          released(measure_release(ground, state, flow_path)) {
+          released(measure_release(ground, state)) {
         keep_starts(state, 0);
     }
 
@@ -105,7 +105,7 @@ struct Observer::Parts {
         };
         for (const ReleaseGroup& release : model.releases) add(release.first_particle, release.last_particle);
         for (const auto& [first, last] : came_in) add(first, last);
-        return measure_release(ground, lay, front.flow_path());
+        return measure_release(ground, lay);
     }
 
     void watch_compression(const Model& model, const State& state) {
@@ -251,7 +251,7 @@ Observation Observer::finish(const Model& model, const Ground& ground, const Sta
     observation.deposit = measure_deposit(observation.maps.deposit_depth, p.outputs.arrival_depth);
     observation.front = p.front.samples();
     const ReleasedMass released = p.came_in.empty() ? p.released : p.measure_starts(model, ground);
-    observation.run_out = measure_run_out(ground, state, p.front.flow_path(), released, p.front.farthest());
+    observation.run_out = measure_run_out(ground, state, observation.maps.peak_depth, released, p.front.farthest());
     observation.buildings = p.impact.complete(state);
     observation.timeseries = p.timeseries;
     if (p.timeseries.back().time != state.time) observation.timeseries.push_back(sample(model, state));

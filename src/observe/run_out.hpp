@@ -1,25 +1,24 @@
 #pragma once
 
+#include "core/grid.hpp"
 #include "observe/observation.hpp"
 #include "sim/ground.hpp"
 #include "sim/state.hpp"
-#include "terrain/flow_path.hpp"
 
 namespace talus {
 
 /// Where the released debris lay before the run.
 struct ReleasedMass {
-    WorldPoint crown;              ///< highest particle
-    WorldPoint centre;             ///< of mass
-    double mean_chainage = never;  ///< m, of the particles within the corridor; NaN: none
+    WorldPoint crown;   ///< highest particle
+    WorldPoint centre;  ///< of mass
 };
 
-[[nodiscard]] ReleasedMass measure_release(const Ground& ground, const State& state, const FlowPath& flow_path);
+[[nodiscard]] ReleasedMass measure_release(const Ground& ground, const State& state);
 
-/// Distances and angles from the release to the debris as it lies now. The toe is where all but
-/// `front_particle_count` particles lie behind: along the path, or by distance from the crown where there is no path or
-/// the crown is outside its corridor. Held particles do not count.
-[[nodiscard]] RunOut measure_run_out(const Ground& ground, const State& state, const FlowPath& flow_path,
+/// Distances and angles from the release to the debris as it lies now, whatever the flow path. The toe is where all but
+/// `front_particle_count` particles lie behind. Held particles do not count. `covered`: NaN where debris never came. If
+/// that many particles have left the terrain, distances go to the farthest covered ground instead.
+[[nodiscard]] RunOut measure_run_out(const Ground& ground, const State& state, const Grid<float>& covered,
                                      const ReleasedMass& released, double front_chainage);
 
 }  // namespace talus

@@ -92,10 +92,10 @@ Section declare_solver() {
     s.key("depenetration_speed_mps", "m/s", &SolverSpec::depenetration_speed, above(0),
           "With internal_friction = \"pair\": the fastest that compression at the start of a step is undone.");
     s.key("end_time_s", "s", &SolverSpec::end_time, above(0), "Simulated time at which the run ends at the latest.");
-    s.key("stop_momentum_fraction", "", &SolverSpec::stop_momentum_fraction, from_to_below(0, 1),
-          "Ends the run when momentum stays below this share of its peak; 0 never does.");
-    s.key("stop_duration_s", "s", &SolverSpec::stop_duration, at_least(0),
-          "For how long momentum must stay below that share.");
+    s.key("stop_moving_share", "", &SolverSpec::stop_moving_share, from_to_below(0, 1),
+          "Ends the run when less of the debris than this (but five particles at least) is faster than "
+          "outputs.deposited_speed_mps and no more than a ten-thousandth ten times as fast; 0 never does.");
+    s.key("stop_duration_s", "s", &SolverSpec::stop_duration, at_least(0), "For how long no more than that may move.");
     s.key(
         "rest_duration_s", "s", &SolverSpec::rest_duration, at_least(0),
         "Debris that has hardly moved (a hundredth of a particle's free-fall speed) for so long is at rest: it presses "
@@ -136,6 +136,8 @@ Section declare_outputs() {
     s.key("deposited_speed_mps", "m/s", &OutputSpec::deposited_speed, above(0), "Slower debris counts as deposited.");
     s.key("particle_series_interval_s", "s", &OutputSpec::particle_series_interval, at_least(0),
           "Simulated time between particle frames for ParaView; 0 writes none.");
+    s.key("peak_thickness", "", &OutputSpec::peak_thickness, anything(),
+          "Also writes peak_thickness.tif, the peak depth normal to the slope.");
     return s.take();
 }
 

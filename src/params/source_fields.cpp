@@ -12,16 +12,19 @@ Section declare_release() {
                                "A body of debris that starts to move at one moment; a scene needs one, or an inflow.",
                                &SceneSpec::releases);
     s.text("name", &ReleaseSpec::name, "\"release N\"", "Name in reports and messages.");
-    s.path("file", &ReleaseSpec::file, "", "Polygons of the release area: GeoJSON, GeoPackage, Shapefile.").required =
-        true;
+    s.path("file", &ReleaseSpec::file, "the outline of thickness_raster where that is above 0",
+           "Polygons of the release area: GeoJSON, GeoPackage, Shapefile.");
     s.text("layer", &ReleaseSpec::layer, "the only layer", "Layer of the file.");
     s.optional_key("thickness_m", "m", &ReleaseSpec::thickness, above_to(0, 1000), "one of the other three is given",
-                   "Uniform thickness, normal to the slope.")
+                   "Uniform thickness.")
         .live_in({.label = "Thickness", .slider_low = 0.1, .slider_high = 10, .first = 1.5});
     s.text("thickness_attribute", &ReleaseSpec::thickness_attribute, "one of the other three is given",
-           "Attribute of the polygons that holds their thickness normal to the slope in metres.");
+           "Attribute of the polygons that holds their thickness in metres.");
     s.path("thickness_raster", &ReleaseSpec::thickness_raster, "one of the other three is given",
-           "Raster of thickness normal to the slope in metres, in the terrain's reference system.");
+           "Raster of thickness in metres, in the terrain's reference system (GeoTIFF, .asc); without file it is the "
+           "release area too.");
+    s.choice("thickness_direction", &ReleaseSpec::thickness_direction, {"normal", "vertical"},
+             "Whether thickness is measured normal to the slope or vertically, as a difference of elevations is.");
     s.optional_key("volume_m3", "m3", &ReleaseSpec::volume, above(0), "one of the other three is given",
                    "Volume to release, spread as a uniform thickness over the polygons.");
     s.key("start_time_s", "s", &ReleaseSpec::start_time, at_least(0),
@@ -72,10 +75,10 @@ Section declare_bed() {
         .live_in({.label = "Critical shear stress", .slider_low = 0, .slider_high = 5, .first = 1});
     s.key("erosion_rate_mps", "m/s", &BedSpec::erosion_rate, above_to(0, 10),
           "With law = \"shear\": how fast the bed is lowered.")
-        .live_in({.label = "Erosion rate", .slider_low = 0.001, .slider_high = 0.101, .first = 0.025});
+        .live_in({.label = "Erosion rate", .slider_low = 0.001, .slider_high = 0.101, .first = 0.013});
     s.key("erosion_depth_mpPa", "m/Pa", &BedSpec::erosion_depth_per_shear, above_to(0, 1),
           "With law = \"shear\": how deep at most, per shear stress above the critical one.")
-        .live_in({.label = "Erosion depth", .slider_low = 0.01, .slider_high = 1.01, .first = 0.1});
+        .live_in({.label = "Erosion depth", .slider_low = 0.01, .slider_high = 1.01, .first = 0.05});
     s.exactly_one_of({"depth_m", "depth_attribute", "depth_raster"});
     s.rule([](const BedSpec& bed, const SceneSpec&, double) -> std::optional<Violation> {
         if (bed.depth_attribute.empty() || !bed.file.empty()) return {};

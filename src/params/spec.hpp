@@ -37,14 +37,18 @@ enum class EntrainmentLaw {
              ///< 2015)
 };
 
+/// How the thickness of a release is measured.
+enum class ThicknessDirection { normal, vertical };
+
 /// `[[release]]`: exactly one of thickness, thickness_attribute, thickness_raster, volume.
 struct ReleaseSpec {
     std::string name;
-    std::string file;
+    std::string file;  ///< polygons; may be empty where thickness_raster is given
     std::string layer;
     std::optional<double> thickness;  ///< normal to the slope, m
     std::string thickness_attribute;
     std::string thickness_raster;
+    ThicknessDirection thickness_direction = ThicknessDirection::normal;
     std::optional<double> volume;               ///< m3, spread as a uniform thickness
     double start_time = 0;                      ///< s
     double shift_along = 0, shift_across = 0;   ///< m in plan, down the slope and to the left of that
@@ -61,8 +65,8 @@ struct BedSpec {
     EntrainmentLaw law = EntrainmentLaw::growth;
     std::optional<double> growth_rate;      ///< 1/m; needed by the law of growth
     double critical_shear_stress = 1000;    ///< Pa
-    double erosion_rate = 0.025;            ///< m/s
-    double erosion_depth_per_shear = 1e-4;  ///< m/Pa
+    double erosion_rate = 0.013;            ///< m/s
+    double erosion_depth_per_shear = 5e-5;  ///< m/Pa
 };
 
 /// `[[inflow]]`: exactly one of line, file, polygon, polygon_file.
@@ -202,16 +206,16 @@ struct SolverSpec {
     int extra_iteration_count = 12;  ///< that a step takes besides, at most, while debris is squeezed
     KernelChoice kernel = KernelChoice::wendland_c2;
     InternalFriction internal_friction = InternalFriction::stress;
-    double support_ratio = 2.2;            ///< support radius / particle spacing
-    double under_relaxation = 1.25;        ///< of the Jacobi iteration, relative to its largest eigenvalue
-    double constraint_relaxation = 0.1;    ///< XPBD-like term in the denominator of lambda, relative to its rest value
-    double depenetration_speed = 0.5;      ///< m/s, the fastest that pair friction undoes compression
-    double end_time = 120;                 ///< s
-    double stop_momentum_fraction = 0.02;  ///< ends the run when momentum stays below this share of its peak; 0: never
-    double stop_duration = 3;              ///< s, for how long
-    double rest_duration = 0.5;            ///< s, debris that has hardly moved for so long waits to be woken; 0: never
-    double compression_limit = 0.5;        ///< mean of max(0, density/rest density - 1) above which the run is a fault
-    int thread_count = 0;                  ///< 0: all cores
+    double support_ratio = 2.2;          ///< support radius / particle spacing
+    double under_relaxation = 1.25;      ///< of the Jacobi iteration, relative to its largest eigenvalue
+    double constraint_relaxation = 0.1;  ///< XPBD-like term in the denominator of lambda, relative to its rest value
+    double depenetration_speed = 0.5;    ///< m/s, the fastest that pair friction undoes compression
+    double end_time = 120;               ///< s
+    double stop_moving_share = 0.001;    ///< ends the run when less of the debris than this keeps moving; 0: never
+    double stop_duration = 3;            ///< s, for how long
+    double rest_duration = 0.5;          ///< s, debris that has hardly moved for so long waits to be woken; 0: never
+    double compression_limit = 0.5;      ///< mean of max(0, density/rest density - 1) above which the run is a fault
+    int thread_count = 0;                ///< 0: all cores
 };
 
 /// `[outputs]`
@@ -225,6 +229,7 @@ struct OutputSpec {
     double impact_patch_edge = 1;         ///< m, of the squares of a wall over which impact pressure is averaged
     double deposited_speed = 0.1;         ///< m/s, slower debris counts as deposited
     double particle_series_interval = 0;  ///< s between ParaView frames; 0: none
+    bool peak_thickness = false;          ///< also a map of the peak thickness normal to the slope
 };
 
 /// `[[observation]]`: a front velocity measured in the field.

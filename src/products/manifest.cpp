@@ -123,7 +123,9 @@ Json results(const RunResult& result) {
     }
     const auto hit = std::count_if(o.buildings.begin(), o.buildings.end(), [](const auto& b) { return b.hit; });
     return {{"front_chainage_m", o.run_out.front_chainage},
-            {"horizontal_distance_m", o.run_out.horizontal_distance},
+            {"run_out_along_flow_m", o.run_out.along_flow},
+            {"run_out_straight_m", o.run_out.straight},
+            {"run_out_at_least", o.run_out.at_least},
             {"drop_m", o.run_out.drop},
             {"runout_angle_deg", o.run_out.runout_angle * degrees},
             {"travel_angle_deg", o.run_out.travel_angle * degrees},

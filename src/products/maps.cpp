@@ -16,12 +16,27 @@ Status write_map(const HazardMap& map, const Grid<float>& si, const std::string&
     return write_text_file(stem + ".qml", qgis_style(map, greatest(grid)));
 }
 
+/// Depth times the cosine of the ground's slope.
+Grid<float> normal_to_slope(const Grid<float>& depth, const Terrain& terrain) {
+    Grid<float> thickness = depth;
+    for (int r = 0; r < depth.geometry.rows; ++r) {
+        for (int c = 0; c < depth.geometry.columns; ++c) {
+            thickness.at(c, r) *= static_cast<float>(terrain.slope_cosine_at(depth.geometry.centre(c, r)));
+        }
+    }
+    return thickness;
+}
+
 }  // namespace
 
 Status write_maps(const Scene& scene, const RunResult& result, const std::filesystem::path& folder) {
     const std::string said = caveat(scene, result);
     for (const HazardMap& map : hazard_maps()) {
         TALUS_TRY(write_map(map, result.observation.maps.*map.grid, said, scene.crs, folder));
+    }
+    if (scene.spec.outputs.peak_thickness) {
+        const Grid<float> thickness = normal_to_slope(result.observation.maps.peak_depth, scene.terrain);
+        TALUS_TRY(write_map(thickness_map(), thickness, said, scene.crs, folder));
     }
     const Grid<float>& erosion = result.observation.erosion.depth;
     return erosion.values.empty() ? Status() : write_map(erosion_map(), erosion, said, scene.crs, folder);

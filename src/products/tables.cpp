@@ -19,8 +19,12 @@ std::string front_table(const Observation& observation) {
 }
 
 std::string run_out_table(const RunOut& r) {
-    Csv csv("front_chainage_m,horizontal_distance_m,drop_m,runout_angle_deg,travel_angle_deg");
-    csv.row({r.front_chainage, r.horizontal_distance, r.drop, r.runout_angle * degrees, r.travel_angle * degrees});
+    Csv csv(
+        "run_out_along_flow_m,run_out_straight_m,at_least,toe_x_m,toe_y_m,drop_m,runout_angle_deg,travel_angle_deg,"
+        "front_chainage_m");
+    csv.number(r.along_flow).number(r.straight).word(r.at_least ? "yes" : "no").number(r.toe.x).number(r.toe.y);
+    csv.number(r.drop).number(r.runout_angle * degrees).number(r.travel_angle * degrees).number(r.front_chainage);
+    csv.end_row();
     return csv.text();
 }
 

@@ -51,6 +51,13 @@ const HazardMap& erosion_map() {
     return erosion;
 }
 
+const HazardMap& thickness_map() {
+    static const HazardMap thickness =
+        map("peak_thickness", "Peak thickness", "peak flow thickness, normal to the slope", "m", 1, nullptr,
+            {0, 0.1, 0.25, 0.5, 1, 2, 3, 5, 10, 20}, {205, 0.05, 268, 0.15, 0.90, 0.28});
+    return thickness;
+}
+
 Grid<float> in_unit(const Grid<float>& si, double factor) {
     Grid<float> result = si;
     for (float& value : result.values) value = static_cast<float>(value * factor);

@@ -27,6 +27,9 @@ struct HazardMap {
 /// What debris took from the ground: not among the maps of every run, and on the terrain's own cells.
 [[nodiscard]] const HazardMap& erosion_map();
 
+/// Peak depth normal to the slope: only where outputs.peak_thickness asks for it.
+[[nodiscard]] const HazardMap& thickness_map();
+
 /// The map in its own unit.
 [[nodiscard]] Grid<float> in_unit(const Grid<float>& si, double factor);
 

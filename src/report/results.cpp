@@ -132,13 +132,15 @@ Json key_figures(const Scene& scene, const RunResult& result) {
             fmt::format("{} × the released volume, deepest {} m", fixed(mass.entrained / o.volume_released, 2),
                         fixed(greatest(o.erosion.depth), 2)));
     }
-    const bool ran = std::isfinite(o.run_out.horizontal_distance);
-    const std::string drop = fmt::format("drop {} m", fixed(o.run_out.drop, 1));
-    add("run_out_distance_m", "Run-out distance", o.run_out.horizontal_distance, "f0", ran ? "m" : "",
-        !ran ? "no debris ran out"
-        : std::isfinite(o.run_out.front_chainage)
-            ? fmt::format("front to chainage {} m, {}", fixed(o.run_out.front_chainage, 0), drop)
-            : drop);
+    const bool ran = std::isfinite(o.run_out.along_flow);
+    const std::string front = std::isfinite(o.run_out.front_chainage)
+                                  ? fmt::format(", front to chainage {} m", fixed(o.run_out.front_chainage, 0))
+                                  : "";
+    add("run_out_along_flow_m", o.run_out.at_least ? "Run-out along the flow, at least" : "Run-out along the flow",
+        o.run_out.along_flow, "f0", ran ? "m" : "",
+        ran ? fmt::format("{} m in a straight line, drop {} m{}{}", fixed(o.run_out.straight, 0),
+                          fixed(o.run_out.drop, 1), front, o.run_out.at_least ? "; debris left the terrain" : "")
+            : "no debris ran out");
     add("runout_angle_deg", "Runout angle", degrees(o.run_out.runout_angle), "f1", ran ? "°" : "",
         ran ? fmt::format("travel angle of the centre of mass {}°", fixed(degrees(o.run_out.travel_angle), 1)) : "");
     const auto hit =

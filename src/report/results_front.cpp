@@ -91,11 +91,10 @@ void draw_profile(Plot& plot, const Scene& scene, const RunResult& result, const
     plot.line(profile.chainage, profile.elevation, "ground-line");
 
     const RunOut& run_out = result.observation.run_out;
-    const double toe = profile.at(run_out.front_chainage);
-    const double crown_chainage = run_out.front_chainage - run_out.horizontal_distance;
-    if (std::isfinite(toe) && std::isfinite(run_out.drop) && crown_chainage > -0.2 * end) {
-        const std::vector<double> x = {std::max(0.0, crown_chainage), run_out.front_chainage};
-        const std::vector<double> z = {toe + run_out.drop, toe};
+    const auto crown = scene.flow_path.locate(run_out.crown), toe = scene.flow_path.locate(run_out.toe);
+    if (crown && toe && toe->chainage > crown->chainage) {
+        const double foot = profile.at(toe->chainage);
+        const std::vector<double> x = {crown->chainage, toe->chainage}, z = {foot + run_out.drop, foot};
         plot.line(x, z, "energy-line");
         plot.label(x[0] + 0.62 * (x[1] - x[0]), z[0] + 0.62 * (z[1] - z[0]), 12, -6, "start", "note-strong",
                    fmt::format("runout angle {}°", fixed(degrees(run_out.runout_angle), 1)));
@@ -104,7 +103,7 @@ void draw_profile(Plot& plot, const Scene& scene, const RunResult& result, const
         plot.vertical(run_out.front_chainage, "toe-line");
         plot.label(run_out.front_chainage, profile.range.high, run_out.front_chainage > 0.85 * end ? -6 : 6, 14,
                    run_out.front_chainage > 0.85 * end ? "end" : "start", "note",
-                   fmt::format("run-out {} m", fixed(run_out.front_chainage, 0)));
+                   fmt::format("front to {} m", fixed(run_out.front_chainage, 0)));
     }
     for (const Bend& bend : bends(scene.flow_path, end)) {
         plot.vertical(bend.chainage, "bend-line");

@@ -26,12 +26,12 @@ double first_building_hit(const Observation& observation) {
 
 Measure front_velocity(const Scene& scene, double chainage) {
     Measure m;
-    m.quantity = {
-        .key = fmt::format("front_velocity_at_{:g}_m", chainage),
-        .suffix = "mps",
-        .name = fmt::format("front velocity at {:g} m", chainage),
-        .unit = "m/s",
-        .not_measured = scene.flow_path.empty() ? "the scene has no flow path" : "the front did not get there"};
+    m.quantity = {.key = fmt::format("front_velocity_at_{:g}_m", chainage),
+                  .suffix = "mps",
+                  .name = fmt::format("front velocity at {:g} m", chainage),
+                  .unit = "m/s",
+                  .not_measured = scene.flow_path.empty() ? "the scene has no flow path"
+                                                          : "the front did not get there, or jumped along the path"};
     m.value = [chainage](const Observation& o) { return front_at(o, chainage).front_velocity; };
     return m;
 }
@@ -68,7 +68,7 @@ Measure run_out() {
                   .name = "run-out",
                   .unit = "m",
                   .not_measured = "no debris is left to measure"};
-    m.value = [](const Observation& o) { return o.run_out.horizontal_distance; };
+    m.value = [](const Observation& o) { return o.run_out.along_flow; };
     return m;
 }
 

@@ -43,7 +43,8 @@ Run::Run(RunStart start)
       simulation_(std::move(start.model), std::move(start.ground), std::move(start.state), std::move(start.inflow)),
       observer_(model(), ground(), state(), start.flow_path, start.outputs,
                 start.outputs.map_cell.value_or(default_map_cell(ground().terrain.cell(), model().particle_spacing))),
-      rest_(model().solver),
+      rest_(model().solver, start.outputs.deposited_speed),
+      deposited_speed_(start.outputs.deposited_speed),
       endless_(start.endless),
       smallest_time_step_(model().solver.end_time) {
     observer_.expect(state().seeded + simulation_.inflow().to_come());
@@ -69,7 +70,7 @@ bool Run::advance() {
 
 bool Run::over() {
     if (reached_end_time(model().solver, state())) {
-        stop(RunPhase::ended, end_time_reason(model().solver));
+        stop(RunPhase::ended, end_time_reason(model(), state(), deposited_speed_));
     } else if (no_debris()) {
         stop(RunPhase::at_rest, no_debris_reason);
     }
@@ -88,22 +89,18 @@ void Run::take_step() {
     if (endless_) return;
     if (!observer_.failed_buildings().empty()) rest_.stir(state().time);
     const bool waiting = still_waiting(model(), state()) || simulation_.inflow().to_come() > 0;
-    if (rest_.at_rest(state().time, total_momentum(model(), state()), waiting)) {
+    if (rest_.at_rest(state(), waiting)) {
         stop(RunPhase::at_rest, rest_.reason());
     } else {
         (void)over();
     }
 }
 
-void Run::change(const std::function<Change(Model&, Ground&, State&)>& edit) {
-    Change change{};
-    simulation_.change([&](Model& model, Ground& ground, State& state) { change = edit(model, ground, state); });
-    observer_.follow(model(), ground(), state(), change.first_new_id);
-    if (change.released) {
-        rest_.begin_anew(state().time);
-    } else {
-        rest_.stir(state().time);
-    }
+void Run::change(const std::function<std::uint32_t(Model&, Ground&, State&)>& edit) {
+    std::uint32_t first_new_id = 0;
+    simulation_.change([&](Model& model, Ground& ground, State& state) { first_new_id = edit(model, ground, state); });
+    observer_.follow(model(), ground(), state(), first_new_id);
+    rest_.stir(state().time);
     if (phase_ == RunPhase::at_rest) stop(RunPhase::ready, "");
 }
 

@@ -47,13 +47,9 @@ class Run {
     /// Adds what inflows have brought by now. A step begins with it.
     void inject_inflow() { simulation_.inject_inflow(&observer_); }
 
-    /// What was done to a run between two steps.
-    struct Change {
-        std::uint32_t first_new_id;  ///< particles with ids from this on are new
-        bool released;               ///< debris was set free: what moved before no longer counts for coming to rest
-    };
-    /// Lets `edit` change model, ground and state, as Simulation::change() does; a run at rest is ready again.
-    void change(const std::function<Change(Model&, Ground&, State&)>& edit);
+    /// Lets `edit` change model, ground and state, as Simulation::change() does; a run at rest is ready again. `edit`
+    /// returns the id from which on particles are new.
+    void change(const std::function<std::uint32_t(Model&, Ground&, State&)>& edit);
     /// Begins what is known of a building anew, as for one that was moved.
     void forget_building(std::size_t building) { observer_.forget_building(model(), ground(), state(), building); }
 
@@ -82,6 +78,7 @@ class Run {
     Simulation simulation_;
     Observer observer_;
     RestDetector rest_;
+    double deposited_speed_;
     bool endless_;
     RunPhase phase_ = RunPhase::ready;
     std::string stop_reason_;

@@ -19,7 +19,7 @@ enum class RunStatus { complete, interrupted, fault };
 
 struct RunResult {
     RunStatus status = RunStatus::complete;
-    std::string stop_reason;  ///< "debris came to rest (momentum below 2 % of its peak for 3 s)", the fault, ...
+    std::string stop_reason;  ///< "debris came to rest (less than 0.1 % of it moving for 3 s)", the fault, ...
     Observation observation;
     StageTimes stage_times;
     std::uint64_t hash = 0;       ///< of time, ids, positions and velocities at the end, in id order

@@ -1,39 +1,57 @@
 #include "run/stop_rule.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include <fmt/format.h>
 
-#include "simd/lanes.hpp"
 #include "simd/parallel.hpp"
 
 namespace talus {
+namespace {
 
-std::string RestDetector::reason() const {
-    return fmt::format("debris came to rest (momentum below {:.3g} % of its peak for {:.3g} s)", 100 * fraction_,
-                       duration_);
+/// So few particles make no front (front_particle_count), however few there are in all.
+constexpr std::uint32_t fewest = 5;
+/// Debris slower than this times the deposited speed (1 m/s) rises by no more than 5 cm, and would fall only where it
+/// gets faster.
+constexpr double fast_ratio = 10;
+/// Share of the debris that may still be fast: one particle in ten thousand.
+constexpr double fast_share = 1e-4;
+
+}  // namespace
+
+Motion motion_of(const State& state, double deposited_speed) {
+    const auto slow = static_cast<float>(deposited_speed * deposited_speed);
+    const auto fast = static_cast<float>(fast_ratio * fast_ratio) * slow;
+    const VectorArray& v = state.velocity;
+    return simd::reduce_ranges(
+        state.count, 8192, Motion{},
+        [&](std::size_t first, std::size_t last, Motion sum) {
+            for (std::size_t i = first; i < last; ++i) {
+                const float square = v.x[i] * v.x[i] + v.y[i] * v.y[i] + v.z[i] * v.z[i];
+                sum.moving += static_cast<std::uint32_t>(square >= slow);
+                sum.fast += static_cast<std::uint32_t>(square >= fast);
+            }
+            return sum;
+        },
+        [](const Motion& a, const Motion& b) {
+            return Motion{a.moving + b.moving, a.fast + b.fast};
+        });
 }
 
-/// Floats side by side over a group of particles, doubles over the groups.
-double total_momentum(const Model& model, const State& state) {
-    using L = simd::Lanes<4>;
-    constexpr std::size_t group = 64;
-    const VectorArray& v = state.velocity;
-    const auto add_speeds = [&](std::size_t first, std::size_t last, double sum) {
-        std::size_t i = first;
-        for (; i + group <= last; i += group) {
-            L speeds(0);
-            for (std::size_t k = i; k < i + group; k += L::size) {
-                const L vx = L::load(&v.x[k]), vy = L::load(&v.y[k]), vz = L::load(&v.z[k]);
-                speeds += sqrt(vx * vx + vy * vy + vz * vz);
-            }
-            for (int lane = 0; lane < L::size; ++lane) sum += speeds.at(lane);
-        }
-        for (; i < last; ++i) sum += length(state.velocity.at(i));
-        return sum;
-    };
-    return model.particle_mass() *
-           simd::reduce_ranges(state.count, 8192, 0.0, add_speeds, [](double a, double b) { return a + b; });
+bool RestDetector::at_rest(const State& state, bool waiting) {
+    const double debris = state.count;
+    const Motion motion = motion_of(state, deposited_speed_);
+    const double enough = std::clamp(share_ * debris, std::min<double>(fewest, debris), debris);
+    if (share_ <= 0 || waiting || motion.moving >= enough || motion.fast > fast_share * debris) {
+        quiet_since_ = state.time;
+        return false;
+    }
+    return state.time - quiet_since_ >= duration_;
+}
+
+std::string RestDetector::reason() const {
+    return fmt::format("debris came to rest (less than {:.3g} % of it moving for {:.3g} s)", 100 * share_, duration_);
 }
 
 bool still_waiting(const Model& model, const State& state) {
@@ -42,8 +60,12 @@ bool still_waiting(const Model& model, const State& state) {
     });
 }
 
-std::string end_time_reason(const SolverSpec& solver) {
-    return fmt::format("reached solver.end_time_s = {:.4g}", solver.end_time);
+std::string end_time_reason(const Model& model, const State& state, double deposited_speed) {
+    const std::string reached = fmt::format("reached solver.end_time_s = {:.4g}", model.solver.end_time);
+    const std::uint32_t moving = motion_of(state, deposited_speed).moving;
+    if (moving == 0) return reached;
+    return fmt::format("{} with {:.3g} m3 still moving ({:.2g} % of the debris)", reached,
+                       moving * model.particle_volume(), 100.0 * moving / state.count);
 }
 
 }  // namespace talus

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <algorithm>
 #include <string>
 
 #include "params/spec.hpp"
@@ -10,38 +9,33 @@
 /// When a run is over.
 namespace talus {
 
-/// Decides when debris has come to rest: its momentum stayed below a share of its peak for long enough.
+/// Debris that still moves.
+struct Motion {
+    std::uint32_t moving = 0;  ///< particles faster than outputs.deposited_speed
+    std::uint32_t fast = 0;    ///< particles ten times as fast: they may still climb, fall or strike something
+};
+[[nodiscard]] Motion motion_of(const State& state, double deposited_speed);
+
+/// Decides when what still moves can change no product any more: for long enough less than a share of the debris has
+/// moved (with the defaults what makes no front either, and nothing that a map could show), and of that next to nothing
+/// fast enough to climb, to fall or to strike. Momentum tells neither: that of a thousandth of the debris in free fall
+/// is small beside its peak, and so is that of all of it where it runs out slowly.
 class RestDetector {
   public:
-    explicit RestDetector(const SolverSpec& solver)
-        : fraction_(solver.stop_momentum_fraction), duration_(solver.stop_duration) {}
+    RestDetector(const SolverSpec& solver, double deposited_speed)
+        : share_(solver.stop_moving_share), duration_(solver.stop_duration), deposited_speed_(deposited_speed) {}
 
-    /// `momentum`: total_momentum(); it needs no direction. `waiting`: a release has yet to start.
-    bool at_rest(double time, double momentum, bool waiting) {
-        peak_ = std::max(peak_, momentum);
-        if (fraction_ <= 0 || waiting || momentum > fraction_ * peak_) {
-            quiet_since_ = time;
-            return false;
-        }
-        return time - quiet_since_ >= duration_;
-    }
+    /// `waiting`: debris has yet to come.
+    bool at_rest(const State& state, bool waiting);
     /// Something was changed: debris is at rest only when it stays quiet from now on.
     void stir(double time) { quiet_since_ = time; }
-    /// Debris was set free: what moved before no longer counts.
-    void begin_anew(double time) {
-        peak_ = 0;
-        quiet_since_ = time;
-    }
     /// "debris came to rest (...)".
     [[nodiscard]] std::string reason() const;
 
   private:
-    double fraction_, duration_;
-    double peak_ = 0, quiet_since_ = 0;
+    double share_, duration_, deposited_speed_;
+    double quiet_since_ = 0;
 };
-
-/// Sum of m |v|, kg m/s.
-[[nodiscard]] double total_momentum(const Model& model, const State& state);
 
 /// Whether a release has its start yet to come, or began with the last step; one that waits for a word does not count.
 [[nodiscard]] bool still_waiting(const Model& model, const State& state);
@@ -49,7 +43,8 @@ class RestDetector {
 [[nodiscard]] inline bool reached_end_time(const SolverSpec& solver, const State& state) {
     return state.time >= solver.end_time - 1e-9;
 }
-[[nodiscard]] std::string end_time_reason(const SolverSpec& solver);
+/// "reached solver.end_time_s = 120", with what still moved then.
+[[nodiscard]] std::string end_time_reason(const Model& model, const State& state, double deposited_speed);
 
 inline constexpr const char* no_debris_reason = "all debris has left the terrain";
 

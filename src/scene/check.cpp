@@ -28,14 +28,9 @@ std::string terrain_line(const Scene& scene) {
 }
 
 std::string release_line(const Scene& scene, const Release& release) {
-    Release unit = release;  // 1 m thick everywhere: its volume is the area on the slope
-    unit.thickness_raster.reset();
     double plan = 0;
-    for (ReleasePatch& patch : unit.patches) {
-        patch.thickness = 1;
-        plan += plan_area(patch.polygon);
-    }
-    const double slope_area = release_volume(scene.terrain, unit);
+    for (const ReleasePatch& patch : release.patches) plan += plan_area(patch.polygon);
+    const double slope_area = release_slope_area(scene.terrain, release);
     return fmt::format(
         "release     \"{}\": {:.6g} m3, {:.6g} m2 in plan, mean thickness {:.3g} m, starts at {:.4g} s\n", release.name,
         release.volume, plan, slope_area > 0 ? release.volume / slope_area : 0, release.spec.start_time);

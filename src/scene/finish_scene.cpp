@@ -72,6 +72,12 @@ Status check_rules(const ParsedScene& scene, double particle_spacing) {
 }
 
 Status finish_scene(ParsedScene& scene) {
+    for (std::size_t i = 0; i < scene.spec.releases.size(); ++i) {
+        const ReleaseSpec& release = scene.spec.releases[i];
+        if (!release.file.empty() || !release.thickness_raster.empty()) continue;
+        return Error{scene.at(fmt::format("release[{}].file", i)) +
+                     " is missing; it must be a file path in quotes, or thickness_raster be given"};
+    }
     TALUS_TRY(check_rules(scene, 0));
     for (std::size_t i = 0; i < scene.spec.beds.size(); ++i) {
         const BedSpec& bed = scene.spec.beds[i];

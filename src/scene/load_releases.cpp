@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "core/try.hpp"
+#include "geo/raster_outline.hpp"
 #include "geo/vector.hpp"
 #include "scene/attributes.hpp"
 #include "scene/known_ground.hpp"
@@ -59,8 +60,8 @@ Status check_thickness_raster(const ReleaseSpec& spec, const std::string& label,
         });
     }
     if (with_thickness == 0) {
-        return Error{
-            fmt::format("{}: has no thickness above 0 inside the polygons of {}", spec.thickness_raster, spec.file)};
+        return Error{fmt::format("{}: has no thickness above 0 {}", spec.thickness_raster,
+                                 spec.file.empty() ? "over the terrain" : "inside the polygons of " + spec.file)};
     }
     if (thickest_here > thickest()) {
         return Error{fmt::format("{}: holds a thickness of {:.6g}; it must be at most {:.0f} (m)",
@@ -133,6 +134,18 @@ Result<PlanPoint> shift(const ReleaseSpec& spec, const std::string& label, Relea
     return by;
 }
 
+/// What the release comes to, beside what its raster holds.
+void note_raster_volume(const std::string& label, const Release& release, Scene& scene) {
+    const Grid<float>& raster = *release.thickness_raster;
+    double sum = 0;
+    for (const float thickness : raster.values) sum += thickness > 0 ? static_cast<double>(thickness) : 0;
+    scene.notes.push_back(fmt::format(
+        "{}: releases {:.6g} m3; the cells of its raster times their thickness are {:.6g} m3, thickness being taken "
+        "as {}",
+        label, release.volume, sum * raster.geometry.cell * raster.geometry.cell,
+        release.vertical() ? "vertical" : "normal to the slope (thickness_direction)"));
+}
+
 Result<Release> load_release(const ParsedScene& parsed, std::size_t index, Scene& scene) {
     ReleaseSpec& spec = scene.spec.releases[index];
     if (spec.name.empty()) spec.name = fmt::format("release {}", index + 1);
@@ -142,32 +155,45 @@ Result<Release> load_release(const ParsedScene& parsed, std::size_t index, Scene
         return Error{parsed.at(path + key) + ": " + error.message};
     };
 
-    const Result<PolygonLayer> layer = read_polygons(spec.file, spec.layer, scene.crs);
-    if (!layer) return refused("file", layer.error());
-    record_input(label, spec.file, scene);
-    if (!layer->reprojection.empty()) scene.notes.push_back(label + ": " + layer->reprojection);
-
     Release release;
     release.name = spec.name;
     release.spec = spec;
-    for (std::size_t feature = 0; feature < layer->features.size(); ++feature) {
-        const Result<double> thickness = feature_thickness(spec, *layer, feature);
-        if (!thickness) return refused("thickness_attribute", thickness.error());
-        for (const Polygon& part : layer->features[feature].parts) release.patches.push_back({part, *thickness});
+    if (!spec.file.empty()) {
+        const Result<PolygonLayer> layer = read_polygons(spec.file, spec.layer, scene.crs);
+        if (!layer) return refused("file", layer.error());
+        record_input(label, spec.file, scene);
+        if (!layer->reprojection.empty()) scene.notes.push_back(label + ": " + layer->reprojection);
+        for (std::size_t feature = 0; feature < layer->features.size(); ++feature) {
+            const Result<double> thickness = feature_thickness(spec, *layer, feature);
+            if (!thickness) return refused("thickness_attribute", thickness.error());
+            for (const Polygon& part : layer->features[feature].parts) release.patches.push_back({part, *thickness});
+        }
+    }
+    if (!spec.thickness_raster.empty()) {
+        Result<Raster> raster = read_value_raster(spec.thickness_raster, scene.crs);
+        if (!raster) return refused("thickness_raster", raster.error());
+        record_input(label + " thickness", spec.thickness_raster, scene);
+        if (raster->crs_assumed) {
+            scene.notes.push_back(fmt::format("{}: {} states no coordinate reference system, taken as the terrain's",
+                                              label, spec.thickness_raster));
+        }
+        release.thickness_raster = std::move(raster->grid);
+        if (spec.file.empty()) {
+            const auto outlines = outlines_above_zero(*release.thickness_raster);
+            if (!outlines) return refused("thickness_raster", outlines.error());
+            for (const Polygon& outline : *outlines) release.patches.push_back({outline, 0});
+        }
     }
     const char* const moved = spec.shift_along != 0 ? "shift_along_m" : "shift_across_m";
     const Result<PlanPoint> by = shift(spec, label, release, scene);
     if (!by) return refused(moved, by.error());
     const bool as_drawn = by->x == 0 && by->y == 0;
     for (const ReleasePatch& patch : release.patches) {
-        if (Status s = check_covered(patch.polygon, label, scene); !s)
-            return refused(as_drawn ? "file" : moved, s.error());
+        if (Status s = check_covered(patch.polygon, label, scene); !s) {
+            return refused(!as_drawn ? moved : spec.file.empty() ? "thickness_raster" : "file", s.error());
+        }
     }
-    if (!spec.thickness_raster.empty()) {
-        Result<Raster> raster = read_value_raster(spec.thickness_raster, scene.crs);
-        if (!raster) return refused("thickness_raster", raster.error());
-        record_input(label + " thickness", spec.thickness_raster, scene);
-        release.thickness_raster = std::move(raster->grid);
+    if (release.thickness_raster) {
         release.thickness_raster->geometry.x_min += by->x;
         release.thickness_raster->geometry.y_min += by->y;
         if (Status s = check_thickness_raster(spec, label, release, scene); !s) {
@@ -179,6 +205,7 @@ Result<Release> load_release(const ParsedScene& parsed, std::size_t index, Scene
     }
     release.volume = release_volume(scene.terrain, release);
     if (!(release.volume > 0)) return refused("file", Error{label + " has no volume; its polygons have no area"});
+    if (release.thickness_raster) note_raster_volume(label, release, scene);
     return Result<Release>(std::move(release));
 }
 

@@ -42,6 +42,8 @@ constexpr ExportFile export_files[] = {
     {"arrival_time.qml", "application/xml", "QGIS style of it"},
     {"deposit_depth.tif", "image/tiff", "Depth of the debris now, m"},
     {"deposit_depth.qml", "application/xml", "QGIS style of it"},
+    {"peak_thickness.tif", "image/tiff", "Peak flow thickness normal to the slope, m", true},
+    {"peak_thickness.qml", "application/xml", "QGIS style of it", true},
     {"erosion_depth.tif", "image/tiff", "Depth picked up from the bed, m", true},
     {"erosion_depth.qml", "application/xml", "QGIS style of it", true},
     {"erosion.csv", "text/csv", "Volume picked up against chainage", true},

@@ -21,13 +21,6 @@ struct Column {
     double leftover = 0;  ///< the fraction that rounding left out, [0, 1)
 };
 
-double vertical_depth(const Terrain& terrain, const Release& release, const PlanPoint& p) {
-    const double thickness = release.thickness_at(p);
-    if (!(thickness > 0)) return 0;
-    const double cosine = terrain.slope_cosine_at(p);
-    return std::isnan(cosine) ? 0 : thickness / cosine;
-}
-
 /// Columns with their particle counts, adding up to `target`.
 std::vector<Column> fill_columns(const Terrain& terrain, const Release& release, double spacing, long target) {
     std::vector<Column> columns;
@@ -44,7 +37,7 @@ std::vector<Column> fill_columns(const Terrain& terrain, const Release& release,
                 for (int north = 0; north < parts; ++north) {
                     const PlanPoint sample{centre.x + ((east + 0.5) / parts - 0.5) * spacing,
                                            centre.y + ((north + 0.5) / parts - 0.5) * spacing};
-                    depth += vertical_depth(terrain, release, sample) / (parts * parts);
+                    depth += release.depth_at(terrain, sample) / (parts * parts);
                 }
             }
             if (depth <= 0) continue;

@@ -50,6 +50,12 @@ double integrate(const Polygon& polygon, double step, const Function& f) {
     return sum;
 }
 
+double vertical_depth(const Terrain& terrain, const PlanPoint& p, double thickness, bool vertical) {
+    if (!(thickness > 0)) return 0;
+    const double cosine = terrain.slope_cosine_at(p);
+    return std::isnan(cosine) ? 0 : vertical ? thickness : thickness / cosine;
+}
+
 Polygon rectangle(const Extent& e) {
     return {{{e.x_min, e.y_min}, {e.x_max, e.y_min}, {e.x_max, e.y_max}, {e.x_min, e.y_max}}, {}};
 }
@@ -63,6 +69,10 @@ double Release::thickness_at(const PlanPoint& p) const {
             return thickness_raster ? raster_thickness(*thickness_raster, p) : patch.thickness;
     }
     return 0;
+}
+
+double Release::depth_at(const Terrain& terrain, const PlanPoint& p) const {
+    return vertical_depth(terrain, p, thickness_at(p), vertical());
 }
 
 Extent Release::extent() const {
@@ -87,9 +97,7 @@ double release_volume(const Terrain& terrain, const Release& release) {
         step = std::max(step, std::max(extent.width(), extent.height()) / 4000);
         volume += integrate(polygon, step, [&](const PlanPoint& p) {
             const double t = release.thickness_raster ? raster_thickness(*release.thickness_raster, p) : thickness;
-            if (!(t > 0)) return 0.0;
-            const double cosine = terrain.slope_cosine_at(p);
-            return std::isnan(cosine) ? 0.0 : t / cosine;
+            return vertical_depth(terrain, p, t, release.vertical());
         });
     };
     if (release.patches.empty() && release.thickness_raster) {
@@ -97,6 +105,14 @@ double release_volume(const Terrain& terrain, const Release& release) {
     }
     for (const ReleasePatch& patch : release.patches) add(patch.polygon, patch.thickness);
     return volume;
+}
+
+double release_slope_area(const Terrain& terrain, const Release& release) {
+    Release sheet = release;  // 1 m thick everywhere: its volume is the area
+    sheet.thickness_raster.reset();
+    sheet.spec.thickness_direction = ThicknessDirection::normal;
+    for (ReleasePatch& patch : sheet.patches) patch.thickness = 1;
+    return release_volume(terrain, sheet);
 }
 
 }  // namespace talus

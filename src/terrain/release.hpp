@@ -11,7 +11,7 @@
 
 namespace talus {
 
-/// A polygon of failing ground with its thickness normal to the slope, m.
+/// A polygon of failing ground with its thickness, m.
 struct ReleasePatch {
     Polygon polygon;
     double thickness = 0;
@@ -26,12 +26,20 @@ struct Release {
     double volume = 0;                            ///< m3, as integrated by release_volume
     ReleaseSpec spec;                             ///< all else that the scene or people say of it, but for its name
 
-    /// Thickness normal to the slope at a world plan position; 0 outside the patches.
+    /// Thickness as measured at a world plan position; 0 outside the patches.
     [[nodiscard]] double thickness_at(const PlanPoint& p) const;
+    /// Whether thickness is measured vertically, not normal to the slope.
+    [[nodiscard]] bool vertical() const { return spec.thickness_direction == ThicknessDirection::vertical; }
+    /// Vertical depth there; 0 where the terrain does not cover it.
+    [[nodiscard]] double depth_at(const Terrain& terrain, const PlanPoint& p) const;
     [[nodiscard]] Extent extent() const;
 };
 
-/// Integral of thickness / cos(slope) over the plan area, m3; ground that the terrain does not cover counts nothing.
+/// Integral of the vertical depth (thickness / cos(slope), where it is normal to it) over the plan area, m3; ground
+/// that the terrain does not cover counts nothing.
 [[nodiscard]] double release_volume(const Terrain& terrain, const Release& release);
+
+/// Area of its patches on the slope, m2.
+[[nodiscard]] double release_slope_area(const Terrain& terrain, const Release& release);
 
 }  // namespace talus

@@ -94,7 +94,7 @@ class LiveRun {
     [[nodiscard]] Status plan_releases(const Setup& next, Change& change) const;
     void carry_out(Change& change, const Setup& next);
     void replace_releases(Model& model, State& state, Change& change);
-    void set_start_times(Model& model, const State& state, const Setup& next, bool& let_go);
+    void set_start_times(Model& model, const State& state, const Setup& next);
     void note_failed();
     void record();
     void record_impacts();

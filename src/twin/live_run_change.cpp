@@ -205,29 +205,24 @@ void LiveRun::replace_releases(Model& model, State& state, Change& change) {
     model.releases = std::move(ranges);
 }
 
-/// `let_go`: whether any release starts that did not before.
-void LiveRun::set_start_times(Model& model, const State& state, const Setup& next, bool& let_go) {
+void LiveRun::set_start_times(Model& model, const State& state, const Setup& next) {
     for (std::size_t g = 0; g < groups_.size(); ++g) {
         if (groups_[g].begun) continue;
         const ReleaseSetup& release = *find_id(next.releases, groups_[g].id);
-        double& start_time = model.releases[g].start_time;
-        const double before = start_time;
-        start_time =
+        model.releases[g].start_time =
             release.triggered ? std::min(release.body->spec.start_time, state.time) : release.body->spec.start_time;
-        let_go = let_go || (start_time <= state.time && before > state.time);
     }
 }
 
 void LiveRun::carry_out(Change& change, const Setup& next) {
     const auto held_back = holding_back(model());
     const WorldPoint origin = ground().terrain.frame().origin;
-    run_->change([&](Model& model, Ground& ground, State& state) -> Run::Change {
-        bool let_go = false;
+    run_->change([&](Model& model, Ground& ground, State& state) {
         set_material(model, next.material);
         if (change.buildings) ground.buildings = std::move(*change.buildings);
         if (change.solids) ground.solids = std::move(*change.solids);
         replace_releases(model, state, change);
-        set_start_times(model, state, next, let_go);
+        set_start_times(model, state, next);
         std::uint32_t first_new = state.seeded;
         for (const Change::Seed& seed : change.seeds) first_new -= seed.state.seeded;
         for (const Extent& e : change.touched) {
@@ -237,7 +232,7 @@ void LiveRun::carry_out(Change& change, const Setup& next) {
         }
         if (change.cover) model.cover = std::move(*change.cover);
         if (change.cover || held_back != holding_back(model)) wake(state, {-infinity, -infinity, infinity, infinity});
-        return {first_new, let_go || !change.seeds.empty()};
+        return first_new;
     });
     slots_ = std::max(slots_, state().seeded);
     obstacles_ = std::move(change.obstacles);

@@ -43,7 +43,7 @@ file = "buildings.geojson"
 [solver]
 particle_spacing_m = 0.8
 end_time_s = 1
-stop_momentum_fraction = 0
+stop_moving_share = 0
 [[observation]]
 chainage_m = 5
 front_velocity_mps = 3

@@ -19,7 +19,7 @@ class EnsembleTest : public SceneFolder {
   protected:
     EnsembleTest() {
         write_valley(
-            "[solver]\nparticle_spacing_m = 3\nend_time_s = 2\nstop_momentum_fraction = 0\n[[observation]]\n"
+            "[solver]\nparticle_spacing_m = 3\nend_time_s = 2\nstop_moving_share = 0\n[[observation]]\n"
             "chainage_m = 20\nfront_velocity_mps = 5\n");
         source.file = folder / "scene.toml";
         plan.runs = 6;

@@ -1,11 +1,14 @@
 #include "observe/front_tracker.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include <gtest/gtest.h>
 
 #include "observe/particles.hpp"
 #include "observe/run_out.hpp"
+#include "observe/trail.hpp"
 
 namespace talus {
 namespace {
@@ -126,41 +129,147 @@ TEST(FrontTracker, nothing_without_a_path) {
     EXPECT_TRUE(front.samples().empty());
 }
 
-TEST(RunOut, distance_drop_and_angles_of_a_block_that_moved_along_a_bend) {
-    const Model model = test::make_model(0.4);
-    const Ground ground = test::make_ground(0.5);
-    const FlowPath path({{920, 1950}, {1000, 1950}, {1000, 2050}}, 40);
-    State state = block(0.4, -70, -54, 20, 20, 5);  // chainage 10 to 18, crown at z = 1.8
-    for (float& z : state.position.z) z += 30;
-    const ReleasedMass released = measure_release(ground, state, path);
-    EXPECT_NEAR(released.crown.z - ground.terrain.frame().origin.z, 31.8, 1e-4);
-    EXPECT_NEAR(released.mean_chainage, 14, 1e-4);
-    // Rigidly to where it reaches from chainage 130 to 138: (1000, 2000) to (1000, 2008), 30 m lower.
-    for (float& x : state.position.x) x += 66;
-    for (float& y : state.position.y) y += 54;
-    for (float& z : state.position.z) z -= 30;
-    const RunOut run_out = measure_run_out(ground, state, path, released, 150);
-    EXPECT_EQ(run_out.front_chainage, 150);
-    const double crown_chainage = path.locate({released.crown.x, released.crown.y})->chainage;
-    EXPECT_NEAR(run_out.horizontal_distance, 137.8 - crown_chainage, 1e-3);
-    EXPECT_NEAR(run_out.drop, 30, 1.61);  // to one of the foremost particles, of any layer
-    EXPECT_NEAR(run_out.runout_angle, std::atan(run_out.drop / run_out.horizontal_distance), 1e-12);
-    EXPECT_NEAR(run_out.travel_angle, std::atan(30.0 / 120), 1e-4);
+/// A channel that falls eastward and turns north by a right angle at (1000, 1950), as an elevation model has it.
+FlowPath path_through_a_sharp_corner() {
+    Grid<float> elevation(GridGeometry{900, 1900, 5, 40, 40});
+    for (int r = 0; r < 40; ++r) {
+        for (int c = 0; c < 40; ++c) {
+            const PlanPoint p = elevation.geometry.centre(c, r);
+            const double east = std::min(p.x, 1000.0), north = std::max(p.y, 1950.0);
+            const double before = std::hypot(p.x - east, p.y - 1950), after = std::hypot(p.x - 1000, p.y - north);
+            const double z = before < after ? 0.2 * (1000 - east) + before : -0.2 * (north - 1950) + after;
+            elevation.at(c, r) = static_cast<float>(100 + z);
+        }
+    }
+    return {trace_flow_path(elevation, {910, 1950}, 1000).value(), 50};
 }
 
-TEST(RunOut, straight_distances_without_a_path_and_nothing_while_all_is_held) {
-    const Model model = test::make_model(0.4);
+/// What the front of a block does that goes straight on, east, at 7.5 m/s, 4 to 20 m north of the first reach.
+std::vector<FrontSample> straight_past_a_corner(const FlowPath& path, double interval) {
+    const Model model = test::make_model(0.8);
+    const Ground ground = test::make_ground();
+    State state = block(0.8, -80, -46, 20, 20, 2, {7.5F, 0, 0});
+    FrontTracker front(model, ground, state, path, interval, 10);
+    for (int step = 0; step < 1400; ++step) {
+        advance(state, 0.01);
+        front.after_step(ground, state);
+    }
+    return front.samples();
+}
+
+TEST(FrontTracker, no_velocity_where_the_front_jumps_along_a_corner_of_a_traced_path) {
+    const FlowPath path = path_through_a_sharp_corner();
+    ASSERT_NEAR(path.point_at(45).y, 1950, 4);
+    ASSERT_NEAR(path.point_at(140).x, 1000, 4);
+    for (const double interval : {0.25, 1.0, 5.0}) {
+        int without = 0, like_the_debris = 0;
+        for (const FrontSample& s : straight_past_a_corner(path, interval)) {
+            EXPECT_NEAR(s.particle_speed, 7.5, 1e-3);
+            if (std::isnan(s.front_velocity)) {
+                ++without;
+                EXPECT_TRUE(s.chainage >= 65 && s.chainage <= 130) << s.chainage;
+            } else {
+                EXPECT_LE(s.front_velocity, 1.5 * 7.5 * 1.001) << s.chainage;
+                like_the_debris += std::abs(s.front_velocity - 7.5) < 0.2 ? 1 : 0;
+            }
+        }
+        EXPECT_GT(without, 0) << interval;
+        EXPECT_GT(like_the_debris, 30 / interval) << interval;
+    }
+}
+
+/// 2 m cells, 1 where `covered`.
+template <class Covered>
+Grid<float> trail(const Covered& covered) {
+    Grid<float> grid(GridGeometry{900, 1900, 2, 100, 100}, std::nanf(""));
+    for (int r = 0; r < 100; ++r) {
+        for (int c = 0; c < 100; ++c) {
+            const PlanPoint p = grid.geometry.centre(c, r);
+            if (covered(p)) grid.at(c, r) = 1;
+        }
+    }
+    return grid;
+}
+
+/// A channel 20 m wide eastward, then one northward.
+bool in_the_bend(const PlanPoint& p) {
+    return (p.y > 1940 && p.y < 1960 && p.x > 920 && p.x < 1010) || (p.x > 990 && p.x < 1010 && p.y > 1940);
+}
+
+TEST(TrailWays, lead_round_a_bend_and_straight_over_open_ground) {
+    const TrailWays bend(trail(in_the_bend), {925, 1950});
+    EXPECT_NEAR(bend.to({980, 1955}), std::hypot(55, 5), 1e-9);
+    const double taut = std::hypot(990 - 925, 1960 - 1950) + 90;  // past the inner corner
+    EXPECT_GT(bend.to({991, 2050}), taut);
+    EXPECT_NEAR(bend.to({991, 2050}), taut, 2);
+    const TrailWays open(trail([](const PlanPoint&) { return true; }), {925, 1950});
+    for (const PlanPoint& p : {PlanPoint{1090, 1951}, PlanPoint{930, 2090}, PlanPoint{1060, 2033}}) {
+        EXPECT_NEAR(open.to(p), std::hypot(p.x - 925, p.y - 1950), 1e-9);
+    }
+}
+
+TEST(TrailWays, join_what_debris_reached_through_the_air) {
+    const auto two_parts = [](const PlanPoint& p) { return p.y > 1940 && p.y < 1960 && (p.x < 960 || p.x > 980); };
+    const TrailWays ways(trail(two_parts), {925, 1951});
+    EXPECT_NEAR(ways.to({1050, 1951}), 125, 0.5);
+    EXPECT_TRUE(std::isnan(ways.at(0)));
+    EXPECT_TRUE(std::isnan(TrailWays(trail([](const PlanPoint&) { return false; }), {925, 1951}).to({1050, 1951})));
+}
+
+TEST(RunOut, along_the_flow_and_straight_of_a_block_that_moved_round_a_bend) {
+    const Ground ground = test::make_ground(0.5);
+    State state = block(0.4, -70, -54, 20, 20, 5);  // (930, 1946) to (938, 1954), crown at z = 1.8
+    for (float& z : state.position.z) z += 30;
+    const ReleasedMass released = measure_release(ground, state);
+    EXPECT_NEAR(released.crown.z - ground.terrain.frame().origin.z, 31.8, 1e-4);
+    // Rigidly to (996, 2032) and on, 30 m lower.
+    for (float& x : state.position.x) x += 66;
+    for (float& y : state.position.y) y += 86;
+    for (float& z : state.position.z) z -= 30;
+    const RunOut run_out = measure_run_out(ground, state, trail(in_the_bend), released, 150);
+    EXPECT_EQ(run_out.front_chainage, 150);
+    const PlanPoint crown{released.crown.x, released.crown.y};
+    EXPECT_NEAR(run_out.straight, std::hypot(1003.8 - crown.x, 2039.8 - crown.y), 0.3);
+    const double round = std::hypot(990 - crown.x, 1960 - crown.y) + std::hypot(1003.8 - 990, 2039.8 - 1960);
+    EXPECT_NEAR(run_out.along_flow, round, 2);
+    EXPECT_FALSE(run_out.at_least);
+    EXPECT_NEAR(run_out.toe.y, 2039.8, 1e-3);
+    EXPECT_NEAR(run_out.drop, 30, 1.61);  // to one of the foremost particles, of any layer
+    EXPECT_NEAR(run_out.runout_angle, std::atan(run_out.drop / run_out.along_flow), 1e-12);
+    EXPECT_NEAR(run_out.travel_angle, std::atan(30 / (std::hypot(990 - 934, 10) + std::hypot(10, 76))), 0.01);
+}
+
+TEST(RunOut, is_there_without_a_path_and_nothing_while_all_is_held) {
     const Ground ground = test::make_ground();
     State state = block(0.4, -50, 0, 10, 10, 3);
-    const ReleasedMass released = measure_release(ground, state, {});
+    const ReleasedMass released = measure_release(ground, state);
     for (float& x : state.position.x) x += 30;
     for (float& y : state.position.y) y += 40;
-    const RunOut run_out = measure_run_out(ground, state, {}, released, never);
+    const Grid<float> open = trail([](const PlanPoint&) { return true; });
+    const RunOut run_out = measure_run_out(ground, state, open, released, never);
     EXPECT_TRUE(std::isnan(run_out.front_chainage));
-    EXPECT_NEAR(run_out.horizontal_distance, 50, 5);
+    EXPECT_NEAR(run_out.straight, 50, 5);
+    EXPECT_NEAR(run_out.along_flow, run_out.straight, 1e-9);
     EXPECT_EQ(run_out.travel_angle, 0);
     state.held.assign(state.count, 1);
-    EXPECT_TRUE(std::isnan(measure_run_out(ground, state, {}, released, never).drop));
+    EXPECT_TRUE(std::isnan(measure_run_out(ground, state, open, released, never).drop));
+}
+
+TEST(RunOut, goes_to_the_edge_at_least_where_debris_left_the_terrain) {
+    const Ground ground = test::make_ground(0.5);
+    State state = block(0.4, -50, 0, 10, 10, 3);
+    const ReleasedMass released = measure_release(ground, state);
+    const Grid<float> eastward = trail([](const PlanPoint& p) { return p.y > 1990 && p.y < 2010 && p.x > 945; });
+    for (const std::uint32_t stays : {200U, 0U}) {
+        state.outflow = state.seeded - stays;
+        state.count = stays;
+        const RunOut run_out = measure_run_out(ground, state, eastward, released, never);
+        EXPECT_TRUE(run_out.at_least);
+        EXPECT_NEAR(run_out.straight, 1099 - released.crown.x, 1);
+        EXPECT_NEAR(run_out.along_flow, 1099 - released.crown.x, 1);
+        EXPECT_NEAR(run_out.drop, released.crown.z - 50.5, 0.6) << "to the ground at the eastern edge";
+        EXPECT_EQ(std::isnan(run_out.travel_angle), stays == 0);
+    }
 }
 
 }  // namespace

@@ -187,8 +187,10 @@ TEST_F(Products, FrontTableLeavesUnknownVelocitiesEmpty) {
 TEST_F(Products, RunOutTableGivesAnglesInDegrees) {
     const auto rows = rows_of(test::read_text(folder_->path() / "run_out.csv"));
     ASSERT_EQ(rows.size(), 2U);
-    EXPECT_EQ(rows[0][3], "runout_angle_deg");
-    EXPECT_NEAR(std::tan(std::stod(rows[1][3]) * M_PI / 180), std::stod(rows[1][2]) / std::stod(rows[1][1]), 1e-6);
+    EXPECT_THAT(rows[0], ElementsAre("run_out_along_flow_m", "run_out_straight_m", "at_least", "toe_x_m", "toe_y_m",
+                                     "drop_m", "runout_angle_deg", "travel_angle_deg", "front_chainage_m"));
+    EXPECT_NEAR(std::tan(std::stod(rows[1][6]) * M_PI / 180), std::stod(rows[1][5]) / std::stod(rows[1][0]), 1e-6);
+    EXPECT_EQ(rows[1][2], "no");
 }
 
 TEST_F(Products, BuildingTableUsesKilonewtonAndKilopascal) {

@@ -184,7 +184,7 @@ inline Scene sample_scene() {
 inline RunResult sample_result(const Scene& scene) {
     using V = SampleValley;
     RunResult result;
-    result.stop_reason = "debris came to rest (momentum below 2 % of its peak for 3 s)";
+    result.stop_reason = "debris came to rest (less than 0.1 % of it moving for 3 s)";
     Observation& o = result.observation;
     const auto path = V::path();
     constexpr double map_cell = 1;
@@ -227,9 +227,12 @@ inline RunResult sample_result(const Scene& scene) {
         }
     }
     o.run_out.front_chainage = V::toe;
-    o.run_out.horizontal_distance = V::toe - 3;
+    o.run_out.along_flow = V::toe - 3;
+    o.run_out.straight = V::toe - 20;
+    o.run_out.crown = scene.flow_path.point_at(3);
+    o.run_out.toe = scene.flow_path.point_at(V::toe);
     o.run_out.drop = V::floor_at(3) - V::floor_at(V::toe);
-    o.run_out.runout_angle = std::atan(o.run_out.drop / o.run_out.horizontal_distance);
+    o.run_out.runout_angle = std::atan(o.run_out.drop / o.run_out.along_flow);
     o.run_out.travel_angle = o.run_out.runout_angle + 0.02;
 
     for (const Building& b : scene.buildings) {

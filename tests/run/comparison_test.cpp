@@ -21,7 +21,7 @@ class Compare : public testing::Test {
         Observation o;
         o.front = {{99, 8, velocity, velocity}, {101, 8.2, velocity, velocity}, {190, 20, 3, 3}};
         o.run_out.front_chainage = 210;
-        o.run_out.horizontal_distance = run_out;
+        o.run_out.along_flow = run_out;
         o.buildings.resize(2);
         o.buildings[1].hit = std::isfinite(hit);
         o.buildings[1].first_hit_time = hit;
@@ -88,7 +88,7 @@ TEST_F(Compare, WhatNeitherReachesIsNotJudged) {
     add("finer", observed(10, 12, 200));
     const Comparison c = compared();
     EXPECT_EQ(c.rows[0].changes[0].verdict, Verdict::not_measured);
-    EXPECT_EQ(c.quantities[0].not_measured, "the front did not get there");
+    EXPECT_EQ(c.quantities[0].not_measured, "the front did not get there, or jumped along the path");
     EXPECT_EQ(c.converged(), Answer::yes);
 }
 
@@ -114,9 +114,9 @@ TEST_F(Compare, WithoutFlowPathObservationAndHitOnlyRunOutIsMeasured) {
     ASSERT_EQ(c.quantities.size(), 2U);
     EXPECT_THAT(c.quantities[0].not_measured, HasSubstr("no building was hit"));
     EXPECT_EQ(c.converged(), Answer::yes);
-    base.observation.run_out.horizontal_distance = never;
+    base.observation.run_out.along_flow = never;
     runs.clear();
-    bare.run_out.horizontal_distance = never;
+    bare.run_out.along_flow = never;
     add("finer", bare);
     EXPECT_EQ(compared().converged(), Answer::unknown);
     EXPECT_THAT(compared().verdict_text(), HasSubstr("nothing could be measured"));

@@ -1,6 +1,7 @@
 #include <cmath>
 #include <limits>
 #include <stdexcept>
+#include <string>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -16,6 +17,7 @@ using testing::AnyOf;
 using testing::Contains;
 using testing::EndsWith;
 using testing::HasSubstr;
+using testing::Not;
 using testing::StartsWith;
 
 class LoadScene : public SceneFolder {
@@ -132,6 +134,70 @@ TEST_F(LoadScene, AThicknessRasterGivesThicknessWhereItIsAboveZero) {
     EXPECT_THAT(scene.notes, Contains(HasSubstr("50 % of its area has no thickness")));
     write_terrain("thickness.tif", [&](double, double) { return 0.0; });
     EXPECT_THAT(load_error(), AllOf(StartsWith(line(6)), HasSubstr("no thickness above 0")));
+}
+
+TEST_F(LoadScene, ARasterAloneIsARelease) {
+    // An L of 300 m2 in plan, 2 m thick, with a part apart; the valley's side is 1.14 times its plan.
+    write_terrain("thickness.tif", [&](double x, double y) {
+        const double east = x - west, north = y - south;
+        const bool corner = east < 30 && east > 20 && north > 90 && north < 110;
+        return corner || (east > 30 && east < 40 && north > 90 && north < 100) ? 2.0 : 0.0;
+    });
+    const std::string scene_start = "[terrain]\nfile = \"dem.tif\"\n[[release]]\nname = \"scarp\"\n";
+    write_valley("");
+    write("scene.toml", scene_start + "thickness_raster = \"thickness.tif\"\n");
+    const Scene normal = loaded();
+    ASSERT_EQ(normal.releases[0].patches.size(), 1U);
+    EXPECT_NEAR(plan_area(normal.releases[0].patches[0].polygon), 300, 1e-6);
+    EXPECT_TRUE(normal.releases[0].extent().contains({west + 25, south + 105}));
+    EXPECT_FALSE(contains(normal.releases[0].patches[0].polygon, {west + 35, south + 105}));
+    EXPECT_NEAR(normal.releases[0].volume, 600 * std::sqrt(1.29), 6);
+    EXPECT_THAT(normal.notes, Contains(HasSubstr("the cells of its raster times their thickness are 600 m3")));
+
+    write("scene.toml", scene_start + "thickness_raster = \"thickness.tif\"\nthickness_direction = \"vertical\"\n");
+    const Scene vertical = loaded();
+    EXPECT_NEAR(vertical.releases[0].volume, 600, 0.1);
+    EXPECT_NEAR(vertical.releases[0].depth_at(vertical.terrain, {west + 25, south + 95}), 2, 1e-6);
+
+    write_terrain("thickness.tif", [&](double, double) { return 0.0; });
+    EXPECT_THAT(load_error(), HasSubstr("thickness.tif: has no thickness above 0 over the terrain"));
+}
+
+TEST_F(LoadScene, AnAsciiGridWithoutAReferenceSystemIsInTheTerrains) {
+    write_valley("");
+    std::string grid = fmt::format("ncols 4\nnrows 4\nxllcorner {}\nyllcorner {}\ncellsize 5\nNODATA_value -9999\n",
+                                   west + 20, south + 90);
+    for (int row = 0; row < 4; ++row) grid += "-9999 1.5 1.5 -9999\n";
+    write("thickness.asc", grid);
+    write("scene.toml", "[terrain]\nfile = \"dem.tif\"\n[[release]]\nthickness_raster = \"thickness.asc\"\n");
+    const Scene scene = loaded();
+    EXPECT_NEAR(scene.releases[0].volume, 300 * std::sqrt(1.29), 3);
+    EXPECT_THAT(scene.notes, Contains(HasSubstr("states no coordinate reference system, taken as the terrain's")));
+}
+
+TEST_F(LoadScene, ElevationsInFeetAreAskedAbout) {
+    write_valley("", "thickness_m = 1.5");
+    const auto asks = Contains(AllOf(StartsWith("terrain: "), HasSubstr("in feet")));
+    EXPECT_THAT(loaded().notes, Not(asks));
+    write_terrain("dem.tif", [](double x, double y) { return valley(x, y) / 0.3048; });
+    const Scene feet = loaded();
+    EXPECT_THAT(feet.notes, asks);
+    EXPECT_THAT(feet.notes, Contains(HasSubstr("half of it is steeper than 60 degrees")));
+    EXPECT_THAT(feet.notes, Contains(HasSubstr("release \"scarp\" lies at ")));
+    EXPECT_THAT(feet.notes, Contains(HasSubstr("steeper than 28 degrees in truth")));
+}
+
+TEST_F(LoadScene, ParticlesAsThickAsTheReleaseAreNoted) {
+    write_valley("", "thickness_m = 1.5");
+    const auto note_at = [&](double spacing) {
+        for (const std::string& note : loaded({fmt::format("solver.particle_spacing_m={}", spacing)}).notes) {
+            if (note.find("layers need solver.particle_spacing_m = 0.3") != std::string::npos) return note;
+        }
+        return std::string();
+    };
+    EXPECT_THAT(note_at(3), HasSubstr("particles are 3 m apart, more than it is thick (1.5 m)"));
+    EXPECT_THAT(note_at(0.75), HasSubstr("it is 2 particles thick (1.5 m)"));
+    EXPECT_EQ(note_at(0.29), "");
 }
 
 TEST_F(LoadScene, AReleaseOutsideTheTerrainIsNamedWithPlaceAndExtent) {

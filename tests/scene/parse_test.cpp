@@ -134,7 +134,7 @@ TEST_F(ParseScene, MissingKeysAreNamed) {
     EXPECT_EQ(error_of("\n[terrain]\nband = 1\n[[release]]\nfile = \"r.gpkg\"\n"),
               line(2) + "terrain.file is missing; it must be a file path in quotes");
     EXPECT_EQ(error_of("[terrain]\nfile = \"dem.tif\"\n[[release]]\nthickness_m = 2\n"),
-              line(3) + "release[0].file is missing; it must be a file path in quotes");
+              line(3) + "release[0].file is missing; it must be a file path in quotes, or thickness_raster be given");
     EXPECT_THAT(error_of("[terrain]\nfile = \"dem.tif\"\n"),
                 EndsWith("there is no [[release]] and no [[inflow]]; a scene needs at least one"));
     EXPECT_THAT(error_after("[[observation]]\nchainage_m = 3\n"),

@@ -196,7 +196,8 @@ TEST_F(Structures, AResistanceThatIsExceededBringsItDownTheSameOnAnyNumberOfThre
     EXPECT_EQ(one.hash, two.hash);
     EXPECT_EQ(fallen.failure_time, two.observation.buildings.at(0).failure_time);
     EXPECT_NE(one.hash, stood.hash);
-    EXPECT_GT(one.observation.run_out.horizontal_distance, stood.observation.run_out.horizontal_distance + 10);
+    EXPECT_GT(one.observation.run_out.front_chainage, stood.observation.run_out.front_chainage + 10);
+    EXPECT_GT(one.observation.run_out.along_flow, stood.observation.run_out.along_flow + 5);
     const RunResult strong = run({fmt::format("barrier[0].resistance_Npm={}", 2 * peak)});
     EXPECT_EQ(strong.hash, stood.hash) << "a resistance that is not exceeded changes nothing";
 }
@@ -218,7 +219,7 @@ TEST_F(Structures, InflowBringsItsVolumeToTheParticle) {
     const TimeSample& last = result.observation.timeseries.back();
     EXPECT_NEAR(last.volume_held + last.volume_moving + last.volume_deposited + last.volume_left, 110, 1e-6);
     EXPECT_EQ(run({"solver.thread_count=1"}).hash, result.hash);
-    EXPECT_GT(result.observation.run_out.horizontal_distance, 5);
+    EXPECT_GT(result.observation.run_out.along_flow, 5);
 }
 
 TEST_F(Structures, InflowAndReleaseRunTogether) {

@@ -20,7 +20,7 @@ constexpr Quantity quantities[] = {
     {"front_velocity", "m/s", false, Quantity::Site::chainage, "slope of chainage against the front's arrival time"},
     {"particle_speed", "m/s", false, Quantity::Site::chainage, "mean speed of the debris at the front on arrival"},
     {"arrival_time", "s", false, Quantity::Site::chainage, "when the front came"},
-    {"run_out", "m", false, Quantity::Site::none, "along the flow path from crown to toe"},
+    {"run_out", "m", false, Quantity::Site::none, "along the flow from the crown to the farthest deposit"},
     {"front_chainage", "m", false, Quantity::Site::none, "farthest chainage that the front reached"},
     {"runout_angle", "deg", false, Quantity::Site::none, "from crown to toe"},
     {"travel_angle", "deg", false, Quantity::Site::none, "between the centres of mass of release and deposit"},
@@ -80,7 +80,7 @@ double measure(const Expectation& e, const Scene& scene, const Observation& obse
         const Surroundings found = look_around(e, scene, observation);
         return e.quantity == "peak_depth" ? found.peak_depth : found.height_reached;
     }
-    if (e.quantity == "run_out") return observation.run_out.horizontal_distance;
+    if (e.quantity == "run_out") return observation.run_out.along_flow;
     if (e.quantity == "front_chainage") return observation.run_out.front_chainage;
     if (e.quantity == "runout_angle") return observation.run_out.runout_angle * to_degrees;
     if (e.quantity == "travel_angle") return observation.run_out.travel_angle * to_degrees;

@@ -2,7 +2,7 @@
 
 /** A body of debris that starts to move at one moment; a scene needs one, or an inflow. */
 export interface ReleaseValues {
-  /** Uniform thickness, normal to the slope. null: one of the other three is given. */
+  /** Uniform thickness. null: one of the other three is given. */
   thickness_m: number | null;
 }
 
@@ -121,7 +121,7 @@ export const fields = {
   release: {
     thickness_m: {
       label: "Thickness", unit: "m", factor: 1, low: 0.0001, high: 1000, sliderLow: 0.1, sliderHigh: 10, first: 1.5,
-      tick: null, tickHelp: "", help: "Uniform thickness, normal to the slope.",
+      tick: null, tickHelp: "", help: "Uniform thickness.",
     },
   },
   inflow: {
@@ -162,11 +162,11 @@ export const fields = {
       tick: null, tickHelp: "", help: "With law = \"shear\": less shear stress, rest density x gravity x depth x sine of the slope, picks up nothing.",
     },
     erosion_rate_mps: {
-      label: "Erosion rate", unit: "m/s", factor: 1, low: 1e-05, high: 10, sliderLow: 0.001, sliderHigh: 0.101, first: 0.025,
+      label: "Erosion rate", unit: "m/s", factor: 1, low: 1e-05, high: 10, sliderLow: 0.001, sliderHigh: 0.101, first: 0.013,
       tick: null, tickHelp: "", help: "With law = \"shear\": how fast the bed is lowered.",
     },
     erosion_depth_mpPa: {
-      label: "Erosion depth", unit: "m/kPa", factor: 1000, low: 0.0001, high: 1000, sliderLow: 0.01, sliderHigh: 1.01, first: 0.1,
+      label: "Erosion depth", unit: "m/kPa", factor: 1000, low: 0.0001, high: 1000, sliderLow: 0.01, sliderHigh: 1.01, first: 0.05,
       tick: null, tickHelp: "", help: "With law = \"shear\": how deep at most, per shear stress above the critical one.",
     },
   },

@@ -1,0 +1,162 @@
+#include "observe/trail.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <utility>
+
+namespace talus {
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+constexpr double longest_sight = 200;  ///< cells; a bend is put in after so many, which changes no length by much
+
+double distance(const PlanPoint& a, const PlanPoint& b) {
+    return std::hypot(b.x - a.x, b.y - a.y);
+}
+
+/// Calls f for the up to eight cells around one.
+template <class Function>
+void for_each_neighbour(const GridGeometry& g, std::int32_t cell, const Function& f) {
+    const int column = cell % g.columns, row = cell / g.columns;
+    for (int r = std::max(0, row - 1); r <= std::min(g.rows - 1, row + 1); ++r) {
+        for (int c = std::max(0, column - 1); c <= std::min(g.columns - 1, column + 1); ++c) {
+            const auto other = static_cast<std::int32_t>(g.index(c, r));
+            if (other != cell) f(other);
+        }
+    }
+}
+
+}  // namespace
+
+TrailWays::TrailWays(const Grid<float>& covered, const PlanPoint& from)
+    : geometry_(covered.geometry),
+      from_(from),
+      covered_(covered.values.size()),
+      settled_(covered.values.size(), 0),
+      length_(covered.values.size(), infinity),
+      bend_(covered.values.size(), -1) {
+    std::transform(covered.values.begin(), covered.values.end(), covered_.begin(),
+                   [](float value) { return static_cast<std::uint8_t>(!std::isnan(value)); });
+    const Cell first = nearest_covered(from);
+    if (first < 0) return;
+    length_[static_cast<std::size_t>(first)] = distance(from, centre(first));
+    open_.emplace_back(length_[static_cast<std::size_t>(first)], first);
+    search(false);
+
+    const auto reached = [&](std::size_t k) { return covered_[k] == 0 || settled_[k] != 0; };
+    bool all = true;
+    for (std::size_t k = 0; k < covered_.size() && all; ++k) all = reached(k);
+    if (all) return;
+    for (std::size_t k = 0; k < covered_.size(); ++k) {
+        if (settled_[k] == 0) continue;
+        settled_[k] = 0;
+        bend_[k] = static_cast<Cell>(k);
+        open_.emplace_back(length_[k], static_cast<Cell>(k));
+    }
+    std::make_heap(open_.begin(), open_.end(), std::greater<>{});
+    search(true);
+}
+
+void TrailWays::search(bool anywhere) {
+    while (!open_.empty()) {
+        std::pop_heap(open_.begin(), open_.end(), std::greater<>{});
+        const auto [length, cell] = open_.back();
+        open_.pop_back();
+        const auto k = static_cast<std::size_t>(cell);
+        if (settled_[k] != 0) continue;
+        settle(cell, anywhere);
+        for_each_neighbour(geometry_, cell, [&](Cell other) {
+            const auto n = static_cast<std::size_t>(other);
+            if (settled_[n] != 0 || (!anywhere && covered_[n] == 0)) return;
+            // As if it were in sight from the last bend: settle() looks.
+            const double way = bend_length(cell) + distance(bend(cell), centre(other));
+            if (way >= length_[n]) return;
+            length_[n] = way;
+            bend_[n] = bend_[k];
+            open_.emplace_back(way, other);
+            std::push_heap(open_.begin(), open_.end(), std::greater<>{});
+        });
+    }
+}
+
+void TrailWays::settle(Cell cell, bool anywhere) {
+    const auto k = static_cast<std::size_t>(cell);
+    if (bend_[k] != cell && !in_sight(bend(cell), centre(cell), anywhere)) {
+        double shortest = infinity;
+        for_each_neighbour(geometry_, cell, [&](Cell other) {
+            const auto n = static_cast<std::size_t>(other);
+            if (settled_[n] == 0) return;
+            const double way = length_[n] + distance(centre(other), centre(cell));
+            if (way >= shortest) return;
+            shortest = way;
+            length_[k] = way;
+            bend_[k] = other;
+        });
+    }
+    settled_[k] = 1;
+}
+
+bool TrailWays::in_sight(const PlanPoint& a, const PlanPoint& b, bool anywhere) const {
+    const double length = distance(a, b) / geometry_.cell;
+    if (length > longest_sight) return false;
+    if (anywhere || length < 1.5) return true;  // beside each other, diagonally too
+    const auto samples = static_cast<int>(std::ceil(2 * length));
+    for (int s = 1; s < samples; ++s) {
+        const double share = static_cast<double>(s) / samples;
+        const auto c = static_cast<int>((a.x + share * (b.x - a.x) - geometry_.x_min) / geometry_.cell);
+        const auto r = static_cast<int>((a.y + share * (b.y - a.y) - geometry_.y_min) / geometry_.cell);
+        if (c < 0 || r < 0 || c >= geometry_.columns || r >= geometry_.rows || covered_[geometry_.index(c, r)] == 0) {
+            return false;
+        }
+    }
+    return true;
+}
+
+TrailWays::Cell TrailWays::nearest_covered(const PlanPoint& p) const {
+    const double u = (p.x - geometry_.x_min) / geometry_.cell, v = (p.y - geometry_.y_min) / geometry_.cell;
+    if (u >= 0 && v >= 0 && u < geometry_.columns && v < geometry_.rows) {
+        const std::size_t k = geometry_.index(static_cast<int>(u), static_cast<int>(v));
+        if (covered_[k] != 0) return static_cast<Cell>(k);
+    }
+    // In squares that double until one holds a covered cell.
+    const int column = static_cast<int>(std::clamp(u, 0.0, geometry_.columns - 1.0));
+    const int row = static_cast<int>(std::clamp(v, 0.0, geometry_.rows - 1.0));
+    Cell nearest = -1;
+    for (int reach = 2; nearest < 0 && reach < 2 * (geometry_.columns + geometry_.rows); reach *= 2) {
+        double shortest = infinity;
+        for (int r = std::max(0, row - reach); r <= std::min(geometry_.rows - 1, row + reach); ++r) {
+            for (int c = std::max(0, column - reach); c <= std::min(geometry_.columns - 1, column + reach); ++c) {
+                const std::size_t k = geometry_.index(c, r);
+                const double d = distance(p, geometry_.centre(c, r));
+                if (covered_[k] == 0 || d >= shortest) continue;
+                shortest = d;
+                nearest = static_cast<Cell>(k);
+            }
+        }
+    }
+    return nearest;
+}
+
+PlanPoint TrailWays::centre(Cell cell) const {
+    return geometry_.centre(cell % geometry_.columns, cell / geometry_.columns);
+}
+
+PlanPoint TrailWays::bend(Cell cell) const {
+    const Cell at = bend_[static_cast<std::size_t>(cell)];
+    return at < 0 ? from_ : centre(at);
+}
+
+double TrailWays::bend_length(Cell cell) const {
+    const Cell at = bend_[static_cast<std::size_t>(cell)];
+    return at < 0 ? 0 : length_[static_cast<std::size_t>(at)];
+}
+
+double TrailWays::to(const PlanPoint& p) const {
+    const Cell cell = nearest_covered(p);
+    return cell < 0 ? never : bend_length(cell) + distance(bend(cell), p);
+}
+
+}  // namespace talus
