@@ -52,15 +52,22 @@ TRAIL_CORNERS = [CROWN, (824318.0, 825822.0), (824283.0, 825813.5), (824252.5, 8
                  (824180.0, 825600.0), (824166.0, 825570.0)]
 # Below the published profile: the apron on which the village stands.
 APRON_PROFILE = [(310, 14.3), (335, 11.0), (365, 8.0)]
-# The 10 m fall as a step 2 m long, where the published profile is steepest. Approach and foot at channel gradient.
-WATERFALL_LIP = (168.0, 84.4)
-WATERFALL_FOOT_CHAINAGE = 170.0
+# The 10 m fall as a step 2 m long between the bend and the marks at 121 m, in the order in which debris came to them. The
+# published profile shows no fall there, and is good to 5 m: half of the fall stands above it and half below, and so
+# the bed lies higher than published from the bend on and lower after the fall.
+WATERFALL_LIP = (114.0, 112.2)
+WATERFALL_FOOT_CHAINAGE = 116.0
+ADAPTED = {88: 114.0, 98: 113.2, 130: 98.6, 162: 86.8}
+BED = [(s, ADAPTED.get(s, z)) for s, z in PROFILE]
+# The rugged channel between both marks: steps and boulders as roughness of the bed.
+RUGGED_REACH = (121.0, 217.0)
+RUGGED_BED = [(5.0, 0.6), (2.5, 0.3)]  # wavelength m, amplitude m
 
 # Cross-section by chainage: half width of the rounded bed, gradient of the banks, and how far the bed lies below the
 # smooth hillside.
 SECTIONS = [  # chainage, half width m, bank gradient, incision m
     (0, 5.0, 0.55, 2.5), (30, 5.0, 0.50, 2.0), (70, 4.0, 0.50, 2.5), (88, 3.0, 0.65, 4.0), (105, 2.2, 0.85, 6.5),
-    (130, 2.0, 0.85, 7.0), (166, 2.0, 0.90, 6.0), (172, 2.5, 1.00, 10.0), (195, 2.2, 0.85, 7.5),
+    (130, 2.0, 0.85, 7.0), (195, 2.2, 0.85, 7.5),
     (225, 2.2, 0.75, 5.5), (245, 2.5, 0.60, 3.8), (260, 4.0, 0.40, 2.0), (285, 7.0, 0.25, 0.6), (365, 15.0, 0.10, -0.5)]
 
 # The gully above the bend and four shallow hollows beside it: corners of the line, and how far it is cut into the
@@ -245,11 +252,11 @@ def noise(easting, northing, wavelength, seed):
 # ---------------------------------------------------------------------------------------------------------- the ground
 
 def bed_elevation(chainage):
-    """The trail's bed: the published profile with the waterfall put into it, then the apron."""
+    """The trail's bed: the published profile adapted to the waterfall, then the apron."""
     lip, height = WATERFALL_LIP
-    above = [p for p in PROFILE if p[0] < lip] + [WATERFALL_LIP]
+    above = [p for p in BED if p[0] < lip] + [WATERFALL_LIP]
     below = [(WATERFALL_FOOT_CHAINAGE, height - WATERFALL_HEIGHT)]
-    below += [p for p in PROFILE if p[0] > WATERFALL_FOOT_CHAINAGE] + APRON_PROFILE
+    below += [p for p in BED if p[0] > WATERFALL_FOOT_CHAINAGE] + APRON_PROFILE
     step = [WATERFALL_LIP, below[0]]
     return np.where(chainage <= lip, monotone_curve(above, chainage),
                     np.where(chainage < WATERFALL_FOOT_CHAINAGE, np.interp(chainage, *zip(*step)),
@@ -257,7 +264,16 @@ def bed_elevation(chainage):
 
 
 def bed_without_fall(chainage):
-    return monotone_curve(PROFILE + APRON_PROFILE, chainage)
+    return monotone_curve(BED + APRON_PROFILE, chainage)
+
+
+def rugged_bed(chainage, distance, easting, northing):
+    """Steps and boulders on the bed between the marks; they fade out over 4 m along and 6 m across the trail."""
+    start, end = RUGGED_REACH
+    along = np.clip((chainage - start) / 4, 0, 1) * np.clip((end - chainage) / 4, 0, 1)
+    across = np.clip((10 - distance) / 6, 0, 1)
+    return along * across * sum(amplitude * noise(easting, northing, wavelength, seed)
+                                for seed, (wavelength, amplitude) in enumerate(RUGGED_BED, 41))
 
 
 def bank_rise(distance, half_width, gradient):
@@ -307,10 +323,10 @@ def make_ground(trail, easting, northing):
     beside = np.clip((distance - 4) / 8, 0, 1)
     bed = (1 - beside) * bed_elevation(chainage) + beside * bed_without_fall(chainage)
     bank = bank_rise(distance, section(1, chainage), section(2, chainage))
-    # The bed itself is left as published; its banks are a little uneven.
+    # Outside the rugged reach the bed is as smooth as its profile; its banks are a little uneven.
     uneven = 0.15 * noise(easting, northing, 7.0, 11) + 0.08 * noise(easting, northing, 3.5, 12)
-    return smooth_minimum(ground, bed + bank + uneven * np.clip(distance / 4, 0, 1),
-                          1.2 + 0.15 * np.clip(distance, 0, 20))
+    cut = bed + bank + uneven * np.clip(distance / 4, 0, 1) + rugged_bed(chainage, distance, easting, northing)
+    return smooth_minimum(ground, cut, 1.2 + 0.15 * np.clip(distance, 0, 20))
 
 
 # ---------------------------------------------------------------------------------------------------------------- files

@@ -97,7 +97,7 @@ World column(int particles) {
 }
 
 Result<World> sham_tseng(int particles, const std::filesystem::path& builtin_scene) {
-    TALUS_ASSIGN(Scene scene, load_scene(builtin_scene));
+    TALUS_ASSIGN(Scene scene, load_scene(builtin_scene, {"variant=paper"}));  // the same laws as in the other scenes
     World world;
     world.terrain = std::move(scene.terrain);
     world.buildings = std::move(scene.buildings);
