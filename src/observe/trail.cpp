@@ -10,7 +10,7 @@
 namespace talus {
 namespace {
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
+constexpr double unreached = std::numeric_limits<double>::infinity();
 constexpr double longest_sight = 200;  ///< cells; a bend is put in after so many, which changes no length by much
 
 double distance(const PlanPoint& a, const PlanPoint& b) {
@@ -36,7 +36,7 @@ TrailWays::TrailWays(const Grid<float>& covered, const PlanPoint& from)
       from_(from),
       covered_(covered.values.size()),
       settled_(covered.values.size(), 0),
-      length_(covered.values.size(), infinity),
+      length_(covered.values.size(), unreached),
       bend_(covered.values.size(), -1) {
     std::transform(covered.values.begin(), covered.values.end(), covered_.begin(),
                    [](float value) { return static_cast<std::uint8_t>(!std::isnan(value)); });
@@ -85,7 +85,7 @@ void TrailWays::search(bool anywhere) {
 void TrailWays::settle(Cell cell, bool anywhere) {
     const auto k = static_cast<std::size_t>(cell);
     if (bend_[k] != cell && !in_sight(bend(cell), centre(cell), anywhere)) {
-        double shortest = infinity;
+        double shortest = unreached;
         for_each_neighbour(geometry_, cell, [&](Cell other) {
             const auto n = static_cast<std::size_t>(other);
             if (settled_[n] == 0) return;
@@ -126,7 +126,7 @@ TrailWays::Cell TrailWays::nearest_covered(const PlanPoint& p) const {
     const int row = static_cast<int>(std::clamp(v, 0.0, geometry_.rows - 1.0));
     Cell nearest = -1;
     for (int reach = 2; nearest < 0 && reach < 2 * (geometry_.columns + geometry_.rows); reach *= 2) {
-        double shortest = infinity;
+        double shortest = unreached;
         for (int r = std::max(0, row - reach); r <= std::min(geometry_.rows - 1, row + reach); ++r) {
             for (int c = std::max(0, column - reach); c <= std::min(geometry_.columns - 1, column + reach); ++c) {
                 const std::size_t k = geometry_.index(c, r);
