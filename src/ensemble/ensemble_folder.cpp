@@ -76,7 +76,7 @@ Result<Json> read_definition(const fs::path& folder, const std::string& kind) {
     std::ifstream in(folder / "ensemble.json");
     Json json = Json::parse(in, nullptr, false);
     if (!json.is_object() || json.value("program", Json()) != "talus" || json.value("kind", Json()) != kind) {
-        return Error{fmt::format("{}: is not a {} of talus (it has no ensemble.json)", folder.string(), kind)};
+        return Error{fmt::format("{}: is no {} of talus (it has no ensemble.json)", folder.string(), kind)};
     }
     return json;
 }

@@ -262,7 +262,7 @@ std::optional<Violation> broken_tie(const Section& section, const Parameter& par
                                     std::size_t index, double spacing) {
     const std::optional<double> value = number_in(parameter, spec, index);
     if (!value) return {};
-    if (*value < parameter.spacings * spacing) {
+    if (parameter.spacings > 0 && *value < parameter.spacings * spacing) {
         return Violation{
             parameter.key,
             fmt::format(" = {:.6g} is refused; with particles of {:.3g} m it must be at least {:.4g} m: {}", *value,

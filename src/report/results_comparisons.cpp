@@ -194,13 +194,19 @@ Json comparison(const Comparison& comparison, const Scene& scene, const RunResul
     }
     const bool velocities = std::any_of(comparison.quantities.begin(), comparison.quantities.end(),
                                         [](const Quantity& q) { return q.unit == "m/s"; });
+    Json missing = Json::array();
+    for (const Comparison::Row& row : comparison.rows) {
+        if (!row.run.result) missing.push_back({{"name", row.run.variant.name}, {"why", row.run.missing}});
+    }
     return {{"kind_of_comparison", judged ? "convergence" : "sensitivity"},
             {"convergence", judged},
             {"converged", converged},
+            {"not_known", judged && comparison.converged() == Answer::unknown},
             {"verdict", capitalised(comparison.verdict_text())},
             {"counting_force_percent", 100 * counting_force_share},
             {"table", judged ? rows_of_quantities(comparison, base) : rows_of_runs(comparison, base)},
             {"not_measured", std::move(not_measured)},
+            {"missing", judged ? std::move(missing) : Json::array()},
             {"has_named", !named.empty()},
             {"named", std::move(named)},
             {"without_velocities", !velocities},

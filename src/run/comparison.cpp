@@ -74,8 +74,13 @@ Measure run_out() {
 
 Measure deposit_area() {
     Measure m;
-    m.quantity = {.key = "deposit_area", .suffix = "m2", .name = "deposit area", .unit = "m²", .limit_percent = 10};
-    m.value = [](const Observation& o) { return o.deposit.area; };
+    m.quantity = {.key = "deposit_area",
+                  .suffix = "m2",
+                  .name = "deposit area",
+                  .unit = "m²",
+                  .limit_percent = 10,
+                  .not_measured = "nothing was deposited"};
+    m.value = [](const Observation& o) { return o.deposit.area > 0 ? o.deposit.area : never; };
     return m;
 }
 
@@ -111,9 +116,16 @@ std::vector<std::size_t> counting_hits(const Observation& observation) {
 void add_buildings(const Observation& base, std::vector<Measure>& all) {
     const std::vector<std::size_t> hits = counting_hits(base);
     Measure list;
-    list.quantity = {
-        .key = "buildings_hit", .suffix = "count", .name = "buildings hit", .unit = "", .limit_percent = 0};
-    list.value = [](const Observation& o) { return static_cast<double>(counting_hits(o).size()); };
+    list.quantity = {.key = "buildings_hit",
+                     .suffix = "count",
+                     .name = "buildings hit",
+                     .unit = "",
+                     .limit_percent = 0,
+                     .not_measured = "no building was hit"};
+    list.value = [](const Observation& o) {
+        const std::size_t count = counting_hits(o).size();
+        return count > 0 ? static_cast<double>(count) : never;
+    };
     list.same = [hits](const Observation& o) { return counting_hits(o) == hits; };
     all.push_back(std::move(list));
     for (const std::size_t i : hits) {

@@ -93,14 +93,14 @@ TEST_F(ComparisonProducts, NothingIsSaidOfThemWithoutVariants) {
 }
 
 TEST_F(ComparisonProducts, ConvergenceUnknownIsNotCalledConverged) {
-    EXPECT_THAT(page(), HasSubstr("<b>Not converged: 3 of 8 changes above 5 %, 1 of 3 runs missing.</b>"));
-    EXPECT_THAT(sections(), HasSubstr("Not converged: 3 of 8 changes above 5 %, 1 of 3 runs missing"));
+    EXPECT_THAT(page(), HasSubstr("<b>Not converged: 3 of 24 changes above their limit, 1 of 3 runs missing.</b>"));
+    EXPECT_THAT(sections(), HasSubstr("Not converged: 3 of 24 changes above their limit, 1 of 3 runs missing"));
 
     comparisons[0].rows.erase(comparisons[0].rows.begin() + 1);
     EXPECT_THAT(page(), HasSubstr("<b>Convergence not known: "));
     comparisons[0].rows.pop_back();
     EXPECT_THAT(page(), Not(HasSubstr("href=\"#convergence\"")));
-    EXPECT_THAT(sections(), HasSubstr("<b class=\"good\">Converged: no change above 5 %.</b>"));
+    EXPECT_THAT(sections(), HasSubstr("<b class=\"good\">Converged: none of 12 changes above its limit.</b>"));
 }
 
 TEST_F(ComparisonProducts, ReportSaysWhatIsMissingAndWhatWasNotMeasured) {
@@ -112,7 +112,7 @@ TEST_F(ComparisonProducts, ReportSaysWhatIsMissingAndWhatWasNotMeasured) {
                            {test::sample_variant(result, "double the iterations", "solver.iteration_count=8", 1),
                             {{.name = "gone", .overrides = {}}, std::nullopt, "interrupted before it began"}})};
     const std::string html = sections();
-    EXPECT_THAT(html, HasSubstr("missing: interrupted before it began"));
+    EXPECT_THAT(html, HasSubstr("gone is missing: interrupted before it began"));
     EXPECT_THAT(html, HasSubstr("The scene has no observation"));
     EXPECT_THAT(html, HasSubstr("Not measured in the run as given: first building hit"));
     EXPECT_THAT(html, Not(HasSubstr("<figure>"))) << "no front, nothing to draw";

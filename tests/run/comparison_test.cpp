@@ -25,6 +25,12 @@ class Compare : public testing::Test {
         o.buildings.resize(2);
         o.buildings[1].hit = std::isfinite(hit);
         o.buildings[1].first_hit_time = hit;
+        if (o.buildings[1].hit) {
+            o.buildings[1].name = "mill";
+            o.buildings[1].peak_force = 4e5;
+            o.buildings[1].peak_impact_pressure = 3e4;
+        }
+        o.deposit = {500, 1.5};
         return o;
     }
     void add(const std::string& name, const Observation& o) {
@@ -43,10 +49,16 @@ class Compare : public testing::Test {
 TEST_F(Compare, ChangesArePercentOfTheBase) {
     add("finer", observed(10.4, 11.7, 209));
     const Comparison c = compared();
-    ASSERT_EQ(c.quantities.size(), 3U);
+    ASSERT_EQ(c.quantities.size(), 8U);
     EXPECT_EQ(c.quantities[0].name, "front velocity at 100 m");
     EXPECT_EQ(c.quantities[1].name, "first building hit");
     EXPECT_EQ(c.quantities[2].name, "run-out");
+    EXPECT_EQ(c.quantities[3].name, "deposit area");
+    EXPECT_EQ(c.quantities[4].name, "deposit depth");
+    EXPECT_EQ(c.quantities[5].name, "buildings hit");
+    EXPECT_EQ(c.quantities[6].name, "force on mill");
+    EXPECT_EQ(c.quantities[7].name, "impact pressure on mill");
+    EXPECT_EQ(compared(ComparisonKind::sensitivity).quantities.size(), 5U) << "no judgement on each house";
     const auto& changes = c.rows.at(0).changes;
     EXPECT_NEAR(changes[0].percent, 4, 1e-9);
     EXPECT_NEAR(changes[1].percent, -2.5, 1e-9);
@@ -64,7 +76,7 @@ TEST_F(Compare, AChangeAboveTheLimitEitherWayFails) {
     EXPECT_EQ(c.rows[1].verdict(), Verdict::fail);
     EXPECT_EQ(c.rows[2].verdict(), Verdict::pass);
     EXPECT_EQ(c.converged(), Answer::no);
-    EXPECT_EQ(c.verdict_text(), "not converged: 2 of 9 changes above 5 %");
+    EXPECT_EQ(c.verdict_text(), "not converged: 2 of 24 changes above their limit");
 }
 
 TEST_F(Compare, WhatOnlyOneOfTheTwoReachesFails) {
@@ -108,10 +120,11 @@ TEST_F(Compare, WithoutFlowPathObservationAndHitOnlyRunOutIsMeasured) {
     Observation bare = observed(10, never, 200);
     bare.front.clear();
     bare.run_out.front_chainage = never;
+    bare.deposit = {};
     base.observation = bare;
     add("finer", bare);
     const Comparison c = compared();
-    ASSERT_EQ(c.quantities.size(), 2U);
+    ASSERT_EQ(c.quantities.size(), 5U);
     EXPECT_THAT(c.quantities[0].not_measured, HasSubstr("no building was hit"));
     EXPECT_EQ(c.converged(), Answer::yes);
     base.observation.run_out.along_flow = never;
@@ -130,13 +143,57 @@ TEST_F(Compare, AMissingRunLeavesConvergenceOpenUnlessAChangeIsTooLarge) {
     EXPECT_EQ(compared().verdict_text(), "convergence not known: 1 of 2 runs missing");
     add("far off", observed(20, 12, 200));
     EXPECT_EQ(compared().converged(), Answer::no);
-    EXPECT_EQ(compared().verdict_text(), "not converged: 1 of 6 changes above 5 %, 1 of 3 runs missing");
+    EXPECT_EQ(compared().verdict_text(), "not converged: 1 of 16 changes above its limit, 1 of 3 runs missing");
+}
+
+TEST_F(Compare, EachResultHasItsOwnLimit) {
+    Observation finer = observed(10, 12, 200);
+    finer.deposit = {549, 1.36};
+    finer.buildings[1].peak_force *= 1.14;
+    finer.buildings[1].peak_impact_pressure *= 0.86;
+    add("finer", finer);
+    EXPECT_EQ(compared().converged(), Answer::yes);
+    const auto fails = [&](const auto& change) {
+        Observation off = finer;
+        change(off);
+        runs.clear();
+        add("off", off);
+        return compared().converged() == Answer::no;
+    };
+    EXPECT_TRUE(fails([](Observation& o) { o.deposit.area = 551; }));
+    EXPECT_TRUE(fails([](Observation& o) { o.deposit.depth = 1.34; }));
+    EXPECT_TRUE(fails([](Observation& o) { o.buildings[1].peak_force = 4.61e5; }));
+    EXPECT_TRUE(fails([](Observation& o) { o.buildings[1].peak_impact_pressure = 2.54e4; }));
+}
+
+TEST_F(Compare, BuildingsHitMustBeTheSameButForATouch) {
+    Observation other = observed(10, 12, 200);
+    other.buildings[0].hit = true;
+    other.buildings[0].first_hit_time = 13;
+    other.buildings[0].peak_force = 1.9e4;  // under a twentieth of the largest
+    add("touched", other);
+    EXPECT_EQ(compared().converged(), Answer::yes);
+    other.buildings[0].peak_force = 2.1e4;
+    runs.clear();
+    add("hit", other);
+    EXPECT_EQ(compared().converged(), Answer::no);
+}
+
+TEST_F(Compare, ARunHasOneVerdict) {
+    EXPECT_EQ(numerical_verdict(base, {}).converged, Answer::unknown);
+    add("finer", observed(10, 12, 200));
+    EXPECT_EQ(numerical_verdict(base, {compared()}).converged, Answer::yes);
+    EXPECT_EQ(numerical_verdict(base, {compared(ComparisonKind::sensitivity)}).converged, Answer::unknown);
+    base.observation.compression.time_share_above = 0.2;
+    const NumericalVerdict squeezed = numerical_verdict(base, {compared()});
+    EXPECT_EQ(squeezed.converged, Answer::no) << "whatever the refinements say";
+    EXPECT_EQ(squeezed.text, "not converged: debris too compressed during 20 % of the simulated time");
 }
 
 TEST_F(Compare, TwoObservationsAtOnePlaceAreOneQuantity) {
     scene.spec.observations.push_back({"again", 100, 8, ""});
     add("finer", observed(10, 12, 200));
-    EXPECT_EQ(compared().quantities.size(), 3U);
+    EXPECT_EQ(compared().quantities.size(), 8U);
 }
 
 }  // namespace
