@@ -63,7 +63,7 @@ TrailWays::TrailWays(const Grid<float>& covered, const PlanPoint& from)
 void TrailWays::search(bool anywhere) {
     while (!open_.empty()) {
         std::pop_heap(open_.begin(), open_.end(), std::greater<>{});
-        const auto [length, cell] = open_.back();
+        const Cell cell = open_.back().second;
         open_.pop_back();
         const auto k = static_cast<std::size_t>(cell);
         if (settled_[k] != 0) continue;

@@ -236,7 +236,7 @@ Answer Comparison::converged() const {
 
 std::string Comparison::verdict_text() const {
     const Counts counts = count(*this);
-    const std::string missing =
+    std::string missing =
         counts.missing_runs > 0 ? fmt::format("{} of {} runs missing", counts.missing_runs, rows.size()) : "";
     if (kind == ComparisonKind::sensitivity) {
         if (!missing.empty()) return missing;

@@ -61,7 +61,7 @@ bool still_waiting(const Model& model, const State& state) {
 }
 
 std::string end_time_reason(const Model& model, const State& state, double deposited_speed) {
-    const std::string reached = fmt::format("reached solver.end_time_s = {:.4g}", model.solver.end_time);
+    std::string reached = fmt::format("reached solver.end_time_s = {:.4g}", model.solver.end_time);
     const std::uint32_t moving = motion_of(state, deposited_speed).moving;
     if (moving == 0) return reached;
     return fmt::format("{} with {:.3g} m3 still moving ({:.2g} % of the debris)", reached,
