@@ -10,7 +10,7 @@
 
 #include "core/try.hpp"
 #include "scene/scene.hpp"
-#include "sim/seed.hpp"
+#include "sim/sources/seed.hpp"
 #include "terrain/buildings.hpp"
 #include "terrain/release.hpp"
 #include "terrain/terrain.hpp"

@@ -9,7 +9,7 @@
 
 #include "core/try.hpp"
 #include "params/fields.hpp"
-#include "sim/seed.hpp"
+#include "sim/sources/seed.hpp"
 #include "terrain/map_cell.hpp"
 
 namespace talus {

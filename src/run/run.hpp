@@ -12,8 +12,8 @@
 #include "run/stop_rule.hpp"
 #include "run/threads.hpp"
 #include "scene/scene.hpp"
-#include "sim/inflow.hpp"
 #include "sim/simulation.hpp"
+#include "sim/sources/inflow.hpp"
 
 namespace talus {
 

@@ -9,7 +9,7 @@
 #include "core/try.hpp"
 #include "observe/observer.hpp"
 #include "sim/physics/viscosity.hpp"
-#include "sim/seed.hpp"
+#include "sim/sources/seed.hpp"
 
 namespace talus {
 namespace {

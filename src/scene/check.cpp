@@ -7,7 +7,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "sim/seed.hpp"
+#include "sim/sources/seed.hpp"
 #include "terrain/map_cell.hpp"
 
 namespace talus {

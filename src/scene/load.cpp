@@ -12,7 +12,7 @@
 #include "geo/orthophoto.hpp"
 #include "scene/plausibility.hpp"
 #include "scene/viscosity_limit.hpp"
-#include "sim/seed.hpp"
+#include "sim/sources/seed.hpp"
 
 namespace talus {
 namespace {

@@ -5,7 +5,7 @@
 #include "core/try.hpp"
 #include "geo/vector.hpp"
 #include "scene/load.hpp"
-#include "sim/seed.hpp"
+#include "sim/sources/seed.hpp"
 #include "terrain/barrier.hpp"
 
 namespace talus {

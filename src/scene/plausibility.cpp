@@ -9,7 +9,7 @@
 
 #include <fmt/format.h>
 
-#include "sim/seed.hpp"
+#include "sim/sources/seed.hpp"
 
 namespace talus {
 namespace {

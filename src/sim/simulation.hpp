@@ -6,10 +6,10 @@
 
 #include "core/result.hpp"
 #include "sim/cpu/backend.hpp"
-#include "sim/entrainment.hpp"
 #include "sim/ground.hpp"
-#include "sim/inflow.hpp"
 #include "sim/model.hpp"
+#include "sim/sources/entrainment.hpp"
+#include "sim/sources/inflow.hpp"
 #include "sim/stage_times.hpp"
 #include "sim/state.hpp"
 #include "sim/step_watcher.hpp"

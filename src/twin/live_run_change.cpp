@@ -9,7 +9,7 @@
 
 #include "core/try.hpp"
 #include "sim/change.hpp"
-#include "sim/seed.hpp"
+#include "sim/sources/seed.hpp"
 #include "twin/live_run.hpp"
 
 namespace talus::twin {

@@ -13,7 +13,7 @@
 #include "core/try.hpp"
 #include "observe/erosion.hpp"
 #include "products/products.hpp"
-#include "sim/seed.hpp"
+#include "sim/sources/seed.hpp"
 #include "twin/action.hpp"
 #include "twin/json_keys.hpp"
 #include "twin/past_maps.hpp"

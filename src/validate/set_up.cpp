@@ -4,7 +4,7 @@
 #include <cmath>
 #include <utility>
 
-#include "sim/seed.hpp"
+#include "sim/sources/seed.hpp"
 
 namespace talus::validate {
 

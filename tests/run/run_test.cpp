@@ -9,7 +9,7 @@
 
 #include "run/run_scene.hpp"
 #include "scene/scene_folder.hpp"
-#include "sim/seed.hpp"
+#include "sim/sources/seed.hpp"
 
 namespace talus {
 namespace {

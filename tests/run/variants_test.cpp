@@ -6,7 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "scene/scene_folder.hpp"
-#include "sim/seed.hpp"
+#include "sim/sources/seed.hpp"
 
 namespace talus {
 namespace {

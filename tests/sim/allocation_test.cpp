@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include "sim/inflow.hpp"
+#include "sim/sources/inflow.hpp"
 #include "sim_fixtures.hpp"
 #include "support/allocations.hpp"
 

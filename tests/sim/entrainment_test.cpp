@@ -1,4 +1,4 @@
-#include "sim/entrainment.hpp"
+#include "sim/sources/entrainment.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "sim/inflow.hpp"
+#include "sim/sources/inflow.hpp"
 
 #include <cmath>
 

@@ -4,7 +4,7 @@
 
 #include "sim/physics/boundary_table.hpp"
 #include "sim/physics/viscosity.hpp"
-#include "sim/seed.hpp"
+#include "sim/sources/seed.hpp"
 
 namespace talus {
 namespace {

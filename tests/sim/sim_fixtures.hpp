@@ -7,8 +7,8 @@
 #include <utility>
 #include <vector>
 
-#include "sim/seed.hpp"
 #include "sim/simulation.hpp"
+#include "sim/sources/seed.hpp"
 #include "terrain/release.hpp"
 
 /// Small worlds for tests of the solver.

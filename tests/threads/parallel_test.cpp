@@ -5,8 +5,8 @@
 #include <tbb/task_arena.h>
 
 #include "observe/observer.hpp"
-#include "sim/inflow.hpp"
 #include "sim/sim_fixtures.hpp"
+#include "sim/sources/inflow.hpp"
 
 /// Everything that runs in parallel, small and on more threads than cores: what the thread sanitizer looks at.
 namespace talus {

@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include "sim/seed.hpp"
+#include "sim/sources/seed.hpp"
 #include "validate/set_up.hpp"
 
 namespace talus::validate {

@@ -6,7 +6,7 @@
 
 #include "core/try.hpp"
 #include "scene/scene.hpp"
-#include "sim/seed.hpp"
+#include "sim/sources/seed.hpp"
 #include "terrain/release.hpp"
 #include "validate/kinds/kinds.hpp"
 #include "validate/set_up.hpp"

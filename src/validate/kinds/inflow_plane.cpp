@@ -3,8 +3,8 @@
 
 #include <fmt/format.h>
 
-#include "sim/inflow.hpp"
-#include "sim/seed.hpp"
+#include "sim/sources/inflow.hpp"
+#include "sim/sources/seed.hpp"
 #include "validate/kinds/kinds.hpp"
 #include "validate/measure.hpp"
 #include "validate/set_up.hpp"

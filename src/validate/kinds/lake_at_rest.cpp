@@ -7,7 +7,7 @@
 
 #include <fmt/format.h>
 
-#include "sim/seed.hpp"
+#include "sim/sources/seed.hpp"
 #include "validate/kinds/kinds.hpp"
 #include "validate/set_up.hpp"
 

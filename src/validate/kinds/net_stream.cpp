@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 
 #include "sim/physics/net.hpp"
-#include "sim/seed.hpp"
+#include "sim/sources/seed.hpp"
 #include "terrain/barrier.hpp"
 #include "validate/kinds/kinds.hpp"
 #include "validate/laws.hpp"

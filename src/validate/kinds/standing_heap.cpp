@@ -4,7 +4,7 @@
 
 #include <fmt/format.h>
 
-#include "sim/seed.hpp"
+#include "sim/sources/seed.hpp"
 #include "terrain/release.hpp"
 #include "validate/kinds/kinds.hpp"
 #include "validate/measure.hpp"

@@ -1,4 +1,4 @@
-#include "sim/seed.hpp"
+#include "sim/sources/seed.hpp"
 
 #include <algorithm>
 #include <cmath>

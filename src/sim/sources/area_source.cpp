@@ -1,4 +1,4 @@
-#include "sim/area_source.hpp"
+#include "sim/sources/area_source.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -4,9 +4,9 @@
 #include <cstdint>
 #include <vector>
 
-#include "sim/area_source.hpp"
 #include "sim/ground.hpp"
 #include "sim/model.hpp"
+#include "sim/sources/area_source.hpp"
 #include "sim/state.hpp"
 #include "terrain/inflow.hpp"
 
