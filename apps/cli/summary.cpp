@@ -63,6 +63,15 @@ std::string compression_text(const Compression& c) {
     return text;
 }
 
+std::string layers_text(const FlowThickness& flow, double spacing) {
+    const double median = flow.median / spacing;
+    return fmt::format("the flow was {:.1f} particles thick in the median of the trail, {:.1f} in its thinnest tenth{}",
+                       median, flow.thin / spacing,
+                       median < FlowThickness::fewest_layers
+                           ? "; WARNING: fewer than 2, depths, speeds and forces mean little"
+                           : "");
+}
+
 /// What to change where compression is above its limits.
 std::string remedy(const SolverSpec& solver) {
     return fmt::format("; raise solver.extra_iteration_count (now {}) or {}", solver.extra_iteration_count,
@@ -126,6 +135,7 @@ std::string summary_text(const Scene& scene, const RunResult& result, const std:
         if (b.is_barrier) text += line("barrier", barrier_text(b));
         if (!std::isnan(b.failure_time)) text += line("FAILED", fmt::format("{} at {:.2f} s", b.name, b.failure_time));
     }
+    if (seen.thickness.known()) text += line("layers", layers_text(seen.thickness, result.particle_spacing));
     text += line("compression", compression_text(seen.compression));
     const NumericalVerdict verdict = numerical_verdict(result, comparisons);
     if (verdict.converged == Answer::no) {

@@ -7,6 +7,7 @@
 
 #include "core/geometry.hpp"
 #include "core/grid.hpp"
+#include "terrain/terrain.hpp"
 
 /// What a run measured: plain results in SI units, for products to write and people to read.
 namespace talus {
@@ -135,8 +136,18 @@ struct Deposit {
     double depth = never;  ///< m, vertical, that nine tenths of the area stay below
 };
 
+/// Greatest thickness of the flow normal to the slope, m, over the cells that it reached with at least the arrival
+/// depth. NaN: none. Divided by the particle spacing it says how many layers of particles the flow had at most.
+struct FlowThickness {
+    double median = never;
+    double thin = never;  ///< a tenth of the cells stay below
+    [[nodiscard]] bool known() const { return median > 0; }
+    static constexpr double fewest_layers = 2;  ///< in the median: depths, speeds and forces mean little below
+};
+
 struct Observation {
     HazardMaps maps;
+    FlowThickness thickness;
     Deposit deposit;
     Erosion erosion;
     std::vector<FrontSample> front;  ///< by chainage
@@ -148,6 +159,11 @@ struct Observation {
 };
 
 [[nodiscard]] Deposit measure_deposit(const Grid<float>& deposit_depth, double least_depth);
+
+/// Vertical depth times the cosine of the ground's slope, on the same cells.
+[[nodiscard]] Grid<float> normal_to_slope(const Grid<float>& depth, const Terrain& terrain);
+[[nodiscard]] FlowThickness measure_thickness(const Grid<float>& peak_depth, const Terrain& terrain,
+                                              double least_depth);
 
 /// What the front did at a chainage, interpolated between samples; NaN where debris never came.
 [[nodiscard]] FrontSample front_at(const Observation& observation, double chainage);

@@ -16,17 +16,6 @@ Status write_map(const HazardMap& map, const Grid<float>& si, const std::string&
     return write_text_file(stem + ".qml", qgis_style(map, greatest(grid)));
 }
 
-/// Depth times the cosine of the ground's slope.
-Grid<float> normal_to_slope(const Grid<float>& depth, const Terrain& terrain) {
-    Grid<float> thickness = depth;
-    for (int r = 0; r < depth.geometry.rows; ++r) {
-        for (int c = 0; c < depth.geometry.columns; ++c) {
-            thickness.at(c, r) *= static_cast<float>(terrain.slope_cosine_at(depth.geometry.centre(c, r)));
-        }
-    }
-    return thickness;
-}
-
 }  // namespace
 
 Status write_maps(const Scene& scene, const RunResult& result, const std::filesystem::path& folder) {

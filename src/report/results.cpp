@@ -116,6 +116,15 @@ Json compression(const Scene& scene, const RunResult& result) {
             {"fixed_time_step", solver.time_step.has_value()}};
 }
 
+Json flow_thickness(const RunResult& result) {
+    const FlowThickness& flow = result.observation.thickness;
+    if (!flow.known()) return nullptr;
+    return {{"median_m", flow.median},
+            {"thinnest_tenth_m", flow.thin},
+            {"median_layers", flow.median / result.particle_spacing},
+            {"thinnest_tenth_layers", flow.thin / result.particle_spacing}};
+}
+
 Json key_figures(const Scene& scene, const RunResult& result) {
     const Observation& o = result.observation;
     const MassBalance mass = mass_balance(o);
@@ -169,6 +178,22 @@ Json key_figures(const Scene& scene, const RunResult& result) {
     return all;
 }
 
+/// How many particles thick the flow was.
+Json layers(const RunResult& result) {
+    const FlowThickness& flow = result.observation.thickness;
+    if (!flow.known()) return fact("Layers of particles", "debris reached no map cell");
+    const double median = flow.median / result.particle_spacing;
+    const bool enough = median >= FlowThickness::fewest_layers;
+    const std::string warning = fmt::format("fewer than {}: depths, speeds and forces mean little",
+                                            fixed(FlowThickness::fewest_layers, 0));
+    return fact("Layers of particles",
+                fmt::format("median {} ({} m), thinnest tenth of the trail {} ({} m), when the flow was thickest at "
+                            "each place{}",
+                            fixed(median, 1), fixed(flow.median, 2), fixed(flow.thin / result.particle_spacing, 1),
+                            fixed(flow.thin, 2), enough ? "" : ": "),
+                enough ? "" : warning, enough);
+}
+
 Json quality(const Scene& scene, const RunResult& result) {
     const Observation& o = result.observation;
     const char* state = result.status == RunStatus::complete      ? "complete"
@@ -185,6 +210,7 @@ Json quality(const Scene& scene, const RunResult& result) {
         fact("Real-time factor",
              significant(result.real_time_factor(), 3) + " (simulated over wall time; 1 is real time)"),
         fact("Particles", fmt::format("{}, spacing {} m", fixed(result.particles, 0), plain(result.particle_spacing))),
+        layers(result),
         fact("Compression",
              fmt::format(
                  "worst mean over the debris {} % (at {} s; limit {} %), more than {} % in {} % of the particles "
@@ -261,6 +287,7 @@ Json run_results(const Scene& scene, const RunResult& result, const std::vector<
     all.update({{"status", status(result)},
                 {"verdict", verdict(result, comparisons)},
                 {"compression", compression(scene, result)},
+                {"flow_thickness", flow_thickness(result)},
                 {"key_figures", key_figures(scene, result)},
                 {"observations", observations(scene, result)},
                 {"quality", quality(scene, result)},

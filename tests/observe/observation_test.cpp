@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include <gtest/gtest.h>
 
@@ -27,6 +28,22 @@ TEST(CompressionLimits, are_for_a_time_and_not_for_a_single_step) {
     EXPECT_TRUE(c.within_limits());
     c.time_share_above = 0.0101;
     EXPECT_FALSE(c.within_limits());
+}
+
+TEST(FlowThickness, is_normal_to_the_slope_and_where_debris_came) {
+    // A plane that rises by 3 in 4: the cosine of its slope is 0.8.
+    Grid<float> rising({0, 0, 2, 12, 3}, 0);
+    for (int row = 0; row < 3; ++row) {
+        for (int column = 0; column < 12; ++column) rising.at(column, row) = 1.5f * static_cast<float>(column);
+    }
+    const Terrain terrain(std::move(rising));
+    Grid<float> depth({2, 2, 2, 10, 1}, std::numeric_limits<float>::quiet_NaN());
+    for (int column = 0; column < 9; ++column) depth.at(column, 0) = static_cast<float>(column + 1);
+    const FlowThickness all = measure_thickness(depth, terrain, 0.1);
+    EXPECT_NEAR(all.median, 5 * 0.8, 1e-5);
+    EXPECT_NEAR(all.thin, 1 * 0.8, 1e-5);
+    EXPECT_NEAR(measure_thickness(depth, terrain, 7.5).median, 9 * 0.8, 1e-5) << "8 and 9 m, the upper of two";
+    EXPECT_FALSE(measure_thickness(depth, terrain, 20).known());
 }
 
 TEST(Deposit, is_area_and_depth_where_it_is_thick_enough) {
