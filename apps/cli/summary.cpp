@@ -2,12 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <vector>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "core/angle.hpp"
 #include "core/hash.hpp"
 #include "core/number_or_null.hpp"
 #include "products/results_json.hpp"
@@ -16,8 +16,6 @@
 
 namespace talus {
 namespace {
-
-constexpr double degrees = 180 / std::numbers::pi;
 
 std::vector<const BuildingImpact*> buildings_hit(const Observation& observation) {
     std::vector<const BuildingImpact*> hit;
@@ -65,11 +63,10 @@ std::string compression_text(const Compression& c) {
 
 std::string layers_text(const FlowThickness& flow, double spacing) {
     const double median = flow.median / spacing;
-    return fmt::format("the flow was {:.1f} particles thick in the median of the trail, {:.1f} in its thinnest tenth{}",
-                       median, flow.thin / spacing,
-                       median < FlowThickness::fewest_layers
-                           ? "; WARNING: fewer than 2, depths, speeds and forces mean little"
-                           : "");
+    return fmt::format(
+        "the flow was {:.1f} particles thick in the median of the trail, {:.1f} in its thinnest tenth{}", median,
+        flow.thin / spacing,
+        median < FlowThickness::fewest_layers ? "; WARNING: fewer than 2, depths, speeds and forces mean little" : "");
 }
 
 /// What to change where compression is above its limits.
@@ -119,10 +116,11 @@ std::string summary_text(const Scene& scene, const RunResult& result, const std:
                                                    observed.front_velocity));
     }
     if (const RunOut& r = seen.run_out; std::isfinite(r.along_flow)) {
-        text += line("run-out", fmt::format("{}{:.0f} m along the flow, {:.0f} m straight, drop {:.0f} m, runout angle "
-                                            "{:.1f} degrees{}",
-                                            r.at_least ? "at least " : "", r.along_flow, r.straight, r.drop,
-                                            r.runout_angle * degrees, r.at_least ? "; debris left the terrain" : ""));
+        text += line("run-out",
+                     fmt::format("{}{:.0f} m along the flow, {:.0f} m straight, drop {:.0f} m, runout angle "
+                                 "{:.1f} degrees{}",
+                                 r.at_least ? "at least " : "", r.along_flow, r.straight, r.drop,
+                                 r.runout_angle * degrees_per_radian, r.at_least ? "; debris left the terrain" : ""));
     }
     text += line("volume", fmt::format("{:.1f} m3 released: {:.1f} deposited, {:.1f} moving, {:.1f} left the terrain",
                                        seen.volume_released, end.volume_deposited, end.volume_moving + end.volume_held,
@@ -195,7 +193,7 @@ std::string summary_json(const Scene& scene, const RunResult& result, const std:
         {"run_out_straight_m", number_or_null<nlohmann::ordered_json>(seen.run_out.straight)},
         {"run_out_at_least", seen.run_out.at_least},
         {"drop_m", number_or_null<nlohmann::ordered_json>(seen.run_out.drop)},
-        {"runout_angle_deg", number_or_null<nlohmann::ordered_json>(seen.run_out.runout_angle * degrees)},
+        {"runout_angle_deg", number_or_null<nlohmann::ordered_json>(seen.run_out.runout_angle * degrees_per_radian)},
         {"observations", observations},
         {"buildings_hit", buildings},
         {"structures", structures_json(seen)},

@@ -4,13 +4,13 @@
 #include <cmath>
 #include <cstring>
 #include <fstream>
-#include <numbers>
 #include <system_error>
 #include <unistd.h>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "core/angle.hpp"
 #include "core/number_or_null.hpp"
 #include "core/try.hpp"
 #include "ensemble/predict.hpp"
@@ -22,8 +22,6 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 static_assert(std::endian::native == std::endian::little, "records are written as the machine holds them");
-
-constexpr double degrees = 180 / std::numbers::pi;
 
 double number_of(const Json& json) {
     return json.is_number() ? json.get<double>() : never;
@@ -121,8 +119,8 @@ std::vector<double> measure(const Scene& scene, const RunResult& result) {
     std::vector<double> values = {o.run_out.along_flow,
                                   o.run_out.straight,
                                   o.run_out.drop,
-                                  o.run_out.runout_angle * degrees,
-                                  o.run_out.travel_angle * degrees,
+                                  o.run_out.runout_angle * degrees_per_radian,
+                                  o.run_out.travel_angle * degrees_per_radian,
                                   reached_area(o.maps),
                                   greatest_of(o.maps.peak_depth),
                                   greatest_of(o.maps.peak_speed),

@@ -248,8 +248,7 @@ Observation Observer::finish(const Model& model, const Ground& ground, const Sta
     const Parts& p = *parts_;
     Observation observation;
     observation.maps = p.maps.maps();
-    observation.thickness =
-        measure_thickness(observation.maps.peak_depth, ground.terrain, p.outputs.arrival_depth);
+    observation.thickness = measure_thickness(observation.maps.peak_depth, ground.terrain, p.outputs.arrival_depth);
     observation.deposit = measure_deposit(observation.maps.deposit_depth, p.outputs.arrival_depth);
     observation.front = p.front.samples();
     const ReleasedMass released = p.came_in.empty() ? p.released : p.measure_starts(model, ground);

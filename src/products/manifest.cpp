@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 #include <tbb/version.h>
 
+#include "core/angle.hpp"
 #include "core/hash.hpp"
 #include "geo/versions.hpp"
 #include "params/fields.hpp"
@@ -127,8 +128,8 @@ Json results(const RunResult& result) {
             {"run_out_straight_m", o.run_out.straight},
             {"run_out_at_least", o.run_out.at_least},
             {"drop_m", o.run_out.drop},
-            {"runout_angle_deg", o.run_out.runout_angle * degrees},
-            {"travel_angle_deg", o.run_out.travel_angle * degrees},
+            {"runout_angle_deg", o.run_out.runout_angle * degrees_per_radian},
+            {"travel_angle_deg", o.run_out.travel_angle * degrees_per_radian},
             {"greatest", greatest_values},
             {"volumes", volumes},
             {"buildings", o.buildings.size()},

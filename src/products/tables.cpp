@@ -1,6 +1,6 @@
-#include <numbers>
 #include <string>
 
+#include "core/angle.hpp"
 #include "core/try.hpp"
 #include "products/csv.hpp"
 #include "products/text_file.hpp"
@@ -23,7 +23,10 @@ std::string run_out_table(const RunOut& r) {
         "run_out_along_flow_m,run_out_straight_m,at_least,toe_x_m,toe_y_m,drop_m,runout_angle_deg,travel_angle_deg,"
         "front_chainage_m");
     csv.number(r.along_flow).number(r.straight).word(r.at_least ? "yes" : "no").number(r.toe.x).number(r.toe.y);
-    csv.number(r.drop).number(r.runout_angle * degrees).number(r.travel_angle * degrees).number(r.front_chainage);
+    csv.number(r.drop)
+        .number(r.runout_angle * degrees_per_radian)
+        .number(r.travel_angle * degrees_per_radian)
+        .number(r.front_chainage);
     csv.end_row();
     return csv.text();
 }

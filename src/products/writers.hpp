@@ -1,7 +1,6 @@
 #pragma once
 
 #include <filesystem>
-#include <numbers>
 #include <string>
 #include <vector>
 
@@ -30,8 +29,6 @@ namespace talus {
 /// manifest.json: all that is needed to repeat the run and to judge it. A value that does not exist is null.
 [[nodiscard]] Status write_manifest(const Scene& scene, const RunResult& result,
                                     const std::vector<Comparison>& comparisons, const std::filesystem::path& folder);
-
-inline constexpr double degrees = 180 / std::numbers::pi;  ///< in a radian
 
 /// "complete", "interrupted" or "fault".
 [[nodiscard]] const char* status_text(RunStatus status);

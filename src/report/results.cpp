@@ -4,11 +4,11 @@
 #include <cctype>
 #include <chrono>
 #include <cmath>
-#include <numbers>
 
 #include <fmt/chrono.h>
 #include <fmt/format.h>
 
+#include "core/angle.hpp"
 #include "core/number_or_null.hpp"
 #include "report/hazard_map.hpp"
 #include "report/number_text.hpp"
@@ -16,10 +16,6 @@
 
 namespace talus::report {
 namespace {
-
-double degrees(double radians) {
-    return radians * 180 / std::numbers::pi;
-}
 
 struct Peak {
     double value = never;
@@ -150,8 +146,10 @@ Json key_figures(const Scene& scene, const RunResult& result) {
         ran ? fmt::format("{} m in a straight line, drop {} m{}{}", fixed(o.run_out.straight, 0),
                           fixed(o.run_out.drop, 1), front, o.run_out.at_least ? "; debris left the terrain" : "")
             : "no debris ran out");
-    add("runout_angle_deg", "Runout angle", degrees(o.run_out.runout_angle), "f1", ran ? "°" : "",
-        ran ? fmt::format("travel angle of the centre of mass {}°", fixed(degrees(o.run_out.travel_angle), 1)) : "");
+    add("runout_angle_deg", "Runout angle", o.run_out.runout_angle * degrees_per_radian, "f1", ran ? "°" : "",
+        ran ? fmt::format("travel angle of the centre of mass {}°",
+                          fixed(o.run_out.travel_angle * degrees_per_radian, 1))
+            : "");
     const auto hit =
         std::count_if(o.buildings.begin(), o.buildings.end(), [](const BuildingImpact& b) { return b.hit; });
     const auto worst = std::max_element(o.buildings.begin(), o.buildings.end(), [](const auto& a, const auto& b) {
@@ -184,8 +182,8 @@ Json layers(const RunResult& result) {
     if (!flow.known()) return fact("Layers of particles", "debris reached no map cell");
     const double median = flow.median / result.particle_spacing;
     const bool enough = median >= FlowThickness::fewest_layers;
-    const std::string warning = fmt::format("fewer than {}: depths, speeds and forces mean little",
-                                            fixed(FlowThickness::fewest_layers, 0));
+    const std::string warning =
+        fmt::format("fewer than {}: depths, speeds and forces mean little", fixed(FlowThickness::fewest_layers, 0));
     return fact("Layers of particles",
                 fmt::format("median {} ({} m), thinnest tenth of the trail {} ({} m), when the flow was thickest at "
                             "each place{}",

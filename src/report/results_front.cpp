@@ -1,11 +1,11 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 #include <vector>
 
 #include <fmt/format.h>
 
+#include "core/angle.hpp"
 #include "report/number_text.hpp"
 #include "report/results.hpp"
 #include "sim/compression.hpp"
@@ -14,10 +14,6 @@ namespace talus::report {
 namespace {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-
-double degrees(double radians) {
-    return radians * 180 / std::numbers::pi;
-}
 
 /// A change of direction of the flow path in plan.
 struct Bend {
@@ -30,7 +26,7 @@ std::vector<Bend> bends(const FlowPath& path, double end) {
     const auto turn_at = [&](double c) {
         const PlanPoint a = path.point_at(c - reach), m = path.point_at(c), b = path.point_at(c + reach);
         const double ux = m.x - a.x, uy = m.y - a.y, vx = b.x - m.x, vy = b.y - m.y;
-        return degrees(std::atan2(ux * vy - uy * vx, ux * vx + uy * vy));
+        return degrees_per_radian * std::atan2(ux * vy - uy * vx, ux * vx + uy * vy);
     };
     std::vector<Bend> found;
     for (double c = reach; c <= end - reach; c += 1) {
@@ -97,7 +93,7 @@ void draw_profile(Plot& plot, const Scene& scene, const RunResult& result, const
         const std::vector<double> x = {crown->chainage, toe->chainage}, z = {foot + run_out.drop, foot};
         plot.line(x, z, "energy-line");
         plot.label(x[0] + 0.62 * (x[1] - x[0]), z[0] + 0.62 * (z[1] - z[0]), 12, -6, "start", "note-strong",
-                   fmt::format("runout angle {}°", fixed(degrees(run_out.runout_angle), 1)));
+                   fmt::format("runout angle {}°", fixed(run_out.runout_angle * degrees_per_radian, 1)));
     }
     if (std::isfinite(run_out.front_chainage)) {
         plot.vertical(run_out.front_chainage, "toe-line");

@@ -3,18 +3,17 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 #include <string>
 #include <vector>
 
 #include <fmt/format.h>
 
+#include "core/angle.hpp"
 #include "sim/sources/seed.hpp"
 
 namespace talus {
 namespace {
 
-constexpr double degrees = 180 / std::numbers::pi;
 constexpr std::size_t most_samples = 250'000;
 
 // Soil-covered hillsides stand at 25 to 40 degrees, and only cliffs at more than 55.
@@ -57,7 +56,7 @@ double exceeded_by(double share, std::vector<double>& values) {
 }
 
 double angle(double rise_over_run) {
-    return std::atan(rise_over_run) * degrees;
+    return std::atan(rise_over_run) * degrees_per_radian;
 }
 
 /// Mean over its area, degrees.
@@ -65,7 +64,7 @@ double mean_slope(const Scene& scene, const Release& release) {
     double plan = 0;
     for (const ReleasePatch& patch : release.patches) plan += plan_area(patch.polygon);
     const double on_slope = release_slope_area(scene.terrain, release);
-    return on_slope > 0 ? std::acos(std::min(1.0, plan / on_slope)) * degrees : 0;
+    return on_slope > 0 ? std::acos(std::min(1.0, plan / on_slope)) * degrees_per_radian : 0;
 }
 
 }  // namespace

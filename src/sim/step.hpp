@@ -40,10 +40,9 @@ Status step(Backend& backend, const Model& model, const Ground& ground, State& s
     timed(Stage::solve_contacts, [&] { backend.solve_contacts(model, ground, state); });
     const int fewest = model.solver.iteration_count, most = fewest + model.solver.extra_iteration_count;
     for (state.iterations = 0; state.iterations < most;) {
-        timed(Stage::solve_density,
-              [&] { backend.solve_density(model, ground, state); });  // density and internal friction
-        timed(Stage::solve_contacts,
-              [&] { backend.solve_contacts(model, ground, state); });  // ground, buildings, friction
+        // Density and internal friction; then ground, buildings and their friction.
+        timed(Stage::solve_density, [&] { backend.solve_density(model, ground, state); });
+        timed(Stage::solve_contacts, [&] { backend.solve_contacts(model, ground, state); });
         if (++state.iterations < fewest) continue;
         timed(Stage::measure_compression, [&] { backend.measure_compression(model, state); });
         if (!needs_iteration(state)) break;

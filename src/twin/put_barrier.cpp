@@ -39,10 +39,9 @@ Result<Building> read_barrier(const json& action, const ActionContext& context, 
     BarrierSpec barrier;
     if (existing != nullptr) barrier = *existing->barrier;
     if (line) barrier.line = std::move(*line);
-    Status s = read_values(action, barrier);
-    if (s) s = read_openings(action, context, barrier);
-    if (s) s = check_rules(barrier, context.scene.spec.solver, context.particle_spacing);
-    if (!s) return s.error();
+    TALUS_TRY(read_values(action, barrier));
+    TALUS_TRY(read_openings(action, context, barrier));
+    TALUS_TRY(check_rules(barrier, context.scene.spec.solver, context.particle_spacing));
     return make_barrier(context.scene.terrain, name, barrier);
 }
 

@@ -168,22 +168,20 @@ Result<ReleaseSetup> SetupReader::read_release(const json& file) const {
 
 Result<BarrierSetup> SetupReader::read_barrier(const json& file) const {
     if (!file.is_object() || !file.contains("id") || !file["id"].is_string()) return bad("id", file);
-    auto line = read_points(file, "line", false, 2, 1'000'000);
-    if (!line) return line.error();
-    if (!*line) return bad("line", file);
+    TALUS_ASSIGN(auto line, read_points(file, "line", false, 2, 1'000'000));
+    if (!line) return bad("line", file);
     TALUS_ASSIGN(const std::string name, read_name(file));
     SceneSpec read;
     if (file.contains("openings")) {  // not in journals older than openings
         TALUS_TRY(read_live_list(file["openings"], "openings", live_section("barrier_opening"), read, 0));
     }
     BarrierSpec barrier;
-    barrier.line = std::move(**line);
+    barrier.line = std::move(*line);
     barrier.openings = std::move(read.barrier_openings);
     json values = file;  // an older journal gives a level crest a height of 0, too
     if (gives(file, "crest_elevation_m")) values.erase("height_m");
-    Status s = read_values(values, barrier);
-    if (s) s = check_rules(barrier, scene_.spec.solver, 0);
-    if (!s) return s.error();
+    TALUS_TRY(read_values(values, barrier));
+    TALUS_TRY(check_rules(barrier, scene_.spec.solver, 0));
     TALUS_ASSIGN(auto body, make_barrier(scene_.terrain, name, barrier));
     return BarrierSetup{file["id"], std::make_shared<const Building>(std::move(body)), file.value("from_scene", false)};
 }
@@ -247,11 +245,10 @@ Result<InflowSetup> SetupReader::read_inflow(const json& file) const {
     }
     Inflow inflow;
     const auto line = read_points(file, "line", false, 2, 2);
-    const auto radians = read_number(file, "direction", {}, "rad");
+    TALUS_ASSIGN(const auto radians, read_number(file, "direction", {}, "rad"));
     TALUS_ASSIGN(inflow.name, read_name(file));
     TALUS_ASSIGN(inflow.area, read_polygons(file, "polygons"));
     if (!line || (line->has_value() != inflow.area.empty())) return bad("line", file);
-    if (!radians) return radians.error();
     if (*line) {
         inflow.from = (**line)[0];
         inflow.to = (**line)[1];
@@ -260,7 +257,7 @@ Result<InflowSetup> SetupReader::read_inflow(const json& file) const {
         inflow.spec.polygon = inflow.area.front().outer;
     }
     TALUS_TRY(read_values(file, inflow.spec));
-    if (*radians) inflow.spec.direction = degrees_of(**radians);
+    if (radians) inflow.spec.direction = degrees_of(*radians);
     TALUS_ASSIGN(inflow.hydrograph, read_hydrograph_rows(file.value("hydrograph", json()), inflow.spec));
     setup.body = std::make_shared<const Inflow>(std::move(inflow));
     return setup;
@@ -287,19 +284,16 @@ Result<Setup> read_setup(const json& file, const Scene& scene) {
         }
         return {};
     };
-    Status s =
-        read_all(file["releases"], setup.releases, "releases", [&](const json& e) { return reader.read_release(e); });
-    if (s)
-        s = read_all(file["barriers"], setup.barriers, "barriers",
-                     [&](const json& e) { return reader.read_barrier(e); });
-    if (s)
-        s = read_all(file["buildings"], setup.buildings, "buildings",
-                     [&](const json& e) { return reader.read_building(e); });
-    if (s) s = read_all(file["zones"], setup.zones, "zones", [&](const json& e) { return reader.read_zone(e); });
-    if (s) s = read_all(file["beds"], setup.beds, "beds", [&](const json& e) { return reader.read_bed(e); });
-    if (s)
-        s = read_all(file["inflows"], setup.inflows, "inflows", [&](const json& e) { return reader.read_inflow(e); });
-    if (!s) return s.error();
+    TALUS_TRY(
+        read_all(file["releases"], setup.releases, "releases", [&](const json& e) { return reader.read_release(e); }));
+    TALUS_TRY(
+        read_all(file["barriers"], setup.barriers, "barriers", [&](const json& e) { return reader.read_barrier(e); }));
+    TALUS_TRY(read_all(file["buildings"], setup.buildings, "buildings",
+                       [&](const json& e) { return reader.read_building(e); }));
+    TALUS_TRY(read_all(file["zones"], setup.zones, "zones", [&](const json& e) { return reader.read_zone(e); }));
+    TALUS_TRY(read_all(file["beds"], setup.beds, "beds", [&](const json& e) { return reader.read_bed(e); }));
+    TALUS_TRY(
+        read_all(file["inflows"], setup.inflows, "inflows", [&](const json& e) { return reader.read_inflow(e); }));
     return setup;
 }
 

@@ -1,9 +1,9 @@
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include <fmt/format.h>
 
+#include "core/angle.hpp"
 #include "sim/sources/seed.hpp"
 #include "validate/kinds/kinds.hpp"
 #include "validate/laws.hpp"
@@ -12,8 +12,6 @@
 
 namespace talus::validate {
 namespace dam_break {
-
-constexpr double to_radians = std::numbers::pi / 180;
 
 constexpr Quantity quantities[] = {
     {"depth_l2", "1", false, Quantity::Site::none, "relative L2 error of the thickness on cells along the slope"},
@@ -107,8 +105,8 @@ Computation prepare(Parameters& parameters, const Setting& setting) {
     constexpr Range angles{.low = 0, .high = 80};
     constexpr Range positive{.low = 0, .low_included = false};
     DamSpec spec;
-    spec.slope = parameters.number("slope_deg", angles, 0) * to_radians;
-    spec.friction_angle = parameters.number("friction_angle_deg", angles, 0) * to_radians;
+    spec.slope = parameters.number("slope_deg", angles, 0) * radians_per_degree;
+    spec.friction_angle = parameters.number("friction_angle_deg", angles, 0) * radians_per_degree;
     spec.depth = parameters.number("depth_m", positive, 1);
     spec.time = parameters.number("time_s", positive, 5);
     spec.cell = parameters.number("cell_m", positive, 0.5);

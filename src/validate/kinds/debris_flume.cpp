@@ -1,9 +1,9 @@
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include <fmt/format.h>
 
+#include "core/angle.hpp"
 #include "sim/sources/seed.hpp"
 #include "validate/kinds/kinds.hpp"
 #include "validate/measure.hpp"
@@ -11,8 +11,6 @@
 
 namespace talus::validate {
 namespace debris_flume {
-
-constexpr double to_radians = std::numbers::pi / 180;
 
 constexpr Quantity quantities[] = {
     {"arrival_time", "s", false, Quantity::Site::none,
@@ -219,8 +217,8 @@ Result<Outcome> compute(const FlumeSpec& spec, const Setting& setting, const Wat
 Computation prepare(Parameters& parameters, const Setting& setting) {
     constexpr Range positive{.low = 0, .low_included = false};
     FlumeSpec spec;
-    spec.slope = parameters.number("slope_deg", {.low = 1, .high = 60}, 31) * to_radians;
-    spec.pad_slope = parameters.number("pad_slope_deg", {.low = 0, .high = 60}, 2.4) * to_radians;
+    spec.slope = parameters.number("slope_deg", {.low = 1, .high = 60}, 31) * radians_per_degree;
+    spec.pad_slope = parameters.number("pad_slope_deg", {.low = 0, .high = 60}, 2.4) * radians_per_degree;
     spec.bend_start = parameters.number("bend_start_m", {.low = 1, .high = 90}, 74);
     spec.bend_end = std::max(spec.bend_start + 1, parameters.number("bend_end_m", {.low = 2, .high = 100}, 84));
     spec.width = parameters.number("width_m", positive, 2);
@@ -230,7 +228,7 @@ Computation prepare(Parameters& parameters, const Setting& setting) {
     spec.stations = parameters.numbers("stations_m", {.low = 0, .high = 110}, {32, 66});
     spec.samples = parameters.pairs("samples_m_s", {.low = 0, .high = 200}, false);
     spec.obstacle = parameters.number("obstacle_m", {.low = 1, .high = 100}, 91);
-    spec.ramp_angle = parameters.number("ramp_deg", {.low = 1, .high = 60}, 30) * to_radians;
+    spec.ramp_angle = parameters.number("ramp_deg", {.low = 1, .high = 60}, 30) * radians_per_degree;
     spec.end = parameters.number("end_s", positive, 14);
     return [spec, setting](const Watch& watch) { return compute(spec, setting, watch); };
 }

@@ -1,9 +1,9 @@
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include <fmt/format.h>
 
+#include "core/angle.hpp"
 #include "core/try.hpp"
 #include "scene/scene.hpp"
 #include "sim/sources/seed.hpp"
@@ -13,8 +13,6 @@
 
 namespace talus::validate {
 namespace energy_line {
-
-constexpr double to_radians = std::numbers::pi / 180;
 
 constexpr Quantity quantities[] = {
     {"energy_line", "1", false, Quantity::Site::none,
@@ -179,9 +177,9 @@ Computation prepare(Parameters& parameters, const Setting& setting) {
         spec.surface = Surface::scene;
         spec.scene = parameters.path("scene");
     }
-    spec.slope = parameters.number("slope_deg", angles, 30) * to_radians;
+    spec.slope = parameters.number("slope_deg", angles, 30) * radians_per_degree;
     spec.radius = parameters.number("bowl_radius_m", positive, 150);
-    spec.start = parameters.number("bowl_start_deg", angles, 35) * to_radians;
+    spec.start = parameters.number("bowl_start_deg", angles, 35) * radians_per_degree;
     spec.side = parameters.number("block_side_m", positive, 6);
     spec.thickness = parameters.number("block_thickness_m", positive, 0.9);
     spec.spacing = parameters.number("particle_spacing_m", positive, 0.3);

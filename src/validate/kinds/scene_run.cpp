@@ -1,9 +1,9 @@
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include <fmt/format.h>
 
+#include "core/angle.hpp"
 #include "core/try.hpp"
 #include "report/results.hpp"
 #include "run/run_scene.hpp"
@@ -13,8 +13,6 @@
 
 namespace talus::validate {
 namespace scene_run {
-
-constexpr double to_degrees = 180 / std::numbers::pi;
 
 constexpr Quantity quantities[] = {
     {"front_velocity", "m/s", false, Quantity::Site::chainage, "slope of chainage against the front's arrival time"},
@@ -82,8 +80,8 @@ double measure(const Expectation& e, const Scene& scene, const Observation& obse
     }
     if (e.quantity == "run_out") return observation.run_out.along_flow;
     if (e.quantity == "front_chainage") return observation.run_out.front_chainage;
-    if (e.quantity == "runout_angle") return observation.run_out.runout_angle * to_degrees;
-    if (e.quantity == "travel_angle") return observation.run_out.travel_angle * to_degrees;
+    if (e.quantity == "runout_angle") return observation.run_out.runout_angle * degrees_per_radian;
+    if (e.quantity == "travel_angle") return observation.run_out.travel_angle * degrees_per_radian;
     return e.quantity == "mean_compression" ? observation.compression.worst_mean : observation.compression.worst_max;
 }
 

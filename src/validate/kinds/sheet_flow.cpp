@@ -1,9 +1,9 @@
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include <fmt/format.h>
 
+#include "core/angle.hpp"
 #include "sim/sources/seed.hpp"
 #include "validate/kinds/kinds.hpp"
 #include "validate/laws.hpp"
@@ -12,8 +12,6 @@
 
 namespace talus::validate {
 namespace sheet_flow {
-
-constexpr double to_radians = std::numbers::pi / 180;
 
 constexpr Quantity quantities[] = {
     {"mean_velocity", "m/s", true, Quantity::Site::none, "down the slope, over the thickness"},
@@ -130,7 +128,7 @@ Result<Outcome> compute(const SheetSpec& spec, const Setting& setting, const Wat
     for (const double slope : spec.slopes) {
         for (const double share : spec.start_shares) {
             const std::string name =
-                fmt::format("slope {:.3g} degrees, from {:g} of the law's velocity", slope / to_radians, share);
+                fmt::format("slope {:.3g} degrees, from {:g} of the law's velocity", slope / radians_per_degree, share);
             watch.say(name);
             const Measured m = measure(spec, slope, share, setting, watch);
             if (!m.problem.empty()) outcome.notes.push_back(name + ": " + m.problem);
@@ -142,8 +140,8 @@ Result<Outcome> compute(const SheetSpec& spec, const Setting& setting, const Wat
             outcome.measurements.push_back({"profile_l2", name, norms.relative_l2, std::nullopt});
             outcome.measurements.push_back({"profile_max", name, norms.relative_max, std::nullopt});
             if (share == spec.start_shares.front()) {
-                chart.series.push_back(
-                    {fmt::format("law, {:.3g} degrees", slope / to_radians), Series::Style::dashed, m.law, m.height});
+                chart.series.push_back({fmt::format("law, {:.3g} degrees", slope / radians_per_degree),
+                                        Series::Style::dashed, m.law, m.height});
             }
             chart.series.push_back({name, Series::Style::marks, m.velocity, m.height});
         }
@@ -157,7 +155,7 @@ Computation prepare(Parameters& parameters, const Setting& setting) {
     SheetSpec spec;
     spec.law = parameters.choice("law", {"voellmy", "bingham", "bagnold"}, "voellmy");
     spec.slopes = parameters.numbers("slopes_deg", {.low = 0, .high = 60, .low_included = false}, {20});
-    for (double& slope : spec.slopes) slope *= to_radians;
+    for (double& slope : spec.slopes) slope *= radians_per_degree;
     spec.start_shares = parameters.numbers("start_shares", {.low = 0, .high = 10}, {1});
     spec.spacing = parameters.number("particle_spacing_m", positive, 0.1);
     spec.length = parameters.number("length_m", positive, 20);

@@ -1,17 +1,15 @@
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include <fmt/format.h>
 
+#include "core/angle.hpp"
 #include "sim/sources/seed.hpp"
 #include "validate/kinds/kinds.hpp"
 #include "validate/set_up.hpp"
 
 namespace talus::validate {
 namespace sliding_slab {
-
-constexpr double to_radians = std::numbers::pi / 180;
 
 constexpr Quantity quantities[] = {
     {"acceleration", "m/s2", true, Quantity::Site::none, "down the slope, of the middle third of the slab"},
@@ -113,8 +111,9 @@ Measured measure(const SlabSpec& spec, const Variant& variant, const Setting& se
 std::vector<Variant> variants_of(const SlabSpec& spec, const SolverSpec& solver) {
     std::vector<Variant> variants;
     const auto add = [&](double slope, double friction, const std::string& more) -> Variant& {
-        variants.push_back({slope, friction, spec.spacing, solver,
-                            fmt::format("slope {:.3g} degrees, f = {:.3g}{}", slope / to_radians, friction, more)});
+        variants.push_back(
+            {slope, friction, spec.spacing, solver,
+             fmt::format("slope {:.3g} degrees, f = {:.3g}{}", slope / radians_per_degree, friction, more)});
         return variants.back();
     };
     for (const double slope : spec.slopes) {
@@ -169,7 +168,7 @@ Computation prepare(Parameters& parameters, const Setting& setting) {
     SlabSpec spec;
     spec.slopes = parameters.numbers("slopes_deg", slopes, {30});
     spec.frictions = parameters.numbers("friction_coefficients", {.low = 0, .high = 10}, {0.4});
-    spec.varied_slope = parameters.number("varied_slope_deg", slopes, 30) * to_radians;
+    spec.varied_slope = parameters.number("varied_slope_deg", slopes, 30) * radians_per_degree;
     spec.varied_friction = parameters.number("varied_friction_coefficient", {.low = 0, .high = 10}, 0.4);
     spec.time_steps = parameters.numbers("time_steps_s", {.low = 0, .high = 1, .low_included = false}, {});
     spec.iteration_counts = parameters.numbers("iteration_counts", {.low = 1, .high = 1000}, {});
@@ -182,7 +181,7 @@ Computation prepare(Parameters& parameters, const Setting& setting) {
     spec.end = parameters.number("end_s", positive, 1.2);
     spec.rest_start = parameters.number("rest_start_s", {.low = 0}, 2);
     spec.rest_end = parameters.number("rest_end_s", positive, 4);
-    for (double& slope : spec.slopes) slope *= to_radians;
+    for (double& slope : spec.slopes) slope *= radians_per_degree;
     return [spec, setting](const Watch& watch) { return compute(spec, setting, watch); };
 }
 

@@ -1,9 +1,9 @@
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include <fmt/format.h>
 
+#include "core/angle.hpp"
 #include "sim/sources/seed.hpp"
 #include "validate/kinds/kinds.hpp"
 #include "validate/laws.hpp"
@@ -12,8 +12,6 @@
 
 namespace talus::validate {
 namespace spreading_cap {
-
-constexpr double to_radians = std::numbers::pi / 180;
 
 constexpr Quantity quantities[] = {
     {"depth_l2", "1", false, Quantity::Site::none, "relative L2 error of the thickness on square cells of the slope"},
@@ -136,8 +134,8 @@ Computation prepare(Parameters& parameters, const Setting& setting) {
     constexpr Range angles{.low = 0, .high = 80};
     constexpr Range positive{.low = 0, .low_included = false};
     CapSpec spec;
-    spec.slope = parameters.number("slope_deg", angles, 35) * to_radians;
-    spec.friction_angle = parameters.number("friction_angle_deg", angles, 25) * to_radians;
+    spec.slope = parameters.number("slope_deg", angles, 35) * radians_per_degree;
+    spec.friction_angle = parameters.number("friction_angle_deg", angles, 25) * radians_per_degree;
     spec.length = parameters.number("length_m", positive, 80);
     spec.height = parameters.number("height_m", positive, 4);
     spec.time = parameters.number("time_s", positive, 5);
