@@ -142,17 +142,34 @@ void NeighbourSearch::write(NeighbourLists& lists) {
         lists.gradient.resize(lists.neighbour.size());
     }
     simd::parallel_ranges(blocks, 16, [&](std::size_t first, std::size_t last) {
-        for (std::size_t i = first * block_size; i < last * block_size; ++i) {
-            const bool listed = i < awake_;
-            const std::size_t from = listed ? source_[i] : 0;
-            const std::uint32_t count = listed ? count_[from] : 0, length = lists.length[i / block_size];
-            const std::uint32_t* found = found_.data() + start_[from];
-            std::uint32_t* to = lists.neighbour.data() + lists.start[i / block_size] + i % block_size;
-            for (std::uint32_t k = 0; k < count; ++k) to[k * block_size] = place_[found[k]];
-            for (std::uint32_t k = count; k < length; ++k) to[k * block_size] = static_cast<std::uint32_t>(i);
-            lists.count[i] = static_cast<float>(count);
-        }
+        for (std::size_t b = first; b < last; ++b) write_block(b, lists);
     });
+}
+
+/// Entry by entry through all lists of the block as far as all have one, so that memory is written in order.
+void NeighbourSearch::write_block(std::size_t block, NeighbourLists& lists) const {
+    const std::size_t first = block * block_size;
+    std::array<const std::uint32_t*, block_size> found{};
+    std::array<std::uint32_t, block_size> count{};
+    for (std::size_t lane = 0; lane < block_size; ++lane) {
+        const bool listed = first + lane < awake_;
+        const std::size_t from = listed ? source_[first + lane] : 0;
+        found[lane] = found_.data() + start_[from];
+        count[lane] = listed ? count_[from] : 0;
+        lists.count[first + lane] = static_cast<float>(count[lane]);
+    }
+    const std::uint32_t shortest = *std::min_element(count.begin(), count.end());
+    std::uint32_t* const to = lists.neighbour.data() + lists.start[block];
+    const std::uint32_t* const place = place_.data();
+    for (std::uint32_t k = 0; k < shortest; ++k) {
+        for (std::size_t lane = 0; lane < block_size; ++lane) to[k * block_size + lane] = place[found[lane][k]];
+    }
+    for (std::uint32_t k = shortest; k < lists.length[block]; ++k) {
+        for (std::size_t lane = 0; lane < block_size; ++lane) {
+            to[k * block_size + lane] =
+                k < count[lane] ? place[found[lane][k]] : static_cast<std::uint32_t>(first + lane);
+        }
+    }
 }
 
 }  // namespace talus::cpu
