@@ -3,10 +3,14 @@
 #include <fstream>
 #include <iterator>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <gtest/gtest.h>
+#include <tbb/global_control.h>
+#include <tbb/task_arena.h>
 
+#include "sim/compression.hpp"
 #include "sim_fixtures.hpp"
 
 namespace talus {
@@ -66,6 +70,59 @@ TEST(Step, brings_inflow_in_tells_its_watcher_and_removes_what_failed) {
     for (std::size_t stage = 0; stage < stage_count; ++stage) {
         EXPECT_GT(simulation.stage_times().seconds[stage], 0) << step_stages[stage].name << " was not run";
     }
+}
+
+/// A cube of debris in the air whose upper half falls onto the lower one at `speed`, m/s.
+Simulation cube(float speed, int extra_iterations) {
+    SolverSpec solver;
+    solver.extra_iteration_count = extra_iterations;
+    Model model = make_model({}, solver, testing::fine_spacing);
+    std::vector<LocalPoint> points, velocities;
+    for (int k = 0; k < 1728; ++k) {
+        const auto at = [&](int cell) { return static_cast<float>(testing::fine_spacing * cell); };
+        points.push_back({at(k % 12), at(k / 12 % 12), 20 + at(k / 144)});
+        velocities.push_back({0, 0, k < 864 ? 0 : -speed});
+    }
+    Ground ground(testing::inclined_plane(0), {}, model.support_radius);
+    return {std::move(model), std::move(ground), testing::state_of(points, velocities)};
+}
+
+TEST(Step, takes_extra_iterations_where_debris_is_squeezed_and_only_there) {
+    Simulation loose = cube(0, 12);
+    ASSERT_TRUE(loose.advance());
+    EXPECT_EQ(loose.state().iterations, 4);
+
+    Simulation squeezed = cube(12, 12), without = cube(12, 0);
+    ASSERT_TRUE(squeezed.advance());
+    ASSERT_TRUE(without.advance());
+    EXPECT_EQ(without.state().iterations, 4);
+    EXPECT_GT(squeezed.state().iterations, 4);
+    EXPECT_LE(squeezed.state().iterations, 16);
+    EXPECT_LT(squeezed.state().mean_compression, without.state().mean_compression);
+    if (squeezed.state().iterations < 16) {
+        EXPECT_FALSE(needs_iteration(squeezed.state()));
+    }
+}
+
+TEST(Step, takes_the_same_extra_iterations_on_any_number_of_threads) {
+    const auto result_on = [](int threads) {
+        const tbb::global_control limit(tbb::global_control::max_allowed_parallelism,
+                                        static_cast<std::size_t>(threads));
+        tbb::task_arena arena(threads);
+        return arena.execute([] {
+            Simulation squeezed = cube(12, 12);
+            std::vector<int> iterations;
+            for (int k = 0; k < 5; ++k) {
+                EXPECT_TRUE(squeezed.advance());
+                iterations.push_back(squeezed.state().iterations);
+            }
+            return std::pair(iterations, hash_state(squeezed.state()));
+        });
+    };
+    const auto one = result_on(1);
+    EXPECT_GT(one.first.front(), 4);
+    EXPECT_EQ(result_on(2), one);
+    EXPECT_EQ(result_on(4), one);
 }
 
 }  // namespace
