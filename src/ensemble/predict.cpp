@@ -65,21 +65,43 @@ double predict_building_pressure(const Observation& run, const std::string& buil
     return never;
 }
 
-double predict_outline_overlap(const Observation& run, const std::vector<Polygon>& outline, double depth) {
-    const Grid<float>& deposit = run.maps.deposit_depth;
-    const GridGeometry& g = deposit.geometry;
+double predict_outline_overlap(const Grid<float>& map, const std::vector<Polygon>& outline, double depth) {
+    const GridGeometry& g = map.geometry;
     double outlined = 0;
     for (const Polygon& polygon : outline) outlined += plan_area(polygon);
     double both = 0, covered = 0;
     for (int row = 0; row < g.rows; ++row) {
         for (int column = 0; column < g.columns; ++column) {
-            if (!(deposit.at(column, row) > depth)) continue;
+            if (!(map.at(column, row) > depth)) continue;
             covered += g.cell * g.cell;
             if (in_any(outline, g.centre(column, row))) both += g.cell * g.cell;
         }
     }
     const double either = outlined + covered - both;  // the outline may reach beyond the map
     return either > 0 ? std::clamp(both / either, 0.0, 1.0) : 0;
+}
+
+double predict_elevation_agreement(const Observation& run, const Grid<float>& observed,
+                                   const std::vector<Release>& releases, double detection_limit) {
+    const auto known = [](float value) { return std::isnan(value) ? 0.0 : static_cast<double>(value); };
+    const auto detected = [&](double change) { return std::abs(change) < detection_limit ? 0.0 : change; };
+    const GridGeometry& g = observed.geometry;
+    double apart = 0, together = 0;
+    for (int row = 0; row < g.rows; ++row) {
+        for (int column = 0; column < g.columns; ++column) {
+            if (std::isnan(observed.at(column, row))) continue;  // not surveyed
+            const PlanPoint p = g.centre(column, row);
+            const bool released = std::any_of(releases.begin(), releases.end(),
+                                              [&](const Release& release) { return release.thickness_at(p) > 0; });
+            if (released) continue;
+            const double was = detected(observed.at(column, row));
+            const double is =
+                detected(known(value_at(run.maps.deposit_depth, p)) - known(value_at(run.erosion.depth, p)));
+            apart += std::abs(is - was);
+            together += std::abs(is) + std::abs(was);
+        }
+    }
+    return together > 0 ? 1 - apart / together : 0;
 }
 
 double superelevation_velocity(const SuperelevationSpec& m) {
@@ -132,9 +154,19 @@ std::vector<ObservedValue> observed_values(const Scene& scene) {
         add("observed_run_out", i, "chainage_m", label(o.name, "Run-out"), "m", o.chainage, o.uncertainty);
     }
     for (std::size_t i = 0; i < spec.deposit_outlines.size(); ++i) {
-        const DepositOutlineSpec& o = spec.deposit_outlines[i];
+        const OutlineSpec& o = spec.deposit_outlines[i];
         add("deposit_outline", i, "overlap", label(o.name, fmt::format("Overlap with deposit outline {}", i + 1)), "",
             1, o.uncertainty);
+    }
+    for (std::size_t i = 0; i < spec.affected_areas.size(); ++i) {
+        const OutlineSpec& o = spec.affected_areas[i];
+        add("affected_area", i, "overlap", label(o.name, fmt::format("Overlap with affected area {}", i + 1)), "", 1,
+            o.uncertainty);
+    }
+    for (std::size_t i = 0; i < spec.elevation_changes.size(); ++i) {
+        const ElevationChangeSpec& o = spec.elevation_changes[i];
+        add("elevation_change", i, "agreement", label(o.name, fmt::format("Agreement with elevation change {}", i + 1)),
+            "", 1, o.uncertainty);
     }
     return all;
 }
@@ -150,7 +182,16 @@ std::vector<double> predicted_values(const Scene& scene, const Observation& run)
     for (const auto& o : spec.damages) all.push_back(predict_building_pressure(run, o.building));
     for (std::size_t i = 0; i < spec.observed_run_outs.size(); ++i) all.push_back(predict_run_out(run));
     for (std::size_t i = 0; i < spec.deposit_outlines.size(); ++i) {
-        all.push_back(predict_outline_overlap(run, scene.deposit_outlines[i], spec.deposit_outlines[i].depth));
+        all.push_back(
+            predict_outline_overlap(run.maps.deposit_depth, scene.deposit_outlines[i], spec.deposit_outlines[i].depth));
+    }
+    for (std::size_t i = 0; i < spec.affected_areas.size(); ++i) {
+        all.push_back(
+            predict_outline_overlap(run.maps.peak_depth, scene.affected_areas[i], spec.affected_areas[i].depth));
+    }
+    for (std::size_t i = 0; i < spec.elevation_changes.size(); ++i) {
+        all.push_back(predict_elevation_agreement(run, scene.elevation_changes[i], scene.releases,
+                                                  spec.elevation_changes[i].detection_limit));
     }
     return all;
 }

@@ -37,9 +37,16 @@ inline constexpr double run_up_radius = 15;  ///< m, in which debris near a run-
 /// Pa, peak impact pressure on the building of that name; 0 if it was not hit, NaN if there is none.
 [[nodiscard]] double predict_building_pressure(const Observation& run, const std::string& building);
 
-/// Area that both the outline and deposit deeper than `depth` m cover, over the area that either does: 0 to 1, by map
-/// cells (Jaccard 1901).
-[[nodiscard]] double predict_outline_overlap(const Observation& run, const std::vector<Polygon>& outline, double depth);
+/// Area that both the outline and a map's cells of more than `depth` m cover, over the area that either does: 0 to 1
+/// (Jaccard 1901).
+[[nodiscard]] double predict_outline_overlap(const Grid<float>& map, const std::vector<Polygon>& outline, double depth);
+
+/// Agreement of an observed change of elevation with computed deposit minus erosion, over the cells of the observed
+/// one: 1 - sum |computed - observed| / sum (|computed| + |observed|), 0 to 1 (Bray & Curtis 1957). A change below
+/// `detection_limit` m counts as none. Cells within a release are left out: what failed there left no deposit, and the
+/// terrain may be that before or after.
+[[nodiscard]] double predict_elevation_agreement(const Observation& run, const Grid<float>& observed,
+                                                 const std::vector<Release>& releases, double detection_limit);
 
 /// m/s, the velocity that superelevated marks stand for: v^2 = g R dh / (k b), the forced vortex with a correction
 /// factor (Prochaska et al. 2008, Engineering Geology 97). The channel's slope is left out.

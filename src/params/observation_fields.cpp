@@ -114,16 +114,44 @@ Section declare_run_out() {
     return s.take();
 }
 
-Section declare_deposit_outline() {
-    Declaration<DepositOutlineSpec> s("deposit_outline",
-                                      "The edge of the deposit. The prediction is the area that outline and computed "
-                                      "deposit share over the area that either covers; 1 is perfect.",
-                                      &SceneSpec::deposit_outlines);
+void add_outline(Declaration<OutlineSpec>& s, const char* depth_help) {
     add_name(s);
-    s.path("file", &DepositOutlineSpec::file, "", "Polygons: GeoJSON, GeoPackage, Shapefile.").required = true;
-    s.text("layer", &DepositOutlineSpec::layer, "the only layer", "Layer of the file.");
-    s.key("depth_m", "m", &DepositOutlineSpec::depth, at_least(0), "Thinner computed deposit does not count.");
-    s.key("uncertainty", "", &DepositOutlineSpec::uncertainty, above_to(0, 1), "Standard deviation of that share.");
+    s.path("file", &OutlineSpec::file, "", "Polygons: GeoJSON, GeoPackage, Shapefile.").required = true;
+    s.text("layer", &OutlineSpec::layer, "the only layer", "Layer of the file.");
+    s.key("depth_m", "m", &OutlineSpec::depth, at_least(0), depth_help);
+    s.key("uncertainty", "", &OutlineSpec::uncertainty, above_to(0, 1), "Standard deviation of that share.");
+    add_source(s);
+}
+
+Section declare_deposit_outline() {
+    Declaration<OutlineSpec> s("deposit_outline",
+                               "The edge of the deposit. The prediction is the area that outline and computed "
+                               "deposit share over the area that either covers; 1 is perfect.",
+                               &SceneSpec::deposit_outlines);
+    add_outline(s, "Thinner computed deposit does not count.");
+    return s.take();
+}
+
+Section declare_affected_area() {
+    Declaration<OutlineSpec> s("affected_area",
+                               "The edge of all that debris covered, with its release. The prediction is the area that "
+                               "outline and computed trail share over the area that either covers; 1 is perfect.",
+                               &SceneSpec::affected_areas);
+    add_outline(s, "Places with a smaller peak depth do not count.");
+    return s.take();
+}
+
+Section declare_elevation_change() {
+    Declaration<ElevationChangeSpec> s("elevation_change",
+                                       "A DEM of difference: elevation after the event minus before. The prediction is "
+                                       "its agreement with computed deposit minus erosion outside the releases: 1 is "
+                                       "perfect, 0 is no overlap.",
+                                       &SceneSpec::elevation_changes);
+    add_name(s);
+    s.path("file", &ElevationChangeSpec::file, "", "Raster of the change in m, deposit positive.").required = true;
+    s.key("detection_limit_m", "m", &ElevationChangeSpec::detection_limit, at_least(0),
+          "Smaller changes count as none, observed and computed.");
+    s.key("uncertainty", "", &ElevationChangeSpec::uncertainty, above_to(0, 1), "Standard deviation of the agreement.");
     add_source(s);
     return s.take();
 }
@@ -131,8 +159,9 @@ Section declare_deposit_outline() {
 }  // namespace
 
 std::vector<Section> declare_observations() {
-    return {declare_observation(),   declare_superelevation(), declare_arrival(), declare_run_up(),
-            declare_deposit_depth(), declare_damage(),         declare_run_out(), declare_deposit_outline()};
+    return {declare_observation(),   declare_superelevation(),  declare_arrival(), declare_run_up(),
+            declare_deposit_depth(), declare_damage(),          declare_run_out(), declare_deposit_outline(),
+            declare_affected_area(), declare_elevation_change()};
 }
 
 }  // namespace talus

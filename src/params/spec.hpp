@@ -300,11 +300,19 @@ struct ObservedRunOutSpec {
     std::string source;
 };
 
-/// `[[deposit_outline]]`: the edge of the deposit.
-struct DepositOutlineSpec {
+/// `[[deposit_outline]]`, the edge of the deposit, and `[[affected_area]]`, the edge of all that debris covered.
+struct OutlineSpec {
     std::string name, file, layer;
-    double depth = 0.1;        ///< m, deposit thinner than this was not mapped
+    double depth = 0.1;        ///< m, debris thinner than this was not mapped
     double uncertainty = 0.1;  ///< of the overlap, 0 to 1
+    std::string source;
+};
+
+/// `[[elevation_change]]`: a DEM of difference, after minus before.
+struct ElevationChangeSpec {
+    std::string name, file;
+    double detection_limit = 0.2;  ///< m, smaller changes are noise
+    double uncertainty = 0.2;      ///< of the agreement, 0 to 1
     std::string source;
 };
 
@@ -339,7 +347,8 @@ struct SceneSpec {
     std::vector<DepositDepthSpec> deposit_depths;
     std::vector<DamageSpec> damages;
     std::vector<ObservedRunOutSpec> observed_run_outs;
-    std::vector<DepositOutlineSpec> deposit_outlines;
+    std::vector<OutlineSpec> deposit_outlines, affected_areas;
+    std::vector<ElevationChangeSpec> elevation_changes;
     std::vector<VariantSpec> variants;
 };
 

@@ -1,9 +1,11 @@
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include <fmt/format.h>
 
 #include "core/try.hpp"
+#include "geo/raster.hpp"
 #include "geo/vector.hpp"
 #include "scene/load.hpp"
 
@@ -59,21 +61,41 @@ Status check_damages(const ParsedScene& parsed, const Scene& scene) {
     return {};
 }
 
-Status load_outlines(const ParsedScene& parsed, Scene& scene) {
-    for (std::size_t i = 0; i < scene.spec.deposit_outlines.size(); ++i) {
-        const DepositOutlineSpec& spec = scene.spec.deposit_outlines[i];
-        const Result<PolygonLayer> layer = read_polygons(spec.file, spec.layer, scene.crs);
+/// `what` in words: "deposit outline"; `section` as in the scene file.
+Status load_outlines(const ParsedScene& parsed, const std::vector<OutlineSpec>& specs, const char* section,
+                     const char* what, std::vector<std::vector<Polygon>>& outlines, Scene& scene) {
+    for (std::size_t i = 0; i < specs.size(); ++i) {
+        const Result<PolygonLayer> layer = read_polygons(specs[i].file, specs[i].layer, scene.crs);
         if (!layer) {
-            return Error{parsed.at(fmt::format("deposit_outline[{}].file", i)) + ": " + layer.error().message};
+            return Error{parsed.at(fmt::format("{}[{}].file", section, i)) + ": " + layer.error().message};
         }
-        record_input(fmt::format("deposit outline {}", i + 1), spec.file, scene);
-        if (!layer->reprojection.empty()) {
-            scene.notes.push_back(fmt::format("deposit outline {}: {}", i + 1, layer->reprojection));
-        }
-        std::vector<Polygon>& outline = scene.deposit_outlines.emplace_back();
+        const std::string label = fmt::format("{} {}", what, i + 1);
+        record_input(label, specs[i].file, scene);
+        if (!layer->reprojection.empty()) scene.notes.push_back(label + ": " + layer->reprojection);
+        std::vector<Polygon>& outline = outlines.emplace_back();
         for (const PolygonFeature& feature : layer->features) {
             outline.insert(outline.end(), feature.parts.begin(), feature.parts.end());
         }
+    }
+    return {};
+}
+
+Status load_elevation_changes(const ParsedScene& parsed, Scene& scene) {
+    for (std::size_t i = 0; i < scene.spec.elevation_changes.size(); ++i) {
+        const ElevationChangeSpec& spec = scene.spec.elevation_changes[i];
+        const std::string at = parsed.at(fmt::format("elevation_change[{}].file", i)) + ": ";
+        Result<Raster> change = read_value_raster(spec.file, scene.crs);
+        if (!change) return Error{at + change.error().message};
+        const std::vector<float>& values = change->grid.values;
+        const bool any = std::any_of(values.begin(), values.end(), [&](float v) {
+            return std::abs(v) >= spec.detection_limit && std::abs(v) > 0;  // NaN: neither
+        });
+        if (!any) {
+            return Error{fmt::format("{}{}: holds no change of at least detection_limit_m = {:g}", at, spec.file,
+                                     spec.detection_limit)};
+        }
+        record_input(fmt::format("elevation change {}", i + 1), spec.file, scene);
+        scene.elevation_changes.push_back(std::move(change->grid));
     }
     return {};
 }
@@ -89,7 +111,11 @@ Status load_observations(const ParsedScene& parsed, Scene& scene) {
     TALUS_TRY(check_places(parsed, scene, spec.run_ups, "run_up"));
     TALUS_TRY(check_places(parsed, scene, spec.deposit_depths, "deposit_depth"));
     TALUS_TRY(check_damages(parsed, scene));
-    return load_outlines(parsed, scene);
+    TALUS_TRY(load_outlines(parsed, spec.deposit_outlines, "deposit_outline", "deposit outline", scene.deposit_outlines,
+                            scene));
+    TALUS_TRY(
+        load_outlines(parsed, spec.affected_areas, "affected_area", "affected area", scene.affected_areas, scene));
+    return load_elevation_changes(parsed, scene);
 }
 
 }  // namespace talus

@@ -47,6 +47,8 @@ struct Scene {
     FlowPath flow_path;
     bool flow_path_traced = false;
     std::vector<std::vector<Polygon>> deposit_outlines;  ///< as in SceneSpec::deposit_outlines
+    std::vector<std::vector<Polygon>> affected_areas;    ///< as in SceneSpec::affected_areas
+    std::vector<Grid<float>> elevation_changes;          ///< m; as in SceneSpec::elevation_changes
     std::vector<InputFile> inputs;
     std::vector<std::string> notes;  ///< what was done to the inputs: reprojections, defaults, traced path
 };

@@ -66,18 +66,46 @@ TEST_F(PredictTest, PressureIsThatOfTheNamedBuilding) {
 
 TEST_F(PredictTest, OverlapIsSharedOverCoveredArea) {
     const std::vector<Polygon> outline = {{{{4, 4}, {12, 4}, {12, 8}, {4, 8}}, {}}};  // 4 x 2 cells, 32 m2
-    EXPECT_DOUBLE_EQ(predict_outline_overlap(run, outline, 0.1), 0);
+    EXPECT_DOUBLE_EQ(predict_outline_overlap(run.maps.deposit_depth, outline, 0.1), 0);
     for (int column = 2; column < 6; ++column) {
         run.maps.deposit_depth.at(column, 2) = 1;      // one row of the outline, 16 m2
         run.maps.deposit_depth.at(column, 6) = 1;      // and as much outside
         run.maps.deposit_depth.at(column, 7) = 0.05F;  // too thin to count
     }
-    EXPECT_DOUBLE_EQ(predict_outline_overlap(run, outline, 0.1), 16.0 / (32 + 16));
+    EXPECT_DOUBLE_EQ(predict_outline_overlap(run.maps.deposit_depth, outline, 0.1), 16.0 / (32 + 16));
     for (int column = 2; column < 6; ++column) {
         run.maps.deposit_depth.at(column, 3) = 1;
         run.maps.deposit_depth.at(column, 6) = 0;
     }
-    EXPECT_DOUBLE_EQ(predict_outline_overlap(run, outline, 0.1), 1);
+    EXPECT_DOUBLE_EQ(predict_outline_overlap(run.maps.deposit_depth, outline, 0.1), 1);
+}
+
+TEST_F(PredictTest, ElevationAgreementComparesDepositMinusErosionOutsideReleases) {
+    Grid<float> observed(run.maps.deposit_depth.geometry, 0);
+    observed.at(2, 2) = 1;
+    observed.at(3, 2) = -1;
+    observed.at(4, 2) = 0.1F;                                     // noise
+    observed.at(5, 2) = std::numeric_limits<float>::quiet_NaN();  // not surveyed
+    observed.at(6, 6) = -4;                                       // where it failed
+    const GridGeometry& g = observed.geometry;
+    const PlanPoint scar = g.centre(6, 6);
+    Release release;
+    release.patches.push_back({{{{scar.x - 0.5, scar.y - 0.5},
+                                 {scar.x + 0.5, scar.y - 0.5},
+                                 {scar.x + 0.5, scar.y + 0.5},
+                                 {scar.x - 0.5, scar.y + 0.5}},
+                                {}},
+                               4});
+    const auto agreement = [&] { return predict_elevation_agreement(run, observed, {release}, 0.2); };
+    EXPECT_DOUBLE_EQ(agreement(), 0) << "nothing computed";
+    run.maps.deposit_depth.at(2, 2) = 1;
+    run.maps.deposit_depth.at(5, 2) = 7;
+    EXPECT_DOUBLE_EQ(agreement(), 1 - 1.0 / 3) << "the erosion is missing";
+    run.erosion.depth = Grid<float>(g, std::numeric_limits<float>::quiet_NaN());
+    run.erosion.depth.at(3, 2) = 1;
+    EXPECT_DOUBLE_EQ(agreement(), 1);
+    run.maps.deposit_depth.at(2, 2) = 0.5F;
+    EXPECT_DOUBLE_EQ(agreement(), 1 - 0.5 / 3.5);
 }
 
 TEST(Predict, SuperelevationGivesTheVelocityOfAForcedVortex) {
@@ -115,16 +143,20 @@ TEST_F(ObservedScene, HasAValueAndAPredictionForEveryObservation) {
         "[[deposit_depth]]\nx_m = 824120\ny_m = 825100\ndepth_m = 1.5\n"
         "[[damage]]\nbuilding = \"mill\"\ndamaged = false\n"
         "[[observed_run_out]]\nchainage_m = 90\n"
-        "[[deposit_outline]]\nfile = \"outline.geojson\"\n");
+        "[[deposit_outline]]\nfile = \"outline.geojson\"\n"
+        "[[affected_area]]\nfile = \"outline.geojson\"\n"
+        "[[elevation_change]]\nfile = \"dem.tif\"\n");
     const auto scene = load_scene(folder / "scene.toml");
     ASSERT_TRUE(scene) << scene.error().message;
     const auto observed = observed_values(*scene);
-    ASSERT_EQ(observed.size(), 8u);
+    ASSERT_EQ(observed.size(), 10u);
     EXPECT_DOUBLE_EQ(observed[0].uncertainty, 1);  // a fifth of 5 m/s
     EXPECT_DOUBLE_EQ(observed[1].value, superelevation_velocity(scene->spec.superelevations[0]));
     EXPECT_DOUBLE_EQ(observed[2].uncertainty, 1);
     EXPECT_EQ(observed[5].kind, ObservedValue::Kind::below);
     EXPECT_EQ(observed[7].key, "deposit_outline[0].overlap");
+    EXPECT_EQ(observed[8].key, "affected_area[0].overlap");
+    EXPECT_EQ(observed[9].key, "elevation_change[0].agreement");
     EXPECT_EQ(predicted_values(*scene, Observation()).size(), observed.size());
 }
 
@@ -137,6 +169,12 @@ TEST_F(ObservedScene, ObservationsThatCannotBeAreRefused) {
     EXPECT_THAT(load_error(), HasSubstr("damage[0].building = \"mill\" is no building of the scene"));
     write_valley("[[deposit_outline]]\nfile = \"nix.geojson\"\n");
     EXPECT_THAT(load_error(), HasSubstr("deposit_outline[0].file: "));
+    write_valley("[[affected_area]]\nfile = \"nix.geojson\"\n");
+    EXPECT_THAT(load_error(), HasSubstr("affected_area[0].file: "));
+    write_valley("[[elevation_change]]\nfile = \"nix.tif\"\n");
+    EXPECT_THAT(load_error(), HasSubstr("elevation_change[0].file: "));
+    write_valley("[[elevation_change]]\nfile = \"dem.tif\"\ndetection_limit_m = 9000\n");
+    EXPECT_THAT(load_error(), HasSubstr("holds no change of at least detection_limit_m = 9000"));
     write_valley("[[superelevation]]\nchainage_m = 3\nbend_radius_m = 0\nwidth_m = 1\nlevel_difference_m = 1\n");
     EXPECT_THAT(load_error(), HasSubstr("superelevation[0].bend_radius_m = 0 is refused; it must be a number above 0"));
 }

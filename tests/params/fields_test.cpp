@@ -67,7 +67,9 @@ TEST(FieldTable, EveryMemberIsDeclared) {
     EXPECT_EQ(declared("deposit_depth"), members<DepositDepthSpec>());
     EXPECT_EQ(declared("damage"), members<DamageSpec>());
     EXPECT_EQ(declared("observed_run_out"), members<ObservedRunOutSpec>());
-    EXPECT_EQ(declared("deposit_outline"), members<DepositOutlineSpec>());
+    EXPECT_EQ(declared("deposit_outline"), members<OutlineSpec>());
+    EXPECT_EQ(declared("affected_area"), members<OutlineSpec>());
+    EXPECT_EQ(declared("elevation_change"), members<ElevationChangeSpec>());
 }
 
 TEST(FieldTable, KeysOfMeasuresEndInTheirUnit) {
