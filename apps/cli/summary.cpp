@@ -20,7 +20,7 @@ namespace {
 std::vector<const BuildingImpact*> buildings_hit(const Observation& observation) {
     std::vector<const BuildingImpact*> hit;
     for (const BuildingImpact& building : observation.buildings) {
-        if (building.hit) hit.push_back(&building);
+        if (building.hit && !building.is_barrier) hit.push_back(&building);
     }
     std::stable_sort(hit.begin(), hit.end(), [](const BuildingImpact* a, const BuildingImpact* b) {
         return a->first_hit_time < b->first_hit_time;
@@ -31,7 +31,7 @@ std::vector<const BuildingImpact*> buildings_hit(const Observation& observation)
 std::string buildings_text(const Observation& observation) {
     constexpr std::size_t longest_list = 6;
     const auto hit = buildings_hit(observation);
-    std::string text = fmt::format("{} of {}", hit.size(), observation.buildings.size());
+    std::string text = fmt::format("{} of {}", hit.size(), hits_among(observation.buildings, false).all);
     for (std::size_t i = 0; i < std::min(hit.size(), longest_list); ++i) {
         text += fmt::format("{}{} ({:.1f} s, {:.0f} kPa)", i == 0 ? ": " : ", ", hit[i]->name, hit[i]->first_hit_time,
                             hit[i]->peak_impact_pressure / 1000);
@@ -128,7 +128,7 @@ std::string summary_text(const Scene& scene, const RunResult& result, const std:
     if (!scene.bed.empty()) {
         text += line("picked up", fmt::format("{:.1f} m3 from the bed", seen.erosion.volume));
     }
-    if (!seen.buildings.empty()) text += line("buildings hit", buildings_text(seen));
+    if (hits_among(seen.buildings, false).all > 0) text += line("buildings hit", buildings_text(seen));
     for (const BuildingImpact& b : seen.buildings) {
         if (b.is_barrier) text += line("barrier", barrier_text(b));
         if (!std::isnan(b.failure_time)) text += line("FAILED", fmt::format("{} at {:.2f} s", b.name, b.failure_time));

@@ -44,6 +44,12 @@ double area_above(const Grid<float>& grid, double share) {
     return cells * grid.geometry.cell * grid.geometry.cell;
 }
 
+/// Barriers are among the structures, but are no buildings.
+bool is_barrier(const EnsembleResult& result, std::size_t structure) {
+    const auto& all = result.scene->buildings;
+    return structure < all.size() && all[structure].barrier.has_value();
+}
+
 Json key_figures_of(const EnsembleResult& result) {
     const Reduction& r = result.reduction;
     std::vector<double> run_out = result.values_of(0);
@@ -63,14 +69,16 @@ Json key_figures_of(const EnsembleResult& result) {
                                  fmt::format("deeper than {} m in more than half of the runs; {} m² in any",
                                              plain(depth), fixed(area_above(map->grid, 0), 0))));
     }
-    const auto hit = std::count_if(r.buildings.begin(), r.buildings.end(), [](const auto& b) { return b.hit > 0; });
-    const auto likely =
-        std::count_if(r.buildings.begin(), r.buildings.end(), [](const auto& b) { return b.hit > 0.5; });
-    all.push_back(key_figure("buildings_likely_hit", "Buildings hit", likely, "",
-                             r.buildings.empty() ? "" : fmt::format("of {}", r.buildings.size()),
-                             r.buildings.empty()
-                                 ? "the scene has none"
-                                 : fmt::format("in more than half of the runs; {} in at least one", hit)));
+    std::size_t count = 0, hit = 0, likely = 0;
+    for (std::size_t i = 0; i < r.buildings.size(); ++i) {
+        if (is_barrier(result, i)) continue;
+        ++count;
+        hit += r.buildings[i].hit > 0 ? 1 : 0;
+        likely += r.buildings[i].hit > 0.5 ? 1 : 0;
+    }
+    all.push_back(key_figure(
+        "buildings_likely_hit", "Buildings hit", likely, "", count == 0 ? "" : fmt::format("of {}", count),
+        count == 0 ? "the scene has none" : fmt::format("in more than half of the runs; {} in at least one", hit)));
     return all;
 }
 
@@ -186,8 +194,11 @@ MapContent content_of(const EnsembleResult& result) {
 Json buildings_of(const EnsembleResult& result) {
     const auto& all = result.reduction.buildings;
     std::vector<const BuildingOdds*> hit;
-    for (const BuildingOdds& b : all) {
-        if (b.hit > 0) hit.push_back(&b);
+    std::size_t count = 0;
+    for (std::size_t i = 0; i < all.size(); ++i) {
+        if (is_barrier(result, i)) continue;
+        ++count;
+        if (all[i].hit > 0) hit.push_back(&all[i]);
     }
     if (hit.empty()) return {};
     std::stable_sort(hit.begin(), hit.end(), [](const auto* a, const auto* b) { return a->hit > b->hit; });
@@ -213,8 +224,8 @@ Json buildings_of(const EnsembleResult& result) {
         rows["rows"].push_back(std::move(row));
     }
     return {{"table", std::move(rows)},
-            {"never_hit", all.size() - hit.size()},
-            {"count", all.size()},
+            {"never_hit", count - hit.size()},
+            {"count", count},
             {"more", hit.size() > most_buildings ? Json(hit.size() - most_buildings) : Json()}};
 }
 

@@ -126,9 +126,7 @@ std::vector<double> measure(const Scene& scene, const RunResult& result) {
                                   greatest_of(o.maps.peak_speed),
                                   result.simulated_time};
     if (!scene.buildings.empty()) {
-        double hit = 0;
-        for (const BuildingImpact& b : o.buildings) hit += b.hit ? 1 : 0;
-        values.push_back(hit);
+        values.push_back(static_cast<double>(hits_among(o.buildings, false).hit));
     }
     for (const double predicted : predicted_values(scene, o)) values.push_back(predicted);
     return values;

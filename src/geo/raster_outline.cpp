@@ -5,6 +5,7 @@
 #include <gdal_alg.h>
 #include <ogrsf_frmts.h>
 
+#include "core/try.hpp"
 #include "geo/gdal.hpp"
 
 namespace talus {
@@ -55,6 +56,24 @@ Result<std::vector<Polygon>> outlines_above_zero(const Grid<float>& values) {
             outline.holes.push_back(ring_of(*polygon->getInteriorRing(k), g));
         }
         outlines.push_back(std::move(outline));
+    }
+    return outlines;
+}
+
+Result<std::vector<ClassOutline>> class_outlines(const Grid<float>& classes, std::size_t count) {
+    std::vector<ClassOutline> outlines;
+    for (std::size_t number = 1; number <= count; ++number) {
+        Grid<float> in_class(classes.geometry);
+        std::size_t cells = 0;
+        for (std::size_t i = 0; i < classes.values.size(); ++i) {
+            if (classes.values[i] != static_cast<float>(number)) continue;
+            in_class.values[i] = 1;
+            ++cells;
+        }
+        if (cells == 0) continue;
+        TALUS_ASSIGN(auto polygons, outlines_above_zero(in_class));
+        const double cell = classes.geometry.cell;
+        outlines.push_back({number, std::move(polygons), static_cast<double>(cells) * cell * cell});
     }
     return outlines;
 }

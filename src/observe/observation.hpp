@@ -90,6 +90,20 @@ struct BuildingImpact {
     return !impact.is_barrier ? "building" : std::isnan(impact.passing_share) ? "barrier" : "net";
 }
 
+/// How many structures debris hit, of how many: the buildings, or the barriers.
+struct Hits {
+    std::size_t hit = 0, all = 0;
+};
+[[nodiscard]] inline Hits hits_among(const std::vector<BuildingImpact>& impacts, bool barriers) {
+    Hits hits;
+    for (const BuildingImpact& impact : impacts) {
+        if (impact.is_barrier != barriers) continue;
+        ++hits.all;
+        hits.hit += impact.hit ? 1 : 0;
+    }
+    return hits;
+}
+
 /// A row of the time series. Volumes add up exactly: released + entrained = held + moving + deposited + left.
 struct TimeSample {
     double time = 0;

@@ -1,6 +1,8 @@
 #include "params/fields.hpp"
 
 #include <algorithm>
+#include <charconv>
+#include <chrono>
 #include <cmath>
 
 #include <fmt/format.h>
@@ -20,6 +22,42 @@ Section declare_scene() {
     s.key("assumptions", "", &SceneInfo::assumptions, anything(), "What was assumed, one sentence each.");
     s.key("sources", "", &SceneInfo::sources, anything(),
           "Where facts and data come from, with the attribution their licences ask for.");
+    return s.take();
+}
+
+/// Whether a text is a day as ISO 8601 writes it.
+bool is_date(const std::string& text) {
+    int year = 0;
+    unsigned month = 0, day = 0;
+    if (text.size() != 10 || text[4] != '-' || text[7] != '-') return false;
+    const auto read = [&](std::size_t from, std::size_t length, auto& number) {
+        const char* end = text.data() + from + length;
+        const auto [stopped, error] = std::from_chars(text.data() + from, end, number);
+        return error == std::errc() && stopped == end;
+    };
+    if (!read(0, 4, year) || !read(5, 2, month) || !read(8, 2, day)) return false;
+    return year > 0 &&
+           std::chrono::year_month_day(std::chrono::year(year), std::chrono::month(month), std::chrono::day(day)).ok();
+}
+
+Section declare_report() {
+    Declaration<ReportSpec> s("report", "Who answers for the report and what it may be used for; printed in its head.",
+                              &SceneSpec::report);
+    s.text("client", &ReportSpec::client, "not stated", "For whom the report is made.");
+    s.text("author", &ReportSpec::author, "not stated", "Who made it; the printed report leaves room for a signature.");
+    s.text("checker", &ReportSpec::checker, "not stated",
+           "Who checked it; the printed report leaves room for a signature.");
+    s.text("reference", &ReportSpec::reference, "not stated", "Reference number of the project or the report.");
+    s.text("revision", &ReportSpec::revision, "not stated", "Revision of the report.");
+    s.text("date", &ReportSpec::date, "not stated",
+           "Day of issue as YYYY-MM-DD (ISO 8601), in quotes. When the run was made is printed beside it.");
+    s.text("limits_of_use", &ReportSpec::limits_of_use, "not stated",
+           "What the results may be used for and what not, in a few sentences.");
+    s.rule([](const ReportSpec& report, const SceneSpec&, double) -> std::optional<Violation> {
+        if (report.date.empty() || is_date(report.date)) return {};
+        return Violation{"date", fmt::format(" = {} is refused; it must be a day as YYYY-MM-DD, such as \"2026-11-23\"",
+                                             toml_text(ParameterValue(report.date)))};
+    });
     return s.take();
 }
 
@@ -129,13 +167,19 @@ Section declare_outputs() {
     s.key("arrival_depth_m", "m", &OutputSpec::arrival_depth, at_least(0),
           "Debris has arrived in a map cell once it is deeper than this.");
     s.key("impact_filter_window_s", "s", &OutputSpec::impact_filter_window, above(0),
-          "Averaging window of force and impact pressure on structures.");
+          "Averaging window of force and impact pressure on structures.")
+        .assumes("Averaging time of force and impact pressure");
     s.key("impact_patch_edge_m", "m", &OutputSpec::impact_patch_edge, between(0.1, 100),
           "Edge of the square patches of walls and roofs, the reference area of impact pressure: a patch's filtered "
-          "force over its area, whatever the particles.");
+          "force over its area, whatever the particles.")
+        .assumes("Reference area of impact pressure, edge of the square");
     s.key("deposited_speed_mps", "m/s", &OutputSpec::deposited_speed, above(0), "Slower debris counts as deposited.");
     s.key("particle_series_interval_s", "s", &OutputSpec::particle_series_interval, at_least(0),
           "Simulated time between particle frames for ParaView; 0 writes none.");
+    s.choice("intensity_guideline", &OutputSpec::intensity_guideline,
+             {"swiss_debris_flow", "swiss_flood", "garcia_2003"},
+             "Whose classes of intensity are mapped from peak depth and peak speed: debris flows or floods after the "
+             "Swiss recommendation (BWW, BRP & BUWAL 1997), or debris flows after García et al. (2003).");
     s.key("peak_thickness", "", &OutputSpec::peak_thickness, anything(),
           "Also writes peak_thickness.tif, the peak depth normal to the slope.");
     return s.take();
@@ -167,9 +211,9 @@ Section declare_variant() {
 const std::vector<Section>& scene_sections() {
     static const std::vector<Section> sections = [] {
         std::vector<Section> all = {
-            declare_scene(),     declare_terrain(), declare_release(),         declare_inflow(),    declare_bed(),
-            declare_buildings(), declare_barrier(), declare_barrier_opening(), declare_flow_path(), declare_material(),
-            declare_zone(),      declare_solver(),  declare_outputs()};
+            declare_scene(),    declare_report(),    declare_terrain(), declare_release(),         declare_inflow(),
+            declare_bed(),      declare_buildings(), declare_barrier(), declare_barrier_opening(), declare_flow_path(),
+            declare_material(), declare_zone(),      declare_solver(),  declare_outputs()};
         for (Section& section : declare_observations()) all.push_back(std::move(section));
         all.push_back(declare_variant());
         return all;

@@ -61,15 +61,20 @@ struct Parameter {
     bool required = false;
     Range range;
     std::vector<std::string> choices;
-    std::string absent;  ///< what happens when it is not given, where there is no default value
-    std::string help;    ///< one sentence
-    std::string live;    ///< the key by which people change it while a run goes on; empty: they cannot
+    std::string absent;      ///< what happens when it is not given, where there is no default value
+    std::string help;        ///< one sentence
+    std::string assumption;  ///< what a report calls the default, where the result rests on it and the scene sets none
+    std::string live;        ///< the key by which people change it while a run goes on; empty: they cannot
     std::optional<Form> form;
     double spacings = 0;       ///< it must be at least so many particle spacings
     std::string spacings_why;  ///< what happens otherwise
     std::string below;         ///< key of the section that it must be below, where that is given
     std::optional<Need> need;
 
+    Parameter& assumes(std::string what) {
+        assumption = std::move(what);
+        return *this;
+    }
     Parameter& at_least_spacings(double count, std::string why) {
         spacings = count;
         spacings_why = std::move(why);

@@ -11,6 +11,7 @@ void declare_resistance(Declaration<MaterialSpec>& s) {
           "Whether viscosity acts between debris and ground as well, which a viscous fluid sticks to.");
     s.optional_key("turbulent_friction_mps2", "m/s2", &MaterialSpec::turbulent_friction, above(0), "no such drag",
                    "Voellmy's xi: flow of thickness h is slowed by g v2 / (xi h) beside Coulomb friction.")
+        .assumes("Turbulent friction, Voellmy's ξ")
         .live_as();
     s.optional_key(
         "turbulent_friction_thickness_m", "m", &MaterialSpec::turbulent_friction_thickness, above_to(0, 1000),
@@ -21,17 +22,20 @@ void declare_resistance(Declaration<MaterialSpec>& s) {
          "cohesion_Pa", "Pa", &MaterialSpec::cohesion, at_least(0),
          "Shear strength that needs no pressure, on the ground and inside: the yield stress of a mud where friction is "
          "0.")
+        .assumes("Cohesion")
         .live_as()
         .needs(stress());
     s.key(
          "pore_pressure_ratio", "", &MaterialSpec::pore_pressure_ratio, between(0, 1),
          "r_u, pore pressure over the total normal stress when debris starts: friction on ground, buildings and inside "
          "is 1 - r_u of what it is in dry debris.")
+        .assumes("Pore-pressure ratio")
         .live_as()
         .needs(stress());
     s.optional_key("pore_pressure_decay_time_s", "s", &MaterialSpec::pore_pressure_decay_time, above(0),
                    "pore pressure stays", "Time since a body's start in which its pore-pressure ratio falls to 1/e.");
     s.key("rest_density_kgpm3", "kg/m3", &MaterialSpec::rest_density, above_to(0, 30000), "Bulk density of the debris.")
+        .assumes("Bulk density")
         .live_as();
     s.optional_key("inertial_friction_coefficient", "", &MaterialSpec::inertial_friction_coefficient, between(0, 10),
                    "friction does not depend on the shear rate",
@@ -53,17 +57,21 @@ Section declare_material() {
     s.key("friction_coefficient", "", &MaterialSpec::friction_coefficient, between(0, 10),
           "Coulomb friction on the ground (tangent of the friction angle), and on buildings and inside unless set "
           "apart.")
+        .assumes("Coulomb friction on the ground")
         .live_as();
     s.optional_key("building_friction_coefficient", "", &MaterialSpec::building_friction_coefficient, between(0, 10),
                    "equal to friction_coefficient", "Coulomb friction on the walls and roofs of buildings.")
+        .assumes("Coulomb friction on walls and roofs")
         .live_as();
     s.optional_key("internal_friction_coefficient", "", &MaterialSpec::internal_friction_coefficient, between(0, 10),
                    "equal to friction_coefficient", "Coulomb friction of debris on debris.")
+        .assumes("Internal friction")
         .live_as();
     s.key(
          "viscosity", "", &MaterialSpec::viscosity, from_to_below(0, 1),
          "Share of the velocity difference to its neighbours that debris loses per 1/60 s, whatever the time step. The "
          "same share is another material at another particle spacing; kinematic_viscosity_m2ps is not.")
+        .assumes("Viscosity, as smoothing per 1/60 s")
         .live_as();
     s.optional_key("kinematic_viscosity_m2ps", "m2/s", &MaterialSpec::kinematic_viscosity, at_least(0),
                    "what viscosity amounts to at this particle spacing",

@@ -24,7 +24,8 @@ Section declare_release() {
            "Raster of thickness in metres, in the terrain's reference system (GeoTIFF, .asc); without file it is the "
            "release area too.");
     s.choice("thickness_direction", &ReleaseSpec::thickness_direction, {"normal", "vertical"},
-             "Whether thickness is measured normal to the slope or vertically, as a difference of elevations is.");
+             "Whether thickness is measured normal to the slope or vertically, as a difference of elevations is.")
+        .assumes("Direction in which the release's thickness is measured");
     s.optional_key("volume_m3", "m3", &ReleaseSpec::volume, above(0), "one of the other three is given",
                    "Volume to release, spread as a uniform thickness over the polygons.");
     s.key("start_time_s", "s", &ReleaseSpec::start_time, at_least(0),
@@ -63,6 +64,7 @@ Section declare_bed() {
     s.choice("law", &BedSpec::law, {"growth", "shear"},
              "How debris picks it up: growth adds a share of its volume per metre that it moves (McDougall & Hungr "
              "2005); shear goes by the shear stress on the bed (Frank et al. 2015).")
+        .assumes("Law of erosion")
         .live_as();
     s.optional_key("growth_rate_per_m", "1/m", &BedSpec::growth_rate, above_to(0, 1),
                    "law = \"growth\" needs it, and law = \"shear\" does not have it",
@@ -72,12 +74,15 @@ Section declare_bed() {
     s.key("critical_shear_stress_Pa", "Pa", &BedSpec::critical_shear_stress, at_least(0),
           "With law = \"shear\": less shear stress, rest density x gravity x depth x sine of the slope, picks up "
           "nothing.")
+        .assumes("Critical shear stress of the bed")
         .live_in({.label = "Critical shear stress", .slider_low = 0, .slider_high = 5, .first = 1});
     s.key("erosion_rate_mps", "m/s", &BedSpec::erosion_rate, above_to(0, 10),
           "With law = \"shear\": how fast the bed is lowered.")
+        .assumes("Rate of erosion")
         .live_in({.label = "Erosion rate", .slider_low = 0.001, .slider_high = 0.101, .first = 0.013});
     s.key("erosion_depth_mpPa", "m/Pa", &BedSpec::erosion_depth_per_shear, above_to(0, 1),
           "With law = \"shear\": how deep at most, per shear stress above the critical one.")
+        .assumes("Depth of erosion per shear stress")
         .live_in({.label = "Erosion depth", .slider_low = 0.01, .slider_high = 1.01, .first = 0.05});
     s.exactly_one_of({"depth_m", "depth_attribute", "depth_raster"});
     s.rule([](const BedSpec& bed, const SceneSpec&, double) -> std::optional<Violation> {

@@ -19,6 +19,13 @@ struct SceneInfo {
     std::vector<std::string> sources;      ///< where facts and data come from, printed in the report
 };
 
+/// `[report]`: what a report says of itself to be signed. Empty: not said.
+struct ReportSpec {
+    std::string client, author, checker, revision, reference;
+    std::string date;  ///< "2026-11-23"
+    std::string limits_of_use;
+};
+
 /// `[terrain]`
 struct TerrainSpec {
     std::string file;
@@ -218,6 +225,9 @@ struct SolverSpec {
     int thread_count = 0;                ///< 0: all cores
 };
 
+/// Whose intensity classes are mapped; the tables are in report/intensity.cpp.
+enum class GuidelineChoice { swiss_debris_flow, swiss_flood, garcia_2003 };
+
 /// `[outputs]`
 struct OutputSpec {
     std::optional<double> map_cell;       ///< m; absent: a whole fraction of the terrain's cell, near 2.5 spacings
@@ -229,7 +239,8 @@ struct OutputSpec {
     double impact_patch_edge = 1;         ///< m, of the squares of a wall over which impact pressure is averaged
     double deposited_speed = 0.1;         ///< m/s, slower debris counts as deposited
     double particle_series_interval = 0;  ///< s between ParaView frames; 0: none
-    bool peak_thickness = false;          ///< also a map of the peak thickness normal to the slope
+    GuidelineChoice intensity_guideline = GuidelineChoice::swiss_debris_flow;
+    bool peak_thickness = false;  ///< also a map of the peak thickness normal to the slope
 };
 
 /// `[[observation]]`: a front velocity measured in the field.
@@ -326,6 +337,7 @@ struct VariantSpec {
 
 struct SceneSpec {
     SceneInfo scene;
+    ReportSpec report;
     TerrainSpec terrain;
     std::vector<ReleaseSpec> releases;
     std::vector<BedSpec> beds;

@@ -18,12 +18,14 @@ Section declare_buildings() {
            "Attribute that holds a building's name.");
     s.key("default_height_m", "m", &BuildingsSpec::height, above_to(0, 1000),
           "Height above the ground where the attribute is absent, empty or not above zero; counted as assumed.")
+        .assumes("Height of buildings whose data give none")
         .live_in({.label = "Height", .slider_low = 0.5, .slider_high = 40, .first = 6}, "height_m");
     s.text("resistance_attribute", &BuildingsSpec::resistance_attribute, "every building has resistance_Pa",
            "Attribute that holds the pressure in Pa that a building stands.");
     s.optional_key(
-        "resistance_Pa", "Pa", &BuildingsSpec::resistance, above(0), "buildings stand whatever happens",
-        "Impact pressure (outputs.impact_patch_edge_m) above which a building is destroyed: it is gone from then on.");
+         "resistance_Pa", "Pa", &BuildingsSpec::resistance, above(0), "buildings stand whatever happens",
+         "Impact pressure (outputs.impact_patch_edge_m) above which a building is destroyed: it is gone from then on.")
+        .assumes("Resistance of buildings");
     return s.take();
 }
 

@@ -122,7 +122,7 @@ Json results(const RunResult& result) {
         volumes["deposited_m3"] = last.volume_deposited;
         volumes["left_m3"] = last.volume_left;
     }
-    const auto hit = std::count_if(o.buildings.begin(), o.buildings.end(), [](const auto& b) { return b.hit; });
+    const Hits buildings = hits_among(o.buildings, false), barriers = hits_among(o.buildings, true);
     return {{"front_chainage_m", o.run_out.front_chainage},
             {"run_out_along_flow_m", o.run_out.along_flow},
             {"run_out_straight_m", o.run_out.straight},
@@ -132,8 +132,10 @@ Json results(const RunResult& result) {
             {"travel_angle_deg", o.run_out.travel_angle * degrees_per_radian},
             {"greatest", greatest_values},
             {"volumes", volumes},
-            {"buildings", o.buildings.size()},
-            {"buildings_hit", hit},
+            {"buildings", buildings.all},
+            {"buildings_hit", buildings.hit},
+            {"barriers", barriers.all},
+            {"barriers_hit", barriers.hit},
             {"structures", structures_json(o)},
             {"compression", compression_json(o)}};
 }

@@ -3,6 +3,7 @@
 #include "products/text_file.hpp"
 #include "products/writers.hpp"
 #include "report/hazard_map.hpp"
+#include "report/intensity.hpp"
 
 namespace talus {
 namespace {
@@ -23,6 +24,9 @@ Status write_maps(const Scene& scene, const RunResult& result, const std::filesy
     for (const HazardMap& map : hazard_maps()) {
         TALUS_TRY(write_map(map, result.observation.maps.*map.grid, said, scene.crs, folder));
     }
+    const IntensityGuideline& guideline = intensity_guideline(scene.spec.outputs.intensity_guideline);
+    TALUS_TRY(write_map(intensity_style(guideline), intensity_map(guideline, result.observation.maps), said, scene.crs,
+                        folder));
     if (scene.spec.outputs.peak_thickness) {
         const Grid<float> thickness = normal_to_slope(result.observation.maps.peak_depth, scene.terrain);
         TALUS_TRY(write_map(thickness_map(), thickness, said, scene.crs, folder));

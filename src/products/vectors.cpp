@@ -2,8 +2,10 @@
 #include <cmath>
 
 #include "core/try.hpp"
+#include "geo/raster_outline.hpp"
 #include "geo/vector.hpp"
 #include "products/writers.hpp"
+#include "report/intensity.hpp"
 
 namespace talus {
 
@@ -118,6 +120,23 @@ std::vector<OutputFeature> chainage_marks(const Scene& scene, const Observation&
     return features;
 }
 
+/// The cells of every intensity class that occurs, a feature per class.
+Status write_intensity(const Scene& scene, const Observation& observation, const std::string& file) {
+    const IntensityGuideline& guideline = intensity_guideline(scene.spec.outputs.intensity_guideline);
+    const Grid<float> map = intensity_map(guideline, observation.maps);
+    std::vector<OutputFeature> features;
+    TALUS_ASSIGN(auto outlines, class_outlines(map, guideline.classes.size()));
+    for (ClassOutline& outline : outlines) {
+        const IntensityClass& c = guideline.classes[outline.number - 1];
+        features.push_back({std::move(outline.polygons),
+                            {},
+                            {static_cast<double>(outline.number), c.name, c.criterion, guideline.name, outline.area}});
+    }
+    return write_geopackage_layer(
+        file, "intensity", {{"class"}, {"intensity", true}, {"criterion", true}, {"guideline", true}, {"area_m2"}},
+        features, scene.crs);
+}
+
 }  // namespace
 
 Status write_vectors(const Scene& scene, const RunResult& result, const std::filesystem::path& folder) {
@@ -125,6 +144,7 @@ Status write_vectors(const Scene& scene, const RunResult& result, const std::fil
     const Observation& observation = result.observation;
     TALUS_TRY(write_buildings(scene, observation, file));
     TALUS_TRY(write_releases(scene, file));
+    TALUS_TRY(write_intensity(scene, observation, file));
     if (scene.flow_path.empty()) return {};
     const OutputFeature line{
         {}, scene.flow_path.points(), {scene.flow_path.length(), yes_or_no(scene.flow_path_traced)}};

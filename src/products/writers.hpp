@@ -12,14 +12,16 @@
 /// The parts of write_products, one per kind of file. Lengths in m, times in s unless a suffix says otherwise.
 namespace talus {
 
-/// peak_depth.tif, ... and erosion_depth.tif where anything was eroded, each with a QGIS style beside it.
+/// peak_depth.tif, ..., intensity.tif, and erosion_depth.tif where anything was eroded, each with a QGIS style beside
+/// it.
 [[nodiscard]] Status write_maps(const Scene& scene, const RunResult& result, const std::filesystem::path& folder);
 
 /// front.csv, run_out.csv, buildings.csv, structures_over_time.csv, timeseries.csv, and erosion.csv where debris can
 /// pick up its bed. A value that does not exist is an empty field.
 [[nodiscard]] Status write_tables(const Scene& scene, const RunResult& result, const std::filesystem::path& folder);
 
-/// results.gpkg with the layers buildings, release, flow_path and chainage (a short line across the path per mark).
+/// results.gpkg with the layers buildings, release, intensity (polygons of each class), flow_path and chainage (a short
+/// line across the path per mark).
 [[nodiscard]] Status write_vectors(const Scene& scene, const RunResult& result, const std::filesystem::path& folder);
 
 /// convergence.csv, variants.csv: a row for the base and one per variant, with values, changes in percent and cost.

@@ -275,11 +275,15 @@ std::string chart_file(const Chart& chart) {
     return svg.str() + "\n";
 }
 
-std::string figure_svg(double width, double height, std::string_view title, const Svg& content, double widest) {
+std::string figure_svg(double width, double height, std::string_view title, const Svg& content, double widest,
+                       double printed) {
+    std::string style;
+    if (widest > 0) style = fmt::format("max-width:{}px", coordinate(widest));
+    if (printed > 0) style += fmt::format("{}--printed:{}mm", style.empty() ? "" : ";", coordinate(printed));
     Svg svg;
     svg.open("svg", {{"class", "figure"},
                      {"viewBox", fmt::format("0 0 {} {}", coordinate(width), coordinate(height))},
-                     {"style", widest > 0 ? fmt::format("max-width:{}px", coordinate(widest)) : std::string()},
+                     {"style", style},
                      {"role", "img"},
                      {"aria-label", title}});
     svg.append(content);

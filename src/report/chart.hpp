@@ -125,9 +125,10 @@ struct Chart {
 [[nodiscard]] std::string chart_svg(const Chart& chart);
 /// A file of its own, with its style and on white.
 [[nodiscard]] std::string chart_file(const Chart& chart);
-/// An <svg> of the given size around its content; on the page at most `widest` pixels wide, if given.
+/// An <svg> of the given size around its content; on the page at most `widest` pixels wide, on paper `printed` mm, if
+/// given.
 [[nodiscard]] std::string figure_svg(double width, double height, std::string_view title, const Svg& content,
-                                     double widest = 0);
+                                     double widest = 0, double printed = 0);
 /// A sample of a curve for a key in words.
 [[nodiscard]] std::string sample_svg(std::string_view style);
 

@@ -22,6 +22,33 @@ HazardMap map(const char* file, const char* title, const char* description, cons
     return {file, title, description, unit, factor, grid, std::move(breaks), ramp};
 }
 
+/// A QGIS style with a colour per class.
+std::string category_style(const HazardMap& map) {
+    std::string entries;
+    for (std::size_t k = 0; k < map.categories.size(); ++k) {
+        const Category& category = map.categories[k];
+        entries += fmt::format("        <paletteEntry value=\"{}\" color=\"{}\" alpha=\"255\" label=\"{}\"/>\n", k + 1,
+                               category.colour.hex(), report::escape(category.name));
+    }
+    return fmt::format(R"qml(<!DOCTYPE qgis PUBLIC 'http://mrcc.com/qgis.dtd' 'SYSTEM'>
+<qgis version="3.22.0" styleCategories="AllStyleCategories" hasScaleBasedVisibilityFlag="0">
+  <pipe>
+    <rasterrenderer type="paletted" band="1" opacity="0.85" alphaBand="-1" nodataColor="">
+      <rasterTransparency/>
+      <colorPalette>
+{}      </colorPalette>
+    </rasterrenderer>
+    <brightnesscontrast brightness="0" contrast="0" gamma="1"/>
+    <huesaturation saturation="0" grayscaleMode="0" colorizeOn="0"/>
+    <rasterresampler maxOversampling="2"/>
+    <resamplingStage>resamplingFilter</resamplingStage>
+  </pipe>
+  <blendMode>0</blendMode>
+</qgis>
+)qml",
+                       entries);
+}
+
 }  // namespace
 
 const std::vector<HazardMap>& hazard_maps() {
@@ -73,6 +100,7 @@ double greatest(const Grid<float>& grid) {
 }
 
 std::string qgis_style(const HazardMap& map, double largest) {
+    if (!map.categories.empty()) return category_style(map);
     largest = std::max(largest, map.full_scale);
     const report::Classes classes = map.breaks.empty() ? report::even_classes(largest, map.ramp)
                                                        : report::fixed_classes(map.breaks, largest, map.ramp);

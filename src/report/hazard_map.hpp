@@ -8,6 +8,12 @@
 
 namespace talus {
 
+/// A class of a map that has no measure.
+struct Category {
+    std::string name;
+    report::Colour colour;
+};
+
 /// A map among the products: where it comes from, what it is called, how it is coloured.
 struct HazardMap {
     std::string file;                         ///< without extension: "peak_depth"
@@ -19,6 +25,7 @@ struct HazardMap {
     std::vector<double> breaks;  ///< lower limits of the classes; below the first: not drawn. Empty: even classes
     report::Ramp ramp;
     double full_scale = 0;  ///< classes reach at least up to here, so that maps of a kind have the same colours
+    std::vector<Category> categories{};  ///< of the values 1, 2, ...; then breaks and ramp are not used
 };
 
 /// All maps, in the order in which they are written.

@@ -13,6 +13,7 @@
 #include "report/colour.hpp"
 #include "report/hazard_map.hpp"
 #include "report/image.hpp"
+#include "report/intensity.hpp"
 #include "report/number_text.hpp"
 #include "report/relief.hpp"
 
@@ -98,7 +99,8 @@ ClassImage paint(const HazardMap& layer, const Grid<float>& map, const Classes& 
     const double pixel = g.cell / finer, north = g.y_min + g.rows * g.cell;
     for (int y = 0; y < image.height; ++y) {
         for (int x = 0; x < image.width; ++x) {
-            const double v = interpolate(map, {g.x_min + (x + 0.5) * pixel, north - (y + 0.5) * pixel});
+            const PlanPoint at{g.x_min + (x + 0.5) * pixel, north - (y + 0.5) * pixel};
+            const double v = layer.categories.empty() ? interpolate(map, at) : value_at(map, at);
             image.pixels.push_back(static_cast<std::uint8_t>(classes.of(v * layer.factor) + 1));
         }
     }
@@ -154,21 +156,23 @@ void draw_classes(Svg& svg, const MapLayer& shown, const Classes& classes, doubl
     const double x = frame.right() + 20;
     svg.text("legend-title", x, frame.top + 13, shown.tab);
     svg.text("legend-unit", x, frame.top + 31,
-             std::isfinite(most) ? fmt::format("{}, at most {} {}", layer.unit, fixed(most, shown.digits), layer.unit)
-                                 : layer.unit);
+             !layer.categories.empty() ? shown.legend
+             : std::isfinite(most) ? fmt::format("{}, at most {} {}", layer.unit, fixed(most, shown.digits), layer.unit)
+                                   : layer.unit);
     const std::size_t n = classes.breaks.size();
     for (std::size_t k = n; k-- > 0;) {
         const double y = frame.top + 44 + 18.0 * static_cast<double>(n - 1 - k);
         const std::string from = coordinate(classes.breaks[k]);
-        const std::string text = k + 1 < n ? fmt::format("{} – {}", from, coordinate(classes.breaks[k + 1]))
-                                           : (n > 1 ? "over " : "from ") + from;
+        const std::string text = !layer.categories.empty() ? layer.categories[k].name
+                                 : k + 1 < n ? fmt::format("{} – {}", from, coordinate(classes.breaks[k + 1]))
+                                             : (n > 1 ? "over " : "from ") + from;
         draw_swatch(svg, x, y, classes.colours[k]);
         svg.text("legend", x + 39, y + 13.5, text);
     }
 }
 
 std::string building_title(const Building& building, const BuildingImpact& impact) {
-    std::string title = building.name.empty() ? "Building" : building.name;
+    std::string title = building.name.empty() ? kind_of(impact) : building.name;
     if (!std::isnan(impact.removed_time)) title += fmt::format(" (until {} s)", fixed(impact.removed_time, 1));
     if (!impact.hit) return title + ": not reached";
     return title + fmt::format(": {} kPa, first hit at {} s", significant(impact.peak_impact_pressure / 1e3, 3),
@@ -176,6 +180,12 @@ std::string building_title(const Building& building, const BuildingImpact& impac
 }
 
 Classes classes_of(const HazardMap& layer, double most) {
+    Classes classes;
+    for (const Category& category : layer.categories) {
+        classes.breaks.push_back(static_cast<double>(classes.breaks.size() + 1));
+        classes.colours.push_back(category.colour);
+    }
+    if (!classes.breaks.empty()) return classes;
     if (layer.breaks.empty()) return even_classes(most, layer.ramp);
     return fixed_classes(layer.breaks, std::max(layer.full_scale, std::isnan(most) ? 0 : most), layer.ramp);
 }
@@ -232,7 +242,8 @@ MapContent map_content(const Scene& scene, const RunResult& result) {
     content.reached = &observation.maps.peak_depth;
     content.farthest_chainage = observation.run_out.front_chainage;
     content.cell = result.map_cell > 0 ? result.map_cell : observation.maps.peak_depth.geometry.cell;
-    content.buildings.title = "Buildings, impact pressure";
+    const bool barriers = hits_among(observation.buildings, true).all > 0;
+    content.buildings.title = barriers ? "Structures, impact pressure" : "Buildings, impact pressure";
     content.buildings.class_names = {"not reached", "hit, below 15 kPa", "hit, 15 – 30 kPa", "hit, over 30 kPa"};
     for (std::size_t i = 0; i < std::min(scene.buildings.size(), observation.buildings.size()); ++i) {
         const BuildingImpact& impact = observation.buildings[i];
@@ -245,6 +256,11 @@ MapContent map_content(const Scene& scene, const RunResult& result) {
         content.layers.push_back(
             {map, &(observation.maps.*map.grid), map_words.at(k).tab, map_words.at(k).caption, map_words.at(k).digits});
     }
+    const IntensityGuideline& guideline = intensity_guideline(scene.spec.outputs.intensity_guideline);
+    content.made = std::make_shared<const Grid<float>>(intensity_map(guideline, observation.maps));
+    content.layers.push_back({intensity_style(guideline), content.made.get(), "Intensity",
+                              "Classes of intensity by peak depth and peak speed at each place; see Intensity below.",
+                              0, guideline.name});
     if (!observation.erosion.depth.values.empty()) {
         content.layers.push_back({erosion_map(), &observation.erosion.depth, "Erosion",
                                   "What debris picked up from the bed, measured vertically, on the cells of the "
@@ -325,6 +341,8 @@ Result<Json> map_figures(const Scene& scene, const MapContent& content) {
     Json out = {{"definitions", definitions(scene, content, frame, relief, key_top, contour_interval)},
                 {"layers", Json::array()}};
     out["contour_interval"] = contour_interval;
+    out["ratio"] = print_ratio(frame);
+    out["print_width_mm"] = print_width(frame);
 
     const Grid<float> coarse_ground = crop(scene.terrain.elevation(), frame.area, 260);
     const ReadOut ground_values = read_out_of(coarse_ground, 1);
@@ -347,14 +365,16 @@ Result<Json> map_figures(const Scene& scene, const MapContent& content) {
         Svg picture;
         picture.add("use", {{"href", "#map-base"}});
         if (std::isfinite(most)) {
-            const Grid<float> part = crop(map, frame.area, 1200);
+            // Classes have no mean.
+            const bool classed = !layer.categories.empty();
+            const Grid<float> part = crop(map, frame.area, classed ? 1 << 20 : 1200);
             const Extent e = part.geometry.extent();
             TALUS_ASSIGN(auto uri, png_uri(paint(layer, part, classes)));
             picture.open("g", {clip()});
             draw_image(picture, "layer", frame.x(e.x_min), frame.y(e.y_max), e.width() * frame.scale,
                        e.height() * frame.scale, uri);
             picture.close("g");
-            const Grid<float> coarse = crop(map, frame.area, 500);
+            const Grid<float> coarse = classed ? part : crop(map, frame.area, 500);
             const ReadOut values = read_out_of(coarse, layer.factor);
             TALUS_ASSIGN(auto values_uri, png_uri(values.image));
             nlohmann::json entry = placed(coarse, values, values_uri);
@@ -362,16 +382,19 @@ Result<Json> map_figures(const Scene& scene, const MapContent& content) {
             entry["name"] = shown.tab;
             entry["unit"] = layer.unit;
             entry["digits"] = shown.digits;
+            for (const Category& category : layer.categories) entry["classes"].push_back(category.name);
             page["layers"].push_back(std::move(entry));
         }
         picture.add("use", {{"href", "#map-over"}});
         draw_classes(picture, shown, classes, most, frame);
         picture.add("use", {{"href", "#map-key"}});
-        out["layers"].push_back({{"file", layer.file},
-                                 {"name", shown.tab},
-                                 {"svg", figure_svg(width, height, "Map: " + shown.tab, picture, 1.04 * width)},
-                                 {"about", shown.caption},
-                                 {"cell", map.values.empty() ? content.cell : map.geometry.cell}});
+        out["layers"].push_back(
+            {{"file", layer.file},
+             {"name", shown.tab},
+             {"svg", figure_svg(width, height, "Map: " + shown.tab, picture, 1.04 * width, print_width(frame))},
+             {"about", shown.caption},
+             {"classed", !layer.categories.empty()},
+             {"cell", map.values.empty() ? content.cell : map.geometry.cell}});
     }
     std::string read_out = page.dump();
     // Inside a script element only "<" could end it; JSON may write it as an escape.

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -37,6 +38,7 @@ struct MapLayer {
     std::string tab;                    ///< "Peak depth"
     std::string caption;                ///< a sentence
     int digits = 2;                     ///< of values
+    std::string legend{};               ///< over the classes of a map without a measure
 };
 
 /// How the maps' buildings are coloured: classes 0 (not at all) to 3.
@@ -55,7 +57,8 @@ struct MapContent {
     double cell = 0;                       ///< m
     BuildingMarks buildings;
     std::vector<MapLayer> layers;
-    bool not_converged = false;  ///< said on every map
+    std::shared_ptr<const Grid<float>> made{};  ///< the grid of a layer that the maps alone have
+    bool not_converged = false;                 ///< said on every map
 };
 
 /// The maps of a single run. `result` must outlive them.
@@ -78,11 +81,22 @@ struct MapContent {
 /// slight, extensive and complete damage to buildings not of reinforced concrete (Kang & Kim 2014).
 [[nodiscard]] int impact_class(const BuildingImpact& impact);
 
+/// The terrain with the area of the maps in it, as the template shows it. Null where the maps show most of it.
+/// Errors: a picture could not be encoded.
+[[nodiscard]] Result<Json> location_figure(const Scene& scene, const MapContent& content);
+
+/// The scale of a map on A4 paper, 1 : ratio, a round one at which map and key fit beside the margins; and how wide map
+/// and key then are, mm. report.css prints them so.
+[[nodiscard]] double print_ratio(const MapFrame& frame);
+[[nodiscard]] double print_width(const MapFrame& frame);
+
 // The parts of the drawing that all maps share.
 void draw_contours(Svg& svg, const Scene& scene, const MapFrame& frame, double& interval);
 void draw_vectors(Svg& svg, const Scene& scene, const BuildingMarks& marks, const MapFrame& frame);
 void draw_frame(Svg& svg, const Scene& scene, const MapContent& content, const MapFrame& frame);
 void draw_key(Svg& svg, const Scene& scene, const BuildingMarks& marks, const MapFrame& frame, double contour_interval);
+/// Scale bar, scale on paper and north; (x, y) is its upper left corner.
+void draw_scale(Svg& svg, const MapFrame& frame, double x, double y);
 /// A picture over an area of the frame, cut where the frame ends.
 void draw_image(Svg& svg, std::string_view css_class, double x, double y, double width, double height,
                 std::string_view uri);

@@ -280,20 +280,47 @@ void draw_key(Svg& svg, const Scene& scene, const BuildingMarks& marks, const Ma
                 [&] { svg.rect(fmt::format("building hit-{}", k), 2, 3, 26, 13); });
         }
     }
-    // Scale bar: two halves of a round length, 70 to 140 units together, and north of the grid.
+    draw_scale(svg, frame, x, y + 20);
+}
+
+void draw_scale(Svg& svg, const MapFrame& frame, double x, double y) {
+    // Two halves of a round length, 70 to 140 units together.
     const double half = round_step(35 / frame.scale), length = half * frame.scale;
-    y += 20;
     svg.open("g", {{"transform", translation(x, y)}});
     svg.rect("scale-dark", 0, 18, length, 6);
     svg.rect("scale-light", length, 18, length, 6);
     svg.text("legend-unit", 0, 12, "0", "start");
     svg.text("legend-unit", length, 12, coordinate(half), "middle");
     svg.text("legend-unit", 2 * length, 12, coordinate(2 * half) + " m", "middle");
+    svg.text("legend-unit", 0, 42, fmt::format("1 : {} printed on A4", fixed(print_ratio(frame), 0)));
     svg.close("g");
     svg.open("g", {{"transform", translation(x + MapFrame::key_width - 22, y + 4)}});
     svg.path("north", "M0 0l8 30l-8 -6l-8 6Z");
     svg.text("north-letter", 0, -5, "N");
     svg.close("g");
+}
+
+namespace {
+
+double whole_width(const MapFrame& frame) {
+    return frame.right() + 20 + MapFrame::key_width;
+}
+
+}  // namespace
+
+double print_ratio(const MapFrame& frame) {
+    constexpr double paper_width = 182, paper_height = 108;  // mm, within report.css's margins; two maps to a page
+    const double largest = std::min(paper_width / whole_width(frame), paper_height / (frame.bottom() + 30));
+    const double least = 1000 / (frame.scale * largest);
+    const double decade = std::pow(10, std::floor(std::log10(least)));
+    for (const double round : {1.0, 1.25, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0, 6.0, 7.5}) {
+        if (round * decade >= least * (1 - 1e-9)) return round * decade;
+    }
+    return 10 * decade;
+}
+
+double print_width(const MapFrame& frame) {
+    return whole_width(frame) * 1000 / (print_ratio(frame) * frame.scale);
 }
 
 }  // namespace talus::report

@@ -150,17 +150,21 @@ Json key_figures(const Scene& scene, const RunResult& result) {
         ran ? fmt::format("travel angle of the centre of mass {}°",
                           fixed(o.run_out.travel_angle * degrees_per_radian, 1))
             : "");
-    const auto hit =
-        std::count_if(o.buildings.begin(), o.buildings.end(), [](const BuildingImpact& b) { return b.hit; });
-    const auto worst = std::max_element(o.buildings.begin(), o.buildings.end(), [](const auto& a, const auto& b) {
-        return a.peak_impact_pressure < b.peak_impact_pressure;
-    });
-    all.push_back(key_figure(
-        "buildings_hit", "Buildings hit", hit, "f0", fmt::format("of {}", o.buildings.size()),
-        hit > 0 ? fmt::format("highest impact pressure {} kPa, {}", significant(worst->peak_impact_pressure / 1e3, 3),
-                              worst->name.empty() ? "unnamed" : worst->name)
-                : "no building was hit",
-        hit > 0));
+    const Hits hits = hits_among(o.buildings, false), barriers_hit = hits_among(o.buildings, true);
+    const BuildingImpact* worst = nullptr;
+    for (const BuildingImpact& b : o.buildings) {
+        if (b.is_barrier || !b.hit) continue;
+        if (worst == nullptr || b.peak_impact_pressure > worst->peak_impact_pressure) worst = &b;
+    }
+    std::string hits_note = worst == nullptr ? "no building was hit"
+                                             : fmt::format("highest impact pressure {} kPa, {}",
+                                                           significant(worst->peak_impact_pressure / 1e3, 3),
+                                                           worst->name.empty() ? "unnamed" : worst->name);
+    if (barriers_hit.all > 0) {
+        hits_note += fmt::format("; {} of {} hit", barriers_hit.hit, plural(barriers_hit.all, "barrier"));
+    }
+    all.push_back(key_figure("buildings_hit", "Buildings hit", hits.hit, "f0", fmt::format("of {}", hits.all),
+                             hits_note, hits.hit > 0));
     const Peak depth = peak_of(o.maps.peak_depth), speed = peak_of(o.maps.peak_speed),
                pressure = peak_of(o.maps.peak_pressure);
     add("peak_depth_m", "Peak flow depth", depth.value, "f1", "m", place(scene, depth));
@@ -236,6 +240,19 @@ Json quality(const Scene& scene, const RunResult& result) {
     };
 }
 
+Json title_block(const ReportSpec& report) {
+    const auto given = [](const std::string& text) { return text.empty() ? Json() : Json(text); };
+    const Json block = {{"client", given(report.client)},
+                        {"reference", given(report.reference)},
+                        {"revision", given(report.revision)},
+                        {"date", given(report.date)},
+                        {"author", given(report.author)},
+                        {"checker", given(report.checker)},
+                        {"limits_of_use", given(report.limits_of_use)}};
+    const bool empty = std::all_of(block.begin(), block.end(), [](const Json& text) { return text.is_null(); });
+    return empty ? Json() : block;
+}
+
 Json observations(const Scene& scene, const RunResult& result) {
     if (scene.spec.observations.empty()) return {};
     Json rows = table({{"observation", "Observation", ""},
@@ -267,7 +284,8 @@ Json results_head(std::string_view format) {
             {"version", results_version},
             {"program", std::string("talus ") + TALUS_VERSION},
             {"created", fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", now)},
-            {"date", fmt::format("{:%d %B %Y, %H:%M} UTC", now)}};
+            {"date", fmt::format("{:%d %B %Y, %H:%M} UTC", now)},
+            {"report", nullptr}};
 }
 
 Json results_head(std::string_view format, const Scene& scene) {
@@ -275,6 +293,7 @@ Json results_head(std::string_view format, const Scene& scene) {
     Json head = results_head(format);
     head["title"] = info.title.empty() ? scene.file.stem().string() : info.title;
     head["description"] = info.description;
+    head["report"] = title_block(scene.spec.report);
     head["reconstruction"] = info.reconstruction;
     head["reference_system"] = scene.crs.label();
     return head;
@@ -293,6 +312,7 @@ Json run_results(const Scene& scene, const RunResult& result, const std::vector<
                 {"barriers", barriers(result)},
                 {"impact_filter_window_s", scene.spec.outputs.impact_filter_window},
                 {"impact_patch_edge_m", scene.spec.outputs.impact_patch_edge},
+                {"intensity", intensity(scene, result)},
                 {"force", force_chart(result)},
                 {"front", front_chart(scene, result)},
                 {"front_velocity_window_m", scene.spec.outputs.front_velocity_window},
@@ -303,10 +323,12 @@ Json run_results(const Scene& scene, const RunResult& result, const std::vector<
                 {"comparisons", Json::array()},
                 {"method", method(scene)},
                 {"assumptions", scene.spec.scene.assumptions},
+                {"not_set", not_set(scene, result)},
                 {"notes", scene.notes},
                 {"sources", scene.spec.scene.sources},
                 {"as_computed", chosen_values(scene, result)},
                 {"parameters", parameters(scene)},
+                {"defaults", defaults(scene)},
                 {"inputs", inputs(scene)},
                 {"computation", computation(scene, result)}});
     for (const Comparison& compared : comparisons) {

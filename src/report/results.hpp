@@ -11,7 +11,7 @@
 /// What reports say, as data: results.json, described in docs/results.md.
 namespace talus::report {
 
-constexpr int results_version = 1;
+constexpr int results_version = 2;
 
 /// How every results.json begins: `format`, version, program and time; then, if given, what the scene says of itself.
 [[nodiscard]] Json results_head(std::string_view format);
@@ -20,6 +20,8 @@ constexpr int results_version = 1;
 [[nodiscard]] Json run_results(const Scene& scene, const RunResult& result, const std::vector<Comparison>& comparisons);
 
 // Its parts. Null where there is nothing to tell.
+/// What `[report]` says: client, reference, ...; null where it says nothing.
+[[nodiscard]] Json title_block(const ReportSpec& report);
 [[nodiscard]] Json status(const RunResult& result);
 /// How far debris was compressed, and what to change where that was too much.
 [[nodiscard]] Json compression(const Scene& scene, const RunResult& result);
@@ -27,6 +29,8 @@ constexpr int results_version = 1;
 [[nodiscard]] Json quality(const Scene& scene, const RunResult& result);
 /// Computed front velocities beside those observed in the field.
 [[nodiscard]] Json observations(const Scene& scene, const RunResult& result);
+/// Classes of a guideline and the area of each.
+[[nodiscard]] Json intensity(const Scene& scene, const RunResult& result);
 [[nodiscard]] Json buildings(const Scene& scene, const RunResult& result);
 [[nodiscard]] Json barriers(const RunResult& result);
 /// Force over time on the structures that were hit.
@@ -46,7 +50,11 @@ void mark_observations(const Scene& scene, Plot& velocity);
 /// Which laws the scene uses.
 [[nodiscard]] Json method(const Scene& scene);
 [[nodiscard]] Json chosen_values(const Scene& scene, const RunResult& result);
+/// The keys that the scene sets, and those at their defaults with their number.
 [[nodiscard]] Json parameters(const Scene& scene);
+[[nodiscard]] Json defaults(const Scene& scene);
+/// The defaults on which the result rests, for each that the scene does not set, with their number.
+[[nodiscard]] Json not_set(const Scene& scene, const RunResult& result);
 [[nodiscard]] Json inputs(const Scene& scene);
 [[nodiscard]] Json computation(const Scene& scene, const RunResult& result);
 

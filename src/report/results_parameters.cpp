@@ -115,7 +115,24 @@ Json chosen_values(const Scene& scene, const RunResult& result) {
     return rows;
 }
 
-Json parameters(const Scene& scene) {
+namespace {
+
+/// What is said of a value, as an entry of a table: what happens where there is none.
+Json shown(const Parameter& parameter, const ParameterValue& value) {
+    const std::string text = plain_text(value);
+    if (!text.empty()) return text;
+    return {{"value", parameter.absent.empty() ? "not given" : parameter.absent}, {"tone", "absent"}};
+}
+
+/// Whether the scene says what the value is, or something has changed it since.
+bool is_set(const Scene& scene, const Section& section, std::size_t index, const Parameter& parameter,
+            const ParameterValue& value) {
+    return scene.given_keys.count(key_path(section, index, parameter)) > 0 ||
+           toml_text(value) != toml_text(default_value(section, parameter));
+}
+
+/// The keys that are set, or those that are not.
+Json parameter_table(const Scene& scene, bool set) {
     Json rows = table({{"key", "Key", "", "", "code"},
                        {"value", "Value", "", "", "value"},
                        {"unit", "Unit", "", "", "", ""},
@@ -125,23 +142,79 @@ Json parameters(const Scene& scene) {
     for_each_value(scene.spec, [&](const Section& section, std::size_t index, const Parameter& parameter,
                                    const ParameterValue& value) {
         // Printed in full elsewhere: at the top, under Assumptions, beside the computed front velocities.
-        if (section.name == "scene" || section.name == "observation") return;
-        Json row = {{"key", parameter.key}, {"unit", parameter.unit}, {"help", parameter.help}};
+        if (section.name == "scene" || section.name == "report" || section.name == "observation") return;
+        if (is_set(scene, section, index, parameter, value) != set) return;
+        Json row = {{"key", parameter.key},
+                    {"value", shown(parameter, value)},
+                    {"unit", parameter.unit},
+                    {"help", parameter.help}};
         if (const std::string heading = heading_of(section, index); heading != open) {
             row["heading"] = open = heading;
             row["heading_note"] = index == 0 ? section.help : "";
         }
-        const std::string text = plain_text(value);
-        if (text.empty()) {
-            row["value"] = {{"value", parameter.absent.empty() ? "not given" : parameter.absent}, {"tone", "absent"}};
-        } else if (text != plain_text(default_value(section, parameter))) {
-            row["value"] = {{"value", text}, {"tone", "differs"}};
-        } else {
-            row["value"] = text;
-        }
         rows["rows"].push_back(std::move(row));
     });
     return rows;
+}
+
+/// Whether a result rests on a default of this run.
+bool matters(const Scene& scene, const RunResult& result, const Section& section, std::size_t index,
+             const Parameter& parameter) {
+    const auto& impacts = result.observation.buildings;
+    const auto any = [&](const auto& what) { return std::any_of(impacts.begin(), impacts.end(), what); };
+    if (section.name == "buildings") {
+        if (!any([](const BuildingImpact& b) { return b.hit && !b.is_barrier; })) return false;
+        if (parameter.key == "resistance_Pa") return scene.spec.buildings.resistance_attribute.empty();
+        return std::any_of(scene.buildings.begin(), scene.buildings.end(),
+                           [](const Building& b) { return b.height_assumed; });
+    }
+    if (section.name == "outputs") return any([](const BuildingImpact& b) { return b.hit; });
+    if (section.name == "release") return !scene.spec.releases[index].volume;
+    if (section.name == "bed") {
+        return parameter.key == "law" || scene.spec.beds[index].law == EntrainmentLaw::shear;
+    }
+    if (parameter.key == "building_friction_coefficient") return !impacts.empty();
+    if (parameter.key == "viscosity") return !scene.spec.material.kinematic_viscosity;
+    return true;
+}
+
+}  // namespace
+
+Json parameters(const Scene& scene) {
+    return parameter_table(scene, true);
+}
+
+Json defaults(const Scene& scene) {
+    Json rows = parameter_table(scene, false);
+    const std::size_t count = rows["rows"].size();
+    return {{"count", count}, {"table", std::move(rows)}};
+}
+
+Json not_set(const Scene& scene, const RunResult& result) {
+    Json rows = table({{"assumption", "Assumption", ""},
+                       {"value", "Value", "", "", "value"},
+                       {"unit", "Unit", "", "", "", ""},
+                       {"key", "Not set in the scene", "", "", "code"}},
+                      "not-set");
+    const auto add = [&](const std::string& what, Json value, const std::string& unit, const std::string& key) {
+        rows["rows"].push_back({{"assumption", what}, {"value", std::move(value)}, {"unit", unit}, {"key", key}});
+    };
+    for_each_value(scene.spec, [&](const Section& section, std::size_t index, const Parameter& parameter,
+                                   const ParameterValue& value) {
+        if (parameter.assumption.empty() || is_set(scene, section, index, parameter, value)) return;
+        if (!matters(scene, result, section, index, parameter)) return;
+        add(parameter.assumption, shown(parameter, value), parameter.unit, key_path(section, index, parameter));
+    });
+    for (std::size_t i = 0; i < scene.releases.size(); ++i) {
+        const Release& release = scene.releases[i];
+        if (!release.spec.volume || release.patches.empty()) continue;
+        add(fmt::format("Thickness of {}, the same everywhere, from its volume", release.name),
+            significant(release.patches.front().thickness, 3), "m", fmt::format("release[{}].thickness_m", i));
+    }
+    if (scene.spec.beds.empty())
+        add("Erosion", {{"value", "debris picks up no ground"}, {"tone", "absent"}}, "", "bed");
+    const std::size_t count = rows["rows"].size();
+    return count == 0 ? Json() : Json{{"count", count}, {"table", std::move(rows)}};
 }
 
 Json method(const Scene& scene) {

@@ -136,15 +136,19 @@ Json building_rows(const Scene& scene, const std::vector<BuildingImpact>& impact
 
 Json buildings(const Scene& scene, const RunResult& result) {
     const auto& impacts = result.observation.buildings;
-    if (impacts.empty()) return {};
+    const std::size_t count = hits_among(impacts, false).all;
+    if (count == 0) return {};
     std::vector<std::size_t> hit;
+    std::vector<BuildingImpact> all;
     for (std::size_t i = 0; i < impacts.size(); ++i) {
+        if (impacts[i].is_barrier) continue;
+        all.push_back(impacts[i]);
         if (impacts[i].hit) hit.push_back(i);
     }
     const auto assumed = static_cast<std::size_t>(std::count_if(scene.buildings.begin(), scene.buildings.end(),
                                                                 [](const Building& b) { return b.height_assumed; }));
-    const Json removed = events(impacts, &BuildingImpact::removed_time);
-    return {{"count", plural(impacts.size(), "building")},
+    const Json removed = events(all, &BuildingImpact::removed_time);
+    return {{"count", plural(count, "building")},
             {"hit", hit.size()},
             {"none_hit", hit.empty()},
             {"table", hit.empty() ? Json() : building_rows(scene, impacts, hit)},
@@ -160,6 +164,7 @@ Json barriers(const RunResult& result) {
         rows = table({{"name", "Barrier", ""},
                       {"first_hit_s", "First hit", "s", "f1"},
                       {"peak_force_kN", "Peak force", "kN", "s3"},
+                      {"peak_impact_pressure_kPa", "Impact pressure", "kPa", "s3"},
                       {"impulse_kNs", "Impulse", "kN s", "s3"},
                       {"overtopped_m3", "Over the crest", "m³", "f1", "", "–", true},
                       {"first_overtopped_s", "First over", "s", "f1"},
@@ -172,6 +177,7 @@ Json barriers(const RunResult& result) {
             rows["rows"].push_back({{"name", name_of(b)},
                                     {"first_hit_s", seconds(b.first_hit_time)},
                                     {"peak_force_kN", b.peak_force / 1e3},
+                                    {"peak_impact_pressure_kPa", b.peak_impact_pressure / 1e3},
                                     {"impulse_kNs", b.impulse / 1e3},
                                     {"overtopped_m3", b.overtopped_volume},
                                     {"first_overtopped_s", seconds(b.first_overtopping_time)},

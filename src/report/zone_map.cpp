@@ -145,7 +145,7 @@ Result<Json> zone_figure(const Scene& scene, const MapContent& content, double c
                                                    : "Zones of the ground and bed";
     const double height = std::max(frame.bottom() + 30, y + 8 + key_height(scene));
     return Json{{"title", title},
-                {"svg", figure_svg(width, height, std::string("Map: ") + title, svg, 1.04 * width)},
+                {"svg", figure_svg(width, height, std::string("Map: ") + title, svg, 1.04 * width, print_width(frame))},
                 {"zones", scene.spec.zones.size()},
                 {"beds", scene.spec.beds.size()},
                 {"cell", scene.terrain.cell()}};

@@ -115,19 +115,27 @@ std::vector<std::size_t> counting_hits(const Observation& observation) {
 
 void add_buildings(const Observation& base, std::vector<Measure>& all) {
     const std::vector<std::size_t> hits = counting_hits(base);
-    Measure list;
-    list.quantity = {.key = "buildings_hit",
-                     .suffix = "count",
-                     .name = "buildings hit",
-                     .unit = "",
-                     .limit_percent = 0,
-                     .not_measured = "no building was hit"};
-    list.value = [](const Observation& o) {
-        const std::size_t count = counting_hits(o).size();
-        return count > 0 ? static_cast<double>(count) : never;
-    };
-    list.same = [hits](const Observation& o) { return counting_hits(o) == hits; };
-    all.push_back(std::move(list));
+    for (const bool barriers : {false, true}) {
+        if (hits_among(base.buildings, barriers).all == 0) continue;
+        const auto hits_in = [barriers](const Observation& o) {
+            std::vector<std::size_t> list = counting_hits(o);
+            std::erase_if(list, [&](std::size_t i) { return o.buildings[i].is_barrier != barriers; });
+            return list;
+        };
+        Measure list;
+        list.quantity = {.key = barriers ? "barriers_hit" : "buildings_hit",
+                         .suffix = "count",
+                         .name = barriers ? "barriers hit" : "buildings hit",
+                         .unit = "",
+                         .limit_percent = 0,
+                         .not_measured = barriers ? "no barrier was hit" : "no building was hit"};
+        list.value = [hits_in](const Observation& o) {
+            const std::size_t count = hits_in(o).size();
+            return count > 0 ? static_cast<double>(count) : never;
+        };
+        list.same = [hits_in, of_base = hits_in(base)](const Observation& o) { return hits_in(o) == of_base; };
+        all.push_back(std::move(list));
+    }
     for (const std::size_t i : hits) {
         const std::string name = base.buildings[i].name;
         const auto add = [&](const char* key, const char* suffix, const char* what, const char* unit, double scale,

@@ -141,6 +141,9 @@ Result<Scene> assemble_scene(const ParsedScene& parsed) {
     Scene scene;
     scene.file = parsed.file;
     scene.spec = parsed.spec;
+    for (const auto& [key, place] : parsed.places) {
+        if (key.find('.') != std::string::npos) scene.given_keys.insert(key);  // the others are sections
+    }
     if (scene.spec.scene.title.empty()) scene.spec.scene.title = title_from(parsed.file);
     record_input("scene", parsed.file.string(), scene);
     TALUS_TRY(load_terrain(parsed, scene));

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -32,6 +33,7 @@ struct InputFile {
 struct Scene {
     std::filesystem::path file;
     SceneSpec spec;
+    std::set<std::string> given_keys;  ///< by file, variant or command line: "material.viscosity", "release[0].file"
     Crs crs;
     std::string vertical_unit;
     double nodata_share = 0;

@@ -92,7 +92,7 @@ const pictures = {};
 
 await check("every layer is chosen by its tab and shows something of its own", async () => {
   const tabs = await page.$$(".tabs button");
-  assert.equal(tabs.length, 5);
+  assert.equal(tabs.length, 6);
   const seen = new Map();
   for (const tab of tabs) {
     await tab.click();
@@ -203,7 +203,7 @@ await check("without scripts every map is shown", async () => {
   const context = await browser.newContext({ javaScriptEnabled: false, viewport: { width: 1280, height: 900 } });
   const plain = await context.newPage();
   await plain.goto(pathToFileURL(resolve(reportFile)).href);
-  assert.equal(await plain.locator(".maps figure:visible").count(), 5);
+  assert.equal(await plain.locator(".maps figure:visible").count(), 6);
   await context.close();
 });
 
@@ -226,7 +226,7 @@ await check("prints to A4 with all maps, on a sane number of pages", async () =>
   const box = all.match(/\/MediaBox\s*\[\s*0\s+0\s+([\d.]+)\s+([\d.]+)/);
   assert.ok(Math.abs(box[1] - 595) < 2 && Math.abs(box[2] - 842) < 2, `page of ${box[1]} x ${box[2]} pt`);
   await page.emulateMedia({ media: "print" });
-  assert.equal((await page.$$(".maps figure:visible")).length, 5);
+  assert.equal((await page.$$(".maps figure:visible")).length, 6);
   assert.equal((await page.$$(".controls:visible")).length, 0);
 });
 

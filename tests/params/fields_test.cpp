@@ -48,6 +48,7 @@ constexpr std::size_t members() {
 TEST(FieldTable, EveryMemberIsDeclared) {
     const auto declared = [](const char* section) { return find_section(section)->parameters.size(); };
     EXPECT_EQ(declared("scene"), members<SceneInfo>());
+    EXPECT_EQ(declared("report"), members<ReportSpec>());
     EXPECT_EQ(declared("terrain"), members<TerrainSpec>());
     EXPECT_EQ(declared("release"), members<ReleaseSpec>());
     EXPECT_EQ(declared("bed"), members<BedSpec>());
@@ -70,6 +71,23 @@ TEST(FieldTable, EveryMemberIsDeclared) {
     EXPECT_EQ(declared("deposit_outline"), members<OutlineSpec>());
     EXPECT_EQ(declared("affected_area"), members<OutlineSpec>());
     EXPECT_EQ(declared("elevation_change"), members<ElevationChangeSpec>());
+}
+
+TEST(FieldTable, TheDayOfAReportIsAnIsoDate) {
+    const Section& section = *find_section("report");
+    SceneSpec spec;
+    for (const char* day : {"", "2026-11-23", "2024-02-29"}) {
+        spec.report.date = day;
+        EXPECT_FALSE(broken_rule(section, spec, 0, 0)) << day;
+    }
+    for (const char* day : {"23.11.2026", "2026-13-01", "2026-02-29", "2026-11-00", "2026-1-01", " 2026-1-1 ",
+                            "2026-11-23T", "2026/11/23", "-026-11-23", "today"}) {
+        spec.report.date = day;
+        const auto broken = broken_rule(section, spec, 0, 0);
+        ASSERT_TRUE(broken) << day;
+        EXPECT_EQ(broken->key, "date");
+        EXPECT_THAT(broken->text, testing::HasSubstr("must be a day as YYYY-MM-DD"));
+    }
 }
 
 TEST(FieldTable, KeysOfMeasuresEndInTheirUnit) {

@@ -15,6 +15,7 @@
 #include "products/products.hpp"
 #include "products/writers.hpp"
 #include "report/hazard_map.hpp"
+#include "report/intensity.hpp"
 #include "report/report_fixture.hpp"
 #include "support/fixtures.hpp"
 
@@ -80,12 +81,12 @@ TEST_F(Products, FolderHoldsWhatItShouldAndNothingElse) {
     for (const auto& entry : std::filesystem::directory_iterator(folder_->path())) {
         names.push_back(entry.path().filename());
     }
-    EXPECT_THAT(names, testing::UnorderedElementsAre("arrival_time.qml", "arrival_time.tif", "buildings.csv",
-                                                     "deposit_depth.qml", "deposit_depth.tif", "front.csv",
-                                                     "manifest.json", "peak_depth.qml", "peak_depth.tif",
-                                                     "peak_pressure.qml", "peak_pressure.tif", "peak_speed.qml",
-                                                     "peak_speed.tif", "report.html", "results.gpkg", "results.json",
-                                                     "run_out.csv", "structures_over_time.csv", "timeseries.csv"));
+    EXPECT_THAT(names,
+                testing::UnorderedElementsAre(
+                    "arrival_time.qml", "arrival_time.tif", "buildings.csv", "deposit_depth.qml", "deposit_depth.tif",
+                    "front.csv", "intensity.qml", "intensity.tif", "manifest.json", "peak_depth.qml", "peak_depth.tif",
+                    "peak_pressure.qml", "peak_pressure.tif", "peak_speed.qml", "peak_speed.tif", "report.html",
+                    "results.gpkg", "results.json", "run_out.csv", "structures_over_time.csv", "timeseries.csv"));
 }
 
 TEST_F(Products, MapsReadBackInTheirUnits) {
@@ -168,6 +169,48 @@ TEST_F(Products, StyleLeavesZeroDepthAndThinDepositsTransparent) {
     EXPECT_THAT(test::read_text(folder_->path() / "peak_depth.qml"), HasSubstr("<item value=\"0\""));
     EXPECT_THAT(test::read_text(folder_->path() / "deposit_depth.qml"), HasSubstr("label=\"up to 0.05 m\""));
     EXPECT_THAT(test::read_text(folder_->path() / "arrival_time.qml"), Not(HasSubstr("alpha=\"0\"")));
+}
+
+TEST_F(Products, IntensityIsARasterOfClassesWithAStyleAndPolygonsOfTheSameArea) {
+    const Grid<float> map =
+        intensity_map(intensity_guideline(scene_->spec.outputs.intensity_guideline), result_->observation.maps);
+    const GDALDatasetUniquePtr data(GDALDataset::Open(folder_->file("intensity.tif").c_str()));
+    ASSERT_TRUE(data);
+    EXPECT_THAT(data->GetRasterBand(1)->GetDescription(),
+                testing::StartsWith("intensity, Swiss debris-flow classes: 1 medium, 2 high"));
+    const std::string style = test::read_text(folder_->path() / "intensity.qml");
+    EXPECT_THAT(style, HasSubstr("type=\"paletted\""));
+    EXPECT_THAT(style, HasSubstr("<paletteEntry value=\"2\" color=\"#481470\" alpha=\"255\" label=\"high\"/>"));
+    CPLXMLNode* tree = CPLParseXMLString(style.c_str());
+    EXPECT_NE(tree, nullptr);
+    CPLDestroyXMLNode(tree);
+
+    const GDALDatasetUniquePtr vectors(GDALDataset::Open(folder_->file("results.gpkg").c_str(), GDAL_OF_VECTOR));
+    ASSERT_TRUE(vectors);
+    OGRLayer* layer = vectors->GetLayerByName("intensity");
+    ASSERT_NE(layer, nullptr);
+    ASSERT_EQ(layer->GetFeatureCount(), 2);
+    for (const auto& feature : *layer) {
+        const double number = feature->GetFieldAsDouble("class");
+        const auto cells = std::count(map.values.begin(), map.values.end(), static_cast<float>(number));
+        EXPECT_GT(cells, 100);
+        const double area = static_cast<double>(cells) * map.geometry.cell * map.geometry.cell;
+        EXPECT_NEAR(feature->GetFieldAsDouble("area_m2"), area, 1e-6);
+        EXPECT_NEAR(OGR_G_Area(OGRGeometry::ToHandle(feature->GetGeometryRef())), area, 1e-6);
+        EXPECT_STREQ(feature->GetFieldAsString("intensity"), number == 2 ? "high" : "medium");
+    }
+}
+
+TEST_F(Products, ManifestCountsBarriersApart) {
+    const TemporaryFolder folder;
+    RunResult result = *result_;
+    result.observation.buildings[0].is_barrier = true;
+    ASSERT_TRUE(write_manifest(*scene_, result, {}, folder.path()).ok());
+    const json m = json::parse(test::read_text(folder.path() / "manifest.json"));
+    EXPECT_EQ(m["results"]["buildings"], 4);
+    EXPECT_EQ(m["results"]["buildings_hit"], 2);
+    EXPECT_EQ(m["results"]["barriers"], 1);
+    EXPECT_EQ(m["results"]["barriers_hit"], 1);
 }
 
 TEST_F(Products, FrontTableLeavesUnknownVelocitiesEmpty) {

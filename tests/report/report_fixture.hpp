@@ -331,4 +331,16 @@ inline std::string report_page(const Scene& scene, const RunResult& result,
     return page ? *page : "";
 }
 
+struct Sample {
+    Scene scene = sample_scene();
+    RunResult result = sample_result(scene);
+
+    [[nodiscard]] std::string html() const { return report_page(scene, result); }
+};
+
+/// Unlike a matcher, it does not print the page when it fails.
+inline bool has(const std::string& text, const std::string& part) {
+    return text.find(part) != std::string::npos;
+}
+
 }  // namespace talus::test

@@ -77,7 +77,8 @@
     const parts = [`E <b>${east.toFixed(1)}</b> m`, `N <b>${north.toFixed(1)}</b> m`];
     parts.push(`ground <b>${ground === null ? "no data" : ground.toFixed(1) + " m"}</b>`);
     if (layer) {
-      parts.push(`${layer.name.toLowerCase()} <b>${value === null ? "none" : value.toFixed(layer.digits) + " " + layer.unit}</b>`);
+      const text = value === null ? "none" : layer.classes ? layer.classes[Math.round(value) - 1] : `${value.toFixed(layer.digits)} ${layer.unit}`;
+      parts.push(`${layer.name.toLowerCase()} <b>${text}</b>`);
     }
     readOut.innerHTML = parts.join(" &nbsp;·&nbsp; ");
   });
