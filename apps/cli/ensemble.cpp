@@ -130,7 +130,8 @@ Result<std::pair<std::size_t, std::size_t>> parse_shard(const std::string& text)
 int write_results(const SceneInput& source, const PlannedRuns& runs, const std::vector<fs::path>& folders,
                   const fs::path& folder, bool quiet, bool json, ThrottledProgress& reporter) {
     reporter.say("evaluating the runs, writing maps, tables and report");
-    Result<Reduction> reduction = reduce(folders, runs.count(), runs.plan().thresholds);
+    Result<Reduction> reduction = reduce(folders, runs.count(), runs.plan().thresholds,
+                                         intensity_guideline(source.scene.spec.outputs.intensity_guideline));
     if (!reduction) return fail(exit_code::failure, reduction.error().message);
     if (reduction->complete == 0) {
         reporter.clear();

@@ -26,7 +26,7 @@ constexpr int format_version = 1;  // of the files of runs
 
 /// What may differ without making another ensemble: where the scene lay, who wrote it, and what is counted.
 bool is_incidental(const std::string& key) {
-    return key == "scene" || key == "program_version" || key == "thresholds";
+    return key == "scene" || key == "program_version" || key == "thresholds" || key == "return_period_years";
 }
 
 std::string shortened(const Json& value) {
@@ -60,7 +60,8 @@ Json ensemble_definition(const PlannedRuns& runs, const SceneSource& source, con
             {"thresholds",
              {{"depth_m", plan.thresholds.depth},
               {"speed_mps", plan.thresholds.speed},
-              {"pressure_kPa", plan.thresholds.pressure}}}};
+              {"pressure_kPa", plan.thresholds.pressure}}},
+            {"return_period_years", plan.return_period ? Json(*plan.return_period) : Json()}};
 }
 
 std::string difference(const Json& there, const Json& wanted) {
@@ -93,6 +94,10 @@ Result<EnsemblePlan> plan_of(const Json& definition) {
         plan.thresholds = {thresholds.at("depth_m").get<std::vector<double>>(),
                            thresholds.at("speed_mps").get<std::vector<double>>(),
                            thresholds.at("pressure_kPa").get<std::vector<double>>()};
+        // Ensembles of earlier versions do not have it.
+        if (const Json years = definition.value("return_period_years", Json()); years.is_number()) {
+            plan.return_period = years.get<double>();
+        }
         for (const Json& f : definition.at("factors")) {
             const auto text = f.at("key").get<std::string>() + "=" + f.at("distribution").get<std::string>();
             TALUS_TRY(add_factor(plan, text));

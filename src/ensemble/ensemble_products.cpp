@@ -10,6 +10,8 @@
 #include "core/number_or_null.hpp"
 #include "core/try.hpp"
 #include "geo/raster.hpp"
+#include "geo/raster_outline.hpp"
+#include "geo/vector.hpp"
 #include "products/csv.hpp"
 #include "products/results_json.hpp"
 #include "products/text_file.hpp"
@@ -117,10 +119,39 @@ void remove_old_maps(const fs::path& folder, const std::set<std::string>& wanted
     for (const fs::directory_entry& entry : fs::directory_iterator(folder, error)) {
         const fs::path& file = entry.path();
         const std::string stem = file.stem().string();
-        const bool ours =
-            stem.starts_with("probability_") && (file.extension() == ".tif" || file.extension() == ".qml");
+        const bool ours = (stem.starts_with("probability_") || stem == "hazard_zones") &&
+                          (file.extension() == ".tif" || file.extension() == ".qml" || file.extension() == ".gpkg");
         if (ours && wanted.count(stem) == 0) fs::remove(file, error);
     }
+}
+
+Status write_one(const EnsembleResult& result, const HazardMap& style, const Grid<float>& si, const fs::path& folder) {
+    if (si.values.empty()) return {};  // no run came anywhere
+    const Grid<float> grid = in_unit(si, style.factor);
+    const std::string note = result.scene->spec.scene.reconstruction ? " (reconstruction)" : "";
+    const RasterBand band{&grid, fmt::format("{} of {} runs{}", style.description, result.reduction.complete, note),
+                          style.unit};
+    const std::string stem = (folder / style.file).string();
+    TALUS_TRY(write_cog(stem + ".tif", band, result.scene->crs));
+    return write_text_file(stem + ".qml", qgis_style(style, greatest(grid)));
+}
+
+/// hazard_zones.gpkg: a feature per zone that occurs.
+Status write_zone_polygons(const EnsembleResult& result, const fs::path& folder) {
+    const fs::path file = folder / "hazard_zones.gpkg";
+    std::error_code error;
+    fs::remove(file, error);  // layers are added to a file that is there
+    std::vector<OutputFeature> features;
+    TALUS_ASSIGN(auto classes, class_outlines(result.zones, result.matrix->zones.size()));
+    for (ClassOutline& zone : classes) {
+        features.push_back({std::move(zone.polygons),
+                            {},
+                            {static_cast<double>(zone.number), result.matrix->zones[zone.number - 1].name,
+                             result.matrix->name, *result.runs->plan().return_period, zone.area}});
+    }
+    return write_geopackage_layer(file.string(), "hazard_zones",
+                                  {{"zone"}, {"name", true}, {"matrix", true}, {"return_period_years"}, {"area_m2"}},
+                                  features, result.scene->crs);
 }
 
 Status write_maps(const EnsembleResult& result, const fs::path& folder) {
@@ -128,14 +159,19 @@ Status write_maps(const EnsembleResult& result, const fs::path& folder) {
     for (const EnsembleMap& map : result.reduction.maps) {
         const HazardMap style = style_of(map);
         written.insert(style.file);
-        if (map.grid.values.empty()) continue;  // no run came anywhere
-        const Grid<float> grid = in_unit(map.grid, style.factor);
-        const std::string note = result.scene->spec.scene.reconstruction ? " (reconstruction)" : "";
-        const RasterBand band{&grid, fmt::format("{} of {} runs{}", style.description, result.reduction.complete, note),
-                              style.unit};
-        const std::string stem = (folder / style.file).string();
-        TALUS_TRY(write_cog(stem + ".tif", band, result.scene->crs));
-        TALUS_TRY(write_text_file(stem + ".qml", qgis_style(style, greatest(grid))));
+        TALUS_TRY(write_one(result, style, map.grid, folder));
+    }
+    for (std::size_t k = 0; k < result.reduction.intensity.size(); ++k) {
+        const HazardMap style =
+            intensity_odds_style(result.guideline->classes[k], k + 1 == result.guideline->classes.size());
+        written.insert(style.file);
+        TALUS_TRY(write_one(result, style, result.reduction.intensity[k], folder));
+    }
+    if (result.matrix != nullptr) {
+        const HazardMap style = zone_style(*result.matrix);
+        written.insert(style.file);
+        TALUS_TRY(write_one(result, style, result.zones, folder));
+        TALUS_TRY(write_zone_polygons(result, folder));
     }
     remove_old_maps(folder, written);
     return {};
@@ -159,6 +195,12 @@ EnsembleResult summarise(const Scene& scene, const PlannedRuns& runs, Reduction 
     result.runs = &runs;
     result.reduction = std::move(reduction);
     result.measures = measures_of(scene);
+    const GuidelineChoice guideline = scene.spec.outputs.intensity_guideline;
+    result.guideline = &intensity_guideline(guideline);
+    if (const auto& years = runs.plan().return_period) {
+        result.matrix = hazard_matrix(guideline);
+        if (result.matrix != nullptr) result.zones = hazard_zones(*result.matrix, result.reduction.intensity, *years);
+    }
     for (std::size_t m = 0; m < result.measures.size(); ++m) {
         std::vector<double> values(runs.count(), never);
         for (const RunRecord& run : result.reduction.runs) {
@@ -183,6 +225,20 @@ HazardMap style_of(const EnsembleMap& map) {
     style.file = fmt::format("probability_{}_{}{}", words.file, map.level, words.file_unit);
     style.title = fmt::format("Probability of {} over {} {}", words.name, map.level, words.unit);
     style.description = fmt::format("share of runs with {} over {} {}, in", words.name, map.level, words.unit);
+    style.unit = "%";
+    style.factor = 100;
+    style.breaks = {1, 5, 10, 25, 50, 75, 90, 95};
+    style.full_scale = 100;
+    style.ramp = {300, 0.05, 262, 0.13, 0.94, 0.26};
+    return style;
+}
+
+HazardMap intensity_odds_style(const IntensityClass& intensity, bool most_severe) {
+    HazardMap style;
+    style.file = "probability_intensity_" + intensity.name;
+    style.title = fmt::format("Probability of {} intensity{}", intensity.name, most_severe ? "" : " or higher");
+    style.description =
+        fmt::format("share of runs with {} intensity{}, in", intensity.name, most_severe ? "" : " or higher");
     style.unit = "%";
     style.factor = 100;
     style.breaks = {1, 5, 10, 25, 50, 75, 90, 95};
@@ -234,13 +290,16 @@ Json statistics_json(const EnsembleResult& result) {
                              {"first_hit_p50_s", number_or_null<Json>(b.median_hit)}});
     }
     const Thresholds& t = result.runs->plan().thresholds;
-    return {{"runs", result.runs->count()},
-            {"complete", r.complete},
-            {"failed", failed},
-            {"missing", r.missing},
-            {"thresholds", {{"depth_m", t.depth}, {"speed_mps", t.speed}, {"pressure_kPa", t.pressure}}},
-            {"results", measures},
-            {"buildings", buildings}};
+    return {
+        {"runs", result.runs->count()},
+        {"complete", r.complete},
+        {"failed", failed},
+        {"missing", r.missing},
+        {"thresholds", {{"depth_m", t.depth}, {"speed_mps", t.speed}, {"pressure_kPa", t.pressure}}},
+        {"return_period_years", result.runs->plan().return_period ? Json(*result.runs->plan().return_period) : Json()},
+        {"intensity_guideline", result.guideline->name},
+        {"results", measures},
+        {"buildings", buildings}};
 }
 
 Status write_ensemble(const EnsembleResult& result, const fs::path& folder) {

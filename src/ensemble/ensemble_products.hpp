@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/result.hpp"
+#include "ensemble/hazard_zones.hpp"
 #include "ensemble/plan.hpp"
 #include "ensemble/reduction.hpp"
 #include "report/hazard_map.hpp"
@@ -22,6 +23,9 @@ struct EnsembleResult {
     Reduction reduction;
     std::vector<Measure> measures;
     std::vector<Sensitivity> sensitivity;  ///< per measure
+    const IntensityGuideline* guideline = nullptr;
+    const HazardMatrix* matrix = nullptr;  ///< where the plan has a return period and the guideline has such
+    Grid<float> zones;                     ///< of the matrix
 
     /// The values of one measure over the complete runs; NaN left out.
     [[nodiscard]] std::vector<double> values_of(std::size_t measure) const;
@@ -33,8 +37,12 @@ struct EnsembleResult {
 /// How a map of an ensemble is called and coloured: "probability_depth_0.1m", "peak_depth_p95".
 [[nodiscard]] HazardMap style_of(const EnsembleMap& map);
 
-/// Maps (.tif + .qml), runs.csv, buildings.csv, distributions.csv, sensitivity.csv, statistics.json, results.json and
-/// report.html into the folder, over those of an earlier call. Errors name the file and the cause.
+/// How the map of an intensity class's probability is called and coloured: "probability_intensity_high".
+[[nodiscard]] HazardMap intensity_odds_style(const IntensityClass& intensity, bool most_severe);
+
+/// Maps (.tif + .qml), hazard_zones.gpkg where there are zones, runs.csv, buildings.csv, distributions.csv,
+/// sensitivity.csv, statistics.json, results.json and report.html into the folder, over those of an earlier call.
+/// Errors name the file and the cause.
 [[nodiscard]] Status write_ensemble(const EnsembleResult& result, const std::filesystem::path& folder);
 
 /// A factor's effect on a result as statistics.json and results.json have it.

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <string>
 #include <vector>
@@ -144,6 +145,71 @@ std::string design_text(const EnsembleResult& result) {
                        plan.seed, fmt::join(result.runs->fixed(), ", "));
 }
 
+std::string capital(std::string text) {
+    if (!text.empty()) text[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(text[0])));
+    return text;
+}
+
+/// Classes of intensity, and the area where each is likely or possible.
+Json intensity_of(const EnsembleResult& result) {
+    const IntensityGuideline& guideline = *result.guideline;
+    Json rows = table({{"name", "Intensity", ""},
+                       {"criterion", "Peak depth h, peak speed v", ""},
+                       {"in_half_m2", "In over half of the runs", "m²", "f0"},
+                       {"in_any_m2", "In any run", "m²", "f0"}});
+    for (std::size_t k = guideline.classes.size(); k-- > 0 && !result.reduction.intensity.empty();) {
+        const Grid<float>& share = result.reduction.intensity[k];
+        const bool top = k + 1 == guideline.classes.size();
+        rows["rows"].push_back({{"name", guideline.classes[k].name + (top ? "" : " or higher")},
+                                {"criterion", guideline.classes[k].criterion},
+                                {"in_half_m2", area_above(share, 0.5)},
+                                {"in_any_m2", area_above(share, 0)}});
+    }
+    return {{"guideline", guideline.name},
+            {"citation", guideline.citation},
+            {"remark", guideline.remark},
+            {"table", std::move(rows)}};
+}
+
+std::string period_text(const std::vector<double>& periods, std::size_t k) {
+    if (k == periods.size()) return fmt::format("over {} years", plain(periods.back()));
+    return k == 0 ? fmt::format("up to {} years", plain(periods[0]))
+                  : fmt::format("{} – {} years", plain(periods[k - 1]), plain(periods[k]));
+}
+
+/// The matrix of zones, and the area of each; null without a return period or a matrix.
+Json zones_of(const EnsembleResult& result) {
+    if (result.zones.values.empty()) return {};
+    const HazardMatrix& matrix = *result.matrix;
+    std::vector<Column> columns = {{"intensity", "Intensity", ""}};
+    for (std::size_t p = 0; p <= matrix.periods.size(); ++p) {
+        columns.push_back({fmt::format("period_{}", p), period_text(matrix.periods, p), ""});
+    }
+    Json fields = table(columns);
+    for (std::size_t k = matrix.zone.size(); k-- > 0;) {
+        Json row = {{"intensity", result.guideline->classes[k].name}};
+        for (std::size_t p = 0; p <= matrix.periods.size(); ++p) {
+            const int zone = matrix.zone[k][p];
+            row[columns[p + 1].key] = zone > 0 ? Json(matrix.zones[static_cast<std::size_t>(zone - 1)].name) : Json();
+        }
+        fields["rows"].push_back(std::move(row));
+    }
+    Json areas = table({{"zone", "Zone", ""}, {"area_m2", "Area", "m²", "f0"}});
+    for (std::size_t z = matrix.zones.size(); z-- > 0;) {
+        double area = 0;
+        for (const float zone : result.zones.values) {
+            if (zone == static_cast<float>(z + 1)) area += result.zones.geometry.cell * result.zones.geometry.cell;
+        }
+        areas["rows"].push_back({{"zone", matrix.zones[z].name}, {"area_m2", area}});
+    }
+    return {{"return_period_years", *result.runs->plan().return_period},
+            {"matrix", matrix.name},
+            {"citation", matrix.citation},
+            {"remark", matrix.remark},
+            {"fields", std::move(fields)},
+            {"areas", std::move(areas)}};
+}
+
 /// Which maps the page shows: all probabilities, and the percentiles that a planner asks for.
 MapContent content_of(const EnsembleResult& result) {
     static constexpr const char* words[] = {"Depth", "Speed", "Pressure", "Arrival", "Deposit"};
@@ -163,6 +229,21 @@ MapContent content_of(const EnsembleResult& result) {
                                        : "dynamic pressure of the free flow",
                         over),
             0);
+    }
+    const auto& classes = result.guideline->classes;
+    for (std::size_t k = classes.size(); k-- > 0 && !result.reduction.intensity.empty();) {
+        const bool top = k + 1 == classes.size();
+        content.layers.push_back({intensity_odds_style(classes[k], top), &result.reduction.intensity[k],
+                                  fmt::format("{} intensity{}", capital(classes[k].name), top ? "" : "+"),
+                                  fmt::format("Share of the complete runs with {} intensity{}: {}. Below 1 % nothing "
+                                              "is drawn.",
+                                              classes[k].name, top ? "" : " or higher", classes[k].criterion),
+                                  0});
+    }
+    if (!result.zones.values.empty()) {
+        content.layers.push_back({zone_style(*result.matrix), &result.zones, "Hazard zones",
+                                  "Zones by intensity and how often it comes; see Intensity and zones below.", 0,
+                                  result.matrix->name});
     }
     const auto percentile_map = [&](std::size_t map, double level, const char* caption, int digits) {
         if (const EnsembleMap* m = find_map(result, EnsembleMap::Kind::percentile, map, level)) {
@@ -311,6 +392,8 @@ Json ensemble_results(const EnsembleResult& result) {
                 {"key_figures", key_figures_of(result)},
                 {"factors", factors_of(result)},
                 {"design", design_text(result)},
+                {"intensity", intensity_of(result)},
+                {"zones", zones_of(result)},
                 {"run_out", run_out_chart(result)},
                 {"has_buildings", !r.buildings.empty()},
                 {"buildings", buildings_of(result)},

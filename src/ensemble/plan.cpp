@@ -177,6 +177,10 @@ Result<PlannedRuns> PlannedRuns::make(const EnsemblePlan& plan, const SceneSourc
         if (parameter != nullptr && !number && factor.distribution.kind != DistributionKind::list) {
             return Error{fmt::format("factor {}: is not a number; give a list of its values", factor.key)};
         }
+        if (plan.design == DesignKind::grid && !factor.distribution.weights.empty()) {
+            return Error{fmt::format("factor {}: has weights, but a grid runs every value once; choose another design",
+                                     factor.key)};
+        }
         runs.whole_.push_back(parameter != nullptr && parameter->kind == ParameterKind::integer);
         if (parameter != nullptr && number) cut_to_range(factor.distribution, parameter->range);
         TALUS_TRY(check_factor(factor, runs.whole_.back(), source));

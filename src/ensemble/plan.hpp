@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -36,6 +37,7 @@ struct EnsemblePlan {
     std::uint64_t seed = 1;
     std::vector<Factor> factors;
     Thresholds thresholds;
+    std::optional<double> return_period;  ///< years between events of which the runs are samples; absent: not stated
 };
 
 /// Reads a plan file (docs/ensembles.md). Errors name file, line, key, value and what is allowed.

@@ -58,9 +58,17 @@ class PlanReader {
                 plan_.design = *design;
                 continue;
             }
+            if (key.str() == "return_period_years") {
+                const auto years = node.value<double>();
+                if (!years || !std::isfinite(*years) || !(*years > 0)) {
+                    return refused(key.source(), what, "is refused; it must be a number above 0 (years)");
+                }
+                plan_.return_period = *years;
+                continue;
+            }
             const auto whole = node.value_exact<std::int64_t>();
             if (key.str() != "runs" && key.str() != "levels" && key.str() != "seed") {
-                return unknown(key, {"design", "runs", "levels", "seed"});
+                return unknown(key, {"design", "runs", "levels", "seed", "return_period_years"});
             }
             if (!whole || *whole < 0)
                 return refused(key.source(), what, "is refused; it must be a whole number from 0");
@@ -113,13 +121,21 @@ class PlanReader {
                     factor.distribution.entries.push_back(text ? *text : toml_text_of(item));
                 }
                 kind = "list";
+            } else if (key.str() == "weights") {
+                const toml::array* items = node.as_array();
+                if (items == nullptr || items->empty())
+                    return refused(key.source(), what, "is refused; it must be a list of numbers above 0");
+                for (const toml::node& item : *items) {
+                    factor.distribution.weights.push_back(item.value<double>().value_or(std::nan("")));
+                }
             } else if (double* number = number_of(factor.distribution, key.str())) {
                 const auto value = node.value<double>();
                 if (!value || !std::isfinite(*value))
                     return refused(key.source(), what, "is refused; it must be a number");
                 *number = *value;
             } else {
-                return unknown(key, {"key", "distribution", "low", "high", "mode", "mean", "deviation", "values"});
+                return unknown(
+                    key, {"key", "distribution", "low", "high", "mode", "mean", "deviation", "values", "weights"});
             }
         }
         if (factor.key.empty())
@@ -143,6 +159,9 @@ class PlanReader {
         }
         if (const std::string problem = factor.distribution.problem(); !problem.empty()) {
             return refused(table.source(), what, problem);
+        }
+        if (!factor.distribution.weights.empty() && factor.distribution.kind != DistributionKind::list) {
+            return refused(table.source(), what, "weights are those of values, which are not given");
         }
         const bool bounded = std::isfinite(factor.distribution.low) && std::isfinite(factor.distribution.high);
         if (!bounded && factor.distribution.kind != DistributionKind::normal &&

@@ -16,7 +16,7 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr float not_there = std::numeric_limits<float>::quiet_NaN();
-constexpr std::size_t pressure_map = 2, arrival_map = 3;
+constexpr std::size_t depth_map = 0, speed_map = 1, pressure_map = 2, arrival_map = 3;
 
 std::size_t rank_of(std::size_t count, double percent) {
     const auto n = static_cast<double>(count);
@@ -156,6 +156,38 @@ std::vector<EnsembleMap> wanted_maps(const Thresholds& thresholds) {
     return maps;
 }
 
+/// Per class the share of runs in which a place has that intensity or a higher one.
+Result<std::vector<Grid<float>>> intensity_shares(const Stack& stack, const IntensityGuideline& guideline,
+                                                  std::size_t runs) {
+    std::vector<Grid<float>> shares(guideline.classes.size(), Grid<float>(stack.geometry, 0));
+    for (const auto& [file, record] : stack.layers) {
+        const GridGeometry& g = record->geometry;
+        HazardMaps maps;
+        for (const std::size_t map : {depth_map, speed_map, arrival_map}) {
+            Grid<float>& grid = maps.*recorded_maps[map];
+            grid.geometry = g;
+            TALUS_ASSIGN(grid.values, read_map_rows(file, *record, map, 0, g.rows));
+        }
+        const Grid<float> classes = intensity_map(guideline, maps);
+        const int right = offset_of(g.x_min, stack.geometry.x_min, g.cell);
+        const int up = offset_of(g.y_min, stack.geometry.y_min, g.cell);
+        for (int r = 0; r < g.rows; ++r) {
+            for (int c = 0; c < g.columns; ++c) {
+                for (std::size_t k = 0; static_cast<float>(k + 1) <= classes.at(c, r); ++k) {
+                    shares[k].at(c + right, r + up) += 1;
+                }
+            }
+        }
+    }
+    for (std::size_t k = shares.size(); k-- > 0;) {  // the first class is of all, so it comes last
+        for (std::size_t i = 0; i < shares[k].values.size(); ++i) {
+            float& share = shares[k].values[i];
+            share = shares[0].values[i] > 0 ? share / static_cast<float>(runs) : not_there;
+        }
+    }
+    return shares;
+}
+
 /// One number of every complete run's building, `absent` where it was not hit.
 std::vector<double> values_of(const std::vector<RunRecord>& runs, std::size_t building, double BuildingImpact::*member,
                               double absent) {
@@ -207,7 +239,7 @@ double percentile(std::vector<double>& values, double percent) {
 }
 
 Result<Reduction> reduce(const std::vector<fs::path>& folders, std::size_t count, const Thresholds& thresholds,
-                         std::size_t memory) {
+                         const IntensityGuideline& guideline, std::size_t memory) {
     Reduction out;
     std::vector<fs::path> files;
     for (std::size_t run = 0; run < count; ++run) {
@@ -234,6 +266,7 @@ Result<Reduction> reduce(const std::vector<fs::path>& folders, std::size_t count
         }
         TALUS_TRY(MapReducer(stack, map, out.complete, made).reduce(memory));
     }
+    TALUS_ASSIGN(out.intensity, intensity_shares(stack, guideline, out.complete));
     std::size_t buildings = 0;
     for (const RunRecord& run : out.runs) buildings = std::max(buildings, run.buildings.size());
     for (std::size_t b = 0; b < buildings; ++b) out.buildings.push_back(odds_of(out.runs, b, thresholds));

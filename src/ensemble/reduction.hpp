@@ -9,6 +9,7 @@
 #include "core/result.hpp"
 #include "ensemble/plan.hpp"
 #include "ensemble/run_record.hpp"
+#include "report/intensity.hpp"
 
 /// What the runs of an ensemble say together.
 namespace talus {
@@ -37,6 +38,8 @@ struct Reduction {
     std::size_t complete = 0, failed = 0;
     std::vector<std::size_t> missing;  ///< runs of the plan that are not there
     std::vector<EnsembleMap> maps;
+    std::vector<Grid<float>>
+        intensity;  ///< per class of the guideline, share of runs with it or a higher one; NaN: none
     std::vector<BuildingOdds> buildings;
 };
 
@@ -48,9 +51,12 @@ inline constexpr std::array<double, 3> mapped_percentiles = {5, 50, 95};
 
 /// Reads the records of runs 0 to count - 1 wherever one of the folders has them. Maps are worked through in bands of
 /// rows that fit into `memory` bytes whatever the number of runs, so results are exact and hang neither on the order of
-/// the runs nor on the machine that made them. In percentiles of depth, speed and pressure a run that never came to a
-/// place counts as 0, in those of arrival as never. Errors: a record cannot be read, maps of different cells.
+/// the runs nor on the machine that made them; those of intensity run by run. In percentiles of depth, speed and
+/// pressure a run that never came to a place counts as 0, in those of arrival as never. Errors: a record cannot be
+/// read, maps of different cells.
 [[nodiscard]] Result<Reduction> reduce(const std::vector<std::filesystem::path>& folders, std::size_t count,
-                                       const Thresholds& thresholds, std::size_t memory = std::size_t{256} << 20);
+                                       const Thresholds& thresholds,
+                                       const IntensityGuideline& guideline = intensity_guideline({}),
+                                       std::size_t memory = std::size_t{256} << 20);
 
 }  // namespace talus

@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <numeric>
 #include <optional>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -51,8 +53,24 @@ std::optional<double> number_of(const std::string& text) {
     return value;
 }
 
+/// "400@3" is the entry 400 with the weight 3, if all entries are written so.
+void take_weights(Distribution& d) {
+    std::vector<std::string> bare;
+    std::vector<double> weights;
+    for (const std::string& entry : d.entries) {
+        const std::size_t at = entry.rfind('@');
+        const auto weight = at == std::string::npos ? std::nullopt : number_of(entry.substr(at + 1));
+        if (!weight) return;
+        bare.push_back(entry.substr(0, at));
+        weights.push_back(*weight);
+    }
+    d.entries = std::move(bare);
+    d.weights = std::move(weights);
+}
+
 constexpr const char* forms =
-    "write low:high, log:low:high, normal:mean:deviation, triangular:low:mode:high or value,value";
+    "write low:high, log:low:high, normal:mean:deviation, triangular:low:mode:high, value,value or "
+    "value@weight,value@weight";
 
 /// A distribution of the named kind from its numbers, in the order in which they are written.
 Result<Distribution> make_distribution(const std::string& name, const std::vector<double>& n) {
@@ -100,6 +118,14 @@ double Distribution::quantile(double share) const {
 }
 
 const std::string& Distribution::entry(double share) const {
+    if (!weights.empty()) {
+        double left = share * std::accumulate(weights.begin(), weights.end(), 0.0);
+        for (std::size_t k = 0; k + 1 < entries.size(); ++k) {
+            left -= weights[k];
+            if (left < 0) return entries[k];
+        }
+        return entries.back();
+    }
     const auto n = static_cast<double>(entries.size());
     return entries[static_cast<std::size_t>(std::clamp(std::floor(share * n), 0.0, n - 1))];
 }
@@ -119,7 +145,13 @@ std::string Distribution::text() const {
         case DistributionKind::list:
             break;
     }
-    return fmt::format("one of {}", fmt::join(entries, ", "));
+    if (weights.empty()) return fmt::format("one of {}", fmt::join(entries, ", "));
+    const double sum = std::accumulate(weights.begin(), weights.end(), 0.0);
+    std::string list;
+    for (std::size_t k = 0; k < entries.size(); ++k) {
+        list += fmt::format("{}{} ({:.3g} %)", k > 0 ? ", " : "", entries[k], 100 * weights[k] / sum);
+    }
+    return "one of " + list;
 }
 
 std::string Distribution::written() const {
@@ -138,14 +170,26 @@ std::string Distribution::written() const {
         case DistributionKind::list:
             break;
     }
-    return fmt::format("{}", fmt::join(entries, ","));
+    if (weights.empty()) return fmt::format("{}", fmt::join(entries, ","));
+    std::string list;
+    for (std::size_t k = 0; k < entries.size(); ++k) {
+        list += fmt::format("{}{}@{}", k > 0 ? "," : "", entries[k], weights[k]);
+    }
+    return list;
 }
 
 std::string Distribution::problem() const {
     if (kind == DistributionKind::list) {
         if (entries.empty()) return "a list needs at least one value";
         const bool hole = std::any_of(entries.begin(), entries.end(), [](const auto& e) { return e.empty(); });
-        return hole ? "a value of the list is empty" : "";
+        if (hole) return "a value of the list is empty";
+        if (weights.empty()) return "";
+        if (weights.size() != entries.size()) {
+            return fmt::format("{} weights are given for {} values", weights.size(), entries.size());
+        }
+        const bool bad =
+            std::any_of(weights.begin(), weights.end(), [](double w) { return !std::isfinite(w) || !(w > 0); });
+        return bad ? "a weight must be a number above 0" : "";
     }
     if (!(low < high)) return fmt::format("the range is empty: low {:.6g} must be below high {:.6g}", low, high);
     if (kind == DistributionKind::log_uniform && !(low > 0)) {
@@ -170,6 +214,7 @@ Result<Distribution> parse_distribution(std::string_view text) {
     if (parts.size() == 1) {
         d.kind = DistributionKind::list;
         d.entries = split(text, ',');
+        take_weights(d);
     } else {
         const bool named = !number_of(parts.front()).has_value();
         std::vector<double> numbers;

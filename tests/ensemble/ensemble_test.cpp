@@ -7,6 +7,8 @@
 #include <gtest/gtest.h>
 
 #include "ensemble/ensemble_products.hpp"
+#include "geo/raster.hpp"
+#include "geo/vector.hpp"
 #include "scene/scene_folder.hpp"
 #include "support/fixtures.hpp"
 
@@ -135,6 +137,79 @@ TEST_F(EnsembleTest, AllRunsHaveTheSpacingAndTheMapOfTheScene) {
     EXPECT_TRUE(loaded->spec.outputs.map_cell);
     EXPECT_FALSE(loaded->spec.releases[0].thickness);  // the factor takes the place of the scene's thickness
     EXPECT_EQ(fmt::format("{:.9g}", *loaded->spec.releases[0].volume), planned_run.values[1]);
+}
+
+TEST_F(EnsembleTest, AReturnPeriodMakesHazardZones) {
+    run("zoned", {.runs_at_once = 2});
+    const auto written = [&] {
+        const PlannedRuns runs = planned();
+        auto reduction = reduce({folder / "zoned"}, 6, plan.thresholds);
+        const EnsembleResult result = summarise(*scene, runs, *std::move(reduction));
+        const Status status = write_ensemble(result, folder / "zoned");
+        EXPECT_TRUE(status) << status.error().message;
+        return nlohmann::ordered_json::parse(test::read_text(folder / "zoned/results.json"));
+    };
+    const auto without = written();
+    EXPECT_TRUE(without["zones"].is_null());
+    EXPECT_EQ(without["intensity"]["table"]["rows"].size(), 2u);
+    EXPECT_TRUE(std::filesystem::exists(folder / "zoned/probability_intensity_high.tif"));
+    EXPECT_FALSE(std::filesystem::exists(folder / "zoned/hazard_zones.tif"));
+    plan.return_period = 30;
+    const auto with = written();
+    EXPECT_EQ(with["zones"]["return_period_years"], 30);
+    const auto raster = read_value_raster(path("zoned/hazard_zones.tif"), scene->crs);
+    ASSERT_TRUE(raster) << raster.error().message;
+    const auto red = std::count(raster->grid.values.begin(), raster->grid.values.end(), 4.0F);
+    EXPECT_GT(red, 0) << "what every run covers comes every 30 years";
+    const double width = raster->grid.geometry.cell;
+    EXPECT_NEAR(with["zones"]["areas"]["rows"][0]["area_m2"].get<double>(), static_cast<double>(red) * width * width,
+                1e-6);
+    const auto polygons = read_polygons(path("zoned/hazard_zones.gpkg"), "hazard_zones", scene->crs);
+    ASSERT_TRUE(polygons) << polygons.error().message;
+    EXPECT_GE(polygons->features.size(), 1u);
+    EXPECT_TRUE(opened("zoned")) << "another return period is no other ensemble";
+    plan.return_period.reset();
+    written();
+    EXPECT_FALSE(std::filesystem::exists(folder / "zoned/hazard_zones.tif")) << "of an earlier plan";
+}
+
+TEST_F(EnsembleTest, APlanStatesItsReturnPeriod) {
+    write("plan.toml", "[ensemble]\nreturn_period_years = 100\n");
+    const auto read = read_plan(path("plan.toml"));
+    ASSERT_TRUE(read) << read.error().message;
+    EXPECT_EQ(read->return_period, 100);
+    for (const char* wrong : {"0", "-5", "nan", "\"100\""}) {
+        write("plan.toml", std::string("[ensemble]\nreturn_period_years = ") + wrong + "\n");
+        const auto refused = read_plan(path("plan.toml"));
+        ASSERT_FALSE(refused) << wrong;
+        EXPECT_THAT(refused.error().message, HasSubstr("plan.toml:2: ensemble.return_period_years = "));
+        EXPECT_THAT(refused.error().message, HasSubstr("must be a number above 0 (years)"));
+    }
+    plan.return_period = 100;
+    const auto restored = plan_of(ensemble_definition(planned(), source, *scene, "valley"));
+    ASSERT_TRUE(restored);
+    EXPECT_EQ(restored->return_period, 100);
+}
+
+TEST_F(EnsembleTest, WeightsOfScenariosAreThoseOfTheRuns) {
+    write(
+        "plan.toml",
+        "[ensemble]\nruns = 10\n[[factor]]\nkey = \"release.volume_m3\"\nvalues = [400, 900]\nweights = [0.7, 0.3]\n");
+    auto read = read_plan(path("plan.toml"));
+    ASSERT_TRUE(read) << read.error().message;
+    plan = *read;
+    std::size_t small = 0;
+    for (std::size_t run = 0; run < 10; ++run) small += planned().at(run).values[0] == "400" ? 1 : 0;
+    EXPECT_EQ(small, 7u);
+    const auto restored = plan_of(ensemble_definition(planned(), source, *scene, "valley"));
+    ASSERT_TRUE(restored);
+    EXPECT_EQ(restored->factors[0].distribution.weights, (std::vector<double>{0.7, 0.3}));
+    plan.design = DesignKind::grid;
+    EXPECT_FALSE(PlannedRuns::make(plan, source, *scene));
+    write("plan.toml", "[[factor]]\nkey = \"release.volume_m3\"\nvalues = [400, 900]\nweights = [1]\n");
+    read = read_plan(path("plan.toml"));
+    ASSERT_FALSE(read);
+    EXPECT_THAT(read.error().message, HasSubstr("1 weights are given for 2 values"));
 }
 
 TEST_F(EnsembleTest, WritesMapsTablesAndAReport) {

@@ -78,6 +78,29 @@ TEST_F(ReductionTest, CountsRunsAboveThresholdsWhereverTheirMapsLie) {
     EXPECT_EQ(pressure.values, (std::vector<float>{0, 0, 2 * third, 0}));
 }
 
+TEST_F(ReductionTest, CountsRunsOfAnIntensityOrAHigherOne) {
+    write_run(0, 0, {0.4F, 2, nan_value});  // speeds are twice the depths
+    write_run(1, 1, {0.3F});
+    write_run(2, -1, {0.2F, 1.5F});
+    write_failed(3);
+    const auto r = reduce({folder}, 4, {});
+    ASSERT_TRUE(r) << r.error().message;
+    ASSERT_EQ(r->intensity.size(), 2u);
+    const float third = 1.0F / 3;
+    // Columns from x = 98 m: run 2; runs 0 and 2; runs 0 and 1; nobody.
+    EXPECT_EQ(r->intensity[0].values[0], third);
+    EXPECT_EQ(r->intensity[0].values[1], 2 * third);
+    EXPECT_EQ(r->intensity[0].values[2], 2 * third);
+    EXPECT_TRUE(std::isnan(r->intensity[0].values[3]));
+    EXPECT_EQ(r->intensity[1].values[0], 0);
+    EXPECT_EQ(r->intensity[1].values[1], third) << "high in run 2 alone";
+    EXPECT_EQ(r->intensity[1].values[2], third);
+    const auto flood = reduce({folder}, 4, {}, intensity_guideline(GuidelineChoice::swiss_flood));
+    ASSERT_TRUE(flood);
+    ASSERT_EQ(flood->intensity.size(), 3u);
+    EXPECT_EQ(flood->intensity[2].values[2], third) << "2 m at 4 m/s, and 0.3 m at 0.6 m/s";
+}
+
 TEST_F(ReductionTest, PercentilesCountRunsThatNeverCameAsNothingAndInArrivalAsNever) {
     write_run(0, 0, {1});
     write_run(1, 0, {3});
@@ -109,7 +132,7 @@ TEST_F(ReductionTest, HangsNeitherOnTheMemoryNorOnTheFoldersOfTheRuns) {
     std::filesystem::create_directories(other / "runs");
     for (std::size_t run = 1; run < 20; run += 2)
         std::filesystem::rename(file(run), other / "runs" / file(run).filename());
-    const auto two = reduce({folder, other}, 20, {}, 1);  // a byte: one row at a time
+    const auto two = reduce({folder, other}, 20, {}, intensity_guideline({}), 1);  // a byte: one row at a time
     ASSERT_TRUE(one && two);
     ASSERT_EQ(one->maps.size(), two->maps.size());
     for (std::size_t m = 0; m < one->maps.size(); ++m) {

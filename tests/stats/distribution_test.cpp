@@ -45,9 +45,21 @@ TEST(Distribution, AListGivesItsEntriesEquallyOften) {
     EXPECT_EQ(d.entry(1), "c");
 }
 
+TEST(Distribution, AListGivesItsEntriesByTheirWeights) {
+    const Distribution d = parsed("a@1,b@6,c@3");
+    int count[3] = {};
+    for (int i = 0; i < 300; ++i) ++count[d.entry((i + 0.5) / 300)[0] - 'a'];
+    EXPECT_EQ(count[0], 30);
+    EXPECT_EQ(count[1], 180);
+    EXPECT_EQ(count[2], 90);
+    EXPECT_EQ(d.entry(1), "c");
+    EXPECT_EQ(d.text(), "one of a (10 %), b (60 %), c (30 %)");
+    EXPECT_EQ(parsed("a@x,b@2").entries[0], "a@x") << "a text that has the sign";
+}
+
 TEST(Distribution, WhatIsWrittenReadsBackTheSame) {
     for (const char* text : {"0.1:0.3", "log:0.001:7", "normal:0.4:0.05", "normal:0.4:0.05:0.2:0.6", "triangular:1:2:3",
-                             "spiky,cubic_spline"}) {
+                             "spiky,cubic_spline", "400@3,900@0.5"}) {
         EXPECT_EQ(parsed(text).written(), text);
     }
 }
@@ -66,6 +78,7 @@ TEST(Distribution, BadOnesAreRefusedWithTheReason) {
     EXPECT_THAT(why("gauss:0:5"), HasSubstr("write low:high"));
     EXPECT_THAT(why("1:2:3"), HasSubstr("write low:high"));
     EXPECT_THAT(why("a,,b"), HasSubstr("empty"));
+    EXPECT_THAT(why("a@1,b@0"), HasSubstr("weight must be a number above 0"));
     EXPECT_THAT(why("0:inf"), HasSubstr("not a number"));
 }
 
