@@ -48,6 +48,16 @@ TEST_F(LoadScene, BringsTerrainReleaseAndPathTogether) {
     EXPECT_EQ(scene.inputs[2].hash.size(), 16U);
 }
 
+TEST_F(LoadScene, KnowsWhichKeysWereGiven) {
+    write_valley();
+    const Scene scene = loaded({"material.viscosity=0.1"});  // which is the default
+    EXPECT_THAT(scene.given_keys, Contains("terrain.file"));
+    EXPECT_THAT(scene.given_keys, Contains("release[0].file"));
+    EXPECT_THAT(scene.given_keys, Contains("material.viscosity"));
+    EXPECT_THAT(scene.given_keys, Not(Contains("material.friction_coefficient")));
+    EXPECT_THAT(scene.given_keys, Not(Contains("release[0]")));
+}
+
 TEST_F(LoadScene, TracesThePathFromTheCrown) {
     write_valley();
     const Scene scene = loaded();
