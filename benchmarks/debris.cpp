@@ -7,7 +7,7 @@
 namespace talus::benchmarks {
 namespace {
 
-constexpr int steps = 20;  // until the lattice that debris starts as has come into disorder
+constexpr int steps = 20;  // until the initial lattice of the debris is disordered
 
 Model with_method(Model model, InternalFriction method) {
     model.solver.internal_friction = method;

@@ -15,7 +15,8 @@
 
 namespace talus::benchmarks {
 
-/// The bench scene `slab` after some steps. Made once per number of particles: that takes longer than measuring.
+/// The bench scene `slab` after some steps. Created once per number of particles, since that takes longer than
+/// measuring.
 struct Debris {
     explicit Debris(int particles);
 
@@ -34,7 +35,7 @@ struct Stage {
     std::function<void(const cpu::StageData&, std::size_t first, std::size_t last)> run;
 };
 
-/// The stages of a step with one iteration, in order, up to where neighbours are found and from there on.
+/// The stages of a step with one iteration, in order, before and after the neighbour search.
 struct Stages {
     explicit Stages(const Model& model);
 
@@ -42,17 +43,17 @@ struct Stages {
     std::vector<Stage> after_neighbours;
 };
 
-/// A step on its way: what the stages work on, as the backend has it.
+/// A step in progress: the data of the stages, as in the backend.
 class Step {
   public:
     Step(const Debris& debris, InternalFriction method);
 
-    /// Runs the stages before the one of this place in Stages::after_neighbours.
+    /// Runs the stages before the one at this index in Stages::after_neighbours.
     void run_until(std::size_t place);
     void run(const Stage& stage);
 
-    /// Remembers what stages change and are changed by, and puts it back: a stage that is run again and again would
-    /// end far from where a step begins.
+    /// Saves the data that stages read and change, and restores it: a stage that is run repeatedly would move far from
+    /// the initial state of a step.
     void remember();
     void restore();
 

@@ -1,5 +1,5 @@
-// What this machine can do at most, on one thread: the roof that sums over neighbours are held against in
-// docs/performance.md. Compiled once per instruction set by Highway's foreach_target.
+// Peak rates of this machine on one thread: the roofline for sums over neighbours in docs/performance.md. Compiled once
+// per instruction set by Highway's foreach_target.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "limits.cpp"
 #include <hwy/foreach_target.h>
@@ -106,7 +106,7 @@ auto limits() {
     return HWY_DYNAMIC_DISPATCH(make_limits)();
 }
 
-/// As in a sum over neighbours: near each other, in no order. `rows` of them lie in a cache, or do not.
+/// As in a sum over neighbours: close together, unordered. `rows` of them fit into a cache, or do not.
 void gather(benchmark::State& run, bool wide) {
     const auto row_count = static_cast<std::uint32_t>(run.range(0));
     const std::vector<simd::Oct> rows(row_count);

@@ -1,4 +1,4 @@
-// A live scenario: a step of it beside one of a plain run, and its frames.
+// A live scenario: its step compared with that of a plain run, and its frames.
 #include <cmath>
 #include <map>
 #include <memory>
@@ -12,7 +12,7 @@
 namespace talus::benchmarks {
 namespace {
 
-/// A plane of 20 degrees, 1600 m long, with 2400 m2 of it released, 2 m thick: it slides on and on.
+/// A plane of 20 degrees, 1600 m long, with 2400 m2 of it released, 2 m thick: it keeps sliding.
 std::shared_ptr<const Scene> plane_scene(std::int64_t particles) {
     Grid<float> grid(GridGeometry{0, 0, 4, 400, 100});
     for (int row = 0; row < grid.geometry.rows; ++row) {
@@ -38,7 +38,7 @@ std::shared_ptr<const Scene> plane_scene(std::int64_t particles) {
 
 constexpr int steps_before = 100;
 
-/// Moving debris, made once per number of particles.
+/// Moving debris, created once per number of particles.
 twin::Scenario& scenario_of(std::int64_t particles) {
     static std::map<std::int64_t, std::unique_ptr<twin::Scenario>> made;
     auto& scenario = made[particles];
@@ -64,14 +64,14 @@ void plain_step(benchmark::State& run) {
 }
 BENCHMARK(plain_step)->Apply(sizes)->UseRealTime();
 
-/// The present frame, as the steps wait for it.
+/// The current frame, for which the steps wait.
 void live_frame_made(benchmark::State& run) {
     const twin::Scenario& scenario = scenario_of(run.range(0));
     for (auto _ : run) benchmark::DoNotOptimize(scenario.frame(1, 0));
 }
 BENCHMARK(live_frame_made)->Apply(sizes)->UseRealTime();
 
-/// The same as it goes over the wire: compressed, by another thread.
+/// The same as sent: compressed, by another thread.
 void live_frame(benchmark::State& run) {
     const twin::Scenario& scenario = scenario_of(run.range(0));
     const twin::FramePtr frame = scenario.frame(1, 0);
@@ -82,7 +82,7 @@ void live_frame(benchmark::State& run) {
 }
 BENCHMARK(live_frame)->Apply(sizes)->UseRealTime();
 
-/// A wall of 60 m into moving debris, and away again.
+/// A wall of 60 m added in moving debris, and removed again.
 void live_barrier(benchmark::State& run) {
     twin::Scenario& scenario = scenario_of(run.range(0));
     for (auto _ : run) {
@@ -95,7 +95,7 @@ void live_barrier(benchmark::State& run) {
 }
 BENCHMARK(live_barrier)->Apply(sizes)->UseRealTime();
 
-/// A release of 240 m2, drawn and taken back.
+/// A release of 240 m2, drawn and undone.
 void live_release(benchmark::State& run) {
     twin::Scenario& scenario = scenario_of(run.range(0));
     for (auto _ : run) {

@@ -6,7 +6,7 @@
 
 namespace talus::benchmarks {
 
-/// A quick look that everything runs.
+/// A quick check that everything runs.
 inline constexpr std::int64_t smallest_size = 2000;
 
 /// The numbers of particles: the smallest, one whose data fit into caches, one beyond.

@@ -29,10 +29,10 @@ namespace fs = std::filesystem;
 
 struct BenchArguments {
     std::vector<std::string> scenes, methods;  ///< empty: all
-    std::vector<int> particles, threads;       ///< empty: the usual ones; all cores
+    std::vector<int> particles, threads;       ///< empty: the standard ones; all cores
     bool full = false;                         ///< particles up to a million
     int iterations = 4, repeats = 7;
-    std::optional<int> steps, warm_up;  ///< absent: by the number of particles
+    std::optional<int> steps, warm_up;  ///< absent: depends on the number of particles
     std::string backend = "cpu";
     std::string json, svg;  ///< files to write; empty: none
 };
@@ -70,7 +70,7 @@ Exit codes:
 
 const std::vector<int> usual_particles = {5000, 20000, 75000}, full_particles = {5000, 20000, 75000, 300000, 1000000};
 
-/// What was asked for, with the defaults filled in.
+/// The requested measurements, with defaults filled in.
 struct Plan {
     std::vector<std::string> scenes, methods;
     std::vector<int> particles, threads;
@@ -94,7 +94,7 @@ struct Plan {
     }
 };
 
-/// The rows that were complete until the end, a problem, or the user's stop.
+/// The rows completed until the end, a problem, or the user's stop.
 struct Outcome {
     std::vector<bench::Row> rows;
     int code = exit_code::success;

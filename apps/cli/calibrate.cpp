@@ -28,7 +28,7 @@ struct CalibrateArguments {
     std::vector<std::string> factors;  ///< "section.key=distribution"
     std::optional<std::size_t> runs, design, checks;
     std::optional<std::uint64_t> seed;
-    std::optional<std::size_t> recover;  ///< so many times with known values
+    std::optional<std::size_t> recover;  ///< number of attempts with known values
     std::vector<std::string> overrides;  ///< "section.key=value"
     std::string data;                    ///< value of TALUS_DATA; empty: as in the environment
     std::optional<int> threads;

@@ -6,7 +6,7 @@
 #include "calibrate/calibration.hpp"
 #include "calibrate/recovery.hpp"
 
-/// What `talus calibrate` says, as text or as JSON of one line.
+/// Output of `talus calibrate`, as text or as one line of JSON.
 namespace talus {
 
 [[nodiscard]] std::string calibration_text(const Calibration& calibration, const std::filesystem::path& folder);

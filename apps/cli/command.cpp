@@ -33,7 +33,8 @@ void add_overrides(CLI::App& command, std::vector<std::string>& overrides) {
     command.add_option("--set", overrides, "set a value of the scene; may be repeated")
         ->type_name("SECTION.KEY=VALUE")
         ->allow_extra_args(false);
-    // After --set, which would replace what is there, and in front of it: what is set by hand goes before.
+    // Declared after --set, which would replace the list, but inserted before its values: explicit values take
+    // precedence.
     command
         .add_option_function<std::string>(
             "--variant",

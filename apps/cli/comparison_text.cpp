@@ -26,7 +26,7 @@ std::string change_text(const Change& change, bool judged) {
     return text + (judged && change.verdict == Verdict::fail ? " !" : "");
 }
 
-/// Cells of a row, the first to the left of its column, the others to the right. Two cells only: a name and a message.
+/// Cells of a row, the first left-aligned, the others right-aligned. Two cells only: a name and a message.
 using Cells = std::vector<std::string>;
 
 std::string aligned(const std::vector<Cells>& rows) {

@@ -45,7 +45,7 @@ struct EnsembleArguments {
 struct MergeArguments {
     std::vector<std::string> folders;
     std::string output;  ///< empty: the only folder itself
-    std::string scene;   ///< where the scene lies now; empty: where it lay
+    std::string scene;   ///< current path of the scene; empty: unchanged
     std::string depths, speeds, pressures;
     std::string data;
     bool quiet = false, json = false;
@@ -126,7 +126,7 @@ Result<std::pair<std::size_t, std::size_t>> parse_shard(const std::string& text)
     return Error{fmt::format("--shard {} is refused; it must be i/n with i from 1 to n, such as 3/8", text)};
 }
 
-/// Counts the runs of the folders and writes what they say into `folder`.
+/// Evaluates the runs of the folders and writes the results into `folder`.
 int write_results(const SceneInput& source, const PlannedRuns& runs, const std::vector<fs::path>& folders,
                   const fs::path& folder, bool quiet, bool json, ThrottledProgress& reporter) {
     reporter.say("evaluating the runs, writing maps, tables and report");
@@ -152,7 +152,7 @@ int write_results(const SceneInput& source, const PlannedRuns& runs, const std::
     return exit_code::success;
 }
 
-/// Sets how many runs go side by side. A run on several threads is slower than as many runs on one each.
+/// Sets the number of simultaneous runs. One run on several threads is slower than as many runs on one thread each.
 void share_threads(const EnsembleArguments& arguments, const PlannedRuns& runs, int ranks, EnsembleOptions& options) {
     const int cores = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
     const int threads = arguments.threads.value_or(ranks > 1 ? 1 : cores);
@@ -166,7 +166,7 @@ int ensemble_command(const EnsembleArguments& arguments) {
     InterruptWatch watch;
     if (Status s = Ranks::check(); !s) return fail(exit_code::bad_input, s.error().message);
     const Ranks ranks;
-    // All ranks find the same faults in the input; one of them says so.
+    // All ranks find the same faults in the input; one of them reports it.
     const auto refuse = [&](const Error& error) {
         return ranks.first() ? fail(exit_code::bad_input, error.message) : exit_code::bad_input;
     };

@@ -8,7 +8,7 @@
 
 namespace talus {
 
-/// What an ensemble found, for a terminal.
+/// Results of an ensemble, for a terminal.
 [[nodiscard]] std::string ensemble_text(const EnsembleResult& result, const std::filesystem::path& folder);
 
 /// The same as one JSON object in a line: {"event": "result", ...}.

@@ -18,7 +18,7 @@ sigset_t watched_signals() {
     sigemptyset(&signals);
     sigaddset(&signals, wake_signal);
     for (const int number : {SIGINT, SIGTERM, SIGHUP}) {
-        // nohup and background jobs of scripts ignore some of them on purpose; that stays so.
+        // nohup and background jobs of scripts ignore some of them on purpose; that is preserved.
         struct sigaction current {};
         const bool ignored = sigaction(number, nullptr, &current) == 0 && current.sa_handler == SIG_IGN;
         if (!ignored) sigaddset(&signals, number);
@@ -59,7 +59,7 @@ void InterruptWatch::end_at_once() {
     std::unique_lock lock(mutex_, std::defer_lock);
     (void)lock.try_lock_for(std::chrono::seconds(2));
     for (const auto& folder : folders_) {
-        // The main thread may still be writing into it: a file made behind the removal's back costs another attempt.
+        // The main thread may still be writing into it: a file created during the removal needs another attempt.
         for (int attempt = 0; attempt < 5; ++attempt) {
             std::error_code error;
             std::filesystem::remove_all(folder, error);

@@ -10,7 +10,7 @@ namespace talus {
 
 /// Turns Ctrl-C (SIGINT, SIGTERM, SIGHUP) into a request to stop; a second one removes the temporary folders and ends
 /// the program at once. The signals are taken by a thread that waits for them, so no code runs in a signal handler.
-/// Make it before any other thread starts: threads inherit that the signals are blocked.
+/// Create it before any other thread starts: threads inherit the signal mask.
 class InterruptWatch {
   public:
     InterruptWatch();

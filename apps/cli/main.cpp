@@ -42,7 +42,7 @@ Exit codes:
   130  interrupted by Ctrl-C; the results so far are written, marked partial.
        A second Ctrl-C ends at once and writes nothing. With --convergence or --vary, missing runs are listed.)";
 
-/// The command that the user got to before the error: the one whose --help is of use.
+/// The command at which the error occurred: its --help is the relevant one.
 std::string deepest_command(const CLI::App& app) {
     std::string name = app.get_name();
     const CLI::App* command = &app;
@@ -88,7 +88,7 @@ int talus_main(int argc, char** argv) {
 }  // namespace talus
 
 int main(int argc, char** argv) {
-    // A reader that has gone and a file that may not grow are errors to report, not reasons to die.
+    // A closed pipe and a file size limit are errors to report; they must not terminate the program.
     signal(SIGPIPE, SIG_IGN);
     signal(SIGXFSZ, SIG_IGN);
     try {

@@ -54,7 +54,7 @@ std::string line_text(const Progress& p, const std::optional<SeriesProgress>& se
     return text + (series ? " of all runs\n" : "\n");
 }
 
-// Not fmt::print: it throws when the reader of a pipe has gone, and that must not end a run.
+// Not fmt::print: it throws when a pipe has been closed, and that must not end a run.
 void write(std::FILE* stream, const std::string& text) {
     (void)std::fputs(text.c_str(), stream);
     (void)std::fflush(stream);

@@ -19,13 +19,13 @@ enum class ProgressStyle {
 /// A bar where stderr is a terminal that can redraw a line, plain lines elsewhere.
 [[nodiscard]] ProgressStyle progress_style(bool quiet, bool json);
 
-/// Tells a person or a program how far the run is.
+/// Reports the progress of a run to a user or a program.
 class ProgressReporter {
   public:
     explicit ProgressReporter(ProgressStyle style);
-    /// Call after every step; most calls return at once. `series`: where the run is one of several.
+    /// Call after every step; most calls return immediately. `series`: if the run is one of several.
     void report(const Progress& progress, const std::optional<SeriesProgress>& series = std::nullopt);
-    /// Replaces the bar by what the program is doing now ("writing maps and report"); lines print it.
+    /// Replaces the bar by the current activity ("writing maps and report"); lines print it.
     void say(const std::string& what);
     /// Removes the bar from the terminal.
     void clear();

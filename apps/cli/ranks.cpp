@@ -24,7 +24,7 @@ bool launched() {
 #ifdef TALUS_WITH_MPI
 
 Ranks::Ranks() {
-    if (!launched()) return;  // starting MPI takes a second that a run on its own need not pay
+    if (!launched()) return;  // starting MPI takes a second that a single run can save
     int provided = 0;
     MPI_Init_thread(nullptr, nullptr, MPI_THREAD_FUNNELED, &provided);
     MPI_Comm_rank(MPI_COMM_WORLD, &rank_);

@@ -4,8 +4,8 @@
 
 namespace talus {
 
-/// The processes of one `mpirun`, which share a file system. One alone where the program was started without, or built
-/// without MPI. Make it before threads start, once.
+/// The processes of one `mpirun`, which share a file system. A single one if the program was started or built without
+/// MPI. Create it once, before threads start.
 class Ranks {
   public:
     Ranks();
@@ -17,9 +17,9 @@ class Ranks {
     [[nodiscard]] int count() const { return count_; }
     [[nodiscard]] bool first() const { return rank_ == 0; }
 
-    /// The first rank's word for all of them.
+    /// Broadcasts the value of the first rank.
     [[nodiscard]] bool hear_first(bool word) const;
-    /// Waits until all ranks are here; the sum of their numbers.
+    /// Waits for all ranks; returns the sum of their numbers.
     [[nodiscard]] long sum(long number) const;
 
     /// Why several ranks would not work: started by mpirun, but built without MPI.

@@ -24,7 +24,7 @@ constexpr std::string_view builtin_prefix = "built-in:";
 
 struct ReplayArguments {
     std::string journal;
-    std::string scene;  ///< in place of the journal's; empty: that one
+    std::string scene;  ///< instead of the journal's; empty: that of the journal
     std::optional<int> threads;
     std::string data;
     bool quiet = false;

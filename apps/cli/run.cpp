@@ -39,7 +39,7 @@ is none, the front at 90 % of its chainage) and run-out with the scene as given:
 variants.csv, in the report, the manifest and --json. --convergence passes if nothing changes by more than 5 %.
 )";
 
-/// talus_out in the current folder, made when needed and removed again if nothing came to lie in it.
+/// talus_out in the current folder, created when needed and removed again if it remains empty.
 class DefaultParent {
   public:
     DefaultParent() : made_(fs::create_directory(name, error_)) {}
@@ -53,7 +53,7 @@ class DefaultParent {
     static constexpr const char* name = "talus_out";
 
   private:
-    std::error_code error_;  // not asked: the output folder says it better when it cannot be made
+    std::error_code error_;  // ignored: creating the output folder gives the better error message
     bool made_;
 };
 
@@ -62,7 +62,7 @@ void print(const std::string& text) {
     (void)std::fflush(stdout);
 }
 
-/// What can be refused before anything runs: the scene, its variants, the output folder.
+/// Everything that is checked before a run: the scene, its variants, the output folder.
 struct Job {
     SceneInput input;
     VariantPlan plan;
@@ -86,7 +86,7 @@ Result<Job> open_job(const RunArguments& arguments, InterruptWatch& watch) {
     return Job{std::move(input), std::move(plan), std::move(parent), shown, std::move(output)};
 }
 
-/// Looks on while the scene runs: progress, Ctrl-C, and the particle series where the scene wants one.
+/// Callbacks during the run: progress, Ctrl-C, and the particle series if the scene requests one.
 class Onlooker {
   public:
     Onlooker(const RunArguments& arguments, const Job& job, ProgressReporter& progress, InterruptWatch& watch)
@@ -112,7 +112,7 @@ class Onlooker {
 
   private:
     void report(const Progress& now) {
-        // Notes not before: an input that cannot be run is refused with one line alone.
+        // Notes are printed only now: an invalid input is refused with a single line.
         if (!std::exchange(notes_said_, true)) {
             for (const std::string& note : job_.input.scene.notes) print(fmt::format("note: {}\n", note));
         }

@@ -16,7 +16,7 @@ namespace talus {
 struct SceneInput {
     std::unique_ptr<TemporaryFolder> unpacked;  ///< of the built-in scene
     SceneSource source;
-    std::string name;        ///< as the definition of many runs has it
+    std::string name;        ///< as in the definition of an ensemble or calibration
     std::string short_name;  ///< for the default output folder
     Scene scene;
 };

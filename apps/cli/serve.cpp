@@ -36,7 +36,7 @@ struct ServeArguments {
     std::string data;                    ///< value of TALUS_DATA; empty: as in the environment
     std::string calibrations;            ///< a folder that keeps calibrations; empty: they are not kept
     std::vector<std::string> ensembles;  ///< folders of finished ensembles whose maps are shown
-    bool run = false;                    ///< begin at once
+    bool run = false;                    ///< start immediately
     bool quiet = false, json = false;
 };
 
@@ -67,7 +67,7 @@ bool is_address(const std::string& text) {
            inet_pton(AF_INET6, text.c_str(), &ignored) == 1;
 }
 
-/// Tokens as given, new ones where not.
+/// The given tokens, or new ones.
 Result<serve::Tokens> choose_tokens(const std::vector<std::string>& given) {
     if (given.size() > 2) return Error{"--token is given more than twice; it is for controllers, then for viewers"};
     serve::Tokens tokens;

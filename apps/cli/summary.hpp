@@ -13,7 +13,7 @@ namespace talus {
 /// "complete", "interrupted" or "fault".
 [[nodiscard]] std::string status_name(RunStatus status);
 
-/// What a person wants to know first, in a dozen lines, and a table per comparison.
+/// The main results in a dozen lines, and a table per comparison.
 [[nodiscard]] std::string summary_text(const Scene& scene, const RunResult& result,
                                        const std::vector<Comparison>& comparisons, const std::filesystem::path& output);
 

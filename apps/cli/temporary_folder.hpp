@@ -7,7 +7,7 @@
 
 namespace talus {
 
-/// A folder of the system's temporary folder, gone with this object.
+/// A folder in the system's temporary folder, removed with this object.
 class TemporaryFolder {
   public:
     TemporaryFolder() {
@@ -22,7 +22,7 @@ class TemporaryFolder {
     TemporaryFolder(const TemporaryFolder&) = delete;
     TemporaryFolder& operator=(const TemporaryFolder&) = delete;
 
-    /// Empty: it could not be made.
+    /// Empty: it could not be created.
     [[nodiscard]] const std::filesystem::path& path() const { return path_; }
 
   private:

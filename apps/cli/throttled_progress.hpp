@@ -8,13 +8,13 @@
 
 namespace talus {
 
-/// Text on stdout, at once.
+/// Prints text on stdout immediately.
 inline void print(const std::string& text) {
     (void)std::fputs(text.c_str(), stdout);
     (void)std::fflush(stdout);
 }
 
-/// The progress of many runs, for a person or a program, not too often.
+/// Progress of many runs, for a user or a program, at a limited rate.
 class ThrottledProgress {
   public:
     ThrottledProgress(bool quiet, bool json) : style_(progress_style(quiet, json)), reporter_(style_) {

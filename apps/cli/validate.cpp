@@ -29,8 +29,8 @@ using validate::CaseResult;
 
 struct ValidateArguments {
     std::vector<std::string> cases;             ///< names or folders; empty: all cases of the program
-    bool quick = false, list = false;           ///< quick: only the cases that say so
-    bool known = false;                         ///< failures that the case files announce are no reason to fail
+    bool quick = false, list = false;           ///< quick: only the cases marked so
+    bool known = false;                         ///< failures announced in the case files do not fail the command
     std::string json, results, html, markdown;  ///< files to write; empty: none
     std::optional<int> threads;
     std::string data;  ///< value of TALUS_DATA; empty: as in the environment
@@ -49,7 +49,7 @@ Exit codes:
   130  interrupted by Ctrl-C; the table shows the cases that were complete
 )";
 
-/// Where a case lies: a folder as given, or of that name among the program's.
+/// The folder of a case: as given, or of that name among the built-in ones.
 Result<fs::path> find_case(const std::string& text, const fs::path& builtin) {
     std::error_code error;
     if (fs::exists(fs::path(text) / "case.toml", error)) return fs::path(text);

@@ -24,16 +24,16 @@ struct RunArguments {
     std::vector<std::string> variations;  ///< "section.key=value,value": run with each value too and compare
 };
 
-/// The runs that the command line asks for beside the scene as given.
+/// The runs requested on the command line in addition to the base.
 class VariantPlan {
   public:
-    /// Errors: what a variant cannot be run for, before anything ran.
+    /// Errors: a variant that cannot be run, before any run starts.
     [[nodiscard]] static Result<VariantPlan> make(const RunArguments& arguments, const SceneSource& source,
                                                   const Scene& scene);
 
     [[nodiscard]] bool empty() const { return variants_.empty(); }
 
-    /// Tells the reporter of the base's run; with variants, how far all runs together are.
+    /// Reports the progress of the base; with variants, that of all runs together.
     void report_base(ProgressReporter& reporter, const Progress& now) const;
 
     /// Runs the variants one after the other and compares them with the base. After a stop request or a fault of the

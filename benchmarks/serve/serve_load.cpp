@@ -1,5 +1,5 @@
-// Measures what serving costs, on a `talus serve` of the built-in scene that it starts itself:
-//   (a) how much longer a run takes when one viewer looks at it with 30 frames per second,
+// Measures the cost of serving, on a `talus serve` of the built-in scene that it starts itself:
+//   (a) how much longer a run takes with one viewer at 30 frames per second,
 //   (b) processor time per second that 50 such viewers cost the server, stepping left out.
 //   serve_load [PARTICLES [THREADS [REPEATS]]]
 #include <algorithm>
@@ -91,7 +91,7 @@ class Program {
     pid_t process_;
 };
 
-/// Viewers that read and throw away, on a thread of their own.
+/// Viewers that read and discard, on their own thread.
 class Viewers {
   public:
     explicit Viewers(std::size_t count) {
@@ -148,7 +148,7 @@ class Measurement {
         double wall_time = 0, processor_time = 0, loop_time = 0, server_time = 0;  // s; the last three of processors
         double frame_rate = 0, frame_bytes = 0;
     };
-    /// The whole run from time 0 to its end, beside so many viewers.
+    /// The whole run from time 0 to its end, with this number of viewers.
     Run run(std::size_t viewers) {
         act({{"action", "restart"}});
         WebSocket watch(port, fmt::format("token={}&name=Watch", viewer));

@@ -9,10 +9,10 @@
 
 namespace talus::bench {
 
-/// Relative rates (see Calibration) by what was measured (row_name).
+/// Relative rates (see Calibration) by measurement (row_name).
 using Rates = std::map<std::string, double>;
 
-/// Relative rates that were once measured, by instruction set: between those they cannot be compared.
+/// Relative rates measured earlier, by instruction set; not comparable between instruction sets.
 using Baseline = std::map<std::string, Rates>;
 
 /// A JSON object of objects of numbers. Errors: no such file, not such an object, a rate that is not above zero.

@@ -7,11 +7,11 @@
 
 namespace talus::bench {
 
-/// A yardstick: how fast this machine, busy as it is just now, does work of the solver's kind. Rates of the solver
-/// relative to it can be compared between hours, and roughly between machines of one instruction set.
+/// The calibration loop: current speed of this machine, under its current load, at work of the solver's kind. Rates of
+/// the solver relative to it can be compared over time, and roughly between machines of one instruction set.
 ///
-/// A unit gathers 48 rows of 16 bytes by an index list and adds up products of them, out of arrays that stay in a
-/// core's second-level cache. It has its own kernels: one shared with the solver would get faster with it.
+/// A unit gathers 48 rows of 16 bytes by an index list and adds up products of them, from arrays that fit into a core's
+/// second-level cache. It has its own kernels: shared ones would become faster together with the solver.
 class Calibration {
   public:
     Calibration();
@@ -20,7 +20,7 @@ class Calibration {
     [[nodiscard]] double measure();
 
     [[nodiscard]] std::string_view instruction_set() const { return kernel_.instruction_set; }
-    /// What the units have added up, so that no work is left out.
+    /// Sum over all units, so that the compiler cannot remove any work.
     [[nodiscard]] double total() const;
 
     static constexpr std::size_t rows_per_unit = 48;  // whole vectors of up to 16 lanes

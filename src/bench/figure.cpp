@@ -51,7 +51,7 @@ std::string scaling_svg(const std::vector<Row>& rows) {
     std::size_t i = 0;
     for (const auto& [name, line] : lines) {
         const std::size_t k = i++ % colours;
-        // Dashes tell lines apart in print.
+        // Dashes distinguish lines in print.
         plot.line(line.x, line.y, fmt::format("series v{}{}", k, k % 2 == 1 ? " dashed" : ""), name);
         for (std::size_t at = 0; at < line.x.size(); ++at)
             plot.mark(line.x[at], line.y[at], fmt::format("mark v{}", k));

@@ -23,7 +23,7 @@ double seconds_since(Clock::time_point start) {
     return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
-/// Bytes that the program has allocated; 0 where the system does not say.
+/// Bytes that the program has allocated; 0 where the system does not report it.
 double allocated_bytes() {
 #if defined(__GLIBC__) && (__GLIBC__ > 2 || __GLIBC_MINOR__ >= 33)
     const struct mallinfo2 info = mallinfo2();
@@ -41,7 +41,7 @@ double mean_neighbours(const Simulation& simulation) {
     return count > 0 ? pairs / count : 0;
 }
 
-/// The start with the task's solver. It is measured for as many steps as asked for, whatever debris does.
+/// The start with the task's solver. All requested steps are measured, even if debris comes to rest.
 RunStart start_of(const Start& start, const Task& task) {
     RunStart changed = start;
     SolverSpec& solver = changed.model.solver;
@@ -60,7 +60,7 @@ Status take_steps(Run& run, int steps, const std::atomic<bool>* stop_requested) 
     return {};
 }
 
-/// What the repeats took, each with the calibration before and after it.
+/// Times of the repeats, each with the calibration before and after it.
 struct Repeats {
     std::vector<double> step_seconds, calibration_rate, relative_rate;
     std::array<std::vector<double>, stage_count> stage_seconds;

@@ -15,14 +15,14 @@
 
 namespace talus::bench {
 
-/// How long a measurement is: repeats of some steps each. What is absent follows from the number of particles.
+/// Length of a measurement: repeats of some steps each. Absent values depend on the number of particles.
 struct Length {
     int repeats = 7;
     std::optional<int> steps;    ///< per repeat
     std::optional<int> warm_up;  ///< steps before the first repeat
 };
 
-/// What is done in a row of the table.
+/// The measurement of one row of the table.
 struct Task {
     InternalFriction method = InternalFriction::stress;
     int iterations = 4;
@@ -30,7 +30,7 @@ struct Task {
     Length length;
 };
 
-/// What was measured: medians over the repeats.
+/// Results of a measurement: medians over the repeats.
 struct Row {
     std::string scene, method, instruction_set;
     std::string backend = "cpu";
@@ -43,7 +43,7 @@ struct Row {
     double time_step = 0;  ///< s, mean of the measured steps
     bool fixed_time_step = false;
     double neighbours = 0;          ///< mean per particle, after the last step
-    double bytes_per_particle = 0;  ///< allocated for it in memory; 0 where the system does not say
+    double bytes_per_particle = 0;  ///< allocated for it in memory; 0 where the system does not report it
     double calibration_rate = 0;    ///< units per second
     double relative_rate = 0;       ///< particle-iterations per calibration unit
     std::uint64_t hash = 0;         ///< of the state after the last step
@@ -60,12 +60,12 @@ struct Row {
 /// The method of one of these names.
 [[nodiscard]] InternalFriction method_of(std::string_view name);
 
-/// The steps of a repeat, and before the first, where they are not set: fewer the more particles there are.
+/// Default number of steps of a repeat, and before the first: the more particles, the fewer.
 [[nodiscard]] int usual_steps(std::uint32_t particles);
 [[nodiscard]] int usual_warm_up(std::uint32_t particles);
 
-/// Steps the scene with all that a run observes. Ends early, with an error, when `stop_requested`.
-/// Errors: a step that cannot be trusted (the number says nothing then).
+/// Runs steps of the scene, including all observation. Ends early, with an error, when `stop_requested`. Errors: a step
+/// that cannot be trusted (the rate is then meaningless).
 [[nodiscard]] Result<Row> measure(const Start& start, const Task& task, Calibration& calibration,
                                   const std::atomic<bool>* stop_requested = nullptr);
 

@@ -18,7 +18,7 @@
 namespace talus::bench {
 namespace {
 
-constexpr double usual_speed = 3;  // m/s down the slope: fast enough that friction and viscosity have something to do
+constexpr double usual_speed = 3;  // m/s down the slope: fast enough for friction and viscosity to act
 
 /// A scene before it is filled with particles.
 struct World {
@@ -83,7 +83,7 @@ World slab(int particles) {
 }
 
 World column(int particles) {
-    constexpr double highest = 24;  // layers: a few iterations could not carry more
+    constexpr double highest = 24;  // layers: a few iterations could not support more
     World world;
     world.spacing = 0.1;
     const double across = std::round(std::sqrt(particles / std::min(std::cbrt(particles), highest)));
@@ -152,7 +152,8 @@ class Stack {
             state_.position.set(i, {plan.x, plan.y, static_cast<float>(ground.height + height)});
             state_.velocity.set(i, velocity);
             state_.id[i] = i;
-            // The weight of what lies above, for a step of 1 s: a multiplier is pressure over density times its square.
+            // The weight of the debris above, for a step of 1 s: a multiplier is pressure over density times its
+            // square.
             const double above = std::max(0.0, depth - height);
             state_.multiplier[i] = static_cast<float>(-model_.gravity * cosine * cosine * above);
         }
@@ -179,7 +180,7 @@ Start fill(std::string_view scene, World world, int particles) {
     place_buildings(world.terrain, world.buildings);
     start.model = make_model(world.material, world.solver, world.spacing);
     start.ground = Ground(std::move(world.terrain), std::move(world.buildings), start.model.support_radius);
-    // Columns on an outline make it a few particles more or fewer than asked for.
+    // Columns on an outline make it a few particles more or fewer than requested.
     const auto most = static_cast<std::uint32_t>(1.05 * particles);
     State& state = start.state;
     state.resize(most);

@@ -19,15 +19,15 @@ namespace talus::bench {
 /// The minimum and maximum number of particles of a scene.
 inline constexpr int fewest_particles = 500, most_particles = 4000000;
 
-/// What a measurement begins with: the same for every method and number of threads.
+/// Initial data of a measurement: the same for every method and number of threads.
 struct Start : RunStart {
     std::string scene;
 };
 
-/// A scene with about `particles` particles. Debris lies on the ground without having been brought to rest, which for a
-/// million particles would take minutes, but under its own weight, and moves down the slope.
-/// `builtin_scene`: the scene file that unpack_builtin_scene() has written; only sham_tseng reads it.
-/// Errors: no such scene; the built-in scene cannot be read.
+/// A scene with about `particles` particles. Debris is not relaxed, which would take minutes for a million particles,
+/// but starts under its own weight, and moves down the slope. `builtin_scene`: the scene file that
+/// unpack_builtin_scene() has written; only sham_tseng reads it. Errors: no such scene; the built-in scene cannot be
+/// read.
 [[nodiscard]] Result<Start> make_start(std::string_view scene, int particles,
                                        const std::filesystem::path& builtin_scene);
 

@@ -7,7 +7,7 @@
 
 namespace talus::bench {
 
-/// Two tables for a terminal: what was measured, and each stage's share of the step.
+/// Two tables for a terminal: the results, and each stage's share of the step.
 [[nodiscard]] std::string table_text(const std::vector<Row>& rows);
 
 /// A list of objects, one per row; docs/performance.md says what each key means.

@@ -73,7 +73,7 @@ struct Polygon {
     bool operator==(const Polygon&) const = default;
 };
 
-/// Even-odd test over all rings. A point exactly on an edge may go either way.
+/// Even-odd test over all rings. A point exactly on an edge may count as inside or outside.
 [[nodiscard]] bool contains(const Polygon& polygon, const PlanPoint& point);
 
 /// Plan area in m2, holes subtracted; independent of ring orientation.

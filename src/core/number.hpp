@@ -6,16 +6,16 @@
 #include <cstdint>
 #include <type_traits>
 
-/// The words that a formula is written in so that it runs with one number or with many side by side (simd/lanes.hpp):
-/// `select` in place of a branch; the rest looks as ever. Here they are for one number.
+/// The functions with which a formula runs on one number or on many in parallel (simd/lanes.hpp): `select` in place of
+/// a branch; the rest is ordinary code. These are the versions for one number.
 namespace talus {
 
-/// On what is worth little when called, and on what passes bare vectors: they travel in other registers where a wider
-/// instruction set is on, so that a call between the two would be wrong. Lanes and masks are safe by having copy
-/// constructors: they travel in memory.
+/// For small functions, and for those that pass bare vectors: these are passed in other registers where a wider
+/// instruction set is enabled, so that a call between the two would be wrong. Lanes and masks are safe because they
+/// have copy constructors: they are passed in memory.
 #define TALUS_INLINE [[gnu::always_inline]] inline
 
-/// Four numbers that lie together: a gather of all four is one load.
+/// Four adjacent numbers: a gather of all four is one load.
 struct Quad {
     std::array<float, 4> v{};
 
@@ -42,7 +42,7 @@ Real select(bool condition, Real yes, Real no) {
 inline bool any(bool condition) {
     return condition;
 }
-/// Towards zero; for what an int can hold.
+/// Towards zero; for values that fit an int.
 template <std::floating_point Real>
 std::int32_t truncated(Real a) {
     return static_cast<std::int32_t>(a);
@@ -56,7 +56,7 @@ TALUS_INLINE Real from_index(const Index& index) {
     }
 }
 
-/// As std::max and std::min: the first where they compare equal, or not at all.
+/// As std::max and std::min: the first argument where they are equal or unordered.
 template <class Real>
 TALUS_INLINE Real larger(const Real& a, const Real& b) {
     return select(a < b, b, a);

@@ -8,14 +8,14 @@
 
 namespace talus {
 
-/// What is wrong with an input, in one line that says what to change:
-/// the file, the line, the key, the value and the allowed range, as far as they apply.
+/// What is wrong with an input, in one line: the file, the line, the key, the value and the allowed range, where they
+/// apply.
 struct Error {
     std::string message;
 };
 
-/// A value, or the Error that kept it from being made; Result<void> has no value, only success. Bad input travels in
-/// these; bugs are assertions. TALUS_TRY and TALUS_ASSIGN (try.hpp) pass an Error on.
+/// A value, or the Error that prevented it; Result<void> has no value, only success. Bad input travels in these; bugs
+/// are assertions. TALUS_TRY and TALUS_ASSIGN (try.hpp) pass an Error on.
 template <class T>
 class [[nodiscard]] Result {
     using Value = std::conditional_t<std::is_void_v<T>, std::monostate, T>;

@@ -4,7 +4,7 @@
 
 #include "core/result.hpp"
 
-// How a function that returns a Result or a Status itself passes an Error on.
+// Macros with which a function that returns a Result or a Status passes an Error on.
 
 /// `TALUS_TRY(check(scene));` returns the Error, if there is one.
 #define TALUS_TRY(...)                                    \
@@ -13,8 +13,8 @@
         if (!result_of_try) return result_of_try.error(); \
     } while (false)
 
-/// `TALUS_ASSIGN(const Scene scene, load_scene(file));` declares a variable of the value, or returns the Error. What is
-/// there already can be assigned to as well.
+/// `TALUS_ASSIGN(const Scene scene, load_scene(file));` declares a variable of the value, or returns the Error. An
+/// existing variable can be assigned to as well.
 #define TALUS_ASSIGN(target, ...) TALUS_ASSIGN_FROM(TALUS_JOIN(result_, __COUNTER__), target, __VA_ARGS__)
 #define TALUS_ASSIGN_FROM(result, target, ...) \
     auto result = (__VA_ARGS__);               \

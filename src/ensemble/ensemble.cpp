@@ -37,7 +37,7 @@ class Crew {
     [[nodiscard]] bool stopped() const {
         return failed_ || (options_.stop_requested && options_.stop_requested->load());
     }
-    /// Nothing where the run was interrupted.
+    /// Empty if the run was interrupted.
     [[nodiscard]] std::optional<std::pair<RunRecord, HazardMaps>> compute(std::size_t run, std::size_t worker);
     void finish(const RunRecord& record, const HazardMaps& maps, std::size_t worker);
     void report(std::size_t worker, double share);
@@ -50,7 +50,7 @@ class Crew {
     std::vector<std::size_t> todo_;
     std::atomic<std::size_t> next_{0};
     std::atomic<bool> failed_{false};
-    std::mutex loading_;  // inputs are read by one at a time: it takes little, and not every driver minds its threads
+    std::mutex loading_;  // inputs are read by one thread at a time: it is fast, and not every driver is thread-safe
     std::mutex mutex_;    // guards what follows
     EnsembleOutcome outcome_;
     Status status_;
@@ -127,7 +127,7 @@ void Crew::report(std::size_t worker, double share) {
     p.done = outcome_.done;
     p.failed = outcome_.failed;
     p.count = outcome_.count;
-    // A run mostly ends before solver.end_time_s, so shares of it are a lower bound.
+    // Most runs end before solver.end_time_s, so shares of it are a lower bound.
     double part = 0;
     for (const double s : under_way_) part += s;
     const double before = static_cast<double>(outcome_.done + outcome_.failed);

@@ -12,7 +12,7 @@
 
 namespace talus {
 
-/// How far an ensemble is.
+/// Progress of an ensemble.
 struct EnsembleProgress {
     std::size_t done = 0, failed = 0, count = 0;  ///< runs of this process, earlier ones included
     double share_done = 0;                        ///< 0 to 1, runs under way counted by their simulated time
@@ -25,9 +25,9 @@ struct EnsembleOptions {
     int threads_per_run = 1;                            ///< several where runs_at_once is 1
     std::size_t shard = 0, shard_count = 1;             ///< this process computes runs shard, shard + shard_count, ...
     bool retry_failed = false;                          ///< runs that failed before are run again
-    const std::atomic<bool>* stop_requested = nullptr;  ///< runs under way are dropped, those that are done stay
+    const std::atomic<bool>* stop_requested = nullptr;  ///< runs in progress are discarded, completed ones are kept
     std::function<void(const EnsembleProgress&)> on_progress = {};  ///< from any of the runs' threads, one at a time
-    std::function<void(const RunRecord&)> on_run = {};  ///< likewise, when one that this call made is recorded
+    std::function<void(const RunRecord&)> on_run = {};              ///< likewise, when a run of this call is recorded
 };
 
 struct EnsembleOutcome {
@@ -37,8 +37,8 @@ struct EnsembleOutcome {
     double wall_time = 0;  ///< s, of this call
 };
 
-/// Computes what the folder lacks of this process's share of the runs. A run that fails is recorded with its fault and
-/// the rest continue. Errors: a record cannot be written.
+/// Computes the runs of this process's share that are missing in the folder. A run that fails is recorded with its
+/// fault and the rest continue. Errors: a record cannot be written.
 [[nodiscard]] Result<EnsembleOutcome> run_ensemble(const PlannedRuns& runs, const SceneSource& source,
                                                    const EnsembleFolder& folder, const EnsembleOptions& options);
 

@@ -190,7 +190,7 @@ Json sensitivity_data(const EnsembleResult& result) {
 
 std::string sensitivity_svg(const Json& sensitivity) {
     constexpr double left = 270, row = 30, head = 30;
-    constexpr std::size_t most_columns = 4;  // factors side by side; more go below
+    constexpr std::size_t most_columns = 4;  // factors per row
     const Json& factors = sensitivity["factors"];
     Svg svg;
     double y = 0;

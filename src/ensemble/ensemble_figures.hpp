@@ -6,12 +6,12 @@
 /// The figures of an ensemble's report, as data; null where there is nothing to draw.
 namespace talus::report {
 
-/// Histogram of run-out with its percentiles, and the share of runs that go farther.
+/// Histogram of run-out with its percentiles, and the share of runs with a longer run-out.
 [[nodiscard]] Json run_out_chart(const EnsembleResult& result);
 
-/// For every result, how much of it depends on each factor, by the measure that follows from the design.
+/// For every result, its sensitivity to each factor, by the measure that belongs to the design.
 [[nodiscard]] Json sensitivity_data(const EnsembleResult& result);
-/// That as bars: a drawing for the report.
+/// Sensitivity as bars: a drawing for the report.
 [[nodiscard]] std::string sensitivity_svg(const Json& sensitivity);
 
 /// Run-out against each numeric factor, a dot per run.

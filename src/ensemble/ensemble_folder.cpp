@@ -24,7 +24,7 @@ using Json = nlohmann::ordered_json;
 
 constexpr int format_version = 1;  // of the files of runs
 
-/// What may differ without making another ensemble: where the scene lay, who wrote it, and what is counted.
+/// Keys that may differ within the same ensemble: path and author of the scene, and the thresholds.
 bool is_incidental(const std::string& key) {
     return key == "scene" || key == "program_version" || key == "thresholds" || key == "return_period_years";
 }

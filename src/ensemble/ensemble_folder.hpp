@@ -11,23 +11,23 @@
 
 namespace talus {
 
-/// What makes an ensemble this one: inputs by checksum, overrides, design, seed, factors. Runs of two folders belong
-/// together where `difference` finds none; thresholds are in it, but only count.
+/// The definition that identifies an ensemble: inputs by checksum, overrides, design, seed, factors. Runs of two
+/// folders belong together if `difference` finds none; thresholds are included, but ignored by it.
 [[nodiscard]] nlohmann::ordered_json ensemble_definition(const PlannedRuns& runs, const SceneSource& source,
                                                          const Scene& base, const std::string& scene_name);
 
 /// The plan that a definition was made from. Errors: not as ensemble_definition writes it.
 [[nodiscard]] Result<EnsemblePlan> plan_of(const nlohmann::ordered_json& definition);
 
-/// A folder with ensemble.json and a file per run that is done, held by one process at a time.
+/// A folder with ensemble.json and a file per completed run, locked by one process at a time.
 class EnsembleFolder {
   public:
-    /// Makes the folder, or opens the one of an interrupted ensemble with the same definition. The lock ends with the
-    /// process, however that ends. Errors: held by another process, holds something else or another ensemble (names the
-    /// first difference), cannot be made or written.
+    /// Creates the folder, or opens that of an interrupted ensemble with the same definition. The lock ends with the
+    /// process, however that ends. Errors: locked by another process, contains something else or another ensemble
+    /// (names the first difference), cannot be created or written.
     [[nodiscard]] static Result<EnsembleFolder> open(const std::filesystem::path& path,
                                                      const nlohmann::ordered_json& definition);
-    /// The same without a lock, for the other processes of a holder: its folder is there.
+    /// The same without a lock, for the other processes of the holder, whose folder exists.
     [[nodiscard]] static EnsembleFolder join(const std::filesystem::path& path);
 
     EnsembleFolder(EnsembleFolder&& other) noexcept;
@@ -47,10 +47,10 @@ class EnsembleFolder {
 };
 
 /// Puts the runs of `from` into `to` as well (as links where the file system has them). Errors: a run that both have
-/// with different results, a file that cannot be made.
+/// with different results, a file that cannot be created.
 [[nodiscard]] Status take_runs(const std::filesystem::path& from, const EnsembleFolder& to, std::size_t count);
 
-/// ensemble.json of a folder. Errors: not there, not of that kind.
+/// ensemble.json of a folder. Errors: missing, not of that kind.
 [[nodiscard]] Result<nlohmann::ordered_json> read_definition(const std::filesystem::path& folder,
                                                              const std::string& kind = "ensemble");
 

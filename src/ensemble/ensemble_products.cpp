@@ -26,7 +26,7 @@ using Json = nlohmann::ordered_json;
 
 constexpr std::array<double, 9> table_percentiles = {1, 5, 10, 25, 50, 75, 90, 95, 99};
 
-/// Kept by all maps of one quantity, and the words of a threshold.
+/// Names shared by all maps of one quantity, and those of a threshold.
 struct QuantityWords {
     const char* file;
     const char* name;
@@ -113,7 +113,7 @@ std::string sensitivity_csv(const EnsembleResult& result) {
     return csv.text();
 }
 
-/// Maps of thresholds that are counted no more must not lie beside those that are.
+/// Removes maps of thresholds that are no longer evaluated.
 void remove_old_maps(const fs::path& folder, const std::set<std::string>& wanted) {
     std::error_code error;
     for (const fs::directory_entry& entry : fs::directory_iterator(folder, error)) {

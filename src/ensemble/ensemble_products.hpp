@@ -16,7 +16,7 @@
 
 namespace talus {
 
-/// An ensemble's runs, counted; what its products say.
+/// The evaluated runs of an ensemble, from which its products are written.
 struct EnsembleResult {
     const Scene* scene = nullptr;  ///< as given, before factors
     const PlannedRuns* runs = nullptr;
@@ -27,14 +27,14 @@ struct EnsembleResult {
     const HazardMatrix* matrix = nullptr;  ///< where the plan has a return period and the guideline has such
     Grid<float> zones;                     ///< of the matrix
 
-    /// The values of one measure over the complete runs; NaN left out.
+    /// The values of one measure over the complete runs; without NaN.
     [[nodiscard]] std::vector<double> values_of(std::size_t measure) const;
 };
 
 /// Adds measures and sensitivity. `scene` and `runs` must outlive the result.
 [[nodiscard]] EnsembleResult summarise(const Scene& scene, const PlannedRuns& runs, Reduction reduction);
 
-/// How a map of an ensemble is called and coloured: "probability_depth_0.1m", "peak_depth_p95".
+/// Name and colours of a map of an ensemble: "probability_depth_0.1m", "peak_depth_p95".
 [[nodiscard]] HazardMap style_of(const EnsembleMap& map);
 
 /// How the map of an intensity class's probability is called and coloured: "probability_intensity_high".
@@ -55,8 +55,7 @@ struct EnsembleResult {
 /// What the report shows, as data: results.json.
 [[nodiscard]] nlohmann::ordered_json ensemble_results(const EnsembleResult& result);
 
-/// The self-contained page: what `results`, of ensemble_results(), say, with maps. Errors: a picture could not be
-/// encoded.
+/// The self-contained page of `results`, from ensemble_results(), with maps. Errors: a picture could not be encoded.
 [[nodiscard]] Result<std::string> ensemble_report(const EnsembleResult& result, const nlohmann::ordered_json& results);
 
 }  // namespace talus

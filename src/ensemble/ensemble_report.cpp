@@ -310,7 +310,7 @@ Json buildings_of(const EnsembleResult& result) {
             {"more", hit.size() > most_buildings ? Json(hit.size() - most_buildings) : Json()}};
 }
 
-/// What was observed in the field, for the results that have it.
+/// Field observations of the results for which there are any.
 std::string observed_text(const Scene& scene, const std::string& key) {
     for (const ObservedValue& o : observed_values(scene)) {
         if (o.key != key) continue;

@@ -45,7 +45,7 @@ Result<FinishedEnsemble> read_finished_ensemble(const fs::path& folder) {
     TALUS_ASSIGN(const Json definition, read_definition(folder));
     const Result<EnsemblePlan> plan = plan_of(definition);
     if (!plan) return Error{fmt::format("{}: {}", folder.string(), plan.error().message)};
-    // It is written last, so maps are whole where it is.
+    // It is written last, so the maps are complete if it exists.
     std::ifstream in(folder / "statistics.json");
     const Json statistics = Json::parse(in, nullptr, false);
     if (!statistics.is_object()) {

@@ -13,7 +13,7 @@
 
 namespace talus {
 
-/// A map of an ensemble, as it lies in the folder.
+/// A map of an ensemble in its folder.
 struct FinishedMap {
     EnsembleMap::Kind kind = EnsembleMap::Kind::probability;
     std::size_t map = 0;  ///< index into recorded_maps
@@ -22,7 +22,7 @@ struct FinishedMap {
     std::filesystem::path file;
 };
 
-/// What the folder of an ensemble says once all its runs are counted.
+/// The content of an ensemble's folder after evaluation.
 struct FinishedEnsemble {
     std::string name;  ///< of the folder
     std::size_t complete = 0, failed = 0;
@@ -31,8 +31,8 @@ struct FinishedEnsemble {
     std::vector<FinishedMap> maps;
 };
 
-/// Reads what `talus ensemble` has written there, without the maps' cells. Errors: no ensemble, not finished, runs that
-/// are missing, nothing mapped.
+/// Reads the output of `talus ensemble`, without the maps' cells. Errors: no ensemble, not finished, runs that are
+/// missing, nothing mapped.
 [[nodiscard]] Result<FinishedEnsemble> read_finished_ensemble(const std::filesystem::path& folder);
 
 }  // namespace talus

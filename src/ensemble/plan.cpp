@@ -26,7 +26,7 @@ const Parameter* find_parameter(std::string_view key_path) {
     return section != nullptr ? section->find(key_path.substr(dot + 1)) : nullptr;
 }
 
-/// How much a release is may be said in one way only: a factor takes the place of what the scene says.
+/// The size of a release may be given in one way only: a factor replaces the value of the scene.
 std::vector<std::string> replaced_by(const std::string& key_path) {
     constexpr std::string_view ways[] = {"thickness_m", "thickness_attribute", "thickness_raster", "volume_m3"};
     const std::size_t dot = key_path.find('.');
@@ -204,7 +204,7 @@ Result<PlannedRuns> PlannedRuns::make(const EnsemblePlan& plan, const SceneSourc
 PlannedRun PlannedRuns::at(std::size_t run) const {
     PlannedRun planned;
     planned.overrides = fixed_;
-    planned.overrides.emplace_back("outputs.particle_series_interval_s=0");  // no run writes a folder of its own
+    planned.overrides.emplace_back("outputs.particle_series_interval_s=0");  // runs do not write result folders
     for (std::size_t k = 0; k < plan_.factors.size(); ++k) {
         const Factor& factor = plan_.factors[k];
         double share = points_[run][k];

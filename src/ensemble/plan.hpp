@@ -14,7 +14,7 @@
 #include "stats/design.hpp"
 #include "stats/distribution.hpp"
 
-/// What an ensemble varies, how often it runs, and what it counts.
+/// The plan of an ensemble: factors, number of runs, thresholds.
 namespace talus {
 
 /// A key of the scene that varies from run to run.
@@ -60,7 +60,7 @@ struct PlannedRun {
 class PlannedRuns {
   public:
     /// Checks every factor against the scene and its allowed range. Errors: no factor, no such key, not a number where
-    /// a range is given, a value that is refused, more factors or runs than the design can have, too few runs.
+    /// a range is given, an invalid value, more factors or runs than the design can have, too few runs.
     [[nodiscard]] static Result<PlannedRuns> make(const EnsemblePlan& plan, const SceneSource& source,
                                                   const Scene& base);
 
@@ -69,7 +69,7 @@ class PlannedRuns {
     [[nodiscard]] const Points& points() const { return points_; }
     [[nodiscard]] const std::vector<std::string>& fixed() const { return fixed_; }
     [[nodiscard]] PlannedRun at(std::size_t run) const;
-    /// Runs at these points of the unit cube in place of the design's, with a number per factor.
+    /// Replaces the points of the design by these of the unit cube, with a number per factor.
     void set_points(Points points) { points_ = std::move(points); }
 
   private:

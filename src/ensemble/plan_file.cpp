@@ -13,7 +13,7 @@
 namespace talus {
 namespace {
 
-/// Reads a plan's TOML; every key that it does not know is an error.
+/// Reads a plan's TOML; every unknown key is an error.
 class PlanReader {
   public:
     explicit PlanReader(std::string name) : name_(std::move(name)) {}

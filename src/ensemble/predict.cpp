@@ -50,7 +50,7 @@ double predict_run_up(const Observation& run, const Terrain& terrain, const Plan
         }
     }
     if (std::isnan(highest)) return never;
-    return std::min(0.0, highest - mark);  // debris uphill that did not come here counts as just below
+    return std::min(0.0, highest - mark);  // debris uphill that did not reach the place counts as just below it
 }
 
 double predict_deposit_depth(const Observation& run, const PlanPoint& place) {

@@ -10,14 +10,14 @@
 #include "scene/scene.hpp"
 #include "terrain/terrain.hpp"
 
-/// What a run predicts for each kind of field observation, by one function each. NaN: the run gives no such value, as
-/// debris never came there.
+/// What a run predicts for each kind of field observation, by one function each. NaN: the run gives no such value,
+/// because debris did not reach the place.
 namespace talus {
 
-/// m/s, at which the front first came to a chainage.
+/// m/s, at which the front first reached a chainage.
 [[nodiscard]] double predict_front_velocity(const Observation& run, double chainage);
 
-/// s, when it did.
+/// s, at which it did.
 [[nodiscard]] double predict_arrival_time(const Observation& run, double chainage);
 
 /// m, farthest chainage of the front.
@@ -25,8 +25,8 @@ namespace talus {
 
 inline constexpr double run_up_radius = 15;  ///< m, in which debris near a run-up mark counts
 
-/// m above the ground at a place, to which debris stood there. Where it did not come there, how far below the place the
-/// highest debris within `search_radius` m stood, as a negative number: a run that nearly reaches a mark on a bank is
+/// Height reached by debris above the ground at a place, m. Where debris did not reach it, the distance of the highest
+/// debris within `search_radius` m below the place, as a negative number: a run that nearly reaches a mark on a bank is
 /// better than one that stays in the bed.
 [[nodiscard]] double predict_run_up(const Observation& run, const Terrain& terrain, const PlanPoint& place,
                                     double search_radius = run_up_radius);
@@ -48,8 +48,8 @@ inline constexpr double run_up_radius = 15;  ///< m, in which debris near a run-
 [[nodiscard]] double predict_elevation_agreement(const Observation& run, const Grid<float>& observed,
                                                  const std::vector<Release>& releases, double detection_limit);
 
-/// m/s, the velocity that superelevated marks stand for: v^2 = g R dh / (k b), the forced vortex with a correction
-/// factor (Prochaska et al. 2008, Engineering Geology 97). The channel's slope is left out.
+/// m/s, the velocity derived from superelevated marks: v^2 = g R dh / (k b), the forced vortex with a correction factor
+/// (Prochaska et al. 2008, Engineering Geology 97). The channel's slope is neglected.
 [[nodiscard]] double superelevation_velocity(const SuperelevationSpec& marks);
 
 /// A field observation as a number with its standard deviation.
@@ -60,15 +60,15 @@ struct ObservedValue {
     double value = 0, uncertainty = 0;  ///< of damage: the limit of pressure
     /// Damage says only on which side of the value the prediction should lie.
     enum class Kind { equal, at_least, below } kind = Kind::equal;
-    /// What stands for the prediction of a run that gives none, as its debris never came there: front velocity and
-    /// run-out 0, no arrival until the run's latest end, run-up by as much below the mark as debris is looked for.
+    /// Substitute for the prediction of a run whose debris did not reach the place: front velocity and run-out 0,
+    /// arrival at the latest end of the run, run-up below the mark by the search radius.
     double unreached = 0;
 };
 
 /// All observations of a scene, in the order of its sections.
 [[nodiscard]] std::vector<ObservedValue> observed_values(const Scene& scene);
 
-/// What a run of the scene predicts for them, in the same order.
+/// The predictions of a run for them, in the same order.
 [[nodiscard]] std::vector<double> predicted_values(const Scene& scene, const Observation& run);
 
 /// (predicted - observed) / uncertainty; of damage 0 on the right side of the limit. NaN where nothing is predicted.

@@ -23,13 +23,13 @@ std::size_t rank_of(std::size_t count, double percent) {
     return static_cast<std::size_t>(std::clamp(std::ceil(percent / 100 * n - 1e-9), 1.0, n)) - 1;
 }
 
-/// Where the maps of all runs lie, and their files.
+/// The common grid of the maps of all runs, and their files.
 struct Stack {
     GridGeometry geometry;
     std::vector<std::pair<fs::path, const RunRecord*>> layers;
 };
 
-/// By how many cells a run's map is moved against the stack's.
+/// Offset of a run's map from that of the stack, in cells.
 int offset_of(double low, double stack_low, double cell) {
     return static_cast<int>(std::lround((low - stack_low) / cell));
 }
@@ -84,7 +84,7 @@ class MapReducer {
     }
 
   private:
-    /// The values of every run, cell by cell; a run that never came there leaves none.
+    /// The values of every run, cell by cell; a run that did not reach the cell has none.
     Status reduce_rows(int first, int last) {
         const auto columns = static_cast<std::size_t>(stack_.geometry.columns);
         const std::size_t cells = columns * static_cast<std::size_t>(last - first);
@@ -129,7 +129,7 @@ class MapReducer {
                                          static_cast<double>(runs_));
                 continue;
             }
-            // Runs that never came there stand before all others, in arrival after them.
+            // Runs that did not reach the cell rank before all others, for arrival times after them.
             const std::size_t rank = rank_of(runs_, made->level);
             const std::size_t skipped = map_ == arrival_map ? 0 : absent;
             if (rank >= skipped && rank - skipped < reached)

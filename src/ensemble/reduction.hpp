@@ -11,7 +11,7 @@
 #include "ensemble/run_record.hpp"
 #include "report/intensity.hpp"
 
-/// What the runs of an ensemble say together.
+/// Combined evaluation of the runs of an ensemble.
 namespace talus {
 
 /// A map that counts runs or orders them.
@@ -34,9 +34,9 @@ struct BuildingOdds {
 };
 
 struct Reduction {
-    std::vector<RunRecord> runs;  ///< all that are there, by index, without maps
+    std::vector<RunRecord> runs;  ///< all existing ones, by index, without maps
     std::size_t complete = 0, failed = 0;
-    std::vector<std::size_t> missing;  ///< runs of the plan that are not there
+    std::vector<std::size_t> missing;  ///< runs of the plan that do not exist
     std::vector<EnsembleMap> maps;
     std::vector<Grid<float>>
         intensity;  ///< per class of the guideline, share of runs with it or a higher one; NaN: none

@@ -12,8 +12,8 @@
 #include "run/run_result.hpp"
 #include "scene/scene.hpp"
 
-/// What an ensemble keeps of each run: a small file with a line of JSON (values, scalar results, buildings) and the
-/// peak maps as they are, so that anything can be counted later without running again.
+/// The record of a run in an ensemble: a small file with a line of JSON (values, scalar results, buildings) and the
+/// peak maps as they are, so that it can be evaluated again without a new run.
 namespace talus {
 
 /// A scalar result of a run.
@@ -48,11 +48,12 @@ inline constexpr std::array<Grid<float> HazardMaps::*, 5> recorded_maps = {
     &HazardMaps::peak_depth, &HazardMaps::peak_speed, &HazardMaps::peak_pressure, &HazardMaps::arrival_time,
     &HazardMaps::deposit_depth};
 
-/// Writes under another name first, so that a file that bears its name is whole. `maps` all have record.geometry.
+/// Writes under a temporary name first, so that a file with the final name is complete. `maps` all have
+/// record.geometry.
 [[nodiscard]] Status write_run_record(const std::filesystem::path& file, const RunRecord& record,
                                       const HazardMaps& maps);
 
-/// The record without its maps. Errors: missing, cut off, not such a file.
+/// The record without its maps. Errors: missing, truncated, not such a file.
 [[nodiscard]] Result<RunRecord> read_run_record(const std::filesystem::path& file);
 
 /// Rows [first, last) of one map of the record (index into recorded_maps), NaN where debris never came.

@@ -33,11 +33,11 @@ std::vector<Contour> contours(const Grid<float>& elevation, double interval) {
     std::unique_ptr<void, decltype(&GDAL_CG_Destroy)> generator(
         GDAL_CG_Create(g.columns, g.rows, FALSE, 0, interval, 0, keep_line, &found), GDAL_CG_Destroy);
     std::vector<double> line(static_cast<std::size_t>(g.columns));
-    for (int r = g.rows; r-- > 0;) {  // GDAL's rows run from north to south; NaN is no value to it either
+    for (int r = g.rows; r-- > 0;) {  // GDAL's rows run from north to south; NaN is not a value to it either
         for (int c = 0; c < g.columns; ++c) line[static_cast<std::size_t>(c)] = elevation.at(c, r);
         if (GDAL_CG_FeedLine(generator.get(), line.data()) != CE_None) return {};
     }
-    generator.reset();  // lines that are still open are told of now
+    generator.reset();  // lines that are still open are reported now
     return std::move(found.contours);
 }
 

@@ -29,7 +29,7 @@ bool has_extension(const std::string& file, const std::string& extension) {
 void prepare_gdal() {
     static std::once_flag once;
     std::call_once(once, [] {
-        // GdalMessages works per thread; this covers what GDAL says in threads of its own.
+        // GdalMessages works per thread; this covers messages from GDAL's own threads.
         CPLSetErrorHandler(CPLQuietErrorHandler);
         GDALAllRegister();
     });
@@ -68,8 +68,8 @@ Result<GDALDatasetUniquePtr> open_dataset(const std::string& file, unsigned flag
     GdalMessages messages;
     if (file.empty()) return Error{fmt::format("no file name given for a {}", kind)};
 
-    // GDAL also takes names that are no path, such as NETCDF:"file.nc":band or /vsizip/...; only what GDAL cannot open
-    // is looked at as a path, to say why.
+    // GDAL also accepts names that are not paths, such as NETCDF:"file.nc":band or /vsizip/...; only a name that GDAL
+    // cannot open is examined as a path, to explain the failure.
     GDALDatasetUniquePtr data(GDALDataset::Open(file.c_str(), flags | GDAL_OF_READONLY | GDAL_OF_VERBOSE_ERROR));
     if (data) return Result<GDALDatasetUniquePtr>(std::move(data));
 

@@ -6,13 +6,13 @@
 
 #include "core/result.hpp"
 
-/// What the readers and writers of this module share around GDAL. Not for other modules.
+/// Shared by the readers and writers of this module. Not for other modules.
 namespace talus {
 
-/// Makes the drivers known and keeps GDAL from writing to stderr by itself, in any thread. Repeated calls cost nothing.
+/// Registers the drivers and prevents GDAL from writing to stderr, in any thread. Repeated calls cost nothing.
 void prepare_gdal();
 
-/// Collects what GDAL reports in this thread while it lives, instead of letting it reach stderr.
+/// Collects GDAL's messages in this thread during its lifetime, instead of printing them to stderr.
 class GdalMessages {
   public:
     GdalMessages();
@@ -38,10 +38,10 @@ class GdalMessages {
 [[nodiscard]] Result<GDALDatasetUniquePtr> open_dataset(const std::string& file, unsigned flags,
                                                         const std::string& kind);
 
-/// The file name as a shell takes it: quoted where it has to be.
+/// The file name for a shell, quoted where necessary.
 [[nodiscard]] std::string shell_quoted(const std::string& file);
 
-/// A name for the mended copy of a file, quoted for a shell: "dem.tif", "_utm", ".tif" gives "dem_utm.tif".
+/// A name for the corrected copy of a file, quoted for a shell: "dem.tif", "_utm", ".tif" gives "dem_utm.tif".
 [[nodiscard]] std::string mended_name(const std::string& file, const std::string& suffix, const std::string& extension);
 
 }  // namespace talus

@@ -95,7 +95,7 @@ std::string quoted(const std::string& text) {
     return json(text.substr(0, 60)).dump(-1, ' ', true, json::error_handler_t::replace);
 }
 
-/// What only changes how a mesh looks, whatever it says.
+/// Extensions that only change the appearance of a mesh.
 bool is_about_looks(const std::string& extension) {
     for (const char* begin : {"KHR_materials_", "KHR_texture_", "EXT_texture_", "MSFT_texture_", "KHR_lights_"}) {
         if (extension.rfind(begin, 0) == 0) return true;
@@ -269,7 +269,7 @@ Status GltfFile::read_external(const std::string& uri, Buffer& buffer, const std
     const std::string path = (std::filesystem::path(file_).parent_path() / relative).string();
     std::error_code code;
     const std::uintmax_t size = std::filesystem::file_size(path, code);
-    if (!code && external_bytes_ + size > most_mesh_bytes) {  // the same one may be named again and again
+    if (!code && external_bytes_ + size > most_mesh_bytes) {  // the same one may be named repeatedly
         return Error{fmt::format("{}: with it the buffers are larger than {} MB", at, most_mesh_bytes >> 20U)};
     }
     Result<std::string> bytes = read_mesh_text(path);

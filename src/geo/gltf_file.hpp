@@ -19,7 +19,7 @@ struct GltfAccessor {
     std::size_t count = 0;       ///< elements
     std::size_t stride = 0;      ///< bytes from one to the next
     std::size_t width = 0;       ///< components of an element
-    std::int64_t component = 0;  ///< type, as glTF numbers them
+    std::int64_t component = 0;  ///< component type, as numbered by glTF
     bool normalized = false;
 
     /// A component; element < count, k < width.
@@ -39,7 +39,7 @@ class GltfFile {
     [[nodiscard]] const nlohmann::json* entry(const char* list, std::size_t index) const;
     /// Errors name the accessor or view.
     [[nodiscard]] Result<GltfAccessor> accessor(std::size_t index) const;
-    /// Files that were read beside it.
+    /// Other files that were read with it.
     [[nodiscard]] const std::vector<std::string>& buffer_files() const { return buffer_files_; }
 
   private:

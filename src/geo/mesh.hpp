@@ -16,7 +16,7 @@ struct RoofFace {
     double elevation = 0;  ///< m
 };
 
-/// A building of a mesh: what is below its roof faces is solid.
+/// A building of a mesh: solid below its roof faces.
 struct MeshBuilding {
     std::string name;
     std::map<std::string, std::string> attributes;
@@ -28,11 +28,10 @@ struct MeshBuilding {
 
 /// Reads the buildings of a CityJSON file (1.0 to 2.0; Building and BuildingPart, their most detailed geometry, LoD1 or
 /// LoD2), of a Wavefront OBJ (an object or group each; coordinates in the terrain's reference system, z upward) or of a
-/// glTF 2.0 (a node with a mesh each; x east, y upward, -z north, in metres of the terrain's reference system).
-/// Every face that is neither upright nor at the building's foot becomes a roof face. `more_files` gets the files that
-/// were read beside it.
-/// Errors, with the object or line: not readable, not such a file, indices out of range, numbers that are not finite,
-/// another reference system than `terrain_crs`, a building without a roof, too many faces.
+/// glTF 2.0 (a node with a mesh each; x east, y upward, -z north, in metres of the terrain's reference system). Every
+/// face that is neither upright nor at the building's foot becomes a roof face. `more_files` receives the other files
+/// that were read. Errors, with the object or line: not readable, not such a file, indices out of range, numbers that
+/// are not finite, another reference system than `terrain_crs`, a building without a roof, too many faces.
 [[nodiscard]] Result<std::vector<MeshBuilding>> read_mesh_buildings(const std::string& file, const Crs& terrain_crs,
                                                                     std::vector<std::string>& more_files);
 

@@ -24,7 +24,7 @@ bool is_triple(const json& value) {
            value[2].is_number();
 }
 
-/// A value in a message; what is nested, perhaps deeply, is only named.
+/// A value in a message; nested values are only named.
 std::string brief(const json& value) {
     if (value.is_structured()) return value.is_array() ? "a list" : "an object";
     return value.dump(-1, ' ', false, json::error_handler_t::replace).substr(0, 40);
@@ -93,7 +93,7 @@ class CityReader {
         }
         std::vector<MeshBuilding> buildings;
         for (const auto& [id, own] : faces) {
-            if (own.empty()) continue;  // its parts hang on another name, or it has no geometry
+            if (own.empty()) continue;  // its parts are under another name, or it has no geometry
             MeshBuilding building;
             building.name = id;
             for (const auto& [key, value] : member(member(objects, id.c_str()), "attributes").items()) {
@@ -135,7 +135,7 @@ class CityReader {
         return read_faces(id, member(*best, "boundaries"), depth, faces);
     }
 
-    /// `depth`: how many lists lie around those of faces.
+    /// `depth`: number of list levels around the faces.
     Status read_faces(const std::string& id, const json& lists, int depth, std::vector<MeshFace>& faces) {
         if (!lists.is_array()) return Error{fmt::format("{}: \"{}\": its boundaries are no list", file_, id)};
         for (const json& entry : lists) {

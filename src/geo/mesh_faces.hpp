@@ -7,7 +7,7 @@
 #include "core/geometry.hpp"
 #include "geo/mesh.hpp"
 
-/// What the readers of meshes share.
+/// Shared by the readers of meshes.
 namespace talus {
 
 inline constexpr std::size_t most_mesh_faces = 30'000;  ///< of a file; walls are compared with each other
@@ -20,7 +20,7 @@ using MeshFace = std::vector<std::vector<WorldPoint>>;
 /// The whole file. Errors: not there, larger than most_mesh_bytes.
 [[nodiscard]] Result<std::string> read_mesh_text(const std::string& file);
 
-/// Makes roofs of the faces that are neither upright nor at the foot. Errors: there is none; an outline that crosses
+/// Turns the faces that are neither upright nor at the foot into roofs. Errors: there is none; an outline that crosses
 /// itself seen from above.
 [[nodiscard]] Result<std::vector<RoofFace>> find_roofs(const std::vector<MeshFace>& faces);
 

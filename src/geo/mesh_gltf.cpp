@@ -39,7 +39,7 @@ bool read_numbers(const json& value, std::array<double, N>& numbers) {
     return true;
 }
 
-/// Where a node is in that above it; none if it does not say so in numbers.
+/// The transformation of a node to its parent; none if it is not given as numbers.
 std::optional<Matrix> placement_of(const json& node) {
     Matrix matrix = identity;
     if (!gltf_member(node, "matrix").is_null()) {
@@ -114,7 +114,7 @@ class GltfReader {
         return {};
     }
 
-    /// The nodes of the scene that the file shows; without scenes, those that are below no other.
+    /// The nodes of the scene that the file shows; without scenes, those without a parent.
     Status find_roots() {
         const json& nodes = gltf_member(gltf_.root(), "nodes");
         seen_.assign(nodes.is_array() ? nodes.size() : 0, false);
@@ -195,7 +195,7 @@ class GltfReader {
         }
         face_count_ += count;
         for (std::size_t face = 0; face < count; ++face) {
-            // Triangles, a strip of them, a fan. Which way they turn is no matter.
+            // Triangles, a strip of them, a fan. Their orientation does not matter.
             const std::size_t first = mode == 4 ? 3 * face : mode == 5 ? face : 0;
             const std::size_t next = mode == 6 ? face + 1 : first + 1;
             std::vector<WorldPoint> ring;
@@ -214,7 +214,7 @@ class GltfReader {
         return {};
     }
 
-    /// glTF's y points upward and its z towards whoever looks: x is east, -z north.
+    /// glTF's y points upward and its z towards the viewer: x is east, -z north.
     static WorldPoint world_point(const GltfAccessor& positions, std::size_t vertex, const Matrix& m) {
         const double x = positions.at(vertex, 0), y = positions.at(vertex, 1), z = positions.at(vertex, 2);
         const auto row = [&](std::size_t r) { return m[r] * x + m[4 + r] * y + m[8 + r] * z + m[12 + r]; };
@@ -245,7 +245,7 @@ class GltfReader {
     std::string file_;
     const GltfFile& gltf_;
     std::vector<bool> seen_;    ///< by node
-    std::vector<Placed> open_;  ///< nodes that are yet to be read, the next one last
+    std::vector<Placed> open_;  ///< nodes still to be read, the next one last
     std::size_t face_count_ = 0;
     std::vector<MeshBuilding> buildings_;
 };

@@ -32,7 +32,7 @@ CPLStringList list_of(const std::vector<std::string>& words) {
     return list;
 }
 
-/// As `gdal_translate` and `gdalwarp` with these arguments do it; nothing on failure.
+/// As `gdal_translate` and `gdalwarp` with these arguments do it; null on failure.
 GDALDatasetUniquePtr translated(GDALDataset& data, const std::string& target, const std::vector<std::string>& words) {
     CPLStringList list = list_of(words);
     const std::unique_ptr<GDALTranslateOptions, FreeTranslateOptions> options(
@@ -73,13 +73,13 @@ struct Picture {
     }
 };
 
-/// A name in memory that nobody else uses.
+/// A unique name for a file in memory.
 std::string memory_name(const char* ending) {
     static std::atomic<unsigned> count{0};
     return fmt::format("/vsimem/talus_orthophoto_{}.{}", count++, ending);
 }
 
-/// What makes red, green and blue of the file's bands.
+/// Options that select red, green and blue from the file's bands.
 Result<std::vector<std::string>> band_choice(const std::string& file, GDALDataset& data) {
     const int bands = data.GetRasterCount();
     for (int band = 1; band <= std::min(bands, 4); ++band) {
@@ -127,7 +127,7 @@ Result<Picture> open_picture(const std::string& file, const Crs& crs, const Exte
     picture.view = translated(data, picture.name, words);
     if (!picture.view) return Error{fmt::format("{}: {}", file, messages.failure_or("cannot be read as a picture"))};
 
-    // Where it lies, and how fine it is, in the terrain's system.
+    // Its position and resolution in the terrain's system.
     std::vector<std::string> ask{"-of", "VRT"};
     if (!target.IsEmpty()) ask.insert(ask.end(), {"-t_srs", picture.target_crs});
     const GDALDatasetUniquePtr placed = warped(*picture.view, ask);
@@ -146,7 +146,7 @@ Result<Picture> open_picture(const std::string& file, const Crs& crs, const Exte
     return Result<Picture>(std::move(picture));
 }
 
-/// The file that `data` makes with a driver; empty: the driver is missing or fails.
+/// `data` encoded by a driver; empty: the driver is missing or fails.
 std::string encoded(GDALDataset& data, const char* driver_name, const std::vector<std::string>& settings) {
     GDALDriver* driver = GetGDALDriverManager()->GetDriverByName(driver_name);
     if (driver == nullptr) return {};

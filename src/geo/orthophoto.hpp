@@ -8,7 +8,7 @@
 
 namespace talus {
 
-/// A picture of the ground from above, as a browser takes it.
+/// An orthophoto in a format for browsers.
 struct Orthophoto {
     std::string bytes;
     std::string type;  ///< "image/webp" or "image/png"
@@ -19,8 +19,8 @@ struct Orthophoto {
 /// Errors, each naming the file: missing, no position, unknown CRS, not 8 bits per band, beside the terrain.
 [[nodiscard]] Status check_orthophoto(const std::string& file, const Crs& crs, const Extent& extent);
 
-/// Brings a picture into `crs`, cut to `extent`, transparent where it has nothing; the longer edge has `most_pixels` at
-/// most, and no more than the file has itself. Errors: as check_orthophoto, and pixels that cannot be read.
+/// Warps a picture to `crs`, cut to `extent`, transparent where it has no data; the longer edge has at most
+/// `most_pixels`, and no more than the file. Errors: as check_orthophoto, and pixels that cannot be read.
 [[nodiscard]] Result<Orthophoto> read_orthophoto(const std::string& file, const Crs& crs, const Extent& extent,
                                                  int most_pixels);
 

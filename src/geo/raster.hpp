@@ -10,7 +10,7 @@
 
 namespace talus {
 
-/// A raster band on square north-aligned cells, and what its file says of it.
+/// A raster band on square north-aligned cells, and the metadata of its file.
 struct Raster {
     Grid<float> grid;  ///< NaN: no data
     Crs crs;
@@ -21,10 +21,9 @@ struct Raster {
 };
 
 /// Reads a band of any GDAL raster in a projected metric CRS. South-up rasters are turned, pixel-is-point is respected.
-/// `extent` (in the raster's CRS) reads that part only; it must overlap the raster.
-/// Errors, each naming the file and, where there is one, the command that mends it: missing file, a folder, empty or
-/// truncated data, no such band, all nodata, fewer than 2 x 2 cells, geographic or missing CRS, unit other than metre,
-/// rotated, cells not square.
+/// `extent` (in the raster's CRS) reads that part only; it must overlap the raster. Errors, each naming the file and,
+/// where there is one, the command that corrects it: missing file, a folder, empty or truncated data, no such band, all
+/// nodata, fewer than 2 x 2 cells, geographic or missing CRS, unit other than metre, rotated, cells not square.
 [[nodiscard]] Result<Raster> read_terrain_raster(const std::string& file, int band,
                                                  const std::optional<Extent>& extent);
 
@@ -32,7 +31,7 @@ struct Raster {
 /// states none (.asc cannot); otherwise as above.
 [[nodiscard]] Result<Raster> read_value_raster(const std::string& file, const Crs& terrain_crs);
 
-/// A map that talus has written, to be laid over the terrain: as read_value_raster, but it may hold no data at all.
+/// A map written by talus, to be laid over the terrain: as read_value_raster, but it may consist of nodata only.
 [[nodiscard]] Result<Raster> read_map_raster(const std::string& file, const Crs& terrain_crs);
 
 /// One band to write.

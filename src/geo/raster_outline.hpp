@@ -9,8 +9,8 @@
 
 namespace talus {
 
-/// The outlines of the cells above zero, along their edges, with holes; cells that only touch in a corner are apart. By
-/// GDAL. Empty: there is no such cell.
+/// The outlines of the cells above zero, along their edges, with holes; cells that touch only at a corner are separate.
+/// By GDAL. Empty: there is no such cell.
 [[nodiscard]] Result<std::vector<Polygon>> outlines_above_zero(const Grid<float>& values);
 
 /// The cells of one class.

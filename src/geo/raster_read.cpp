@@ -56,7 +56,7 @@ Result<Window> window_of(const std::string& file, const RasterSource& source, co
     return window;
 }
 
-/// What the stored numbers look like, before scale and offset.
+/// Statistics of the stored numbers, before scale and offset.
 struct StoredRange {
     double smallest = std::numeric_limits<double>::infinity();
     double second_smallest = std::numeric_limits<double>::infinity();  ///< the next distinct value
@@ -135,7 +135,7 @@ Result<StoredRange> read_window(const std::string& file, const RasterSource& sou
     return range;
 }
 
-/// Numbers that cannot be elevations are nodata that nobody declared.
+/// Numbers that cannot be elevations are undeclared nodata.
 Status check_elevations(const std::string& file, const RasterSource& source, const StoredRange& range) {
     const auto refuse = [&](double stored, std::size_t count) {
         const double value = stored * source.scale + source.offset;
@@ -152,7 +152,7 @@ Status check_elevations(const std::string& file, const RasterSource& source, con
     };
     if (outside(range.smallest)) return refuse(range.smallest, range.smallest_count);
     if (outside(range.largest)) return refuse(range.largest, range.largest_count);
-    // These two lie within the range of elevations, but stand apart from all others when they mean "no data".
+    // These two lie within the range of elevations, but are far from all others when they mean "no data".
     constexpr double apart = 500;  // m
     for (const double customary : {-9999.0, -999.0}) {
         if (range.smallest == customary && (range.second_smallest - range.smallest) * std::abs(source.scale) > apart) {

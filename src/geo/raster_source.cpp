@@ -61,7 +61,7 @@ constexpr std::array unit_names = {
     UnitName{"kilometer", 1000},
 };
 
-/// Metres per unit; nothing for an unknown name.
+/// Metres per unit; empty for an unknown name.
 std::optional<double> metres_per(std::string name) {
     std::transform(name.begin(), name.end(), name.begin(), [](unsigned char c) { return std::tolower(c); });
     for (const UnitName& unit : unit_names) {
@@ -113,7 +113,7 @@ Status check_crs(const std::string& file, const std::string& driver, const OGRSp
                                  unit != nullptr ? unit : "a unit", metres,
                                  warp_command(file, "-t_srs " + metric, "_metric"))};
     }
-    // Web Mercator and its like call themselves metric, but their metre is not one on the ground.
+    // Web Mercator and similar systems are nominally metric, but their metre is not a metre on the ground.
     const auto scale = scale_factor(reference, centre);
     if (scale && std::abs(*scale - 1) > 0.02) {
         return Error{fmt::format("{}: a metre of {} is {:.3f} m on the ground here, a CRS true to scale is needed: {}",
@@ -129,7 +129,7 @@ Status check_cells(const std::string& file, const Position& position, int column
         return Error{fmt::format("{}: its cells have no size (geotransform {}, {}, {}, {}, {}, {})", file, g[0], g[1],
                                  g[2], g[3], g[4], g[5])};
     }
-    // Tolerances are in cells over the whole raster: that is the error a reader would make by ignoring them.
+    // Tolerances are in cells over the whole raster: that is the error of a reader that ignores them.
     const int longest = std::max(columns, rows);
     if ((std::abs(g[2]) / height + std::abs(g[4]) / width) * longest > 0.05) {
         const double cell = std::min(width, height);
@@ -158,7 +158,7 @@ Scaling scaling_of(GDALRasterBand& band) {
     return scaling;
 }
 
-/// "m", the unit as stated if it is none that is known, or "not stated". Refuses other known units.
+/// "m", the unit as stated if it is unknown, or "not stated". Refuses other known units.
 Result<std::string> value_unit_of(const std::string& file, int band_number, GDALRasterBand& band,
                                   const OGRSpatialReference& reference, const Crs& crs) {
     std::string stated;
@@ -186,7 +186,7 @@ Result<std::string> value_unit_of(const std::string& file, int band_number, GDAL
         mended)};
 }
 
-/// GDAL reads zeros where a raw file ends too early; its size tells.
+/// GDAL reads zeros where a raw file ends too early; detected by its size.
 Status check_raw_size(const std::string& file, const std::string& driver, GDALDataset& data) {
     constexpr std::array raw_drivers = {"ENVI", "EHdr", "GenBin", "ISCE", "ROI_PAC", "RRASTER"};
     if (std::find(raw_drivers.begin(), raw_drivers.end(), driver) == raw_drivers.end()) return {};

@@ -9,7 +9,7 @@
 #include "core/result.hpp"
 #include "geo/crs.hpp"
 
-/// A raster file that has passed the checks on what it is and where it lies. Not for other modules.
+/// A raster file that has passed the checks on format and georeference. Not for other modules.
 namespace talus {
 
 struct RasterSource {

@@ -48,7 +48,7 @@ GDALDatasetUniquePtr to_dataset(const RasterBand& band, const Crs& crs) {
     return data;
 }
 
-/// Writes bytes and looks at every return value: a full disk often shows only when the file is closed.
+/// Writes bytes and checks every return value: a full disk is often reported only when the file is closed.
 Status write_bytes(const std::string& file, const GByte* bytes, std::size_t count) {
     errno = 0;
     VSILFILE* out = VSIFOpenL(file.c_str(), "wb");
@@ -60,7 +60,7 @@ Status write_bytes(const std::string& file, const GByte* bytes, std::size_t coun
         written = false;
     }
     if (written) return {};
-    // Half a file helps nobody; but what is there may be no file at all.
+    // Removes an incomplete file, if it is a file at all.
     VSIStatBufL stat;
     if (VSIStatL(file.c_str(), &stat) == 0 && VSI_ISREG(stat.st_mode)) VSIUnlink(file.c_str());
     return Error{fmt::format("{}: cannot be written: {}", file, cause != 0 ? std::strerror(cause) : "write failed")};
@@ -74,7 +74,7 @@ Status write_cog(const std::string& file, const RasterBand& band, const Crs& crs
     const GDALDatasetUniquePtr source = to_dataset(band, crs);
     if (!source) return Error{fmt::format("{}: cannot be made: {}", file, messages.failure_or("out of memory"))};
 
-    // The file is made in memory and written at once: GDAL's TIFF writer says too little of a disk that fills up.
+    // The file is made in memory and written at once: GDAL's TIFF writer does not report a full disk reliably.
     static std::atomic<unsigned> serial = 0;
     const std::string memory_file = fmt::format("/vsimem/talus_cog_{}.tif", serial++);
     CPLStringList options;

@@ -14,7 +14,7 @@ namespace talus {
 
 namespace {
 
-/// Code and name of the EPSG system that is certainly meant, for references that come without a code (.prj files).
+/// Code and name of the EPSG system that matches with certainty, for references that come without a code (.prj files).
 bool identify(const OGRSpatialReference& reference, Crs& crs) {
     int count = 0;
     int* confidence = nullptr;
@@ -84,7 +84,7 @@ bool same_crs(const OGRSpatialReference& a, const OGRSpatialReference& b) {
     const char* const options[] = {"IGNORE_DATA_AXIS_TO_SRS_AXIS_MAPPING=YES",
                                    "CRITERION=EQUIVALENT_EXCEPT_AXIS_ORDER_GEOGCRS", nullptr};
     if (plan_a.IsSame(&plan_b, options) != 0) return true;
-    // A .prj file writes the same system with other names; the code that both certainly mean decides.
+    // A .prj file writes the same system with other names; the code that both match with certainty decides.
     const int code_a = to_crs(plan_a).epsg, code_b = to_crs(plan_b).epsg;
     return code_a != 0 && code_a == code_b;
 }

@@ -17,17 +17,17 @@ namespace talus {
 /// With x east and y north, whatever axis order the authority prefers. Empty for an empty Crs.
 [[nodiscard]] OGRSpatialReference to_spatial_reference(const Crs& crs);
 
-/// Whether both mean the same place by the same x east, y north; vertical parts are not compared.
+/// Whether the same x east, y north is the same place in both; vertical parts are not compared.
 [[nodiscard]] bool same_crs(const OGRSpatialReference& a, const OGRSpatialReference& b);
 
-/// Longitude (x) and latitude (y) in degrees of a plan position; nothing where no transformation is known.
+/// Longitude (x) and latitude (y) in degrees of a plan position; empty where no transformation is known.
 [[nodiscard]] std::optional<PlanPoint> to_longitude_latitude(const OGRSpatialReference& reference, const PlanPoint& p);
 
 /// A metric system that suits a place: "EPSG:32650" (UTM on WGS 84, polar stereographic near the poles);
 /// "EPSG:nnnn" for no place.
 [[nodiscard]] std::string metric_crs_for(const std::optional<PlanPoint>& longitude_latitude);
 
-/// Grid distance over true distance at a place, the mean of both axes; nothing where it cannot be had.
+/// Grid distance over true distance at a place, the mean of both axes; empty where it cannot be computed.
 [[nodiscard]] std::optional<double> scale_factor(const OGRSpatialReference& reference, const PlanPoint& p);
 
 }  // namespace talus

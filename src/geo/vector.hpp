@@ -29,10 +29,10 @@ struct LineLayer {
     std::string reprojection;
 };
 
-/// Reads polygons from GeoJSON, GeoPackage, Shapefile or any other OGR source; `layer` empty: the only layer.
-/// Vectors are reprojected to `terrain_crs` and say so. Errors: missing file, a folder that is no data source, no such
-/// layer or several without a name, empty layer, other geometry, missing CRS, self-intersecting polygon (names the
-/// feature and the place).
+/// Reads polygons from GeoJSON, GeoPackage, Shapefile or any other OGR source; `layer` empty: the only layer. Vectors
+/// are reprojected to `terrain_crs`, with a note. Errors: missing file, a folder that is no data source, no such layer
+/// or several without a name, empty layer, other geometry, missing CRS, self-intersecting polygon (names the feature
+/// and the place).
 [[nodiscard]] Result<PolygonLayer> read_polygons(const std::string& file, const std::string& layer,
                                                  const Crs& terrain_crs);
 

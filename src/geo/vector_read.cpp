@@ -16,12 +16,12 @@ namespace talus {
 
 namespace {
 
-/// A layer that has features and a CRS, and the way from there to the terrain's CRS.
+/// A layer that has features and a CRS, and the transformation to the terrain's CRS.
 struct Source {
     GDALDatasetUniquePtr data;
     OGRLayer* layer = nullptr;
     Crs crs;
-    std::unique_ptr<OGRCoordinateTransformation> transformation;  ///< none: coordinates are right as they are
+    std::unique_ptr<OGRCoordinateTransformation> transformation;  ///< none: coordinates need no change
     std::string reprojection;
     GIntBig feature_count = 0;
 };
@@ -68,7 +68,7 @@ Status find_transformation(const std::string& file, const Crs& terrain_crs, Sour
         double x = (envelope.MinX + envelope.MaxX) / 2, y = (envelope.MinY + envelope.MaxY) / 2;
         return source.transformation->Transform(1, &x, &y) != 0 && std::isfinite(x) && std::isfinite(y);
     };
-    // PROJ falls back to ignoring the datum when it knows no better: first ask for a real transformation.
+    // PROJ falls back to ignoring the datum: first try to find a real transformation.
     GdalMessages messages;
     OGRCoordinateTransformationOptions options;
     options.SetBallparkAllowed(false);
@@ -249,7 +249,7 @@ Error wrong_geometry(const std::string& file, const ReadFeature& read, const std
                         OGRGeometryTypeToName(wkbFlatten(read.feature->GetGeometryRef()->getGeometryType())), wanted)};
 }
 
-/// Brings a geometry into the terrain's CRS.
+/// Transforms a geometry to the terrain's CRS.
 Status transform(const std::string& file, const Source& source, ReadFeature& read) {
     if (!source.transformation) return {};
     GdalMessages messages;
@@ -258,7 +258,7 @@ Status transform(const std::string& file, const Source& source, ReadFeature& rea
                              messages.failure_or("it lies outside the area of the CRS"))};
 }
 
-/// Refuses polygons of which inside and outside cannot be told, with the place.
+/// Refuses polygons whose inside and outside are ambiguous, with the place.
 Status check_valid(const std::string& file, const Source& source, const ReadFeature& read) {
     if (!OGRGeometryFactory::haveGEOS()) {
         return Error{fmt::format("{}: this GDAL was built without GEOS, polygons cannot be checked", file)};
@@ -281,7 +281,7 @@ Result<std::vector<PlanPoint>> join(const std::string& file, const std::string& 
     std::vector<PlanPoint> line = std::move(parts.front());
     for (std::size_t i = 1; i < parts.size(); ++i) {
         std::vector<PlanPoint>& part = parts[i];
-        // Only the first part may still turn: the second decides which of its ends is the inner one.
+        // Only the first part may still be reversed: the second decides which of its ends is the inner one.
         if (i == 1 && !same_place(line.back(), part.front()) && !same_place(line.back(), part.back())) {
             std::reverse(line.begin(), line.end());
         }

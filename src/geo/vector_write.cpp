@@ -94,7 +94,7 @@ Status write_geopackage_layer(const std::string& file, const std::string& layer,
         if (!write_feature(*target, feature)) return failed();
     }
     if (data->CommitTransaction() != OGRERR_NONE) return failed();
-    data.reset();  // what is wrong with the disk may show only here
+    data.reset();  // disk errors may be reported only here
     if (messages.has_failure()) return failed();
     return {};
 }

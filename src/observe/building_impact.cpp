@@ -8,9 +8,9 @@
 namespace talus {
 namespace {
 
-/// Width of what a particle presses on, in spacings. The debris that it stands for reaches as far as its kernel, some
-/// two spacings around: with a single spacing the highest of all patches would be that of the most ragged front, and
-/// higher the fewer particles there are.
+/// Width of the area on which a particle presses, in spacings. The debris that it represents extends as far as its
+/// kernel, about two spacings around: with one spacing the highest patch pressure would be that of a ragged front, and
+/// would rise as the number of particles falls.
 constexpr double contact_spacings = 2;
 
 }  // namespace
@@ -68,7 +68,7 @@ void ImpactRecorder::watch(const Model& model, const Ground& ground, const State
     if (!barrier) return;
     crossings_[building] = std::make_unique<Overtopping>(model, ground.terrain, *barrier);
     crossings_[building]->follow(state);
-    crossings_[building]->after_step(state);  // where debris is now
+    crossings_[building]->after_step(state);  // initialises with the current positions
 }
 
 void ImpactRecorder::forget(const Model& model, const Ground& ground, const State& state, std::size_t building) {
@@ -188,7 +188,7 @@ void ImpactRecorder::after_step(const Model& model, const Ground& ground, const 
         Record& record = records_[slot_building_[slot]];
         if (slot != record.first_slot) record.pressure = std::max(record.pressure, sums_.rate(slot));
     }
-    // Between touches filtered forces only fall: nothing to do for the other buildings.
+    // Without contact, filtered forces only decrease: nothing to do for the other buildings.
     for (const std::size_t building : touched_) {
         update_peaks(ground, building, state);
         records_[building].touched = false;
@@ -201,7 +201,7 @@ void ImpactRecorder::after_step(const Model& model, const Ground& ground, const 
     jumped_ = false;
     for (const std::size_t building : failed_) {
         if (crossings_[building]) impacts_[building].held_volume = crossings_[building]->filling(state).volume;
-        crossings_[building].reset();  // what comes by from now on does not get over it
+        crossings_[building].reset();  // debris that passes from now on does not overtop it
     }
 }
 

@@ -16,39 +16,40 @@
 
 namespace talus {
 
-/// What debris does to buildings and barriers, from the impulses of every step and from what crosses a barrier's line.
+/// Impact of debris on buildings and barriers, from the impulses of every step and the particles that cross a barrier's
+/// line.
 ///
 /// Force is the impulse of the last `filter_window` seconds divided by the window: the force of a single step depends
-/// on its length, an average over a fixed time does not. Pressure is the same of a patch of the wall over its area. A
-/// particle presses on a square two spacings wide, and at least as wide as the patches' edge: with particles larger
-/// than patches the pressure would otherwise be that of a particle, with far smaller ones that of where they happen to
-/// touch. Depth and velocity are those of the flow in front of the wall.
+/// on its length, an average over a fixed time does not. Pressure is the same for a patch of the wall, divided by its
+/// area. A particle presses on a square two spacings wide, and at least as wide as the patches' edge: otherwise the
+/// pressure would be that of a single particle where particles are larger than patches, and that of chance contact
+/// points where they are far smaller. Depth and velocity are those of the flow in front of the wall.
 class ImpactRecorder {
   public:
-    /// Of `outputs`, the filter window, the edge of the patches and the depth from which debris has a velocity.
+    /// Uses from `outputs` the filter window, the patch edge and the depth above which debris has a velocity.
     ImpactRecorder(const Model& model, const Ground& ground, const State& state, const OutputSpec& outputs);
 
-    /// Call when model or state were changed between two steps. Buildings keep their index; new ones come behind.
+    /// Call when model or state were changed between two steps. Buildings keep their index; new ones follow.
     void follow(const Model& model, const Ground& ground, const State& state);
-    /// Call when particles came in between two steps and nothing else was changed.
+    /// Call when particles were injected between two steps and nothing else was changed.
     void follow_inflow(const State& state);
-    /// Makes room for so many particles.
+    /// Reserves memory for this number of particles.
     void expect(std::uint32_t particles);
-    /// Begins a building's record anew, as for one that was moved.
+    /// Resets a building's record, for example after it was moved.
     void forget(const Model& model, const Ground& ground, const State& state, std::size_t building);
 
     void after_step(const Model& model, const Ground& ground, const State& state);
 
-    /// Adds a sample to the history of what has been hit.
+    /// Adds a sample to the history of every structure that has been hit.
     void add_row(const State& state);
 
-    /// Without what only complete() fills in.
+    /// Without the values that complete() fills in.
     [[nodiscard]] const std::vector<BuildingImpact>& impacts() const { return impacts_; }
-    /// With what barriers hold back now.
+    /// Including the debris that barriers hold back now.
     [[nodiscard]] std::vector<BuildingImpact> complete(const State& state) const;
     /// Buildings whose resistance was exceeded in the last step.
     [[nodiscard]] const std::vector<std::size_t>& failed() const { return failed_; }
-    /// nullptr: no barrier, or none that stands.
+    /// nullptr: not a barrier, or a failed one.
     [[nodiscard]] const Overtopping* overtopping(std::size_t building) const { return crossings_[building].get(); }
 
   private:
@@ -70,15 +71,15 @@ class ImpactRecorder {
     /// Now, of the patch where it is highest, Pa.
     [[nodiscard]] double highest_pressure(const Record& record) const;
     [[nodiscard]] double force_on(const Record& record) const;  // N
-    /// Begins to watch a barrier's line, if it is one and stands.
+    /// Starts watching a building's line if it is a barrier that stands.
     void watch(const Model& model, const Ground& ground, const State& state, std::size_t building);
     void take_overtopping(std::size_t building);
 
     double edge_, contact_size_, least_depth_;  // m
     WallPatches patches_;
     WallApproach approach_;
-    MovingSums sums_;                           // impulse by structure, and per area by patch, of those that were hit
-    std::vector<std::uint32_t> slot_building_;  // whose it is
+    MovingSums sums_;                           // impulse by structure, and per area by patch, of those hit
+    std::vector<std::uint32_t> slot_building_;  // the building of each slot
     std::vector<BuildingImpact> impacts_;
     std::vector<Record> records_;
     std::vector<std::size_t> touched_;                     // buildings of this step

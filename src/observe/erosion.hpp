@@ -9,12 +9,12 @@
 
 namespace talus {
 
-/// What the model's bed has lost: where, and how much of it upstream of every `chainage_interval` m of the flow path.
-/// What was picked up beyond the path's corridor counts in the map and in the volume alone.
+/// Erosion of the bed: its depth, and the volume upstream of every `chainage_interval` m of the flow path. Erosion
+/// outside the path's corridor counts in the map and the total volume only.
 [[nodiscard]] Erosion measure_erosion(const Ground& ground, const FlowPath& flow_path, double chainage_interval);
 
-/// Depths of Bed::eroded as a map: the cells of the terrain that lost something and two more on every side. NaN:
-/// nothing was picked up there. Empty if there is no such cell.
+/// Depths of Bed::eroded as a map: the cells of the terrain that lost something and two more on every side. NaN: no
+/// erosion. Empty if there is no such cell.
 [[nodiscard]] Grid<float> erosion_depth(const GridGeometry& terrain, const std::vector<float>& eroded);
 
 }  // namespace talus

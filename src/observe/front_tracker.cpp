@@ -12,9 +12,9 @@
 namespace talus {
 namespace {
 
-constexpr std::size_t group = 64;  ///< particles looked at together, most often to find that none matters
-/// A front is no faster than this times the fastest debris at it: on the inner side of a bend chainage grows faster
-/// than the way of the debris, by half where that is a third of the bend's radius inside.
+constexpr std::size_t group = 64;  ///< particles examined together; usually none is relevant
+/// Upper limit of the front velocity relative to the fastest debris at the front: on the inside of a bend chainage
+/// grows faster than the distance travelled, by half at a third of the bend radius from the path.
 constexpr double fastest_front = 1.5;
 
 }  // namespace
@@ -50,8 +50,8 @@ void FrontTracker::follow(const State& state) {
 }
 
 std::uint32_t FrontTracker::find_candidates(const Ground& ground, const State& state, double from) {
-    // Debris behind the front is seen to be there without locating it: not in the rectangle around the path beyond, not
-    // in a cell of the path's table that reaches so far.
+    // Debris behind the front is excluded without locating it: it is outside the rectangle around the path beyond, or
+    // in a cell of the path's table that does not reach so far.
     const WorldPoint& origin = ground.terrain.frame().origin;
     const Extent beyond = flow_path_.extent_beyond(from).grown(0.01);  // for the rounding to float
     const auto x_min = static_cast<float>(beyond.x_min - origin.x), x_max = static_cast<float>(beyond.x_max - origin.x);
@@ -102,7 +102,7 @@ std::uint32_t FrontTracker::find_front(const Ground& ground, const State& state)
         held = find_candidates(ground, state, from);
         return candidate_count_ >= front_count_;
     };
-    // The front hardly moves within a step: debris well behind where it was need not be located.
+    // The front hardly moves within a step: debris well behind its last position need not be located.
     const double nearly = std::isnan(current_) ? 0 : std::max(0.0, current_ - head_length_);
     if (find_enough(nearly) || (nearly > 0 && find_enough(0))) {
         const auto front = candidates_.begin() + static_cast<std::ptrdiff_t>(front_count_) - 1;

@@ -12,23 +12,23 @@
 namespace talus {
 
 /// Particles that have to lie beyond a position for it to count as reached: 5, or 0.1 % of the released volume if that
-/// is more, so that a single stray makes no front.
+/// is more, so that a single stray particle is not a front.
 [[nodiscard]] std::uint32_t front_particle_count(const State& state);
 
 /// The front along the flow path: where it is, when it first reached each chainage and how fast it was there.
 ///
-/// A release covers part of the path when it starts; what it covers then is not an arrival. Nor has a front a velocity
-/// where its chainage outruns the debris: chainage is a projection, and at a corner of the path it jumps.
+/// A release covers part of the path when it starts; that is not an arrival. A front also has no velocity where its
+/// chainage outruns the debris: chainage is a projection, and at a corner of the path it jumps.
 class FrontTracker {
   public:
-    /// `flow_path` may be empty: then nothing is tracked. Intervals and window in m of chainage.
+    /// `flow_path` may be empty: then there is no front. Intervals and window in m of chainage.
     FrontTracker(const Model& model, const Ground& ground, const State& state, FlowPath flow_path,
                  double chainage_interval, double velocity_window);
 
     void after_step(const Ground& ground, const State& state);
     /// Call when the state was changed between two steps.
     void follow(const State& state);
-    /// Makes room for so many particles.
+    /// Reserves memory for this number of particles.
     void expect(std::uint32_t particles) { candidates_.reserve(particles); }
 
     [[nodiscard]] const FlowPath& flow_path() const { return flow_path_; }
@@ -55,8 +55,8 @@ class FrontTracker {
         double mean = never, fastest = never;
     };
     [[nodiscard]] Head head_behind(double front, const State& state);
-    /// Whether the front came from the chainage before to this one faster than the debris there moves: over a corner of
-    /// the path, or as other debris came into its corridor.
+    /// Whether the front went from the previous chainage to this one faster than the debris there moves: at a corner of
+    /// the path, or because other debris entered its corridor.
     [[nodiscard]] bool jumped_to(std::size_t bin) const;
     [[nodiscard]] double fitted_velocity(std::size_t middle) const;
 

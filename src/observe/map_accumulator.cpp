@@ -16,15 +16,16 @@ namespace {
 
 constexpr float one = 1 << 12;  ///< a weight of 1 along one axis
 static_assert(one * one == map_units::particle);
-constexpr float fastest = 1000;      ///< m/s; with up to 500 particles of a broken state in a cell its sums are whole
+constexpr float fastest = 1000;      ///< m/s; with up to 500 particles per cell, even of a faulty state, the sums are
+                                     ///< exact
 constexpr std::size_t grain = 2048;  ///< particles per task
 
 using L = simd::Lanes<4>;
-constexpr std::size_t chunk = 16;  ///< particles whose shares are worked out at once
+constexpr std::size_t chunk = 16;  ///< particles whose shares are computed at once
 static_assert(chunk <= array_padding);
 
-/// Whole-number weights of the cells before, at and after the particles' along one axis: a quadratic B-spline. What
-/// would fall off the map's rim stays in its outermost cell.
+/// Whole-number weights of the cells before, at and after the particles' along one axis: a quadratic B-spline. Shares
+/// beyond the map's edge stay in its outermost cell.
 struct AxisShares {
     std::array<std::int32_t, chunk> cell;
     std::array<std::array<float, chunk>, 3> weight;
@@ -64,7 +65,8 @@ MapAccumulator::MapAccumulator(const Model& model, const Ground& ground, const S
     depth_of_unit_ = particle_volume_ / map_units::particle / (map_cell * map_cell);
     thinnest_depth_ = 0.1 * model.particle_spacing;
 
-    // Tiles also hold the cells just off the map's rim, which never get a share: every particle has its nine cells.
+    // Tiles also hold the cells just outside the map's edge, which never receive a share, so that every particle has
+    // nine cells.
     const auto tiles_along = [](int cells_along) {
         return (static_cast<unsigned>(cells_along) + 2 + tile_size - 1) / tile_size;
     };
@@ -75,15 +77,15 @@ MapAccumulator::MapAccumulator(const Model& model, const Ground& ground, const S
     if (state.count > 0) first_particle_ = {origin.x + state.position.x[0], origin.y + state.position.y[0]};
 }
 
-/// What the particles of a chunk share out, and where.
+/// The shares of the particles of a chunk and their cells.
 struct MapAccumulator::Shares {
     AxisShares x, y;
     std::array<float, chunk> speed;  ///< or density, kg/m3: whole numbers either way
     std::array<float, chunk> known;  ///< 0: its position is not finite
 };
 
-/// What a task has added up by itself for a tile: of the particles whose first cell, of the nine, lies in the tile. The
-/// others may lie up to two cells beyond it eastward and northward.
+/// A task's own sums for a tile: of the particles whose first cell, of nine, lies in the tile. The others may lie up to
+/// two cells beyond it eastward and northward.
 struct MapAccumulator::Patch {
     static constexpr std::size_t edge = tile_size + 2;
     unsigned tile_column = 0, tile_row = 0;  // of the tile, in tiles
@@ -92,9 +94,9 @@ struct MapAccumulator::Patch {
     std::array<CellSum, edge * edge> sums{};
 };
 
-/// The patches that a task works on. Particles that follow each other are near each other, but not always in one tile:
-/// there is room for several, and what no longer fits goes into the map. A particle by itself would have to lock the
-/// tile, or be sorted by tile first; either costs more than to add it.
+/// The patches that a task works on. Consecutive particles are close together, but not always in one tile: there are
+/// several patches, and one that must be replaced is added to the map. Adding single particles would need a lock on the
+/// tile or sorting by tile; either costs more than the addition.
 class MapAccumulator::Patches {
   public:
     explicit Patches(MapAccumulator& maps) : maps_(maps) {}
@@ -252,7 +254,7 @@ void MapAccumulator::update_peaks(Tile& tile, double time) const {
             const auto pressure = static_cast<float>(density_in(tile, cell) * speed * speed);
             tile.peak_pressure[cell] = std::max(tile.peak_pressure[cell], pressure);
         }
-        // Debris arrives with a depth that it never had.
+        // Debris arrives with a depth that the cell never had before.
         if (now > tile.peak_depth[cell]) {
             tile.peak_depth[cell] = static_cast<float>(now);
             if (now > arrival_depth_ && std::isnan(tile.arrival_time[cell])) {

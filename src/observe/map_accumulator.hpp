@@ -19,33 +19,33 @@ namespace talus {
 /// Peak maps, accumulated after every step.
 ///
 /// Every particle spreads its volume, and its volume times its speed, over 3 x 3 map cells with a quadratic B-spline:
-/// with cells of about 2.5 spacings, depth over a uniform sheet is even to a few per cent. Weights and speeds are whole
-/// numbers (2^-24 of a particle, 2^-10 m/s), so a particle's shares add up to exactly one particle and sums do not
-/// depend on their order: the result is the same on any number of threads.
+/// with cells of about 2.5 spacings, depth over a uniform sheet is uniform to a few per cent. Weights and speeds are
+/// whole numbers (2^-24 of a particle, 2^-10 m/s), so a particle's shares add up to exactly one particle and sums do
+/// not depend on their order: the result is the same on any number of threads.
 ///
-/// The map is kept in tiles that exist from when debris first touches them. Tasks take the particles as they come, add
-/// them up in patches of their own and those to the tiles: cost and memory follow the debris, not the terrain.
+/// The map is kept in tiles that are created when debris first reaches them. Tasks take the particles in their order,
+/// sum them in patches of their own and add these to the tiles: cost and memory depend on the debris, not the terrain.
 class MapAccumulator {
   public:
     /// The map's corner is the terrain grid's. `arrival_depth`, `map_cell` in m.
     MapAccumulator(const Model& model, const Ground& ground, const State& state, double map_cell, double arrival_depth);
 
-    /// Call when model or state were changed between two steps. Peak pressures so far stay those of the density so far.
+    /// Call when model or state were changed between two steps. Peak pressures so far keep the previous density.
     void follow(const Model& model, const State& state);
-    /// Makes room for so many particles; call before more come in than there ever were.
+    /// Reserves memory for this number of particles; call before their number exceeds its previous maximum.
     void make_room(std::size_t particles);
 
-    /// Takes the present state into the peaks. Particles of releases that have not started do not count.
+    /// Updates the peaks with the current state. Particles of releases that have not started do not count.
     void add(const State& state);
 
-    /// Volume on the map as of the last `add`, m3: exactly the particles added.
+    /// Volume on the map at the last `add`, m3: exactly the particles added.
     [[nodiscard]] double volume() const;
 
-    /// Debris as of the last `add`, over the part of the map in which any lies; 0 where none does.
+    /// Debris at the last `add`, over the part of the map that contains any; 0 where there is none.
     struct Present {
         int first_column = 0, first_row = 0;  ///< of geometry()
         Grid<float> depth;                    ///< m
-        Grid<float> speed;                    ///< depth-averaged, m/s; 0 where debris is too thin to tell
+        Grid<float> speed;                    ///< depth-averaged, m/s; 0 where debris is too thin
         Grid<float> density;                  ///< depth-averaged, kg/m3; empty: that of the material everywhere
     };
     [[nodiscard]] Present present() const;
@@ -57,7 +57,7 @@ class MapAccumulator {
     [[nodiscard]] HazardMaps maps() const;
 
     /// Debris thinner than this does not count as having reached a cell, m: a tenth of a layer of particles. Without
-    /// it, the rim of a lone particle's share would set the peak speed of cells that the particle never entered.
+    /// it, the edge of a single particle's share would set the peak speed of cells that the particle never entered.
     [[nodiscard]] double thinnest_depth() const { return thinnest_depth_; }
 
   private:
@@ -66,7 +66,7 @@ class MapAccumulator {
     static constexpr int column_of(std::size_t cell_in_tile) { return static_cast<int>(cell_in_tile % tile_size); }
     static constexpr int row_of(std::size_t cell_in_tile) { return static_cast<int>(cell_in_tile / tile_size); }
 
-    /// Whole numbers, far below 2^53: they add up exactly. Side by side, so that one addition does both.
+    /// Whole numbers, far below 2^53: they add up exactly. Adjacent, so that one addition does both.
     struct CellSum {
         using Pair = double __attribute__((vector_size(16)));
         Pair pair{};
@@ -76,7 +76,7 @@ class MapAccumulator {
     struct Tile {
         int column = 0, row = 0;  // of its first cell
         tbb::spin_mutex adding;
-        std::uint64_t added = 0;  // the add that the sums are of
+        std::uint64_t added = 0;  // the add to which the sums belong
         std::array<CellSum, tile_cells> sums{};
         std::array<float, tile_cells> peak_depth{};     // 0: not reached
         std::array<float, tile_cells> peak_speed{};     // depth-averaged
@@ -88,26 +88,26 @@ class MapAccumulator {
     struct Patch;
     class Patches;
 
-    /// Adds up, over the cells of all particles, `shares` of them: their speeds or their densities.
+    /// Sums over the cells of all particles, weighted by their speeds or densities.
     void spread_all(const State& state, bool densities);
     /// Finds the mean density of every cell, of particles that have densities of their own.
     void take_densities(const State& state);
-    /// Peak pressures are kept from now on, as they no longer follow from peak speeds.
+    /// Stores peak pressures from now on, as they no longer follow from peak speeds.
     void keep_pressures();
     [[nodiscard]] double density_in(const Tile& tile, std::size_t cell) const {
         return tile.density.empty() ? rest_density_ : static_cast<double>(tile.density[cell]);
     }
-    /// What the next particles share out, and where.
+    /// The shares of the next particles and their cells.
     void find_shares(const State& state, std::size_t first, bool densities, Shares& shares) const;
     /// Adds particles [first, last) to their tiles.
     void spread(const State& state, bool densities, std::size_t first, std::size_t last);
     /// Moves the sums of a patch into the tiles that it lies over.
     void take(Patch& patch);
-    /// Made if it is not there yet.
+    /// Created if it does not exist yet.
     Tile& tile_at(unsigned tile_column, unsigned tile_row);
     void update_peaks(Tile& tile, double time) const;
     [[nodiscard]] float peak_pressure(const Tile& tile, std::size_t cell) const;
-    /// As of the last add.
+    /// At the last add.
     [[nodiscard]] CellSum sum_of(const Tile& tile, std::size_t cell) const;
     [[nodiscard]] double depth(double volume) const { return volume * depth_of_unit_; }
     [[nodiscard]] Extent reached_cells() const;
@@ -119,11 +119,11 @@ class MapAccumulator {
     double depth_of_unit_ = 0, thinnest_depth_ = 0, arrival_depth_ = 0;
 
     unsigned tile_columns_ = 0;
-    std::vector<Tile*> tile_at_;  // by tile position; null: not touched yet
+    std::vector<Tile*> tile_at_;  // by tile position; null: not reached yet
     std::vector<std::unique_ptr<Tile>> tiles_;
     std::mutex new_tile_;
     std::uint64_t adds_ = 0;     // so far
-    std::vector<Tile*> active_;  // touched by the last add, the first active_count_
+    std::vector<Tile*> active_;  // reached by the last add, the first active_count_
     std::uint32_t active_count_ = 0;
     PlanPoint first_particle_;  // world, for the frame of an empty map
 };

@@ -1,4 +1,4 @@
-// What a MapAccumulator has summed up, as depths, speeds and densities.
+// Converts the sums of a MapAccumulator to depths, speeds and densities.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -45,7 +45,7 @@ MapAccumulator::Present MapAccumulator::present() const {
         const Tile& tile = *active_[t];
         for (std::size_t cell = 0; cell < tile_cells; ++cell) {
             const CellSum& sum = tile.sums[cell];
-            if (sum.volume() == 0) continue;  // those off the rim of the map, too
+            if (sum.volume() == 0) continue;  // also those outside the map's edge
             const std::size_t k =
                 window.index(tile.column + column_of(cell) - first_column, tile.row + row_of(cell) - first_row);
             present.depth.values[k] = static_cast<float>(depth(sum.volume()));

@@ -1,6 +1,6 @@
 #pragma once
 
-/// The whole numbers that map cells are summed in.
+/// Units of the whole numbers in which map cells are summed.
 namespace talus::map_units {
 
 inline constexpr double particle = 1 << 24;  ///< of a particle's volume

@@ -41,7 +41,7 @@ void MovingSums::advance(double time, double time_step) {
         take_out(entries_[k], begin);
         if (entries_[k].end <= begin) first_ = k + 1;
     }
-    // What is done with goes when it is half of all: an entry is moved once on average.
+    // Expired entries are erased when they are half of all: an entry is moved once on average.
     if (2 * first_ > entries_.size()) {
         entries_.erase(entries_.begin(), entries_.begin() + static_cast<std::ptrdiff_t>(first_));
         first_ = 0;

@@ -6,9 +6,8 @@
 
 namespace talus {
 
-/// What steps added to numbered slots within a window of time that ends now. Cost follows what is added, not the
-/// number of slots. A step that straddles the window's begin, or is longer than it, counts with the share that lies
-/// within.
+/// Sums over numbered slots within a time window that ends now. Cost depends on what is added, not on the number of
+/// slots. A step that straddles the window's start, or is longer than it, counts with the part inside.
 class MovingSums {
   public:
     /// `window` in s.
@@ -26,14 +25,14 @@ class MovingSums {
     [[nodiscard]] const std::vector<std::uint32_t>& added() const { return added_; }
     /// Mean rate over the window: the sum of a slot divided by the window.
     [[nodiscard]] double rate(std::size_t slot) const { return slots_[slot].sum / window_; }
-    /// Sets `count` slots from `first` on to zero.
+    /// Sets `count` slots starting at `first` to zero.
     void clear(std::size_t first, std::size_t count);
 
   private:
     struct Slot {
-        double sum = 0, step = 0;   // within the window; of the step that goes on
+        double sum = 0, step = 0;   // within the window; of the current step
         std::uint32_t entries = 0;  // of the slot; 0: the sum is exactly zero
-        bool added = false;         // in the step that goes on
+        bool added = false;         // in the current step
     };
     /// What a step added to a slot.
     struct Entry {

@@ -9,7 +9,7 @@
 #include "core/grid.hpp"
 #include "terrain/terrain.hpp"
 
-/// What a run measured: plain results in SI units, for products to write and people to read.
+/// The measurements of a run: plain results in SI units.
 namespace talus {
 
 inline constexpr double never = std::numeric_limits<double>::quiet_NaN();
@@ -69,11 +69,11 @@ struct BuildingImpact {
     double peak_depth = 0;             ///< m, of the flow in front of the walls
     double peak_dynamic_pressure = 0;  ///< Pa, density * speed^2 of the flow in front of a wall towards it
     double peak_speed = 0;             ///< m/s, depth-averaged, of the flow in front of the walls
-    double removed_time = never;       ///< s, when it was taken away between two steps; NaN: it stands
+    double removed_time = never;       ///< s, when it was removed between two steps; NaN: not removed
     double impulse = 0;                ///< N s, normal to the walls, of the whole run
-    double failure_time = never;       ///< s, when its resistance was exceeded and it was taken away
+    double failure_time = never;       ///< s, when its resistance was exceeded and it was removed
 
-    bool is_barrier = false;                ///< of which the following is known; up to its failure
+    bool is_barrier = false;                ///< only then the following values exist; up to its failure
     double passing_share = never;           ///< of a net, through its meshes; NaN: no net
     double overtopped_volume = 0;           ///< m3, over the crest and not back
     double first_overtopping_time = never;  ///< s
@@ -107,8 +107,8 @@ struct Hits {
 /// A row of the time series. Volumes add up exactly: released + entrained = held + moving + deposited + left.
 struct TimeSample {
     double time = 0;
-    double volume_released = 0;     ///< m3, until then, without what was taken away again
-    double volume_entrained = 0;    ///< m3, picked up from the bed
+    double volume_released = 0;     ///< m3, until then, less the removed volume
+    double volume_entrained = 0;    ///< m3, from the bed
     double front_chainage = never;  ///< m, of the moving front now; NaN: none on the path
     double volume_held = 0;         ///< m3, in releases that have not started
     double volume_moving = 0;
@@ -122,16 +122,16 @@ struct TimeSample {
     double steps_per_second = 0;  ///< of wall time
 };
 
-/// What debris picked up from the bed.
+/// Erosion of the bed by debris.
 struct Erosion {
-    Grid<float> depth;  ///< m, vertical, on the terrain's cells around what was eroded; NaN: nothing was. Empty: no bed
+    Grid<float> depth;  ///< m, vertical, on the terrain's cells around what was eroded; NaN: none. Empty: no bed
     double volume = 0;  ///< m3
     /// Along the flow path; empty where there is none, or no bed.
     std::vector<double> chainage;  ///< m
-    std::vector<double> upstream;  ///< m3, picked up so far downstream as that
+    std::vector<double> upstream;  ///< m3, eroded upstream of that chainage
 };
 
-/// How much denser than at rest debris was, as the last iteration of every step found it (sim/compression.hpp).
+/// Compression of the debris at the last iteration of every step (sim/compression.hpp).
 struct Compression {
     double worst_mean = 0, worst_max = 0, worst_squeezed_share = 0;  ///< of all steps: mean and largest over the debris
     double worst_mean_time = never, worst_max_time = never, worst_squeezed_time = never;  ///< s, when that was
@@ -151,7 +151,7 @@ struct Deposit {
 };
 
 /// Greatest thickness of the flow normal to the slope, m, over the cells that it reached with at least the arrival
-/// depth. NaN: none. Divided by the particle spacing it says how many layers of particles the flow had at most.
+/// depth. NaN: none. Divided by the particle spacing it is the largest number of particle layers in the flow.
 struct FlowThickness {
     double median = never;
     double thin = never;  ///< a tenth of the cells stay below
@@ -168,7 +168,7 @@ struct Observation {
     RunOut run_out;
     std::vector<BuildingImpact> buildings;  ///< as in Ground::buildings
     std::vector<TimeSample> timeseries;
-    double volume_released = 0;  ///< m3, without what was taken away again
+    double volume_released = 0;  ///< m3, less the removed volume
     Compression compression;
 };
 
@@ -179,7 +179,7 @@ struct Observation {
 [[nodiscard]] FlowThickness measure_thickness(const Grid<float>& peak_depth, const Terrain& terrain,
                                               double least_depth);
 
-/// What the front did at a chainage, interpolated between samples; NaN where debris never came.
+/// The front at a chainage, interpolated between samples; NaN where debris never came.
 [[nodiscard]] FrontSample front_at(const Observation& observation, double chainage);
 
 }  // namespace talus

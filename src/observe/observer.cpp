@@ -17,7 +17,7 @@
 namespace talus {
 namespace {
 
-/// Counts and energies over the particles, as far as they are summed up anew for every row.
+/// Counts and energies over the particles, as far as they are summed for every row.
 struct Totals {
     std::uint32_t held = 0, moving = 0, deposited = 0;
     double speed_squared = 0;  ///< sum, m2/s2
@@ -87,7 +87,7 @@ struct Observer::Parts {
         keep_starts(state, 0);
     }
 
-    /// Keeps where the particles with ids from `first_id` on lie.
+    /// Stores the positions of the particles with ids from `first_id`.
     void keep_starts(const State& state, std::uint32_t first_id) {
         start.resize(state.seeded);
         for (std::uint32_t i = 0; i < state.count; ++i) {
@@ -96,7 +96,7 @@ struct Observer::Parts {
         }
     }
 
-    /// The debris of all releases that there are, as it lay at its start.
+    /// The debris of all existing releases at its start.
     [[nodiscard]] ReleasedMass measure_starts(const Model& model, const Ground& ground) const {
         State lay;
         lay.resize(start.size());
@@ -134,7 +134,7 @@ struct Observer::Parts {
     ImpactRecorder impact;
     ReleasedMass released;
     std::vector<LocalPoint> start;                                 ///< by particle id
-    std::vector<std::pair<std::uint32_t, std::uint32_t>> came_in;  ///< ids [first, last) that came in during the run
+    std::vector<std::pair<std::uint32_t, std::uint32_t>> came_in;  ///< ids [first, last) injected during the run
     std::vector<TimeSample> timeseries;
     std::uint64_t next_row = 1;  ///< due at next_row * sample_interval
     StepRate rate;
@@ -164,7 +164,7 @@ void Observer::after_step(const Model& model, const Ground& ground, const State&
     p.impact.after_step(model, ground, state);
     p.watch_compression(model, state);
     p.steps_per_second = steps_per_second;
-    // Rows at multiples of the interval, or right after where a step is longer; a millionth of it absorbs rounding.
+    // Rows at multiples of the interval, or just after one where a step is longer; a millionth of it absorbs rounding.
     const double intervals = state.time / p.outputs.sample_interval + 1e-6;
     if (intervals >= static_cast<double>(p.next_row)) {
         p.add_row(model, state);

@@ -17,8 +17,8 @@
 
 namespace talus {
 
-/// Watches a run: a stage of the step, so that peaks see every step. Its cost follows the particles, its result does
-/// not depend on the number of threads.
+/// Watches a run: a stage of the step, so that peaks see every step. Its cost depends on the number of particles, its
+/// result not on the number of threads.
 class Observer final : public StepWatcher {
   public:
     /// `flow_path` may be empty: then there is no front against chainage. `map_cell` in m.
@@ -31,18 +31,17 @@ class Observer final : public StepWatcher {
     void follow_inflow(const State& state, std::uint32_t first_new_id) override;
     [[nodiscard]] const std::vector<std::size_t>& failed_buildings() const override;
 
-    /// Measures a step that was taken. `steps_per_second` goes into the time series as it is.
+    /// Measures a completed step. `steps_per_second` is copied to the time series.
     void after_step(const Model& model, const Ground& ground, const State& state, double steps_per_second);
 
-    /// Call when model, ground or state were changed between two steps: particles with ids from `first_new_id` on are
-    /// new.
+    /// Call when model, ground or state were changed between two steps: particles with ids from `first_new_id` are new.
     void follow(const Model& model, const Ground& ground, const State& state, std::uint32_t first_new_id);
-    /// Makes room for so many particles, so that their coming in allocates nothing.
+    /// Reserves memory for this number of particles, so that injecting them allocates nothing.
     void expect(std::uint32_t particles);
-    /// Begins what is known of a building anew, as for one that was moved.
+    /// Resets the record of a building, for example after it was moved.
     void forget_building(const Model& model, const Ground& ground, const State& state, std::size_t building);
 
-    /// What has crossed a barrier's line; nullptr: not a barrier, or none that stands.
+    /// Debris that has crossed a barrier's line; nullptr: not a barrier, or a failed one.
     [[nodiscard]] const Overtopping* overtopping(std::size_t building) const;
 
     /// Farthest chainage that the front has reached, m; NaN: none yet.
@@ -50,7 +49,7 @@ class Observer final : public StepWatcher {
     /// The last row of the time series (one at construction).
     [[nodiscard]] const TimeSample& latest() const;
 
-    /// What a row of the time series would be now.
+    /// The current state as a row of the time series.
     [[nodiscard]] TimeSample sample(const Model& model, const State& state) const;
 
     // What has been measured so far.
@@ -59,7 +58,7 @@ class Observer final : public StepWatcher {
     [[nodiscard]] const std::vector<BuildingImpact>& impacts() const;  ///< as in Ground::buildings
     [[nodiscard]] const MapAccumulator& maps() const;
 
-    /// All of it, with the debris as it lies now for the deposit.
+    /// The complete results, with the debris in its current position as deposit.
     [[nodiscard]] Observation finish(const Model& model, const Ground& ground, const State& state) const;
 
   private:

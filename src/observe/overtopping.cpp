@@ -67,7 +67,7 @@ Overtopping::Overtopping(const Model& model, const Terrain& terrain, const Barri
             crest_.push_back(shape.crest_elevation.value_or(ground + shape.height.value_or(0)) - origin.z);
         }
     }
-    // Nothing moves farther in a step than a few spacings.
+    // No particle moves farther in a step than a few spacings.
     near_ = near_.grown(std::max(2.0, 4 * model.particle_spacing));
 }
 
@@ -136,7 +136,7 @@ void Overtopping::after_step(const State& state, bool jumped) {
     }
 }
 
-/// In the direction in which more has gone altogether.
+/// In the direction with the larger total volume.
 double Overtopping::beyond(const Side& counted) const {
     const std::int64_t all = over_.to_right + through_.to_right - over_.to_left - through_.to_left;
     const std::int64_t net = counted.to_right - counted.to_left;
@@ -151,7 +151,7 @@ Overtopping::Place Overtopping::place_of(double x, double y) const {
         const double px = line_[k].x, py = line_[k].y, dx = line_[k + 1].x - px, dy = line_[k + 1].y - py;
         const double length = std::hypot(dx, dy), along = ((x - px) * dx + (y - py) * dy) / length;
         const double across = (dx * (y - py) - dy * (x - px)) / length;
-        // At the outside of a bend neither segment has the position beside it.
+        // Outside a bend, the position may be beside neither segment.
         const double past = std::max({0.0, -along, along - length});
         const bool at_end = (k == 0 && along < 0) || (k + 2 == line_.size() && along > length);
         const double distance = std::hypot(across, past);

@@ -12,14 +12,14 @@
 
 namespace talus {
 
-/// How much debris gets beyond a barrier: particles that cross its line between two steps, net of those that come back,
-/// each counted once: over it, or below the crest through one of its openings or the meshes of a net. Around its ends
-/// is neither. Looks at debris in a rectangle around the line only.
+/// Volume of debris that passes a barrier: particles that cross its line between two steps, less those that return,
+/// each counted once: over the crest, or below it through an opening or the meshes of a net. Debris that flows around
+/// its ends does not count. Only debris in a rectangle around the line is examined.
 class Overtopping {
   public:
     Overtopping(const Model& model, const Terrain& terrain, const BarrierSpec& shape);
 
-    /// Makes room for so many particles, so that no step has to.
+    /// Reserves memory for the particles, so that no step has to.
     void follow(const State& state) { tracks_.resize(std::max<std::size_t>(tracks_.size(), state.seeded)); }
     void expect(std::uint32_t particles) { tracks_.reserve(particles); }
     /// `jumped`: particles may have been moved since the last call; nothing counts as a crossing.
@@ -45,7 +45,7 @@ class Overtopping {
     };
     struct Track {
         Point last{};
-        std::uint64_t step = 0;  ///< call after that of the last position; 0: none
+        std::uint64_t step = 0;  ///< one more than the call of the last position; 0: none
         std::int8_t net = 0;     ///< crossings from left to right less those back
         bool through = false;    ///< an opening or a mesh
     };

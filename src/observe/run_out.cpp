@@ -12,7 +12,7 @@
 namespace talus {
 namespace {
 
-/// Highest particle and centre of mass of those that `counts`, in double and in sorted order.
+/// Highest particle and centre of mass of the particles for which `counts` is true, in double and in sorted order.
 template <class Counts>
 ReleasedMass measure_mass(const Ground& ground, const State& state, const Counts& counts) {
     ReleasedMass mass;
@@ -37,13 +37,13 @@ double plan_distance(const PlanPoint& a, const PlanPoint& b) {
     return std::hypot(a.x - b.x, a.y - b.y);
 }
 
-/// Somewhere that debris got to.
+/// A place that debris reached.
 struct Reach {
     double along_flow, straight;  ///< m from the crown
     WorldPoint at;
 };
 
-/// The farthest but `beyond` of them, along the flow and in a straight line.
+/// The farthest except for `beyond` of them, along the flow and in a straight line.
 void set_distances(std::vector<Reach>& reached, std::size_t beyond, const WorldPoint& crown, RunOut& run_out) {
     const auto farthest = reached.begin() + static_cast<std::ptrdiff_t>(std::min(beyond, reached.size() - 1));
     std::nth_element(reached.begin(), farthest, reached.end(),
@@ -73,7 +73,7 @@ RunOut measure_run_out(const Ground& ground, const State& state, const Grid<floa
     const TrailWays ways(covered, crown);
     const auto reach = [&](double along_flow, const WorldPoint& at) {
         const double straight = plan_distance(crown, plan(at));
-        return Reach{std::max(along_flow, straight), straight, at};  // an infinitesimal less, by rounding
+        return Reach{std::max(along_flow, straight), straight, at};  // may be slightly less by rounding
     };
 
     const std::uint32_t front = front_particle_count(state);

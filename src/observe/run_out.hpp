@@ -7,7 +7,7 @@
 
 namespace talus {
 
-/// Where the released debris lay before the run.
+/// Position of the released debris before the run.
 struct ReleasedMass {
     WorldPoint crown;   ///< highest particle
     WorldPoint centre;  ///< of mass
@@ -15,9 +15,9 @@ struct ReleasedMass {
 
 [[nodiscard]] ReleasedMass measure_release(const Ground& ground, const State& state);
 
-/// Distances and angles from the release to the debris as it lies now, whatever the flow path. The toe is where all but
-/// `front_particle_count` particles lie behind. Held particles do not count. `covered`: NaN where debris never came. If
-/// that many particles have left the terrain, distances go to the farthest covered ground instead.
+/// Distances and angles from the release to the current position of the debris, independent of the flow path. All but
+/// `front_particle_count` particles lie behind the toe. Held particles do not count. `covered`: NaN where debris never
+/// was. If that many particles have left the terrain, distances go to the farthest covered ground instead.
 [[nodiscard]] RunOut measure_run_out(const Ground& ground, const State& state, const Grid<float>& covered,
                                      const ReleasedMass& released, double front_chainage);
 

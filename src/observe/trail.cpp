@@ -11,7 +11,8 @@ namespace talus {
 namespace {
 
 constexpr double unreached = std::numeric_limits<double>::infinity();
-constexpr double longest_sight = 200;  ///< cells; a bend is put in after so many, which changes no length by much
+constexpr double longest_sight = 200;  ///< cells; a bend is inserted after this length, which hardly changes any
+                                       ///< distance
 
 double distance(const PlanPoint& a, const PlanPoint& b) {
     return std::hypot(b.x - a.x, b.y - a.y);
@@ -71,7 +72,7 @@ void TrailWays::search(bool anywhere) {
         for_each_neighbour(geometry_, cell, [&](Cell other) {
             const auto n = static_cast<std::size_t>(other);
             if (settled_[n] != 0 || (!anywhere && covered_[n] == 0)) return;
-            // As if it were in sight from the last bend: settle() looks.
+            // Assumes that it is visible from the last bend: settle() checks.
             const double way = bend_length(cell) + distance(bend(cell), centre(other));
             if (way >= length_[n]) return;
             length_[n] = way;
@@ -102,7 +103,7 @@ void TrailWays::settle(Cell cell, bool anywhere) {
 bool TrailWays::in_sight(const PlanPoint& a, const PlanPoint& b, bool anywhere) const {
     const double length = distance(a, b) / geometry_.cell;
     if (length > longest_sight) return false;
-    if (anywhere || length < 1.5) return true;  // beside each other, diagonally too
+    if (anywhere || length < 1.5) return true;  // adjacent, also diagonally
     const auto samples = static_cast<int>(std::ceil(2 * length));
     for (int s = 1; s < samples; ++s) {
         const double share = static_cast<double>(s) / samples;

@@ -10,18 +10,18 @@
 
 namespace talus {
 
-/// Lengths in plan of the shortest ways over the ground that debris covered, from one place: how far debris ran along
-/// its flow, round bends and past what it did not cover. No line that was drawn or traced beforehand has a part in it.
+/// Lengths in plan of the shortest paths over the ground that debris covered, from one place: the run-out along the
+/// flow, around bends and around ground that was not covered. Independent of any drawn or traced flow path.
 ///
-/// Dijkstra's search over the covered cells, in which the way to a cell leads straight on from where the last bend was,
-/// where the straight line stays on the trail (lazy Theta*: Nash, Koenig & Tovey 2010): on open ground it is the
-/// straight distance, without the 8 % that steps from cell to cell add.
+/// Dijkstra's search over the covered cells, in which the path to a cell runs straight from the last bend, if the
+/// straight line stays on the trail (lazy Theta*: Nash, Koenig & Tovey 2010): on open ground it is the straight
+/// distance, without the 8 % that steps from cell to cell add.
 class TrailWays {
   public:
-    /// `covered`: NaN where debris never came. Parts that debris reached through the air are joined to the nearest.
+    /// `covered`: NaN where debris never was. Parts that debris reached through the air are joined to the nearest.
     TrailWays(const Grid<float>& covered, const PlanPoint& from);
 
-    /// m; to the nearest covered cell and straight on for a place off the trail. NaN: nothing is covered.
+    /// m; for a place off the trail, to the nearest covered cell and straight from there. NaN: no cell is covered.
     [[nodiscard]] double to(const PlanPoint& p) const;
     /// To the cell's centre; NaN: not covered.
     [[nodiscard]] double at(std::size_t cell) const { return covered_[cell] != 0 ? length_[cell] : never; }
@@ -34,7 +34,7 @@ class TrailWays {
     [[nodiscard]] bool in_sight(const PlanPoint& a, const PlanPoint& b, bool anywhere) const;
     [[nodiscard]] Cell nearest_covered(const PlanPoint& p) const;
     [[nodiscard]] PlanPoint centre(Cell cell) const;
-    /// Where the last bend on the way to a cell is.
+    /// The last bend on the path to a cell.
     [[nodiscard]] PlanPoint bend(Cell cell) const;
     [[nodiscard]] double bend_length(Cell cell) const;
 

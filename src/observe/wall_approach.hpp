@@ -11,13 +11,13 @@
 namespace talus {
 
 /// The flow in front of walls: for every column of the patches, the debris between the wall and one edge of the
-/// reference area away from it. A particle is as wide in plan as the spacing and counts with what of it lies there.
+/// reference area away from it. A particle is one spacing wide in plan and counts with the part of it inside.
 class WallApproach {
   public:
     /// `edge` of the reference area, m.
     explicit WallApproach(double edge) : edge_(edge) {}
 
-    /// Takes the debris as it is now.
+    /// Updates with the current debris.
     void update(const Model& model, const State& state, const WallPatches& patches);
 
     struct Flow {
@@ -27,7 +27,7 @@ class WallApproach {
         double speed = 0;    ///< m/s, depth-averaged
         double to_wall = 0;  ///< m/s, its part towards the wall, normal to it; negative: away from it
     };
-    /// Of the columns that debris stands before.
+    /// For the columns with debris in front of them.
     [[nodiscard]] const std::vector<Flow>& flows() const { return flows_; }
 
   private:

@@ -61,7 +61,7 @@ void WallPatches::add_column(Column column, double height) {
 void WallPatches::add_walls(const Terrain& terrain, const Ring& ring, bool hole, double clearance, double roof,
                             int building) {
     const LocalFrame& frame = terrain.frame();
-    const bool turned = (turning(ring) < 0) != hole;  // the solid shall lie to the left
+    const bool turned = (turning(ring) < 0) != hole;  // the solid must be on the left
     for (std::size_t i = 0; i < ring.size(); ++i) {
         const PlanPoint &first = ring[i], &second = ring[(i + 1) % ring.size()];
         const PlanPoint &a = turned ? second : first, &b = turned ? first : second;

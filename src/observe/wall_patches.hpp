@@ -14,9 +14,10 @@
 
 namespace talus {
 
-/// The walls and roofs of structures, cut into patches of a reference area, whatever the particles. A wall is divided
-/// along into equal columns no narrower than the area's edge, a column upward from the ground into equal patches no
-/// lower than that. What is smaller than the edge counts with the edge: no wall makes the reference area smaller.
+/// The walls and roofs of structures, divided into patches of a reference area, independent of the particles. A wall is
+/// divided along into equal columns no narrower than the area's edge, a column upward from the ground into equal
+/// patches no lower than that. A wall smaller than the edge counts with the edge: it does not reduce the reference
+/// area.
 class WallPatches {
   public:
     /// A column of a wall, or a strip of a roof, local.
@@ -29,7 +30,7 @@ class WallPatches {
         std::int32_t rows;
         std::int32_t building;
         std::uint32_t first_patch;  ///< of the building's
-        bool roof;                  ///< its rows lie side by side in plan
+        bool roof;                  ///< its rows are adjacent in plan
 
         /// Distance along, up (or across, on a roof), and out of the solid.
         struct Place {
@@ -43,7 +44,7 @@ class WallPatches {
     };
 
     WallPatches() = default;
-    /// `edge`: of the reference area, m. `reach`: how far from a wall, in plan, it is still found, m.
+    /// `edge`: of the reference area, m. `reach`: distance from a wall, in plan, within which it is found, m.
     WallPatches(const Terrain& terrain, const std::vector<Building>& buildings, double edge, double reach);
 
     [[nodiscard]] const std::vector<Column>& columns() const { return columns_; }
@@ -52,15 +53,15 @@ class WallPatches {
     /// Columns within reach of a local plan position, and some more.
     [[nodiscard]] std::span<const std::uint32_t> near(double x, double y) const {
         const double u = (x - x_min_) / bin_, v = (y - y_min_) / bin_;
-        if (!(u >= 0 && v >= 0 && u < bin_columns_ && v < bin_rows_)) return {};  // NaN comes here too
+        if (!(u >= 0 && v >= 0 && u < bin_columns_ && v < bin_rows_)) return {};  // true for NaN too
         const std::size_t bin =
             static_cast<std::size_t>(v) * static_cast<std::size_t>(bin_columns_) + static_cast<std::size_t>(u);
         return {bin_content_.data() + bin_start_[bin], bin_content_.data() + bin_start_[bin + 1]};
     }
 
-    /// Calls f(patch, share / m2) for the patches of a building that a square of edge `size` covers whose middle
-    /// touches it at `at`. What goes beyond the wall's end, foot or top is folded back, so that the shares add up to 1
-    /// and an even load stays even.
+    /// Calls f(patch, share / m2) for the patches of a building that are covered by a square of edge `size` centred at
+    /// `at`. The part beyond the wall's end, foot or top is folded back, so that the shares add up to 1 and a uniform
+    /// load stays uniform.
     template <class F>
     void spread(std::int32_t building, const LocalPoint& at, double size, const F& f) const;
 
@@ -70,7 +71,7 @@ class WallPatches {
         return std::max(0.0, (to < end ? to : end) - (from > 0 ? from : 0));
     }
 
-    /// The same of a strip [from, from + width] and a square folded back at 0 and `length`.
+    /// The same for a strip [from, from + width] and a square folded back at 0 and `length`.
     [[nodiscard]] static double folded_overlap(double middle, double size, double length, double from, double width) {
         return overlap(middle - from, size, width) + overlap(-middle - from, size, width) +
                overlap(2 * length - middle - from, size, width);
@@ -93,7 +94,7 @@ class WallPatches {
 template <class F>
 void WallPatches::spread(std::int32_t building, const LocalPoint& at, double size, const F& f) const {
     constexpr double same_plane = 0.01;  // m
-    // The walls that it touches are those nearest to it: two at a corner.
+    // It touches the nearest walls: two at a corner.
     double nearest = std::numeric_limits<double>::infinity(), whole = 0;
     const std::span<const std::uint32_t> candidates = near(at.x, at.y);
     const auto for_each = [&](const auto& g) {

@@ -9,7 +9,7 @@
 
 #include "params/fields.hpp"
 
-/// How the sections of the field table are declared; for the files that do so.
+/// Helpers with which the files of this folder declare the sections of the field table.
 namespace talus {
 
 constexpr Range above(double low) {
@@ -94,7 +94,7 @@ class Declaration {
         return p;
     }
 
-    /// A key without a default value; `absent` says what happens then.
+    /// A key without a default value; `absent` describes what happens then.
     template <class Member>
     Parameter& optional_key(std::string name, std::string unit, std::optional<Member> Struct::*member, Range range,
                             std::string absent, std::string help) {
@@ -154,7 +154,7 @@ class Declaration {
         return p;
     }
 
-    /// `blamed`: the key that is named where none is given.
+    /// `blamed`: the key to name where none is given.
     void exactly_one_of(std::vector<std::string> keys, std::string blamed = "") {
         if (blamed.empty()) blamed = keys.front();
         section_.alternatives.push_back({std::move(keys), std::move(blamed)});
@@ -185,27 +185,27 @@ class Declaration {
     std::function<Struct&(SceneSpec&, std::size_t)> part_;
 };
 
-/// Friction by pairs has no such law.
+/// Friction by pairs does not support it.
 [[nodiscard]] inline Need stress(bool even_at_0 = false) {
     return {"solver.internal_friction", "stress", "friction by pairs has no such law", even_at_0};
 }
 
-/// Where debris comes from.
+/// Sources of debris.
 [[nodiscard]] Section declare_release();
 [[nodiscard]] Section declare_inflow();
 [[nodiscard]] Section declare_hydrograph();
 [[nodiscard]] Section declare_bed();
 
-/// What stands in its way.
+/// Obstacles.
 [[nodiscard]] Section declare_buildings();
 [[nodiscard]] Section declare_barrier();
 [[nodiscard]] Section declare_barrier_opening();
 
-/// What moves, and ground that differs.
+/// Material, and ground that differs.
 [[nodiscard]] Section declare_material();
 [[nodiscard]] Section declare_zone();
 
-/// The sections of what was observed in the field.
+/// The sections of field observations.
 [[nodiscard]] std::vector<Section> declare_observations();
 
 }  // namespace talus

@@ -301,7 +301,7 @@ bool is_met(const Need& need, const SceneSpec& spec) {
     return plain_text(other.get(spec, 0)) == need.value;
 }
 
-/// What a key says of its ties to others.
+/// Checks the relations of a key to others.
 std::optional<Violation> broken_tie(const Section& section, const Parameter& parameter, const SceneSpec& spec,
                                     std::size_t index, double spacing) {
     const std::optional<double> value = number_in(parameter, spec, index);

@@ -18,7 +18,7 @@ namespace talus {
 
 enum class ParameterKind { boolean, integer, number, text, path, choice, text_list, extent, points };
 
-/// A value as it crosses the boundary, in the unit of its key. monostate: not given. A choice travels as its text.
+/// A value at the boundary of the program, in the unit of its key. monostate: not given. A choice is given as its text.
 using ParameterValue = std::variant<std::monostate, bool, std::int64_t, double, std::string, std::vector<std::string>,
                                     Extent, std::vector<PlanPoint>>;
 
@@ -34,26 +34,26 @@ struct Range {
     [[nodiscard]] std::string text() const;
 };
 
-/// How a form of the page shows a key. Slider, first value and unit are those of the page: a value times `factor`.
+/// Display of a key in a form of the page. Slider, first value and unit are those of the page: a value times `factor`.
 struct Form {
     std::string label;
     double slider_low = 0, slider_high = 0;
-    double first = 0;    ///< what a value begins with that was not there before
-    std::string tick{};  ///< label of the box that gives and takes away an optional value
+    double first = 0;    ///< initial value of an optional key when it is added
+    std::string tick{};  ///< label of the check box that adds and removes an optional value
     std::string tick_help{};
-    std::string unit{};  ///< empty: the usual one of the key's unit, such as kPa for Pa
+    std::string unit{};  ///< empty: the usual one for the key's unit, such as kPa for Pa
     double factor = 1;   ///< with a unit of its own only
 };
 
-/// Another key that a value is nothing without.
+/// Another key without which a value has no effect.
 struct Need {
     std::string key, value;  ///< "solver.internal_friction", "stress"
     std::string why;
-    bool even_at_0 = false;  ///< a value of 0 needs it, too
+    bool even_at_0 = false;  ///< also needed by a value of 0
 };
 
-/// One key of a scene file. What ties it to others stands here where it can be said without code: the page shows it
-/// beside the field; all else is a Rule.
+/// One key of a scene file. Simple relations to other keys are declared here, and the page shows them next to the
+/// field; all others are a Rule.
 struct Parameter {
     std::string key;   ///< with its unit: "particle_spacing_m"
     std::string unit;  ///< "m", "" for a pure number or text
@@ -66,9 +66,9 @@ struct Parameter {
     std::string assumption;  ///< what a report calls the default, where the result rests on it and the scene sets none
     std::string live;        ///< the key by which people change it while a run goes on; empty: they cannot
     std::optional<Form> form;
-    double spacings = 0;       ///< it must be at least so many particle spacings
+    double spacings = 0;       ///< its minimum, in particle spacings
     std::string spacings_why;  ///< what happens otherwise
-    std::string below;         ///< key of the section that it must be below, where that is given
+    std::string below;         ///< key of the same section that it must be below, where given
     std::optional<Need> need;
 
     Parameter& assumes(std::string what) {
@@ -89,7 +89,7 @@ struct Parameter {
         return *this;
     }
 
-    /// Lets people change it while a run goes on, by this key or, where left out, its own.
+    /// Makes it a live parameter under this key or, by default, its own.
     Parameter& live_as(std::string json_key = "") {
         live = json_key.empty() ? key : std::move(json_key);
         return *this;
@@ -102,17 +102,17 @@ struct Parameter {
 
     /// The value in the `index`-th entry of the section (0 where it does not repeat).
     std::function<ParameterValue(const SceneSpec&, std::size_t index)> get;
-    /// Takes a value that `problem_with` accepts; monostate only where the parameter is optional.
+    /// Takes a value that `problem_with` accepts; monostate only if the parameter is optional.
     std::function<void(SceneSpec&, std::size_t index, const ParameterValue&)> set;
 };
 
 /// A rule that is broken.
 struct Violation {
-    std::string key;   ///< to blame, within its section
+    std::string key;   ///< the key at fault, within its section
     std::string text;  ///< what follows the key: " = 0.1 is refused; it must be ...", ": exactly one of ..."
 };
 
-/// What ties keys to each other. `particle_spacing`: m, 0 as long as it is not known.
+/// A rule between keys. `particle_spacing`: m, 0 while unknown.
 using Rule = std::function<std::optional<Violation>(const SceneSpec&, std::size_t index, double particle_spacing)>;
 
 /// Keys of which exactly one must be given.
@@ -159,12 +159,11 @@ inline constexpr std::pair section_of<BedSpec>{"bed", &SceneSpec::beds};
 [[nodiscard]] const std::vector<Section>& scene_sections();
 [[nodiscard]] const Section* find_section(std::string_view name);
 
-/// All that people can change while a run goes on has its keys in one of these: the sections of a scene file, and
-/// tables that have a file of their own.
+/// The sections that contain live parameters: those of a scene file, and tables that have a file of their own.
 [[nodiscard]] const std::vector<Section>& live_sections();
 [[nodiscard]] const Section& live_section(std::string_view name);
 
-/// The declaration of a key that there is.
+/// The declaration of an existing key.
 [[nodiscard]] const Parameter& parameter_of(std::string_view section, std::string_view key);
 
 /// The default, monostate where there is none.
@@ -173,18 +172,18 @@ inline constexpr std::pair section_of<BedSpec>{"bed", &SceneSpec::beds};
 /// Whether there is a value that is not empty.
 [[nodiscard]] bool is_given(const ParameterValue& value);
 
-/// The first of the alternatives that are not one; of all, or of those that people can change while a run goes on.
+/// The first set of alternatives of which not exactly one is given; among all keys, or among live parameters only.
 [[nodiscard]] std::optional<Violation> wrong_choice(const Section& section, const SceneSpec& spec, std::size_t index,
                                                     bool live_only);
 
-/// The first rule that an entry breaks. `particle_spacing`: m, 0 as long as it is not known.
+/// The first rule that an entry breaks. `particle_spacing`: m, 0 while unknown.
 [[nodiscard]] std::optional<Violation> broken_rule(const Section& section, const SceneSpec& spec, std::size_t index,
                                                    double particle_spacing);
 
 /// "release[0].thickness_m", "terrain.file".
 [[nodiscard]] std::string key_path(const Section& section, std::size_t index, const Parameter& parameter);
 
-/// What is allowed, as the end of "must be ...": "a number above 0 (m)", "one of \"spiky\", ...".
+/// The allowed values, as the end of "must be ...": "a number above 0 (m)", "one of \"spiky\", ...".
 [[nodiscard]] std::string allowed_text(const Parameter& parameter);
 
 /// Empty if the value (of the parameter's kind) is allowed, otherwise `allowed_text`.
@@ -193,7 +192,7 @@ inline constexpr std::pair section_of<BedSpec>{"bed", &SceneSpec::beds};
 /// The value as TOML writes it, exactly; "" for monostate.
 [[nodiscard]] std::string toml_text(const ParameterValue& value);
 
-/// The value for people: six digits, no quotes; "" for monostate.
+/// The value for display: six digits, no quotes; "" for monostate.
 [[nodiscard]] std::string plain_text(const ParameterValue& value);
 
 /// Calls `visit(section, index, parameter, value)` for every key of the scene in file order.

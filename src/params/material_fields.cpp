@@ -5,7 +5,7 @@
 namespace talus {
 namespace {
 
-/// What holds debris back beside Coulomb friction and viscosity.
+/// Resistance other than Coulomb friction and viscosity.
 void declare_resistance(Declaration<MaterialSpec>& s) {
     s.key("viscosity_on_ground", "", &MaterialSpec::viscosity_on_ground, anything(),
           "Whether viscosity acts between debris and ground as well, which a viscous fluid sticks to.");

@@ -36,7 +36,7 @@ std::string header_of(const Section& section) {
     return section.repeats ? "[[" + section.name + "]]" : "[" + section.name + "]";
 }
 
-/// What the section is, and which of its keys exclude each other.
+/// Describes the section and its mutually exclusive keys.
 std::string help_of(const Section& section) {
     std::string text = section.help;
     for (const Alternatives& choice : section.alternatives) {
@@ -53,7 +53,7 @@ std::string default_text(const Section& section, const Parameter& parameter) {
     return std::holds_alternative<double>(value) ? plain_text(value) : toml_text(value);
 }
 
-/// What may stand after the "=" where there is no default to show.
+/// An example for the right of "=" where there is no default to show.
 std::string example_value(const Parameter& parameter) {
     switch (parameter.kind) {
         case ParameterKind::boolean:
@@ -74,7 +74,7 @@ std::string example_value(const Parameter& parameter) {
     return parameter.range.contains(0) ? "0" : "1";
 }
 
-/// Lists of texts are written one text a line.
+/// Lists of texts are written with one text per line.
 std::string assignment(const Parameter& parameter, const ParameterValue& value) {
     const auto* list = std::get_if<std::vector<std::string>>(&value);
     if (!list || list->empty()) return parameter.key + " = " + toml_text(value) + "\n";

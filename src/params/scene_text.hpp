@@ -4,7 +4,7 @@
 
 #include "params/fields.hpp"
 
-/// What the field table is turned into for people.
+/// Texts generated from the field table.
 namespace talus {
 
 /// A commented scene file. Values that differ from the default are set; every other key is there as a comment with its
@@ -14,7 +14,7 @@ namespace talus {
 /// docs/scene-reference.md.
 [[nodiscard]] std::string scene_reference_markdown();
 
-/// web/src/protocol/schema.ts: what can be changed during a run, as types and as the fields of forms.
+/// web/src/protocol/schema.ts: live parameters, as types and as the fields of forms.
 [[nodiscard]] std::string scene_typescript();
 
 /// The reference for a terminal.

@@ -8,7 +8,7 @@
 namespace talus {
 namespace {
 
-/// The page's unit for a key's unit, and how many of it there are in one.
+/// The page's unit for a key's unit, and the factor to convert to it.
 std::pair<std::string, double> unit_of(const Parameter& parameter) {
     if (!parameter.form->unit.empty()) return {parameter.form->unit, parameter.form->factor};
     if (parameter.unit == "Pa") return {"kPa", 1e-3};
@@ -18,7 +18,7 @@ std::pair<std::string, double> unit_of(const Parameter& parameter) {
     return {parameter.unit, 1};
 }
 
-/// A bound as the page takes it, itself included.
+/// An inclusive bound, as the page uses it.
 std::string bound_text(double bound, bool included, double inward) {
     if (std::isinf(bound)) return bound < 0 ? "-Infinity" : "Infinity";
     return fmt::format("{:.8g}", included ? bound : bound + inward);
@@ -48,7 +48,7 @@ std::string field_of(const Parameter& parameter) {
         form.tick.empty() ? "null" : toml_text(form.tick), toml_text(form.tick_help), toml_text(parameter.help));
 }
 
-/// What ties the key to others; "" where nothing does.
+/// The relations of the key to others; "" if there are none.
 std::string tie_of(const Parameter& parameter) {
     std::string tie;
     if (parameter.spacings > 0) {

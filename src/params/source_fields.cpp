@@ -1,4 +1,4 @@
-// Where debris comes from: releases, inflows, beds.
+// Sources of debris: releases, inflows, beds.
 #include <cmath>
 
 #include <fmt/format.h>
@@ -40,7 +40,7 @@ Section declare_release() {
         .needs(stress());
     s.exactly_one_of({"thickness_m", "thickness_attribute", "thickness_raster", "volume_m3"}, "file");
     s.rule([](const ReleaseSpec& release, const SceneSpec& scene, double) -> std::optional<Violation> {
-        // What people draw waits until it is triggered: it has no start time of its own.
+        // A release that a user draws waits until it is triggered: it has no start time of its own.
         if (release.start_time < scene.solver.end_time || std::isinf(release.start_time)) return {};
         return Violation{"start_time_s", fmt::format(" = {} is refused; it must be below solver.end_time_s = {}",
                                                      release.start_time, scene.solver.end_time)};

@@ -6,7 +6,7 @@
 
 #include "core/geometry.hpp"
 
-/// What a scene file says, in SI units and radians. Plain data: the field table (fields.hpp) declares key, unit,
+/// The content of a scene file, in SI units and radians. Plain data: the field table (fields.hpp) declares key, unit,
 /// default, range and help of every member once, and parser, --help, documentation and manifest are made from it.
 namespace talus {
 
@@ -14,9 +14,9 @@ namespace talus {
 struct SceneInfo {
     std::string title;
     std::string description;
-    bool reconstruction = false;           ///< the inputs are reconstructed, not surveyed: said on every product
+    bool reconstruction = false;           ///< the inputs are reconstructed, not surveyed: stated on every product
     std::vector<std::string> assumptions;  ///< one sentence each, printed in the report
-    std::vector<std::string> sources;      ///< where facts and data come from, printed in the report
+    std::vector<std::string> sources;      ///< sources of facts and data, printed in the report
 };
 
 /// `[report]`: what a report says of itself to be signed. Empty: not said.
@@ -31,16 +31,16 @@ struct TerrainSpec {
     std::string file;
     int band = 1;
     std::optional<Extent> extent;  ///< the part to use, in the terrain's CRS; absent: all of it
-    std::string obtain;            ///< where the file is to be had, said when it is missing
+    std::string obtain;            ///< where to obtain the file, stated when it is missing
     std::string deposit;           ///< raster of depths that lie on the terrain, m: an earlier surge's
     std::string erosion;           ///< raster of depths that the terrain has lost, m
-    std::string orthophoto;        ///< a picture of the ground from above, for the eye alone; empty: none
+    std::string orthophoto;        ///< a picture of the ground from above, for display only; empty: none
 };
 
-/// How fast debris picks up what it moves over. Both laws work per cell of the terrain.
+/// Law of erosion by debris. Both laws work per cell of the terrain.
 enum class EntrainmentLaw {
-    growth,  ///< by `growth_rate` of its volume per metre that it moves (McDougall & Hungr 2005)
-    shear,   ///< at `erosion_rate`, down to a depth that goes with the shear stress above a critical one (Frank et al.
+    growth,  ///< growth by `growth_rate` of its volume per metre of travel (McDougall & Hungr 2005)
+    shear,   ///< at `erosion_rate`, down to a depth proportional to the shear stress above a critical one (Frank et al.
              ///< 2015)
 };
 
@@ -58,12 +58,12 @@ struct ReleaseSpec {
     ThicknessDirection thickness_direction = ThicknessDirection::normal;
     std::optional<double> volume;               ///< m3, spread as a uniform thickness
     double start_time = 0;                      ///< s
-    double shift_along = 0, shift_across = 0;   ///< m in plan, down the slope and to the left of that
+    double shift_along = 0, shift_across = 0;   ///< m in plan, downslope, and to the left of that direction
     std::optional<double> pore_pressure_ratio;  ///< r_u; absent: that of the material
     bool operator==(const ReleaseSpec&) const = default;
 };
 
-/// `[[bed]]`: loose material that debris picks up; exactly one of depth, depth_attribute, depth_raster.
+/// `[[bed]]`: loose material that debris can entrain; exactly one of depth, depth_attribute, depth_raster.
 struct BedSpec {
     std::string name;
     std::string file, layer;      ///< polygons; no file: everywhere
@@ -83,7 +83,7 @@ struct InflowSpec {
     std::string file, layer;
     std::vector<PlanPoint> polygon;  ///< three places or more
     std::string polygon_file;
-    std::optional<double> direction;  ///< degrees clockwise from north, of what comes in over an area; absent: downhill
+    std::optional<double> direction;  ///< degrees clockwise from north, of inflow over an area; absent: downhill
     std::string hydrograph;           ///< CSV
     [[nodiscard]] bool over_area() const { return !polygon.empty() || !polygon_file.empty(); }
     bool operator==(const InflowSpec&) const = default;
@@ -98,7 +98,7 @@ struct InflowSample {
     bool operator==(const InflowSample&) const = default;
 };
 
-/// What every building has of its own; [buildings] gives it to those whose data do not.
+/// Properties of a single building; [buildings] sets them where the data do not.
 struct BuildingSpec {
     double height = 6;  ///< m above the mean ground of the footprint
     bool operator==(const BuildingSpec&) const = default;
@@ -111,29 +111,29 @@ struct BuildingsSpec : BuildingSpec {
     std::string height_attribute;
     std::string name_attribute;
     std::string resistance_attribute;
-    std::optional<double> resistance;  ///< Pa; absent: they stand whatever happens
+    std::optional<double> resistance;  ///< Pa; absent: they never fail
 };
 
 /// `[[barrier_opening]]`: a slot or a spillway.
 struct BarrierOpeningSpec {
     double position = 0;    ///< m along the barrier's line, of the middle
     double width = 0;       ///< m along the line
-    double sill = 0;        ///< m, what stands of the barrier there, above the ground under the line
+    double sill = 0;        ///< m, height of the barrier there, above the ground under the line
     std::string barrier{};  ///< its name
     bool operator==(const BarrierOpeningSpec&) const = default;
 };
 
 /// `[[barrier]]`: its line is given either here or in a file, its crest as a height or an elevation. The solver, the
-/// live twin and its journals have barriers in this form, too.
+/// live twin and its journals use this form, too.
 struct BarrierSpec {
     std::vector<PlanPoint> line{};                ///< in the terrain's reference system
     std::optional<double> height{};               ///< m above the ground under the line
     std::optional<double> crest_elevation{};      ///< m, a level crest
     double thickness = 1;                         ///< m across the line
-    std::vector<BarrierOpeningSpec> openings{};   ///< a section of their own in a scene file
+    std::vector<BarrierOpeningSpec> openings{};   ///< their own section in a scene file
     std::optional<double> passing_share{};        ///< of a net; absent: it has no meshes
     std::optional<double> clearance{};            ///< m, of the gap below it; absent: it stands on the ground
-    std::optional<double> resistance_force{};     ///< N/m; absent: it stands whatever happens
+    std::optional<double> resistance_force{};     ///< N/m; absent: it never fails
     std::optional<double> resistance_pressure{};  ///< Pa; the same
     std::string name{};
     std::string file{}, layer{};
@@ -150,18 +150,20 @@ struct FlowPathSpec {
 /// `[material]`
 struct MaterialSpec {
     double rest_density = 2000;                           ///< kg/m3
-    double friction_coefficient = 0.4;                    ///< on ground, and on buildings and inside unless set apart
+    double friction_coefficient = 0.4;                    ///< on ground, and on buildings and inside unless set
+                                                          ///< separately
     std::optional<double> building_friction_coefficient;  ///< absent: equal to friction_coefficient
     std::optional<double> internal_friction_coefficient;  ///< absent: equal to friction_coefficient
     double viscosity = 0.1;                               ///< XSPH smoothing per 1/60 s, 0 to below 1
     std::optional<double> kinematic_viscosity;            ///< m2/s, in place of `viscosity`
     bool viscosity_on_ground = false;                     ///< viscosity also acts between debris and ground
-    std::optional<double> turbulent_friction;             ///< xi, m/s2; absent: no such drag
-    std::optional<double> turbulent_friction_thickness;   ///< m, of flow with that xi; absent: the same at every one
+    std::optional<double> turbulent_friction;             ///< xi, m/s2; absent: none
+    std::optional<double> turbulent_friction_thickness;   ///< m, of flow with that xi; absent: the same at any
+                                                          ///< thickness
     double cohesion = 0;                                  ///< Pa, shear strength without pressure
     double pore_pressure_ratio = 0;                       ///< r_u, at the start of the debris
-    std::optional<double> pore_pressure_decay_time;       ///< s; absent: it stays
-    std::optional<double> inertial_friction_coefficient;  ///< internal, of fast shear; absent: the rate is no matter
+    std::optional<double> pore_pressure_decay_time;       ///< s; absent: constant
+    std::optional<double> inertial_friction_coefficient;  ///< internal, of fast shear; absent: independent of the rate
     double inertial_number = 0.279;  ///< I_0, at which friction is halfway between its slow and fast values
     double grain_diameter = 0.01;    ///< m
     double grain_density = 2650;     ///< kg/m3
@@ -174,7 +176,7 @@ enum class ZoneRaster {
     turbulent_friction,
 };
 
-/// `[[zone]]`: ground that differs; exactly one of file, polygon, raster. Later zones go before earlier ones.
+/// `[[zone]]`: ground that differs; exactly one of file, polygon, raster. Later zones override earlier ones.
 struct ZoneSpec {
     std::string name;
     std::string file, layer;
@@ -189,7 +191,7 @@ struct ZoneSpec {
 };
 
 enum class KernelChoice {
-    wendland_c2,  ///< one kernel with its own gradient
+    wendland_c2,  ///< a single kernel for density and gradient
     cubic_spline,
     spiky,
     poly6_spiky,  ///< Poly6 density, Spiky gradient (Macklin & Mueller 2013)
@@ -206,21 +208,21 @@ struct SolverSpec {
     int target_particle_count = 10000;
     int particle_limit = 2000000;
     std::optional<double> time_step;         ///< s, fixed; absent: adaptive, see displacement_limit
-    double displacement_limit = 0.5;         ///< share of a spacing that a particle moves at most in an adaptive step
+    double displacement_limit = 0.5;         ///< maximum displacement of a particle in an adaptive step, in spacings
     double largest_time_step = 1.0 / 60;     ///< s, upper bound of the adaptive step
     double smallest_time_step = 1.0 / 3840;  ///< s, an adaptive step below it stops the run as a fault
     int iteration_count = 4;
-    int extra_iteration_count = 12;  ///< that a step takes besides, at most, while debris is squeezed
+    int extra_iteration_count = 12;  ///< maximum extra iterations of a step while debris is squeezed
     KernelChoice kernel = KernelChoice::wendland_c2;
     InternalFriction internal_friction = InternalFriction::stress;
     double support_ratio = 2.2;          ///< support radius / particle spacing
     double under_relaxation = 1.25;      ///< of the Jacobi iteration, relative to its largest eigenvalue
     double constraint_relaxation = 0.1;  ///< XPBD-like term in the denominator of lambda, relative to its rest value
-    double depenetration_speed = 0.5;    ///< m/s, the fastest that pair friction undoes compression
+    double depenetration_speed = 0.5;    ///< m/s, maximum speed at which pair friction removes compression
     double end_time = 120;               ///< s
-    double stop_moving_share = 0.001;    ///< ends the run when less of the debris than this keeps moving; 0: never
-    double stop_duration = 3;            ///< s, for how long
-    double rest_duration = 0.5;          ///< s, debris that has hardly moved for so long waits to be woken; 0: never
+    double stop_moving_share = 0.001;    ///< the run ends when a smaller share of the debris is moving; 0: never
+    double stop_duration = 3;            ///< s, for this duration
+    double rest_duration = 0.5;          ///< s, debris that has hardly moved for this long falls asleep; 0: never
     double compression_limit = 0.5;      ///< mean of max(0, density/rest density - 1) above which the run is a fault
     int thread_count = 0;                ///< 0: all cores
 };
@@ -276,7 +278,7 @@ struct ArrivalSpec {
     std::string source;
 };
 
-/// `[[run_up]]`: how high debris stood at a place, by its marks.
+/// `[[run_up]]`: height that debris reached at a place, by its marks.
 struct RunUpSpec {
     std::string name;
     double x = 0, y = 0;     ///< m, in the terrain's reference system
@@ -285,7 +287,7 @@ struct RunUpSpec {
     std::string source;
 };
 
-/// `[[deposit_depth]]`: what was left at a place.
+/// `[[deposit_depth]]`: depth of the deposit at a place.
 struct DepositDepthSpec {
     std::string name;
     double x = 0, y = 0;       ///< m

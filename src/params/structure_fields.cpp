@@ -1,4 +1,4 @@
-// What stands in its way: buildings, barriers.
+// Obstacles: buildings, barriers.
 #include "params/declaration.hpp"
 
 namespace talus {

@@ -128,7 +128,7 @@ std::string problem_with(const Parameter& parameter, const ParameterValue& value
         allowed = text && std::count(parameter.choices.begin(), parameter.choices.end(), *text) > 0;
     } else if (parameter.kind == ParameterKind::path) {
         const auto* text = std::get_if<std::string>(&value);
-        allowed = !text || text->find('\0') == std::string::npos;  // the system would end the name there
+        allowed = !text || text->find('\0') == std::string::npos;  // the operating system would end the name there
     }
     return allowed ? "" : allowed_text(parameter);
 }

@@ -52,7 +52,7 @@ Json parameters(const SceneSpec& spec) {
     return all;
 }
 
-/// What the program chose where the scene left it open.
+/// Values that the program chose where the scene does not set them.
 Json resolved(const Scene& scene, const RunResult& result) {
     Json releases = Json::array();
     for (const Release& release : scene.releases) {
@@ -185,7 +185,7 @@ Json hardware() {
             {"system", machine.system}};
 }
 
-/// The files in the folder, so that a reader knows whether any went missing.
+/// The files in the folder, so that a missing file can be detected.
 Json files_in(const std::filesystem::path& folder) {
     std::vector<std::string> names;
     std::error_code failed;

@@ -98,7 +98,7 @@ OutputFolder::~OutputFolder() {
 }
 
 Status OutputFolder::commit() {
-    // The run took its time: what is there now need not be what was there at the start.
+    // Checked again: the folder may have changed during the run.
     TALUS_TRY(check_replaceable(final_, force_));
     const auto failure = [&](const std::error_code& cause) {
         return Error{fmt::format("{}: cannot be given its name: {}", final_.string(), cause.message())};

@@ -13,7 +13,7 @@ namespace talus {
 
 namespace {
 
-/// A file whose very name says that the run did not end by itself.
+/// A file whose name shows that the run did not end by itself.
 Status write_partial_note(const RunResult& result, const std::filesystem::path& folder) {
     if (result.status == RunStatus::complete) return {};
     const std::string text = fmt::format(
@@ -23,7 +23,7 @@ Status write_partial_note(const RunResult& result, const std::filesystem::path& 
     return write_text_file(folder / "PARTIAL.txt", text);
 }
 
-/// results.json and report.html, which shows what that holds.
+/// results.json and report.html, which displays it.
 Status write_report(const Scene& scene, const RunResult& result, const std::vector<Comparison>& comparisons,
                     const std::filesystem::path& folder) {
     const report::Json results = report::run_results(scene, result, comparisons);

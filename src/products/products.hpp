@@ -11,8 +11,8 @@
 
 namespace talus {
 
-/// A result folder in the making: files are written under a temporary name beside the final one, and the folder gets
-/// its name when complete, so nothing half-written ever bears it.
+/// A result folder being written: under a temporary name next to the final one, and renamed when complete, so that an
+/// incomplete folder never has the final name.
 class OutputFolder {
   public:
     /// Errors: not writable, already there without `force`, parent missing.

@@ -10,17 +10,17 @@
 /// Parts of a result as the manifest and `talus run --json` both give them. A value that does not exist is null.
 namespace talus {
 
-/// Worst compression, when it was, its limits, and whether the run stayed within them.
+/// Worst compression, its time, its limits, and whether the run stayed within them.
 [[nodiscard]] nlohmann::ordered_json compression_json(const Observation& observation);
 
-/// An object with the keys "convergence" and "sensitivity", those that there are: verdict, quantities, and every
-/// variant with its values, changes and cost.
+/// An object with the keys "convergence" and "sensitivity", where present: verdict, quantities, and every variant with
+/// its values, changes and cost.
 [[nodiscard]] nlohmann::ordered_json comparisons_json(const std::vector<Comparison>& comparisons);
 
-/// What was hit, with its peaks, and every barrier. A value that does not exist is null.
+/// Structures that were hit, with their peaks, and every barrier. A value that does not exist is null.
 [[nodiscard]] nlohmann::ordered_json structures_json(const Observation& observation);
 
-/// What a report shows, as the file results.json (docs/results.md). Errors name the file and the cause.
+/// The content of a report, as the file results.json (docs/results.md). Errors name the file and the cause.
 [[nodiscard]] Status write_results(const nlohmann::ordered_json& results, const std::filesystem::path& file);
 
 }  // namespace talus

@@ -7,8 +7,8 @@
 
 namespace talus {
 
-/// Writes a whole file. A full disk shows at the latest when the file is closed, so that is checked too.
-/// Errors name the file and the cause; what was written of it is deleted.
+/// Writes a whole file. A full disk may be reported only when the file is closed, so that is checked too. Errors name
+/// the file and the cause; an incomplete file is deleted.
 [[nodiscard]] Status write_text_file(const std::filesystem::path& file, std::string_view text);
 
 }  // namespace talus

@@ -98,7 +98,7 @@ const FrontSample* front_near(const std::vector<FrontSample>& front, double chai
     return best;
 }
 
-/// A short line across the path every 10 m, with what the front did there.
+/// A short line across the path every 10 m, with the values of the front there.
 std::vector<OutputFeature> chainage_marks(const Scene& scene, const Observation& observation) {
     constexpr double spacing = 10, half_width = 3, half_span = 1;  // m
     const FlowPath& path = scene.flow_path;

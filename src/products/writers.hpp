@@ -16,8 +16,8 @@ namespace talus {
 /// it.
 [[nodiscard]] Status write_maps(const Scene& scene, const RunResult& result, const std::filesystem::path& folder);
 
-/// front.csv, run_out.csv, buildings.csv, structures_over_time.csv, timeseries.csv, and erosion.csv where debris can
-/// pick up its bed. A value that does not exist is an empty field.
+/// front.csv, run_out.csv, buildings.csv, structures_over_time.csv, timeseries.csv, and erosion.csv where there is a
+/// bed. A value that does not exist is an empty field.
 [[nodiscard]] Status write_tables(const Scene& scene, const RunResult& result, const std::filesystem::path& folder);
 
 /// results.gpkg with the layers buildings, release, intensity (polygons of each class), flow_path and chainage (a short
@@ -28,14 +28,14 @@ namespace talus {
 [[nodiscard]] Status write_comparisons(const std::vector<Comparison>& comparisons, const RunResult& base,
                                        const std::filesystem::path& folder);
 
-/// manifest.json: all that is needed to repeat the run and to judge it. A value that does not exist is null.
+/// manifest.json: everything needed to repeat and to assess the run. A value that does not exist is null.
 [[nodiscard]] Status write_manifest(const Scene& scene, const RunResult& result,
                                     const std::vector<Comparison>& comparisons, const std::filesystem::path& folder);
 
 /// "complete", "interrupted" or "fault".
 [[nodiscard]] const char* status_text(RunStatus status);
 
-/// What a product must say of itself wherever it goes: " (reconstruction, partial: interrupted)", or nothing.
+/// The caveat that every product carries: " (reconstruction, partial: interrupted)", or nothing.
 [[nodiscard]] std::string caveat(const Scene& scene, const RunResult& result);
 
 }  // namespace talus

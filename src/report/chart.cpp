@@ -14,14 +14,14 @@ namespace talus::report {
 namespace {
 
 constexpr double key_row_height = 20, key_sample = 26, key_gap = 32, key_apart = 22;
-/// Names may reach a little beyond the plot that they stand over; their length is only estimated.
+/// Names may extend slightly beyond the plot below them; their length is only estimated.
 constexpr double key_slack = 18;
 
 double key_length(const Curve& curve) {
     return key_gap + 6.7 * static_cast<double>(curve.name.size()) + key_apart;
 }
 
-/// What stands for a curve in a key, `y` being its middle.
+/// The sample of a curve in a key, centred at `y`.
 void draw_sample(Svg& svg, const Curve& curve, double x, double y) {
     using Shape = Curve::Shape;
     switch (curve.shape) {
@@ -140,7 +140,7 @@ void Plot::draw_cells(Svg& svg) const {
         const std::size_t column = i % (cells.x.size() - 1), row = i / (cells.x.size() - 1);
         std::size_t k = 0;
         while (k + 1 < cells.breaks.size() && cells.values[i] >= cells.breaks[k + 1]) ++k;
-        // A little larger than it is, or seams show between cells.
+        // Slightly enlarged, otherwise seams show between cells.
         svg.rect("", px(cells.x[column]), py(cells.y[row + 1]), px(cells.x[column + 1]) - px(cells.x[column]) + 0.4,
                  py(cells.y[row]) - py(cells.y[row + 1]) + 0.4, cells.colours[k]);
     }

@@ -24,7 +24,7 @@ struct ValueRange {
 /// Round numbers across a range, about `count` of them.
 struct Ticks {
     std::vector<double> values;
-    int digits = 0;  ///< decimals that tell them apart
+    int digits = 0;  ///< decimals needed to distinguish them
 };
 [[nodiscard]] Ticks round_ticks(const ValueRange& range, int count);
 
@@ -34,7 +34,7 @@ struct Curve {
         line,
         band,      ///< the area between `low` and `y`
         bars,      ///< `size` wide from x on, from 0 to `y`
-        diamonds,  ///< as are all marks: around their place, of one size on paper
+        diamonds,  ///< like all marks, centred and of fixed size on paper
         dots,      ///< circles of radius `size`, SVG units
         crosses,
         vertical,    ///< across the plot at every x
@@ -42,7 +42,7 @@ struct Curve {
     };
     Shape shape = Shape::line;
     std::string style;  ///< CSS class
-    std::string name;   ///< in the key; empty: not there
+    std::string name;   ///< in the key; empty: not listed
     std::vector<double> x, y, low;
     double size = 0;
 };
@@ -68,7 +68,7 @@ class Plot {
     /// The area inside the axes, in SVG units, and the values along its edges.
     Plot(double left, double top, double width, double height, const ValueRange& x, const ValueRange& y);
 
-    /// Grid, ticks and axis titles. An empty `x_title` leaves the x numbers out (a plot below continues the axis).
+    /// Grid, ticks and axis titles. An empty `x_title` omits the x numbers (a plot below continues the axis).
     void axes(std::string_view x_title, std::string_view y_title);
     /// A line through the points with finite values.
     void line(std::span<const double> x, std::span<const double> y, std::string_view style, std::string_view name = {});
@@ -93,7 +93,7 @@ class Plot {
     std::string name;  ///< over the plot
     std::string x_title, y_title;
     bool has_axes = false, has_y_axis = true;
-    Key key = Key::above;  ///< where the names of curves stand
+    Key key = Key::above;  ///< position of the names of curves
     Cells cells;
     std::vector<Curve> curves;
     std::vector<Note> notes;
@@ -103,11 +103,11 @@ class Plot {
     void draw_axes(Svg& svg) const;
     void draw_curve(Svg& svg, const Curve& curve) const;
     void draw_key(Svg& svg) const;
-    /// The colours with the values between which they stand, from `y` down; where they end.
+    /// Draws the colours with the values that separate them, from `y` down; returns where they end.
     double draw_cell_key(Svg& svg, double x, double y) const;
 };
 
-/// Rows that the names of curves fill above a plot of this width.
+/// Rows needed for the names of curves above a plot of this width.
 [[nodiscard]] int key_rows(const std::vector<Curve>& curves, double width);
 
 struct Chart {
@@ -116,14 +116,14 @@ struct Chart {
     std::vector<Plot> plots;
 };
 
-/// All of a chart, so that the same can be drawn from it.
+/// A chart as data, from which it can be drawn again.
 [[nodiscard]] Json chart_json(const Chart& chart);
 /// The chart of chart_json(), also after it was written and read again.
 [[nodiscard]] Chart chart_from(const Json& json);
 
 /// An <svg> for a page that has chart.css, scaling with it.
 [[nodiscard]] std::string chart_svg(const Chart& chart);
-/// A file of its own, with its style and on white.
+/// A separate file, with its style and a white background.
 [[nodiscard]] std::string chart_file(const Chart& chart);
 /// An <svg> of the given size around its content; on the page at most `widest` pixels wide, on paper `printed` mm, if
 /// given.

@@ -47,7 +47,7 @@ Colour Ramp::at(double share) const {
     share = std::clamp(share, 0.0, 1.0);
     const double l = low_lightness + (high_lightness - low_lightness) * share;
     const double hue = (low_hue + (high_hue - low_hue) * share) * std::numbers::pi / 180;
-    // Chroma peaks between the ends: very light and very dark colours hold little of it.
+    // Chroma peaks between the ends: very light and very dark colours have little chroma.
     double chroma = low_chroma + (high_chroma - low_chroma) * share + 0.05 * std::sin(std::numbers::pi * share);
     Linear c = to_linear(l, chroma * std::cos(hue), chroma * std::sin(hue));
     while (!displayable(c) && chroma > 0) {

@@ -14,9 +14,9 @@ struct Colour {
     friend bool operator==(const Colour&, const Colour&) = default;
 };
 
-/// A colour ramp that falls in lightness from its low to its high end by equal perceived steps, so that it reads the
-/// same to colour-blind eyes and in grey print. Hue in degrees and chroma of the ends in OKLCh (Ottosson 2020, "A
-/// perceptual color space for image processing").
+/// A colour ramp that falls in lightness from its low to its high end by equal perceived steps, so that it is readable
+/// with colour blindness and in greyscale. Hue in degrees and chroma of the ends in OKLCh (Ottosson 2020, "A perceptual
+/// color space for image processing").
 struct Ramp {
     double low_hue = 0, low_chroma = 0, high_hue = 0, high_chroma = 0;
     double low_lightness = 0.93, high_lightness = 0.30;
@@ -37,7 +37,7 @@ struct Classes {
     [[nodiscard]] int of(double value) const;
 };
 
-/// Classes from a fixed list of breaks, cut off above `largest` so that every class occurs or lies below one that does.
+/// Classes from a fixed list of breaks, cut off above `largest` so that the highest class occurs.
 [[nodiscard]] Classes fixed_classes(const std::vector<double>& breaks, double largest, const Ramp& ramp);
 
 /// Classes of equal round width from 0, at most about eight.

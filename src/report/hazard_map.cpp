@@ -53,7 +53,7 @@ std::string category_style(const HazardMap& map) {
 
 const std::vector<HazardMap>& hazard_maps() {
     using Maps = HazardMaps;
-    // Breaks at 15 and 30 kPa part slight, extensive and complete damage to buildings not of reinforced concrete
+    // Breaks at 15 and 30 kPa separate slight, extensive and complete damage to buildings not of reinforced concrete
     // (Kang & Kim 2014); depths of 0.5 and 1 m are the limits of common intensity classes.
     static const std::vector<HazardMap> maps = {
         map("peak_depth", "Peak depth", "peak flow depth, vertical", "m", 1, &Maps::peak_depth,
@@ -105,8 +105,8 @@ std::string qgis_style(const HazardMap& map, double largest) {
     const report::Classes classes = map.breaks.empty() ? report::even_classes(largest, map.ramp)
                                                        : report::fixed_classes(map.breaks, largest, map.ramp);
     const std::size_t count = classes.breaks.size();
-    // QGIS gives a value the colour of the first item at or above it. A time of zero is an arrival, so the times have
-    // no class that is left out.
+    // QGIS gives a value the colour of the first item at or above it. A time of zero is an arrival, so no class of
+    // times is transparent.
     std::string items;
     if (!map.breaks.empty()) {
         const double lowest = classes.breaks.front();

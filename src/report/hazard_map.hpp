@@ -31,10 +31,10 @@ struct HazardMap {
 /// All maps, in the order in which they are written.
 [[nodiscard]] const std::vector<HazardMap>& hazard_maps();
 
-/// What debris took from the ground: not among the maps of every run, and on the terrain's own cells.
+/// Depth of erosion: not among the maps of every run, and on the terrain's cells.
 [[nodiscard]] const HazardMap& erosion_map();
 
-/// Peak depth normal to the slope: only where outputs.peak_thickness asks for it.
+/// Peak depth normal to the slope: only if outputs.peak_thickness is set.
 [[nodiscard]] const HazardMap& thickness_map();
 
 /// The map in its own unit.

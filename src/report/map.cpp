@@ -20,7 +20,7 @@
 namespace talus::report {
 namespace {
 
-/// What the report says of a map beside its name, unit and colours.
+/// Texts of a map in the report, other than its name, unit and colours.
 struct Words {
     const char* tab;
     const char* caption;
@@ -60,7 +60,7 @@ std::optional<Extent> wet_extent(const Grid<float>& grid) {
     return out;
 }
 
-/// Widens the shorter side so that no map is a ribbon, then keeps the area within the terrain.
+/// Widens the shorter side so that no map is too narrow, then keeps the area within the terrain.
 Extent well_proportioned(Extent area, const Extent& terrain) {
     constexpr double widest = 1.75, narrowest = 0.85;  // width over height
     const double ratio = area.width() / area.height();
@@ -73,7 +73,7 @@ Extent well_proportioned(Extent area, const Extent& terrain) {
         area.x_min -= more;
         area.x_max += more;
     }
-    // Shifted inward first, so that the margin lost on one side is won on the other; then cut.
+    // Shifted inward first, so that the margin lost on one side is gained on the other; then clipped.
     const auto keep = [](double& low, double& high, double terrain_low, double terrain_high) {
         if (low < terrain_low) {
             high += terrain_low - low;
@@ -123,7 +123,7 @@ ReadOut read_out_of(const Grid<float>& grid, double factor) {
     ReadOut out;
     if (low <= high) {
         out.base = low;
-        // Centimetres are enough, and repeat more often than millimetres, so that the picture stays small.
+        // Centimetres are sufficient, and compress better than millimetres.
         out.resolution = std::max(0.01, (high - low) / 65000);
     }
     out.image.width = grid.geometry.columns;
@@ -292,7 +292,7 @@ Svg::Attribute clip() {
     return {"clip-path", "url(#map-clip)"};
 }
 
-/// What all maps share, to be used by its name.
+/// Elements shared by all maps, referenced by id.
 std::string definitions(const Scene& scene, const MapContent& content, const MapFrame& frame, const std::string& relief,
                         double key_top, double& contour_interval) {
     Svg svg;

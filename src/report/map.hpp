@@ -31,10 +31,10 @@ struct MapFrame {
     [[nodiscard]] double y(double north) const { return top + (area.y_max - north) * scale; }
 };
 
-/// One map: its raster and what is said of it.
+/// One map: its raster and its texts.
 struct MapLayer {
     HazardMap style;
-    const Grid<float>* grid = nullptr;  ///< SI; NaN: nothing there
+    const Grid<float>* grid = nullptr;  ///< SI; NaN: no value
     std::string tab;                    ///< "Peak depth"
     std::string caption;                ///< a sentence
     int digits = 2;                     ///< of values
@@ -46,11 +46,11 @@ struct BuildingMarks {
     std::string title;                       ///< over the classes in the key
     std::array<std::string, 4> class_names;  ///< from 0 up
     std::vector<int> classes;                ///< as in Scene::buildings
-    std::vector<std::string> titles;         ///< likewise; said under the pointer
-    std::vector<bool> removed;               ///< likewise, if any; taken away while the run went on
+    std::vector<std::string> titles;         ///< likewise; shown under the pointer
+    std::vector<bool> removed;               ///< likewise, if any; removed during the run
 };
 
-/// What a report's maps show, whatever they are of.
+/// The content common to all maps of a report.
 struct MapContent {
     const Grid<float>* reached = nullptr;  ///< has a value wherever debris came
     double farthest_chainage = 0;          ///< m, of any front; NaN: none
@@ -64,21 +64,21 @@ struct MapContent {
 /// The maps of a single run. `result` must outlive them.
 [[nodiscard]] MapContent map_content(const Scene& scene, const RunResult& result);
 
-/// The area of interest: where debris came, the releases, the flow path as far as it matters (to a fifth beyond the
-/// run-out and the last observation), the buildings hit, and a margin, kept within the terrain.
+/// The area of interest: the ground reached by debris, the releases, the flow path (to 20 % beyond the run-out and the
+/// last observation), the buildings hit, and a margin, kept within the terrain.
 [[nodiscard]] MapFrame map_frame(const Scene& scene, const MapContent& content);
 
-/// What the template `maps` shows: `definitions`, an unseen <svg> with what all maps share; `layers`, one per map;
-/// `read_out` for the page's script: where the maps lie and their values. And `contour_interval`, m.
-/// Errors: a picture could not be encoded.
+/// Data of the template `maps`: `definitions`, a hidden <svg> with the shared parts of all maps; `layers`, one per map;
+/// `read_out` for the page's script: position and values of the maps. And `contour_interval`, m. Errors: a picture
+/// could not be encoded.
 [[nodiscard]] Result<Json> map_figures(const Scene& scene, const MapContent& content);
 
-/// What the template `zones` shows of zones and beds, over the relief of the maps. Null where there are none.
-/// Errors: a picture could not be encoded.
+/// Data of the template `zones`: zones and beds over the relief of the maps. Null where there are none. Errors: a
+/// picture could not be encoded.
 [[nodiscard]] Result<Json> zone_figure(const Scene& scene, const MapContent& content, double contour_interval);
 
-/// How hard a building was hit: 0 not at all, 1 below 15 kPa, 2 to 30 kPa, 3 above. The limits are those between
-/// slight, extensive and complete damage to buildings not of reinforced concrete (Kang & Kim 2014).
+/// Impact class of a building: 0 not hit, 1 below 15 kPa, 2 to 30 kPa, 3 above. The limits are those between slight,
+/// extensive and complete damage to buildings not of reinforced concrete (Kang & Kim 2014).
 [[nodiscard]] int impact_class(const BuildingImpact& impact);
 
 /// The terrain with the area of the maps in it, as the template shows it. Null where the maps show most of it.

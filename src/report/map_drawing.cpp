@@ -71,7 +71,7 @@ void draw_contour_label(Svg& svg, const MapFrame& frame, const Contour& contour)
 
 /// A building's name below it, centred.
 struct Label {
-    int rank;  ///< its class: where two names would run into each other, the one hit harder stays
+    int rank;  ///< its class: where two names would overlap, that of the higher class is kept
     double x, y;
     std::string text;
 
@@ -91,7 +91,7 @@ void draw_labels(Svg& svg, std::vector<Label> labels) {
     }
 }
 
-/// A line in a colour of its own, on a broader pale one that sets it apart from what lies below.
+/// A coloured line on a broader pale one that makes it stand out from the background.
 void draw_cased(Svg& svg, const std::string& style, const std::string& data, std::string_view title = {}) {
     svg.path(style + "-case", data);
     svg.path(style, data, title);
@@ -131,7 +131,7 @@ void draw_observations(Svg& svg, const Scene& scene, const MapFrame& frame) {
     }
 }
 
-/// A line with an arrow where debris goes, or the outline of an area.
+/// A line with an arrow in the direction of flow, or the outline of an area.
 void draw_inflow(Svg& svg, const Inflow& inflow, const MapFrame& frame) {
     std::string d;
     for (const Polygon& part : inflow.area) d += polygon_data(frame, part);

@@ -17,7 +17,7 @@ std::string fixed(double value, int digits) {
     std::string plain = fmt::format("{:.{}f}", std::abs(value), std::max(0, digits));
     const bool zero = plain.find_first_not_of("0.") == std::string::npos;
     const std::size_t whole = std::min(plain.find('.'), plain.size());
-    // Four digits stay together (a year, a density); from five on, thousands are set apart by a narrow space.
+    // Four digits stay together (a year, a density); from five on, thousands are separated by a narrow space.
     if (whole >= 5) {
         for (std::size_t i = whole; i > 3;) plain.insert(i -= 3, "\u202f");
     }

@@ -65,7 +65,7 @@ mustache::data converted(const Json& json) {
         case Json::value_t::null:
             return false;
         default:
-            // Not finite is what null is, as which it would be written to a file.
+            // A number that is not finite is treated as null, which is how it is written to a file.
             return std::isfinite(json.get<double>()) ? mustache::data(formatted(json.get<double>(), ""))
                                                      : mustache::data(false);
     }

@@ -5,8 +5,8 @@
 
 #include <nlohmann/json.hpp>
 
-/// Pages from templates and data. The templates are Mustache (https://mustache.github.io): they hold the words and all
-/// HTML, the data what is said in them.
+/// Pages from templates and data. The templates are Mustache (https://mustache.github.io): they contain the text and
+/// all HTML, the data the values.
 namespace talus::report {
 
 using Json = nlohmann::ordered_json;

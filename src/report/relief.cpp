@@ -105,7 +105,7 @@ GreyImage hillshade(const Grid<float>& elevation, const Extent& extent, double p
             const PlanPoint p{extent.x_min + (x + 0.5) / image.width * extent.width(),
                               extent.y_max - (y + 0.5) / image.height * extent.height()};
             const double l = interpolate(light, p);
-            // Kept light, so that debris, lines and text stand out on it; 64 greys are enough and pack well.
+            // Kept light, so that debris, lines and text stand out on it; 64 greys are sufficient and compress well.
             const double grey = std::isnan(l) ? 255 : 136 + 116 * std::clamp((l - 0.10) / 0.90, 0.0, 1.0);
             image.pixels.push_back(static_cast<std::uint8_t>(std::min(255L, std::lround(grey / 2) * 2)));
             image.pixels.push_back(std::isnan(l) ? 0 : 255);

@@ -9,8 +9,8 @@
 
 namespace talus::report {
 
-/// The self-contained report: what `results`, of run_results(), say, with maps of the run.
-/// Errors: a picture of a map could not be encoded.
+/// The self-contained report of `results`, from run_results(), with maps of the run. Errors: a picture of a map could
+/// not be encoded.
 [[nodiscard]] Result<std::string> run_report(const Scene& scene, const RunResult& result, const Json& results);
 
 }  // namespace talus::report

@@ -34,7 +34,7 @@ Peak peak_of(const Grid<float>& map) {
     return peak;
 }
 
-/// "at chainage 88 m", or the coordinates where the path does not come by.
+/// "at chainage 88 m", or the coordinates where the path does not pass.
 std::string place(const Scene& scene, const Peak& peak) {
     if (std::isnan(peak.value)) return "no debris mapped";
     if (!scene.flow_path.empty()) {
@@ -180,7 +180,7 @@ Json key_figures(const Scene& scene, const RunResult& result) {
     return all;
 }
 
-/// How many particles thick the flow was.
+/// Thickness of the flow in particles.
 Json layers(const RunResult& result) {
     const FlowThickness& flow = result.observation.thickness;
     if (!flow.known()) return fact("Layers of particles", "debris reached no map cell");

@@ -8,12 +8,12 @@
 #include "run/run_result.hpp"
 #include "scene/scene.hpp"
 
-/// What reports say, as data: results.json, described in docs/results.md.
+/// The content of reports as data: results.json, described in docs/results.md.
 namespace talus::report {
 
 constexpr int results_version = 2;
 
-/// How every results.json begins: `format`, version, program and time; then, if given, what the scene says of itself.
+/// The head of every results.json: `format`, version, program and time; then, if given, the scene's description.
 [[nodiscard]] Json results_head(std::string_view format);
 [[nodiscard]] Json results_head(std::string_view format, const Scene& scene);
 
@@ -23,11 +23,11 @@ constexpr int results_version = 2;
 /// What `[report]` says: client, reference, ...; null where it says nothing.
 [[nodiscard]] Json title_block(const ReportSpec& report);
 [[nodiscard]] Json status(const RunResult& result);
-/// How far debris was compressed, and what to change where that was too much.
+/// Compression of the debris, and what to change if it was too high.
 [[nodiscard]] Json compression(const Scene& scene, const RunResult& result);
 [[nodiscard]] Json key_figures(const Scene& scene, const RunResult& result);
 [[nodiscard]] Json quality(const Scene& scene, const RunResult& result);
-/// Computed front velocities beside those observed in the field.
+/// Computed front velocities compared with those observed in the field.
 [[nodiscard]] Json observations(const Scene& scene, const RunResult& result);
 /// Classes of a guideline and the area of each.
 [[nodiscard]] Json intensity(const Scene& scene, const RunResult& result);
@@ -37,9 +37,9 @@ constexpr int results_version = 2;
 [[nodiscard]] Json force_chart(const RunResult& result);
 /// Front velocity, ground profile and arrival time against chainage, one below the other.
 [[nodiscard]] Json front_chart(const Scene& scene, const RunResult& result);
-/// Both grow to hold the front velocities observed in the field.
+/// Extends both ranges to include the front velocities observed in the field.
 void include_observations(const Scene& scene, ValueRange& chainages, ValueRange& speeds);
-/// These velocities with a standard deviation to both sides.
+/// Draws these velocities with one standard deviation to either side.
 void mark_observations(const Scene& scene, Plot& velocity);
 /// Energy, volumes, largest speed and compression over time.
 [[nodiscard]] Json time_chart(const RunResult& result);

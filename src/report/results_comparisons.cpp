@@ -62,7 +62,7 @@ Json missing_row(const std::vector<Column>& columns, Json row, const VariantRun&
     return row;
 }
 
-/// A row per run: what each changes.
+/// A row per run with its changes.
 Json rows_of_runs(const Comparison& comparison, const RunResult& base) {
     std::vector<Column> columns = {{"run", "Run", ""}};
     for (const Quantity& q : comparison.quantities)
@@ -140,7 +140,7 @@ Front front_of(std::string style, std::string name, const Observation& observati
     return front;
 }
 
-/// Front velocity and arrival time against chainage, the runs over each other: the base first, which is drawn broad.
+/// Front velocity and arrival time against chainage, all runs in one plot: the base first, as a broad line.
 Json chart(const Comparison& comparison, const Scene& scene, const RunResult& base) {
     std::vector<Front> fronts{front_of(base_style, base_name, base.observation)};
     for (std::size_t i = 0; i < comparison.rows.size(); ++i) {

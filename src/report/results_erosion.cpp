@@ -7,11 +7,11 @@
 namespace talus::report {
 namespace {
 
-/// Released volume and what was picked up upstream, against chainage.
+/// Released volume and volume eroded upstream, against chainage.
 Json erosion_chart(const RunResult& result) {
     const Erosion& erosion = result.observation.erosion;
     if (erosion.chainage.empty() || !(erosion.volume > 0)) return {};
-    // To a little beyond where the volume grows last.
+    // To slightly beyond the last increase of the volume.
     const auto last = std::find_if(erosion.upstream.begin(), erosion.upstream.end(),
                                    [&](double v) { return v >= erosion.upstream.back(); });
     const double end = std::min(erosion.chainage.back(),

@@ -106,7 +106,7 @@ void draw_profile(Plot& plot, const Scene& scene, const RunResult& result, const
         plot.label(bend.chainage, profile.range.low, 5, -8, "start", "ground-note",
                    fmt::format("bend {}° {}", fixed(std::abs(bend.turn), 0), bend.turn > 0 ? "left" : "right"));
     }
-    // The steepest ten metres: a waterfall shows in a profile of true proportions only when it is pointed at.
+    // The steepest ten metres: in a profile of true proportions a waterfall is visible only if it is marked.
     double steepest = 0, place = 0;
     for (double c = 0; c + 10 <= end; c += profile.step) {
         const double drop = profile.at(c) - profile.at(c + 10);
@@ -165,7 +165,7 @@ Json front_chart(const Scene& scene, const RunResult& result) {
     std::vector<double> row_ends;  // SVG x up to which each row of labels is taken
     for (const ObservationSpec& o : scene.spec.observations) {
         velocity.vertical(o.chainage, "observation-line");
-        // Labels stand above the curves; one that would run into its neighbour's goes a row down.
+        // Labels stand above the curves; one that would overlap its neighbour moves down a row.
         const std::string value = fmt::format("observed {} m/s at {} m", plain(o.front_velocity), plain(o.chainage));
         const std::string name = shortened(o.name, 40), source = shortened(o.source, 40);
         const double length = 7.3 * static_cast<double>(std::max({value.size(), name.size(), source.size()}));

@@ -1,4 +1,4 @@
-// What came in while the run went on.
+// Inflow during the run.
 #include <algorithm>
 #include <string>
 #include <vector>

@@ -33,7 +33,7 @@ std::string bytes_text(std::uint64_t bytes) {
     return bytes < 10'000'000 ? fmt::format("{} kB", bytes / 1000) : fmt::format("{} MB", bytes / 1'000'000);
 }
 
-/// What resists beside friction and viscosity, where anything does.
+/// Resistance other than friction and viscosity, if any.
 void add_resistances(Json& rows, const Scene& scene) {
     const MaterialSpec& material = scene.spec.material;
     const auto add = [&](const std::string& name, const std::string& text) { rows.push_back(fact(name, text)); };

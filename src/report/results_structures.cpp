@@ -1,4 +1,4 @@
-// What debris did to barriers, and the force on what it hit, over time.
+// Effect of debris on barriers, and the force on structures over time.
 #include <algorithm>
 #include <cmath>
 #include <vector>
@@ -13,7 +13,7 @@
 namespace talus::report {
 namespace {
 
-constexpr std::size_t most_lines = 8;  // of the figure: report.css has so many colours
+constexpr std::size_t most_lines = 8;  // of the figure: the number of colours in report.css
 constexpr std::size_t most_nets = 4;   // a plot each
 constexpr std::size_t most_rows = 30;  // of the table of buildings
 
@@ -37,7 +37,7 @@ Json seconds(double time) {
     return number_or_null<Json>(time);
 }
 
-/// {"name": ..., "time_s": ...} of those that have such a time; "another" from the second on.
+/// {"name": ..., "time_s": ...} of those that have such a time; starting with the second, "another".
 Json events(const std::vector<BuildingImpact>& impacts, double BuildingImpact::*time) {
     Json list = Json::array();
     for (const BuildingImpact& impact : impacts) {
@@ -47,7 +47,7 @@ Json events(const std::vector<BuildingImpact>& impacts, double BuildingImpact::*
     return list;
 }
 
-/// What became of the debris that came to a net, for each that it met.
+/// Balance of the debris that reached a net, for each net that was reached.
 Json net_balances(const std::vector<BuildingImpact>& impacts) {
     Json list = Json::array();
     for (const BuildingImpact& net : impacts) {
@@ -65,7 +65,7 @@ Json net_balances(const std::vector<BuildingImpact>& impacts) {
     return list;
 }
 
-/// What nets held, let through and did not keep from going over them, over time.
+/// Volumes held by nets, passing them and overtopping them, over time.
 Json net_chart(const RunResult& result) {
     std::vector<const BuildingImpact*> nets;
     for (const BuildingImpact& impact : result.observation.buildings) {

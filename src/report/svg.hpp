@@ -33,10 +33,10 @@ class Svg {
     void line(std::string_view css_class, double x1, double y1, double x2, double y2);
     void rect(std::string_view css_class, double x, double y, double width, double height, std::string_view fill = {});
     void circle(std::string_view css_class, double x, double y, double radius);
-    /// `title` is what the pointer reads.
+    /// `title` is shown under the pointer.
     void path(std::string_view css_class, std::string_view data, std::string_view title = {});
     void text(std::string_view css_class, double x, double y, std::string_view words, std::string_view anchor = {});
-    /// Written around its place, turned by `degrees` clockwise.
+    /// Centred at its place, rotated by `degrees` clockwise.
     void turned_text(std::string_view css_class, double x, double y, double degrees, std::string_view words,
                      std::string_view anchor = {}, std::string_view dy = {});
 

@@ -6,7 +6,7 @@
 
 #include <nlohmann/json.hpp>
 
-/// Parts of results.json that reports show alike: tables, key figures and facts, as data.
+/// Parts of results.json that all reports show in the same way: tables, key figures and facts, as data.
 namespace talus::report {
 
 using Json = nlohmann::ordered_json;
@@ -34,14 +34,14 @@ struct Column {
 /// Beside columns a row may have `row_style` and `heading` with `heading_note`: a separate line above.
 [[nodiscard]] Json table(const std::vector<Column>& columns, std::string_view style = {});
 
-/// The table as the template `table` wants it: text in all cells.
+/// The table in the form of the template `table`: text in all cells.
 [[nodiscard]] Json table_cells(const Json& table);
 
 /// A key figure. `value` is a number printed by `format`, or text.
 [[nodiscard]] Json key_figure(std::string_view key, std::string_view name, Json value, std::string_view format,
                               std::string_view unit, std::string_view note, bool alert = false);
 
-/// A named line of text. `verdict` is set apart at its end, in green where `good`, else red.
+/// A named line of text. `verdict` is highlighted at its end, in green where `good`, else red.
 [[nodiscard]] Json fact(std::string_view name, std::string_view text, std::string_view verdict = {}, bool good = false);
 
 /// The shown text of a number or text.

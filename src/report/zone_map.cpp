@@ -1,4 +1,4 @@
-// Where the ground resists in its own way or can be picked up, over the hillshade of the other maps.
+// Zones with their own resistance, and beds, over the hillshade of the other maps.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -15,7 +15,7 @@
 namespace talus::report {
 namespace {
 
-/// Apart from each other to colour-blind eyes (Okabe & Ito 2008); beyond them they come again.
+/// Distinguishable with colour blindness (Okabe & Ito 2008); repeated if there are more zones.
 constexpr std::array<Colour, 7> zone_colours = {
     {{0, 158, 115}, {230, 159, 0}, {0, 114, 178}, {204, 121, 167}, {240, 228, 66}, {86, 180, 233}, {213, 94, 0}}};
 constexpr std::array<Colour, 3> bed_colours = {{{92, 51, 23}, {40, 40, 40}, {120, 0, 60}}};
@@ -29,7 +29,7 @@ std::uint8_t bed_class(std::size_t material) {
     return static_cast<std::uint8_t>(1 + zone_colours.size() + material % bed_colours.size());
 }
 
-/// Zones as areas, what can be picked up as stripes.
+/// Zones as areas, beds as stripes.
 ClassImage picture_of(const Scene& scene, const MapFrame& frame) {
     const GridGeometry& g = scene.terrain.elevation().geometry;
     const double pixels_per_metre = 900 / std::max(frame.area.width(), frame.area.height());
@@ -61,7 +61,7 @@ ClassImage picture_of(const Scene& scene, const MapFrame& frame) {
     return image;
 }
 
-/// What a zone says, a line each.
+/// The values of a zone, one per line.
 std::vector<std::string> values_of(const ZoneSpec& zone) {
     std::vector<std::string> lines;
     if (zone.raster_holds == ZoneRaster::friction_coefficient) lines.emplace_back("friction as its raster says");
@@ -91,7 +91,7 @@ std::vector<std::string> values_of(const BedSpec& bed) {
     return lines;
 }
 
-/// A line of the key with what it says below; the height that it takes.
+/// Draws a line of the key with its text below; returns its height.
 double draw_entry(Svg& svg, double x, double y, const Colour& colour, bool striped, const std::string& name,
                   const std::vector<std::string>& values) {
     if (striped) {

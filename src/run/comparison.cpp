@@ -13,13 +13,14 @@ namespace {
 struct Measure {
     Quantity quantity;
     std::function<double(const Observation&)> value;
-    std::function<bool(const Observation&)> same = {};  // where a number does not say it all: as in the base
+    std::function<bool(const Observation&)> same = {};  // where a number alone is not enough: whether it is the same as
+                                                        // in the base
 };
 
 double first_building_hit(const Observation& observation) {
     double first = never;
     for (const BuildingImpact& building : observation.buildings) {
-        if (building.hit) first = std::fmin(first, building.first_hit_time);  // fmin passes over NaN
+        if (building.hit) first = std::fmin(first, building.first_hit_time);  // fmin ignores NaN
     }
     return first;
 }
@@ -36,7 +37,7 @@ Measure front_velocity(const Scene& scene, double chainage) {
     return m;
 }
 
-/// A whole interval of front.csv at 90 % of the way that the front came in the base.
+/// The chainage, in whole intervals of front.csv, at 90 % of the front's run in the base.
 double late_chainage(const Scene& scene, const Observation& base) {
     const double interval = scene.spec.outputs.chainage_interval;
     return interval * std::floor(0.9 * base.run_out.front_chainage / interval);
@@ -102,7 +103,7 @@ double largest_force(const Observation& observation) {
     return largest;
 }
 
-/// The buildings that took a share of the largest force that counts, by their place in the scene.
+/// Indices of the buildings on which the force was a sufficient share of the largest.
 std::vector<std::size_t> counting_hits(const Observation& observation) {
     const double least = counting_force_share * largest_force(observation);
     std::vector<std::size_t> hits;

@@ -7,10 +7,10 @@
 #include "run/variants.hpp"
 #include "scene/scene.hpp"
 
-/// What variants change in the results of a scene, in percent of its run as given (the base).
+/// Changes of a scene's results by its variants, in percent of its run as given (the base).
 namespace talus {
 
-/// A number that runs are compared by.
+/// A number by which runs are compared.
 struct Quantity {
     std::string key;           ///< "front_velocity_at_121_m"
     std::string suffix;        ///< unit in names of columns: "mps"
@@ -34,7 +34,7 @@ enum class Verdict {
 /// One quantity of one variant.
 struct Change {
     double value = never;
-    double percent = never;  ///< of the base's value; NaN: one of the two is not known, or the base's is zero
+    double percent = never;  ///< of the base's value; NaN: one of the two is unknown, or the base's is zero
     Verdict verdict = Verdict::missing;
 };
 
@@ -67,13 +67,13 @@ struct Comparison {
 
 /// Compares front velocity at every observation, arrival, run-out, area and depth of the deposit; of a convergence also
 /// which buildings are hit, and force and pressure on each. Arrival is the first hit of any building if the base hits
-/// one, else when the front passed 90 % of the chainage that it reached in the base. A building counts as hit from
-/// `counting_force_share` of the largest force in the run on: a touch is no hit.
+/// one, else when the front passed 90 % of the chainage that it reached in the base. A building counts as hit if its
+/// force reaches `counting_force_share` of the largest in the run: a touch is not a hit.
 [[nodiscard]] Comparison compare(ComparisonKind kind, const Scene& scene, const RunResult& base,
                                  std::vector<VariantRun> runs);
 inline constexpr double counting_force_share = 0.05;
 
-/// What may be said of the numerics of a run: one verdict, of its compression and of its convergence if that was tried.
+/// One verdict on the numerics of a run: on its compression, and on its convergence if that was tested.
 struct NumericalVerdict {
     Answer converged = Answer::unknown;
     std::string text;  ///< "not converged: debris too compressed during 12 % of the simulated time"

@@ -82,7 +82,7 @@ void Run::take_step() {
     smallest_time_step_ = std::min(smallest_time_step_, state().time_step);
     largest_time_step_ = std::max(largest_time_step_, state().time_step);
     if (!stepped) {
-        // Who goes on all the same needs measurements without a hole.
+        // A run that continues all the same needs gapless measurements.
         if (endless_) observer_.observe(model(), ground(), state());
         return stop(RunPhase::fault, stepped.error().message);
     }

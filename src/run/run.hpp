@@ -17,7 +17,7 @@
 
 namespace talus {
 
-/// What a run begins with.
+/// Initial data of a run.
 struct RunStart {
     Model model;
     Ground ground;
@@ -25,32 +25,31 @@ struct RunStart {
     InflowFeeder inflow = {};
     FlowPath flow_path = {};  ///< empty: no front against chainage
     OutputSpec outputs = {};
-    /// Goes on at rest, beyond solver.end_time and after a fault: who drives it says when it ends.
+    /// Continues at rest, beyond solver.end_time and after a fault: the caller decides when it ends.
     bool endless = false;
 };
 
-/// A run: a simulation, the observer that measures it, and the rule that says when it is over. Whoever runs anything
-/// does so by this class: `talus run`, ensembles, the live twin, validation, benchmarks.
+/// A run: a simulation, the observer that measures it, and the rule that says when it is over. Everything that runs a
+/// scene uses this class: `talus run`, ensembles, the live twin, validation, benchmarks.
 class Run {
   public:
     /// With the threads of `start.model.solver`.
     explicit Run(RunStart start);
 
-    /// Everything that a loaded scene says, its releases seeded. `particle_spacing`, m: absent, the scene's own.
-    /// Errors: a release smaller than a particle, more particles than solver.particle_limit with those that will come
-    /// in.
+    /// A run of a loaded scene, with its releases seeded. `particle_spacing`, m: absent, the scene's own. Errors: a
+    /// release smaller than a particle, more particles than solver.particle_limit, including those of inflows.
     [[nodiscard]] static Result<std::unique_ptr<Run>> start(const Scene& scene,
                                                             std::optional<double> particle_spacing = {});
 
     /// Takes a step and measures it. False: the run was over before, or the step cannot be trusted; see phase().
     bool advance();
-    /// Adds what inflows have brought by now. A step begins with it.
+    /// Adds the particles of inflows that are due. A step begins with it.
     void inject_inflow() { simulation_.inject_inflow(&observer_); }
 
-    /// Lets `edit` change model, ground and state, as Simulation::change() does; a run at rest is ready again. `edit`
-    /// returns the id from which on particles are new.
+    /// Lets `edit` change model, ground and state, as Simulation::change() does; a run at rest becomes ready again.
+    /// `edit` returns the id of the first new particle.
     void change(const std::function<std::uint32_t(Model&, Ground&, State&)>& edit);
-    /// Begins what is known of a building anew, as for one that was moved.
+    /// Resets the record of a building, for example after it was moved.
     void forget_building(std::size_t building) { observer_.forget_building(model(), ground(), state(), building); }
 
     [[nodiscard]] RunPhase phase() const { return phase_; }
@@ -61,11 +60,11 @@ class Run {
     [[nodiscard]] const State& state() const { return simulation_.state(); }
     [[nodiscard]] const Simulation& simulation() const { return simulation_; }
     [[nodiscard]] const Observer& observer() const { return observer_; }
-    /// Work on the run that computes in parallel belongs in them.
+    /// Parallel work on the run must use them.
     [[nodiscard]] const Threads& threads() const { return threads_; }
-    [[nodiscard]] double wall_time() const { return wall_time_; }  ///< s, of the stepping alone
+    [[nodiscard]] double wall_time() const { return wall_time_; }  ///< s, of the steps alone
 
-    /// What the run comes to if it ends here. `unfinished`: how a run that could go on was stopped.
+    /// The result if the run ends here. `unfinished`: why a run that could continue was stopped.
     [[nodiscard]] RunResult result(const std::string& unfinished = "stopped by the user") const;
 
   private:

@@ -10,7 +10,7 @@ namespace talus {
 
 enum class RunPhase {
     ready,    ///< advance() would take a step
-    at_rest,  ///< debris came to rest, or none is left; a change makes it ready again
+    at_rest,  ///< debris came to rest, or none remains; a change makes it ready again
     ended,    ///< solver.end_time is reached
     fault,    ///< the last step cannot be trusted
 };
@@ -23,14 +23,14 @@ struct RunResult {
     Observation observation;
     StageTimes stage_times;
     std::uint64_t hash = 0;       ///< of time, ids, positions and velocities at the end, in id order
-    std::uint32_t particles = 0;  ///< that releases and inflows brought, without what was removed again or entrained
+    std::uint32_t particles = 0;  ///< from releases and inflows, without removed or entrained ones
     std::uint64_t steps = 0;
-    double simulated_time = 0, wall_time = 0;  ///< s; wall time of the stepping alone
+    double simulated_time = 0, wall_time = 0;  ///< s; wall time of the steps alone
     double smallest_time_step = 0, largest_time_step = 0;
     double particle_spacing = 0, support_radius = 0, map_cell = 0;
-    double viscosity = 0, kinematic_viscosity = 0;  ///< smoothing per 1/60 s; the same thing in m2/s
+    double viscosity = 0, kinematic_viscosity = 0;  ///< smoothing per 1/60 s; its equivalent in m2/s
     int thread_count = 0;
-    std::string instruction_set;  ///< that the sums over neighbours ran on
+    std::string instruction_set;  ///< used for the sums over neighbours
 
     [[nodiscard]] double real_time_factor() const { return wall_time > 0 ? simulated_time / wall_time : 0; }
 };

@@ -12,7 +12,7 @@
 
 namespace talus {
 
-/// What a watcher is told after a step.
+/// Progress after a step.
 struct Progress {
     double time, end_time;  ///< s
     double real_time_factor;

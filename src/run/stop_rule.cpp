@@ -10,10 +10,10 @@
 namespace talus {
 namespace {
 
-/// So few particles make no front (front_particle_count), however few there are in all.
+/// So few particles form no front (front_particle_count), however few there are in total.
 constexpr std::uint32_t fewest = 5;
-/// Debris slower than this times the deposited speed (1 m/s) rises by no more than 5 cm, and would fall only where it
-/// gets faster.
+/// Debris slower than this times the deposited speed (1 m/s) rises by no more than 5 cm, and can fall only by becoming
+/// faster.
 constexpr double fast_ratio = 10;
 /// Share of the debris that may still be fast: one particle in ten thousand.
 constexpr double fast_share = 1e-4;

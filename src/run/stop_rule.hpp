@@ -16,18 +16,18 @@ struct Motion {
 };
 [[nodiscard]] Motion motion_of(const State& state, double deposited_speed);
 
-/// Decides when what still moves can change no product any more: for long enough less than a share of the debris has
-/// moved (with the defaults what makes no front either, and nothing that a map could show), and of that next to nothing
-/// fast enough to climb, to fall or to strike. Momentum tells neither: that of a thousandth of the debris in free fall
-/// is small beside its peak, and so is that of all of it where it runs out slowly.
+/// Decides when moving debris can no longer change a product: for long enough, less than a given share of the debris
+/// has moved (with the defaults too little for a front or to be visible on a map), and almost none of that fast enough
+/// to climb, fall or hit something. Momentum is no criterion: that of a thousandth of the debris in free fall is small
+/// compared with its peak, and so is that of all debris running out slowly.
 class RestDetector {
   public:
     RestDetector(const SolverSpec& solver, double deposited_speed)
         : share_(solver.stop_moving_share), duration_(solver.stop_duration), deposited_speed_(deposited_speed) {}
 
-    /// `waiting`: debris has yet to come.
+    /// `waiting`: more debris is still to be released.
     bool at_rest(const State& state, bool waiting);
-    /// Something was changed: debris is at rest only when it stays quiet from now on.
+    /// Restarts the rest duration, after something was changed.
     void stir(double time) { quiet_since_ = time; }
     /// "debris came to rest (...)".
     [[nodiscard]] std::string reason() const;
@@ -37,13 +37,13 @@ class RestDetector {
     double quiet_since_ = 0;
 };
 
-/// Whether a release has its start yet to come, or began with the last step; one that waits for a word does not count.
+/// Whether a release has not started yet, or started in the last step; one that waits to be triggered does not count.
 [[nodiscard]] bool still_waiting(const Model& model, const State& state);
 
 [[nodiscard]] inline bool reached_end_time(const SolverSpec& solver, const State& state) {
     return state.time >= solver.end_time - 1e-9;
 }
-/// "reached solver.end_time_s = 120", with what still moved then.
+/// "reached solver.end_time_s = 120", with the debris that still moved.
 [[nodiscard]] std::string end_time_reason(const Model& model, const State& state, double deposited_speed);
 
 inline constexpr const char* no_debris_reason = "all debris has left the terrain";

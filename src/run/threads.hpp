@@ -7,15 +7,15 @@
 
 namespace talus {
 
-/// The threads that one piece of work has: everything that computes in parallel does so within one of these, so that
-/// several in a program do not slow each other.
+/// The threads of one piece of work: all parallel computation takes place within one of these, so that several in a
+/// program do not slow each other down.
 class Threads {
   public:
     /// As many as the processor has for a `wanted` of 0.
     explicit Threads(int wanted = 0);
 
     [[nodiscard]] int count() const { return count_; }
-    /// Does the work with these threads, of which the caller's is one; what it returns.
+    /// Executes the work on these threads, including the caller's, and returns its result.
     template <class Work>
     decltype(auto) execute(Work&& work) const {
         return arena_.execute(work);
@@ -23,8 +23,8 @@ class Threads {
 
   private:
     int count_;
-    // More threads than the processor has take more than an arena. Of several such limits in a program the least holds,
-    // for all of it: none is set for fewer threads, which would hold back whatever else computes.
+    // More threads than the processor has need more than an arena. The smallest of several such limits applies to the
+    // whole program, so none is set for fewer threads: it would slow all other computation.
     std::optional<tbb::global_control> limit_;
     mutable tbb::task_arena arena_;
 };

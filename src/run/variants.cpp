@@ -27,7 +27,7 @@ double particles_of(const Scene& scene) {
 /// What a run costs, in arbitrary units: particles times iterations, over the time step at a speed that debris has.
 double effort_of(const Scene& scene) {
     constexpr double usual_speed = 10;         // m/s
-    constexpr double beside_iterations = 2.2;  // neighbours, contacts and observing cost as much as so many iterations
+    constexpr double beside_iterations = 2.2;  // cost of neighbours, contacts and observation, in iterations
     const SolverSpec& solver = scene.spec.solver;
     const double adaptive =
         std::min(solver.largest_time_step, solver.displacement_limit * spacing_of(scene) / usual_speed);
@@ -55,7 +55,7 @@ std::vector<std::string> split_values(std::string_view text) {
     return values;
 }
 
-/// The message of an override names the option that users give them with; a variant's were not given so.
+/// Messages about overrides name the command-line option, which is not where a variant's values come from.
 std::string of_variant(const Variant& variant, std::string_view message) {
     constexpr std::string_view option = "--set ";
     if (message.starts_with(option)) return fmt::format("variant {}", message.substr(option.size()));
@@ -179,7 +179,7 @@ SeriesProgress SeriesClock::at(const Progress& now) const {
     const double elapsed = now.real_time_factor > 0 ? now.time / now.real_time_factor : 0;
     double remaining = now.wall_remaining, before = 0, unit = elapsed + remaining;
     if (run_ > 0) {
-        // By now it is known when debris comes to rest.
+        // The time at which debris comes to rest is known by now.
         const double end = std::max(base_end_time_, now.time);
         remaining = now.real_time_factor > 0 ? (end - now.time) / now.real_time_factor : 0;
         unit = base_wall_time_;

@@ -17,7 +17,7 @@ struct Variant {
     std::string name;                    ///< "half the time step", "material.friction_coefficient = 0.3"
     std::vector<std::string> overrides;  ///< "section.key=value", applied after those of the base
     double effort = 1;                   ///< wall time of its run over that of the base, an estimate
-    std::string about{};                 ///< what it stands for and whose it is, of a variant with a name
+    std::string about{};                 ///< what a named variant stands for and its author
 };
 
 /// A variant's run, or why there is none.
@@ -40,33 +40,33 @@ struct SceneSource {
 /// not separate. Errors: no key, no value.
 [[nodiscard]] Result<std::vector<Variant>> variations(std::string_view text);
 
-/// Those that the scene file names.
+/// The named variants of the scene file.
 [[nodiscard]] std::vector<Variant> named_variants(const SceneSpec& scene);
 
-/// Loads every variant once, so that what cannot run is refused before hours of the base's run, and fills in `effort`.
-/// Errors: as of load_scene, and more particles than the limit.
+/// Loads every variant once, so that an invalid one is refused before a long run of the base, and fills in `effort`.
+/// Errors: as load_scene, and more particles than the limit.
 [[nodiscard]] Result<std::vector<Variant>> prepare_variants(const SceneSource& source, const Scene& base,
                                                             std::vector<Variant> variants);
 
-/// Loads and runs one. Nothing that goes wrong is an error: it is said in `missing`.
+/// Loads and runs one. A failure is not an error: `missing` gives the reason.
 [[nodiscard]] VariantRun run_variant(const SceneSource& source, const Variant& variant, const RunOptions& options);
 
-/// How far the base and its variants are together.
+/// Progress of the base and its variants together.
 struct SeriesProgress {
-    std::size_t run, count;  ///< which run goes on, from 1 (the base), and how many there are
+    std::size_t run, count;  ///< the current run, from 1 (the base), and their number
     std::string_view name;   ///< of the variant; "as given" for the base
     double share_done;       ///< 0 to 1, of all runs
     double wall_remaining;   ///< s, of all runs, an estimate
 };
 
-/// Estimates how long the base and its variants take together.
+/// Estimates the total time of the base and its variants.
 class SeriesClock {
   public:
     explicit SeriesClock(std::vector<Variant> variants) : variants_(std::move(variants)) {}
 
-    /// `now`: of the run going on.
+    /// `now`: of the current run.
     [[nodiscard]] SeriesProgress at(const Progress& now) const;
-    /// The run going on has ended: the next begins.
+    /// Call when the current run has ended and the next begins.
     void base_ended(const RunResult& result);
     void variant_ended();
 

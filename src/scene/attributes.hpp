@@ -15,8 +15,8 @@ struct LengthAttribute {
     double most;       ///< m
 };
 
-/// The attribute of a feature, also from a text column that holds a number, m. Errors: no such attribute (names those
-/// that there are), no number, not above 0 to `most`.
+/// The attribute of a feature, also from a text column that holds a number, m. Errors: no such attribute (lists the
+/// existing ones), not a number, not above 0 to `most`.
 [[nodiscard]] Result<double> read_length(const std::string& file, const PolygonLayer& layer, std::size_t feature,
                                          const LengthAttribute& attribute);
 

@@ -16,7 +16,7 @@ BedMaterial material_of(const BedSpec& spec) {
             spec.erosion_depth_per_shear};
 }
 
-/// `depth_at`: m at a world plan position; there is nothing where it is not above 0.
+/// `depth_at`: m at a world plan position; no layer where it is not above 0.
 template <class DepthAt, class Visit>
 void visit_cells(const Terrain& terrain, const Extent& extent, const DepthAt& depth_at, const Visit& visit) {
     const Grid<float>& elevation = terrain.elevation();

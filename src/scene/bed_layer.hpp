@@ -13,7 +13,7 @@
 
 namespace talus {
 
-/// Loose material of one kind and where it lies.
+/// A layer of loose material and its extent.
 struct BedLayer {
     struct Part {
         Polygon polygon;   ///< world
@@ -21,11 +21,11 @@ struct BedLayer {
         bool operator==(const Part&) const = default;
     };
     BedSpec spec;
-    std::vector<Part> parts;                          ///< none: wherever the raster is; without one, everywhere
+    std::vector<Part> parts;                          ///< none: the extent of the raster; without a raster, everywhere
     std::shared_ptr<const Grid<float>> depth_raster;  ///< m; nullptr: the depth of the parts, or that of `spec`
 };
 
-/// Calls `visit(cell, depth)` for the cells of known ground whose centre has some of the layer; m, above 0.
+/// Calls `visit(cell, depth)` for the cells of known ground whose centre is on the layer; m, above 0.
 void for_each_cell(const BedLayer& layer, const Terrain& terrain,
                    const std::function<void(std::size_t cell, double depth)>& visit);
 
@@ -34,8 +34,8 @@ struct BedAmount {
 };
 [[nodiscard]] BedAmount amount_of(const BedLayer& layer, const Terrain& terrain);
 
-/// Layers on the cells of the terrain; where several overlap the last one lies there. There are at most
-/// Bed::most_materials. Empty without layers: then they cost nothing.
+/// Layers on the cells of the terrain; where several overlap the last one applies. There may be at most
+/// Bed::most_materials. Empty, and free of cost, without layers.
 [[nodiscard]] Bed lay_bed(const std::vector<BedLayer>& layers, const Terrain& terrain);
 
 }  // namespace talus

@@ -13,15 +13,15 @@ namespace talus {
 /// Name of the scene that the program carries inside itself: scenes/<name> of the sources.
 inline constexpr std::string_view builtin_scene_name = "sham_tseng";
 
-/// Writes the files of the built-in scene into `folder`, which is made if absent, and returns its scene file.
-/// Files of the same name are replaced. Errors: the folder cannot be made, a file cannot be written.
+/// Writes the files of the built-in scene into `folder`, which is created if absent, and returns its scene file. Files
+/// of the same name are replaced. Errors: the folder cannot be created, a file cannot be written.
 [[nodiscard]] Result<std::filesystem::path> unpack_builtin_scene(const std::filesystem::path& folder);
 
 /// Names all files of a scene that was loaded from `folder` "built-in:sham_tseng/...": paths into a temporary folder
 /// would mean nothing to the reader of a manifest or a journal.
 void name_builtin_files(Scene& scene, const std::filesystem::path& folder);
 
-/// The built-in scene, unpacked into `folder`, which is no longer needed then, with its files so named.
+/// The built-in scene, unpacked into `folder`, which is not needed afterwards, with its files named as above.
 [[nodiscard]] Result<Scene> load_builtin_scene(const std::filesystem::path& folder,
                                                const std::vector<std::string>& overrides = {});
 

@@ -26,7 +26,7 @@ Result<std::string> expand_environment(const std::string& text) {
     }
 }
 
-/// GDAL also opens names that are no path, such as NETCDF:"file.nc":band.
+/// GDAL also opens names that are not paths, such as NETCDF:"file.nc":band.
 bool is_driver_name(const std::string& text) {
     const std::size_t colon = text.find(':');
     return colon != std::string::npos && colon >= 2 &&

@@ -48,7 +48,7 @@ Result<std::vector<InflowSample>> read_hydrograph(const InflowSpec& inflow) {
     std::getline(in, line);
     const std::vector<std::string> header = fields_of(line.substr(0, 1000));
     const Section& table = live_section("hydrograph");
-    std::vector<std::pair<const Parameter*, std::size_t>> columns;  // and its place in a line
+    std::vector<std::pair<const Parameter*, std::size_t>> columns;  // and its position in a line
     for (const Parameter& column : table.parameters) {
         const auto found = std::find(header.begin(), header.end(), column.key);
         if (found != header.end()) {

@@ -6,37 +6,37 @@
 #include "scene/parse.hpp"
 #include "scene/scene.hpp"
 
-/// The parts of load_scene. Each adds what it did to the inputs to the scene's notes.
+/// The parts of load_scene. Each adds its changes of the inputs to the scene's notes.
 namespace talus {
 
-/// Everything that the parsed scene names, loaded and checked.
+/// Loads and checks everything that the parsed scene names.
 [[nodiscard]] Result<Scene> assemble_scene(const ParsedScene& parsed);
 
-/// Fills scene.terrain and what its file says of it.
+/// Fills scene.terrain and the data about its file.
 [[nodiscard]] Status load_terrain(const ParsedScene& parsed, Scene& scene);
 
-/// Fills scene.zones and what follows from them. The terrain is loaded.
+/// Fills scene.zones and the values derived from them. The terrain must be loaded.
 [[nodiscard]] Status load_zones(const ParsedScene& parsed, Scene& scene);
 
-/// Fills scene.releases. The terrain is loaded.
+/// Fills scene.releases. The terrain must be loaded.
 [[nodiscard]] Status load_releases(const ParsedScene& parsed, Scene& scene);
 
-/// Fills scene.bed_layers and scene.bed. The terrain is loaded.
+/// Fills scene.bed_layers and scene.bed. The terrain must be loaded.
 [[nodiscard]] Status load_bed(const ParsedScene& parsed, Scene& scene);
 
-/// Fills scene.buildings. The terrain and the releases are loaded.
+/// Fills scene.buildings. The terrain and the releases must be loaded.
 [[nodiscard]] Status load_buildings(const ParsedScene& parsed, Scene& scene);
 
-/// Fills scene.inflows. The terrain is loaded.
+/// Fills scene.inflows. The terrain must be loaded.
 [[nodiscard]] Status load_inflows(const ParsedScene& parsed, Scene& scene);
 
-/// Adds the barriers to scene.buildings. Terrain, releases and buildings are loaded.
+/// Adds the barriers to scene.buildings. Terrain, releases and buildings must be loaded.
 [[nodiscard]] Status load_barriers(const ParsedScene& parsed, Scene& scene);
 
-/// Plan area of a building on a release, m2; touching outlines count nothing.
+/// Plan area of a building on a release, m2; touching outlines do not count.
 [[nodiscard]] double shared_area(const Release& release, const Building& building);
 
-/// Fills scene.flow_path from its file, or traced. The terrain and the releases are loaded.
+/// Fills scene.flow_path from its file, or by tracing. The terrain and the releases must be loaded.
 [[nodiscard]] Status load_flow_path(const ParsedScene& parsed, Scene& scene);
 
 /// Checks what was observed against terrain, flow path and buildings, and fills scene.deposit_outlines, affected_areas and elevation_changes. All of these
@@ -52,7 +52,7 @@ void record_input(const std::string& role, const std::string& path, Scene& scene
 /// "x 822497.5 to 826497.5, y 823997.5 to 828497.5".
 [[nodiscard]] std::string extent_text(const Extent& extent);
 
-/// Where ground is known at best: the hull of the cell centres.
+/// The largest area of known ground: the hull of the cell centres.
 [[nodiscard]] Extent covered_extent(const Terrain& terrain);
 
 }  // namespace talus

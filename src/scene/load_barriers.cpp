@@ -34,7 +34,7 @@ Status read_line_of(const ParsedScene& parsed, std::size_t index, Scene& scene, 
     return {};
 }
 
-/// Names are what openings go by.
+/// Openings refer to barriers by name.
 Status check_names(const ParsedScene& parsed, const Scene& scene, std::size_t first) {
     for (std::size_t k = first; k < scene.buildings.size(); ++k) {
         for (std::size_t other = first; other < k; ++other) {

@@ -16,7 +16,7 @@
 namespace talus {
 namespace {
 
-/// m, of any building.
+/// Maximum height of any building, m.
 double highest_building() {
     return parameter_of("buildings", "default_height_m").range.high;
 }
@@ -60,7 +60,7 @@ std::string name_of(const PolygonFeature& feature, const std::string& attribute,
     return fmt::format("building {}", number);
 }
 
-/// A building whose ground fails is no obstacle to the debris: it goes with it.
+/// A building whose ground fails is no obstacle: it moves with the debris.
 void leave_out_buildings_on_releases(Scene& scene) {
     std::erase_if(scene.buildings, [&](const Building& building) {
         for (const Release& release : scene.releases) {
@@ -107,7 +107,7 @@ Status load_mesh_buildings(const ParsedScene& parsed, Scene& scene, std::size_t&
         PolygonFeature plan;
         Building building;
         static_cast<BuildingSpec&>(building) = spec;
-        building.height = 0;  // of the ground, until that is known
+        building.height = 0;  // relative to the ground, until that is known
         double highest = -std::numeric_limits<double>::infinity();
         for (const RoofFace& roof : mesh.roofs) {
             plan.parts.push_back(roof.outline);

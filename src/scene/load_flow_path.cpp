@@ -15,7 +15,7 @@ double distance(const PlanPoint& a, const PlanPoint& b) {
     return std::hypot(b.x - a.x, b.y - a.y);
 }
 
-/// Without points that repeat the one before.
+/// Removes points that repeat the previous one.
 std::vector<PlanPoint> distinct(const std::vector<PlanPoint>& points) {
     std::vector<PlanPoint> out;
     for (const PlanPoint& p : points) {
@@ -53,7 +53,7 @@ void note_far_releases(Scene& scene, const std::vector<PlanPoint>& line) {
     }
 }
 
-/// Highest and lowest ground of where debris starts.
+/// Highest and lowest ground of the source area.
 struct ReleaseRelief {
     PlanPoint crown, lowest;
 };
@@ -84,7 +84,7 @@ ReleaseRelief relief_of(const std::vector<Polygon>& parts, const Terrain& terrai
     return relief;
 }
 
-/// What is traced from, and where it begins.
+/// The source from which the path is traced, and its start.
 struct Source {
     std::string label;
     PlanPoint crown, lowest;
@@ -116,7 +116,7 @@ Status trace_from_release(const ParsedScene& parsed, Scene& scene) {
     const double longest = 2 * std::hypot(extent.width(), extent.height());
     const Result<std::vector<PlanPoint>> traced = trace_flow_path(scene.terrain.elevation(), relief.lowest, longest);
     if (!traced) return Error{parsed.file.string() + ": " + traced.error().message};
-    // Chainage starts at the crown: the straight way through the release comes first.
+    // Chainage starts at the crown: it starts with a straight line through the release.
     std::vector<PlanPoint> points{relief.crown, relief.lowest};
     points.insert(points.end(), traced->begin(), traced->end());
     points = distinct(points);

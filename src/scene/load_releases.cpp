@@ -15,7 +15,7 @@
 namespace talus {
 namespace {
 
-/// m, of any release.
+/// Maximum thickness of any release, m.
 double thickest() {
     return parameter_of("release", "thickness_m").range.high;
 }
@@ -46,7 +46,7 @@ Status check_covered(const Polygon& polygon, const std::string& label, const Sce
                                                        : "redraw the release or use a larger terrain")};
 }
 
-/// The raster must hold thickness somewhere on the patches; what it lacks is noted.
+/// The raster must hold thickness somewhere on the patches; missing parts are noted.
 Status check_thickness_raster(const ReleaseSpec& spec, const std::string& label, const Release& release, Scene& scene) {
     std::size_t points = 0, with_thickness = 0;
     double thickest_here = 0;
@@ -75,7 +75,7 @@ Status check_thickness_raster(const ReleaseSpec& spec, const std::string& label,
     return {};
 }
 
-/// Sets the uniform thickness that makes the target volume.
+/// Sets the uniform thickness that gives the target volume.
 Status spread_volume(const ReleaseSpec& spec, const std::string& label, Release& release, Scene& scene) {
     const double slope_area = release_volume(scene.terrain, release);  // the patches are 1 m thick so far
     const double thickness = slope_area > 0 ? *spec.volume / slope_area : 0;
@@ -91,7 +91,7 @@ Status spread_volume(const ReleaseSpec& spec, const std::string& label, Release&
     return {};
 }
 
-/// Downhill in plan, on average under the patches. Errors: the ground is level.
+/// Mean downhill direction in plan under the patches. Errors: the ground is level.
 Result<PlanPoint> downhill(const Release& release, const Terrain& terrain) {
     const double h = terrain.cell();
     double east = 0, north = 0, points = 0;  // rises per metre, summed up
@@ -120,7 +120,7 @@ void move(Polygon& polygon, const PlanPoint& by) {
     for (Ring& hole : polygon.holes) move_ring(hole);
 }
 
-/// Moves the patches along and across the slope. What they were moved by.
+/// Moves the patches along and across the slope; returns the displacement.
 Result<PlanPoint> shift(const ReleaseSpec& spec, const std::string& label, Release& release, Scene& scene) {
     if (spec.shift_along == 0 && spec.shift_across == 0) return PlanPoint{0, 0};
     TALUS_ASSIGN(const PlanPoint down, downhill(release, scene.terrain));
@@ -134,7 +134,7 @@ Result<PlanPoint> shift(const ReleaseSpec& spec, const std::string& label, Relea
     return by;
 }
 
-/// What the release comes to, beside what its raster holds.
+/// Notes the volume of the release next to that of its raster.
 void note_raster_volume(const std::string& label, const Release& release, Scene& scene) {
     const Grid<float>& raster = *release.thickness_raster;
     double sum = 0;

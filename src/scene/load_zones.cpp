@@ -59,7 +59,7 @@ const Parameter& key_of(ZoneRaster raster) {
         "zone", raster == ZoneRaster::friction_coefficient ? "friction_coefficient" : "turbulent_friction_mps2");
 }
 
-/// The cells of the terrain that the raster says, with its values. Errors: a coefficient out of range.
+/// The cells of the terrain that the raster covers, with its values. Errors: a coefficient out of range.
 Result<ZoneCells> read_cells(const ZoneSpec& spec, const Grid<float>& raster, const GridGeometry& terrain) {
     ZoneCells cells;
     const GridGeometry& from = raster.geometry;

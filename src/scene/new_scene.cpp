@@ -19,7 +19,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Lower than the travel angles of observed hillslope and channelised debris flows: what stays outside is not reached.
+/// Lower than the travel angles of observed hillslope and channelised debris flows: the ground outside is not reached.
 constexpr double travel_angle_deg = 11;
 constexpr double assumed_thickness = 2;  // m
 
@@ -28,7 +28,8 @@ std::string absolute_name(const fs::path& file) {
     return fs::absolute(file).lexically_normal().string();
 }
 
-/// How a scene in `folder` names the file. Symbolic links are followed, or ".." would lead elsewhere.
+/// The path of the file as a scene in `folder` names it. Symbolic links are resolved, otherwise ".." would lead
+/// elsewhere.
 std::string name_from(const fs::path& folder, const std::string& file) {
     if (file.empty() || file.rfind("/vsi", 0) == 0) return file;
     std::error_code code;

@@ -9,7 +9,7 @@
 
 namespace talus {
 
-/// What `talus scene new` is given. At most one of thickness and volume; neither: an attribute of the polygons named
+/// Arguments of `talus scene new`. At most one of thickness and volume; neither: an attribute of the polygons named
 /// thickness_m or thickness, otherwise 2 m, which the scene then lists as an assumption.
 struct NewSceneOptions {
     std::filesystem::path dem;
@@ -23,12 +23,12 @@ struct NewSceneOptions {
 
 struct NewScene {
     std::filesystem::path file;      ///< FOLDER/scene.toml
-    std::vector<std::string> notes;  ///< what was chosen, assumed and done to the inputs
+    std::vector<std::string> notes;  ///< choices, assumptions and changes of the inputs
 };
 
 /// Loads and checks the inputs, chooses the extent (where debris could run, see reach.hpp) and writes a commented scene
-/// that names the inputs relative to the new folder. Errors: as load_scene, folder already there, cannot be written;
-/// nothing is left behind then.
+/// that names the inputs relative to the new folder. Errors: as load_scene, folder exists, cannot be written; then
+/// nothing remains.
 [[nodiscard]] Result<NewScene> write_new_scene(const NewSceneOptions& options);
 
 }  // namespace talus

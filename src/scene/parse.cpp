@@ -17,7 +17,7 @@ std::string header_of(const Section& section) {
     return section.repeats ? "[[" + section.name + "]]" : "[" + section.name + "]";
 }
 
-/// Where the key belongs, or the nearest one of the section.
+/// The section the key belongs to, or the nearest key of this section.
 std::string unknown_key(const Section& section, std::string_view key) {
     const std::string start = fmt::format("unknown key \"{}\" in {}; ", one_line(key, 80), header_of(section));
     std::vector<std::string> keys;
@@ -55,7 +55,7 @@ class SceneReader {
         return {};
     }
 
-    /// What every variant sets is there and allowed, whether it is run or not.
+    /// Checks the keys and values of every variant, whether it is run or not.
     [[nodiscard]] Status check_variants() const {
         for (std::size_t i = 0; i < scene_.spec.variants.size(); ++i) {
             SceneReader tried(*this);

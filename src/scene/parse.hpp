@@ -11,7 +11,7 @@
 
 namespace talus {
 
-/// A scene's values and where each was given, for messages that come up later than parsing.
+/// A scene's values and the place where each was given, for messages after parsing.
 struct ParsedScene {
     std::filesystem::path file;
     SceneSpec spec;
@@ -25,7 +25,7 @@ struct ParsedScene {
 [[nodiscard]] Result<ParsedScene> parse_scene_with_places(const std::filesystem::path& file,
                                                           const std::vector<std::string>& overrides);
 
-/// The rules that tie keys to each other; those of the particle spacing, m, where it is not 0.
+/// Checks the rules between keys; those that depend on the particle spacing, m, where it is not 0.
 [[nodiscard]] Status check_rules(const ParsedScene& scene, double particle_spacing);
 
 /// Checks the rules, makes paths absolute and expands `${NAME}` in them.

@@ -18,7 +18,7 @@ constexpr std::size_t most_samples = 250'000;
 
 // Soil-covered hillsides stand at 25 to 40 degrees, and only cliffs at more than 55.
 constexpr double steepest_median = 42, steepest_tenth = 58, steepest_release = 50;  // degrees
-/// How far a cell lies off the mean of its neighbours, in cells: 0.3 is a kink of 33 degrees at every tenth cell.
+/// Deviation of a cell from the mean of its neighbours, in cells: 0.3 is a kink of 33 degrees at every tenth cell.
 constexpr double roughest_tenth = 0.3;
 
 struct Relief {

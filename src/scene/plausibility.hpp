@@ -4,11 +4,11 @@
 
 namespace talus {
 
-/// Notes a terrain whose slopes, relief or roughness no natural ground has, as where its elevations are in feet and its
-/// plan in metres, and asks. The releases are loaded.
+/// Adds a note about a terrain whose slopes, relief or roughness are implausible for natural ground, for example with
+/// elevations in feet and plan coordinates in metres. The releases must be loaded.
 void note_implausible_terrain(Scene& scene);
 
-/// Notes releases that are so thin that particles of the scene's spacing cannot flow in them as layers do.
+/// Adds a note about releases too thin to be resolved by several layers of particles.
 void note_coarse_particles(Scene& scene);
 
 }  // namespace talus

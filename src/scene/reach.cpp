@@ -31,7 +31,7 @@ Extent reachable_extent(const Terrain& terrain, const std::vector<Release>& rele
     const Grid<float>& elevation = terrain.elevation();
     const GridGeometry& g = elevation.geometry;
     const double loss = std::tan(travel_angle) * g.cell;
-    // Dijkstra with the highest energy line first: a cell's first visit is by the way that loses least.
+    // Dijkstra with the highest energy line first: the first visit of a cell is by the path with the smallest loss.
     Grid<float> energy(g, -std::numeric_limits<float>::infinity());
     std::priority_queue<std::pair<float, std::size_t>> open;
     const auto offer = [&](int column, int row, double level) {

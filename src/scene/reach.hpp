@@ -8,9 +8,9 @@
 
 namespace talus {
 
-/// The ground that debris could get to: cells that stay below an energy line which falls by `tan(travel_angle)` per
-/// metre of the shortest way from the release (the energy-line method of Heim 1932, with the way taken over reachable
-/// cells instead of straight). `travel_angle` in radians. Returns the extent of those cells in world coordinates.
+/// The ground that debris could reach: cells that stay below an energy line which falls by `tan(travel_angle)` per
+/// metre of the shortest path from the release (the energy-line method of Heim 1932, with the path over reachable cells
+/// instead of a straight line). `travel_angle` in radians. Returns the extent of those cells in world coordinates.
 [[nodiscard]] Extent reachable_extent(const Terrain& terrain, const std::vector<Release>& releases,
                                       double travel_angle);
 

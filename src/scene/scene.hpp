@@ -29,7 +29,7 @@ struct InputFile {
     std::string hash;  ///< FNV-1a 64, hexadecimal
 };
 
-/// A scene file with all its inputs loaded, checked and brought into the terrain's CRS.
+/// A scene file with all its inputs loaded, checked and transformed to the terrain's CRS.
 struct Scene {
     std::filesystem::path file;
     SceneSpec spec;
@@ -40,7 +40,7 @@ struct Scene {
     Terrain terrain;
     std::vector<Zone> zones;
     GroundCover cover;                   ///< of the zones
-    std::vector<std::uint16_t> zone_at;  ///< by cell of the terrain, for the eye: 1 + the last zone there; 0: none
+    std::vector<std::uint16_t> zone_at;  ///< by cell of the terrain, for display: 1 + the last zone there; 0: none
     std::vector<Release> releases;
     std::vector<BedLayer> bed_layers;
     Bed bed;  ///< of the layers
@@ -55,7 +55,7 @@ struct Scene {
     std::vector<std::string> notes;  ///< what was done to the inputs: reprojections, defaults, traced path
 };
 
-/// What all releases and inflows bring, m3.
+/// Total volume of all releases and inflows, m3.
 [[nodiscard]] double total_volume(const Scene& scene);
 
 /// Reads a scene file, its values checked against the field table; relative paths are resolved against its folder,

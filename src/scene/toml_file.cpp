@@ -85,7 +85,8 @@ std::optional<ParameterValue> to_parameter_value(const toml::node& node, Paramet
             return std::nullopt;
         case ParameterKind::integer: {
             if (const auto value = node.value_exact<std::int64_t>()) return *value;
-            const auto number = node.value_exact<double>();  // 1e6 is a whole number to everybody but TOML
+            const auto number = node.value_exact<double>();  // users write 1e6 for a whole number; TOML calls it a
+                                                             // float
             if (number && std::abs(*number) < 9e15 && *number == std::floor(*number)) {
                 return static_cast<std::int64_t>(*number);
             }

@@ -9,17 +9,17 @@
 #include "core/result.hpp"
 #include "params/fields.hpp"
 
-/// What every reader of a TOML file of the project needs.
+/// Shared by all readers of TOML files.
 namespace talus {
 
-/// Reads a whole file; `what` it is goes into the messages ("scene"). Errors: not there, a folder, too large, not
-/// UTF-8, not TOML (with the line).
+/// Reads a whole file; messages call it `what` ("scene"). Errors: missing, a folder, too large, not UTF-8, not TOML
+/// (with the line).
 [[nodiscard]] Result<toml::table> read_toml_file(const std::filesystem::path& file, const std::string& what);
 
 /// The node as written, in one line, cut where it is long.
 [[nodiscard]] std::string toml_text_of(const toml::node& node);
 
-/// The node as a value of the parameter's kind; nothing if it is of another kind.
+/// The node as a value of the parameter's kind; empty if it is of another kind.
 [[nodiscard]] std::optional<ParameterValue> to_parameter_value(const toml::node& node, ParameterKind kind);
 
 }  // namespace talus

@@ -4,7 +4,7 @@
 
 #include "params/fields.hpp"
 
-/// What a step smooths beyond the whole difference between neighbours would drive them apart.
+/// Smoothing more than the whole velocity difference in one step would drive neighbours apart.
 namespace talus {
 
 /// The highest material.viscosity that the solver's longest step allows.

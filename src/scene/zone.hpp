@@ -14,13 +14,13 @@
 
 namespace talus {
 
-/// What a raster says of a zone, on the cells of the terrain.
+/// The raster of a zone on the cells of the terrain.
 struct ZoneCells {
     std::vector<std::size_t> cell;  ///< index into the terrain's grid
     std::vector<float> value;       ///< of the raster there; see ZoneSpec::raster_holds
 };
 
-/// Ground that resists in its own way.
+/// Ground with its own resistance.
 struct Zone {
     ZoneSpec spec;
     std::vector<Polygon> outline;            ///< world; of a zone without cells
@@ -35,13 +35,13 @@ void for_each_cell(const Zone& zone, const GridGeometry& terrain,
 /// Plan area of a zone's cells, m2.
 [[nodiscard]] double area_of(const Zone& zone, const GridGeometry& terrain);
 
-/// Zones on the cells of the terrain. Where they lie over each other, what the later one says goes before.
+/// Zones on the cells of the terrain. Where they overlap, the values of the later one apply.
 struct LaidZones {
     GroundCover cover;
     std::vector<std::uint16_t> zone_at;  ///< by cell of the terrain: 1 + the last zone there; 0: none
 };
 
-/// Empty without zones: then they cost nothing.
+/// Empty, and free of cost, without zones.
 [[nodiscard]] LaidZones lay_zones(const std::vector<Zone>& zones, const Terrain& terrain);
 
 }  // namespace talus

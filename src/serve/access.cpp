@@ -20,7 +20,7 @@ std::string lower_case(std::string_view text) {
     return lower;
 }
 
-/// Every byte is looked at, so that the time says nothing of where the first difference is.
+/// Compares every byte, so that the time does not reveal where the first difference is.
 bool same(std::string_view given, std::string_view secret) {
     unsigned difference = given.size() == secret.size() ? 0 : 1;
     for (std::size_t i = 0; i < secret.size(); ++i) {
@@ -85,7 +85,7 @@ Access::Access(Tokens tokens, const std::string& bound, std::uint16_t port, cons
     for (const std::string& name : allowed) {
         if (name.empty()) continue;
         add(name);
-        // A server in front of this one listens where browsers leave out the port.
+        // A reverse proxy listens on a port that browsers omit.
         if (!has_port(name)) hosts_.push_back(lower_case(name));
     }
 }

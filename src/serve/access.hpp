@@ -17,20 +17,19 @@ struct Tokens {
 /// 128 bits from the operating system, as 32 hexadecimal digits. Error: it gave none.
 [[nodiscard]] Result<std::string> random_token();
 
-/// Error where a token that somebody has chosen is short, has other characters than A-Z a-z 0-9 _ - . ~, or both are
-/// the same.
+/// Error if a chosen token is too short, has other characters than A-Z a-z 0-9 _ - . ~, or both are the same.
 [[nodiscard]] Status check_tokens(const Tokens& tokens);
 
-/// Who may talk to the server. Host names are held against a list: an origin that equals the host says nothing, as any
-/// name can be made to resolve to this machine.
+/// Access control of the server. Host names are checked against a list: an origin equal to the host proves nothing, as
+/// any name can be made to resolve to this machine.
 class Access {
   public:
     /// `bound`: the address that the server listens on; `allowed`: further names, each with or without a port.
     Access(Tokens tokens, const std::string& bound, std::uint16_t port, const std::vector<std::string>& allowed);
 
-    /// `host`: the header as it came.
+    /// `host`: the header as received.
     [[nodiscard]] bool host_allowed(std::string_view host) const;
-    /// Whether a page of `origin` may ask `host`: its own pages alone.
+    /// Whether a page of `origin` may send requests to `host`: only the server's own pages may.
     [[nodiscard]] bool origin_allowed(std::string_view origin, std::string_view host) const;
     /// Takes as long for a wrong token as for a right one.
     [[nodiscard]] Role role_of(std::string_view token) const;

@@ -8,7 +8,7 @@
 
 namespace talus::serve {
 
-/// The routes of docs/protocol.md. What they are given must outlive them.
+/// The routes of docs/protocol.md. The arguments must outlive them.
 [[nodiscard]] Router make_api(Session& session, Exports& exports, const Ensembles& ensembles,
                               Calibrations& calibrations);
 
@@ -18,14 +18,14 @@ void add_scenario_routes(Router& router, Session& session, Exports& exports);
 void add_ensemble_routes(Router& router, const Ensembles& ensembles);
 void add_calibration_routes(Router& router, Session& session, Calibrations& calibrations);
 
-/// Calls `act` with the name of who asks if that may change something now, and answers why not otherwise.
+/// Calls `act` with the name of the requester if it may make changes now, otherwise answers why not.
 void change(Session& session, const Request& request, const Respond& respond,
             const std::function<void(const std::string& by)>& act);
 
 [[nodiscard]] Response no_scenario(const std::string& name);
 [[nodiscard]] Response binary_response(std::string bytes);
 
-/// The number that the query has for `key`; nothing: it is not there. Error: not a number from `low` to `high`.
+/// The number of the query for `key`; empty: absent. Error: not a number from `low` to `high`.
 [[nodiscard]] Result<std::optional<double>> number_of(const Request& request, const char* key, double low, double high);
 
 }  // namespace talus::serve

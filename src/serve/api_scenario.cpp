@@ -20,7 +20,7 @@ void ask(Session& session, const Request& request, const Respond& respond,
     });
 }
 
-/// What is left to do of an answer when the scenario has given what it takes.
+/// The rest of the work on an answer once the scenario has provided the data.
 using Work = std::function<Response()>;
 
 /// Asks the scenario between two steps, and does the work on the worker's thread. An error is a 404.

@@ -23,21 +23,21 @@ int reduced(int count, int factor) {
     return (count + factor - 1) / factor;
 }
 
-/// The whole factor by which columns and rows are thinned so that at most `max_cells` are left.
+/// The whole factor by which columns and rows are thinned so that at most `max_cells` remain.
 int thinning(const GridGeometry& grid, double max_cells) {
     int factor = 1;
     while (static_cast<double>(reduced(grid.columns, factor)) * reduced(grid.rows, factor) > max_cells) ++factor;
     return factor;
 }
 
-/// Of every `factor` x `factor` cells the one in the middle.
+/// The middle one of every `factor` x `factor` cells.
 Grid<float> thinned(const Grid<float>& whole, int factor) {
     const GridGeometry& from = whole.geometry;
     GridGeometry to = from;
     to.cell = from.cell * factor;
     to.columns = reduced(from.columns, factor);
     to.rows = reduced(from.rows, factor);
-    // A value holds at its cell's centre; for an even factor the one taken is half a cell beside the middle.
+    // A value holds at its cell's centre; for an even factor the chosen one is half a cell off the middle.
     const int middle = factor / 2;
     const double shift = (middle + 0.5 - 0.5 * factor) * from.cell;
     to.x_min += shift;
@@ -53,7 +53,7 @@ Grid<float> thinned(const Grid<float>& whole, int factor) {
 }
 
 void add_terrain(Router& router, Session& session) {
-    // By the factor of thinning, so there can be few. Only the worker's thread touches it.
+    // By thinning factor, so there are only a few. Used by the worker's thread only.
     const auto encoded = std::make_shared<std::map<int, Bytes>>();
     router.add(
         {"GET", "/api/terrain", Role::viewer, [&session, encoded](const Request& request, const Respond& respond) {
@@ -79,7 +79,7 @@ void add_terrain(Router& router, Session& session) {
 }
 
 void add_orthophoto(Router& router, Session& session) {
-    // Only the worker's thread touches it.
+    // Used by the worker's thread only.
     const auto kept = std::make_shared<Response>();
     router.add({"GET", "/api/orthophoto", Role::viewer, [&session, kept](const Request&, const Respond& respond) {
                     if (session.scene()->spec.terrain.orthophoto.empty()) {

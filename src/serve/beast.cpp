@@ -1,3 +1,3 @@
-// Asio and Beast, compiled once: the other files see declarations alone.
+// Asio and Beast, compiled once: the other files include declarations only.
 #include <boost/asio/impl/src.hpp>
 #include <boost/beast/src.hpp>

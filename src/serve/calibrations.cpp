@@ -27,7 +27,7 @@ constexpr int niceness = 10;  // a tenth of the live run's share where cores are
 constexpr std::chrono::milliseconds tell_every{1000};
 constexpr std::size_t most_parameters = 6;
 
-/// Four digits are more than a colour shows, and make the message a third as long.
+/// Four digits are more than a colour can show, and reduce the message to a third.
 double rounded(double value) {
     if (!(value > 0)) return value;
     const double unit = std::pow(10, std::floor(std::log10(value)) - 3);
@@ -222,12 +222,12 @@ void Calibrations::work(const CalibrationPlan& plan, const std::string& by, cons
         const std::string done = fmt::format("calibration of {} with at most {} runs", names, plan.search.runs);
         respond(json_response(200, {{"done", done}, {"created", nullptr}}));
         ending = calibrate_in(folder, plan, *runs);
-    } catch (const std::exception& error) {  // out of memory here is no reason to end the live run
+    } catch (const std::exception& error) {  // running out of memory here must not end the live run
         ending = {"failed", error.what()};
     }
     std::error_code ignored;
     if (!settings_.keep) fs::remove_all(folder, ignored);
-    end(ending);  // who starts the next one joins this thread with the lock held: nothing here may ask for it again
+    end(ending);  // the caller of the next start joins this thread with the lock held: it must not be locked again here
 }
 
 Calibrations::Ending Calibrations::calibrate_in(const fs::path& path, const CalibrationPlan& plan,

@@ -28,21 +28,21 @@ struct CalibrationSettings {
     bool keep = false;             ///< the folders stay, with tables and report
 };
 
-/// One calibration at a time, on a separate thread of lower priority than the live run. What it
-/// finds stays until the next begins. Functions may be called from any thread.
+/// One calibration at a time, on a separate thread of lower priority than the live run. Its result is kept until the
+/// next one starts. Functions may be called from any thread.
 class Calibrations {
   public:
-    /// `tell` is given describe() when something has changed, from any thread.
+    /// `tell` is called with describe() after every change, from any thread.
     Calibrations(std::shared_ptr<const Scene> scene, CalibrationSettings settings,
                  std::function<void(nlohmann::json)> tell);
     ~Calibrations();
     Calibrations(const Calibrations&) = delete;
     Calibrations& operator=(const Calibrations&) = delete;
 
-    /// Starts one as the body of `POST /api/calibration` says, and answers once it is known whether it can run. Errors
-    /// (400, 409) name key, value and what is allowed.
+    /// Starts one according to the body of `POST /api/calibration`, and answers once it is known whether it can run.
+    /// Errors (400, 409) name key, value and what is allowed.
     void start(const nlohmann::json& wanted, const std::string& by, const Respond& respond);
-    /// The run under way is dropped. Error: none runs.
+    /// The current run is discarded. Error: none is running.
     [[nodiscard]] Status cancel();
     /// Ends the thread; nothing is sent any more.
     void close();
@@ -65,7 +65,7 @@ class Calibrations {
     void take_progress(const CalibrationProgress& now);
     void take_result(const Calibration& made);
     void end(const Ending& ending);
-    /// Under the lock: sends the present state.
+    /// Under the lock: sends the current state.
     void tell_now();
     [[nodiscard]] std::filesystem::path new_folder() const;
 
@@ -74,7 +74,7 @@ class Calibrations {
     const std::vector<ObservedValue> observed_;
     std::function<void(nlohmann::json)> tell_;
     std::atomic<bool> stop_{false};
-    mutable std::mutex mutex_;  // guards what follows
+    mutable std::mutex mutex_;  // guards the following members
     nlohmann::json status_;     // as describe() gives it
     bool busy_ = false, closed_ = false;
     Clock::time_point told_{};

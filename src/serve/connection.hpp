@@ -12,20 +12,20 @@
 #include "serve/session.hpp"
 #include "serve/site.hpp"
 
-/// What the files that speak HTTP and WebSocket share.
+/// Shared by the files for HTTP and WebSocket.
 namespace talus::serve {
 
 namespace asio = boost::asio;
 namespace beast = boost::beast;
 namespace http = boost::beast::http;
 
-/// What a connection needs to answer. One for all; outlives them.
+/// Data that connections need for answers. One for all; outlives them.
 struct ServerContext {
     Access access;
     Router router;
     Session& session;
     Site site;
-    std::chrono::milliseconds patience;  ///< with a connection that is silent, or takes its time for a header
+    std::chrono::milliseconds patience;  ///< timeout of a silent connection, or of one that sends its header slowly
     std::size_t connections = 0;         ///< open ones
     std::size_t people_limit = 0;        ///< WebSockets at once, at most
 };
@@ -37,7 +37,7 @@ using HttpRequest = http::request<http::string_body>;
 /// Serves HTTP on a new connection until it ends or becomes a WebSocket.
 void serve_http(asio::ip::tcp::socket socket, ServerContext& context);
 
-/// Goes on with `request`, which asks for a WebSocket and has passed all checks.
+/// Continues with `request`, which requests a WebSocket and has passed all checks.
 void serve_websocket(beast::tcp_stream stream, HttpRequest request, ServerContext& context, Role role,
                      const std::string& name, const std::string& former);
 

@@ -15,7 +15,7 @@ namespace {
 using nlohmann::json;
 namespace fs = std::filesystem;
 
-/// Why a map of an ensemble cannot lie on this terrain; nothing if it can.
+/// Checks that a map of an ensemble fits this terrain.
 Status check_extent(const fs::path& file, const Extent& map, const Extent& terrain, double cell) {
     const Extent most = terrain.grown(cell);
     if (map.x_min >= most.x_min && map.y_min >= most.y_min && map.x_max <= most.x_max && map.y_max <= most.y_max) {

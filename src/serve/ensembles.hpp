@@ -13,8 +13,8 @@
 
 namespace talus::serve {
 
-/// The maps of finished ensembles of this scene, to lie beside those of the live run. They are read once, so that what
-/// is wrong with a folder is said at the start, and nobody can ask for any other file.
+/// The maps of finished ensembles of this scene, shown in addition to those of the live run. They are read once, so
+/// that a faulty folder is reported at the start, and no other file can be requested.
 class Ensembles {
   public:
     Ensembles() = default;
@@ -31,7 +31,7 @@ class Ensembles {
     struct Map {
         FinishedMap about;
         Bytes grid;
-        double greatest = 0;  // 0: debris came nowhere by that measure
+        double greatest = 0;  // 0: debris reached no cell by that measure
     };
     struct Ensemble {
         FinishedEnsemble about;

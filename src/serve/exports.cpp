@@ -22,7 +22,7 @@ struct ExportFile {
     bool of_erosion = false;  ///< written only if debris picked up anything
 };
 
-// The files of a run; names that are asked for are held against these, so none leads out of the folder.
+// The files of a run; requested names are checked against these, so none leads out of the folder.
 constexpr ExportFile export_files[] = {
     {"report.html", "text/html", "Report with maps, plots and tables, for the browser and for paper"},
     {"results.json", "application/json", "What the report shows, as data: key figures, tables, curves"},
@@ -70,7 +70,7 @@ Response read_file(const fs::path& path, const ExportFile& file) {
 
 }  // namespace
 
-/// A run as it was when somebody asked for files, and where they are. Once made, only the writer's thread touches it.
+/// A run at the time of a request for files, and their folder. Once created, used by the writer's thread only.
 struct Exports::Snapshot {
     std::uint64_t step = 0, revision = 0, hash = 0;
     fs::path folder;
@@ -83,7 +83,7 @@ struct Exports::Snapshot {
         std::error_code error;
         fs::remove_all(folder, error);
     }
-    /// Writes what is not written yet.
+    /// Writes the files that are not written yet.
     [[nodiscard]] Status write() {
         if (!products) return {};
         std::error_code error;
@@ -156,11 +156,11 @@ void Exports::file(const std::string& scenario, const std::string& name, const R
             fresh->step = run.step();
             fresh->revision = run.revision();
             fresh->hash = run.hash();
-            // A new name each time: somebody may still read from the former one.
+            // A new name each time: the previous one may still be in use.
             fresh->folder = folder_ / fmt::format("{}{}", Scenarios::name_of(*index), ++count_);
             fresh->products = run.products();
             std::swap(taken, fresh);
-            writer_->post([former = std::move(fresh)] {});  // its files go with it
+            writer_->post([former = std::move(fresh)] {});  // this removes its files
         }
         writer_->post([taken, wanted, respond] {
             const Status written = taken->write();

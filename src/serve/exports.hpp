@@ -17,7 +17,7 @@ class Exports {
     /// `folder`: an existing one to write into; it is not removed.
     Exports(Session& session, std::filesystem::path folder);
     ~Exports();
-    /// Ends its thread; what it was asked is not answered. The session must have been closed before.
+    /// Ends its thread; pending requests are not answered. The session must have been closed before.
     void close();
     Exports(const Exports&) = delete;
     Exports& operator=(const Exports&) = delete;
@@ -34,7 +34,7 @@ class Exports {
 
     Session& session_;
     std::filesystem::path folder_;
-    std::array<SnapshotPtr, Scenarios::most> taken_;  // the latest; only the loop's thread touches them
+    std::array<SnapshotPtr, Scenarios::most> taken_;  // the latest; used by the loop's thread only
     std::uint64_t count_ = 0;                         // of folders, for their names; likewise
     std::unique_ptr<Worker> writer_ = std::make_unique<Worker>("exports");
 };

@@ -39,7 +39,7 @@ class HttpConnection : public std::enable_shared_from_this<HttpConnection> {
     void on_header(beast::error_code error);
     void read_body();
     void on_error(beast::error_code error);
-    /// The answer to a request that is refused by its header; nothing: go on.
+    /// The answer to a request that is refused by its header; empty: continue.
     std::optional<Response> refusal();
     void handle();
     void upgrade();
@@ -101,7 +101,7 @@ void HttpConnection::on_header(beast::error_code error) {
     request_.method = text_of(message.method_string());
     request_.person = text_of(message["Talus-Person"]);
     if (auto refused = refusal()) {
-        // A body that comes with it is not read.
+        // Its body is not read.
         close_ = close_ || !parser_->is_done() || parser_->chunked() || parser_->content_length().value_or(0) > 0;
         respond(std::move(*refused));
         return;
@@ -189,7 +189,7 @@ void HttpConnection::handle() {
     } else {
         stream_.expires_never();
         request_.body = std::move(parser_->get().body());
-        // The answer may come from another thread, and after the client has gone. That thread lets go of the connection
+        // The answer may come from another thread, and after the client has gone. That thread releases the connection
         // when it answers, so that it always ends on this one.
         const auto held = std::make_shared<std::shared_ptr<HttpConnection>>(shared_from_this());
         route_->handler(request_, [held](Response response) {
@@ -231,7 +231,7 @@ void HttpConnection::give_file() {
     if (packed) message.set(http::field::content_encoding, "gzip");
     message.set(http::field::vary, "Accept-Encoding");
     message.set(http::field::cache_control, file->for_ever ? "public, max-age=31536000, immutable" : "no-cache");
-    // Not every browser takes 'self' to mean the WebSocket too. The host is one of the list.
+    // Not every browser takes 'self' to mean the WebSocket too. The host is in the list.
     message.set(
         "Content-Security-Policy",
         fmt::format("default-src 'self'; script-src 'self'; style-src 'self'; connect-src 'self' ws://{0} wss://{0}; "
@@ -282,7 +282,8 @@ void HttpConnection::on_written(beast::error_code error) {
     }
 }
 
-/// Ends the connection so that the answer gets there: what the client still sends would else make the system drop it.
+/// Closes the connection so that the answer arrives: otherwise data that the client still sends would make the system
+/// discard it.
 void HttpConnection::linger() {
     beast::error_code ignored;
     if (drained_ == 0) {

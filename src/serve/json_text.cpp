@@ -7,7 +7,7 @@
 namespace talus::serve {
 namespace {
 
-/// Brackets that are open at once, at most; looked at before anything is built from the text.
+/// Maximum number of open brackets; checked before the text is parsed.
 int nesting(std::string_view text) {
     int depth = 0, deepest = 0;
     bool quoted = false;

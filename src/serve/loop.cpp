@@ -41,7 +41,7 @@ void Loop::post(Task task) {
 }
 
 void Loop::run() {
-    pthread_setname_np(pthread_self(), "loop");  // as tools that watch threads show it
+    pthread_setname_np(pthread_self(), "loop");  // shown by tools that list threads
     try {
         threads_->execute([this] { work_until_done(); });
     } catch (const std::exception& error) {

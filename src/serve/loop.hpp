@@ -14,19 +14,19 @@
 
 namespace talus::serve {
 
-/// The one thread that touches the scenarios. Others post tasks, which run between two steps, in order; so nothing in
-/// the simulation needs a lock. Sleeps while nothing is due.
+/// The only thread that uses the scenarios. Others post tasks, which run between two steps, in order; so nothing in the
+/// simulation needs a lock. Sleeps while nothing is due.
 class Loop {
   public:
     using Task = std::function<void(Scenarios&)>;
 
     /// Opens the scene as scenario A, paused at time 0. Threads as `solver.thread_count` says. `watcher` is called from
-    /// the loop's thread, `failed` is called there once if memory runs out or the like; nothing runs after that.
+    /// the loop's thread, `failed` is called there once on a failure such as lack of memory; nothing runs after that.
     /// Errors: as twin::Scenario::open.
     [[nodiscard]] static Result<std::unique_ptr<Loop>> start(std::shared_ptr<const Scene> scene,
                                                              twin::ScenarioOptions options, Watcher& watcher,
                                                              std::function<void(std::string)> failed);
-    /// Ends after the step or task that runs; tasks that wait are dropped.
+    /// Ends after the current step or task; waiting tasks are discarded.
     ~Loop();
     Loop(const Loop&) = delete;
     Loop& operator=(const Loop&) = delete;

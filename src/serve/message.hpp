@@ -9,7 +9,7 @@
 
 namespace talus::serve {
 
-/// What a token entitles to. Ordered: each may do what those before it may.
+/// Permissions of a token. Ordered: each includes those before it.
 enum class Role { nobody, viewer, controller };
 
 /// "viewer", "controller", "nobody".
@@ -24,7 +24,7 @@ struct Request {
     Arguments query;       ///< decoded
     Arguments parameters;  ///< the values of {name} in the route's pattern
     std::string body;
-    std::string person;  ///< header Talus-Person: the id that a page got on its WebSocket; empty: a program
+    std::string person;  ///< header Talus-Person: the id that a page received on its WebSocket; empty: a program
     Role role = Role::nobody;
 };
 
@@ -34,7 +34,7 @@ struct Response {
     int status = 200;
     std::string type = "application/json";
     Bytes body;
-    std::string file_name;  ///< what a browser is to save the body as; empty: it is shown
+    std::string file_name;  ///< file name under which a browser saves the body; empty: displayed
     std::string allow;      ///< methods, for status 405
 };
 

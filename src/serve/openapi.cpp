@@ -23,7 +23,7 @@ Schema schema_of(const Parameter& parameter) {
     return schema;
 }
 
-/// Calls f(parameter) for what people can change in the section while a run goes on.
+/// Calls f(parameter) for the live parameters of the section.
 template <class F>
 void for_each_live(const std::string& section, const F& f) {
     for (const Parameter& parameter : live_section(section).parameters) {

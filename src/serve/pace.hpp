@@ -11,13 +11,13 @@ using Clock = std::chrono::steady_clock;
 /// Says when the next step is due so that simulated time passes `factor` times as fast as wall time.
 class Pace {
   public:
-    /// Nothing: as fast as it goes.
+    /// Empty: as fast as possible.
     void set_factor(std::optional<double> factor);
     [[nodiscard]] std::optional<double> factor() const { return factor_; }
-    /// From now on, whatever was before.
+    /// Starts again from now, regardless of the past.
     void restart() { anchored_ = false; }
-    /// Wall time at which the step from simulated `time`, s, is due. Steps that take longer than they should do not
-    /// pile up a debt that would be run off later.
+    /// Wall time at which the step from simulated `time`, s, is due. Slow steps do not accumulate a delay that would be
+    /// caught up later.
     [[nodiscard]] Clock::time_point due(double time, Clock::time_point now);
 
   private:

@@ -80,7 +80,7 @@ void People::set_mark(const std::string& id, std::optional<std::array<double, 3>
     if (Member* who = member(id)) who->mark = mark;
 }
 
-/// To whom asks, else to the controller who has been here longest, else to nobody.
+/// To the requester, otherwise to the controller present for the longest time, otherwise to nobody.
 void People::pass_control() {
     const std::string former = holder_;
     holder_.clear();

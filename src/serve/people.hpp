@@ -17,7 +17,7 @@ struct Person {
     std::string id, name, colour;
     Role role = Role::viewer;
     std::optional<std::array<double, 3>> mark;  ///< what the person points at, local position, m
-    bool away = false;                          ///< the connection has gone; comes back or is forgotten
+    bool away = false;                          ///< the connection is lost; the person comes back or is removed
 };
 
 /// Who is in the session, and which controller has control. Does not depend on connections; time is an argument.
@@ -26,25 +26,25 @@ class People {
     using Time = std::chrono::steady_clock::time_point;
     /// How long the holder of control may leave a request unanswered.
     static constexpr std::chrono::seconds answer_time{10};
-    /// How long a person whose connection broke keeps place and control, unless somebody asks for it.
+    /// Time for which a person whose connection broke keeps place and control, unless it is requested.
     static constexpr std::chrono::seconds return_time{3};
 
-    /// `former`: the id that a connection had before it broke; empty or unknown: somebody new. The first controller
-    /// has control.
+    /// `former`: the id that a connection had before it broke; empty or unknown: a new person. The first controller has
+    /// control.
     const Person& join(Role role, const std::string& name, const std::string& former, Time now);
     void leave(const std::string& id, Time now);
     void rename(const std::string& id, const std::string& name);
     void set_mark(const std::string& id, std::optional<std::array<double, 3>> mark);
 
-    /// `what`: request, release, grant or decline. Errors: no such person or not a controller, not the holder, nothing
-    /// asked, somebody else asks.
+    /// `what`: request, release, grant or decline. Errors: no such person or not a controller, not the holder, no
+    /// request, another request is open.
     [[nodiscard]] Status control(const std::string& what, const std::string& id, Time now);
     /// Whether `id` (empty: a program without a WebSocket) may change something now. The error says who has control.
     [[nodiscard]] Status may_act(const std::string& id) const;
 
-    /// Applies what the passing of time decides. True: something has changed.
+    /// Applies changes that are due with time. True: something has changed.
     bool tick(Time now);
-    /// Whether there is something that time will decide.
+    /// Whether a change is pending that becomes due with time.
     [[nodiscard]] bool waiting() const;
 
     [[nodiscard]] const Person* find(const std::string& id) const;

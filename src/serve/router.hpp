@@ -14,11 +14,11 @@ using Handler = std::function<void(const Request&, const Respond&)>;
 struct Route {
     std::string method;
     std::string pattern;        ///< "/api/scenarios/{s}/state"
-    Role needs = Role::viewer;  ///< nobody: no token asked
-    Handler handler;            ///< called on the server's thread; must not wait
+    Role needs = Role::viewer;  ///< nobody: no token required
+    Handler handler;            ///< called on the server's thread; must not block
 };
 
-/// The table of what can be asked.
+/// The table of routes.
 class Router {
   public:
     void add(Route route) { routes_.push_back(std::move(route)); }
@@ -29,7 +29,7 @@ class Router {
         Arguments parameters;
         std::string allow;  ///< where there is no route: the methods that the path has; empty: no such path
     };
-    /// HEAD finds what GET finds.
+    /// HEAD finds the same as GET.
     [[nodiscard]] Match find(std::string_view method, std::string_view path) const;
 
   private:

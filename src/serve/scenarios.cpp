@@ -113,7 +113,7 @@ Result<twin::Done> Scenarios::steer(const std::string& name, const json& action)
         return done;
     }
     if (furthest_behind() == nullptr) {
-        // At rest, debris may move again when something changes; to have been told to run is remembered then.
+        // At rest, debris may move again when something changes; the request to run is then kept.
         const bool can_come = std::any_of(slots_.begin(), slots_.end(), [](const Slot& slot) {
             return slot.scenario && slot.scenario->phase() == RunPhase::at_rest;
         });
@@ -145,7 +145,7 @@ Result<twin::Done> Scenarios::act(int index, const json& action, const std::stri
     const bool nothing_steps = furthest_behind() == nullptr;
     auto done = slot.scenario->apply(action, by);
     if (!done) return done;
-    // Who restarts a run that has ended looks at its beginning first.
+    // After the restart of a run that has ended, its initial state is shown first.
     if (name == "restart" && nothing_steps) running_ = false;
     pace_.restart();
     slot.rate.restart();
@@ -206,7 +206,7 @@ void Scenarios::set_audience(const std::vector<Audience>& audience) {
         slot.audience = static_cast<std::size_t>(i) < audience.size() ? audience[i] : Audience();
         if (slot.audience.caps.empty()) continue;
         slot.frame_wanted = true;
-        slot.next_frame = {};  // somebody has just begun to look
+        slot.next_frame = {};  // a viewer has just joined
     }
 }
 
@@ -263,7 +263,7 @@ std::optional<Clock::time_point> Scenarios::work(Clock::time_point now) {
             advance(*behind);
             now = Clock::now();
             behind->rate.count(behind->scenario->time() - before, now);
-            // Those who look are told at once that, and why, it goes no further.
+            // Viewers are told immediately that, and why, the run does not continue.
             if (!behind->ready()) want_all();
             stepped = true;
         } else {

@@ -16,10 +16,10 @@
 
 namespace talus::serve {
 
-/// What those who look at a scenario want to see.
+/// Requests of the viewers of a scenario.
 struct Audience {
     double rate_hz = 0;          ///< the highest wanted
-    std::vector<unsigned> caps;  ///< most particles in a frame; a frame is made for each; empty: nobody looks
+    std::vector<unsigned> caps;  ///< maximum particles in a frame; a frame is made for each; empty: no viewer
     friend bool operator==(const Audience&, const Audience&) = default;
 };
 
@@ -29,7 +29,7 @@ struct FrameSet {
     std::vector<std::pair<unsigned, twin::FramePtr>> frames;
 };
 
-/// Is notified of changes of the scenarios; on the thread that owns them.
+/// Notified of changes of the scenarios, on the thread that owns them.
 class Watcher {
   public:
     virtual ~Watcher() = default;
@@ -41,8 +41,8 @@ class Watcher {
 };
 
 /// The scenarios of a session, at most two, and the clock that they share: run, pause, step and speed are for both, and
-/// the one that is behind in simulated time steps first. Knows no threads: `work` is called when it said so, and after
-/// anything else here was called.
+/// the one that is behind in simulated time steps first. Independent of threads: `work` must be called when it is due,
+/// and after any other call.
 class Scenarios {
   public:
     static constexpr int most = 2;
@@ -52,34 +52,34 @@ class Scenarios {
 
     Scenarios(std::unique_ptr<twin::Scenario> first, Watcher& watcher);
 
-    /// 0 for "A", 1 for "B"; nothing if there is none of that name now.
+    /// 0 for "A", 1 for "B"; empty if there is none of that name.
     [[nodiscard]] std::optional<int> find(const std::string& name) const;
     [[nodiscard]] std::vector<std::string> names() const;
     [[nodiscard]] twin::Scenario& at(int index) { return *slots_[static_cast<std::size_t>(index)].scenario; }
 
-    /// Any action of docs/protocol.md. Errors name key, value and allowed range; nothing has changed then.
+    /// Any action of docs/protocol.md. Errors name key, value and allowed range; then nothing is changed.
     [[nodiscard]] Result<twin::Done> act(int index, const nlohmann::json& action, const std::string& by);
     /// A second scenario with the setup that `from` has now, at time 0, paused. Error: there are two.
     [[nodiscard]] Result<std::string> copy(int from);
-    /// Error: the first one stays.
+    /// Error: the first one cannot be removed.
     [[nodiscard]] Status remove(int index);
 
     [[nodiscard]] nlohmann::json state(int index) const;
     [[nodiscard]] nlohmann::json setup(int index) const;
-    /// The present frame with every `stride`-th particle.
+    /// The current frame with every `stride`-th particle.
     [[nodiscard]] twin::FramePtr frame(int index, unsigned stride) const;
 
     /// An entry per scenario; those without one have no audience.
     void set_audience(const std::vector<Audience>& audience);
 
-    /// Takes a step if one is due, and notifies the watcher. When to be called again; nothing: not before
-    /// something else was called.
+    /// Takes a step if one is due, and notifies the watcher. Returns when to call it again; empty: not before another
+    /// call.
     std::optional<Clock::time_point> work(Clock::time_point now);
 
     static constexpr const char* name_of(int index) { return index == 0 ? "A" : "B"; }
 
   private:
-    /// What is remembered for a scenario between two messages to those who look.
+    /// State of a scenario between two messages to its viewers.
     struct Slot {
         std::unique_ptr<twin::Scenario> scenario;  // none: this slot is free
         RateMeter rate;

@@ -28,7 +28,7 @@ using asio::ip::tcp;
 constexpr rlim_t wanted_files = 8192;
 constexpr std::size_t spare_files = 64;  // for everything but connections
 
-/// Lets this process have as many open connections as the system allows; how many that are.
+/// Raises the number of open connections of this process to the system's limit; returns it.
 std::size_t raise_connection_limit() {
     rlimit files{};
     if (getrlimit(RLIMIT_NOFILE, &files) != 0) return 256;
@@ -60,7 +60,7 @@ struct Server::Parts {
     void accept();
     [[nodiscard]] Thread thread_of_session();
 
-    // Connections end with `io`, and so before what they use.
+    // Connections end with `io`, and so before the objects that they use.
     ServerOptions options;
     Ensembles ensembles;
     std::optional<Session> session;
@@ -79,7 +79,7 @@ struct Server::Parts {
 Server::Parts::~Parts() {
     io.stop();
     if (thread.joinable()) thread.join();
-    // Threads end while everything that they tell is still there.
+    // Threads end while everything that they notify still exists.
     if (calibrations) calibrations->close();
     if (session) session->close();
     if (exports) exports->close();

@@ -20,25 +20,24 @@ namespace talus::serve {
 struct ServerOptions {
     std::string host = "127.0.0.1";          ///< address to listen on, IPv4 or IPv6
     std::uint16_t port = 8123;               ///< 0: any that is free
-    std::vector<std::string> allowed_hosts;  ///< further names that browsers may know this server by
+    std::vector<std::string> allowed_hosts;  ///< further host names under which browsers may reach this server
     Tokens tokens;
     std::filesystem::path export_folder;  ///< an existing folder for result files
     twin::ScenarioOptions scenario;
-    std::chrono::milliseconds patience{60000};     ///< how long a connection may be silent, or take for a header
-    bool run = false;                              ///< begin at once
+    std::chrono::milliseconds patience{60000};     ///< timeout of a silent connection, or for its header
+    bool run = false;                              ///< start immediately
     CalibrationSettings calibration;               ///< without a scene file there are none
     std::vector<std::filesystem::path> ensembles;  ///< folders of finished ensembles whose maps are shown
     std::function<void(std::string)> on_failure;   ///< the simulation cannot continue: out of memory; from any thread
 };
 
-/// A session that people and programs reach over HTTP and WebSocket, as docs/protocol.md has it. Runs on threads of its
-/// own until it is destroyed.
+/// A session that users and programs access over HTTP and WebSocket, as described in docs/protocol.md. Runs on its own
+/// threads until it is destroyed.
 class Server {
   public:
-    /// Takes the port. Errors: bad address, port in use, bad tokens.
+    /// Binds the port. Errors: bad address, port in use, bad tokens.
     [[nodiscard]] static Result<std::unique_ptr<Server>> listen(ServerOptions options);
-    /// Opens the scene and begins to answer; once. Errors: the scene cannot be run, an ensemble
-    /// cannot be shown on it.
+    /// Opens the scene and starts answering; once. Errors: the scene cannot be run, an ensemble cannot be shown on it.
     [[nodiscard]] Status serve(std::shared_ptr<const Scene> scene);
     ~Server();
     Server(const Server&) = delete;

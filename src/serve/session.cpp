@@ -15,14 +15,14 @@ using std::chrono::milliseconds;
 
 constexpr int protocol_version = 1;
 constexpr milliseconds tick_time{100};
-constexpr std::size_t crowd = 50;  // so many people get the list ten times a second; more, less often
+constexpr std::size_t crowd = 50;  // up to this number, people get the list ten times a second; above it, less often
 
 Bytes message_text(const char* type, json message) {
     message["type"] = type;
     return std::make_shared<const std::string>(to_text(message));
 }
 
-/// Three finite numbers; nothing for null. False: neither.
+/// Three finite numbers; empty for null. False: neither.
 bool read_mark(const json& at, std::optional<std::array<double, 3>>& mark) {
     mark.reset();
     if (at.is_null()) return true;
@@ -64,7 +64,7 @@ json Session::describe(Role role) const {
     session["title"] = scene_->spec.scene.title;
     session["you"] = {{"role", role_name(role)}};
     session["scenarios"] = names_;
-    // For the page's links to share: nobody learns more than the own link says.
+    // For the page's links to share: no one receives a token with more permissions than their own.
     session["links"] = {{"viewer", tokens_.viewer}};
     if (role == Role::controller) session["links"]["controller"] = tokens_.controller;
     return session;
@@ -144,7 +144,7 @@ bool Session::set_view(Viewer& viewer, View& view, const json& message) {
     return true;
 }
 
-/// Where this changes what frames are made, the loop makes one at once.
+/// If this changes which frames are needed, the loop makes one immediately.
 void Session::update_audience() {
     std::vector<Audience> audience(Scenarios::most);
     for (const auto& [viewer, view] : viewers_) {
@@ -271,7 +271,7 @@ void Session::people_changed() {
     arm_tick();
 }
 
-/// In a crowd the list is long and goes to many: then it is sent less often.
+/// With many people the list is long and has many recipients, so it is sent less often.
 Clock::duration Session::people_interval() const {
     return tick_time * std::max<std::size_t>(1, viewers_.size() / crowd);
 }

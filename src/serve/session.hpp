@@ -18,7 +18,7 @@
 
 namespace talus::serve {
 
-/// A connection that looks: a WebSocket. What is sent to it must not wait.
+/// A connected viewer: a WebSocket. Sending to it must not block.
 class Viewer {
   public:
     virtual ~Viewer() = default;
@@ -29,14 +29,14 @@ class Viewer {
     virtual void set_rate(double rate_hz) = 0;
 };
 
-/// How the session gets at the server's thread.
+/// Access of the session to the server's thread.
 struct Thread {
     std::function<void(std::function<void()>)> post;            ///< runs something on it, soon
     std::function<void(std::chrono::milliseconds)> tick_after;  ///< calls Session::tick once, after a while
 };
 
-/// What all connections share: the scenarios, the people, and what each viewer watches. Everything but the functions of
-/// Watcher is for the server's thread.
+/// State shared by all connections: the scenarios, the people, and what each viewer watches. Everything but the
+/// functions of Watcher is for the server's thread.
 class Session final : public Watcher {
   public:
     Session(Thread thread, std::shared_ptr<const Scene> scene, Tokens tokens);
@@ -44,22 +44,22 @@ class Session final : public Watcher {
 
     /// Opens the scene; once, before anything else. Errors: as Loop::start.
     [[nodiscard]] Status open(twin::ScenarioOptions options, std::function<void(std::string)> failed);
-    /// Ends the threads; what they were asked is not answered.
+    /// Ends the threads; pending requests are not answered.
     void close();
 
-    /// Sends the present state to a new viewer. Until `leave`, `viewer` gets every change.
+    /// Sends the current state to a new viewer. Until `leave`, `viewer` receives every change.
     void join(Viewer& viewer, Role role, const std::string& name, const std::string& former);
     void leave(Viewer& viewer);
-    /// What a viewer has sent. False: it is not in the protocol, and the connection is to end.
+    /// Handles a message from a viewer. False: it violates the protocol, and the connection must be closed.
     [[nodiscard]] bool receive(Viewer& viewer, std::string_view text);
     void tick();
 
     [[nodiscard]] Loop& loop() { return *loop_; }
     [[nodiscard]] People& people() { return people_; }
-    /// For work of fractions of a second that neither thread should do.
+    /// For work of fractions of a second that should not delay either thread.
     [[nodiscard]] Worker& worker() { return *worker_; }
     [[nodiscard]] const std::shared_ptr<const Scene>& scene() const { return scene_; }
-    /// Tells everybody, soon.
+    /// Notifies everybody, soon.
     void people_changed();
     /// As `GET /api/session`.
     [[nodiscard]] nlohmann::json describe(Role role) const;
@@ -101,13 +101,13 @@ class Session final : public Watcher {
     std::array<Bytes, Scenarios::most> states_, setups_;  // as messages; for those who join
     Bytes calibration_;                                   // likewise
     std::vector<Audience> audience_;
-    /// Frames as they are sent, by cap.
+    /// Encoded frames, by cap.
     using Packed = std::vector<std::pair<unsigned, Bytes>>;
     std::array<Packed, Scenarios::most> newest_;
     bool people_untold_ = false, ticking_ = false;
     Clock::time_point people_told_{};
 
-    // On their way from the loop to the viewers; at either stage a newer one takes an older one's place.
+    // In transit from the loop to the viewers; at either stage a newer one replaces an older one.
     std::mutex frames_mutex_;
     std::array<std::optional<FrameSet>, Scenarios::most> arrived_;  // guarded by the mutex, as the next three
     std::array<std::optional<Packed>, Scenarios::most> packed_;

@@ -4,7 +4,7 @@
 #include <cstddef>
 
 // cmake/pack_site.mjs makes the archive: a line "SIZE NAME" for each file, an empty line, then the contents one after
-// the other. The assembler takes it in as it is: as an array of numbers it would cost the compiler seconds.
+// the other. The assembler includes it directly: as an array of numbers it would take the compiler seconds.
 #ifdef TALUS_SITE_ARCHIVE
 __asm__(
     ".section .rodata\n"

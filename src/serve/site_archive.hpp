@@ -10,7 +10,7 @@ struct ArchivedFile {
     std::string_view content;
 };
 
-/// The built page as it lies inside the program; a note in its place where it was built without.
+/// The built page as embedded in the program; a note instead if it was built without.
 [[nodiscard]] std::vector<ArchivedFile> site_archive();
 
 }  // namespace talus::serve

@@ -12,7 +12,7 @@ int hex_digit(char c) {
     return -1;
 }
 
-/// Nothing: a bad percent sequence, or a control character.
+/// Empty: a bad percent sequence, or a control character.
 std::optional<std::string> decode(std::string_view text, bool plus_is_blank) {
     std::string decoded;
     decoded.reserve(text.size());

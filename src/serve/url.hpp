@@ -9,10 +9,10 @@ namespace talus::serve {
 
 struct Target {
     std::string path;  ///< decoded
-    Arguments query;   ///< decoded; of a key that is there twice, the last
+    Arguments query;   ///< decoded; the last value of a repeated key
 };
 
-/// Takes the target of a request apart. Errors: not a path, a bad percent sequence, control characters.
+/// Parses the target of a request. Errors: not a path, a bad percent sequence, control characters.
 [[nodiscard]] Result<Target> parse_target(std::string_view text);
 
 }  // namespace talus::serve

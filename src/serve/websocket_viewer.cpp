@@ -22,7 +22,7 @@ using std::chrono::seconds;
 constexpr std::size_t longest_queue = 256;               // texts
 constexpr std::size_t heaviest_queue = 8 * 1024 * 1024;  // bytes
 constexpr int most_messages = 200;                       // per second, from a viewer
-// What the system may hold that is not on its way yet: with more, a slow viewer would see old frames.
+// Limit of unsent data in the system's buffer: with more, a slow viewer would see old frames.
 constexpr int unsent_bytes = 256 * 1024;
 
 class WebSocketViewer final : public Viewer, public std::enable_shared_from_this<WebSocketViewer> {
@@ -77,11 +77,11 @@ class WebSocketViewer final : public Viewer, public std::enable_shared_from_this
 void WebSocketViewer::accept(HttpRequest request) {
     websocket::stream_base::timeout timeout{};
     timeout.handshake_timeout = seconds(10);
-    timeout.idle_timeout = context_.patience / 2;  // half of that in silence, and it is asked whether it is still there
+    timeout.idle_timeout = context_.patience / 2;  // after half of that without data, a ping is sent
     timeout.keep_alive_pings = true;
     socket_.set_option(timeout);
     socket_.read_message_max(largest_message);
-    socket_.auto_fragment(false);  // a frame goes out from where it lies, in one piece
+    socket_.auto_fragment(false);  // a frame is sent without copying, in one piece
     auto& raw = socket_.next_layer().socket();
     beast::error_code ignored;
     raw.set_option(asio::ip::tcp::no_delay(true), ignored);
@@ -127,7 +127,7 @@ void WebSocketViewer::send(Bytes text) {
     text_bytes_ += text->size();
     texts_.push_back(std::move(text));
     if (texts_.size() > longest_queue || text_bytes_ > heaviest_queue) {
-        // Not from here: the session goes through its viewers just now.
+        // Posted, since the session may be iterating over its viewers.
         asio::post(socket_.get_executor(), [self = shared_from_this()] { self->end(); });
         return;
     }
@@ -153,7 +153,7 @@ WebSocketViewer::Slot* WebSocketViewer::due_slot(Clock::time_point now) {
     return due;
 }
 
-/// Sends what is next, if nothing is on its way.
+/// Sends the next message, unless one is being sent.
 void WebSocketViewer::pump() {
     if (writing_ || ended_ || closing_) return;
     if (!texts_.empty()) {
@@ -204,7 +204,7 @@ void WebSocketViewer::end_politely(websocket::close_code code) {
     if (ended_ || closing_) return;
     closing_ = true;
     if (writing_) {
-        end();  // who is sent something just now cannot be told anything else
+        end();  // a connection that is writing cannot send another message
         return;
     }
     socket_.async_close(code, [self = shared_from_this()](beast::error_code) { self->end(); });

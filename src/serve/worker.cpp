@@ -34,7 +34,7 @@ void Worker::run(const char* name) {
         tasks_.pop_front();
         lock.unlock();
         task();
-        task = nullptr;  // what it holds is let go while others can post
+        task = nullptr;  // releases its data while others can post
         lock.lock();
     }
 }

@@ -8,12 +8,12 @@
 
 namespace talus::serve {
 
-/// A thread for work that must hold up neither the steps nor the connections. Tasks run one after the other, in order.
+/// A thread for work that must delay neither the steps nor the connections. Tasks run one after the other, in order.
 class Worker {
   public:
-    /// `name`: as tools that watch threads show it, 15 characters at most.
+    /// `name`: shown by tools that list threads, 15 characters at most.
     explicit Worker(const char* name);
-    /// Ends after the task that runs; those that wait are dropped.
+    /// Ends after the current task; waiting ones are discarded.
     ~Worker();
     Worker(const Worker&) = delete;
     Worker& operator=(const Worker&) = delete;

@@ -11,12 +11,12 @@
 namespace talus {
 
 void append_particles(State& state, const State& more, std::uint32_t first_id) {
-    // Multipliers and stresses are pressures times the square of the step that they belong to.
+    // Multipliers and stresses are pressures times the square of their time step.
     if (state.count == 0 || !(state.previous_time_step > 0)) state.previous_time_step = more.previous_time_step;
     const double ratio = more.previous_time_step > 0 ? state.previous_time_step / more.previous_time_step : 0;
     const auto scale = static_cast<float>(ratio * ratio);
     const std::uint32_t count = state.count + more.count;
-    // Never less room than the arrays have: the backend relies on it.
+    // Never shrinks the arrays: the backend relies on that.
     state.resize(std::max<std::size_t>(count, state.room()));
     for (std::uint32_t k = 0; k < more.count; ++k) {
         Particle p = more.particle(k);
@@ -87,7 +87,7 @@ void clear_solids(const Model& model, const Ground& ground, State& state, const 
     }
     if (moved.empty()) return;
 
-    // What lies around makes room; what lies around that stands still.
+    // Surrounding debris makes room; debris beyond it stays fixed.
     const Extent yields = around.grown(3 * model.support_radius), stands = yields.grown(model.support_radius);
     State part;
     std::vector<std::uint32_t> source;
@@ -100,7 +100,7 @@ void clear_solids(const Model& model, const Ground& ground, State& state, const 
     for (std::uint32_t k = 0; k < part.count; ++k) {
         const std::uint32_t i = source[k];
         part.position.set(k, state.position.at(i));
-        part.id[k] = state.id[i];  // what nets do to it depends on that
+        part.id[k] = state.id[i];  // decides which nets it passes
         source_of_id[state.id[i]] = i;
         part.held[k] = state.held[i] != 0 || !yields.contains({state.position.x[i], state.position.y[i]});
     }

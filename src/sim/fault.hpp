@@ -7,11 +7,10 @@
 namespace talus {
 
 /// The speed, m/s, above which a particle has more energy than a fall from the highest debris to the lowest ground
-/// (local z = 0) explains. Pressure can
-/// hand energy from the tail to the front, hence the margin of half as much again.
+/// (local z = 0) explains. Pressure can transfer energy from the tail to the front, hence the margin of 50 %.
 [[nodiscard]] double speed_bound(const Model& model, double highest_energy_head);
 
-/// Why the last step cannot be trusted, with the time and the parameter to change; nothing if it can.
+/// Why the last step cannot be trusted, with the time and the parameter to change; success if it can.
 /// `highest_energy_head`: greatest z + v^2 / 2g of any particle when it was released, local m.
 [[nodiscard]] Status find_fault(const Model& model, const State& state, double highest_energy_head);
 

@@ -13,7 +13,7 @@
 
 namespace talus {
 
-/// When a release starts and which particles are its own: ids [first_particle, last_particle).
+/// When a release starts and its particles: ids [first_particle, last_particle).
 struct ReleaseGroup {
     std::string name;
     double start_time = 0;  ///< s
@@ -29,8 +29,8 @@ struct InertialFriction {
     double grain_size = 0;  ///< m, diameter x sqrt(grain density / bulk density)
 };
 
-/// What no step of a run changes: parameters and tables. Nobody but Simulation::change() changes them between two
-/// steps. What a run does change beside its State is its Ground.
+/// Parameters and tables that no step changes; only Simulation::change() may change them, between two steps. Besides
+/// its State, a run changes its Ground.
 struct Model {
     std::vector<ReleaseGroup> releases;
 
@@ -41,15 +41,15 @@ struct Model {
     double building_friction_coefficient = 0;  ///< on walls and roofs
     double internal_friction_coefficient = 0;
     double viscosity = 0;            ///< XSPH smoothing per 1/60 s
-    double kinematic_viscosity = 0;  ///< m2/s, the same thing at this support radius
+    double kinematic_viscosity = 0;  ///< m2/s, the equivalent at this support radius
     bool viscosity_on_ground = false;
-    double turbulent_friction = 0;        ///< xi, m/s2; 0: no such drag
-    double turbulent_thickness = 0;       ///< m, at which xi is as given; 0: at every one
+    double turbulent_friction = 0;        ///< xi, m/s2; 0: none
+    double turbulent_thickness = 0;       ///< m, at which xi applies as given; 0: at any thickness
     double cohesion = 0;                  ///< Pa, on the ground and inside
     double pore_pressure_ratio = 0;       ///< r_u, at the start of a release
-    double pore_pressure_decay_time = 0;  ///< s; 0: it stays
+    double pore_pressure_decay_time = 0;  ///< s; 0: constant
     InertialFriction inertial_friction;   ///< inside
-    GroundCover cover;                    ///< where the ground resists in its own way
+    GroundCover cover;                    ///< where the ground has its own resistance
     double gravity = 9.80665;             ///< m/s2
 
     SolverSpec solver;
@@ -60,7 +60,7 @@ struct Model {
     /// The distance, m, at which a particle touches ground and walls: half its own size.
     [[nodiscard]] double contact_distance() const { return particle_spacing / 2; }
     [[nodiscard]] double particle_volume() const { return particle_spacing * particle_spacing * particle_spacing; }
-    /// kg, of one at rest density; see density_of().
+    /// kg, of a particle at rest density; see density_of().
     [[nodiscard]] double particle_mass() const { return rest_density * particle_volume(); }
 };
 

@@ -8,9 +8,9 @@
 
 namespace talus {
 
-/// kg/m3, of a particle: its own where a hydrograph gave it one, the material's otherwise. Forces, pressures, energies
-/// and masses follow from it. Motion does not: the solver moves volume, in which a denser particle beside a lighter one
-/// pushes no harder, and friction is a share of the weight, whatever that is.
+/// kg/m3, of a particle: its own where a hydrograph sets one, otherwise the material's. Forces, pressures, energies and
+/// masses follow from it. Motion does not: the solver moves volumes, so a denser particle pushes no harder on a lighter
+/// one, and friction is proportional to weight.
 [[nodiscard]] inline double density_of(const Model& model, const State& state, std::size_t particle) {
     if (state.density_of_id.empty()) return model.rest_density;
     const std::uint32_t id = state.id[particle];

@@ -11,7 +11,7 @@
 namespace talus {
 namespace {
 
-/// Runs rounds of a step without inertia until `done` says so: velocities are forgotten after each.
+/// Takes steps without inertia until `done`: velocities are reset after each.
 template <class Done>
 void creep(const Model& model, const Ground& ground, State& state, int max_rounds, Done done) {
     cpu::Backend backend(model, state.count);
@@ -25,7 +25,7 @@ void creep(const Model& model, const Ground& ground, State& state, int max_round
     }
 }
 
-/// Says after every tenth round whether pressures have stopped to grow.
+/// Checks at every tenth step whether pressures have stopped growing.
 class LoadWatch {
   public:
     bool operator()(const State& state) {
@@ -42,7 +42,7 @@ class LoadWatch {
     double load_ = 0;
 };
 
-/// The model without anything that drives or holds debris back.
+/// The model without driving forces or resistance.
 Model without_forces(const Model& model) {
     Model still = model;
     still.viscosity = 0;

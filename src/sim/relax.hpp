@@ -7,16 +7,16 @@
 #include "sim/model.hpp"
 #include "sim/state.hpp"
 
-/// Particles that were put where they are, and not brought there by a step, are moved until they fit; none gains speed.
+/// Moves particles that were placed, not brought to their position by a step, until they fit; none gains speed.
 namespace talus {
 
-/// Moves a local position out of the solids that it lies in, to where it touches their surface, and up to the ground.
-/// `on_wall` is told the normal of every surface that it is put out of.
+/// Moves a local position out of the solids that it lies in, to their surface, and up to the ground. Calls `on_wall`
+/// with the normal of every surface that it is moved out of.
 template <class OnWall>
 void put_out_of_solids(const Model& model, const Ground& ground, LocalPoint& p, float grain_rank,
                        const OnWall& on_wall) {
     const auto touching = static_cast<float>(model.contact_distance());
-    // Once per wall at most in a corner; buildings that touch act as one solid.
+    // Once per wall at most in a corner; touching buildings act as one solid.
     for (int wall = 0; wall < 4 && ground.solids.inside(p, grain_rank); ++wall) {
         const SolidSample<float> nearest = ground.solids.nearest(p, grain_rank);
         p += nearest.normal * (touching - nearest.distance);
@@ -27,13 +27,13 @@ void put_out_of_solids(const Model& model, const Ground& ground, LocalPoint& p, 
 
 /// Brings the seeded lattice to rest: first pushed apart, without gravity, until it is nowhere denser than rest; then
 /// loaded by gravity until it carries its own weight, in steps so short that a slope steeper than its friction angle
-/// hardly moves meanwhile. Without the second part friction would find no pressure to work with in the first steps, and
-/// the mass would start with a jolt. Nets hold all of it meanwhile. `overburden`, by id: thickness above a particle, m,
-/// whose weight along the normal is the first guess of its pressure.
+/// hardly moves. Without the second part there would be no pressure for friction in the first steps, and the mass would
+/// start with a jolt. Nets hold all debris during this. `overburden`, by id: thickness above a particle, m, whose
+/// weight along the normal is the first guess of its pressure.
 void relax(const Model& model, const Ground& ground, State& state, const std::vector<float>& overburden);
 
-/// Pushes what is denser than at rest apart, without gravity, friction or inertia, until it hardly is any more; held
-/// particles stay where they are. Positions change, time and velocities are lost.
+/// Pushes debris denser than at rest apart, without gravity, friction or inertia, until it hardly is; held particles do
+/// not move. Positions change; time and velocities are reset.
 void push_apart(const Model& model, const Ground& ground, State& state);
 
 }  // namespace talus

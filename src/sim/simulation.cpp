@@ -16,7 +16,7 @@
 
 namespace talus {
 
-/// What a step of a run does beside moving particles.
+/// The parts of a step other than moving particles.
 struct Simulation::OwnStages {
     Simulation& self;
     StepWatcher* watcher;
@@ -84,14 +84,14 @@ Status Simulation::entrain_bed() {
             "raise it, or solver.particle_spacing_m",
             state_.time, limit)};
     }
-    // With room to spare: growing takes everything anew.
+    // With spare capacity: growing reallocates everything.
     if (count > capacity_) make_room(static_cast<std::uint32_t>(std::min(limit, count + count / 2)));
     entrainment_.apply(model_, ground_, state_);
     return {};
 }
 
 void Simulation::make_room(std::uint32_t count) {
-    // The backend changes its arrays with those of the state: both must have the same room.
+    // The backend swaps its arrays with those of the state: both must have the same capacity.
     capacity_ = count;
     state_.resize(capacity_);
     state_.building_contacts.reserve((face_count - 1) * capacity_);

@@ -16,22 +16,21 @@
 
 namespace talus {
 
-/// A model, its ground and state, what flows in, and the backend that moves it.
+/// A model, its ground and state, its inflows, and the backend that advances it.
 class Simulation {
   public:
-    /// There is room from the beginning for what `inflow` will bring.
+    /// Memory for all particles of `inflow` is allocated at once.
     Simulation(Model model, Ground ground, State state, InflowFeeder inflow = {});
 
-    /// Takes one step, in which `watcher` takes part if there is one. Returns why the step cannot be trusted, if it
-    /// cannot; the state is then as that step left it.
+    /// Takes one step, calling `watcher` if there is one. Returns why the step cannot be trusted, if it cannot; the
+    /// state is then that after the step.
     Status advance(StepWatcher* watcher = nullptr);
 
-    /// Adds what inflows have brought by now. A step begins with it.
+    /// Adds the particles of inflows that are due. A step begins with it.
     void inject_inflow(StepWatcher* watcher = nullptr);
 
-    /// Lets a user's `edit` change model, ground and state between two steps; nothing else changes a model in a run.
-    /// What it must leave as it is: terrain, particle spacing, kernel, time. The contacts of the last step are
-    /// forgotten.
+    /// Lets a user's `edit` change model, ground and state between two steps; nothing else changes a model in a run. It
+    /// must not change terrain, particle spacing, kernel or time. The contacts of the last step are dropped.
     void change(const std::function<void(Model&, Ground&, State&)>& edit);
 
     [[nodiscard]] const Model& model() const { return model_; }
@@ -49,19 +48,19 @@ class Simulation {
     void make_room(std::uint32_t count);
     [[nodiscard]] Status entrain_bed();
 
-    Model model_;  // const but to change()
+    Model model_;  // const except to change()
     Ground ground_;
     State state_;
     InflowFeeder inflow_;
-    std::uint32_t expected_ = 0;           // particles that inflow brings in all
-    std::uint32_t capacity_ = 0;           // particles that the backend has room for
-    std::optional<cpu::Backend> backend_;  // anew when there are more
+    std::uint32_t expected_ = 0;           // total number of particles from inflows
+    std::uint32_t capacity_ = 0;           // particles that the backend has memory for
+    std::optional<cpu::Backend> backend_;  // replaced when there are more
     Entrainment entrainment_;
     StageTimes times_;
     double highest_energy_head_;
 };
 
-/// Hash of time, ids, positions and velocities in id order: equal for equal results, whatever the threads.
+/// Hash of time, ids, positions and velocities in id order: equal for equal results, whatever the number of threads.
 [[nodiscard]] std::uint64_t hash_state(const State& state);
 
 /// Sum of m v^2 / 2 over the particles, J.

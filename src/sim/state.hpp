@@ -8,13 +8,13 @@
 
 namespace talus {
 
-/// Particles that are worked on together, side by side in vector registers or one register after another.
+/// Number of particles processed together, in one or several vector registers.
 inline constexpr std::size_t block_size = 16;
 constexpr std::size_t blocks_of(std::size_t particles) {
     return (particles + block_size - 1) / block_size;
 }
 
-/// Arrays of particles are that much longer than asked for: the last block is read and written whole.
+/// Arrays of particles are longer by this: the last block is read and written whole.
 inline constexpr std::size_t array_padding = block_size;
 
 /// Three arrays of one coordinate each.
@@ -49,7 +49,7 @@ struct DeviatorArray {
     }
 };
 
-// What the arrays of particles have in common, whatever an element is made of.
+// Common operations on the arrays of particles, for any type of element.
 inline void resize(VectorArray& array, std::size_t n) {
     array.resize(n);
 }
@@ -94,7 +94,7 @@ void for_each_component(std::vector<T>& a, std::vector<T>& b, const F& f) {
     X(std::vector<std::uint8_t>, std::uint8_t, asleep)      /* 1: it stays where it is until something moves beside */
 // clang-format on
 
-/// What a state holds of one particle.
+/// The data of one particle in a state.
 struct Particle {
 #define TALUS_MEMBER(array, element, name) element name{};
     TALUS_PARTICLE_ARRAYS(TALUS_MEMBER)
@@ -109,21 +109,22 @@ struct BuildingContact {
     LocalPoint place{};  ///< where on the wall
 };
 
-/// Everything that changes during a run, as a structure of arrays in an order that every step finds anew: neighbours
-/// lie near each other.
+/// Everything that changes during a run, as a structure of arrays in an order that every step recomputes so that
+/// neighbours are close in memory.
 struct State {
     double time = 0;                ///< s
     double time_step = 0;           ///< s, of the last step
-    double previous_time_step = 0;  ///< s, the step that multipliers and stresses belong to
+    double previous_time_step = 0;  ///< s, the step for which multipliers and stresses were computed
     std::uint64_t step = 0;
 
     std::uint32_t count = 0;      ///< particles present, including those of releases that have not started
-    std::uint32_t awake = 0;      ///< the first of them, which a step works on; the others are asleep
-    std::uint32_t seeded = 0;     ///< particles that were ever there
-    std::uint32_t entrained = 0;  ///< of them, those that debris picked up from the bed
-    std::uint32_t outflow = 0;    ///< particles that ran over the terrain's edge; seeded = count + outflow + removed
+    std::uint32_t awake = 0;      ///< of these, the first ones, which a step processes; the others are asleep
+    std::uint32_t seeded = 0;     ///< particles ever added
+    std::uint32_t entrained = 0;  ///< of these, those entrained from the bed
+    std::uint32_t outflow = 0;    ///< particles that left over the edge of the terrain; seeded = count + outflow +
+                                  ///< removed
     std::uint32_t removed = 0;    ///< particles that were removed between two steps (remove_particles())
-    /// Of all that were ever there, those that releases brought and that nobody removed again.
+    /// Particles from releases, less those that were removed.
     [[nodiscard]] std::uint32_t released() const { return seeded - entrained - removed; }
 
 #define TALUS_MEMBER(array, element, name) array name;
@@ -134,7 +135,7 @@ struct State {
     // Measured by the last step.
     double mean_compression = 0, max_compression = 0;  ///< of max(0, density / rest density - 1)
     double squeezed_share = 0;                         ///< of the particles; see compression.hpp
-    int iterations = 0;                                ///< that the step took
+    int iterations = 0;                                ///< of the step
     double max_speed = 0;                              ///< m/s
     std::vector<BuildingContact> building_contacts;
 
@@ -151,8 +152,8 @@ struct State {
     [[nodiscard]] Particle particle(std::size_t i) const;
     void set_particle(std::size_t i, const Particle& values);
 
-    /// Removes the particles of which gone(i) says so; the others keep their order. `on_kept(i, k)` is told that
-    /// particle i is now k. Returns how many were removed.
+    /// Removes the particles for which gone(i) is true; the others keep their order. Calls `on_kept(i, k)` when
+    /// particle i becomes k. Returns how many were removed.
     template <class Gone, class OnKept>
     std::uint32_t remove_if(const Gone& gone, const OnKept& on_kept);
 };

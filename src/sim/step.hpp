@@ -8,8 +8,8 @@
 
 namespace talus {
 
-/// What a step of a run does beside moving its particles (see Simulation). This one does nothing of it: particles alone
-/// are moved, by the time step that the state has.
+/// The parts of a step other than moving particles (see Simulation). This one has none: particles are moved by the
+/// state's time step.
 struct MotionAlone {
     void inject_inflow() {}
     void choose_time_step() {}
@@ -19,8 +19,8 @@ struct MotionAlone {
     void remove_failed() {}
 };
 
-/// One step of the method, a line per stage, for any backend: CPU, and the double-precision reference that checks it.
-/// Returns why the step cannot be trusted, if it cannot; the state is then as it left it.
+/// One step of the method, one line per stage, for any backend: the CPU one, and the double-precision reference that
+/// checks it. Returns why the step cannot be trusted, if it cannot; the state is then as it left it.
 template <class Backend, class State, class Run>
 Status step(Backend& backend, const Model& model, const Ground& ground, State& state, StageTimes& times, Run&& run) {
     const auto timed = [&](Stage stage, auto&& f) {
@@ -36,7 +36,7 @@ Status step(Backend& backend, const Model& model, const Ground& ground, State& s
     timed(Stage::find_neighbours, [&] { backend.find_neighbours(model, state); });
     timed(Stage::prepare_particles, [&] { backend.prepare_particles(model, ground, state); });
     timed(Stage::warm_start, [&] { backend.warm_start(model, ground, state); });
-    // The shear of the first iteration must already know what the ground holds back.
+    // The shear of the first iteration must already include the resistance of the ground.
     timed(Stage::solve_contacts, [&] { backend.solve_contacts(model, ground, state); });
     const int fewest = model.solver.iteration_count, most = fewest + model.solver.extra_iteration_count;
     for (state.iterations = 0; state.iterations < most;) {

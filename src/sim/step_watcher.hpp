@@ -10,8 +10,8 @@
 
 namespace talus {
 
-/// Takes part in the steps of a Simulation from outside the solver: measures, and says which structures fail by what it
-/// measured.
+/// Takes part in the steps of a Simulation from outside the solver: measures, and decides from that which structures
+/// fail.
 class StepWatcher {
   public:
     StepWatcher() = default;
@@ -19,11 +19,11 @@ class StepWatcher {
     StepWatcher& operator=(const StepWatcher&) = delete;
     virtual ~StepWatcher() = default;
 
-    /// Inflow brought the particles with ids from `first_new_id` on.
+    /// Called when inflow has added the particles with ids from `first_new_id`.
     virtual void follow_inflow(const State& state, std::uint32_t first_new_id) = 0;
-    /// A step was taken.
+    /// Called after every step.
     virtual void observe(const Model& model, const Ground& ground, const State& state) = 0;
-    /// Buildings whose resistance was exceeded in the step that was observed last: they are removed.
+    /// Buildings whose resistance was exceeded in the last observed step: they are removed.
     [[nodiscard]] virtual const std::vector<std::size_t>& failed_buildings() const = 0;
 };
 

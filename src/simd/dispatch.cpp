@@ -9,7 +9,7 @@
 namespace talus::simd {
 namespace {
 
-/// Asked once, before the first choice: Highway names only the chosen one after it.
+/// Queried once, before the first choice: afterwards Highway reports only the chosen one.
 const std::vector<std::int64_t>& available_targets() {
     static const std::vector<std::int64_t> targets = hwy::SupportedAndGeneratedTargets();
     return targets;

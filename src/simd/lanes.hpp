@@ -6,12 +6,12 @@
 
 #include "core/number.hpp"
 
-/// Arithmetic that a formula written once runs through with one number or with as many side by side as a vector
-/// register holds. A formula takes `select` in place of a branch; the rest looks as ever.
+/// Arithmetic with which a formula, written once, runs on one number or on as many as a vector register holds. A
+/// formula uses `select` in place of a branch; the rest is ordinary code.
 ///
-/// Built on the vector types of GCC and Clang, so a formula in any header turns into the instructions of the function
-/// that it is inlined into. Nothing here fuses a multiplication and an addition: every instruction set gives the same
-/// bits.
+/// Built on the vector types of GCC and Clang, so a formula in any header compiles to the instruction set of the
+/// function that it is inlined into. Nothing here fuses a multiplication and an addition: results are bit-identical on
+/// every instruction set.
 namespace talus::simd {
 
 /// Twice four, in one cache line: a gather of all eight costs less than two of four.
@@ -128,7 +128,7 @@ struct LaneTypes<16> {
 };
 #undef TALUS_SHUFFLES
 
-/// What a comparison of lanes gives: all bits of a lane, or none.
+/// The result of comparing lanes: all bits of a lane set, or none.
 template <int count>
 struct LaneMask {
     using Ints = typename LaneTypes<count>::Ints;
@@ -170,7 +170,7 @@ struct Lanes {
     }
     template <class Number>
     requires std::is_arithmetic_v<Number> TALUS_INLINE Lanes(Number number) {
-        // By fours, which every baseline has: GCC takes a wider list of equal numbers apart, one by one.
+        // In fours, which every baseline has: GCC splits a wider list of equal numbers into single elements.
         const FourFloats four = static_cast<float>(number) - FourFloats{};
         v = LaneTypes<count>::joined([&](int) __attribute__((always_inline)) { return four; });
     }
@@ -206,7 +206,7 @@ struct Lanes {
         for (int lane = 0; lane < count; ++lane) result.v[lane] = __builtin_sqrtf(a.v[lane]);
         return result;
     }
-    /// Towards zero; for what an int can hold.
+    /// Towards zero; for values that fit an int.
     TALUS_INLINE friend Ints truncated(const Lanes& a) { return __builtin_convertvector(a.v, Ints); }
     TALUS_INLINE static Lanes from(const Ints& ints) { return Lanes(Floats(__builtin_convertvector(ints, Floats))); }
 };
@@ -249,7 +249,7 @@ TALUS_INLINE Octs<Lanes<count>> octs_from(const Row& row) {
             __builtin_memcpy(&floats, row(lane), sizeof floats);
             return floats;
         };
-        // Four rows a register, or two: after the transposition their halves lie block by block in turns.
+        // Four rows per register, or two: after the transposition their halves alternate block by block.
         const auto rows = [&](int first) __attribute__((always_inline)) {
             if constexpr (count == 8) {
                 return Lanes<count>(eight(first));
@@ -305,7 +305,7 @@ TALUS_INLINE void store_quads(const Quads<Lanes<count>>& quads, Oct* rows) {
 
 }  // namespace talus::simd
 
-// Where a formula that knows no lanes finds them: beside Quad.
+// Found by formulas that do not include this file through argument-dependent lookup on Quad.
 namespace talus {
 
 /// rows[index] for every lane.

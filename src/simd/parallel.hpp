@@ -13,7 +13,7 @@
 namespace talus::simd {
 
 /// Tells the thread sanitizer what it cannot see in an uninstrumented TBB: a task comes after what the caller did
-/// before, and what the caller does next comes after every task. Nothing at all in other builds.
+/// before, and what the caller does next comes after every task. Empty in other builds.
 class TaskOrder {
   public:
 #if defined(__SANITIZE_THREAD__)

@@ -102,7 +102,8 @@ const BarrierOpeningSpec* opening_at(const BarrierSpec& shape, double chainage) 
     return nullptr;
 }
 
-/// Where a segment, from chainage `from` to `to`, is cut: into even parts, and at the ends of openings. As shares.
+/// Positions, as shares, at which a segment from chainage `from` to `to` is cut: into equal parts, and at the ends of
+/// openings.
 std::vector<double> find_cuts(const BarrierSpec& shape, double from, double to, double part_length) {
     const int parts = std::max(1, static_cast<int>(std::ceil((to - from) / part_length)));
     std::vector<double> cuts;

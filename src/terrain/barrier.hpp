@@ -11,7 +11,7 @@
 namespace talus {
 
 /// A wall or a net along a line: one solid of many short parts with mitred joints, each with a roof of its own, so that
-/// the crest follows the ground (or is level). In an opening the roof is the sill; without a sill there is no part.
+/// the crest follows the ground (or is level). In an opening the roof is the sill; without a sill there is no solid.
 /// Errors: the line leaves the known ground, crosses itself, turns back, or has bends too close for the thickness;
 /// openings that overlap, lie beyond the line's ends or have a sill as high as the crest; a crest below all ground.
 [[nodiscard]] Result<Building> make_barrier(const Terrain& terrain, const std::string& name, const BarrierSpec& shape);

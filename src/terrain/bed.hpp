@@ -9,7 +9,7 @@
 
 namespace talus {
 
-/// Loose material of one kind that lies on the ground.
+/// A kind of loose material on the ground.
 struct BedMaterial {
     std::string name;
     EntrainmentLaw law = EntrainmentLaw::growth;
@@ -19,15 +19,15 @@ struct BedMaterial {
     double depth_per_shear = 0;        ///< m/Pa
 };
 
-/// What debris can pick up from the ground: the upper part of the terrain, a value per cell of its grid.
+/// Material that debris can entrain: the upper part of the terrain, a value per cell of its grid.
 struct Bed {
     std::vector<BedMaterial> materials;
     std::vector<std::uint8_t> material_at;  ///< 1 + index into `materials`; 0: none
-    std::vector<float> depth;               ///< m, vertical, before anything was picked up
-    std::vector<float> eroded;              ///< m, of it, until now
+    std::vector<float> depth;               ///< m, vertical, before any erosion
+    std::vector<float> eroded;              ///< m, eroded so far
 
     [[nodiscard]] bool empty() const { return materials.empty(); }
-    /// The most materials that there can be.
+    /// Maximum number of materials.
     static constexpr std::size_t most_materials = 255;
 };
 

@@ -155,8 +155,8 @@ BuildingSolids::BuildingSolids(const Terrain& terrain, const std::vector<Buildin
     fill_bins();
 }
 
-/// Cuts every wall where other solids meet it and notes how high each piece is hidden by them. Without this, debris
-/// inside one of two terraced houses would be pushed through their common wall into the other, and back.
+/// Cuts every wall where other solids meet it and stores up to which height each piece is hidden by them. Without this,
+/// debris inside one of two terraced houses would be pushed through their common wall into the other, and back.
 void BuildingSolids::split_walls() {
     std::vector<Edge> pieces;
     std::vector<Solid> solids = solids_;
@@ -258,14 +258,15 @@ bool BuildingSolids::in_plan(const Solid& solid, double x, double y) const {
 
 std::pair<std::uint32_t, std::uint32_t> BuildingSolids::candidates(double x, double y) const {
     const double u = (x - bin_x_min_) / bin_size_, v = (y - bin_y_min_) / bin_size_;
-    if (!(u >= 0 && v >= 0 && u < bin_columns_ && v < bin_rows_)) return {0, 0};  // NaN comes here too
+    if (!(u >= 0 && v >= 0 && u < bin_columns_ && v < bin_rows_)) return {0, 0};  // true for NaN too
     const std::size_t bin = bin_at(u, v);
     return {bin_start_[bin], bin_start_[bin + 1]};
 }
 
 template <class Real>
 SolidSample<Real> BuildingSolids::nearest(const Vec3<Real>& p, float grain_rank) const {
-    // In double throughout: a float position is exact in it, so that normals hold down to a nanometre from a wall.
+    // In double throughout, which represents a float position exactly, so that normals are correct down to a nanometre
+    // from a wall.
     const double x = p.x, y = p.y, z = p.z;
     const auto [first, last] = candidates(x, y);
     if (first == last) return {};
@@ -298,7 +299,8 @@ SolidSample<Real> BuildingSolids::nearest(const Vec3<Real>& p, float grain_rank)
         if (!solid.stops(grain_rank)) continue;
         for (std::uint32_t i = solid.first_edge; i < solid.last_edge; ++i) {
             const Edge& e = edges_[i];
-            // From inside, only what other solids do not hide is a way out. From outside hidden walls are never nearer.
+            // From inside, only walls not hidden by other solids are a way out. From outside, hidden walls are never
+            // nearer.
             const double bottom = inside ? std::max(e.hidden_for(grain_rank), solid.floor) : solid.floor;
             if (bottom >= solid.roof) continue;
             const double dx = e.bx - e.ax, dy = e.by - e.ay, length_squared = dx * dx + dy * dy;

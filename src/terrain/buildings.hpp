@@ -13,7 +13,7 @@
 
 namespace talus {
 
-/// What a structure stands, as the filtered force that debris exerts on it normal to its walls. Beyond it is gone.
+/// Resistance of a structure to the filtered force of debris normal to its walls. Above it, the structure is removed.
 struct Resistance {
     double force_per_metre = std::numeric_limits<double>::infinity();  ///< N/m of a barrier's line
     double pressure = std::numeric_limits<double>::infinity();         ///< Pa, impact pressure on a patch of its walls
@@ -21,7 +21,7 @@ struct Resistance {
 };
 
 /// A solid with vertical walls and a flat roof, from below the ground up to `roof_elevation` (not finite: no solid).
-/// Its parts may have a roof each, as those of a wall whose crest follows the ground.
+/// Its parts may have separate roofs, such as those of a wall whose crest follows the ground.
 struct Building : BuildingSpec {
     std::string name;
     std::vector<Polygon> footprint;              ///< world plan coordinates
@@ -29,13 +29,13 @@ struct Building : BuildingSpec {
     double roof_elevation = 0;                   ///< m, world; set by place_buildings
     std::vector<double> part_roof_elevations{};  ///< m, world, per part of the footprint; empty: one roof for all
     Resistance resistance{};
-    std::optional<BarrierSpec> barrier{};  ///< what it was made of, but for its name, if it is one (make_barrier)
+    std::optional<BarrierSpec> barrier{};  ///< its specification without the name, if it is a barrier (make_barrier)
 };
 
 /// Whether there is a solid.
 [[nodiscard]] bool stands(const Building& building);
 
-/// The same without its solid: it keeps its place among the others.
+/// The same building without its solid: its index remains valid.
 [[nodiscard]] Building without_solid(Building building);
 
 /// Of the whole footprint, world.
@@ -55,10 +55,10 @@ struct SolidSample {
 /// The rank of a grain that no mesh lets through.
 inline constexpr float largest_grain = 1;
 
-/// Answers how far a local position is from the buildings. Cost away from all buildings: one table look-up.
-/// Buildings that touch or overlap act as one solid: a wall between two of them is no surface.
-/// A barrier with a clearance has a lower face: below it there is no solid.
-/// A net is no solid for grains whose rank by size, 0 to 1, is below its passing share: to them it is not there.
+/// Distance of a local position from the buildings. Cost away from all buildings: one table look-up. Buildings that
+/// touch or overlap act as one solid: a wall between two of them is not a surface. A barrier with a clearance has a
+/// lower face: below it there is no solid. A net is not a solid for grains whose rank by size, 0 to 1, is below its
+/// passing share.
 class BuildingSolids {
   public:
     BuildingSolids() = default;
@@ -70,7 +70,7 @@ class BuildingSolids {
     /// False where no solid can be within range of a local plan position: most of the ground.
     [[nodiscard]] bool near(float x, float y) const {
         const double u = (x - bin_x_min_) / bin_size_, v = (y - bin_y_min_) / bin_size_;
-        if (!(u >= 0 && v >= 0 && u < bin_columns_ && v < bin_rows_)) return false;  // NaN comes here too
+        if (!(u >= 0 && v >= 0 && u < bin_columns_ && v < bin_rows_)) return false;  // true for NaN too
         const std::size_t bin = bin_at(u, v);
         return bin_start_[bin] != bin_start_[bin + 1];
     }
@@ -80,8 +80,9 @@ class BuildingSolids {
     template <class Real>
     [[nodiscard]] SolidSample<Real> nearest(const Vec3<Real>& p, float grain_rank = largest_grain) const;
 
-    /// From outside, the nearest wall or roof that the local position faces squarely, within range, and that is turned
-    /// away from `first`, the sample of nearest(), by 60 degrees or more: the other wall of a corner or an alley.
+    /// From outside, the nearest wall or roof that is directly opposite the local position, within range, and that is
+    /// turned away from `first`, the sample of nearest(), by 60 degrees or more: the other wall of a corner or an
+    /// alley.
     template <class Real>
     [[nodiscard]] SolidSample<Real> second_nearest(const Vec3<Real>& p, const SolidSample<Real>& first,
                                                    float grain_rank = largest_grain) const;
@@ -90,7 +91,7 @@ class BuildingSolids {
     template <class Real>
     [[nodiscard]] bool inside(const Vec3<Real>& p, float grain_rank = largest_grain) const;
 
-    /// Makes walls of nets.
+    /// Turns nets into walls.
     void close_nets() {
         for (Solid& solid : solids_) solid.passing_share = 0;
     }
@@ -100,7 +101,7 @@ class BuildingSolids {
     struct Edge {
         double ax = 0, ay = 0, bx = 0, by = 0;
         double hidden_below = 0;  ///< local z: up to here the wall lies against or within another solid
-        /// The same of nets that let through some of what this wall stops, for the grains that they all stop.
+        /// The same for nets that pass some grains that this wall stops, for grains that all of them stop.
         double hidden_by_nets = -std::numeric_limits<double>::infinity();
         float net_share = 0;
 
@@ -114,7 +115,7 @@ class BuildingSolids {
         int building;
         double x_min, y_min, x_max, y_max;  ///< local, not grown
         double floor, roof;                 ///< local z; -infinity: from below the ground
-        float passing_share;                ///< grains of a lower rank do not meet it
+        float passing_share;                ///< no obstacle for grains of a lower rank
 
         [[nodiscard]] bool stops(float grain_rank) const { return grain_rank >= passing_share; }
     };

@@ -19,10 +19,10 @@ Projection project(const PathSegment& s, const PlanPoint& p) {
     return {share, x * x + y * y};
 }
 
-/// Whether `p` is nearer to `a` than to `b`: where it is so in the corners of a cell, it is so in all of the cell.
+/// Whether `p` is nearer to `a` than to `b`: if this holds at the corners of a cell, it holds in the whole cell.
 bool nearer_to(const PlanPoint& a, const PlanPoint& b, const PlanPoint& p) {
     const double dx = b.x - a.x, dy = b.y - a.y;
-    return (2 * p.x - a.x - b.x) * dx + (2 * p.y - a.y - b.y) * dy < -1e-6;  // not so for rounding alone
+    return (2 * p.x - a.x - b.x) * dx + (2 * p.y - a.y - b.y) * dy < -1e-6;  // false for rounding differences
 }
 
 }  // namespace
@@ -62,7 +62,7 @@ FlowPath::FlowPath(const std::vector<PlanPoint>& points, double corridor_width) 
 
 void FlowPath::fill_nearest_segment() {
     nearest_segment_.assign(table_.size(), -1);
-    const double reach = corridor_width_ / 2 + table_.cell;  // so that no cell that the corridor touches is left out
+    const double reach = corridor_width_ / 2 + table_.cell;  // so that no cell touched by the corridor is missed
     std::vector<double> nearest(table_.size(), reach * reach);
     for (std::size_t i = 0; i + 1 < points_.size(); ++i) {
         const PlanPoint &a = points_[i], &b = points_[i + 1];
@@ -105,7 +105,7 @@ void FlowPath::fill_chainage_bound() {
                         nearer_before = nearer_before && nearer_to(points_[i - 1], points_[i], corner);
                     }
                 }
-                // All of the cell is before this segment, and nearer to where the one before begins.
+                // The whole cell is before this segment, and nearer to the start of the previous one.
                 if (share == 0 && nearer_before) continue;
                 bound = std::max(bound, chainage_[i] + share * (chainage_[i + 1] - chainage_[i]));
             }
@@ -154,7 +154,7 @@ std::optional<PathPosition> FlowPath::locate(const PlanPoint& p) const {
     const std::size_t cell = cell_of(p);
     if (cell >= nearest_segment_.size() || nearest_segment_[cell] < 0) return std::nullopt;
 
-    // The cell's segment is nearest to its centre; nearest to this point may be one a little up or down the path.
+    // The cell's segment is nearest to its centre; the one nearest to this point may be slightly up or down the path.
     const auto [first, last] = segments_around_[static_cast<std::size_t>(nearest_segment_[cell])];
     double nearest = std::numeric_limits<double>::infinity(), chainage = 0;
     for (std::size_t i = first; i < last; ++i) {

@@ -11,13 +11,13 @@
 
 namespace talus {
 
-/// Where a plan position lies relative to the flow path.
+/// A plan position relative to the flow path.
 struct PathPosition {
     double chainage;  ///< horizontal distance along the path from its first point, m
     double offset;    ///< distance from the path, m
 };
 
-/// From one point of a path to the next, as a projection on it needs it.
+/// A segment of a path, with the values needed for projection.
 struct PathSegment {
     double x, y;              ///< where it begins
     double dx, dy;            ///< from there to its end
@@ -36,19 +36,19 @@ class FlowPath {
     [[nodiscard]] double length() const { return chainage_.empty() ? 0 : chainage_.back(); }
     [[nodiscard]] double corridor_width() const { return corridor_width_; }
 
-    /// Projection on the nearest part of the path, its ends included; nothing outside the corridor. A table look-up and
+    /// Projection on the nearest part of the path, its ends included; empty outside the corridor. A table look-up and
     /// the few segments near it.
     [[nodiscard]] std::optional<PathPosition> locate(const PlanPoint& p) const;
 
-    /// At least the chainage that `locate` finds, less than 0 where it finds nothing: one table look-up, to leave out
+    /// An upper bound of the chainage by `locate`, less than 0 where that is empty: one table look-up, to skip
     /// positions far behind a front.
     [[nodiscard]] float chainage_bound(const PlanPoint& p) const {
         const std::size_t cell = cell_of(p);
         return cell < chainage_bound_.size() ? chainage_bound_[cell] : -1.0F;
     }
 
-    /// A rectangle around every position whose `chainage_bound` is `chainage` or more; empty (the greatest less than
-    /// the least) if there is none. A look-up.
+    /// A rectangle around every position whose `chainage_bound` is `chainage` or more; empty (maximum less than
+    /// minimum) if there is none. One look-up.
     [[nodiscard]] Extent extent_beyond(double chainage) const;
 
     /// World plan position at a chainage, clamped to the path's ends.
@@ -79,11 +79,10 @@ class FlowPath {
     std::vector<Extent> extent_beyond_;  // by chainage in cells of the table
 };
 
-/// Steepest descent (D8) from `start` over a sink-filled copy of the elevations, to the edge of the data, to where
-/// nothing lower can be reached (the sea, the bottom of a basin that the data close) or to `longest` metres. Sinks are
-/// filled by priority flood (Barnes, Lehman, Mulla 2014). The steps from cell to cell are smoothed, because their
-/// zigzag would add up to 8 % to the chainage. The first point is `start`; there are at least two.
-/// Errors: start outside the data.
+/// Steepest descent (D8) from `start` over a sink-filled copy of the elevations, to the edge of the data, to a place
+/// below which nothing can be reached (the sea, the bottom of a closed basin) or to `longest` metres. Sinks are filled
+/// by priority flood (Barnes, Lehman, Mulla 2014). The steps from cell to cell are smoothed, because their zigzag would
+/// add up to 8 % to the chainage. The first point is `start`; there are at least two. Errors: start outside the data.
 [[nodiscard]] Result<std::vector<PlanPoint>> trace_flow_path(const Grid<float>& elevation, const PlanPoint& start,
                                                              double longest);
 

@@ -8,25 +8,25 @@
 
 namespace talus {
 
-/// How a cell's ground resists where it differs; NaN: as elsewhere.
+/// Resistance of a cell's ground where it differs; NaN: as elsewhere.
 struct CoverCell {
     float friction_coefficient, inverse_turbulent_friction, cohesion;  ///< 1, s2/m, Pa
     float stem_drag;                                                   ///< deceleration over v^2, 1/m; 0: no stems
 };
 
-/// Zones of the ground on the cells of the terrain: what holds at a place is one look-up away. Empty: no zones.
+/// Zones of the ground on the cells of the terrain: the values at a place need one look-up. Empty: no zones.
 class GroundCover {
   public:
     GroundCover() = default;
-    /// The cells as of the terrain of the run, in the local frame of that terrain.
+    /// The cells of the run's terrain, in its local frame.
     explicit GroundCover(const Grid<CoverCell>& cells);
 
     [[nodiscard]] bool empty() const { return cells_.empty(); }
-    /// Whether some of it slows debris by its speed.
+    /// Whether any of it causes speed-dependent drag.
     [[nodiscard]] bool drags() const { return drags_; }
 
-    /// The CoverCell of the cell that a local plan position is in: its members in their order. Outside the terrain that
-    /// of the nearest cell.
+    /// The CoverCell at a local plan position: its members in their order. Outside the terrain that of the nearest
+    /// cell.
     template <class Real>
     [[nodiscard]] TALUS_INLINE auto at(Real x, Real y) const {
         const Real u = (x - Real(x_west_)) * Real(inverse_cell_), v = (y - Real(y_south_)) * Real(inverse_cell_);

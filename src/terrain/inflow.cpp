@@ -57,7 +57,7 @@ double Inflow::velocity_at(double time) const {
 
 double Inflow::density_between(double early, double late) const {
     const double volume = volume_until(late) - volume_until(early);
-    // Too little to divide by: where nothing comes in, or too shortly.
+    // Too little to divide by: no inflow, or for too short a time.
     if (!(volume > 1e-9 * this->volume())) return value_at(hydrograph, &InflowSample::density, late);
     return (mass_until(late) - mass_until(early)) / volume;
 }

@@ -8,25 +8,26 @@
 
 namespace talus {
 
-/// Debris that comes in across a straight line, at right angles to it and towards its right, seen from `from` to `to`;
-/// or all over an area.
+/// Inflow of debris across a straight line, at right angles to it and towards its right, seen from `from` to `to`; or
+/// over an area.
 struct Inflow {
     std::string name;
     PlanPoint from, to;                    ///< world
     std::vector<InflowSample> hydrograph;  ///< by time, two rows or more
     std::vector<Polygon> area = {};        ///< world; empty: across the line
-    InflowSpec spec = {};                  ///< all else that the scene or people say of it, but for its name
+    InflowSpec spec = {};                  ///< its specification by scene or user, without the name
 
     [[nodiscard]] bool over_area() const { return !area.empty(); }
     [[nodiscard]] bool has_density() const { return hydrograph.front().density > 0; }
 
-    /// What has come in until then, m3, and how far the debris that came in first would have got at inflow velocity, m.
+    /// The volume injected until then, m3, and the distance that the first debris would have travelled at inflow
+    /// velocity, m.
     [[nodiscard]] double volume_until(double time) const;
     [[nodiscard]] double way_until(double time) const;
     /// kg, where there is a density.
     [[nodiscard]] double mass_until(double time) const;
     [[nodiscard]] double velocity_at(double time) const;
-    /// kg/m3, of what comes in between two times: its mass over its volume.
+    /// kg/m3, of the inflow between two times: its mass over its volume.
     [[nodiscard]] double density_between(double early, double late) const;
     /// Of the whole hydrograph, m3.
     [[nodiscard]] double volume() const { return volume_until(hydrograph.back().time); }

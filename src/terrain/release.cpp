@@ -12,7 +12,8 @@ double raster_thickness(const Grid<float>& raster, const PlanPoint& p) {
     return value > 0 ? value : 0;  // the comparison also turns NaN into 0
 }
 
-/// Where the line y = constant crosses the polygon's rings, sorted: inside between the 1st and 2nd, 3rd and 4th, ...
+/// Crossings of the line y = constant with the polygon's rings, sorted: inside between the 1st and 2nd, 3rd and 4th,
+/// ...
 void find_crossings(const Polygon& polygon, double y, std::vector<double>& crossings) {
     crossings.clear();
     const auto add_ring = [&](const Ring& ring) {
@@ -93,7 +94,7 @@ double release_volume(const Terrain& terrain, const Release& release) {
         // An eighth of a cell resolves the slope's jumps at cell edges, a 400th of the patch its outline.
         double step = std::min(terrain.cell() / 8, std::max(extent.width(), extent.height()) / 400);
         if (release.thickness_raster) step = std::min(step, release.thickness_raster->geometry.cell / 8);
-        // A large patch needs no finer strips than 4000 across: its outline is a small share of it.
+        // A large patch needs at most 4000 strips: its outline is a small share of it.
         step = std::max(step, std::max(extent.width(), extent.height()) / 4000);
         volume += integrate(polygon, step, [&](const PlanPoint& p) {
             const double t = release.thickness_raster ? raster_thickness(*release.thickness_raster, p) : thickness;

@@ -24,7 +24,7 @@ struct Release {
     std::vector<ReleasePatch> patches;            ///< not overlapping
     std::optional<Grid<float>> thickness_raster;  ///< if present, replaces the patches' thickness (NaN, <= 0: none)
     double volume = 0;                            ///< m3, as integrated by release_volume
-    ReleaseSpec spec;                             ///< all else that the scene or people say of it, but for its name
+    ReleaseSpec spec;                             ///< its specification by scene or user, without the name
 
     /// Thickness as measured at a world plan position; 0 outside the patches.
     [[nodiscard]] double thickness_at(const PlanPoint& p) const;
@@ -36,7 +36,7 @@ struct Release {
 };
 
 /// Integral of the vertical depth (thickness / cos(slope), where it is normal to it) over the plan area, m3; ground
-/// that the terrain does not cover counts nothing.
+/// that the terrain does not cover does not count.
 [[nodiscard]] double release_volume(const Terrain& terrain, const Release& release);
 
 /// Area of its patches on the slope, m2.

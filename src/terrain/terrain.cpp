@@ -8,7 +8,7 @@
 namespace talus {
 namespace {
 
-/// Rise over one cell at a node between its neighbours: central, but level at a summit or a bottom and at most twice
+/// Rise over one cell at a node between its neighbours: central, but zero at a summit or a bottom and at most twice
 /// that of either side. Where one side has no data the other's; 0 where neither has.
 float rise(float before, float here, float after) {
     const float back = here - before, ahead = after - here;

@@ -19,13 +19,12 @@ struct GroundSample {
 
 /// A height field: elevations at the centres of square cells, between them bicubic Hermite patches (without twist), in
 /// a local float frame. Height and normal belong to one smooth surface: on facets debris would lose speed at every
-/// kink, and with normals that are not those of the heights it would gain or lose energy. Slopes at the centres are
-/// central differences, limited as van Leer (1977) does, so that the ground does not swell beside a cliff.
+/// kink, and with normals that do not match the heights it would gain or lose energy. Slopes at the centres are central
+/// differences, limited as van Leer (1977) does, so that the ground does not overshoot beside a cliff.
 ///
-/// Debris can be on it where `covers` holds: inside the hull of the cell centres and away from nodata.
-/// Copies share the heights, which never change: to copy a terrain costs nothing, however large it is.
-/// A height's cell index and fraction come from the same floor(): taken from two roundings, a particle exactly on
-/// a cell edge would see the ground jump.
+/// Debris can be on it where `covers` is true: inside the hull of the cell centres and away from nodata. Copies share
+/// the heights, which never change: copying a terrain is cheap, however large it is. A height's cell index and fraction
+/// come from the same floor(): taken from two roundings, a particle exactly on a cell edge would see the ground jump.
 class Terrain {
   public:
     Terrain() = default;
@@ -80,12 +79,12 @@ class Terrain {
     /// Unit normal's z component (cosine of the slope) at a world plan position; NaN where not covered.
     [[nodiscard]] double slope_cosine_at(const PlanPoint& p) const;
 
-    /// Index of the cell that a local plan position lies in, of a position that is covered.
+    /// Index of the cell that a local plan position lies in, which must be covered.
     [[nodiscard]] std::size_t cell_at(float x, float y) const;
     /// Cosine of the slope at the centre of a cell that has data.
     [[nodiscard]] double slope_cosine_of(std::size_t cell) const;
     /// Changes the world elevation of a cell, which has data; the surface changes up to two cells around. Copies of
-    /// this terrain stay as they are: what they share with it is copied before.
+    /// this terrain are not affected: shared data is copied first.
     void set_elevation(std::size_t cell, float elevation);
 
   private:
@@ -98,7 +97,7 @@ class Terrain {
     template <class Real>
     auto locate(Real x, Real y) const {
         const Real u = (x - Real(x_first_)) * Real(inverse_cell_), v = (y - Real(y_first_)) * Real(inverse_cell_);
-        // This order of comparisons also sends NaN to some cell instead of into an undefined conversion.
+        // This order of comparisons also maps NaN to a valid cell instead of an undefined conversion.
         const auto column = truncated(larger(Real(0), smaller(Real(last_column_ - 1), u)));
         const auto row = truncated(larger(Real(0), smaller(Real(last_row_ - 1), v)));
         using Index = std::remove_const_t<decltype(column)>;
@@ -106,7 +105,7 @@ class Terrain {
                                  v - from_index<Real>(row)};
     }
 
-    /// What the value and the rise of one end of a cell weigh, and the derivatives of that.
+    /// The weights of the value and the rise at one end of a cell, and their derivatives.
     template <class Real>
     struct End {
         Real value{}, slope{}, value_rise{}, slope_rise{};
@@ -135,8 +134,8 @@ class Terrain {
 
     std::shared_ptr<Grid<float>> elevation_ = std::make_shared<Grid<float>>();
     LocalFrame frame_;
-    /// A cell centre: local z (NaN: no data), and its rise over one cell eastwards and northwards, m. By fours, since
-    /// what lies together is loaded at once.
+    /// A cell centre: local z (NaN: no data), and its rise over one cell eastwards and northwards, m. In fours, which
+    /// are loaded together.
     std::shared_ptr<Quad[]> nodes_;
     int stride_ = 0;
     int last_column_ = 0, last_row_ = 0;

@@ -49,7 +49,7 @@ FilledSurface fill_sinks(const Grid<float>& elevation) {
     const GridGeometry& g = elevation.geometry;
     FilledSurface filled{elevation, std::vector<int>(g.size(), -1)};
     std::vector<bool> reached(g.size(), false);
-    // Ties in elevation go to the cell of lower index: the same path on every machine.
+    // Ties in elevation go to the cell of lower index: so the path is the same on every machine.
     using Entry = std::pair<float, std::size_t>;
     std::priority_queue<Entry, std::vector<Entry>, std::greater<>> open;
     std::queue<std::size_t> pit;
@@ -79,7 +79,7 @@ FilledSurface fill_sinks(const Grid<float>& elevation) {
             float& level = filled.elevation.values[next];
             if (reached[next] || std::isnan(level)) continue;
             reached[next] = true;
-            // The way back to this cell: neighbours n and its opposite lie two apart within their group of four.
+            // The direction back to this cell: a neighbour n and its opposite are two apart within their group of four.
             filled.outlet[next] = static_cast<int>(n < 4 ? (n + 2) % 4 : 4 + (n + 2) % 4);
             if (level <= filled.elevation.values[k]) {
                 level = filled.elevation.values[k];
@@ -133,7 +133,7 @@ std::vector<CellPosition> descend(const Grid<float>& elevation, CellPosition sta
     if (run >= longest) return path;
 
     // The end of the path over the filled surface may be level: open water, or a basin filled up to the edge of the
-    // data. Nothing lower lies beyond it, so what is left is the descent into it.
+    // data. Nothing lower lies beyond it, so only the descent to it is kept.
     const auto level = [&](const CellPosition& p) { return filled.elevation.at(p.column, p.row); };
     while (path.size() > 1 && level(path[path.size() - 2]) == level(path.back())) path.pop_back();
     run = 0;
@@ -211,7 +211,7 @@ Result<std::vector<PlanPoint>> trace_flow_path(const Grid<float>& elevation, con
                      (in_grid ? " (nodata there)" : "") + "; move the release or give [flow_path] file"};
     }
 
-    // No farther than `longest` can the path lead: fill sinks only there.
+    // The path cannot be longer than `longest`: fill sinks only within that distance.
     const double reach = std::clamp(longest / g.cell + 2, 2.0, 1e6);
     const int column = static_cast<int>(u), row = static_cast<int>(v), cells = static_cast<int>(reach);
     const int first_column = std::max(0, column - cells), first_row = std::max(0, row - cells);
@@ -228,7 +228,7 @@ Result<std::vector<PlanPoint>> trace_flow_path(const Grid<float>& elevation, con
     points.reserve(cells_passed.size() + 1);
     for (const CellPosition& c : cells_passed) points.push_back(part.centre(c.column, c.row));
     points.front() = start;
-    if (points.size() == 1) {  // the start is the lowest point there is: any direction is as good
+    if (points.size() == 1) {  // the start is the lowest point there is: any direction will do
         points.push_back({start.x + g.cell, start.y});
     }
     smooth(points);

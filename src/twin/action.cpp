@@ -23,7 +23,7 @@ namespace {
 
 using nlohmann::json;
 
-/// Reads one action: `edit` is the setup as it is, to be changed.
+/// Reads one action: `edit` starts as the current setup and is changed.
 class ActionReader {
   public:
     ActionReader(const json& action, NextNumbers& next, const ActionContext& context, Edit& edit)
@@ -94,7 +94,7 @@ Status ActionReader::set_parameter() {
     return set_parameter(action_);
 }
 
-/// Several at once are one change, which one undo takes back.
+/// Several at once are one change, which a single undo reverts.
 Status ActionReader::set_parameters() {
     TALUS_TRY(check_keys(action_, {"action", "values"}));
     const auto values = action_.find("values");
@@ -121,7 +121,7 @@ Status ActionReader::set_parameter(const json& entry) {
     const Parameter& parameter = **found;
     const auto value = read_number(entry, "value", parameter.range, parameter.unit);
     if (!value) return Error{fmt::format("{}: {}", *key, value.error().message)};
-    const bool may_follow = !parameter.absent.empty();  // null: as what it follows
+    const bool may_follow = !parameter.absent.empty();  // null: equal to the key that it follows
     if (!*value && (!may_follow || !entry.contains("value"))) {
         return Error{fmt::format("{}: value: missing; must be {}", *key, allowed_text(parameter))};
     }
@@ -164,7 +164,7 @@ Status ActionReader::put(std::vector<Entry>& entries, const char* what, int& num
         if constexpr (requires { existing->amount; }) existing->amount = made.amount;
         return {};
     }
-    edit_.created = fmt::format("{}-{}", what, number++);  // counts only when all is well
+    edit_.created = fmt::format("{}-{}", what, number++);  // incremented only on success
     made.id = edit_.created;
     entries.push_back(std::move(made));
     return {};

@@ -11,16 +11,16 @@
 
 namespace talus::twin {
 
-/// What an action is checked against.
+/// Context against which an action is checked.
 struct ActionContext {
     const Scene& scene;
     double particle_spacing;  ///< m
     double viscosity;         ///< in force
     std::function<bool(const std::string& release_id)> has_begun;
-    bool begun = false;  ///< a step was taken
+    bool begun = false;  ///< at least one step was taken
 };
 
-/// What an action makes of a setup.
+/// The result of an action on a setup.
 struct Edit {
     Setup setup;
     std::string sentence;
@@ -32,7 +32,7 @@ struct Edit {
 [[nodiscard]] Result<Edit> read_action(const nlohmann::json& action, const Setup& setup, NextNumbers& next,
                                        const ActionContext& context);
 
-/// The key "action" of an object. Errors: no object, no such key, no text.
+/// The key "action" of an object. Errors: not an object, no such key, not a text.
 [[nodiscard]] Result<std::string> action_name(const nlohmann::json& action);
 
 }  // namespace talus::twin

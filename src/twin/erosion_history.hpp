@@ -5,21 +5,21 @@
 
 namespace talus::twin {
 
-/// How deep debris had eroded its bed at the times of recorded frames: an entry per cell that changed since the one
-/// before. There are no more entries than particles that were picked up, which take more room in every frame.
+/// Erosion depth of the bed at the times of recorded frames: an entry per cell that changed since the previous frame.
+/// There are at most as many entries as entrained particles, which need more memory in every frame.
 class ErosionHistory {
   public:
-    /// In the order of time. `eroded`: as Bed::eroded; it is looked through only if `entrained`, the particles that it
-    /// became, differs from the time before.
+    /// In the order of time. `eroded`: as Bed::eroded; searched only if `entrained`, the number of particles from it,
+    /// has changed.
     void add(double time, std::uint32_t entrained, const std::vector<float>& eroded);
-    /// As of the last add() at or before a time.
+    /// The depths at the last add() at or before a time.
     [[nodiscard]] std::vector<float> at(double time) const;
 
   private:
     struct Entry {
         double time = 0;
         std::uint32_t cell = 0;
-        float depth = 0;  // m, since the beginning
+        float depth = 0;  // m, since the start
     };
     std::vector<Entry> entries_;
     std::vector<float> last_;  // by cell

@@ -13,7 +13,7 @@ namespace talus::twin {
 namespace {
 
 constexpr std::uint16_t absent = 65535;
-constexpr float most = 65534;  ///< greatest coordinate of a particle that is there
+constexpr float most = 65534;  ///< greatest coordinate of an existing particle
 
 /// Two byte planes of n numbers, each as the folded difference to the one before it.
 void write_planes(const std::uint16_t* values, std::size_t n, std::uint8_t* low, std::uint8_t* high) {
@@ -35,7 +35,7 @@ std::uint8_t to_byte(float value, float unit) {
     return static_cast<std::uint8_t>(std::clamp(value / unit + 0.5F, 0.0F, 255.0F));
 }
 
-/// Puts the numbers of a header after each other.
+/// Writes the numbers of a header one after another.
 class Header {
   public:
     template <class T>
@@ -45,7 +45,7 @@ class Header {
         std::memcpy(bytes_.data() + at, &value, sizeof value);
         return *this;
     }
-    /// `strategy` as zlib has it.
+    /// `strategy`: see zlib.
     [[nodiscard]] std::string take_with(const void* body, std::size_t size, int strategy) {
         add(static_cast<std::uint32_t>(size));
         const std::size_t at = bytes_.size();
@@ -66,7 +66,7 @@ class Header {
     std::string bytes_;
 };
 
-/// Where positions lie, of particles that are at a finite one.
+/// Bounds of all finite positions.
 struct Bounds {
     std::array<float, 3> low{}, high{};
     float fastest = 0;
@@ -161,7 +161,8 @@ std::string encode(const Frame& frame, int scenario_index, unsigned further_flag
     header.add(frame.time).add(frame.step).add(frame.slots).add(frame.stride);
     header.add(frame.zero).add(frame.unit).add(frame.speed_unit).add(frame.window);
     header.add(frame.depth_unit).add(frame.depth_speed_unit);
-    // Planes hold runs and no words: to look for runs alone takes two thirds of the time and 7 % more bytes.
+    // Planes contain runs, but hardly repeated sequences: searching only for runs takes two thirds of the time for 7 %
+    // more bytes.
     return header.take_with(frame.body.data(), frame.body.size(), Z_RLE);
 }
 
@@ -185,7 +186,7 @@ void read_window(const Frame& frame, std::size_t count, const Take& take) {
 
 DebrisAt debris_at(const Frame& frame, std::uint32_t column, std::uint32_t row) {
     const auto [first_column, first_row, columns, rows] = frame.window;
-    // Less than the first wraps to more than the window has.
+    // An index below the first wraps to more than the size of the window.
     if (column - first_column >= columns || row - first_row >= rows) return {};
     const std::size_t cell = std::size_t{row - first_row} * columns + (column - first_column);
     DebrisAt here;

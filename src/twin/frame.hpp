@@ -11,7 +11,7 @@
 
 namespace talus::twin {
 
-/// Where the debris is at one moment, in whole numbers: what docs/protocol.md calls a frame, before compression.
+/// The debris at one moment, in whole numbers: a frame of docs/protocol.md, before compression.
 struct Frame {
     double time = 0;  ///< s
     std::uint64_t step = 0;
@@ -22,8 +22,8 @@ struct Frame {
     std::array<std::uint32_t, 4> window{};  ///< first column, first row, columns, rows
     float depth_unit = 0;                   ///< m
     float depth_speed_unit = 0;             ///< m/s
-    double rest_density = 0;                ///< kg/m3, at that time; stays here
-    std::vector<float> densities;           ///< kg/m3, by cell of the window; empty: rest_density. Stay here, too
+    double rest_density = 0;                ///< kg/m3, at that time; not sent
+    std::vector<float> densities;           ///< kg/m3, by cell of the window; empty: rest_density. Not sent
     std::vector<std::uint8_t> body;         ///< byte planes
 
     [[nodiscard]] std::size_t bytes() const { return sizeof(Frame) + body.size() + densities.size() * sizeof(float); }
@@ -32,14 +32,14 @@ struct Frame {
     }
 };
 
-/// Frames do not change once they are made: other threads may read them during the run.
+/// Frames do not change once created: other threads may read them during the run.
 using FramePtr = std::shared_ptr<const Frame>;
 
 /// `slots`: more than any id. Every `stride`-th id is in the frame.
 [[nodiscard]] Frame make_frame(const State& state, const MapAccumulator::Present& debris, std::uint32_t slots,
                                unsigned stride, unsigned flags);
 
-/// As it goes over the wire.
+/// The frame as sent to clients.
 [[nodiscard]] std::string encode(const Frame& frame, int scenario_index, unsigned further_flags = 0);
 
 /// Depth, m, depth-averaged speed, m/s, and density, kg/m3, in a cell of the map grid; 0 outside the window.
@@ -48,7 +48,7 @@ struct DebrisAt {
 };
 [[nodiscard]] DebrisAt debris_at(const Frame& frame, std::uint32_t column, std::uint32_t row);
 
-/// The same in all cells of the window, by rows.
+/// The same for all cells of the window, by rows.
 [[nodiscard]] std::vector<DebrisAt> debris_in_window(const Frame& frame);
 
 }  // namespace talus::twin

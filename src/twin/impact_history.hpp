@@ -8,13 +8,13 @@
 
 namespace talus::twin {
 
-/// What obstacles met, as it grew: an entry per change, so that what nothing touches takes no room.
+/// Impact on obstacles over time: an entry per change, so that an obstacle that is not hit needs no memory.
 class ImpactHistory {
   public:
     /// In the order of time.
     void add(std::size_t obstacle, double time, const BuildingImpact& impact);
     void forget(std::size_t obstacle);
-    /// As of the last entry at or before a time; without its name and its samples.
+    /// The last entry at or before a time, without name and samples.
     [[nodiscard]] BuildingImpact at(std::size_t obstacle, double time) const;
 
   private:

@@ -16,7 +16,7 @@ using nlohmann::json;
 
 constexpr int version = 1;
 
-/// Reads keys of known kinds; the first that does not fit stays as the error.
+/// Reads keys of known kinds; the first mismatch is kept as the error.
 class JournalReader {
   public:
     const json& object(const json& parent, const char* key) {
@@ -157,7 +157,7 @@ std::vector<std::string> changed_inputs(const Journal& journal, const Scene& sce
 
 Result<Replayed> replay(const Journal& journal, std::shared_ptr<const Scene> scene,
                         const std::function<bool(std::uint64_t)>& on_step) {
-    // Nobody asks for frames of a replay.
+    // A replay needs no frames.
     TALUS_ASSIGN(auto opened, Scenario::open_at(journal, std::move(scene), {journal.overrides, 1e9, 0}));
     Scenario& scenario = *opened;
     bool stopped = false;

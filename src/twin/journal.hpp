@@ -14,15 +14,15 @@
 
 namespace talus::twin {
 
-/// An action and when it came.
+/// An action and its time.
 struct JournalEntry {
     std::uint64_t step = 0;  ///< steps taken before it
     std::string by;
     nlohmann::json action;
-    nlohmann::json setup;  ///< that undo and redo came back to (write_setup); null for other actions
+    nlohmann::json setup;  ///< restored by undo or redo (write_setup); null for other actions
 };
 
-/// Everything that a session's result follows from, and the result.
+/// Everything that determines a session's result, and the result.
 struct Journal {
     std::string scene_file;  ///< absolute, or "built-in:sham_tseng/scene.toml"
     std::vector<std::string> overrides;
@@ -41,7 +41,7 @@ struct Journal {
 /// Errors name key and value.
 [[nodiscard]] Result<Journal> read_journal(const std::string& text);
 
-/// A sentence for every input of the scene that is not as it was in the session.
+/// A sentence for every input of the scene that has changed since the session.
 [[nodiscard]] std::vector<std::string> changed_inputs(const Journal& journal, const Scene& scene);
 
 /// The result of a replay of a journal.
@@ -52,7 +52,7 @@ struct Replayed {
 };
 
 /// Runs a journal on its scene. `on_step` gets the number of each step; false stops. Errors: the setup does not fit the
-/// scene, an action cannot be done, the run ends before the journal does.
+/// scene, an action fails, the run ends before the journal does.
 [[nodiscard]] Result<Replayed> replay(const Journal& journal, std::shared_ptr<const Scene> scene,
                                       const std::function<bool(std::uint64_t step)>& on_step = {});
 

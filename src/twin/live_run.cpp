@@ -68,7 +68,7 @@ void LiveRun::advance() {
         groups_[g].begun = groups_[g].begun || model().releases[g].start_time <= state().time;
     }
     const bool stepped = run_->advance();
-    slots_ = std::max(slots_, state().seeded);  // debris came in, or was picked up from the bed
+    slots_ = std::max(slots_, state().seeded);  // debris was injected or entrained
     if (!stepped) return;
     note_failed();
     record();

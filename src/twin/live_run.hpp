@@ -17,7 +17,7 @@
 
 namespace talus::twin {
 
-/// The run of a setup, from time 0, with its recording; between two steps it can be brought to another setup.
+/// The run of a setup, from time 0, with its recording; between two steps it can be changed to another setup.
 class LiveRun {
   public:
     /// `spacing`: of the particles, m. Errors: as of Run::start().
@@ -26,14 +26,14 @@ class LiveRun {
 
     /// Takes a step if ready.
     void advance();
-    /// Changes what differs. A release whose debris has begun to move keeps its old shape, beds and inflows stay as
-    /// they were at the start: see begun_with(). Errors: too many particles,
-    /// a release smaller than a particle; nothing has changed then.
+    /// Applies the differences. A release whose debris has started to move keeps its old shape; beds and inflows remain
+    /// those of the start: see begun_with(). Errors: too many particles, a release smaller than a particle; then
+    /// nothing is changed.
     [[nodiscard]] Status bring_to(const Setup& next);
 
     [[nodiscard]] const Setup& setup() const { return setup_; }
     [[nodiscard]] const Setup& begun_with() const { return begun_with_; }
-    /// Whether a release's debris has been let go.
+    /// Whether a release has started.
     [[nodiscard]] bool has_begun(const std::string& release_id) const;
 
     /// s; infinity: it waits for its trigger.
@@ -52,12 +52,12 @@ class LiveRun {
     }
     [[nodiscard]] FramePtr frame(unsigned stride, unsigned flags) const;
 
-    /// What an obstacle of the setup has met, until now or until a time of the recording.
+    /// Impact on an obstacle of the setup, until now or until a time of the recording.
     [[nodiscard]] BuildingImpact impact_on(const std::string& obstacle_id, std::optional<double> time = {}) const;
-    /// m by cell of the terrain, as Bed::eroded, now or at a time of the recording; empty: nothing was picked up.
+    /// m by cell of the terrain, as Bed::eroded, now or at a time of the recording; empty: no erosion.
     [[nodiscard]] std::vector<float> eroded(std::optional<double> time = {}) const;
 
-    /// An obstacle that stood for a step at least and was taken away.
+    /// An obstacle that existed for at least one step and was removed.
     struct Removed {
         std::string id;
         std::shared_ptr<const Building> body;
@@ -66,24 +66,24 @@ class LiveRun {
     };
     [[nodiscard]] std::vector<Removed> removed() const;
 
-    /// As Run::result() if the run ended here; buildings are those that stand, in the setup's order, then barriers,
+    /// As Run::result() if the run ended now; buildings are the existing ones, in the setup's order, then barriers,
     /// then removed().
     [[nodiscard]] RunResult result() const;
 
   private:
-    struct Group {  ///< beside Model::releases
+    struct Group {  ///< parallel to Model::releases
         std::string id;
-        bool begun = false;  ///< a step was taken in which its debris could move
+        bool begun = false;  ///< its debris could move in at least one step
     };
-    struct Obstacle {  ///< beside Ground::buildings, which only grows
+    struct Obstacle {  ///< parallel to Ground::buildings, which only grows
         std::string id;
-        std::shared_ptr<const Building> body;  ///< also of one that was taken away
+        std::shared_ptr<const Building> body;  ///< also of a removed one
         bool barrier = false;
-        std::uint64_t since_step = 0;  ///< when it came, or was moved, to where it is
+        std::uint64_t since_step = 0;  ///< when it was added or last moved
         bool stands = true;
-        bool failed = false;           ///< under debris; a setup that still has it as it was does not put it up again
-        std::uint64_t until_step = 0;  ///< of one that was taken away, as the next
-        BuildingImpact last{};         ///< as it was taken away
+        bool failed = false;           ///< destroyed by debris; not restored by a setup that contains it unchanged
+        std::uint64_t until_step = 0;  ///< of a removed one, like the next
+        BuildingImpact last{};         ///< at its removal
     };
     struct Change;
 

@@ -1,4 +1,4 @@
-// How a live run is brought from one setup to another: first everything that can fail, then the change.
+// Changes a live run from one setup to another: first everything that can fail, then the change.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -32,7 +32,7 @@ bool same_bodies(const Entries& a, const Entries& b) {
                       [](const auto& p, const auto& q) { return p.id == q.id && p.body == q.body; });
 }
 
-/// What holds debris back: when any of it changes, debris at rest may move again.
+/// Resistances: if any of them changes, debris at rest may move again.
 std::array<double, 6> holding_back(const Model& model) {
     return {model.friction_coefficient,
             model.building_friction_coefficient,
@@ -44,22 +44,22 @@ std::array<double, 6> holding_back(const Model& model) {
 
 }  // namespace
 
-/// What a change of setup comes to.
+/// The effects of a change of setup.
 struct LiveRun::Change {
     std::vector<Obstacle> obstacles;
     std::optional<std::vector<Building>> buildings;  ///< of the ground, if any changes
     std::optional<BuildingSolids> solids;            ///< likewise
-    std::vector<Extent> touched;                     ///< world, of obstacles that came, went or were moved
-    std::vector<std::size_t> renewed;                ///< obstacles whose record begins anew
+    std::vector<Extent> touched;                     ///< world, of obstacles that were added, removed or moved
+    std::vector<std::size_t> renewed;                ///< obstacles whose record is reset
 
-    std::optional<GroundCover> cover;  ///< of zones that came, went or were changed
+    std::optional<GroundCover> cover;  ///< of zones that were added, removed or changed
 
     struct Seed {
         const ReleaseSetup* release;
         State state;
     };
     std::vector<Seed> seeds;
-    std::vector<bool> gone;  ///< by group: its debris is taken away
+    std::vector<bool> gone;  ///< by group: its debris is removed
 };
 
 void LiveRun::plan_obstacles(const Setup& next, Change& change) const {
@@ -111,7 +111,7 @@ Status LiveRun::plan_releases(const Setup& next, Change& change) const {
         if (group != nullptr && !group->begun) {
             seed = !same_shape(before->body, release.body) || overlaps_any(release.body->extent(), change.touched);
         } else if (group != nullptr && before->triggered && !release.triggered) {
-            seed = release.body->spec.start_time > state().time;  // its start is taken back
+            seed = release.body->spec.start_time > state().time;  // its start is revoked
         }
         if (!seed) continue;
         to_seed.push_back(&release);
@@ -158,10 +158,10 @@ Result<LiveRun::Change> LiveRun::plan(const Setup& next) const {
     return change;
 }
 
-/// Takes away the debris of releases that are gone and adds that of new ones, held.
+/// Removes the debris of deleted releases and adds that of new ones, held.
 void LiveRun::replace_releases(Model& model, State& state, Change& change) {
-    // Ids of debris that never moved and lie at the end are given back: to drag the outline of a release would else
-    // use up ids without end.
+    // Ids at the end, of debris that never moved, are reused: otherwise dragging the outline of a release would use up
+    // ids without limit.
     bool given_back = true;
     std::vector<bool> done(groups_.size(), false);
     while (given_back) {

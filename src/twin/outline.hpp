@@ -19,25 +19,24 @@
 
 namespace talus::twin {
 
-/// What an action changes of where something lies: a new outline without courtyards, or how far all its parts are
-/// moved.
+/// A change of position by an action: a new outline without courtyards, or a displacement of all parts.
 struct Redrawn {
     std::optional<Ring> ring;
     std::optional<PlanPoint> by;
-    const char* key = "";  ///< of the action, to blame
+    const char* key = "";  ///< the key of the action at fault
     explicit operator bool() const { return ring || by; }
 };
 
-/// `outline`: the key of the ring; `move_m` moves all parts and courtyards, which one ring could not tell. Errors: a
-/// move of what does not exist yet, or both.
+/// `outline`: the key of the ring; `move_m` moves all parts and courtyards, which a single ring cannot describe.
+/// Errors: a move of a shape that does not exist yet, or both.
 [[nodiscard]] Result<Redrawn> read_outline(const nlohmann::json& action, const char* outline, const char* what,
                                            bool exists);
 
 /// The polygon, holes and all, shifted in the plane, m.
 [[nodiscard]] Polygon moved(Polygon polygon, const PlanPoint& by);
 
-/// Gives the parts their new place: a new outline makes one of them, with all else as the first. What somebody draws
-/// must be an area; `whole`: all of it must lie on known ground, else some of it.
+/// Applies the new position to the parts: a new outline replaces them by one, with the other values of the first. A
+/// drawn outline must have an area; `whole`: all of it must lie on known ground, otherwise some of it.
 template <class Part>
 [[nodiscard]] Status redraw(const Redrawn& drawn, const Terrain& terrain, bool whole, std::vector<Part>& parts) {
     const auto polygon_of = [](Part& part) -> Polygon& {
@@ -61,11 +60,10 @@ template <class Part>
     return {};
 }
 
-/// That it covers no ground of the setup's other releases. `own_id`: of the release as it is in the setup; may be
-/// empty.
+/// Checks that it covers no ground of the setup's other releases. `own_id`: its id in the setup; may be empty.
 [[nodiscard]] Status check_overlaps(const Release& release, const Setup& setup, const std::string& own_id);
 
-/// The most points that an outline or a line may be drawn with.
+/// Maximum number of points of a drawn outline or line.
 inline constexpr std::size_t most_points = 500;
 
 /// "line: missing; a new barrier needs it".

@@ -42,7 +42,7 @@ void for_each_cell(const Frame& frame, const GridGeometry& map, const GridGeomet
     }
 }
 
-/// What a layer holds of one frame's debris in a cell; below 0: nothing.
+/// The value of a layer for one frame's debris in a cell; below 0: none.
 double value_of(const std::string& name, const DebrisAt& debris) {
     if (name == "peak_speed") return debris.speed;
     if (name == "peak_pressure") return debris.density * debris.speed * debris.speed;
@@ -63,7 +63,7 @@ Grid<float> past_layer(const std::string& name, const std::vector<FramePtr>& fra
     if (frames.empty()) return Grid<float>({map.geometry.x_min, map.geometry.y_min, map.geometry.cell, 1, 1}, nothing);
     if (name == "arrival_time") return past_arrival(map.arrival_now, frames.back()->time);
     Grid<float> layer(common_window(frames, map.geometry), nothing);
-    // "depth" is that of the last frame alone; what has been deposited is it, too, wherever debris has been.
+    // "depth" is that of the last frame; so is the deposit depth, wherever debris has been.
     const bool peaks = name.starts_with("peak_");
     for (const FramePtr& frame : frames) {
         const bool last = frame == frames.back();

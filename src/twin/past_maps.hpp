@@ -8,7 +8,7 @@
 
 namespace talus::twin {
 
-/// What a map of the present is to one of the past: the cells, and the depth that counts as debris.
+/// Properties of the current map that past ones share: the cells, and the least depth that counts as debris.
 struct MapFrame {
     GridGeometry geometry;    ///< of the whole map
     double thinnest = 0;      ///< m, see MapAccumulator::thinnest_depth
@@ -16,7 +16,7 @@ struct MapFrame {
 };
 
 /// A layer of Scenario::layer as it was when the last of `frames` was recorded. Arrival times are exact. Peaks are the
-/// greatest of the recorded frames: what was higher between two of them is missed, and so they are lower bounds.
+/// greatest of the recorded frames: higher values between two frames are missed, so they are lower bounds.
 [[nodiscard]] Grid<float> past_layer(const std::string& name, const std::vector<FramePtr>& frames, const MapFrame& map);
 
 }  // namespace talus::twin

@@ -13,8 +13,8 @@
 #include "twin/action.hpp"
 #include "twin/setup.hpp"
 
-/// What the put actions of docs/protocol.md ask for, each: `existing` with what the action gives, or, where that is
-/// nullptr, a new one; of this name. Errors name key, value and what is allowed.
+/// The put actions of docs/protocol.md. Each returns `existing` with the values of the action, or a new one if that is
+/// nullptr, with this name. Errors name key, value and what is allowed.
 namespace talus::twin {
 
 /// `setup`: with the other releases.
@@ -33,7 +33,7 @@ namespace talus::twin {
 [[nodiscard]] Result<BedLayer> read_bed(const nlohmann::json& action, const ActionContext& context,
                                         const BedLayer* existing, const std::string& name);
 
-/// `setup`: with all that brings debris, which particles must be enough for.
+/// `setup`: with all sources of debris, whose particles must not exceed the limit.
 [[nodiscard]] Result<Inflow> read_inflow(const nlohmann::json& action, const ActionContext& context, const Setup& setup,
                                          const InflowSetup* existing, const std::string& name);
 

@@ -16,7 +16,7 @@ using nlohmann::json;
 
 constexpr std::size_t most_openings = 100;
 
-/// As it is in the barrier, where the action has none.
+/// Unchanged where the action has none.
 Status read_openings(const json& action, const ActionContext& context, BarrierSpec& barrier) {
     if (!gives(action, "openings")) return {};
     const json& list = action["openings"];

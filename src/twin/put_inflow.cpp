@@ -20,7 +20,7 @@ PlanPoint shifted(const PlanPoint& p, const PlanPoint& by) {
     return {p.x + by.x, p.y + by.y};
 }
 
-/// Where it comes in: across a line or over an area.
+/// Location of the inflow: across a line or over an area.
 Status read_place(const json& action, const Terrain& terrain, bool exists, Inflow& inflow) {
     TALUS_ASSIGN(const auto line, read_points(action, "line", false, 2, 2));
     TALUS_ASSIGN(const Redrawn drawn, read_outline(action, "polygon", "inflow", exists));
@@ -47,7 +47,7 @@ Status read_place(const json& action, const Terrain& terrain, bool exists, Inflo
     return over_area ? Status() : check_line(inflow, terrain, drawn.by ? "move_m" : "line");
 }
 
-/// What all that brings debris would make, with this inflow in place of `existing`.
+/// Particles of all sources of debris, with this inflow in place of `existing`.
 double particles_in_all(const Setup& setup, const InflowSetup* existing, const Inflow& inflow, double spacing) {
     double volume = inflow.volume();
     for (const InflowSetup& other : setup.inflows) {
@@ -71,7 +71,7 @@ Result<Inflow> read_inflow(const json& action, const ActionContext& context, con
     TALUS_TRY(read_values(action, inflow.spec));
     TALUS_TRY(check_rules(inflow.spec, solver, context.particle_spacing));
     if (existing == nullptr && !action.contains("hydrograph")) return missing("hydrograph", "inflow");
-    // Also of one that stays: what came over an area may be too still for a line.
+    // Also checked if unchanged: an inflow over an area may be too slow for a line.
     const json rows = action.contains("hydrograph") ? action["hydrograph"] : list_json(inflow.hydrograph);
     TALUS_ASSIGN(inflow.hydrograph, read_hydrograph_rows(rows, inflow.spec));
     TALUS_TRY(check_hydrograph(inflow, solver, "hydrograph"));

@@ -14,7 +14,7 @@ void Recording::add(FramePtr frame) {
 }
 
 void Recording::thin_out() {
-    // The first one stays: it is where everything began.
+    // The first frame is kept: it is the initial state.
     const std::size_t half = std::max<std::size_t>(2, frames_.size() / 2);
     std::size_t kept = 0;
     for (std::size_t k = 0; k < frames_.size(); ++k) {

@@ -7,8 +7,8 @@
 
 namespace talus::twin {
 
-/// Frames at even intervals of simulated time, uncompressed: to compress what nobody may ever ask for would cost more
-/// than to keep it. When there is no more room, every second frame of the older half goes.
+/// Frames at even intervals of simulated time, uncompressed: compressing frames that may never be requested costs more
+/// than keeping them. When memory is full, every second frame of the older half is removed.
 class Recording {
   public:
     /// `interval` in s of simulated time, `room` in bytes.

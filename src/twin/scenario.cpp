@@ -27,7 +27,7 @@ using nlohmann::json;
 
 constexpr std::size_t most_undo = 200;
 
-/// What the tables of a plain run do not say: obstacles that are gone.
+/// Notes that the tables of a plain run do not contain: removed obstacles.
 std::vector<std::string> obstacle_notes(const LiveRun& run) {
     std::vector<std::string> notes;
     for (const LiveRun::Removed& gone : run.removed()) {
@@ -140,7 +140,7 @@ Result<Done> Scenario::Parts::step_back(std::vector<Past>& from, std::vector<Pas
 
 Result<Done> Scenario::Parts::restart() {
     TALUS_TRY(start(held_again(setup())));
-    // All releases wait again: there is no start left to take back.
+    // All releases wait again: there is no start left to undo.
     for (std::vector<Past>* pasts : {&undo, &redo}) {
         std::erase_if(*pasts, [](const Past& past) { return past.by_trigger; });
         for (Past& past : *pasts) past.setup = held_again(std::move(past.setup));
@@ -265,7 +265,7 @@ bool Scenario::has_erosion() const {
 
 std::function<Status(const std::filesystem::path&)> Scenario::products() const {
     const Parts& p = *parts_;
-    // Beds and inflows as they were for all of the run, the rest as it is now.
+    // Beds and inflows of the start of the run, the rest of the current setup.
     Setup setup = p.setup();
     setup.beds = p.run->begun_with().beds;
     setup.inflows = p.run->begun_with().inflows;

@@ -29,10 +29,10 @@ struct JournalEntry;
 struct ScenarioOptions {
     std::vector<std::string> overrides;         ///< that the scene was loaded with, for the journal
     double frame_interval = 0.1;                ///< s of simulated time between recorded frames
-    std::size_t recording_bytes = 512'000'000;  ///< when full, every second frame of the older half goes
+    std::size_t recording_bytes = 512'000'000;  ///< when full, every second frame of the older half is removed
 };
 
-/// What an action did.
+/// The effect of an action.
 struct Done {
     std::string sentence;  ///< for people: "friction coefficient 0.4 -> 0.3"
     std::string created;   ///< id of a new release, barrier or building; empty: none
@@ -48,7 +48,7 @@ class Scenario {
     /// Errors: as of Run::start().
     [[nodiscard]] static Result<std::unique_ptr<Scenario>> open(std::shared_ptr<const Scene> scene,
                                                                 ScenarioOptions options = {});
-    /// At the beginning of a session that a journal tells of.
+    /// At the start of the session of a journal.
     [[nodiscard]] static Result<std::unique_ptr<Scenario>> open_at(const Journal& journal,
                                                                    std::shared_ptr<const Scene> scene,
                                                                    ScenarioOptions options);
@@ -60,11 +60,11 @@ class Scenario {
 
     /// Takes one step, observers and recording included. Nothing happens unless phase() is ready.
     void advance();
-    /// Any action of docs/protocol.md that changes results: not run, pause, step, set_speed.
-    /// Errors name key, value and allowed range; nothing has changed then.
+    /// Any action of docs/protocol.md that changes results: not run, pause, step, set_speed. Errors name key, value and
+    /// allowed range; then nothing is changed.
     [[nodiscard]] Result<Done> apply(const nlohmann::json& action, const std::string& by);
 
-    /// Does again what an entry of a journal tells of. Errors: as apply().
+    /// Repeats an entry of a journal. Errors: as apply().
     [[nodiscard]] Status follow(const JournalEntry& entry);
 
     [[nodiscard]] RunPhase phase() const;
@@ -82,29 +82,28 @@ class Scenario {
     [[nodiscard]] nlohmann::json state_json(bool with_hash = true) const;
     [[nodiscard]] nlohmann::json setup_json() const;
     [[nodiscard]] nlohmann::json series_json() const;
-    /// Without a time, s: now; otherwise as of the recorded frame at or before it.
+    /// Without a time, s: now; otherwise at the recorded frame at or before it.
     [[nodiscard]] nlohmann::json impacts_json(std::optional<double> time = {}) const;
     [[nodiscard]] nlohmann::json journal_json() const;
     [[nodiscard]] nlohmann::json recording_json() const;
 
-    /// The present frame. `stride` >= 1: every stride-th particle. `flags`: frame_running; the frame adds
+    /// The current frame. `stride` >= 1: every stride-th particle. `flags`: frame_running; the frame adds
     /// frame_too_compressed itself.
     [[nodiscard]] FramePtr frame(unsigned stride, unsigned flags) const;
     /// The recorded frame at or before a time, s; nullptr: none.
     [[nodiscard]] FramePtr recorded_frame(double time) const;
 
-    // Work that takes a while. Each of these takes what it needs of the run as it is now, and gives back the work
-    // itself, which any thread can do while the run goes on.
+    // Long operations. Each copies what it needs of the current run, and returns the work itself, which any thread can
+    // do while the run continues.
 
     /// What passed at a point, over the recording.
     [[nodiscard]] std::function<nlohmann::json()> probe(const PlanPoint& p) const;
-    /// `depth`, `peak_depth`, `peak_speed`, `peak_pressure`, `arrival_time`, `deposit_depth`, `erosion_depth`; NaN:
-    /// nothing there. SI units. The last has cells of the terrain, the others those of the maps. As they are now, or
-    /// were at the recorded frame at or before a time (see past_layer; erosion is exact). Errors: no such layer,
-    /// nothing recorded by that time.
+    /// `depth`, `peak_depth`, `peak_speed`, `peak_pressure`, `arrival_time`, `deposit_depth`, `erosion_depth`; NaN: no
+    /// value. SI units. The last has cells of the terrain, the others those of the maps. Now, or at the recorded frame
+    /// at or before a time (see past_layer; erosion is exact). Errors: no such layer, nothing recorded by that time.
     [[nodiscard]] Result<std::function<Grid<float>()>> layer(const std::string& name,
                                                              std::optional<double> time = {}) const;
-    /// Whether debris picked up anything of its bed.
+    /// Whether debris has eroded any of its bed.
     [[nodiscard]] bool has_erosion() const;
     /// Writes the run so far as `talus run` would, into an existing empty folder.
     [[nodiscard]] std::function<Status(const std::filesystem::path& folder)> products() const;

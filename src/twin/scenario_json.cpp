@@ -23,7 +23,7 @@ json range_json(const Range& range) {
             {"high_included", range.high_included}};
 }
 
-/// What a value may be in this scene, whatever the others are.
+/// The range of a value in this scene, regardless of the other values.
 Range range_in(const Scene& scene, const Parameter& parameter) {
     Range range = parameter.range;
     const double highest = std::floor(1e4 * highest_viscosity(scene.spec.solver)) / 1e4;
@@ -51,7 +51,7 @@ json settings_json(const Scene& scene) {
 json live_parameters_json(const Scene& scene, const Model& model, const MaterialSpec& now) {
     json list = json::array();
     for (const Parameter* parameter : live_parameters()) {
-        // A scene that gives another viscosity gives this one, too, at its spacing.
+        // A scene that gives the kinematic viscosity also determines this one, at its spacing.
         const double scene_viscosity =
             scene.spec.material.kinematic_viscosity && now.kinematic_viscosity ? model.viscosity : 0;
         list.push_back(
@@ -167,7 +167,7 @@ json Scenario::state_json(bool with_hash) const {
     const State& state = run.state();
     const TimeSample now = run.observer().sample(run.model(), state);
     const std::vector<FrontSample> front = run.observer().front();
-    // The front moves as long as it reaches new chainages.
+    // The front is moving while it reaches new chainages.
     constexpr double lately = 1;  // s
     const bool advances = !front.empty() && state.time - front.back().arrival_time <= lately;
     const std::vector<FramePtr>& frames = run.recording().frames();

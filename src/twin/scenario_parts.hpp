@@ -10,9 +10,9 @@
 
 namespace talus::twin {
 
-/// What scenario*.cpp share.
+/// Shared by scenario*.cpp.
 struct Scenario::Parts {
-    /// A setup that can be gone back to, and what the change from it, or to it, was.
+    /// A setup that can be restored, and the change from or to it.
     struct Past {
         Setup setup;
         std::string sentence;
@@ -35,7 +35,7 @@ struct Scenario::Parts {
     [[nodiscard]] const Setup& setup() const { return run->setup(); }
     /// Starts, or restarts, with a setup.
     [[nodiscard]] Status start(const Setup& setup);
-    /// Brings the run to a setup. What holds from time 0 on does so at once as long as no step was taken.
+    /// Changes the run to a setup. Beds and inflows apply immediately only before the first step.
     [[nodiscard]] Status bring_to(const Setup& next);
     [[nodiscard]] Result<Done> edit(const nlohmann::json& action);
     [[nodiscard]] Result<Done> step_back(std::vector<Past>& from, std::vector<Past>& to, const char* word);

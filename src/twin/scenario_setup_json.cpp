@@ -13,7 +13,7 @@ namespace {
 
 using nlohmann::json;
 
-constexpr std::size_t longest_table = 200;  // rows that somebody would read
+constexpr std::size_t longest_table = 200;  // rows that are still readable
 
 json zone_json(const ZoneSetup& zone) {
     json entry = values_json(zone.body->spec);

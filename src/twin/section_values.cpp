@@ -33,7 +33,7 @@ Result<ParameterValue> read_value(const json& object, const Parameter& parameter
     return Error{fmt::format("{} = {}: must be {}", key, shown(object[key]), allowed_text(parameter))};
 }
 
-/// Whether of alternatives this is the only key that people can change: nothing else can stand for it.
+/// Whether this is the only live parameter among its alternatives, so that nothing else can replace it.
 bool stands_alone(const Section& section, const Parameter& parameter) {
     const auto live = [&](const std::string& key) { return !section.find(key)->live.empty(); };
     return std::any_of(section.alternatives.begin(), section.alternatives.end(), [&](const Alternatives& choice) {
@@ -42,7 +42,7 @@ bool stands_alone(const Section& section, const Parameter& parameter) {
     });
 }
 
-/// What is given takes the place of its alternatives.
+/// A given value replaces its alternatives.
 Status drop_alternatives(const json& object, const Section& section, SceneSpec& spec, std::size_t index) {
     for (const Alternatives& choice : section.alternatives) {
         std::vector<std::string> given;

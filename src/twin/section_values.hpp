@@ -9,7 +9,7 @@
 #include "params/fields.hpp"
 #include "params/spec.hpp"
 
-/// The keys of a section that people change while a run goes on, in JSON: keys, ranges and rules of the field table.
+/// The live parameters of a section, in JSON: keys, ranges and rules of the field table.
 namespace talus::twin {
 
 [[nodiscard]] std::vector<std::string> live_keys(const char* section);
@@ -18,19 +18,19 @@ namespace talus::twin {
 [[nodiscard]] nlohmann::json live_list(const Section& section, const SceneSpec& spec);
 [[nodiscard]] Status read_live_values(const nlohmann::json& object, const Section& section, SceneSpec& spec,
                                       std::size_t index = 0);
-/// Adds the entries of a list to the section: keys known, those that are required there, every rule kept. Errors begin
-/// with "key[index]".
+/// Adds the entries of a list to the section: all keys are known, required ones are present, every rule is satisfied.
+/// Errors begin with "key[index]".
 [[nodiscard]] Status read_live_list(const nlohmann::json& list, const char* key, const Section& section,
                                     SceneSpec& spec, double particle_spacing);
 [[nodiscard]] Status check_live_rules(const Section& section, const SceneSpec& spec, double particle_spacing);
 
-/// That a new entry has what it needs: required keys, and the one live key of alternatives.
+/// Checks that a new entry has its required keys, and exactly one live key of alternatives.
 [[nodiscard]] Status check_complete(const nlohmann::json& object, const char* section, const char* what);
 
-/// Whether there is such a key, and no null.
+/// Whether there is such a key, and it is not null.
 [[nodiscard]] bool gives(const nlohmann::json& object, const std::string& key);
 
-/// A scene with this entry alone in its section.
+/// A scene with only this entry in its section.
 template <class Spec>
 [[nodiscard]] SceneSpec scene_with(const Spec& entry) {
     SceneSpec spec;
@@ -55,8 +55,8 @@ template <class Spec>
     return live_list(live_section(section_of<Spec>.first), spec);
 }
 
-/// Takes what the object gives; a null takes a value away that may be left out, a value takes away its alternatives.
-/// Errors name key, value and what is allowed.
+/// Applies the values of the object; null removes an optional value, and a value removes its alternatives. Errors name
+/// key, value and what is allowed.
 template <class Spec>
 [[nodiscard]] Status read_values(const nlohmann::json& object, Spec& entry) {
     SceneSpec spec = scene_with(entry);

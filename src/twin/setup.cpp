@@ -10,7 +10,7 @@
 namespace talus::twin {
 namespace {
 
-/// What else a release says than how thick it is, which is in its patches.
+/// The specification of a release without its thickness, which is in its patches.
 ReleaseSpec beside_thickness(ReleaseSpec spec) {
     spec.name.clear();
     spec.thickness.reset();
@@ -143,7 +143,7 @@ double value_in_force(const MaterialSpec& material, const Parameter& parameter, 
     const ParameterValue value = parameter.get(spec, 0);
     if (const double* number = std::get_if<double>(&value)) return *number;
     if (parameter.key == "turbulent_friction_mps2") return std::numeric_limits<double>::quiet_NaN();
-    return material.friction_coefficient;  // both others that may be left out follow it
+    return material.friction_coefficient;  // both other optional ones follow it
 }
 
 }  // namespace talus::twin

@@ -16,16 +16,16 @@
 #include "terrain/inflow.hpp"
 #include "terrain/release.hpp"
 
-/// What people can change of a run while it runs: a plain value. Bodies are shared between setups, so that a copy costs
-/// little.
+/// The part of a run that users can change during the run: a plain value. Bodies are shared between setups, so copies
+/// are cheap.
 namespace talus::twin {
 
 struct ReleaseSetup {
     std::string id;
     std::shared_ptr<const Release> body;  ///< a drawn one has no start time (infinity)
-    int scene_index = -1;                 ///< in the scene; -1: made in the page
+    int scene_index = -1;                 ///< in the scene; -1: created in the page
     bool as_in_scene = false;             ///< of the scene, and its body not changed
-    bool triggered = false;               ///< in the page, whatever its start time
+    bool triggered = false;               ///< in the page, regardless of its start time
 };
 
 struct BarrierSetup {
@@ -39,7 +39,7 @@ struct BarrierSetup {
 struct BuildingSetup {
     std::string id;
     std::shared_ptr<const Building> body;
-    int scene_index = -1;  ///< in the scene; -1: made in the page
+    int scene_index = -1;  ///< in the scene; -1: created in the page
     bool as_in_scene = false;
 };
 
@@ -48,7 +48,7 @@ struct ZoneSetup {
     std::string id;
     std::shared_ptr<const Zone> body;
     double area = 0;       ///< m2 in plan
-    int scene_index = -1;  ///< in the scene; -1: made in the page
+    int scene_index = -1;  ///< in the scene; -1: created in the page
     bool as_in_scene = false;
 };
 
@@ -72,17 +72,17 @@ struct Setup {
     std::vector<ReleaseSetup> releases;
     std::vector<BarrierSetup> barriers;
     std::vector<BuildingSetup> buildings;
-    std::vector<ZoneSetup> zones;  ///< later ones go before earlier ones
-    std::vector<BedSetup> beds;    ///< later ones lie where several are; these and inflows hold from time 0 on
+    std::vector<ZoneSetup> zones;  ///< later ones override earlier ones
+    std::vector<BedSetup> beds;    ///< later ones override earlier ones; these and inflows apply from time 0
     std::vector<InflowSetup> inflows;
 };
 
-/// The numbers that the next new things get in their ids; an id is never used twice.
+/// Numbers of the next new ids; an id is never used twice.
 struct NextNumbers {
     int release = 1, barrier = 1, building = 1, zone = 1, bed = 1, inflow = 1;
 };
 
-/// The scene as it was loaded; `next` is set to what comes behind it.
+/// The scene as it was loaded; `next` is set to follow it.
 [[nodiscard]] Setup setup_of(const Scene& scene, NextNumbers& next);
 
 /// The scene with the parts of a setup instead of its own.
@@ -106,14 +106,14 @@ template <class Entry>
     return bodies;
 }
 
-/// Whether two bodies are the same but for their names.
+/// Whether two bodies are the same except for their names.
 [[nodiscard]] bool same_shape(const std::shared_ptr<const Release>& a, const std::shared_ptr<const Release>& b);
 [[nodiscard]] bool same_shape(const std::shared_ptr<const Building>& a, const std::shared_ptr<const Building>& b);
 [[nodiscard]] bool same_shape(const std::shared_ptr<const Zone>& a, const std::shared_ptr<const Zone>& b);
 [[nodiscard]] bool same_shape(const std::shared_ptr<const BedLayer>& a, const std::shared_ptr<const BedLayer>& b);
 [[nodiscard]] bool same_shape(const std::shared_ptr<const Inflow>& a, const std::shared_ptr<const Inflow>& b);
 
-/// Whether the bodies of two lists are, one by one.
+/// Whether this holds for two lists, pair by pair.
 template <class Entry>
 [[nodiscard]] bool same_shapes(const std::vector<Entry>& a, const std::vector<Entry>& b) {
     return std::equal(a.begin(), a.end(), b.begin(), b.end(),
@@ -129,9 +129,8 @@ template <class Entry>
 /// "friction coefficient", from "friction_coefficient"; without the unit that the key ends with.
 [[nodiscard]] std::string label_of(const Parameter& parameter);
 
-/// The value that holds, in the unit of the key: one that is not set apart is that of what it follows; NaN where it
-/// follows nothing.
-/// `viscosity`: as make_model takes it, where the scene gives it as kinematic viscosity.
+/// The effective value, in the unit of the key: one that is not set separately is that of the key it follows; NaN where
+/// it follows nothing. `viscosity`: as make_model takes it, where the scene gives it as kinematic viscosity.
 [[nodiscard]] double value_in_force(const MaterialSpec& material, const Parameter& parameter, double viscosity);
 
 }  // namespace talus::twin

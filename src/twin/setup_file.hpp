@@ -7,7 +7,7 @@
 #include "core/result.hpp"
 #include "twin/setup.hpp"
 
-/// A setup in a journal: everything that makes it, what is as in the scene by its place there only.
+/// A setup in a journal: complete, except that entries unchanged from the scene are given by their index only.
 namespace talus::twin {
 
 [[nodiscard]] nlohmann::json write_setup(const Setup& setup);

@@ -16,7 +16,8 @@ namespace {
 
 using nlohmann::json;
 
-/// Journals once had directions in radians. The degrees that give the very same ones again, so that a replay is exact.
+/// Older journals have directions in radians. Returns degrees that convert back to exactly the same value, so that a
+/// replay is exact.
 double degrees_of(double radians) {
     const double middle = radians * 180 / std::numbers::pi;
     double low = middle, high = middle;
@@ -30,7 +31,7 @@ double degrees_of(double radians) {
     return middle;
 }
 
-/// Reads what write_setup wrote; whatever does not fit ends in an Error.
+/// Reads the output of write_setup; any mismatch is an Error.
 class SetupReader {
   public:
     explicit SetupReader(const Scene& scene) : scene_(scene) {}
@@ -51,12 +52,12 @@ class SetupReader {
     }
     static Result<Polygon> read_polygon(const json& rings);
     static Result<std::vector<Polygon>> read_polygons(const json& file, const char* key);
-    /// Outlines, each with a number of its own.
+    /// Outlines, each with its own number.
     template <class Part>
     static Status read_parts(const json& file, const char* key, const char* number, double Part::*value,
                              std::vector<Part>& parts);
     static Result<std::string> read_name(const json& file);
-    /// The id, and which of `count` of the scene's it is; `key`: what only one that was changed has.
+    /// The id, and its index among `count` entries of the scene; `key`: present only in a changed one.
     template <class Entry>
     static Status read_origin(const json& file, const char* key, std::size_t count, Entry& setup);
     static Result<int> read_index(const json& object, std::size_t count);

@@ -24,7 +24,7 @@ json material_json(const MaterialSpec& material) {
     return values;
 }
 
-/// Outlines with what each of them has of its own.
+/// Outlines, each with its own value.
 template <class Part>
 json parts_json(const std::vector<Part>& parts, const char* key, double Part::*value) {
     json list = json::array();
@@ -71,7 +71,7 @@ json body_json(const Inflow& inflow) {
     return body;
 }
 
-/// The id, and which of the scene's it is; the body of one that was changed.
+/// The id, its index in the scene, and the body of a changed one.
 template <class Entry>
 json entry_json(const Entry& setup) {
     json entry = {{"id", setup.id}};

@@ -19,7 +19,7 @@ double start_time_of(const Model& model, std::uint32_t id) {
     return 0;
 }
 
-/// Of two speeds; a NaN must win, or it would go unseen.
+/// The greater of two speeds; NaN takes precedence, or it would be missed.
 float greater_or_unknown(float a, float b) {
     return std::isnan(a) || b <= a ? a : b;
 }
@@ -27,7 +27,7 @@ float greater_or_unknown(float a, float b) {
 Blocks everything(const State& state) {
     return {0, blocks_of(state.count)};
 }
-/// The last block may begin with sleeping debris: no stage moves it.
+/// The last block may begin with sleeping debris: which no stage moves.
 Blocks awake(const State& state) {
     return {0, blocks_of(state.awake)};
 }
@@ -107,7 +107,8 @@ void Backend::find_neighbours(const Model& model, State& state) {
 
 void Backend::prepare_particles(const Model& model, const Ground& ground, State& state) {
     run(particle_stages_.begin, model, ground, state, everything(state));
-    // Of what is awake the positions at the step's start matter to pair friction alone; then the step's end is packed.
+    // For awake particles, only pair friction needs the positions at the step's start; otherwise those at its end are
+    // packed.
     run(particle_stages_.pack_motion, model, ground, state, keeps_stress(model) ? asleep(state) : everything(state));
     if (resists_by_particle(model)) run(particle_stages_.resist, model, ground, state);
 }
@@ -250,15 +251,15 @@ double choose_time_step(const Model& model, const State& state) {
     if (model.solver.time_step) return *model.solver.time_step;
     const double reach = model.solver.displacement_limit * model.particle_spacing;
     double dt = model.solver.largest_time_step;
-    // Pressure spreads by some layers per step. Debris that packs closer is deeper than it can keep up with; left
-    // alone, particles end up on top of each other, where no gradient parts them.
+    // Pressure spreads by a few layers per step. Debris that becomes denser is too deep for that; if nothing is done,
+    // particles end up at the same place, where no gradient separates them.
     constexpr double too_compressed = 0.01, recovered = 0.005;
     if (state.time_step > 0 && state.mean_compression > recovered) {
         const double eased = state.mean_compression > too_compressed ? state.time_step / 2 : state.time_step;
         dt = std::clamp(eased, std::max(dt / 8, std::min(dt, model.solver.smallest_time_step)), dt);
     }
-    // In steps of an eighth of an octave: with longer ones debris that is just too fast for a step would take one of
-    // half the length, with shorter ones the step would change, and multipliers with it, whenever the speed does.
+    // In steps of an eighth of an octave: coarser increments would halve the step for debris that is only just too
+    // fast; finer ones would change the step, and the multipliers with it, at every change of speed.
     const double shorter = std::exp2(-0.125);
     const auto too_long = [&] { return dt * (state.max_speed + model.gravity * dt) > reach; };
     while (dt > model.solver.smallest_time_step && too_long())

@@ -16,7 +16,7 @@
 
 namespace talus::cpu {
 
-/// How many particles a task takes at least.
+/// Minimum number of particles per task.
 inline constexpr std::size_t particle_grain = 256, block_grain = particle_grain / block_size;
 
 /// Blocks [first, last).
@@ -24,12 +24,12 @@ struct Blocks {
     std::size_t first, last;
 };
 
-/// The stages of a step on all cores. Holds what lives within a step only; allocates nothing after construction, except
-/// when debris gets denser than ever before, and for the columns of drag by speed when it first slows debris. Every
-/// stage works on blocks of particles; those with formulas in them are compiled per instruction set (stages.hpp).
+/// The stages of a step on all cores. Holds data of a single step only; allocates nothing after construction, except
+/// when debris gets denser than ever before, and for the columns of speed-dependent drag when that first acts. Every
+/// stage works on blocks of particles; those that evaluate formulas are compiled per instruction set (stages.hpp).
 ///
-/// Displacements of the step, not predicted positions, are what the iterations correct: a velocity is then a small
-/// number divided by dt, and not the difference of two large ones.
+/// The iterations correct displacements of the step, not predicted positions: a velocity is then a small number divided
+/// by dt, not the difference of two large ones.
 class Backend {
   public:
     Backend(const Model& model, std::size_t capacity);
@@ -52,7 +52,7 @@ class Backend {
     void update_sleep(const Model& model, const Ground& ground, State& state);
     void remove_outflow(const Model& model, const Ground& ground, State& state);
 
-    /// The lists of the last step, by the order it left the particles in (before any was removed).
+    /// The lists of the last step, in the order in which it left the particles (before any was removed).
     [[nodiscard]] const NeighbourLists& neighbours() const { return neighbours_; }
     /// The instruction set that the stages run on.
     [[nodiscard]] std::string_view instruction_set() const { return particle_stages_.instruction_set; }
@@ -60,7 +60,7 @@ class Backend {
   private:
     static bool keeps_stress(const Model& model);
     void run(StageFunction stage, const Model& model, const Ground& ground, State& state, Blocks blocks);
-    void run(StageFunction stage, const Model& model, const Ground& ground, State& state);  ///< on all that is awake
+    void run(StageFunction stage, const Model& model, const Ground& ground, State& state);  ///< on all awake particles
     void count_columns(const Model& model, const Ground& ground, const State& state);
     void reorder(State& state, std::span<const std::uint32_t> order);
 
@@ -70,7 +70,7 @@ class Backend {
     Columns columns_;
     CellSort cell_sort_;
     CellGrid grid_;
-    std::span<const std::uint32_t> by_cell_;  // what sort_particles() found
+    std::span<const std::uint32_t> by_cell_;  // the result of sort_particles()
     NeighbourSearch search_;
     NeighbourLists neighbours_;
     Work work_;
@@ -79,9 +79,8 @@ class Backend {
     std::vector<std::uint32_t> new_index_;  // of the particles that stay
 };
 
-/// The step to take next: `time_step` of the scene, or the largest dt_max / 2^(k/8) in which the fastest particle,
-/// falling freely, moves at most `displacement_limit` of a spacing; shorter while the debris is compressed, down to an
-/// eighth.
+/// The next time step: `time_step` of the scene, or the largest dt_max / 2^(k/8) in which the fastest particle, falling
+/// freely, moves at most `displacement_limit` of a spacing; shorter while the debris is compressed, down to an eighth.
 [[nodiscard]] double choose_time_step(const Model& model, const State& state);
 
 }  // namespace talus::cpu

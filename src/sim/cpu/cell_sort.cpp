@@ -11,7 +11,7 @@ namespace {
 constexpr int digit_bits = 11;
 constexpr std::size_t digit_count = std::size_t{1} << digit_bits;
 constexpr std::size_t histogram_span =
-    16384;  // particles per histogram; fixed, so the work is the same on any thread count
+    16384;  // particles per histogram; fixed, so the work does not depend on the number of threads
 
 struct Bounds {
     float x_min = std::numeric_limits<float>::max(), y_min = x_min, z_min = x_min;
@@ -54,7 +54,7 @@ std::span<const std::uint32_t> CellSort::sort(const VectorArray& points, std::si
     const Bounds box = bounds_of(points, count);
     grid.inverse_cell = 1 / cell;
     // One empty cell of padding on each side: the key of a neighbour cell is then a plain sum that never wraps. The
-    // quarter more keeps rounding from putting the outermost particle into the padding.
+    // extra quarter keeps rounding from placing the outermost particle in the padding.
     constexpr double padding = 1.25;
     grid.x_min = box.x_min - padding * cell;
     grid.y_min = box.y_min - padding * cell;

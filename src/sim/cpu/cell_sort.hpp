@@ -8,8 +8,8 @@
 
 namespace talus::cpu {
 
-/// The occupied cells of a sparse grid over the particles, in the order of their keys. No memory or time goes to empty
-/// cells: a dense grid over the bounding box of a valley would cost more than the solver.
+/// The occupied cells of a sparse grid over the particles, in the order of their keys. Empty cells cost neither memory
+/// nor time: a dense grid over the bounding box of a valley would cost more than the solver.
 struct CellGrid {
     double x_min = 0, y_min = 0, z_min = 0, inverse_cell = 0;
     std::uint64_t columns = 1, rows = 1;  // of the padded box: keys run x first, then y, then z
@@ -19,12 +19,12 @@ struct CellGrid {
     [[nodiscard]] std::size_t cell_count() const { return key.size(); }
 };
 
-/// Computes which order sorts the particles by cell. A stable radix sort: equal cells keep their earlier order.
+/// Computes the order that sorts the particles by cell. A stable radix sort: equal cells keep their earlier order.
 class CellSort {
   public:
     explicit CellSort(std::size_t capacity);
 
-    /// `points`: finite positions. Returns the permutation: entry i is the present index of the particle to put at i.
+    /// `points`: finite positions. Returns the permutation: entry i is the current index of the particle to place at i.
     std::span<const std::uint32_t> sort(const VectorArray& points, std::size_t count, double cell, CellGrid& grid);
 
   private:

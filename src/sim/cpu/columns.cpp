@@ -10,7 +10,7 @@ namespace {
 
 constexpr float one = 65536;  // a whole particle
 
-/// Never 0, which marks an empty slot: columns are counted from far outside.
+/// Never 0, which marks an empty slot: columns are numbered from far outside.
 std::uint64_t key_of(std::int64_t column, std::int64_t row) {
     constexpr std::int64_t outside = std::int64_t{1} << 31;
     return (static_cast<std::uint64_t>(row + outside) << 32) | static_cast<std::uint64_t>(column + outside);
@@ -18,7 +18,7 @@ std::uint64_t key_of(std::int64_t column, std::int64_t row) {
 
 }  // namespace
 
-/// The four columns whose middles are around a place, each with its share by bilinear interpolation.
+/// The four columns whose centres surround a place, each with its share by bilinear interpolation.
 template <class F>
 void Columns::for_each_column(float x, float y, const F& f) const {
     const double u = x * inverse_width_ - 0.5, v = y * inverse_width_ - 0.5;

@@ -8,16 +8,16 @@
 
 namespace talus::cpu {
 
-/// How many particles stand above each place in plan: a sparse grid of columns, filled again in each step. Shares of
+/// The number of particles above each place in plan: a sparse grid of columns, rebuilt in each step. Shares of
 /// particles are whole numbers, so that sums do not depend on the number of threads.
 class Columns {
   public:
     explicit Columns(std::size_t capacity) : capacity_(capacity) {}
 
-    /// Shares finite `points` out between the middles of columns that are `width` wide, m. The first call gets the
+    /// Distributes finite `points` over the centres of columns that are `width` wide, m. The first call allocates the
     /// memory.
     void count(const VectorArray& points, std::size_t count, double width);
-    /// Particles in a column at a place, interpolated between the middles of columns.
+    /// Particles in a column at a place, interpolated between the centres of columns.
     [[nodiscard]] float particles_at(float x, float y) const;
 
   private:
@@ -34,7 +34,7 @@ class Columns {
 
     std::size_t capacity_;
     double inverse_width_ = 1;
-    std::vector<Slot> slots_;  // a power of two of them; a particle alone takes four
+    std::vector<Slot> slots_;  // their number is a power of two; a single particle takes four
 };
 
 }  // namespace talus::cpu

@@ -18,8 +18,8 @@ namespace {
 
 constexpr int row_count = 9;  // a cell's 27 neighbours are 9 rows of 3 cells with consecutive keys
 
-/// Walks the 9 neighbour rows of ascending cells. As keys ascend, every row's position only moves forward, so that a
-/// sweep needs no hash table and touches the occupied cells alone.
+/// Walks the 9 neighbour rows of ascending cells. As keys ascend, every row's position only moves forward, so a sweep
+/// needs no hash table and visits occupied cells only.
 class RowSweep {
   public:
     RowSweep(const CellGrid& grid, std::size_t first_cell) : grid_(grid) {
@@ -36,7 +36,7 @@ class RowSweep {
         }
     }
 
-    /// The particles [first, last) of a row of three cells around `cell`; cells must be asked for in ascending order.
+    /// The particles [first, last) of a row of three cells around `cell`; cells must be requested in ascending order.
     std::pair<std::uint32_t, std::uint32_t> particles(std::size_t row, std::size_t cell) {
         const std::uint64_t low = grid_.key[cell] + offset_[row];
         std::size_t& at = cell_[row];
@@ -67,7 +67,7 @@ constexpr auto compress_table() {
     return table;
 }
 
-/// The candidates around a cell, and which of them is the first particle of the cell itself.
+/// The candidates around a cell, and the index of the first particle of the cell itself.
 struct Candidates {
     std::size_t count, own;
 };
@@ -86,8 +86,8 @@ using DU = hn::RebindToUnsigned<D>;
 
 constexpr float far_away = 1e18f;  // m; its square is a float
 
-/// Copies the particles in the 9 rows around a cell to one place: those of the cell look through all of them in turn.
-/// Goes on for a vector with particles that are near nothing.
+/// Copies the particles in the 9 rows around a cell to one contiguous array, which every particle of the cell searches
+/// in turn. Padded by one vector of particles that are near nothing.
 Candidates collect_candidates(const VectorArray& sorted, RowSweep& sweep, std::size_t cell, std::uint32_t begin,
                               SearchScratch& scratch) {
     constexpr D d;
@@ -115,8 +115,8 @@ Candidates collect_candidates(const VectorArray& sorted, RowSweep& sweep, std::s
     return {count, own};
 }
 
-/// Stores the lanes of `index` that are `near` at `to`, in order, and as many others after them as fill a vector.
-/// Returns how many are near.
+/// Stores the lanes of `index` that are `near` at `to`, in order, followed by others that fill the vector. Returns the
+/// number that are near.
 HWY_INLINE std::size_t store_compressed(hn::Vec<DU> index, hn::Mask<DU> near, std::uint32_t* to) {
     constexpr DU du;
 #if HWY_TARGET <= HWY_AVX3 || HWY_TARGET == HWY_SCALAR
@@ -125,7 +125,7 @@ HWY_INLINE std::size_t store_compressed(hn::Vec<DU> index, hn::Mask<DU> near, st
     return hn::CountTrue(du, near);
 #else
     // Highway 1.0's Compress keeps its table in a constexpr that is not static, and GCC 12 copies that to the stack for
-    // every vector (google/highway issue 1139): three quarters of the search.
+    // every vector (google/highway issue 1139): three quarters of the search time.
     constexpr int lanes = hn::MaxLanes(du);
     static constexpr auto table = compress_table<lanes>();
     std::array<std::uint8_t, 8> bits{};
@@ -152,7 +152,7 @@ void find_in_cells(const VectorArray& sorted, const std::uint8_t* asleep, const 
         const std::uint32_t particles = end - begin;
         const std::size_t room = size + particles * candidates.count + lanes;
         if (scratch.found.size() < room) scratch.found.resize(2 * room);
-        // Kept out of the vectors' bookkeeping, which the stores below might otherwise change.
+        // Raw pointers: the compiler must otherwise assume that the stores below change the vectors themselves.
         float* const x = scratch.x.data();
         const float *const y = scratch.y.data(), *const z = scratch.z.data();
         const std::uint32_t* const index = scratch.index.data();

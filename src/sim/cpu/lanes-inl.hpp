@@ -1,4 +1,4 @@
-// What every file of stages shares; included once per instruction set.
+// Shared by every file of stages; included once per instruction set.
 #if defined(TALUS_LANES_INL) == defined(HWY_TARGET_TOGGLE)
 #ifdef TALUS_LANES_INL
 #undef TALUS_LANES_INL
@@ -12,7 +12,7 @@
 #include "sim/cpu/work.hpp"
 #include "simd/lanes.hpp"
 
-/// Everything that a stage calls becomes part of it: formulas of any header turn into its instruction set.
+/// Everything that a stage calls is inlined into it, so formulas of any header are compiled for its instruction set.
 #define TALUS_STAGE [[gnu::flatten]]
 
 HWY_BEFORE_NAMESPACE();
@@ -31,7 +31,7 @@ HWY_INLINE void for_each_lanes(std::size_t first_block, std::size_t last_block, 
     for (std::size_t i = first_block * block_size; i < last_block * block_size; i += lane_count) f(i);
 }
 
-/// The last block may be longer than the particles are many.
+/// The last block may extend beyond the number of particles.
 HWY_INLINE Mask is_present(const State& state, std::size_t i) {
     L place;
     for (int lane = 0; lane < lane_count; ++lane) place.set(lane, static_cast<float>(lane));
@@ -90,7 +90,7 @@ template <std::derived_from<simd::Oct> Row>
 HWY_INLINE void store_high(const Quads<L>& quads, std::vector<Row>& to, std::size_t i) {
     simd::store_quads<lane_count, 1>(quads, to.data() + i);
 }
-/// A vector and one number more.
+/// A vector and a fourth number.
 HWY_INLINE Quads<L> with(const V3& v, const L& w) {
     return {v.x, v.y, v.z, w};
 }
@@ -113,8 +113,8 @@ struct LaneLists {
         gradient_y = lists.gradient.y.data() + at;
         gradient_z = lists.gradient.z.data() + at;
     }
-    /// Calls f(k, remaining) for every entry; `remaining` is 0 or less where a list is over that is shorter than its
-    /// block's longest, and goes on with the particle itself.
+    /// Calls f(k, remaining) for every entry; `remaining` is 0 or less past the end of a list that is shorter than its
+    /// block's longest and is padded with the particle itself.
     template <class F>
     HWY_INLINE void for_each(const F& f) const {
         L remaining = count;
@@ -124,7 +124,7 @@ struct LaneLists {
             remaining = remaining - one;
         }
     }
-    /// Whose entry is `first` or a particle behind it.
+    /// Lanes whose entry is `first` or a later particle.
     HWY_INLINE Mask from_on(std::uint32_t k, std::uint32_t first) const {
         Mask::Ints entry;
         __builtin_memcpy(&entry, neighbour + k * block_size, sizeof entry);
@@ -184,7 +184,7 @@ HWY_INLINE Mask near_walls(const Ground& ground, const V3& p) {
     return near;
 }
 
-/// Samples ground and walls of particles at `p`, `displacement` from where they started the step.
+/// Samples ground and walls for particles at `p`, which is `displacement` from their position at the step's start.
 HWY_INLINE BoundaryShare sample_boundary_at(const Model& model, const Ground& ground, const State& state, Work& work,
                                             std::size_t i, const V3& p, const V3& displacement) {
     const GroundFace<L> base = sample_ground(model, ground.terrain, p);

@@ -13,9 +13,9 @@ namespace {
 
 constexpr std::size_t cells_per_task = 64;
 constexpr std::size_t usual_task_size = 65536;   // entries of lists; debris at rest density needs about half
-constexpr std::size_t usual_candidates = 4096;   // debris at rest density has some 290 around a cell
-constexpr std::size_t usual_neighbours = 48;     // per particle; debris at rest density has some 40
-constexpr std::size_t window = 16 * block_size;  // particles that change places with each other
+constexpr std::size_t usual_candidates = 4096;   // debris at rest density has about 290 around a cell
+constexpr std::size_t usual_neighbours = 48;     // per particle; debris at rest density has about 40
+constexpr std::size_t window = 16 * block_size;  // particles that may be reordered among each other
 constexpr std::uint32_t max_counted = 127;
 
 }  // namespace
@@ -49,7 +49,7 @@ NeighbourSearch::Found NeighbourSearch::find(const VectorArray& points, std::spa
             asleep_[i] = asleep[by_cell[i]];
         }
     });
-    // For every thread that may come, before it comes: a thread's first task must not have to allocate.
+    // For every thread of the arena, in advance: a thread's first task must not allocate.
     const auto threads = static_cast<std::size_t>(tbb::this_task_arena::max_concurrency());
     while (scratch_.size() < threads) {
         SearchScratch& scratch = scratch_.emplace_back();
@@ -57,7 +57,7 @@ NeighbourSearch::Found NeighbourSearch::find(const VectorArray& points, std::spa
         scratch.index.resize(usual_candidates);
         scratch.found.resize(usual_task_size);
     }
-    // Growing is rare: debris denser than ever before. Room to spare, so that it stays rare.
+    // Growth is rare: only when debris is denser than ever before. Spare capacity keeps it rare.
     while (!try_find(grid, radius)) found_.resize(used_.load() + used_.load() / 2);
     move_sleeping_last();
     balance();
@@ -67,7 +67,7 @@ NeighbourSearch::Found NeighbourSearch::find(const VectorArray& points, std::spa
     return {{order_.data(), particles_}, static_cast<std::uint32_t>(awake_)};
 }
 
-/// Sleeping debris goes to the end, so that what is awake is one range.
+/// Sleeping debris goes to the end, so that awake particles form one range.
 void NeighbourSearch::move_sleeping_last() {
     awake_ = 0;
     for (std::uint32_t i = 0; i < particles_; ++i) {
@@ -93,7 +93,7 @@ bool NeighbourSearch::try_find(const CellGrid& grid, float radius) {
                            count_.data());
             const auto size = static_cast<std::uint32_t>(scratch.found_count);
             std::uint32_t at = used_.fetch_add(size);
-            if (at + size > found_.size()) continue;  // grown and found again
+            if (at + size > found_.size()) continue;  // the caller enlarges it and searches again
             std::copy_n(scratch.found.begin(), size, found_.begin() + at);
             for (std::uint32_t i = grid.start[first_cell]; i < grid.start[last_cell]; ++i) {
                 start_[i] = at;
@@ -104,8 +104,8 @@ bool NeighbourSearch::try_find(const CellGrid& grid, float radius) {
     return used_.load() <= found_.size();
 }
 
-/// Puts the particles of a window in the order of how many neighbours they have: those of a block then go through
-/// lists of about one length. A stable counting sort, so that the result does not depend on threads.
+/// Sorts the particles of a window by their number of neighbours, so that the lists of a block have about the same
+/// length. A stable counting sort, so that the result does not depend on threads.
 void NeighbourSearch::balance() {
     const std::size_t windows = (awake_ + window - 1) / window;
     simd::parallel_ranges(windows, 4, [&](std::size_t first_window, std::size_t last_window) {

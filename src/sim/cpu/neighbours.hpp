@@ -10,16 +10,16 @@
 
 namespace talus::cpu {
 
-/// For every particle the particles nearer than the support radius, without itself. The lists of a block lie side by
-/// side, entry after entry, so that its particles go through theirs together; a list that is shorter than the block's
-/// longest is filled with the particle itself, which is at distance zero and so adds nothing but density.
+/// For every particle the other particles within the support radius. The lists of a block lie side by side, entry after
+/// entry, so that its particles are processed together; a list that is shorter than the block's longest is filled with
+/// the particle itself, which is at distance zero and so contributes to density only.
 struct NeighbourLists {
     explicit NeighbourLists(std::size_t capacity);
 
     std::vector<std::uint32_t> start, length;  ///< per block: where its lists begin, how many entries its longest has
     std::vector<float> count;                  ///< per particle: entries that are neighbours
     std::vector<std::uint32_t> neighbour;      ///< of particle i, entry k: at start + k * block_size + i % block_size
-    VectorArray gradient;                      ///< V grad W per entry, kept from one sum over pairs to the next
+    VectorArray gradient;                      ///< V grad W per entry, reused between sums over pairs
 
     [[nodiscard]] std::uint32_t count_of(std::size_t i) const { return static_cast<std::uint32_t>(count[i]); }
     [[nodiscard]] std::uint32_t neighbour_of(std::size_t i, std::size_t k) const {
@@ -27,7 +27,7 @@ struct NeighbourLists {
     }
 };
 
-/// Room for the candidates around a cell and for what was found, of one thread.
+/// One thread's buffers for the candidates around a cell and the neighbours found.
 struct SearchScratch {
     std::vector<float> x, y, z;
     std::vector<std::uint32_t> index, found;
@@ -40,22 +40,22 @@ class NeighbourSearch {
   public:
     explicit NeighbourSearch(std::size_t capacity);
 
-    /// The order to bring the particles into: entry i is the present index of the particle to put at i. First come
-    /// those that are awake.
+    /// The new order of the particles: entry i is the current index of the particle to place at i. Awake particles come
+    /// first.
     struct Found {
         std::span<const std::uint32_t> order;
         std::uint32_t awake;
     };
 
-    /// `points` in any order, `by_cell` what sorts them by `grid`, whose cells are at least `radius` wide. Those that
-    /// are `asleep` (1 or 0, like `points`) are neighbours of others and have no lists themselves.
+    /// `points` in any order, `by_cell` the permutation that sorts them by `grid`, whose cells are at least `radius`
+    /// wide. Those that are `asleep` (1 or 0, like `points`) are neighbours of others and have no lists themselves.
     Found find(const VectorArray& points, std::span<const std::uint32_t> by_cell,
                const std::vector<std::uint8_t>& asleep, const CellGrid& grid, float radius);
-    /// Writes what find() found, by the new order.
+    /// Writes the result of find() in the new order.
     void write(NeighbourLists& lists);
 
-    /// Finds the neighbours of the particles in cells [first, last) that are not asleep: put into `scratch.found`,
-    /// their numbers into `count`. Compiled per instruction set.
+    /// Finds the neighbours of the particles in cells [first, last) that are not asleep: writes them to `scratch.found`
+    /// and their numbers to `count`. Compiled per instruction set.
     using FindInCells = void (*)(const VectorArray& sorted, const std::uint8_t* asleep, const CellGrid& grid,
                                  std::size_t first, std::size_t last, float square_radius, SearchScratch& scratch,
                                  std::uint32_t* count);
@@ -81,7 +81,7 @@ class NeighbourSearch {
     std::vector<SearchScratch> scratch_;  // one per thread of the arena
 };
 
-/// On the instruction set that was chosen (dispatch.hpp).
+/// For the chosen instruction set (dispatch.hpp).
 [[nodiscard]] NeighbourSearch::FindInCells find_in_cells_function();
 
 }  // namespace talus::cpu

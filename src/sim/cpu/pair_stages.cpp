@@ -1,5 +1,5 @@
-// Pairwise position-based dynamics (docs/equations.md), eqs. (1) to (4): density and pair friction, both built up from
-// nothing in every step. Compiled once per instruction set by Highway's foreach_target.
+// Pairwise position-based dynamics (docs/equations.md), eqs. (1) to (4): density and pair friction, both start from
+// zero in every step. Compiled once per instruction set by Highway's foreach_target.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "sim/cpu/pair_stages.cpp"
 #include <hwy/foreach_target.h>
@@ -13,7 +13,7 @@ HWY_BEFORE_NAMESPACE();
 namespace talus::cpu::HWY_NAMESPACE {
 namespace {
 
-/// What a step starts with compressed may be undone only slowly, since a correction turns into velocity: the density
+/// Compression present at the step's start may be undone only slowly, since a correction becomes velocity: the density
 /// constraint tolerates the rest.
 template <class Kernel>
 TALUS_STAGE void find_tolerated(const StageData& data, std::size_t first, std::size_t last) {
@@ -35,7 +35,7 @@ TALUS_STAGE void find_tolerated(const StageData& data, std::size_t first, std::s
         const L start = density + sample_boundary_at(model, data.ground, state, work, i, p, V3{}).density - L(1);
         store(larger(L(0), start - undone), work.tolerated_compression, i);
         store(L(0), state.multiplier, i);
-        // The first contacts come before the first iteration.
+        // The first contacts are resolved before the first iteration.
         const auto [predicted, moved] = load(work.displaced, i);
         sample_boundary_at(model, data.ground, state, work, i, vector_of(predicted), vector_of(moved));
     });
@@ -84,7 +84,7 @@ TALUS_STAGE void update_multipliers(const StageData& data, std::size_t first, st
     });
 }
 
-/// Pairs pressed together rub against each other. Equal and opposite for the two of a pair.
+/// Friction between particles pressed together; equal and opposite for the two of a pair.
 template <class Kernel>
 TALUS_STAGE void apply(const StageData& data, std::size_t first, std::size_t last) {
     const Model& model = data.model;
@@ -103,7 +103,7 @@ TALUS_STAGE void apply(const StageData& data, std::size_t first, std::size_t las
             const L square = dot(separation, separation), distance = sqrt(square);
             const L q = scale.quotient(distance);
             const L push = (moved.w + other.w) * L(-scale.gradient_scale) * Kernel::slope_over_q(q);
-            const L limit = larger(L(0), push * distance) * cap;  // none between particles that part
+            const L limit = larger(L(0), push * distance) * cap;  // none between separating particles
             correction += separation * push + pair_friction(separation, square, vector_of(moved) - vector_of(other),
                                                             limit, Kernel::value(q) * L(scale.value_scale));
         }

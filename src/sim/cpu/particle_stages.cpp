@@ -1,5 +1,5 @@
-// What a step does to every particle by itself, and viscosity.
-// Compiled once per instruction set by Highway's foreach_target.
+// The stages that treat each particle by itself, and viscosity. Compiled once per instruction set by Highway's
+// foreach_target.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "sim/cpu/particle_stages.cpp"
 #include <hwy/foreach_target.h>
@@ -22,7 +22,7 @@ HWY_INLINE L mobility(const State& state, std::size_t i) {
     return flags(state.held, i, 0, 1) * flags(state.asleep, i, 0, 1);
 }
 
-/// Drag by speed, with the thickness of the flow before the step.
+/// Speed-dependent drag, with the thickness of the flow before the step.
 TALUS_STAGE void drag(const StageData& data, std::size_t first, std::size_t last) {
     const Model& model = data.model;
     State& state = data.state;
@@ -143,8 +143,8 @@ TALUS_STAGE void contacts(const StageData& data, std::size_t first, std::size_t 
     });
 }
 
-/// What overlaps is moved apart, and its velocity left alone: debris that is too dense (its shift is there already with
-/// stresses), debris that touches ground or walls too closely.
+/// Moves overlapping particles apart without changing their velocity: debris that is too dense (with stresses, its
+/// shift is already computed), and debris too close to ground or walls.
 TALUS_STAGE void undo_overlaps(const StageData& data, std::size_t first, std::size_t last) {
     const Model& model = data.model;
     Work& work = data.work;
@@ -154,7 +154,7 @@ TALUS_STAGE void undo_overlaps(const StageData& data, std::size_t first, std::si
         const V3 p = vector_of(load_low(work.displaced, i));
         const GroundSample<L> ground = data.ground.terrain.sample(p.x, p.y);
         const L overlap = touching - (p.z - ground.height) * ground.normal.z;
-        // Not so for the NaN of unknown ground.
+        // False for the NaN of unknown ground.
         V3 shift = ground.normal * select(overlap > L(0), smaller(overlap, max_shift), L(0));
         const Mask near = near_walls(data.ground, p);
         if (any(near)) {
@@ -175,8 +175,8 @@ TALUS_STAGE void undo_overlaps(const StageData& data, std::size_t first, std::si
     });
 }
 
-/// Most particles end their step where they are displaced to, without having come near a wall or below ground. Those
-/// that do not go one by one.
+/// Most particles end their step at their displaced position, without coming near a wall or below ground. The others
+/// are handled one by one.
 TALUS_STAGE void enforce_boundaries(const StageData& data, std::size_t first, std::size_t last) {
     const Model& model = data.model;
     State& state = data.state;
@@ -236,7 +236,7 @@ TALUS_STAGE float update_velocities(const StageData& data, std::size_t first, st
     return std::sqrt(result);
 }
 
-/// Eq. (5) as XSPH smoothing; the sum weighs both particles of a pair alike, so momentum is conserved.
+/// Eq. (5) as XSPH smoothing; the sum weights both particles of a pair equally, so momentum is conserved.
 template <class Kernel>
 TALUS_STAGE void apply_viscosity(const StageData& data, std::size_t first, std::size_t last) {
     const Model& model = data.model;
@@ -265,9 +265,10 @@ TALUS_STAGE void apply_viscosity(const StageData& data, std::size_t first, std::
     });
 }
 
-/// Debris that has hardly moved for the rest duration sleeps: it stays where it is, pressing as it does, until
-/// something moves beside it. Hardly: a hundredth of the speed of a fall through its own size; twice that wakes, so
-/// that nothing falls asleep and wakes in turns. Debris against walls stays awake: what presses on them is measured.
+/// Debris that has hardly moved for the rest duration sleeps: it keeps its position and pressure until something moves
+/// beside it. The threshold is a hundredth of the speed of a fall through its own size; waking takes twice that, so
+/// that particles do not alternate between the two. Debris against walls stays awake, since the forces on them are
+/// measured.
 TALUS_STAGE void update_sleep(const StageData& data, std::size_t first, std::size_t last) {
     const Model& model = data.model;
     State& state = data.state;
@@ -302,7 +303,7 @@ TALUS_STAGE void update_sleep(const StageData& data, std::size_t first, std::siz
             for (std::uint32_t k = 0; wakes.at(l) && k < neighbours.count_of(particle); ++k) {
                 const std::uint32_t j = neighbours.neighbour_of(particle, k);
                 if (j < state.awake) continue;
-                // Many may wake the same one at once, all in the same way.
+                // Several threads may wake the same particle at once; all store the same value.
                 std::atomic_ref(state.asleep[j]).store(0, std::memory_order_relaxed);
             }
         }

@@ -13,7 +13,7 @@ HWY_BEFORE_NAMESPACE();
 namespace talus::cpu::HWY_NAMESPACE {
 namespace {
 
-/// Lays out what apply() reads of a particle, if it presses (1 or 0).
+/// Packs the data of a particle that apply() reads; `pressing` is 1 or 0.
 HWY_INLINE void pack_stress(Work& work, std::size_t i, const L& presses, const L& pressure, const Stress& s) {
     const L p = pressure * presses;
     const Stress t = s * presses;
@@ -47,9 +47,9 @@ HWY_INLINE PairSums sum_pairs(const PairScale& scale, const LaneLists& lists, co
     return sums;
 }
 
-/// Multipliers and stresses of the last step are where this one begins: debris at rest needs the same ones again. They
-/// are pressures times dt^2, so they scale with the step. Debris that is held keeps what it carries, ready for its
-/// start, and presses on nothing.
+/// This step starts from the multipliers and stresses of the last one: debris at rest needs the same ones again. They
+/// are pressures times dt^2, so they scale with the step. Held debris keeps its values for its start and presses on
+/// nothing.
 HWY_INLINE void warm_start(State& state, Work& work, std::size_t i, const L& scale) {
     const L multiplier = load(state.multiplier, i) * scale;
     const Stress stress = load(state.stress, i) * scale;

@@ -56,7 +56,7 @@ void enforce_particle(const Model& model, const Ground& ground, const State& sta
     const Vec3<float> end = free_end(model, ground, start, displacement, rank);
     work.end.set(i, free_end(model, ground, end, work.shift.at(i), rank));
     if (end.x == wanted.x && end.y == wanted.y && end.z == wanted.z) return;
-    // What puts a particle back above ground must not speed it up.
+    // Lifting a particle back above ground must not speed it up.
     const Vec3<float> reached = end - start;
     const float before = dot(displacement, displacement), after = dot(reached, reached);
     const Vec3<float> slowed = after > before ? reached * std::sqrt(before / after) : reached;

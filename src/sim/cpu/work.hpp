@@ -81,7 +81,7 @@ struct StageData {
 
 // For the few particles near buildings, one at a time.
 
-/// Samples ground and walls of particle `i` at `p`, `displacement` from where it started the step.
+/// Samples ground and walls of particle `i` at `p`, which is `displacement` from its position at the step's start.
 /// Returns their share of the density; the rest is in `work`.
 float sample_walls(const Model& model, const Ground& ground, const State& state, Work& work, std::size_t i,
                    const Vec3<float>& p, const Vec3<float>& displacement);
@@ -91,7 +91,7 @@ Vec3<float> resolve_wall_contacts(const Model& model, Work& work, std::size_t i,
 /// undo_overlap() of particle `i`.
 Vec3<float> undo_overlap_near_walls(const Model& model, const Ground& ground, const State& state, std::size_t i,
                                     const Vec3<float>& p, float max_shift);
-/// Where the particle ends its step, swept; keeps what puts it back above ground from speeding it up.
+/// The particle's position at the end of the step, found by a sweep; lifting it back above ground must not speed it up.
 void enforce_particle(const Model& model, const Ground& ground, const State& state, Work& work, std::size_t i);
 
 }  // namespace talus::cpu

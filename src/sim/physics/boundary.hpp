@@ -9,21 +9,21 @@
 
 namespace talus {
 
-/// A face of the boundary as a particle sees it: a plane.
+/// A face of the boundary, taken to be plane near a particle.
 template <class Real>
 struct BoundaryFace {
     Real distance{};      ///< m along the normal; NaN where the ground is unknown
     Vec3<Real> normal{};  ///< unit, out of the ground or the solid
     Real slope{};         ///< d density / d distance, 1/m, <= 0
-    int building = -1;    ///< whose wall or roof it is; -1: of none
+    int building = -1;    ///< the building it belongs to; -1: none
 };
 
-inline constexpr std::size_t face_count = 3;  ///< the ground, and the two nearest walls: debris gathers in corners
+inline constexpr std::size_t face_count = 3;  ///< the ground, and the two nearest walls: debris collects in corners
 
 /// Ground and walls around a particle: their share of its density, and how it changes with the particle's place.
 template <class Real>
 struct Boundary {
-    std::array<BoundaryFace<Real>, face_count> faces;  ///< the ground first; a wall that is absent has no building
+    std::array<BoundaryFace<Real>, face_count> faces;  ///< the ground first; an unused wall has no building
     Real density{};
     Vec3<Real> gradient{};  ///< of the density, 1/m, into ground and walls
 };
@@ -31,9 +31,9 @@ struct Boundary {
 /// The ground as a face.
 template <class Real>
 struct GroundFace {
-    Real distance{};  ///< as of a BoundaryFace
+    Real distance{};  ///< see BoundaryFace
     Vec3<Real> normal{};
-    Real density{}, slope{};  ///< what it adds to a particle's density, and how that changes with the distance
+    Real density{}, slope{};  ///< its share of a particle's density, and the derivative by the distance
 };
 
 template <class Real>
@@ -70,20 +70,19 @@ Boundary<Real> sample_boundary(const Model& model, const Ground& ground, const V
     return result;
 }
 
-/// How much a boundary answers to a particle, relative to ground that only stands there: 2 would be a mirror image,
-/// which presses as the particle does (Akinci et al. 2012) and comes as near as it does. With 1, hard contact has to
-/// carry most of the weight, and creeps; 2 shakes what lies beside a wall; with 1.5 neither is seen
-/// (docs/equations.md).
+/// The response of a boundary to a particle, relative to passive ground: 2 would be a mirror image, which presses like
+/// the particle (Akinci et al. 2012) and approaches as it does. With 1, hard contact has to carry most of the weight,
+/// and creeps; with 2, debris beside a wall jitters; with 1.5 neither is observed (docs/equations.md).
 inline constexpr double boundary_mirror_share = 1.5;
 
-/// How a displacement changes the density that the constraint sees at a boundary of this gradient. The same share in
-/// the constraint and in the correction: or the boundary would do work of its own.
+/// How a displacement changes the density that the constraint sees at a boundary of this gradient. The constraint and
+/// the correction use the same share; otherwise the boundary would add energy.
 template <class Real>
 Real boundary_change(const Vec3<Real>& gradient, const Vec3<Real>& displacement) {
     return Real(boundary_mirror_share) * dot(gradient, displacement);
 }
 
-/// The correction, m, that a multiplier brings about at a boundary whose density has this gradient.
+/// The correction, m, that a multiplier causes at a boundary whose density has this gradient.
 template <class Real>
 Vec3<Real> boundary_correction(const Vec3<Real>& gradient, Real multiplier) {
     return gradient * (Real(boundary_mirror_share) * multiplier);

@@ -31,12 +31,12 @@ BoundaryTable::BoundaryTable(const Kernel& kernel, double particle_spacing)
     std::vector<Node> nodes(node_count);
     with_kernel(kernel.choice, [&](auto k) {
         const auto density_kernel = [&](double q) { return k.value(q); };
-        // The pair poly6_spiky takes its gradient from another kernel than its density; the ground follows suit.
+        // The pair poly6_spiky takes its gradient and its density from different kernels; so does the ground.
         const auto gradient_kernel = [&](double q) {
             if (kernel.choice == KernelChoice::poly6_spiky) return kernels::Spiky::value(q);
             return k.value(q);
         };
-        // Share at distance d: what lies beyond the plane. Integrated downwards from d = r with plane integrals.
+        // Share at distance d: the part beyond the plane. Integrated downwards from d = r with plane integrals.
         const double step = 2.0 / (node_count - 1);
         double share = 0;
         for (int i = node_count - 1; i >= 0; --i) {
@@ -51,7 +51,7 @@ BoundaryTable::BoundaryTable(const Kernel& kernel, double particle_spacing)
             nodes[static_cast<std::size_t>(i)] = {
                 share, -plane_integral(gradient_kernel, std::min(1.0, std::abs(q))) / kernel.support_radius};
         }
-        // By fours, since what lies together is loaded at once; the last has nowhere to rise to.
+        // In fours, which are loaded together; the last node has no next one to rise to.
         const auto tabulate = [&](double scale) {
             nodes_.clear();
             for (int i = 0; i < node_count; ++i) {
@@ -63,7 +63,7 @@ BoundaryTable::BoundaryTable(const Kernel& kernel, double particle_spacing)
         };
         tabulate(1);
 
-        // The continuum's share differs by some per cent from that of the lattice layers it stands for. Scale it so
+        // The continuum's share differs by a few per cent from that of the lattice layers it stands for. Scale it so
         // that a rest lattice whose first layer lies half a spacing above the ground has G = 0 in that layer.
         double layers = 0;
         const double r = kernel.support_radius;
@@ -85,7 +85,7 @@ BoundaryTable::BoundaryTable(const Kernel& kernel, double particle_spacing)
 void BoundaryTable::tabulate_sticking(const Kernel& kernel, double particle_spacing) {
     const double step = 1 / (2 * inverse_step_), least_distance = particle_spacing / 4;
     std::vector<double> values(node_count);
-    // The first moment of what lies beyond d is the integral of the share from d on.
+    // The first moment of the part beyond d is the integral of the share from d to infinity.
     double moment = 0;
     for (int i = node_count - 1; i >= 0; --i) {
         const double d = i * step;
@@ -100,9 +100,9 @@ void BoundaryTable::tabulate_sticking(const Kernel& kernel, double particle_spac
         }
     };
     tabulate(1);
-    // What ground takes from a rest lattice in even shear, sum of d times the loss over its layers, must be what a
-    // plane inside the lattice passes on: half the second moment of the kernel. The continuum's integral is a fifth
-    // less.
+    // The loss of a rest lattice in uniform shear to the ground, sum of d times the loss over its layers, must equal
+    // what a plane inside the lattice transmits: half the second moment of the kernel. The continuum's integral is a
+    // fifth less.
     double taken = 0;
     for (double d = particle_spacing / 2; d < support_radius_; d += particle_spacing) taken += d * sticking_at(d);
     tabulate(kernel.second_moment / (2 * particle_spacing * taken));

@@ -23,7 +23,7 @@ class BoundaryTable {
     template <class Real>
     [[nodiscard]] Share<Real> at(Real distance) const {
         const Real r = Real(support_radius_);
-        const auto near = distance < r;  // not so for the NaN distance of ground without data
+        const auto near = distance < r;  // false for the NaN distance of ground without data
         const Real u = select(near, larger(Real(0), distance + r), Real(0)) * Real(inverse_step_);
         const auto i = truncated(u);
         const Real t = u - from_index<Real>(i);
@@ -32,8 +32,8 @@ class BoundaryTable {
                 select(near, Real(node.z) + t * Real(node.w), Real(0))};
     }
 
-    /// The share of a half-space whose gradient has this size, 1/m: how much density a particle lacks whose neighbours
-    /// pull it this strongly to one side.
+    /// The share of a half-space whose gradient has this size, 1/m: the density that a particle lacks when its
+    /// neighbours are this unbalanced.
     template <class Real>
     [[nodiscard]] Real density_at_slope(Real slope) const {
         const Real last = Real(static_cast<int>(by_slope_.size()) - 1);
@@ -63,7 +63,7 @@ class BoundaryTable {
     std::vector<Quad> nodes_;  // density, its rise to the next node, slope, its rise
     double inverse_slope_step_ = 0;
     std::vector<Quad> by_slope_;  // density at evenly spaced slopes from 0 to that on the plane; its rise
-    std::vector<Quad> sticking_;  // at distances from 0 to r, twice as many as nodes there; its rise
+    std::vector<Quad> sticking_;  // at distances from 0 to r, twice as many nodes as in that range; its rise
 };
 
 }  // namespace talus

@@ -9,7 +9,7 @@
 
 namespace talus {
 
-/// What a particle's contact with ground or a wall has done so far in this step.
+/// Corrections so far in this step from a particle's contact with ground or a wall.
 template <class Real>
 struct ContactMemory {
     Real normal{};          ///< accumulated correction along the normal, m, >= 0
@@ -18,12 +18,12 @@ struct ContactMemory {
 
 /// Hard contact and Coulomb friction with one face.
 ///
-/// Normal: the accumulated correction that keeps the particle at its touching distance, taken back when it would hover
-/// or move away. It may stop the motion into the face and no more: an overlap that the step started with, or that a
-/// bend in the ground brought about, must not turn into velocity (undo_overlap() sees to it). Friction: limited by the
-/// whole normal correction of the step, hard contact and `density_push` (what the face's share of the density
-/// constraint has pushed) together, and by `strength`, m, which needs none. Returns the change of displacement; updates
-/// `memory`.
+/// Normal: the accumulated correction that keeps the particle at its touching distance, reduced again when the particle
+/// would hover or move away. It may only stop motion into the face: an overlap present at the step's start, or caused
+/// by a bend in the ground, must not become velocity (undo_overlap() removes it). Friction: limited by the whole normal
+/// correction of the step, hard contact and `density_push` (the correction by the face's share of the density
+/// constraint) together, plus `strength`, m, which needs no normal correction. Returns the change of displacement;
+/// updates `memory`.
 template <class Real>
 Vec3<Real> resolve_contact(Real overlap, const Vec3<Real>& normal, const Vec3<Real>& displacement, Real density_push,
                            Real friction_coefficient, Real strength, ContactMemory<Real>& memory) {
@@ -57,11 +57,11 @@ Vec3<Real> resolve_face(const Model& model, Real distance, const Vec3<Real>& nor
     return select(known, change, Vec3<Real>{});
 }
 
-/// How ground and walls hold a particle.
+/// Resistance of ground and walls to a particle.
 template <class Real>
 struct Grip {
     Real ground_friction{}, wall_friction{};  ///< coefficients
-    Real ground_strength{};                   ///< m, of a particle that touches: see strength_per_pascal()
+    Real ground_strength{};                   ///< m, of a particle in contact: see strength_per_pascal()
 };
 
 template <class Real>
@@ -69,9 +69,9 @@ Grip<Real> uniform_grip(const Model& model) {
     return {Real(model.friction_coefficient), Real(model.building_friction_coefficient), Real(0)};
 }
 
-/// Resolves the contacts with ground and walls of a particle displaced by `displacement`; `boundary` as sampled when it
-/// was displaced by `sampled_at`, and taken to be plane from there. `multiplier` is that of its density constraint.
-/// Returns the new displacement.
+/// Resolves the contacts with ground and walls of a particle displaced by `displacement`; `boundary` was sampled at the
+/// displacement `sampled_at` and is taken to be plane. `multiplier` is that of its density constraint. Returns the new
+/// displacement.
 template <class Real>
 Vec3<Real> resolve_contacts(const Model& model, const Boundary<Real>& boundary, const Vec3<Real>& sampled_at,
                             Vec3<Real> displacement, Real multiplier, const Grip<Real>& grip,
@@ -87,7 +87,7 @@ Vec3<Real> resolve_contacts(const Model& model, const Boundary<Real>& boundary, 
     return displacement;
 }
 
-/// What brings a particle that overlaps ground or a wall back to touching it, at most `max_shift` metres of it.
+/// The shift that brings a particle overlapping ground or a wall back to touching it, at most `max_shift` metres.
 template <class Real>
 Vec3<Real> undo_overlap(const Model& model, const Ground& ground, const Vec3<Real>& p, Real max_shift,
                         float grain_rank = largest_grain) {
@@ -111,9 +111,9 @@ bool is_free(const Ground& ground, const Vec3<Real>& p, float grain_rank = large
     return ground.solids.empty() || !ground.solids.inside(p, grain_rank);
 }
 
-/// Where a particle may end its step: `start + displacement` if the way there is free, else a place on this side of
-/// what it would have run through. Swept in parts of at most a quarter spacing, so it holds at any speed and step.
-/// `start` must be free; the result is.
+/// The position at which a particle may end its step: `start + displacement` if the path is free, otherwise a place in
+/// front of the obstacle. Swept in parts of at most a quarter spacing, so it is safe at any speed and time step.
+/// `start` must be free; so is the result.
 template <class Real>
 Vec3<Real> free_end(const Model& model, const Ground& ground, const Vec3<Real>& start, const Vec3<Real>& displacement,
                     float grain_rank = largest_grain) {
@@ -121,7 +121,7 @@ Vec3<Real> free_end(const Model& model, const Ground& ground, const Vec3<Real>& 
     const Real max_part = Real(model.particle_spacing / 4);
     const Real distance = length(displacement);
     const int parts = distance > max_part ? static_cast<int>(distance / max_part) + 1 : 1;
-    Real clear = 0;  // share of the way known to be free
+    Real clear = 0;  // share of the path known to be free
     Real blocked = -1;
     for (int part = 1; part <= parts; ++part) {
         const Real share = Real(part) / Real(parts);
@@ -133,7 +133,7 @@ Vec3<Real> free_end(const Model& model, const Ground& ground, const Vec3<Real>& 
     }
     if (blocked < 0) return end;
     if (parts == 1) {
-        // A small step that ends below ground: lift it along the normal, which costs it no tangential motion.
+        // A small step that ends below ground: lifted along the normal, so that it loses no tangential motion.
         const GroundSample<Real> below = ground.terrain.sample(end.x, end.y);
         const Real depth = (below.height - end.z) * below.normal.z;
         Vec3<Real> lifted = end + below.normal * (depth > 0 ? depth : Real(0));

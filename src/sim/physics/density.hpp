@@ -8,11 +8,11 @@
 
 namespace talus {
 
-/// The density constraint G of a particle, eq. (1), linearised at the positions that the step predicts:
-/// G(u) = start - divergence(u) + boundary_change(u) for displacements u since the step's start.
+/// The density constraint G of a particle, eq. (1), linearised at the positions that the step predicts: G(u) = start -
+/// divergence(u) + boundary_change(u) for displacements u since the step's start.
 ///
-/// Solved at the level of velocities: debris that starts a step denser than at rest must not get denser in it, and what
-/// is too dense already is spread afterwards without becoming velocity (the split impulses of Catto 2005). Pushing it
+/// Solved at the level of velocities: debris that starts a step denser than at rest must not get denser in it, and
+/// existing compression is spread afterwards without becoming velocity (the split impulses of Catto 2005). Pushing it
 /// apart through the multiplier would feed energy into every slow wave of a multiplier that persists between steps.
 template <class Real>
 struct DensityConstraint {
@@ -55,13 +55,13 @@ Real next_multiplier(Real before, Real violation, Real gradient_square, Real und
     return select(gradient_square > Real(0), after, before);
 }
 
-/// The share of slight compression that a step spreads: more would keep stirring debris at rest.
+/// The share of slight compression that a step spreads: more would keep debris at rest in motion.
 inline double spreading_share(double time_step) {
     constexpr double kept_per_second = 1.5e-6;  // 0.8 in 1/60 s
     return 1 - std::pow(kept_per_second, time_step);
 }
 
-/// The part of a violation that a step spreads: the share of what is slight, and all that goes beyond.
+/// The part of a violation that a step spreads: a share of slight compression, and all beyond it.
 template <class Real>
 Real spread_in_step(Real compression, Real share) {
     constexpr double slight = 0.01;
@@ -70,7 +70,7 @@ Real spread_in_step(Real compression, Real share) {
 }
 
 /// The factor on every correction of the Jacobi iteration: `relaxation` is relative to the eigenvalue at which
-/// neighbours that correct at once overshoot, so it is stable below 2 whatever the kernel.
+/// simultaneous corrections of neighbours overshoot, so it is stable below 2 whatever the kernel.
 inline double jacobi_factor(double relaxation, const Kernel& kernel) {
     return relaxation / kernel.max_eigenvalue;
 }

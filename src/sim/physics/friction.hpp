@@ -27,10 +27,10 @@ inline double pair_friction_cap(double internal_friction_coefficient) {
     return std::numbers::pi / 4 * internal_friction_coefficient;
 }
 
-/// Friction between two particles: a correction against their relative tangential displacement, at most
-/// `cap` times their normal correction, at most `weight` / 2 of the displacement itself. The weights V W of all
-/// neighbours add up to about one, so that particles that all pull at once do not overshoot.
-/// Returns the correction of the first particle; the second gets its opposite.
+/// Friction between two particles: a correction against their relative tangential displacement, at most `cap` times
+/// their normal correction, at most `weight` / 2 of the displacement itself. The weights V W of all neighbours add up
+/// to about one, so that simultaneous corrections do not overshoot. Returns the correction of the first particle; the
+/// second gets its opposite.
 template <class Real>
 Vec3<Real> pair_friction(const Vec3<Real>& separation, Real square_distance, const Vec3<Real>& relative_displacement,
                          Real limit, Real weight) {

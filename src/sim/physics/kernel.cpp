@@ -6,8 +6,8 @@
 namespace talus {
 namespace {
 
-/// A multiplier that varies as cos(k x) over the lattice moves particles by the lattice sum of 2 grad W sin(k x), and
-/// that changes the constraints in the same pattern: the eigenvalue of a wave is the square of the sum, relative to the
+/// A multiplier that varies as cos(k x) over the lattice moves particles by the lattice sum of 2 grad W sin(k x), which
+/// changes the constraints in the same pattern: the eigenvalue of a wave is the square of the sum, relative to the
 /// diagonal. The largest over all waves of the lattice.
 double max_lattice_eigenvalue(const std::vector<Vec3<double>>& offsets, const std::vector<Vec3<double>>& gradients,
                               double gradient_square) {

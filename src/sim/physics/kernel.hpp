@@ -50,7 +50,7 @@ struct Spiky {
     template <class Real>
     static Real slope_over_q(Real q) {
         const Real t = 1 - q;
-        // The slope is finite at q = 0; two particles at one place have no direction to part in and stay.
+        // The slope is finite at q = 0; two particles at one place have no direction in which to separate and stay.
         return Real(45 / std::numbers::pi) * t * t / larger(q, Real(1e-6));
     }
 };
@@ -105,10 +105,11 @@ struct Kernel {
     double support_radius = 0;     ///< m
     double particle_volume = 0;    ///< m3, V with sum over the lattice of V W = 1
     double rest_gradient_sum = 0;  ///< sum |V grad W|^2 of a particle in the rest lattice, 1/m2
-    /// Largest eigenvalue of the density constraints' Jacobi iteration in the rest lattice: by how much neighbours that
-    /// all correct at once overshoot.
+    /// Largest eigenvalue of the density constraints' Jacobi iteration in the rest lattice: the overshoot when all
+    /// neighbours correct at once.
     double max_eigenvalue = 1;
-    /// Sum of -x d(V W)/dx over the lattice: how much of a stress that varies evenly the sum over neighbours passes on.
+    /// Sum of -x d(V W)/dx over the lattice: the share of a linearly varying stress that the sum over neighbours
+    /// transmits.
     double gradient_moment = 1;
     double second_moment = 0;  ///< sum of x^2 V W over the lattice, m2: links XSPH smoothing to a kinematic viscosity
 };

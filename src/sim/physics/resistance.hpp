@@ -7,10 +7,10 @@
 #include "sim/model.hpp"
 #include "sim/physics/stress.hpp"
 
-/// What holds debris back beside Coulomb friction and viscosity: drag by speed, cohesion, pore pressure, zones.
+/// Resistance other than Coulomb friction and viscosity: speed-dependent drag, cohesion, pore pressure, zones.
 namespace talus {
 
-/// Whether anything slows debris by its speed.
+/// Whether there is speed-dependent drag.
 inline bool slows_by_speed(const Model& model) {
     return model.turbulent_friction > 0 || model.cover.drags();
 }
@@ -22,7 +22,7 @@ inline bool has_pore_pressure(const Model& model) {
     return any;
 }
 
-/// Whether resistance is more than the model's three friction coefficients, and must be found for every particle.
+/// Whether resistance is more than the model's three friction coefficients, and must be evaluated for every particle.
 inline bool resists_by_particle(const Model& model) {
     return !model.cover.empty() || model.cohesion > 0 || has_pore_pressure(model) || model.inertial_friction.on;
 }
@@ -41,7 +41,7 @@ inline double effective_share(const Model& model, std::size_t id, double time) {
     return 1 - ratio;
 }
 
-/// How the ground below a particle resists.
+/// Resistance of the ground below a particle.
 template <class Real>
 struct GroundResistance {
     Real friction_coefficient{};        ///< of dry debris
@@ -61,9 +61,9 @@ GroundResistance<Real> ground_resistance(const Model& model, const Vec3<Real>& p
             known(Real(cell.y), result.inverse_turbulent_friction), Real(cell.w)};
 }
 
-/// Friction on ground as rough as it may be, of debris with the mu(I) law: no more than the debris itself bears where
-/// it shears between the ground, at rest, and the middle of a particle. Without this the lowest particles would stick
-/// to rough ground, and the flow begin half a spacing too high. `speed`: along the ground, m/s; `pressure`: of the
+/// Friction on ground of any roughness for debris with the mu(I) law: at most the strength of the debris itself,
+/// sheared between the ground, at rest, and the centre of a particle. Otherwise the lowest particles would stick to
+/// rough ground, and the flow would start half a spacing too high. `speed`: along the ground, m/s; `pressure`: of the
 /// grains, over density, m2/s2.
 template <class Real>
 Real friction_beside_ground(const Model& model, Real friction, Real speed, Real distance, Real pressure) {
@@ -76,9 +76,9 @@ Real friction_beside_ground(const Model& model, Real friction, Real speed, Real 
                                     Real(inertial.grain_size), shear, larger(Real(0), pressure)));
 }
 
-/// How many times its own displacement ground shears debris with the mu(I) law beside it: none if it is smoother than
-/// the debris inside. Past rougher ground an even shear goes on below, where it moves backwards: so many times that the
-/// lowest layer of a rest lattice sees all of the shear that it is in, as a layer inside does.
+/// The factor on a particle's displacement by which the ground shears debris with the mu(I) law: zero if the ground is
+/// smoother than the debris. On rougher ground uniform shear continues below the surface, moving backwards: the factor
+/// lets the lowest layer of a rest lattice see its full shear, as a layer inside does.
 template <class Real>
 Real shear_beside_ground(const Model& model, Real friction) {
     const double touching = model.contact_distance(), slope = model.boundary.at(touching).slope;
@@ -86,7 +86,7 @@ Real shear_beside_ground(const Model& model, Real friction) {
                   Real(model.kernel.gradient_moment / (-2 * touching * slope)), Real(0));
 }
 
-/// What ground adds to the gradient of a displacement `moved` beside it (see shear_beside_ground). `slope`: of the
+/// The ground's part of the gradient of a displacement `moved` beside it (see shear_beside_ground). `slope`: of the
 /// ground's share of the density.
 template <class Real>
 void add_ground_shear(DisplacementGradient<Real>& deformation, const Vec3<Real>& moved, const Vec3<Real>& normal,
@@ -100,9 +100,9 @@ inline double strength_per_pascal(const Model& model, double time_step) {
     return time_step * time_step / (model.rest_density * model.particle_spacing);
 }
 
-/// The shear strength that cohesion gives debris inside, in the units of lambda. Pressure comes out of the iteration as
-/// large as it takes to carry the weight through the sums over neighbours, and friction with it; cohesion is given from
-/// outside and is raised by what these sums fall short of.
+/// The shear strength that cohesion gives debris inside, in the units of lambda. The iteration makes pressure, and
+/// friction with it, as large as needed to carry the weight through the sums over neighbours; cohesion is given, and is
+/// raised by the shortfall of these sums.
 inline double internal_strength(const Model& model, double time_step) {
     return model.cohesion * time_step * time_step / (model.rest_density * model.kernel.gradient_moment);
 }
@@ -120,9 +120,9 @@ inline double column_width(const Model& model) {
     return 2 * model.particle_spacing;
 }
 
-/// The share of the columns around a particle that walls leave to debris. Shared out to columns and interpolated
-/// between them, what is near counts with the weight of a cubic B-spline, two of their widths to either side; a wall
-/// takes what is beyond it.
+/// The share of the columns around a particle that is not cut off by walls. Distribution to columns and interpolation
+/// between them weight the surroundings with a cubic B-spline, two column widths to either side; a wall cuts off the
+/// part beyond it.
 template <class Real>
 Real open_share(const Model& model, const Ground& ground, const Vec3<Real>& p, float grain_rank) {
     if (ground.solids.empty()) return 1;
@@ -137,9 +137,9 @@ Real open_share(const Model& model, const Ground& ground, const Vec3<Real>& p, f
     return (1 - beyond(nearest)) * (1 - beyond(ground.solids.second_nearest(p, nearest, grain_rank)));
 }
 
-/// Thickness of the flow at right angles to the ground, m, where a column holds so many particles. What the depth is in
-/// depth-averaged laws, volume over area. A pressure would tell it too, but debris that is thinner than some particles
-/// bears none most of the time. A particle alone counts as a quarter of its width.
+/// Thickness of the flow at right angles to the ground, m, for a number of particles in a column. It is the depth of
+/// depth-averaged laws, volume over area. Pressure would also give it, but debris only a few particles thick bears none
+/// most of the time. A single particle counts as a quarter of its width.
 template <class Real>
 Real flow_thickness(const Model& model, const GroundSample<Real>& below, Real particles) {
     const double width = column_width(model);
@@ -147,8 +147,8 @@ Real flow_thickness(const Model& model, const GroundSample<Real>& below, Real pa
                   particles * Real(model.particle_volume() / (width * width)) * below.normal.z);
 }
 
-/// Of a positive number, to 1e-4 between exp(-6) and exp(6). Square roots alone, which every instruction set rounds
-/// alike: 1/3 = 1/4 + 1/16 + 1/64 + ..., and the rest is near 1.
+/// Cube root of a positive number, to 1e-4 between exp(-6) and exp(6). Square roots alone, which every instruction set
+/// rounds in the same way: 1/3 = 1/4 + 1/16 + 1/64 + ..., and the rest is near 1.
 template <class Real>
 Real cube_root(Real x) {
     using std::sqrt;
@@ -156,7 +156,7 @@ Real cube_root(Real x) {
     return a * b * c * (Real(1) + rest * (Real(1.0 / 3) - rest * Real(1.0 / 9)));
 }
 
-/// 1 / xi over what is given for it: Manning's law (1891), v = h^(2/3) S^(1/2) / n, is Voellmy's with xi = h^(1/3) /
+/// 1 / xi relative to the given value: Manning's law (1891), v = h^(2/3) S^(1/2) / n, is Voellmy's with xi = h^(1/3) /
 /// n^2.
 template <class Real>
 Real turbulence_at(const Model& model, Real thickness) {
@@ -167,14 +167,15 @@ Real turbulence_at(const Model& model, Real thickness) {
 /// A velocity after a step of drag by speed, tangential to the ground:
 ///
 /// - Voellmy (1955), "Ueber die Zerstoerungskraft von Lawinen": the shear stress rho g v^2 / xi on the ground below
-///   flow of thickness h, taken from all of its depth alike, as a deceleration g v^2 / (xi h). The law is one of the
-///   whole column; taken from the lowest layer alone, debris would shear off above it wherever friction inside is less
-///   than the slope. Debris more than a spacing above the flow's thickness is in the air and feels none of it. xi may
+///   flow of thickness h, distributed over its full depth, as a deceleration g v^2 / (xi h). The law applies to
+///   the whole column; applied to the lowest layer alone, debris would shear off above it wherever internal friction
+///   is
+///   less than the slope. Debris more than a spacing above the flow's thickness is airborne and not affected. xi may
 ///   depend on the thickness (see turbulence_at).
 /// - Stems as cylinders across the flow (Petryk & Bosmajian 1975, "Analysis of flow through vegetation", eq. 4): a
 ///   deceleration C_D n D / 2 v^2 for n stems of diameter D per area.
 ///
-/// The exact solution of dv/dt = -k v^2 over a step, so it never reverses the motion. `thickness`: of the flow, at
+/// Uses the exact solution of dv/dt = -k v^2 over a step, which never reverses the motion. `thickness`: of the flow, at
 /// right angles to the ground (see flow_thickness).
 template <class Real>
 Vec3<Real> slowed_by_drag(const Model& model, const GroundResistance<Real>& ground, const GroundSample<Real>& below,

@@ -56,7 +56,7 @@ Real friction_limit_square(Real internal_friction_coefficient, Real pressure) {
 }
 
 /// The same with cohesion, in the units of lambda: sqrt(J2) <= cohesion + tan(phi) * pressure. Without friction it is
-/// the yield limit of von Mises, which makes a Bingham fluid of viscous debris.
+/// the yield limit of von Mises, with which viscous debris is a Bingham fluid.
 template <class Real>
 Real strength_limit_square(Real internal_friction_coefficient, Real pressure, Real cohesion) {
     const Real strength = internal_friction_coefficient * pressure + cohesion;
@@ -73,8 +73,8 @@ Deviator<Real> limited(const Deviator<Real>& trial, Real limit_square) {
 
 /// The mu(I) law: mu_s + (mu_2 - mu_s) / (I_0 / I + 1), I = shear rate * d / sqrt(p / grain density) (Jop, Forterre &
 /// Pouliquen 2006, "A constitutive law for dense granular flows", eq. 2). `shear` is the strain of a step and
-/// `pressure` in the units of lambda, from which the step's length cancels; `grain_size` as of InertialFriction, over
-/// the kernel's gradient moment where the strain is a sum over neighbours, which falls short by it.
+/// `pressure` in the units of lambda, from which the step's length cancels; `grain_size`: see InertialFriction; divided
+/// by the kernel's gradient moment where the strain is a sum over neighbours, which is too small by that factor.
 template <class Real>
 Real inertial_friction(Real slow, Real rise, Real half, Real grain_size, const Deviator<Real>& shear, Real pressure) {
     using std::sqrt;
@@ -83,8 +83,8 @@ Real inertial_friction(Real slow, Real rise, Real half, Real grain_size, const D
     return slow + select(fast > Real(0), rise * fast / (fast + number_times_root), Real(0));
 }
 
-/// The stress that resists the shear of a step, in the units of lambda: every iteration adds to it until debris no
-/// longer shears, or it yields. `gain` relative to the density constraint's factor.
+/// The stress that resists the shear of a step, in the units of lambda: it grows with every iteration until debris no
+/// longer shears, or yields. `gain` relative to the density constraint's factor.
 template <class Real>
 Deviator<Real> next_stress(const Deviator<Real>& before, const Deviator<Real>& shear, Real limit_square,
                            Real pair_square, Real jacobi_factor) {

@@ -42,7 +42,7 @@ void for_each_neighbour(const Model& model, std::size_t count, std::size_t i, co
     }
 }
 
-/// Particles in a column at a place: all are shared out between the middles of columns by bilinear interpolation, and
+/// Particles in a column at a place: all are distributed over the centres of columns by bilinear interpolation, and
 /// read back in the same way.
 double particles_in_column(const Model& model, const State& state, const Vector& p) {
     const double width = column_width(model);

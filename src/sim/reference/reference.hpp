@@ -15,7 +15,7 @@ namespace talus::reference {
 
 using Vector = Vec3<double>;
 
-/// A particle with all that a step needs to know of it.
+/// A particle with all that a step needs.
 struct Particle {
     Vector position, velocity, displacement;
     double multiplier = 0, multiplier_change = 0, tolerated_compression = 0, compression = 0;
@@ -43,7 +43,7 @@ struct State {
     explicit State(const talus::State& state);
 };
 
-/// The density constraint G of a particle (eq. 1), every other particle looked at.
+/// The density constraint G of a particle (eq. 1), summed over every other particle.
 [[nodiscard]] double constraint(const Model& model, const Ground& ground, const std::vector<Vector>& points,
                                 std::size_t i);
 
@@ -51,8 +51,8 @@ struct State {
 [[nodiscard]] Vector constraint_gradient(const Model& model, const Ground& ground, const std::vector<Vector>& points,
                                          std::size_t i, std::size_t k);
 
-/// The stages of a step in double precision and in O(N^2), as plainly as the laws allow: what the fast backends are
-/// tested against. Nobody's run uses it.
+/// The stages of a step in double precision and in O(N^2), as plainly as the laws allow. The fast backends are tested
+/// against it; no run uses it.
 class Backend {
   public:
     void release_held(const Model& model, State& state);

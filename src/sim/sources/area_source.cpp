@@ -13,7 +13,7 @@ namespace talus {
 namespace {
 
 constexpr double most_sites = 1e6, most_bins = 250e3;
-constexpr double most_tries = 2e7;  ///< places that are looked at to find sites
+constexpr double most_tries = 2e7;  ///< places examined to find sites
 
 }  // namespace
 
@@ -26,7 +26,7 @@ AreaSource::AreaSource(const Model& model, const LocalFrame& frame, Inflow inflo
     place_sites(frame);
 }
 
-/// On a lattice, and finer than the particles' own where an area is too small for any of that.
+/// On a lattice, finer than that of the particles where an area is too small to contain any site of theirs.
 void AreaSource::place_sites(const LocalFrame& frame) {
     Extent extent = extent_of(inflow_.area.front());
     double area = 0;
@@ -134,7 +134,7 @@ LocalPoint AreaSource::velocity_at(const Ground& ground, const LocalPoint& p, do
     }
     Vec3<double> along = level - normal * dot(level, normal);
     const double size = length(along);
-    if (!(size > 1e-6)) return {};  // level ground has no way down
+    if (!(size > 1e-6)) return {};  // level ground has no downhill direction
     along = along * (inflow_.velocity_at(time) / size);
     return {static_cast<float>(along.x), static_cast<float>(along.y), static_cast<float>(along.z)};
 }

@@ -13,22 +13,24 @@
 namespace talus {
 namespace {
 
-constexpr float reach_in_spacings = 4;  ///< how far from its place a new particle moves others; by a hundredth of one
-constexpr float sites_apart = 3.5F;     ///< spacings between places of one step, at least
-constexpr float foot_offset = 1.2F;     ///< spacings from the particle that ground comes loose below, at most
+constexpr float reach_in_spacings = 4;  ///< distance within which a new particle moves others; there by a hundredth of
+                                        ///< a spacing
+constexpr float sites_apart = 3.5F;     ///< minimum distance between sites of one step, in spacings
+constexpr float foot_offset = 1.2F;     ///< maximum distance from the particle below which ground comes loose, in
+                                        ///< spacings
 
-/// Particles are no continuum: with a quarter more room than the volume of the new one, the worst of them are
-/// compressed half as much; with half more, room is left over and what lies above falls into it.
+/// Particles are not a continuum: with a quarter more room than the new particle's volume, the peak compression is
+/// halved; with half more, a gap remains into which debris above falls.
 constexpr double room_factor = 1.25;
 
-/// Slower debris picks up nothing: a tenth of the speed of a fall through a particle's own size.
+/// Slower debris entrains nothing: a tenth of the speed of a fall through a particle's own size.
 double moving_speed(const Model& model) {
     return 0.1 * std::sqrt(model.gravity * model.particle_spacing);
 }
 
-/// A share of a particle, 0 to below 1, that a cell is ahead of its law, evenly spread over neighbouring cells: so the
-/// whole particles that cells give add up to what the law says however little each of them loses (additive
-/// low-discrepancy sequence, Roberts 2018).
+/// A share of a particle, 0 to below 1, by which a cell is ahead of its law, evenly distributed over neighbouring
+/// cells: the whole particles from all cells then add up to the volume of the law, however little each cell loses
+/// (additive low-discrepancy sequence, Roberts 2018).
 double head_start(const GridGeometry& g, std::size_t cell) {
     const auto columns = static_cast<std::size_t>(g.columns);
     const std::size_t column = cell % columns, row = cell / columns;
@@ -37,12 +39,12 @@ double head_start(const GridGeometry& g, std::size_t cell) {
                      &whole);
 }
 
-/// A square of the plan, as wide as new particles reach.
+/// A square bin in plan, as wide as the reach of a new particle.
 std::uint64_t bin_of(int column, int row) {
     return std::uint64_t{static_cast<std::uint32_t>(row)} << 32U | static_cast<std::uint32_t>(column);
 }
 
-/// Which bins have a site in or beside them; a bin may also be there because it shares its bit with such a one.
+/// Which bins have a site in or beside them; false positives occur, since bins share bits.
 class BinSet {
   public:
     void add(std::uint64_t bin) { words_[word(bin)] |= bit(bin); }

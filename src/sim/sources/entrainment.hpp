@@ -13,26 +13,26 @@
 
 namespace talus {
 
-/// Debris picks up its bed: ground becomes particles, one at a time, where the bed's law says that a particle's volume
-/// has come loose. The terrain sinks by exactly that volume in the cell; the particle begins at rest, so that debris
-/// keeps its momentum and loses speed. Its place is made by moving what lies around outwards as an incompressible body
-/// around a growing half sphere on the ground would move: nothing is pressed, nothing gains speed.
+/// Entrainment of the bed: ground becomes particles, one at a time, wherever the bed's law has loosened a particle's
+/// volume. The terrain sinks by exactly that volume in the cell; the particle starts at rest, so that debris keeps its
+/// momentum and loses speed. Room is made by moving the surrounding debris outwards like an incompressible body around
+/// a growing half sphere on the ground: nothing is compressed, nothing gains speed.
 ///
-/// All of it goes by the order of the state alone: results do not depend on the number of threads.
+/// The order of the state alone decides: results do not depend on the number of threads.
 class Entrainment {
   public:
-    /// Where particles come loose in the step of state.time_step that was just taken, three and a half spacings apart;
-    /// what has no room waits. Returns how many there are.
+    /// Finds where particles come loose in the step of state.time_step just taken, three and a half spacings apart;
+    /// those without room wait. Returns their number.
     std::size_t find(const Model& model, const Ground& ground, const State& state);
 
-    /// Turns ground into particles where find() found. The arrays of `state` have room for them.
+    /// Turns ground into particles at the sites of find(). The arrays of `state` must have room for them.
     void apply(const Model& model, Ground& ground, State& state);
 
   private:
     struct Site {
-        std::uint32_t particle = 0;  ///< sorted index of the one that ground comes loose below
+        std::uint32_t particle = 0;  ///< sorted index of the particle below which ground comes loose
         std::size_t cell = 0;
-        LocalPoint foot;    ///< on the ground; of find() right below the particle
+        LocalPoint foot;    ///< on the ground; from find(), directly below the particle
         LocalPoint normal;  ///< of the ground
     };
     struct Neighbour {
@@ -50,8 +50,8 @@ class Entrainment {
     void make_room(const Model& model, const Ground& ground, State& state, std::size_t index) const;
 
     std::vector<double> loose_;         // m3 that have come loose, less those that became particles, by cell
-    std::vector<std::uint32_t> count_;  // particles over a cell, of beds that go by shear; 0 between steps
-    std::vector<float> rate_;           // m3 per particle in this step, likewise
+    std::vector<std::uint32_t> count_;  // particles over a cell, of beds eroded by shear; 0 between steps
+    std::vector<float> rate_;           // m3 per particle in this step, for the same beds
     std::vector<std::size_t> touched_;  // cells with a count
     std::vector<Site> sites_;
     std::vector<std::pair<std::uint64_t, std::uint32_t>> by_bin_;  // sites

@@ -79,7 +79,7 @@ void InflowFeeder::inject(const Model& model, const Ground& ground, State& state
 void InflowFeeder::Source::lead(const Ground& ground, State& state) {
     if (!leads()) return;
     const double early = inflow.volume_until(state.time - state.time_step), now = inflow.volume_until(state.time);
-    if (state.time >= end() || !(now > early)) {  // between surges nothing drives what came in
+    if (state.time >= end() || !(now > early)) {  // between surges nothing drives the injected debris
         led = {};
         return;
     }
@@ -110,7 +110,7 @@ void InflowFeeder::Source::lead(const Ground& ground, State& state) {
             const Vec3<double> plan = at_line + along * way;
             const GroundSample<double> here = ground.terrain.sample(place.x, place.y);
             const GroundSample<double> there = ground.terrain.sample(plan.x, plan.y);
-            // As high above the ground, normal to it, as the solver left it.
+            // At the height above the ground, normal to it, at which the solver left it.
             const Vec3<double> target =
                 Vec3<double>{plan.x, plan.y, there.height} + there.normal * ((place.z - here.height) * here.normal.z);
             const LocalPoint led_to{static_cast<float>(target.x), static_cast<float>(target.y),
@@ -125,7 +125,7 @@ void InflowFeeder::Source::lead(const Ground& ground, State& state) {
     }
 }
 
-/// `since`: s, how long ago the row passed the line.
+/// `since`: s, time since the row passed the line.
 void InflowFeeder::Source::add_row(const Model& model, const Ground& ground, State& state, double since) {
     const double in = inflow.volume_until(last_time) / particle_volume;
     const std::uint32_t reached = last_time >= end() ? total : static_cast<std::uint32_t>(std::lround(in));
@@ -139,7 +139,7 @@ void InflowFeeder::Source::add_row(const Model& model, const Ground& ground, Sta
     const double early = inflow.way_until(last_time - 1e-3), late = inflow.way_until(last_time);
     const double velocity = (late - early) / std::min(1e-3, std::max(1e-9, last_time - inflow.hydrograph.front().time));
     double whole = 0;
-    // What does not fill a layer goes to columns evenly, in every row to others.
+    // Particles that do not fill a layer are distributed evenly over the columns, to different ones in every row.
     const double shift = std::modf(static_cast<double>(rows) * 0.6180339887498949, &whole);
     const std::uint32_t full = count / columns, odd = count % columns;
     const double previous = state.previous_time_step > 0 ? state.previous_time_step : model.solver.largest_time_step;

@@ -12,28 +12,28 @@
 
 namespace talus {
 
-/// Injects debris while a run goes on. Whenever the inflow has moved on by a particle spacing, a row of particles
-/// appears at its line: as many as make the volume that came in meanwhile, to the nearest whole one of all so far,
-/// stacked in columns on a lattice of rest density, moving at the inflow velocity along the ground, and under the
-/// pressure of what lies above them. Nothing comes in denser than at rest, so nothing pops apart.
+/// Injects debris during a run. Whenever the inflow has advanced by a particle spacing, a row of particles appears at
+/// its line: as many as match the total volume so far to the nearest whole particle, stacked in columns on a lattice of
+/// rest density, moving at the inflow velocity along the ground, and under the pressure of the particles above. Nothing
+/// is injected denser than at rest, so nothing is thrown apart.
 ///
-/// Over the first three spacings beyond the line rows are led: between steps their way and velocity along the inflow
-/// become those of the hydrograph, across it they are as the solver leaves them. Without that, the newest row would be
-/// pushed back by those before it, having nothing behind it, and the next one would come too close.
+/// Over the first three spacings beyond the line rows are led: between steps their distance and velocity along the
+/// inflow are set to those of the hydrograph; across it they remain as the solver left them. Otherwise the newest row,
+/// with nothing behind it, would be pushed back by those in front, and the next one would be too close.
 ///
-/// What comes in over an area does so by an AreaSource.
+/// Inflow over an area uses an AreaSource.
 class InflowFeeder {
   public:
-    /// Of nothing.
+    /// Without any inflow.
     InflowFeeder() = default;
     InflowFeeder(const Model& model, const LocalFrame& frame, const std::vector<Inflow>& inflows);
 
-    /// Particles that all inflows together have yet to bring.
+    /// Particles that all inflows together still have to inject.
     [[nodiscard]] std::uint32_t to_come() const;
-    /// Whether there is anything to do at a time, s: a row is due, or rows are led.
+    /// Whether there is work at a time, s: a row is due, or rows are led.
     [[nodiscard]] bool due(double time) const;
-    /// Leads what came in lately and injects what is due at the state's time, within Simulation::change(). Allocates
-    /// nothing if the state's arrays have room.
+    /// Leads the latest rows and injects those due at the state's time, within Simulation::change(). Allocates nothing
+    /// if the state's arrays have room.
     void inject(const Model& model, const Ground& ground, State& state);
 
   private:
@@ -45,9 +45,9 @@ class InflowFeeder {
         Inflow inflow;
         double spacing = 0, particle_volume = 0;
         std::uint32_t total = 0, injected = 0;
-        std::uint64_t rows = 0;           ///< that have come in
+        std::uint64_t rows = 0;           ///< injected so far
         double last_time = 0;             ///< s, of the last row
-        std::array<Row, led_rows> led{};  ///< row k in place k % led_rows; empty: none, or no longer led
+        std::array<Row, led_rows> led{};  ///< row k at k % led_rows; empty: none, or no longer led
 
         [[nodiscard]] double way_of(std::uint64_t row, double time) const {
             return inflow.way_until(time) - static_cast<double>(row + 1) * spacing;

@@ -41,7 +41,8 @@ std::vector<Column> fill_columns(const Terrain& terrain, const Release& release,
                 }
             }
             if (depth <= 0) continue;
-            // Rounding by an additive low-discrepancy sequence (Roberts 2018) spreads the odd particles evenly.
+            // Rounding by an additive low-discrepancy sequence (Roberts 2018) distributes the remaining particles
+            // evenly.
             double whole = 0;
             const double threshold = std::modf(column * 0.7548776662466927 + row * 0.5698402909980532, &whole);
             const double share = depth / spacing + threshold;
@@ -51,8 +52,8 @@ std::vector<Column> fill_columns(const Terrain& terrain, const Release& release,
             columns.push_back(entry);
         }
     }
-    // What the rounding still misses goes to the columns that were nearest to another particle, or is taken from those
-    // nearest to one less.
+    // The remaining difference is added to the columns nearest to one more particle, or subtracted from those nearest
+    // to one less.
     std::vector<std::size_t> order(columns.size());
     std::iota(order.begin(), order.end(), std::size_t{0});
     std::stable_sort(order.begin(), order.end(),
@@ -73,7 +74,7 @@ std::vector<Column> fill_columns(const Terrain& terrain, const Release& release,
     return columns;
 }
 
-/// A column's particles lie in its middle, which can be behind a wall that cuts its edge.
+/// A column's particles lie at its centre, which can be inside a wall that cuts its edge.
 void put_out_of_buildings(const Model& model, const Ground& ground, State& state) {
     if (ground.solids.empty()) return;
     for (std::uint32_t i = 0; i < state.count; ++i) {

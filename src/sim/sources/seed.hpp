@@ -14,10 +14,10 @@ namespace talus {
 /// The scene's spacing, or the one that makes `target_particle_count` particles of the volume, m.
 [[nodiscard]] double choose_particle_spacing(const SolverSpec& solver, double released_volume);
 
-/// What the model takes from the scene's material section. The model has its kernel.
+/// Sets the model's values from the scene's material section. The model must have its kernel.
 void set_material(Model& model, const MaterialSpec& material);
 
-/// Everything constant, from the scene's material and solver sections.
+/// All constants of a run, from the scene's material and solver sections.
 [[nodiscard]] Model make_model(const MaterialSpec& material, const SolverSpec& solver, double particle_spacing,
                                GroundCover cover = {});
 
@@ -25,13 +25,12 @@ void set_material(Model& model, const MaterialSpec& material);
 ///
 /// Every column of the spacing's lattice gets as many particles as its share of volume, stacked on the ground; each
 /// release gets volume / spacing^3 particles, to the nearest whole one. The mass is then relaxed without gravity until
-/// it is nowhere denser than rest: started over-dense, it would be thrown apart within a step.
-/// Errors: more particles than the solver's limit (says how many, and which spacing would fit); a release that is
-/// smaller than one particle.
+/// it is nowhere denser than rest: started over-dense, it would fly apart within a step. Errors: more particles than
+/// the solver's limit (gives the number and a spacing that would fit); a release that is smaller than one particle.
 [[nodiscard]] Result<State> seed_releases(Model& model, const Ground& ground, const std::vector<Release>& releases);
 
-/// The multipliers and stresses with which a state, in the order of its ids, would begin to move; it does not move.
-/// Those it comes with are where the search begins.
+/// The multipliers and stresses with which a state, in the order of its ids, would start to move; it is not moved. The
+/// search starts from the state's own.
 void find_pressures(const Model& model, const Ground& ground, State& state);
 
 }  // namespace talus
