@@ -17,7 +17,7 @@
 #include "run/variants.hpp"
 #include "scene/scene.hpp"
 
-/// Back-analysis: which values of a scene explain what was observed in the field, by runs of that scene.
+/// Back-analysis: finds the values of a scene that explain field observations, by runs of that scene.
 namespace talus {
 
 struct CalibrationPlan {
@@ -27,12 +27,12 @@ struct CalibrationPlan {
 
 struct CalibrationProgress {
     SearchPhase phase = SearchPhase::design;
-    std::size_t done = 0, failed = 0, most = 0;  ///< runs, and at most so many
+    std::size_t done = 0, failed = 0, most = 0;  ///< runs so far, and their maximum number
     double least_misfit = never;
     double wall_remaining = 0;  ///< s, an estimate; NaN: not known yet
 };
 
-/// A run that has just been made.
+/// A run that has just been completed.
 struct CalibrationRun {
     std::size_t run = 0;
     SearchPhase phase = SearchPhase::design;
@@ -40,7 +40,7 @@ struct CalibrationRun {
     double misfit = never;       ///< as SearchRun::misfit
 };
 
-/// A calibration and all that it says.
+/// A calibration and its results.
 struct Calibration {
     const Scene* scene = nullptr;  ///< as given, before factors
     std::vector<Factor> factors;
@@ -56,7 +56,7 @@ struct CalibrationOptions {
     bool retry_failed = false;
     const std::atomic<bool>* stop_requested = nullptr;
     std::function<void(const CalibrationProgress&)> on_progress = {};  ///< from any thread, one at a time
-    std::function<void(const CalibrationRun&)> on_run = {};            ///< likewise, for each that this call makes
+    std::function<void(const CalibrationRun&)> on_run = {};            ///< likewise, for each run of this call
     /// After each round, from the caller's thread: emulators and runs so far; no posterior and no records yet.
     std::function<void(const Calibration&)> on_fit = {};
 };
@@ -66,22 +66,23 @@ struct CalibrationOptions {
 [[nodiscard]] Result<PlannedRuns> plan_calibration(const CalibrationPlan& plan, const SceneSource& source,
                                                    const Scene& base);
 
-/// What makes a calibration this one, for EnsembleFolder::open; `kind`: "calibration", or of other runs.
+/// The definition that identifies a calibration, for EnsembleFolder::open; `kind`: "calibration", or that of other
+/// runs.
 [[nodiscard]] nlohmann::ordered_json calibration_definition(const std::string& kind, const CalibrationPlan& plan,
                                                             const PlannedRuns& runs, const SceneSource& source,
                                                             const Scene& base,
                                                             const std::vector<ObservedValue>& observed,
                                                             const std::string& scene_name);
 
-/// Predictions of the scene's observations by runs of it, kept in the folder, which is gone through again for those
-/// that are there. `observed`: to tell how well they fit; `records` takes what was run. All must outlive the model.
+/// Predictions of the scene's observations by its runs, which are stored in the folder; existing ones are reused.
+/// `observed`: to evaluate their misfit; `records` receives the runs. All must outlive the model.
 [[nodiscard]] ForwardModel scene_model(PlannedRuns& runs, const SceneSource& source,
                                        const std::vector<ObservedValue>& observed, const EnsembleFolder& folder,
                                        std::size_t most, const CalibrationOptions& options,
                                        std::vector<RunRecord>& records);
 
-/// Computes what the folder lacks and finds the values that explain `observed` (as observed_values(base), or other
-/// values of the same). Errors: a record cannot be written, or is of another calibration; no run is complete.
+/// Computes the runs missing in the folder and finds the values that explain `observed` (as observed_values(base), or
+/// other values of the same). Errors: a record cannot be written, or is of another calibration; no run is complete.
 [[nodiscard]] Result<Calibration> calibrate(const CalibrationPlan& plan, PlannedRuns runs, const SceneSource& source,
                                             const Scene& base, const std::vector<ObservedValue>& observed,
                                             const EnsembleFolder& folder, const CalibrationOptions& options);

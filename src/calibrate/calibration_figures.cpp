@@ -29,7 +29,7 @@ double value_of(const Calibration& c, std::size_t factor, const std::vector<doub
     return c.factors[factor].distribution.quantile(point[factor]);
 }
 
-/// The factor's value in the scene as given; NaN where it is none or not given.
+/// The factor's value in the scene as given; NaN where it is not a number or not given.
 double given_value(const Calibration& c, std::size_t factor) {
     const std::string& key = c.factors[factor].key;
     double found = never;
@@ -51,7 +51,7 @@ Curve dots_of(const char* style, const char* name, double radius) {
     return {Curve::Shape::dots, style, name, {}, {}, {}, radius};
 }
 
-/// The runs as dots, each kind in its colour; `place` says where, NaN: nowhere.
+/// The runs as dots, each kind in its colour; `place` gives the position; NaN: not drawn.
 template <class Place>
 void add_runs(Plot& plot, const Calibration& c, double radius, const Place& place) {
     std::array<Curve, 4> kinds = {

@@ -10,13 +10,13 @@ namespace talus::report {
 /// posterior.
 [[nodiscard]] Chart misfit_chart(const Calibration& calibration, const MisfitMap& map);
 
-/// What is known of each factor before and after.
+/// Prior and posterior of each factor.
 [[nodiscard]] Chart factor_chart(const Calibration& calibration, const CalibrationSummary& summary);
 
-/// Observed and predicted, for each observation in standard deviations from what was observed.
+/// Deviations of predictions from each observation, in standard deviations.
 [[nodiscard]] Chart observation_chart(const Calibration& calibration, const CalibrationSummary& summary);
 
-/// Misfit run by run, and what emulators say of runs that they do not know against what was computed.
+/// Misfit run by run, and emulator predictions of unknown runs against computed values.
 [[nodiscard]] Chart convergence_chart(const Calibration& calibration);
 
 }  // namespace talus::report

@@ -96,7 +96,7 @@ std::string draw_csv(const Calibration& c) {
     return csv.text();
 }
 
-/// A scene file of the run of least misfit. Paths that lie beside it are relative to it.
+/// A scene file of the run of least misfit. Paths within its folder are relative.
 Status write_best_scene(const Calibration& c, const SceneSource& source, bool own_files, const fs::path& folder) {
     const fs::path to = (fs::absolute(folder) / "best_fit").lexically_normal();
     std::error_code error;

@@ -10,7 +10,8 @@ namespace talus {
 namespace {
 
 constexpr std::size_t map_cells = 40, other_places = 48;
-constexpr double end_share = 0.05;  // a posterior whose median lies so near an end of the range is pressed against it
+constexpr double end_share = 0.05;  // a posterior whose median is this close to an end of the range counts as at the
+                                    // end
 constexpr double largest_r_hat = 1.05;
 constexpr double fewest_draws = 400;
 
@@ -34,7 +35,7 @@ FactorResult summarise_factor(const Calibration& c, std::size_t k) {
     return f;
 }
 
-/// The prediction, or what stands for none.
+/// The prediction, or its substitute if there is none.
 double filled(const ObservedValue& observed, double predicted) {
     return std::isfinite(predicted) ? predicted : observed.unreached;
 }
@@ -172,7 +173,7 @@ MisfitMap misfit_map(const Calibration& c) {
     const std::size_t factors = c.factors.size();
     MisfitMap map;
     map.cells = map_cells;
-    // A normal distribution has no ends; all are cut where their last half percent begins.
+    // A normal distribution has no ends; all are cut at their outermost half percent.
     const auto share_at = [](const Distribution& prior, double part) {
         return prior.kind == DistributionKind::normal ? 0.005 + 0.99 * part : part;
     };

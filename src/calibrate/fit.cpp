@@ -10,7 +10,7 @@ namespace {
 
 constexpr std::size_t improvement_draws = 128;
 constexpr std::size_t kept_draws = 2000;
-constexpr double least_likelihood = 1e-300;  // its logarithm is still a number
+constexpr double least_likelihood = 1e-300;  // its logarithm is still finite
 
 /// -2 log of the standard normal distribution function, also where that underflows.
 double tail_misfit(double z) {
@@ -18,8 +18,9 @@ double tail_misfit(double z) {
     return z * z + 2 * std::log(-z) + std::log(2 * std::numbers::pi);
 }
 
-/// Per draw a standard normal number for each observation, then a share for each: a Latin hypercube, which knows a mean
-/// better than as many independent draws. Always the same, so that expectations are as smooth as the emulators.
+/// Per draw a standard normal number for each observation, then a share for each: a Latin hypercube, which gives a mean
+/// more accurately than as many independent draws. Always the same, so that expectations are as smooth as the
+/// emulators.
 const Points& improvement_table(std::size_t observations) {
     thread_local Points table;
     if (!table.empty() && table.front().size() == 2 * observations) return table;

@@ -8,7 +8,7 @@
 #include "stats/prediction_emulator.hpp"
 #include "stats/sampler.hpp"
 
-/// How well predictions fit what was observed, by runs and by emulators of them.
+/// Misfit of predictions, by runs and by emulators.
 namespace talus {
 
 /// Twice the negative log likelihood of an observation, 0 where the prediction fits it perfectly: the square of the
@@ -31,18 +31,18 @@ struct Fit {
 
     /// Misfit of the observations and of the priors, where every prediction is the emulator's mean, or none.
     [[nodiscard]] double misfit_at(const std::vector<double>& point) const;
-    /// Log likelihood up to a constant: what emulators do not know and noise of runs add to the uncertainty of the
-    /// observations.
+    /// Log likelihood up to a constant: the uncertainty of emulators and the noise of runs add to the uncertainty of
+    /// the observations.
     [[nodiscard]] double log_likelihood(const std::vector<double>& point) const;
-    /// By how much a run here is expected to have less misfit than `least`: expected improvement of a function of
-    /// several emulated numbers (Astudillo & Frazier 2019, "Bayesian optimization of composite functions", equation 3).
+    /// Expected reduction of the misfit below `least` by a run here: expected improvement of a function of several
+    /// emulated numbers (Astudillo & Frazier 2019, "Bayesian optimization of composite functions", equation 3).
     [[nodiscard]] double expected_improvement(const std::vector<double>& point, double least) const;
-    /// How uncertain emulators are here beside the observations: the greatest ratio of their standard deviations, where
-    /// it counts too whether debris comes there.
+    /// Uncertainty of the emulators here relative to the observations: the greatest ratio of their standard deviations,
+    /// including the uncertainty whether debris reaches the place.
     [[nodiscard]] double emulator_share(const std::vector<double>& point) const;
 };
 
-/// What is known of the factors after the observations.
+/// The distribution of the factors after the observations.
 struct Posterior {
     std::vector<Points> chains;
     Points draws;  ///< some of them, evenly thinned
@@ -57,7 +57,7 @@ struct Posterior {
 
 inline constexpr std::size_t chain_count = 4;
 
-/// Draws from the posterior of the fit. `runs`: places where chains may start, beside some of the whole cube.
+/// Draws from the posterior of the fit. `runs`: possible starts of chains, in addition to some in the whole cube.
 [[nodiscard]] Posterior sample_posterior(const Fit& fit, const Points& runs, const ChainOptions& options);
 
 }  // namespace talus

@@ -22,14 +22,14 @@ bool sees_everything(const RunRecord& record, std::size_t observations) {
                        [](double v) { return std::isfinite(v); });
 }
 
-/// What would have been observed of a run, each with an error.
+/// Synthetic observations of a run, each with an error.
 std::vector<ObservedValue> observe(const RunRecord& record, std::vector<ObservedValue> as, std::uint64_t seed) {
     const auto first = record.results.end() - static_cast<std::ptrdiff_t>(as.size());
     for (std::size_t j = 0; j < as.size(); ++j) {
         const double seen = first[static_cast<std::ptrdiff_t>(j)] + as[j].uncertainty * normal_draw(seed, 1, j);
         if (as[j].kind == ObservedValue::Kind::equal) {
             as[j].value = seen;
-        } else {  // the limit stays; on which side of it the building seems to lie is what is seen
+        } else {  // the limit is kept; observed is on which side of it the building appears to be
             as[j].kind = seen >= as[j].value ? ObservedValue::Kind::at_least : ObservedValue::Kind::below;
         }
     }

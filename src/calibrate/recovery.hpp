@@ -7,14 +7,14 @@
 #include "calibrate/calibration.hpp"
 #include "core/result.hpp"
 
-/// Whether a calibration would return values that are known: made-up observations from runs with them.
+/// Tests whether a calibration recovers known values: with synthetic observations from runs with them.
 namespace talus {
 
 /// One attempt.
 struct RecoverySeed {
     std::uint64_t seed = 0;
     std::vector<double> truth;      ///< per factor, in the unit of its key
-    std::vector<double> low, high;  ///< the 95 % that the calibration states
+    std::vector<double> low, high;  ///< the 95 % interval of the calibration
     std::vector<double> median;
     double widest_r_hat = 0;
     std::size_t runs = 0;
@@ -31,11 +31,11 @@ struct Recovery {
     bool interrupted = false;
 };
 
-/// Draws values from the priors, runs the scene with them, takes its predictions with a normal error of each
-/// observation's uncertainty as observed, and calibrates; `seeds` times, in folders seed_01, ... of `folder`, with the
-/// runs with known values in `truths`. Values whose debris does not come to every place where something was observed
-/// are drawn again: nothing would have been observed there. Resumes with the runs in the folders. `on_seed` gets which
-/// seed begins. Errors: as calibrate; hardly any values bring debris to all observations.
+/// Draws values from the priors, runs the scene with them, uses its predictions, with a normal error of each
+/// observation's uncertainty, as observations, and calibrates; `seeds` times, in folders seed_01, ... of `folder`, with
+/// the runs with known values in `truths`. Values whose debris does not reach the place of every observation are drawn
+/// again, since nothing would have been observed there. Resumes with the runs in the folders. `on_seed` is called with
+/// every new seed. Errors: as calibrate; too few values bring debris to all observations.
 [[nodiscard]] Result<Recovery> recover(const CalibrationPlan& plan, const PlannedRuns& runs, const SceneSource& source,
                                        const Scene& base, const std::string& scene_name,
                                        const std::filesystem::path& folder, std::size_t seeds,

@@ -13,12 +13,12 @@
 namespace talus {
 namespace {
 
-// The search ends where another run would neither fit better nor tell more: less improvement than a tenth of what
-// separates the best place from one a third of a standard deviation away, and emulators that are certain beside the
-// observations.
+// The search ends when another run would neither fit better nor add information: expected improvement below a tenth of
+// the difference between the best place and one a third of a standard deviation away, and emulators that are certain
+// compared with the observations.
 constexpr double little_improvement = 0.01, little_uncertainty = 0.1;
 constexpr std::size_t quiet_rounds = 2;  // in a row
-constexpr double least_distance = 0.01;  // of the cube, between runs that are to tell what emulators do not know
+constexpr double least_distance = 0.01;  // of the cube, between runs that reduce the emulators' uncertainty
 
 constexpr ChainOptions short_chains = {500, 500, 1}, long_chains = {3000, 8000, 1};
 
@@ -35,7 +35,7 @@ class Searcher {
     Result<bool> run(const Points& points, SearchPhase phase, const std::vector<double>& improvements = {});
     /// Emulators of all complete runs.
     void fit();
-    /// The same with what is expected of failed runs, so that their places are not chosen again.
+    /// The same with expected values for failed runs, so that their places are not chosen again.
     [[nodiscard]] Fit with_failed() const;
     [[nodiscard]] Points run_points() const;
     [[nodiscard]] double least_misfit(const Fit& fit) const;
@@ -124,7 +124,7 @@ Fit Searcher::with_failed() const {
     return all;
 }
 
-/// By the emulators' means, which noise of a lucky run does not carry away.
+/// By the emulators' means, which are not misled by the noise of a single run.
 double Searcher::least_misfit(const Fit& fit) const {
     double least = std::numeric_limits<double>::infinity();
     for (const SearchRun& run : result_.runs) {
@@ -145,8 +145,8 @@ void Searcher::choose(Points& points, std::vector<double>& improvements) {
     for (const auto& row : posterior.draws) {
         result_.emulator_share += fit.emulator_share(row) / static_cast<double>(posterior.draws.size());
     }
-    // Each choice counts as run with the result that is expected of it, so that the next one lies elsewhere ("kriging
-    // believer": Ginsbourger, Le Riche & Carraro 2010).
+    // Each choice is assumed to give its expected result, so that the next one lies elsewhere ("kriging believer":
+    // Ginsbourger, Le Riche & Carraro 2010).
     for (std::size_t i = 0; i < options_.at_once; ++i) {
         std::vector<double> chosen;
         double improvement = 0;
@@ -163,7 +163,7 @@ void Searcher::choose(Points& points, std::vector<double>& improvements) {
         if (improvement < little_improvement) {
             double most = -1;
             for (const auto& row : posterior.draws) {
-                if (near_any(row, points) || near_any(row, runs)) continue;  // a run twice tells nothing new
+                if (near_any(row, points) || near_any(row, runs)) continue;  // a repeated run adds no information
                 const double share = fit.emulator_share(row);
                 if (share <= most) continue;
                 most = share;

@@ -8,7 +8,7 @@
 #include "calibrate/fit.hpp"
 #include "core/result.hpp"
 
-/// Finds what factors explain observations, with few runs of a model that is expensive.
+/// Finds the values of factors that explain observations, with few runs of an expensive model.
 namespace talus {
 
 enum class SearchPhase { design, search, check };
@@ -23,25 +23,25 @@ struct SearchOptions {
     std::uint64_t seed = 1;
 };
 
-/// The fewest runs that a search over so many factors takes.
+/// Minimum number of runs of a search over this number of factors.
 [[nodiscard]] std::size_t fewest_runs(std::size_t factors);
 
 /// One run of a search.
 struct SearchRun {
     std::vector<double> point;  ///< of the unit cube
     SearchPhase phase = SearchPhase::design;
-    std::vector<double> predicted;  ///< as the observations; NaN: nothing came there; empty: the run failed
+    std::vector<double> predicted;  ///< as the observations; NaN: debris did not reach the place; empty: the run failed
     double misfit = 0;              ///< of observations and priors; NaN: failed
-    double improvement = 0;         ///< that was expected of it when it was chosen; 0 where it was not chosen so
+    double improvement = 0;         ///< expected when it was chosen; 0 if it was chosen otherwise
 };
 
-/// What emulators said of a run before it was made.
+/// Prediction of a run by the emulators before it was made.
 struct Check {
     std::size_t run = 0, observation = 0;
-    double computed = 0, mean = 0, deviation = 0;  ///< computed NaN: nothing came there
-    double reached = 1;                            ///< probability that something does
+    double computed = 0, mean = 0, deviation = 0;  ///< computed NaN: debris did not reach the place
+    double reached = 1;                            ///< probability that debris reaches the place
 
-    /// Whether the run's result is among the 95 % that were to be expected.
+    /// Whether the run's result is within the expected 95 %.
     [[nodiscard]] bool expected() const;
 };
 
@@ -51,23 +51,25 @@ struct SearchResult {
     Fit fit;                          ///< of all runs
     Posterior posterior;
     std::vector<Check> checks;
-    double improvement = 0;     ///< most that was still expected of another run when the search ended, in misfit
+    double improvement = 0;     ///< largest improvement still expected of another run at the end of the search, in
+                                ///< misfit
     double emulator_share = 0;  ///< mean of Fit::emulator_share over the posterior at the end
-    double shift = 0;           ///< of the posterior's medians by the checks, most, in standard deviations
+    double shift = 0;           ///< largest shift of the posterior's medians by the checks, in standard deviations
     bool settled = false;       ///< the search ended because no further gain was expected
     bool interrupted = false;
 };
 
 /// Computes runs at `points` and returns all their predictions, one row per point; empty rows: failed. It is called
-/// with the same points and more at the end. Nothing: interrupted.
+/// with the same points and more at the end. Empty: interrupted.
 using ForwardModel = std::function<Result<std::optional<Points>>(const Points& points, SearchPhase phase)>;
 
-/// What a search knows after a round: runs, best and emulators; no posterior yet.
+/// The state of a search after a round: runs, best and emulators; no posterior yet.
 using FitReader = std::function<void(const SearchResult& so_far)>;
 
-/// A design, then rounds of runs where the most improvement is expected and where the posterior is least certain of the
-/// emulators, then draws from the posterior as a check, which count in the end. The runs depend on the model, the
-/// observations and the options alone. `priors` without lists. Errors: of the model, all runs of the design failed.
+/// A design, then rounds of runs where the largest improvement is expected and where the emulators are least certain
+/// within the posterior, then draws from the posterior as a check, which are included in the result. The runs depend
+/// only on the model, the observations and the options. `priors` without lists. Errors: of the model, all runs of the
+/// design failed.
 [[nodiscard]] Result<SearchResult> search(const std::vector<Distribution>& priors,
                                           const std::vector<ObservedValue>& observed, const ForwardModel& model,
                                           const SearchOptions& options, const FitReader& on_fit = {});

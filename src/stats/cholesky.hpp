@@ -5,10 +5,10 @@
 #include <vector>
 
 /// Systems of equations with a symmetric positive definite matrix, by Cholesky's method. Matrices are n x n by rows, of
-/// which the lower triangle counts.
+/// which only the lower triangle is used.
 namespace talus {
 
-/// Replaces the matrix by L with L L^T equal to it; false (and no use) where it is not positive definite.
+/// Replaces the matrix by L with L L^T equal to it; false (contents then undefined) where it is not positive definite.
 inline bool cholesky(std::vector<double>& matrix, std::size_t n) {
     for (std::size_t i = 0; i < n; ++i) {
         for (std::size_t j = 0; j <= i; ++j) {

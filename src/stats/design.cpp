@@ -60,7 +60,7 @@ Points sobol_sequence(std::size_t count, std::size_t factors, std::uint64_t seed
     for (std::size_t i = 0; i < count; ++i) {
         for (std::size_t k = 0; k < factors; ++k) {
             const auto shift = static_cast<std::uint32_t>(draw_bits(seed, 0, k) >> 32);
-            const std::uint32_t x = i == 0 ? 0 : sequence();  // the library leaves the corner out
+            const std::uint32_t x = i == 0 ? 0 : sequence();  // the library omits the corner
             points[i][k] = (static_cast<double>(x ^ shift) + 0.5) / 4294967296.0;
         }
     }

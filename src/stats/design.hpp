@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-/// Where in the unit cube the runs of an ensemble lie. A design depends on its kind, its size and the seed alone, so
+/// Positions of the runs of an ensemble in the unit cube. A design depends only on its kind, its size and the seed, so
 /// that run 17 is the same run on any machine, shard or rank.
 namespace talus {
 
@@ -24,7 +24,7 @@ enum class DesignKind {
 [[nodiscard]] std::optional<DesignKind> design_of(std::string_view name);
 [[nodiscard]] const std::vector<std::string_view>& design_names();
 
-/// The most factors that a Sobol sequence (sobol; half as many for saltelli) has direction numbers for.
+/// Maximum number of factors of a Sobol sequence (sobol; half as many for saltelli), limited by its direction numbers.
 inline constexpr std::size_t sobol_dimensions = 21;
 
 /// Levels of a factor that Morris's trajectories step between; a step is two of the four (Morris 1991).

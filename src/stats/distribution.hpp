@@ -7,7 +7,7 @@
 
 #include "core/result.hpp"
 
-/// How a factor of an ensemble spreads.
+/// Distribution of a factor of an ensemble.
 namespace talus {
 
 enum class DistributionKind { uniform, log_uniform, normal, triangular, list };
@@ -16,7 +16,7 @@ enum class DistributionKind { uniform, log_uniform, normal, triangular, list };
 /// list has entries, which may be texts, equally likely or by weight.
 struct Distribution {
     DistributionKind kind = DistributionKind::uniform;
-    /// Limits of the values. A normal distribution without limits is cut where its key's allowed range ends.
+    /// Limits of the values. A normal distribution without limits is truncated at its key's allowed range.
     double low = -std::numeric_limits<double>::infinity(), high = std::numeric_limits<double>::infinity();
     double middle = 0;                 ///< mean of normal, mode of triangular
     double deviation = 0;              ///< standard deviation of normal
@@ -27,11 +27,11 @@ struct Distribution {
     [[nodiscard]] double quantile(double share) const;
     /// The entry of a list at `share` of its probability.
     [[nodiscard]] const std::string& entry(double share) const;
-    /// "uniform from 0.2 to 0.5", as a person reads it.
+    /// "uniform from 0.2 to 0.5", for display.
     [[nodiscard]] std::string text() const;
-    /// As parse_distribution reads it, exactly.
+    /// In the exact form that parse_distribution reads.
     [[nodiscard]] std::string written() const;
-    /// What is wrong with the numbers: "low must be below high"; empty if nothing is.
+    /// The error in the numbers: "low must be below high"; empty if valid.
     [[nodiscard]] std::string problem() const;
 };
 

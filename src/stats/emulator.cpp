@@ -11,11 +11,11 @@
 namespace talus {
 namespace {
 
-// Variances of the trend's coefficients, of scaled values: a change of four standard deviations across the cube is
-// nothing unusual.
+// Variances of the trend's coefficients, of scaled values: a change of four standard deviations across the cube is not
+// unusual.
 constexpr double level_variance = 1, slope_variance = 4;
 
-/// Prior of a logarithm: middle and standard deviation, and the limits that it is sought in.
+/// Prior of a logarithm: middle and standard deviation, and the limits of the search.
 struct LogPrior {
     double middle, deviation, low, high;
 };

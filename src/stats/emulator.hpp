@@ -7,19 +7,19 @@
 
 namespace talus {
 
-/// What a number that runs predict would be where nothing was run: a Gaussian process over the unit cube of the factors
-/// (Rasmussen & Williams 2006, "Gaussian Processes for Machine Learning", chapters 2, 4 and 5).
+/// Interpolates a predicted number between runs by a Gaussian process over the unit cube of the factors (Rasmussen &
+/// Williams 2006, "Gaussian Processes for Machine Learning", chapters 2, 4 and 5).
 ///
 /// Values are scaled to mean 0 and variance 1. Their covariance is that of a linear trend with broad coefficients, and
-/// a Matern 5/2 function with a length per factor; each run adds independent noise, as particles fall differently.
+/// a Matern 5/2 function with a length per factor; each run adds independent noise, because particle positions differ.
 /// Lengths, strength and noise are the most probable ones given the runs and broad log-normal priors.
 class Emulator {
   public:
-    /// What a number is at a place: its mean, the variance of that, and the variance that a run has around it.
+    /// Estimate at a place: the mean, its variance, and the variance of runs around it.
     struct Estimate {
         double mean = 0, variance = 0, noise = 0;
     };
-    /// What all other runs say of one run.
+    /// Prediction of one run from all others.
     struct LeftOut {
         double computed = 0, mean = 0, deviation = 0;
     };
@@ -28,9 +28,9 @@ class Emulator {
     [[nodiscard]] static Emulator fit(Points points, const std::vector<double>& values);
 
     [[nodiscard]] Estimate at(const std::vector<double>& point) const;
-    /// The mean alone, much cheaper.
+    /// Only the mean, much cheaper.
     [[nodiscard]] double mean_at(const std::vector<double>& point) const;
-    /// The same process with one more run; nothing is fitted again.
+    /// The same process with one more run; without fitting again.
     [[nodiscard]] Emulator with(const std::vector<double>& point, double value) const;
     /// Every run from the others with the same lengths (Dubrule 1983, "Cross validation of kriging in a unique
     /// neighborhood").

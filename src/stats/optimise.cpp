@@ -19,7 +19,7 @@ struct Search {
         auto& search = *static_cast<Search*>(data);
         search.at.assign(x, x + count);
         const double value = search.objective(search.at);
-        if (!std::isfinite(value)) return 1e300;  // NLopt orders values, and NaN has no place in an order
+        if (!std::isfinite(value)) return 1e300;  // NLopt compares values, which fails for NaN
         if (value < search.best.value) search.best = {search.at, value};
         return value;
     }
@@ -37,7 +37,7 @@ Optimum run(nlopt_algorithm algorithm, const Objective& objective, const std::ve
     nlopt_set_xtol_rel(optimiser.get(), 1e-5);
     nlopt_set_ftol_abs(optimiser.get(), 1e-9);
     double value = 0;
-    (void)nlopt_optimize(optimiser.get(), at.data(), &value);  // whatever ended it, the best point stands
+    (void)nlopt_optimize(optimiser.get(), at.data(), &value);  // the best point is valid whatever ended the search
     return search.best;
 }
 

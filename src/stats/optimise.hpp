@@ -4,8 +4,8 @@
 #include <functional>
 #include <vector>
 
-/// Least values of functions of a few variables, without derivatives: NLopt (Johnson, "The NLopt nonlinear-optimization
-/// package") behind two calls. Nothing random, so that the same function has the same answer anywhere.
+/// Minimisation of functions of a few variables, without derivatives: NLopt (Johnson, "The NLopt nonlinear-optimization
+/// package") behind two calls. Deterministic: the same function gives the same result on every machine.
 namespace talus {
 
 using Objective = std::function<double(const std::vector<double>&)>;

@@ -31,7 +31,7 @@ PredictionEmulator PredictionEmulator::fit(const Points& points, const std::vect
 double PredictionEmulator::reached_at(const std::vector<double>& point) const {
     if (!reach_) return value_ ? 1 : 0;
     // Least-squares classification (Rasmussen & Williams 2006, section 6.5), read as a probability. A smooth function
-    // is too sure of itself beside a step: where it says neither 1 nor -1 clearly, nothing is clear.
+    // is overconfident next to a step: values between 1 and -1 are treated as uncertain.
     const Emulator::Estimate label = reach_->at(point);
     const double doubt = label_doubt * label_doubt * std::max(0.0, 1 - label.mean * label.mean);
     const double deviation = std::sqrt(label.variance + label.noise + doubt);

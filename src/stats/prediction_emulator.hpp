@@ -7,9 +7,9 @@
 
 namespace talus {
 
-/// What runs would predict for one observation: whether their debris comes there at all, and what follows if it does.
-/// A front that stops in a bend leaves no value behind it, not a small one, so that one smooth function over both would
-/// invent values in between.
+/// Predictions of runs for one observation: whether debris reaches the place at all, and the value if it does. A front
+/// that stops in a bend gives no value, not a small one, so a single smooth function over both would invent values in
+/// between.
 class PredictionEmulator {
   public:
     struct Estimate {
@@ -25,13 +25,13 @@ class PredictionEmulator {
     /// Mean of the value, if there is one.
     [[nodiscard]] double mean_at(const std::vector<double>& point) const;
     [[nodiscard]] double reached_at(const std::vector<double>& point) const;
-    /// As if a run there had given what is expected of it.
+    /// The emulator after an assumed run at this point with the expected result.
     [[nodiscard]] PredictionEmulator believing(const std::vector<double>& point) const;
 
     [[nodiscard]] double unreached() const { return unreached_; }
     /// Of runs that give a value; none where no run does.
     [[nodiscard]] const std::optional<Emulator>& value() const { return value_; }
-    /// The share of runs of which the others tell rightly whether they give a value.
+    /// The share of runs for which the others predict correctly whether they give a value.
     [[nodiscard]] double reach_told() const;
 
   private:

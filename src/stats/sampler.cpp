@@ -18,7 +18,7 @@ constexpr std::size_t steps_per_learning = 25;  // of each chain
 class Proposal {
   public:
     explicit Proposal(std::size_t dimensions) : dimensions_(dimensions), factor_(dimensions * dimensions, 0) {
-        for (std::size_t k = 0; k < dimensions; ++k) factor_[k * dimensions + k] = 0.1;  // of the cube, to begin with
+        for (std::size_t k = 0; k < dimensions; ++k) factor_[k * dimensions + k] = 0.1;  // of the cube, initially
     }
 
     /// A step from normal numbers.

@@ -13,7 +13,7 @@ namespace talus {
 using LogDensity = std::function<double(const std::vector<double>&)>;
 
 struct ChainOptions {
-    std::size_t warm_up = 2000, draws = 4000;  ///< steps of each chain: thrown away, kept
+    std::size_t warm_up = 2000, draws = 4000;  ///< steps of each chain: discarded, kept
     std::uint64_t seed = 1;
 };
 
@@ -23,12 +23,12 @@ struct Chains {
 };
 
 /// A Markov chain from each row of `starts` (at least two rows, in the cube, of a density above 0): random steps whose
-/// covariance follows the draws so far (Haario, Saksman & Tamminen 2001, "An adaptive Metropolis algorithm") and whose
-/// size the share that is accepted (Andrieu & Thoms 2008, algorithm 4). Both are learned from all chains in the warm-up
-/// and fixed after it. Steps out of the cube are not accepted.
+/// covariance adapts to the draws so far (Haario, Saksman & Tamminen 2001, "An adaptive Metropolis algorithm") and
+/// whose size to the acceptance rate (Andrieu & Thoms 2008, algorithm 4). Both are learned from all chains in the
+/// warm-up and fixed after it. Steps out of the cube are not accepted.
 [[nodiscard]] Chains sample_density(const LogDensity& density, const Points& starts, const ChainOptions& options);
 
-/// Rows of `points`, the likelier the denser, but spread wider than the density itself, to start chains from.
+/// Rows of `points` from which to start chains: drawn by density, but spread wider than the density itself.
 [[nodiscard]] Points spread_starts(const LogDensity& density, const Points& points, std::size_t count,
                                    std::uint64_t seed);
 
@@ -36,8 +36,8 @@ struct Chains {
 /// "Bayesian Data Analysis", section 11.4). NaN where no chain moved.
 [[nodiscard]] double split_r_hat(const std::vector<std::vector<double>>& chains);
 
-/// As many independent draws would know the mean as well (Gelman et al. 2013, section 11.5; correlations are summed in
-/// pairs while those are positive, Geyer 1992).
+/// The number of independent draws that would determine the mean equally well (Gelman et al. 2013, section 11.5;
+/// correlations are summed in pairs while those are positive, Geyer 1992).
 [[nodiscard]] double effective_size(const std::vector<std::vector<double>>& chains);
 
 /// A standard normal number from the seed and two counters (Box & Muller 1958).

@@ -7,7 +7,7 @@
 namespace talus {
 namespace {
 
-constexpr std::size_t fewest = 4;       // blocks or runs, below which nothing is said
+constexpr std::size_t fewest = 4;       // blocks or runs, minimum for an estimate
 constexpr std::size_t resamples = 500;  // for the intervals
 
 double mean_of(const std::vector<double>& values) {

@@ -20,8 +20,8 @@ struct Estimate {
 };
 
 struct FactorEffect {
-    /// variance: share of the variance that goes when the factor alone is fixed (Saltelli et al. 2010, table 2 b), and
-    /// that stays when all others are (Jansen 1999).
+    /// variance: share of the variance that is removed by fixing this factor alone (Saltelli et al. 2010, table 2 b),
+    /// and that remains when all others are fixed (Jansen 1999).
     Estimate first, total;
     /// screening: mean of absolute elementary effects (Campolongo et al. 2007), their mean and standard deviation, as
     /// change of the result over the factor's whole range.
@@ -36,8 +36,7 @@ struct Sensitivity {
     std::vector<FactorEffect> effects;  ///< per factor; empty: too few runs, or the result never changes
 };
 
-/// `results`: one per run of the plan, NaN where a run failed, is missing or gave none. A block with a hole is left
-/// out.
+/// `results`: one per run of the plan, NaN where a run failed, is missing or gave none. An incomplete block is ignored.
 [[nodiscard]] Sensitivity sensitivity_of(DesignKind design, const Points& points, const std::vector<double>& results);
 
 }  // namespace talus

@@ -12,7 +12,7 @@
 #include "core/result.hpp"
 #include "params/spec.hpp"
 
-/// A validation case: a folder of data that says what to compute and what to expect of it.
+/// A validation case: a folder of data that defines a computation and its expected results.
 namespace talus::validate {
 
 inline constexpr double not_computed = std::numeric_limits<double>::quiet_NaN();
@@ -23,27 +23,27 @@ enum class Comparison { near, at_most, at_least };
 /// `[[expect]]` of a case file.
 struct Expectation {
     std::string quantity;
-    std::string where;               ///< the variant it speaks of; empty: every one that no other entry names
-    std::optional<double> expected;  ///< absent: what the kind's law says
+    std::string where;               ///< the variant it refers to; empty: every one that no other entry names
+    std::optional<double> expected;  ///< absent: the value of the kind's law
     /// Largest deviation as a share of the expected value, or in the quantity's unit where the expected value is 0.
     std::optional<double> tolerance;
     Comparison comparison = Comparison::near;
-    bool gate = true;           ///< false: shown beside the others, fails nothing
-    std::string source;         ///< who published the expected value or law
+    bool gate = true;           ///< false: shown with the others, but not judged
+    std::string source;         ///< publication of the expected value or law
     std::string known_failure;  ///< why this fails today; empty: it passes
 
-    // Where on a scene the quantity is taken; which of them are needed is the quantity's affair.
+    // Where on a scene the quantity is taken; the quantity determines which are needed.
     std::optional<double> chainage;      ///< m
     std::optional<double> x, y, radius;  ///< world plan position and distance around it, m
     std::string building;
 };
 
-/// A number that a case computed.
+/// A value computed by a case.
 struct Measurement {
     std::string quantity;       ///< as in [[expect]]
     std::string where;          ///< the variant: "slope 30 degrees, f = 0.4"; empty where there is only one
     double computed = 0;        ///< not_computed: the run did not get there
-    std::optional<double> law;  ///< what the kind's law says
+    std::optional<double> law;  ///< the value of the kind's law
     bool coarse = false;        ///< of a coarser resolution than the finest: shows the trend, is not judged
 };
 
@@ -65,12 +65,12 @@ struct Chart {
 struct Outcome {
     std::vector<Measurement> measurements;
     std::vector<Chart> charts;
-    std::vector<std::string> notes;  ///< what a reader of the numbers must know: a fault, how many particles
+    std::vector<std::string> notes;  ///< remarks on the numbers: a fault, the number of particles
 };
 
 /// Options and callbacks of a running case.
 struct Watch {
-    std::function<void(const std::string&)> on_progress;  ///< called with what is computed now
+    std::function<void(const std::string&)> on_progress;  ///< called with the current computation
     const std::atomic<bool>* stop_requested = nullptr;
     int thread_count = 0;  ///< 0: all cores
 
@@ -80,8 +80,8 @@ struct Watch {
     [[nodiscard]] bool stopped() const { return stop_requested != nullptr && stop_requested->load(); }
 };
 
-/// Computes a case. Errors: an input that cannot be used. A step that cannot be trusted is no error: what it would have
-/// given is `not_computed`, with a note.
+/// Computes a case. Errors: an input that cannot be used. A step that cannot be trusted is not an error: its values are
+/// `not_computed`, with a note.
 using Computation = std::function<Result<Outcome>(const Watch&)>;
 
 struct Case {
@@ -94,18 +94,18 @@ struct Case {
     Computation compute;
 };
 
-/// A quantity that a kind of case measures.
+/// A quantity measured by a kind of case.
 struct Quantity {
     enum class Site { none, chainage, building, place };
     std::string_view name;
     std::string_view unit;
-    bool has_law = false;  ///< the kind computes what is expected
+    bool has_law = false;  ///< the kind computes the expected value
     Site site = Site::none;
     std::string_view help;
 };
 
-/// Reads a case folder: its case.toml, checked down to every key and value.
-/// Errors are one line with file, line, key, value and what is allowed.
+/// Reads a case folder: its case.toml, checked down to every key and value. Errors are one line with file, line, key,
+/// value and allowed values.
 [[nodiscard]] Result<Case> load_case(const std::filesystem::path& folder);
 
 }  // namespace talus::validate

@@ -13,7 +13,7 @@
 namespace talus::validate {
 namespace {
 
-/// Reads the keys of one table. The first problem stays; getters go on with defaults.
+/// Reads the keys of one table. The first problem is kept; getters continue with defaults.
 class TableReader {
   public:
     TableReader(std::string file, std::string header, const toml::table& table)
@@ -75,7 +75,7 @@ class TableReader {
         if (problem_.empty()) problem_ = place(table_) + ": " + text;
     }
 
-    /// The first problem; else the first key that nobody asked for.
+    /// The first problem, otherwise the first unused key.
     [[nodiscard]] Status check() const {
         if (!problem_.empty()) return Error{problem_};
         for (const auto& [key, node] : table_) {
@@ -148,7 +148,7 @@ class CaseReader {
         TALUS_ASSIGN(const toml::table root, read_toml_file(file_, "case"));
         TALUS_TRY(check_sections(root));
         TALUS_TRY(read_case(root));
-        spec_.solver.rest_duration = 0;  // whether heaps stand is what many cases are about
+        spec_.solver.rest_duration = 0;  // many cases test whether heaps stand
         TALUS_TRY(read_scene_section(root, "material"));
         TALUS_TRY(read_scene_section(root, "solver"));
         TALUS_TRY(read_expectations(root));
@@ -202,7 +202,7 @@ class CaseReader {
         return {};
     }
 
-    /// `[material]` and `[solver]` mean what they mean in a scene file.
+    /// `[material]` and `[solver]` have the same meaning as in a scene file.
     Status read_scene_section(const toml::table& root, const std::string& name) {
         const toml::table* table = root.get_as<toml::table>(name);
         if (table == nullptr) return {};

@@ -11,7 +11,7 @@
 
 namespace talus::validate {
 
-/// What a case file says of its computation, beside the parameters of its kind.
+/// Settings of a case file in addition to the parameters of its kind.
 struct Setting {
     MaterialSpec material;
     SolverSpec solver;
@@ -19,12 +19,12 @@ struct Setting {
     std::vector<Expectation> expectations;
 };
 
-/// A kind of case: a set-up, what is measured in it, and the law for comparison.
+/// A kind of case: a set-up, its measured quantities, and the law for comparison.
 struct Kind {
     std::string_view name;
     std::string_view summary;
     std::span<const Quantity> quantities;
-    /// Reads the parameters (problems stay in them) and returns what computes the case.
+    /// Reads the parameters (which keep any problem) and returns the computation of the case.
     Computation (*prepare)(Parameters& parameters, const Setting& setting);
 
     [[nodiscard]] const Quantity* find(std::string_view quantity) const;

@@ -70,7 +70,7 @@ SpreadingCap::SpreadingCap(double slope, double friction_angle, double length, d
     const auto moved = [](const Derivatives& s, const Derivatives& r, double by) {
         return Derivatives{s.g + by * r.g, s.f + by * r.f, s.g_rate + by * r.g_rate, s.f_rate + by * r.f_rate};
     };
-    // The equations are singular at t = 0; up to 0.1 the source's series holds.
+    // The equations are singular at t = 0; up to 0.1 the source's series is used.
     constexpr double series_end = 0.1;
     const double e = acceleration_ / a;
     Derivatives state{1, 1, 0, 0};

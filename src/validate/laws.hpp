@@ -10,10 +10,10 @@ namespace talus::validate {
 /// Axisymmetric (Lube, Huppert, Sparks, Hallworth 2004): 1.24 a for a < 1.7, 1.6 sqrt(a) above.
 [[nodiscard]] double column_run_out_axisymmetric(double aspect);
 /// Planar (Lube, Huppert, Sparks, Freundt 2005): 1.2 a up to 2.3, 1.9 a^(2/3) above; the source leaves open where
-/// between 1.8 and 2.8 one turns into the other.
+/// between 1.8 and 2.8 the transition is.
 [[nodiscard]] double column_run_out_planar(double aspect);
 
-/// Final height of such a column over its initial extent, as two laboratories found it; equal up to 1.7.
+/// Final height of such a column over its initial extent, as measured by two laboratories; equal up to 1.7.
 struct ColumnHeights {
     double lajeunesse;  ///< min(a, 0.74) (Lajeunesse, Mangeney-Castelnau, Vilotte 2004)
     double lube;        ///< 0.88 a^(1/6) above 1.7 (Lube 2004)
@@ -31,7 +31,7 @@ class DamBreak {
 
     [[nodiscard]] double thickness(double x, double time) const;
     [[nodiscard]] double velocity(double x, double time) const;
-    /// Where the undisturbed debris ends and where the debris ends.
+    /// End of the undisturbed debris, and end of the debris.
     [[nodiscard]] double back(double time) const;
     [[nodiscard]] double front(double time) const;
     /// Speed of a small wave in the undisturbed debris.
@@ -50,7 +50,7 @@ class SpreadingCap {
 
     /// Thickness at a place along and across the slope, from the cap's centre at t = 0.
     [[nodiscard]] double thickness(double along, double across, double time) const;
-    /// How far the centre has slid.
+    /// Distance that the centre has slid.
     [[nodiscard]] double travelled(double time) const;
     /// Half lengths along and across.
     [[nodiscard]] double half_length(double time) const;
@@ -66,11 +66,11 @@ class SpreadingCap {
     std::vector<Shape> shapes_;
 };
 
-/// Thickness over that of the flow when a stream of this Froude number is thrown back: the root above 1 of the momentum
+/// Thickness over that of the flow when a stream of this Froude number is reflected: the root above 1 of the momentum
 /// balance of the jump, (x - 1)(x^2 - 1) = 2 Fr^2 x.
 [[nodiscard]] double momentum_jump(double froude);
 
-/// A sheet of even thickness that flows steadily down a plane: velocity by the height above the ground.
+/// A sheet of uniform thickness in steady flow down a plane: velocity by the height above the ground.
 struct SheetFlow {
     double slope, thickness, gravity;
 
@@ -82,7 +82,7 @@ struct SheetFlow {
     [[nodiscard]] double bingham(double height, double yield, double viscosity) const;
     /// Of grains with the mu(I) law on a rough bed (Bagnold's profile in the form of GDR MiDi 2004): constant inertial
     /// number I with mu(I) = tan(slope). `grain`: m; `solid_share`: volume of grains in that of the debris. NaN where
-    /// no I does: too gentle (it stands) or too steep (it never gets steady).
+    /// there is no such I: too gentle (no flow) or too steep (never steady).
     [[nodiscard]] double bagnold(double height, double slow_friction, double fast_friction, double half_number,
                                  double grain, double solid_share) const;
 };

@@ -5,18 +5,18 @@
 #include "sim/model.hpp"
 #include "sim/state.hpp"
 
-/// What is read off the particles of a small world.
+/// Measurements on the particles of a small world.
 namespace talus::validate {
 
 /// The value that `share` (0 to 1) of the values do not exceed, interpolated between the nearest; NaN of none.
 [[nodiscard]] double percentile(std::vector<double> values, double share);
 
-/// Elevation of the top of the debris, local m: the mean of its five highest particles, plus half a spacing. One
-/// particle alone can lie on top of a heap.
+/// Elevation of the top of the debris, local m: the mean of its five highest particles, plus half a spacing. A single
+/// particle can lie on top of a heap.
 [[nodiscard]] double top_of(const Model& model, const State& state);
 
 /// Thickness, m, in `cells` cells of size `cell` from `first` on: volume over area. `place(i)` is where particle i lies
-/// along the row of cells, `width` m wide; what lies outside counts nothing.
+/// along the row of cells, `width` m wide; particles outside do not count.
 template <class Place>
 [[nodiscard]] std::vector<double> thickness_profile(const Model& model, const State& state, double first, double cell,
                                                     int cells, double width, const Place& place) {
@@ -29,13 +29,13 @@ template <class Place>
     return thickness;
 }
 
-/// Where a deposit ends: the last place, m, at which its profile in cells of size `cell` from 0 on falls below
-/// `least`, interpolated between the middles of cells; 0 when it never does.
+/// The end of a deposit: the last place, m, at which its profile in cells of size `cell` from 0 on falls below `least`,
+/// interpolated between the centres of cells; 0 if it never does.
 ///
 /// A percentile of the particles' distances lies further inside: the 99th of a perfect cone at 94 % of its radius.
 [[nodiscard]] double edge_of(const std::vector<double>& profile, double cell, double least);
 
-/// How far a profile is from the exact one on cells of equal size.
+/// Error norms of a profile against the exact one on cells of equal size.
 struct ErrorNorms {
     double relative_l2 = 0;   ///< sqrt(sum of squared differences) / sqrt(sum of squared exact values)
     double relative_max = 0;  ///< largest difference over the largest exact value

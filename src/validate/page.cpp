@@ -33,7 +33,7 @@ std::string summary_text(const std::vector<CaseResult>& results) {
         tally.failed + tally.known_failures, tally.known_failures, tally.shown, tally.skipped, wall_time);
 }
 
-/// What is said of a case beside its numbers: why it fails, why it was not run, what to know.
+/// Remarks on a case in addition to its numbers: why it fails, why it was not run, notes.
 std::vector<std::string> remarks(const CaseResult& result) {
     std::vector<std::string> said;
     const auto say = [&](const std::string& text) {

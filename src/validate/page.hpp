@@ -14,9 +14,9 @@ namespace talus::validate {
 /// A case's chart as reports draw it.
 [[nodiscard]] report::Chart drawing_of(const Chart& chart);
 
-/// All that the page shows, as data (docs/results.md).
+/// The content of the page as data (docs/results.md).
 [[nodiscard]] report::Json page_data(const std::vector<CaseResult>& results);
-/// A page that holds all it shows, from page_data().
+/// A self-contained page, from page_data().
 [[nodiscard]] std::string page_html(const report::Json& data);
 
 /// Writes `file` as Markdown and the plots as SVG files into a folder of the same name beside it, without its ending.

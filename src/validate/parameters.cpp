@@ -9,7 +9,7 @@
 namespace talus::validate {
 namespace {
 
-/// "a number from 0 to 89", in the words of scene files.
+/// "a number from 0 to 89", in the wording of scene files.
 std::string allowed_number(const Range& range, ParameterKind kind = ParameterKind::number) {
     Parameter parameter;
     parameter.kind = kind;

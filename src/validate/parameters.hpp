@@ -15,13 +15,14 @@ namespace talus::validate {
 
 using NumberPair = std::array<double, 2>;
 
-/// The `[parameters]` of a case file as its kind reads them. The keys that a kind asks for are the keys that there are:
-/// `check` refuses all others. Getters return the default after a problem, so that a kind reads straight through.
+/// The `[parameters]` of a case file as its kind reads them. The keys that a kind reads are the valid ones: `check`
+/// rejects all others. Getters return the default after a problem, so that a kind can read all its parameters without
+/// checks.
 class Parameters {
   public:
     using Value = std::variant<std::monostate, double, std::string, std::vector<double>, std::vector<NumberPair>>;
     struct Entry {
-        Value value;        ///< monostate: of a kind that no parameter has
+        Value value;        ///< monostate: of a type that no parameter has
         std::string text;   ///< as written
         std::string place;  ///< "case.toml:12"
     };
@@ -40,7 +41,7 @@ class Parameters {
     /// A file, relative to the case's folder; required.
     std::filesystem::path path(const std::string& key);
 
-    /// The first problem: a value that is refused, a key that is missing, or one that nobody asked for.
+    /// The first problem: an invalid value, a missing key, or an unused one.
     [[nodiscard]] Status check() const;
 
   private:

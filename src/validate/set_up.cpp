@@ -9,7 +9,7 @@
 namespace talus::validate {
 
 Terrain make_terrain(double length, double width, double cell, const std::function<double(double, double)>& elevation) {
-    // One cell more on each side than asked for: ground is known between cell centres only.
+    // One more cell on each side: ground is known between cell centres only.
     const int columns = static_cast<int>(std::ceil(length / cell)) + 2;
     const int rows = static_cast<int>(std::ceil(width / cell)) + 2;
     Grid<float> grid(GridGeometry{-columns * cell / 2, -rows * cell / 2, cell, columns, rows});
@@ -66,7 +66,8 @@ std::vector<LocalPoint> fill_lattice(const Incline& incline, double spacing, dou
     for (int j = 0; j < columns_across; ++j) {
         for (int i = 0; i < columns_along; ++i) {
             const double s = along + (i + 0.5) * spacing, y = across + (j + 0.5) * spacing;
-            // Rounding by an additive low-discrepancy sequence (Roberts 2018) spreads the odd particles evenly.
+            // Rounding by an additive low-discrepancy sequence (Roberts 2018) distributes the remaining particles
+            // evenly.
             double whole = 0;
             const double threshold = std::modf(i * 0.7548776662466927 + j * 0.5698402909980532, &whole);
             const double share = std::max(0.0, thickness(s, y)) / spacing;
@@ -98,7 +99,7 @@ State state_under_weight(const Model& model, const Ground& ground, const std::ve
         const double above = thickness(incline.along(points[i]), points[i].y) - incline.normal(points[i]);
         state.multiplier[i] = static_cast<float>(-gravity * std::max(0.0, above));
     }
-    // What stands free at its sides has less pressure there.
+    // Debris with free sides has less pressure there.
     find_pressures(model, ground, state);
     return state;
 }

@@ -46,27 +46,27 @@ class Incline {
 [[nodiscard]] Building make_wall(const Terrain& terrain, double x_min, double y_min, double x_max, double y_max,
                                  double height);
 
-/// Two walls along x over the whole ground, `width` apart: what lies between is a slice.
+/// Two walls along x over the whole ground, `width` apart: the space between is a slice.
 [[nodiscard]] std::vector<Building> make_slice(const Terrain& terrain, double width, double height);
 
-/// Particles on the lattice of an incline, its first layer half a spacing above the ground: in every column of
-/// [0, n) spacings along and across from (`along`, `across`) as many as the thickness there makes. What is left over
-/// goes to columns evenly, so that the volume is right.
+/// Particles on the lattice of an incline, its first layer half a spacing above the ground: in every column of [0, n)
+/// spacings along and across from (`along`, `across`) as many as the thickness there requires. Remaining particles are
+/// distributed evenly over the columns, so that the volume is correct.
 [[nodiscard]] std::vector<LocalPoint> fill_lattice(const Incline& incline, double spacing, double along,
                                                    int columns_along, double across, int columns_across,
                                                    const std::function<double(double, double)>& thickness);
 
-/// A state at rest of particles at these places, without any release, that presses on nothing yet.
+/// A state at rest of particles at these places, without any release, without pressure.
 [[nodiscard]] State state_at_rest(const std::vector<LocalPoint>& points);
 
-/// The same under the weight of what lies above, as debris is that has long stood behind a gate: `thickness` as in
-/// fill_lattice. Without it a tall column falls into itself before its pressure has built up.
+/// The same under the weight of the debris above, as after standing behind a gate for long: `thickness` as in
+/// fill_lattice. Without it a tall column collapses before its pressure has built up.
 [[nodiscard]] State state_under_weight(const Model& model, const Ground& ground, const std::vector<LocalPoint>& points,
                                        const Incline& incline, const std::function<double(double, double)>& thickness);
 
 enum class OnFault {
     stop,
-    note,  ///< go on: for what is only shown, where a fault is a part of the answer
+    note,  ///< continue: for results that are only shown, where a fault is part of the result
 };
 
 /// A run under test: until a time, or the first step that cannot be trusted.
@@ -84,7 +84,7 @@ class Trial {
     [[nodiscard]] const Ground& ground() const { return run_.ground(); }
     [[nodiscard]] const State& state() const { return run_.state(); }
     [[nodiscard]] const Observer& observer() const { return run_.observer(); }
-    /// The first fault, or that the user wants to stop; empty: none.
+    /// The first fault, or the user's request to stop; empty: none.
     [[nodiscard]] const std::string& problem() const { return problem_; }
 
   private:

@@ -17,7 +17,7 @@ const Kind& kind_of(const Case& validation_case) {
     for (const Kind& kind : kinds()) {
         if (kind.name == validation_case.kind) return kind;
     }
-    return kinds().front();  // load_case knows no other kind
+    return kinds().front();  // load_case accepts no other kind
 }
 
 std::string with_place(const std::string& quantity, const std::string& where) {
@@ -43,11 +43,11 @@ Row judge_one(const Case& validation_case, const Expectation& e, const Measureme
     if (measured != nullptr) row.computed = measured->computed;
     const double scale = row.expected == 0 ? 1 : std::abs(row.expected);
     row.relative_error = (row.computed - row.expected) / scale;
-    // Not std::max: what was not computed must stay so.
+    // Not std::max: a value that was not computed must remain so.
     if (e.comparison == Comparison::at_most && row.relative_error < 0) row.relative_error = 0;
     if (e.comparison == Comparison::at_least && row.relative_error > 0) row.relative_error = 0;
     const bool pass = row.tolerance && std::isfinite(row.computed) && std::abs(row.relative_error) <= *row.tolerance;
-    // Coarser resolutions show the trend, unless the case file speaks of one by name.
+    // Coarser resolutions show the trend, unless the case file names one.
     const bool trend = measured != nullptr && measured->coarse && e.where.empty();
     row.verdict = !e.gate || trend          ? Verdict::shown
                   : pass                    ? Verdict::pass

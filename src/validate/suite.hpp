@@ -9,15 +9,15 @@
 #include "core/result.hpp"
 #include "validate/case.hpp"
 
-/// Runs cases and judges what they computed.
+/// Runs cases and judges their results.
 namespace talus::validate {
 
 enum class Verdict {
     pass,
     fail,
-    known_failure,  ///< a failure that the case file announces: still a failure
+    known_failure,  ///< a failure announced in the case file: still a failure
     shown,          ///< compared, but fails nothing
-    skipped,        ///< its data are not here
+    skipped,        ///< its data are missing
 };
 
 /// A line of the validation table.
@@ -27,7 +27,7 @@ struct Row {
     std::string unit;      ///< "1" for a pure number
     double expected = not_computed, computed = not_computed;
     /// (computed - expected) / |expected|, or the difference where the expected value is 0. For at_most and at_least
-    /// only what is beyond the bound, so that a row passes when this is within the tolerance, whatever the comparison.
+    /// only the part beyond the bound, so that a row passes when this is within the tolerance, whatever the comparison.
     double relative_error = not_computed;
     std::optional<double> tolerance;
     Comparison comparison = Comparison::near;
@@ -45,14 +45,14 @@ struct CaseResult {
     double wall_time = 0;  ///< s
 };
 
-/// "at chainage 121 m", what the entry says where its quantity is taken; `where` where it names a variant.
+/// "at chainage 121 m", the entry's place of the quantity; `where` where it names a variant.
 [[nodiscard]] std::string place_text(const Expectation& expectation);
 
-/// Holds what was computed against what is expected: a row for every measurement that an entry speaks of, and a failing
-/// one for every entry that nothing was computed for.
+/// Compares computed with expected values: a row for every measurement with an entry, and a failing one for every entry
+/// without a computed value.
 [[nodiscard]] std::vector<Row> judge(const Case& validation_case, const std::vector<Measurement>& measurements);
 
-/// Runs a case on the threads that `watch` allows. Never fails: what cannot be computed is a failing row.
+/// Runs a case on the threads that `watch` allows. Never fails: a value that cannot be computed is a failing row.
 [[nodiscard]] CaseResult run_case(const Case& validation_case, const Watch& watch);
 
 /// Counts over all rows.
@@ -72,17 +72,17 @@ struct Tally {
 /// "pass", "FAIL", "FAIL (known)", "shown", "skipped".
 [[nodiscard]] std::string verdict_text(Verdict verdict);
 
-/// What a table's cells say.
+/// The texts of a table's cells.
 [[nodiscard]] std::string expected_text(const Row& row);
 [[nodiscard]] std::string computed_text(const Row& row);
 [[nodiscard]] std::string deviation_text(const Row& row);
 [[nodiscard]] std::string tolerance_text(const Row& row);
 
-/// Names of the cases that travel inside the program.
+/// Names of the built-in cases.
 [[nodiscard]] std::vector<std::string> builtin_case_names();
 
-/// Writes the cases that travel inside the program, with the scenes that they run, into `folder`, and returns where the
-/// case folders lie. Errors: a folder or file that cannot be made.
+/// Writes the built-in cases, with the scenes that they run, into `folder`, and returns the folder of the case folders.
+/// Errors: a folder or file that cannot be created.
 [[nodiscard]] Result<std::filesystem::path> unpack_builtin_cases(const std::filesystem::path& folder);
 
 }  // namespace talus::validate

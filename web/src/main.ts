@@ -16,7 +16,7 @@ async function begin(page: HTMLElement): Promise<void> {
   }
   const api = new Api(token);
   try {
-    // The scene is on its way while the browser reads the larger part of the script.
+    // The scene is fetched while the browser reads the larger part of the script.
     const [scene, terrain, { openPage }] = await Promise.all([api.scene(), api.terrain(meshCells), import("./page")]);
     document.title = `${scene.title} · talus`;
     page.classList.remove("starting");
@@ -38,7 +38,7 @@ function say(page: HTMLElement, title: string, sentence: string, retry = false):
 
 const page = document.getElementById("page");
 if (page) void begin(page);
-// A link that is opened in a tab where the page already is changes just the fragment.
+// A link opened in a tab that already shows the page only changes the fragment.
 window.addEventListener("hashchange", () => {
   if (location.hash.includes("token=")) location.reload();
 });

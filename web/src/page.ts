@@ -1,4 +1,4 @@
-// Puts the parts of the page together.
+// Assembles the parts of the page.
 import "uplot/dist/uPlot.min.css";
 import { Probes } from "./charts/probes";
 import { sectionPanel } from "./charts/section";
@@ -76,7 +76,7 @@ function buildPage(page: HTMLElement, twin: Twin): void {
   keys(twin, stage, drawing, bar, playback);
 
   const drawer = button("Readings", { icon: "panel", bare: true, class: "bare drawer-switch", title: "Show or hide the readings", onclick: () => {
-    // On a narrow page the readings lie over the view when asked for; on a wide one they make room when sent away.
+    // On a narrow page the readings overlay the view on demand; on a wide one hiding them enlarges the view.
     const open = page.classList.toggle(narrow.matches ? "readings-open" : "readings-closed") === narrow.matches;
     drawer.setAttribute("aria-expanded", String(open));
   } });

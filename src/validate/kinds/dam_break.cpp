@@ -34,7 +34,7 @@ struct Measured {
 
 Measured measure(const DamSpec& spec, double spacing, const Setting& setting, const Watch& watch) {
     const DamBreak law(spec.slope, spec.friction_angle, spec.depth, Model{}.gravity);
-    // Long enough that nothing of its other end is felt where the thickness is compared.
+    // Long enough that its other end does not affect the compared thickness.
     const double margin = 3 * spec.depth;
     const double reservoir = 2 * law.wave_speed() * spec.time + 2 * margin;
     const double width = spec.width * spacing;

@@ -68,7 +68,7 @@ class Bed {
     }
 
   private:
-    static constexpr double step = 0.02, start = 12;  // m; the bed goes on that far behind the gate
+    static constexpr double step = 0.02, start = 12;  // m; the bed extends this far behind the gate
     static constexpr std::size_t count = 6300;        // to s = 114 m
 
     [[nodiscard]] double place(std::size_t k) const { return first_ + step * static_cast<double>(k); }
@@ -85,7 +85,7 @@ struct Measured {
     std::vector<std::vector<double>> time, depth;  // by station
 };
 
-/// Debris with a level surface behind a gate at right angles to the bed, which is gone at once.
+/// Debris with a level surface behind a gate at right angles to the bed, which is removed instantly.
 std::vector<LocalPoint> fill_behind_gate(const FlumeSpec& spec, const Bed& bed, const Terrain& terrain, double spacing,
                                          std::vector<double>& above) {
     const double deepest = std::sqrt(2 * spec.volume / spec.width * std::tan(spec.slope));
@@ -127,7 +127,7 @@ Measured measure(const FlumeSpec& spec, Obstacle obstacle, double spacing, const
         start.multiplier[i] = static_cast<float>(-model.gravity * std::cos(spec.slope) * above[i]);
     }
     find_pressures(model, ground, start);
-    // The lattice may be a little wider or narrower than its particles: what it holds is what was asked for.
+    // The lattice may be a little wider or narrower than its particles: its mass is scaled to the required volume.
     const double mass_per_particle = spec.volume / static_cast<double>(points.size());
 
     Measured measured;
@@ -185,7 +185,7 @@ Result<Outcome> compute(const FlumeSpec& spec, const Setting& setting, const Wat
         const bool coarse = spacing > finest;
         const std::string end = fmt::format(", spacing {:g} m", spacing);
         for (const Obstacle obstacle : {Obstacle::none, Obstacle::wall, Obstacle::ramp}) {
-            // The coarse channel shows what the spacing does; its obstacles would show little more for twice the time.
+            // The coarse channel shows the effect of the spacing; its obstacles would add little for twice the time.
             if (coarse && obstacle != Obstacle::none) continue;
             const std::string kind = obstacle == Obstacle::none   ? "open channel"
                                      : obstacle == Obstacle::wall ? "wall"

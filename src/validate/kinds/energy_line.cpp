@@ -67,7 +67,7 @@ Result<World> make_world(const EnergySpec& spec) {
     return world;
 }
 
-/// Sums over the way of every particle.
+/// Sums over the path of every particle.
 class Ways {
   public:
     explicit Ways(const Trial& trial) : trial_(trial), ways_(trial.state().count) { look(nullptr); }
@@ -77,7 +77,8 @@ class Ways {
         look(&time_step);
     }
 
-    /// Averages over the mass, m: elevation, velocity head, horizontal way, way weighed with the normal force.
+    /// Averages over the mass, m: elevation, velocity head, horizontal distance, distance weighted with the normal
+    /// force.
     struct Means {
         double elevation = 0, head = 0, way = 0, loaded_way = 0;
     };
@@ -110,7 +111,8 @@ class Ways {
             if (time_step != nullptr) {
                 const LocalPoint moved = p - way.position;
                 way.way += std::hypot(moved.x, moved.y);
-                // Normal force over weight: the slope's share, and what turning with the ground takes.
+                // Normal force over weight: the component of gravity, and the centripetal part from the curvature of
+                // the ground.
                 const double force = normal.z - dot(v, normal - way.normal) / (gravity * *time_step);
                 way.loaded_way += std::max(0.0, force) * length(moved);
             }
@@ -140,7 +142,7 @@ Result<Outcome> compute(const EnergySpec& spec, const Setting& setting, const Wa
     Series elevation{"z", Series::Style::line, {}, {}}, start{"at the start", Series::Style::dashed, {}, {}};
     const double unit_time = spec.time / 200;
     const auto look = [&] {
-        if (state.outflow > 0) return;  // averages of what is left would mean nothing
+        if (state.outflow > 0) return;  // averages over the remaining debris would be meaningless
         ways.after_step();
         const Ways::Means now = ways.means();
         const double plain = now.elevation + now.head + friction * now.way - first.elevation;

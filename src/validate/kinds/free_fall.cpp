@@ -26,7 +26,7 @@ struct FallSpec {
     int length = 0, layers = 0, width = 0;  // spacings
 };
 
-/// What is followed of a particle from when it is clear of the edge.
+/// Data of a particle from the moment at which it is clear of the edge.
 struct Flight {
     bool in_the_air = false, landed = false;
     double time = 0;

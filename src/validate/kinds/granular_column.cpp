@@ -34,7 +34,7 @@ struct ColumnSpec {
     double extent = 0;                         // m, radius or half-width
     int width = 0;                             // spacings, of a planar column's slice
     double duration = 0;                       // sqrt(initial height / g)
-    std::vector<NumberPair> reference;         // aspect, run-out of somebody else's
+    std::vector<NumberPair> reference;         // aspect, run-out of a published computation
 };
 
 struct Measured {

@@ -27,7 +27,7 @@ struct GrowthSpec {
     double end = 0;                                          // s
 };
 
-/// With M' = E P and P' = M a, whatever the debris' shape: M = M0 cosh(k t), P = M' / E, k = sqrt(E a).
+/// With M' = E P and P' = M a, for any shape of the debris: M = M0 cosh(k t), P = M' / E, k = sqrt(E a).
 struct GrowthLaw {
     double acceleration, growth_rate;
     [[nodiscard]] double rate() const { return std::sqrt(acceleration * growth_rate); }

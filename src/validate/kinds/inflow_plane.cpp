@@ -31,7 +31,7 @@ Result<Outcome> compute(const PlaneSpec& spec, const Setting& setting, const Wat
     const Incline incline(spec.slope, 2 * reach + 10, width + 4);
     MaterialSpec material = setting.material;
     material.building_friction_coefficient = 0;
-    material.friction_coefficient = std::tan(spec.slope);  // what drives the stream is what holds it back
+    material.friction_coefficient = std::tan(spec.slope);  // driving force and resistance are equal
     Model model = make_model(material, setting.solver, spec.spacing);
     Ground ground(incline.terrain(), make_slice(incline.terrain(), width, 20 * spec.thickness), model.support_radius);
     Inflow inflow;
@@ -54,11 +54,11 @@ Result<Outcome> compute(const PlaneSpec& spec, const Setting& setting, const Wat
             if (beyond < 4 * spec.spacing) fastest = std::max<double>(fastest, length(state.velocity.at(i)));
         }
     }
-    trial.inject_inflow();  // what had not filled a row yet
+    trial.inject_inflow();  // the remainder that had not filled a row yet
     if (!trial.problem().empty()) outcome.notes.push_back(trial.problem());
     const double volume = (state.count + state.outflow) * trial.model().particle_volume();
     outcome.measurements.push_back({"particles", "", volume, inflow.volume_until(state.time)});
-    // What the front does is heard of no farther upstream than this.
+    // The front has no influence farther upstream than this.
     const double wave = std::sqrt(trial.model().gravity * incline.cosine() * spec.thickness);
     const double first = 10 * spec.spacing, last = 0.9 * (spec.velocity - wave) * state.time;
     double speeds = 0, count = 0;

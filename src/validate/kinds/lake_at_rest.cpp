@@ -22,7 +22,7 @@ constexpr Quantity quantities[] = {
 };
 
 struct LakeSpec {
-    double length = 0, depth = 0, relief = 0;  // m; relief: how far the ground rises at most
+    double length = 0, depth = 0, relief = 0;  // m; relief: maximum rise of the ground
     double spacing = 0, time = 0;              // m, s
     int width = 0, cell = 0;                   // spacings
 };

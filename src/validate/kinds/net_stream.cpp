@@ -37,7 +37,7 @@ double momentum_along(const Model& model, const State& state) {
     return sum * model.particle_mass();
 }
 
-/// A stream on level ground, between frictionless walls, whose head stands at a net across it when it is let go.
+/// A stream on level ground, between frictionless walls, whose head is at a net across it when it is released.
 Measured measure(const NetSpec& spec, double passing, double spacing, const Setting& setting, const Watch& watch) {
     const auto across = static_cast<int>(std::lround(spec.width * spec.depth / spacing));
     const auto layers = static_cast<int>(std::lround(spec.depth / spacing));

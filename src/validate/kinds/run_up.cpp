@@ -30,7 +30,7 @@ struct Measured {
     std::string problem;
 };
 
-/// A stream of some length meets a wall, or a ramp, at x = 0, where it begins.
+/// A stream of finite length hits a wall, or a ramp, at x = 0, where its head starts.
 Measured measure(const RunUpSpec& spec, bool ramp, double froude, const Setting& setting, const Watch& watch) {
     const double width = spec.width * spec.spacing, gravity = Model{}.gravity;
     const double wave = std::sqrt(gravity * spec.depth), speed = froude * wave;
@@ -61,7 +61,7 @@ Measured measure(const RunUpSpec& spec, bool ramp, double froude, const Setting&
     }
     State start = state_at_rest(points);
     for (std::uint32_t i = 0; i < start.count; ++i) start.velocity.x[i] = static_cast<float>(speed);
-    // Jets at the obstacle are faster than a fall explains. The run-up is what is asked for, so it goes on.
+    // Jets at the obstacle are faster than a fall explains. The run-up is the required result, so the run continues.
     Trial trial({std::move(model), std::move(ground), std::move(start)}, watch, OnFault::note);
     const State& state = trial.state();
     const double cell = spec.depth / 2;
@@ -76,7 +76,7 @@ Measured measure(const RunUpSpec& spec, bool ramp, double froude, const Setting&
             highest = std::max(highest, ramp ? slope * (k + 0.5) * cell : here);
         }
     };
-    // As long as the stream's other end has not been heard of at the obstacle.
+    // Until the stream's other end affects the obstacle.
     const bool trusted = trial.advance_to(stream / (speed + wave), look);
     Measured measured;
     if (trusted) measured.run_up = highest / spec.depth;

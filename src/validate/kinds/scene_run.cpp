@@ -33,7 +33,7 @@ constexpr Quantity quantities[] = {
     {"max_compression", "1", false, Quantity::Site::none, "worst compression of any particle"},
 };
 
-/// What debris did on the map's cells within the radius of a place.
+/// Debris on the map's cells within the radius of a place.
 struct Surroundings {
     double peak_depth = 0, height_reached = 0;  // m
 };

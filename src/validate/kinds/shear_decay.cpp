@@ -14,8 +14,8 @@ constexpr Quantity quantities[] = {
     {"kinematic_viscosity", "m2/s", true, Quantity::Site::none, "from the decay of a shear mode, without gravity"},
 };
 
-/// Beside the block's sides particles have fewer neighbours. What that does spreads inwards like shear itself: by a
-/// fraction of the height within this part of the mode's life.
+/// Near the block's sides particles have fewer neighbours. This effect spreads inwards like shear itself: by a fraction
+/// of the height within this share of the mode's lifetime.
 constexpr double share_of_life = 0.2;
 
 struct ShearSpec {
@@ -31,7 +31,7 @@ struct Measured {
 };
 
 /// A free block whose layers slide over each other as a cosine of the height, with no shear at its top and bottom: it
-/// decays as exp(-nu k^2 t). Slow enough that nothing else happens.
+/// decays as exp(-nu k^2 t). Slow enough that other effects are negligible.
 Measured measure(const ShearSpec& spec, double viscosity, double time_step, double spacing, const Setting& setting,
                  const Watch& watch) {
     constexpr double fastest = 1e-3;  // m/s

@@ -49,14 +49,14 @@ double law_velocity(const SheetSpec& spec, const SheetFlow& sheet, const Model& 
                          material.grain_diameter, material.rest_density / material.grain_density);
 }
 
-/// Velocity and number of what is in every layer, added up over the window of measurement.
+/// Velocity and number of the particles of every layer, summed over the window of measurement.
 struct Layers {
     std::vector<double> velocity, count, height;
 
     explicit Layers(int layers)
         : velocity(static_cast<std::size_t>(layers)), count(velocity.size()), height(velocity.size()) {}
 
-    /// Of the middle quarter of the sheet, wherever that is now: its ends spread.
+    /// For the middle quarter of the sheet at its current position: its ends spread.
     void add(const State& state, const Incline& incline, const LocalPoint& down, double length, double spacing) {
         double middle = 0;
         for (std::uint32_t i = 0; i < state.count; ++i) middle += incline.along(state.position.at(i));

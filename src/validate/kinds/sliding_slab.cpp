@@ -20,15 +20,15 @@ constexpr Quantity quantities[] = {
 
 struct SlabSpec {
     std::vector<double> slopes, frictions;                       // rad, 1: every pair is computed
-    double varied_slope = 0, varied_friction = 0;                // what the lists below are computed at
+    double varied_slope = 0, varied_friction = 0;                // at which the lists below are computed
     std::vector<double> time_steps, iteration_counts, spacings;  // one is varied at a time
     double spacing = 0, length = 0;                              // m
     int layers = 0, width = 0;                                   // spacings
-    double start = 0, end = 0;                                   // s, the window of measurement of what slides
-    double rest_start = 0, rest_end = 0;                         // s, of what must stay
+    double start = 0, end = 0;                                   // s, the window of measurement of sliding slabs
+    double rest_start = 0, rest_end = 0;                         // s, of slabs that must stay
 };
 
-/// One slab: what it slides on and how it is computed.
+/// One slab: its slope and friction, and the numerics.
 struct Variant {
     double slope, friction, spacing;
     SolverSpec solver;
@@ -64,7 +64,7 @@ Measured measure(const SlabSpec& spec, const Variant& variant, const Setting& se
                                      spec.width, [&](double, double) { return thickness; });
     Trial trial({std::move(model), std::move(ground), state_at_rest(points)}, watch);
 
-    // The ends spread; the middle is what the law speaks of.
+    // The ends spread; the law applies to the middle.
     std::vector<std::uint8_t> middle(points.size()), lowest(points.size());
     for (std::size_t i = 0; i < points.size(); ++i) {
         middle[i] = std::abs(incline.along(points[i])) < spec.length / 6;

@@ -39,7 +39,7 @@ struct Measured {
     std::vector<double> distance, thickness;  // final profile, m
 };
 
-/// A cone on level ground as a release, so that it is seeded and loaded as every scene's.
+/// A cone on level ground as a release, so that it is seeded and loaded like that of a scene.
 Release make_cone(const Terrain& terrain, double radius, double height) {
     Release cone;
     cone.name = "cone";
@@ -77,7 +77,8 @@ Measured measure(const HeapSpec& spec, double share, double time_step, const Set
     measured.particles = seeded->count;
     Trial trial({std::move(model), std::move(ground), *std::move(seeded)}, watch);
     const State& state = trial.state();
-    // What is to flow flows from the first step; what is to stand is a heap once its lattice has settled.
+    // A heap that should flow does so from the first step; one that should stand is measured once its lattice has
+    // settled.
     const double begin = share < 1 ? spec.settling_time : 0;
     if (!trial.advance_to(begin)) {
         measured.problem = trial.problem();

@@ -23,7 +23,7 @@ struct ImpactSpec {
     double slope = 0, end = 0;  // rad, s
 };
 
-/// A block that turns by `turn` about its middle (x, y), world.
+/// A block rotated by `turn` about its centre (x, y), world.
 Building make_block(const Terrain& terrain, const char* name, const PlanPoint& middle, double length, double width,
                     double turn, double height) {
     const double c = std::cos(turn), s = std::sin(turn);
@@ -50,7 +50,7 @@ Result<std::vector<BuildingImpact>> measure(const ImpactSpec& spec, double count
                                               make_block(terrain, "wall to the left", {6, 6}, 1, 5, 0, 5),
                                               make_block(terrain, "oblique wall", {14, -6}, 1, 5, -M_PI / 4, 5),
                                               make_block(terrain, "wall across", {30, 0}, 1.5, 14, 0, 8)};
-    // As many as fit on a lattice, whose cells have the volume of a particle.
+    // The number of particles that fit on a lattice, whose cells have the volume of a particle.
     const double wanted = std::cbrt(length * width * thickness / count);
     const std::array<double, 3> size = {length, width, thickness};
     std::array<int, 3> cells{};

@@ -37,7 +37,7 @@ double momentum_along(const Model& model, const State& state) {
     return sum * model.particle_mass();
 }
 
-/// A stream on level ground, between frictionless walls, whose head stands at a wall across it when it is let go.
+/// A stream on level ground, between frictionless walls, whose head is at a wall across it when it is released.
 Measured measure(const ImpactSpec& spec, double froude, const Setting& setting, const Watch& watch) {
     const double width = spec.width * spec.spacing, wave = std::sqrt(Model{}.gravity * spec.depth);
     const double speed = froude * wave, stream = spec.length * spec.depth;
@@ -73,7 +73,7 @@ Measured measure(const ImpactSpec& spec, double froude, const Setting& setting, 
     outputs.map_cell = spec.depth;
     Trial trial({std::move(model), std::move(ground), std::move(start), {}, {}, outputs}, watch, OnFault::note);
     const Observer& observer = trial.observer();
-    // As long as the stream's other end has not been heard of at the wall; the splash of the first fifth apart.
+    // Until the stream's other end affects the wall, without the splash of the first fifth.
     const double end = stream / (speed + wave);
     double early = 0;
     const auto look = [&] {
@@ -106,7 +106,7 @@ Result<Outcome> compute(const ImpactSpec& spec, const Setting& setting, const Wa
         watch.say(name);
         Measured m = measure(spec, froude, setting, watch);
         if (!m.problem.empty()) outcome.notes.push_back(name + ": " + m.problem);
-        // A stream that is thrown back as a jump of x times its depth: rho h v (v + w) + rho g h^2 / 2 with the jump's
+        // A stream that is reflected as a jump of x times its depth: rho h v (v + w) + rho g h^2 / 2 with the jump's
         // own speed w = v / (x - 1), which is the static force of the water behind the jump, rho g (x h)^2 / 2.
         const double jump = momentum_jump(froude) * spec.depth, law = density * gravity * jump * jump / 2;
         outcome.measurements.push_back({"impulse", name, m.impulse, m.lost});

@@ -1,4 +1,4 @@
-// A plot with axes that carry units; uPlot draws it, this file gives it the page's look, its size and its words.
+// A plot with axes that carry units; uPlot draws it, this file sets the page's style, size and texts.
 import uPlot, { type AlignedData, type Options, type Series } from "uplot";
 import { number, tick, unitText } from "../state/format";
 import { h } from "../ui/dom";
@@ -48,7 +48,7 @@ export class Chart {
 
   /** data: x and one column per curve. `curves` replaces the curves when their number changed. */
   update(data: AlignedData, curves: Curve[] = this.curves): void {
-    // A plot has one column per curve for as long as it lives, also while nobody sees it.
+    // A plot has one column per curve for as long as it lives, also while it is hidden.
     if (curves !== this.curves && JSON.stringify(curves) !== JSON.stringify(this.curves)) this.drop();
     this.curves = curves;
     this.data = data;
@@ -60,14 +60,14 @@ export class Chart {
     if (this.plot) this.plot.setData(data);
     else this.build();
   }
-  /** A line at an x, such as the time that is shown. */
+  /** A vertical line at an x, such as the displayed time. */
   mark(x: number | null): void {
     if (x === this.cursor_s) return;
     this.cursor_s = x;
     this.plot?.redraw(false);
   }
 
-  /** What goes away with the editor that it is in: uPlot listens to the window. */
+  /** Must be called when its editor is removed: uPlot has listeners on the window. */
   destroy(): void {
     this.drop();
   }
@@ -138,7 +138,7 @@ export class Chart {
   }
 }
 
-/** Joins columns that have their own x into one table, as uPlot wants it. */
+/** Joins columns that have their own x into one table, as uPlot requires. */
 export function joined(tables: { x: readonly (number | null)[]; y: readonly (number | null | undefined)[] }[]): AlignedData {
   const xs = [...new Set(tables.flatMap((t) => t.x.filter((v): v is number => v !== null)))].sort((a, b) => a - b);
   const place = new Map(xs.map((v, i) => [v, i]));

@@ -1,4 +1,4 @@
-// Points that the user put on the ground, and what passed there.
+// Probes: points that the user put on the ground, and the flow that passed there.
 import type { ScenarioName } from "../protocol/frame";
 import type { ProbeSeries } from "../protocol/messages";
 import { watchAll } from "../state/cell";

@@ -1,4 +1,4 @@
-// A cross-section: ground, debris as it is shown now, and the peak so far, along a line that the user drew.
+// A cross-section: ground, debris as displayed now, and the peak so far, along a line that the user drew.
 import type { Frame } from "../protocol/frame";
 import { gridAt, type Grid } from "../protocol/grid";
 import type { Point, SceneInfo } from "../protocol/messages";
@@ -102,7 +102,7 @@ export function sectionPanel(twin: Twin, stage: Stage): { element: HTMLElement; 
     void twin.attempt(async () => {
       const own = ++asked;
       const grid = await twin.api.layer(twin.edited.value, "peak_depth", twin.replay_s.value);
-      if (own !== asked) return;  // a later answer is on its way
+      if (own !== asked) return;  // a later request is pending
       peak = grid;
       plot();
     });

@@ -1,4 +1,4 @@
-// Front velocity against chainage, and what changes over time.
+// Front velocity against chainage, and quantities over time.
 import type { ScenarioName } from "../protocol/frame";
 import type { Column, Series } from "../protocol/messages";
 import { watchAll } from "../state/cell";
@@ -10,7 +10,7 @@ import { Chart, joined, type Curve } from "./chart";
 const colours: Record<ScenarioName, string> = { A: "#0b5fa5", B: "#d1640f" };
 const observationColour = "#a3262a";
 
-/** Few enough points to plot at once: every so many of a long column. */
+/** Every n-th value of a long column, few enough to plot. */
 function thinned(column: Column, most = 600): number[] {
   const every = Math.max(1, Math.ceil(column.length / most));
   const picked = [];

@@ -12,7 +12,7 @@ export interface BarrierFields {
   enable(hindrance: string | null): void;
 }
 
-/** `onset` gets what the server is to be told; null takes a value away. */
+/** `onset` receives the change for the server; null removes a value. */
 export function barrierFields(value: BarrierSet, scene: Given, onset: (change: Partial<BarrierSet>) => void): BarrierFields {
   let openings: readonly BarrierOpening[] = value.openings ?? [];
   let length = 0;

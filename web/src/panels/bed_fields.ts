@@ -1,4 +1,4 @@
-// What only beds have: how deep they are, and the law by which debris picks them up.
+// Fields of beds only: their depth, and the law of erosion.
 import type { Bed } from "../protocol/messages";
 import { fields as described } from "../protocol/schema";
 import { lawChange, type BedSet } from "../state/ground";
@@ -13,7 +13,7 @@ export interface BedFields {
 
 const laws: [Bed["law"], string][] = [["growth", "Growth per metre of travel"], ["shear", "Shear above a critical stress"]];
 
-/** `onset` gets what the server is to be told. */
+/** `onset` receives the change for the server. */
 export function bedFields(bed: Bed, onset: (change: BedSet) => void): BedFields {
   let now: BedSet = bed;
   const id = freshId("law");
@@ -29,7 +29,7 @@ export function bedFields(bed: Bed, onset: (change: BedSet) => void): BedFields 
     show(fresh) {
       now = fresh;
       depth.show(fresh.depth_m);
-      // Depths of a raster stay; those of polygons can be given up for one.
+      // Depths of a raster are kept; those of polygons can be replaced by a single one.
       const fromRaster = fresh.depth_m === null && fresh.polygons.length === 0;
       depth.element.hidden = fromRaster;
       varies.textContent = `Its depth differs from place to place${fromRaster ? "" : "; one value makes it the same everywhere"}.`;

@@ -1,4 +1,4 @@
-// Finds the values that explain the field observations, beside the live run.
+// Calibration: finds the values that explain the field observations, while the live run continues.
 import type { CalibrationStatus, Parameter } from "../protocol/messages";
 import { watchAll } from "../state/cell";
 import { number, quantity, unitText } from "../state/format";
@@ -64,7 +64,7 @@ export function calibratePanel(twin: Twin): HTMLElement {
   const others = choices.filter((c) => !c.free.checked);
   const runs = h("input", { type: "number", min: 8, max: 2000, step: 1, value: usualRuns, "aria-label": "Runs at most" });
   const problem = h("p", { class: "field-note", role: "alert" });
-  let successor: HTMLButtonElement | null = null;  // of a button that was pressed and goes away: it gets the keyboard's focus
+  let successor: HTMLButtonElement | null = null;  // of a pressed button that disappears: it gets the keyboard focus
   const start = button("Start", { class: "primary", onclick: () => void begin() });
   const begin = async (): Promise<void> => {
     const free = choices.filter((c) => c.free.checked);
@@ -96,7 +96,7 @@ export function calibratePanel(twin: Twin): HTMLElement {
     const status = twin.calibration.value;
     const best = status?.best;
     if (!status || !best) return;
-    // Values to more digits than anybody reads would only look exact.
+    // More digits would only suggest a false precision.
     void twin.act({ action: "set_parameters", values: Object.fromEntries(status.parameters.map((p, i) => [p.key, Number(best.values[i].toPrecision(4))])) });
   } });
   const why = h("p", { class: "hint calibrate-why" });

@@ -1,4 +1,4 @@
-// Display options while a new shape is drawn: how to, sizes, live measures, and a way without a mouse.
+// Display options while a new shape is drawn: instructions, sizes, live measures, and input without a mouse.
 import type { Drawing } from "../scene/drawing";
 import { number, quantity } from "../state/format";
 import { limitsOf } from "../state/rules";
@@ -16,7 +16,7 @@ function howTo(shape: Shape, byLine: boolean): string {
   return `Click ${shape === "building" ? "the corners of the footprint" : "corners on the ground"}; double-click or Enter closes ${shape === "building" ? "it" : "the outline"}.`;
 }
 
-/** Fields for what a new shape begins with; its other keys come when it is there. */
+/** Fields for the initial values of a new shape; its other keys follow once it exists. */
 function newFields(twin: Twin, shape: Shape, changed: () => void): HTMLElement[] {
   const sizes = twin.newShape;
   /** A field for one of the sizes. */
@@ -46,7 +46,7 @@ function newFields(twin: Twin, shape: Shape, changed: () => void): HTMLElement[]
     case "inflow":
       return [choice("Where debris enters", [["line", "Across a line"], ["area", "Over an area"]], "line", (where) => {
         twin.inflowByLine.value = where === "line";
-        // Points of an outline are no line: drawing begins anew.
+        // Points of an outline are not a line: drawing starts again.
         twin.tool.value = { kind: "draw", shape };
       })];
   }

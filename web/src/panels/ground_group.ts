@@ -1,4 +1,4 @@
-// Zones, beds and inflows under one heading, folded until somebody wants them: most scenes have none.
+// Zones, beds and inflows under one heading, folded until needed: most scenes have none.
 import type { Drawing } from "../scene/drawing";
 import { watchAll } from "../state/cell";
 import { itemsOf } from "../state/shapes";
@@ -20,7 +20,7 @@ export function groundGroup(twin: Twin, drawing: Drawing): HTMLElement {
     const there = shapes.reduce((sum, shape) => sum + itemsOf(setup, shape).length, 0);
     const tool = twin.tool.value;
     const wanted = tool.kind === "draw" ? tool.shape : twin.selection.value?.shape;
-    // Who folds it while there are some finds it folded until one of them is wanted.
+    // If the user folds it, it stays folded until one of its shapes is needed.
     if ((there > 0 && before === 0) || (wanted && shapes.includes(wanted))) group.open = true;
     before = there;
     count.textContent = there > 0 ? String(there) : "";

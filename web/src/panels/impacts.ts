@@ -1,4 +1,4 @@
-// What hit houses and barriers: a table to sort, whose rows lead to the place.
+// Impact on houses and barriers: a sortable table whose rows lead to the place.
 import type { BarrierImpact, Impact, Impacts, SceneInfo } from "../protocol/messages";
 import { css, rampAt, ramps } from "../scene/colour";
 import type { Stage } from "../scene/stage";
@@ -26,7 +26,7 @@ const barrierColumns: Column<BarrierImpact>[] = [
   { key: "failed", title: "Failed", unit: "s", value: (r) => r.failed_s, digits: 1 },
 ];
 
-/** Colour of a house by what hit it; null: nothing did. */
+/** Colour of a house by its impact; null: not hit. */
 export function impactColour(impact: Impact | undefined, by: HouseColour, scene: SceneInfo, most_kPa: number): string | null {
   if (!impact?.hit) return null;
   if (by === "intensity") return scene.intensity.classes.find((c) => c.name === impact.intensity)?.colour ?? null;

@@ -1,4 +1,4 @@
-// What only inflows have: the hydrograph as a table and a chart, and the way in which debris comes.
+// Fields of inflows only: the hydrograph as a table and a chart, and the direction of flow.
 import { Chart } from "../charts/chart";
 import type { HydrographRow, Inflow } from "../protocol/messages";
 import { fields as described } from "../protocol/schema";
@@ -18,7 +18,7 @@ export interface InflowChange { hydrograph?: HydrographRow[]; direction_deg?: nu
 const columns = hydrographKeys.map((key): [HydrographKey, string, string] => [key, described.hydrograph[key].label, described.hydrograph[key].unit]);
 const text = (value: number | null | undefined): string => (value === null || value === undefined ? "" : String(Number(value.toPrecision(6))));
 
-/** downhill_deg: what a direction begins with; restDensity: what a density of its own begins with. */
+/** downhill_deg: initial value of a direction; restDensity: initial value of a separate density. */
 export function inflowFields(inflow: Inflow, downhill_deg: number, restDensity: number, onset: (change: InflowChange) => void): InflowFields {
   let rows: HydrographRow[] = [];
   let hindered: string | null = null;
@@ -26,7 +26,7 @@ export function inflowFields(inflow: Inflow, downhill_deg: number, restDensity: 
   const table = h("table", { class: "hydrograph" });
   const chart = new Chart({ title: "Discharge", x: { label: "Time", unit: "s" }, y: { label: "Discharge", unit: "m3/s" }, height: 128, legend: false, empty: "",
     curves: [{ label: "Discharge", unit: "m3/s", colour: "#0a5fae", fill: "rgb(10 95 174 / 0.12)", points: true }] });
-  /** place: where a row has come to. */
+  /** place: the new index of a row. */
   const put = (next: HydrographRow[], place?: (row: number) => number): void => {
     rows = next;
     fill(place);
@@ -43,7 +43,7 @@ export function inflowFields(inflow: Inflow, downhill_deg: number, restDensity: 
     const input = h("input", { type: "number", step: "any", min: described.hydrograph[key].low, value: text(rows[row][key]), disabled: hindered !== null, "data-cell": `${row} ${key}`,
       "aria-label": `Row ${row + 1}: ${label.toLowerCase()}, ${unitText(unit)}`, onchange: () => {
         const next = rowsWith(rows, row, key, input.valueAsNumber);
-        // A change comes before the focus moves on: the table is made anew, or put in order, after that.
+        // A change event precedes the move of the focus: the table is rebuilt or sorted after that.
         const before = rows;
         if (next) setTimeout(() => put(next, (k) => (k === row ? next.findIndex((r) => !before.includes(r)) : next.indexOf(before[k]))));
         else input.value = text(rows[row][key]);
@@ -66,7 +66,7 @@ export function inflowFields(inflow: Inflow, downhill_deg: number, restDensity: 
     table.setAttribute("aria-label", `Hydrograph, ${rows.length} rows`);
     chart.update([rows.map((row) => row.time_s), rows.map((row) => row.discharge_m3ps)]);
   };
-  /** The table is made anew below who is at it: the focus and what is being typed stay. */
+  /** The table is rebuilt while in use: the focus and the text being typed are kept. */
   const keepFocus = (held: HTMLElement, place: (row: number) => number): void => {
     const [row, key] = (held.dataset["cell"] ?? "0").split(" ");
     const fresh = table.querySelector<HTMLElement>(`[data-cell="${place(Number(row))} ${key}"]`);

@@ -1,4 +1,4 @@
-// The keyboard, and the page that tells about it.
+// Keyboard shortcuts, and the page that lists them.
 import type { Drawing } from "../scene/drawing";
 import type { Stage } from "../scene/stage";
 import { remove } from "../state/edits";

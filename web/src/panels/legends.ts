@@ -14,7 +14,7 @@ export interface Legend { title: string; unit: string; low: number; high: number
 
 const pastNote = "Rebuilt from the recording: peaks between recorded frames are missed, so values can be slightly low.";
 
-/** Legends of what is on display now, also for pictures of the view. */
+/** Legends of the current display, also for pictures of the view. */
 export function presentLegends(twin: Twin, stage: Stage, layers: ShownLayers): Legend[] {
   const list: Legend[] = [];
   if (twin.particles.value || twin.surface.value === "speed") {

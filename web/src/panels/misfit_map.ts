@@ -45,7 +45,7 @@ export class MisfitMap {
       h("p", { class: "hint" }, "A dot is a run. Misfit: sum of squared deviations from the observations, in standard deviations; dark fits best. Ring: best run. Cross: the present values."));
   }
 
-  /** present: the live scenario's values of the parameters. */
+  /** present: the live scenario's current values of the parameters. */
   update(status: CalibrationStatus, present: (number | null)[]): void {
     const [first, second] = status.parameters;
     if (!first) return;

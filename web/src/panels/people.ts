@@ -1,4 +1,4 @@
-// Who is here, who has control, links to pass on.
+// People in the session, control, links to share.
 import type { Person } from "../protocol/messages";
 import { linkWith } from "../protocol/token";
 import { watchAll } from "../state/cell";

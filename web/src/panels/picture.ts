@@ -1,4 +1,4 @@
-// Pictures and video of the view, with title, time, legends and scale drawn in: they stand on their own in a report.
+// Pictures and video of the view, with title, time, legends and scale drawn in, so that they can be used in a report.
 import type { ShownLayers } from "../scene/shown_layers";
 import type { Stage } from "../scene/stage";
 import { css, roundStep } from "../scene/colour";
@@ -30,7 +30,7 @@ export class Picture {
     return this.twin.scene.title.toLowerCase().replace(/[^a-z0-9]+/g, "-").replace(/^-|-$/g, "");
   }
 
-  /** Draws the view and what is needed to read it. */
+  /** Draws the view with its title and legends. */
   private compose(source: HTMLCanvasElement): HTMLCanvasElement {
     const { canvas, twin, stage } = this;
     const scale = source.width / Math.max(1, stage.element.clientWidth);
@@ -98,7 +98,7 @@ export class Picture {
   get recording(): boolean {
     return this.recorder !== null;
   }
-  /** Starts a video of the view, or ends it and saves it. `changed` is told when it has begun and when it is saved. */
+  /** Starts a video of the view, or ends it and saves it. Calls `changed` when it has started and when it is saved. */
   video(changed: () => void): void {
     if (this.recorder) {
       this.recorder.stop();
@@ -122,7 +122,7 @@ export class Picture {
     recorder.start(500);
     this.recorder = recorder;
     this.stopPictures = false;
-    // The encoder ends a video where pictures end: a still view has to be drawn as well.
+    // The encoder ends a video with the last picture: a still view must also be drawn.
     const still = (): void => {
       if (this.stopPictures) return;
       this.stage.invalidate();

@@ -1,4 +1,4 @@
-// The numbers of the run that are always in sight, and the mass balance.
+// The numbers of the run that are always visible, and the mass balance.
 import { watchAll } from "../state/cell";
 import { bytes, count, fixed, quantity } from "../state/format";
 import type { Twin } from "../state/twin";

@@ -10,7 +10,7 @@ import { shapeFields } from "./shape_fields";
 
 const editors = new WeakMap<HTMLElement, { id: string; update(item: Item): void; end(): void }>();
 
-/** In the unchanged holder while the same shape is selected: who is at a field stays there. */
+/** Keeps the holder while the same shape is selected, so that a field in use keeps the focus. */
 export function showEditor(twin: Twin, drawing: Drawing, shape: Shape, holder: HTMLElement): void {
   const item = itemOf(twin.now.setup.value, twin.selection.value);
   const open = editors.get(holder);
@@ -26,7 +26,7 @@ function editor(twin: Twin, drawing: Drawing, item: Item, holder: HTMLElement): 
   const { shape, id } = item;
   const now = (): Item => itemOf(twin.now.setup.value, { shape, id }) ?? item;
   const send = (what: Change): void => void change(twin, now(), what).then((fine) => {
-    // What was refused is taken back in the form too.
+    // A refused change is reverted in the form too.
     if (!fine) update(now());
   });
   const name = h("input", { type: "text", "aria-label": "Name", maxlength: 60, onchange: () => {
@@ -84,7 +84,7 @@ function noteOf(item: Item): string {
   return said.join(" ");
 }
 
-/** moving: the corners are being moved, so that only they are known and not what the server made of them. */
+/** moving: the corners are being moved, so that only they are known, not the server's values. */
 function measureOf(twin: Twin, item: Item, points: readonly (readonly [number, number])[], moving: boolean): string {
   const ring = points.map(([x, y]): [number, number] => [x, y]);
   const size = canReshape(item) && !lineOf(item) ? area(ring) : footprintArea(partsOf(item));
@@ -105,7 +105,7 @@ function measureOf(twin: Twin, item: Item, points: readonly (readonly [number, n
   }
 }
 
-/** Corners as numbers, for exact places and for those who use no mouse. */
+/** Corners as numbers, for exact positions and for use without a mouse. */
 function fillCorners(twin: Twin, item: Item, holder: HTMLElement, now: () => Item, send: (what: Change) => void): void {
   if (holder.contains(document.activeElement)) return;
   const disabled = twin.hindrance !== null;

@@ -1,4 +1,4 @@
-// The fields of a shape that is there: what each kind has beside its outline.
+// The fields of an existing shape, by kind, in addition to its outline.
 import { fields as described } from "../protocol/schema";
 import { area, lineOf, middle, pointsOf, type Item } from "../state/shapes";
 import type { Change } from "../state/edits";
@@ -20,7 +20,7 @@ export interface ShapeFields {
 const one = (field: ValueField, of: (item: Item) => number | null): ShapeFields =>
   ({ element: field.element, show: (item) => field.show(of(item)), enable: field.enable });
 
-/** `onset` gets what the server is to be told; `now` answers the shape as it is. */
+/** `onset` receives the change for the server; `now` returns the current shape. */
 export function shapeFields(twin: Twin, item: Item, now: () => Item, onset: (what: Change) => void): ShapeFields {
   switch (item.shape) {
     case "release":

@@ -22,7 +22,7 @@ const words: Record<Shape, { title: string; empty: string }> = {
 /** Longer ones (the houses of a village) are picked in the view. */
 const longestList = 6;
 
-/** Sections within another one have lower headings, and all that is in them: the view does not offer each zone. */
+/** Nested sections have lower headings and list all entries, since not every zone can be picked in the view. */
 const within: readonly Shape[] = ["zone", "bed", "inflow"];
 
 function noteOf(item: Item): string {
@@ -77,14 +77,14 @@ export function shapeSection(twin: Twin, drawing: Drawing, shape: Shape): HTMLEl
     before = chosen;
     drafting.hidden = !isDrawing();
     showEditor(twin, drawing, shape, editor);
-    // Once the group that it is in has opened.
+    // After its group has opened.
     if (opens) queueMicrotask(() => reveal(section));
   };
   watchAll([twin.edited, twin.cells.A.setup, twin.cells.B.setup, twin.selection, twin.tool, twin.you, twin.controller, twin.connection, twin.people], refresh);
   return section;
 }
 
-/** Scrolls the panel until all of a section is in sight, or its head is on top. */
+/** Scrolls the panel until a whole section is visible, or its heading is at the top. */
 function reveal(section: HTMLElement): void {
   const panel = section.closest(".controls");
   if (!panel) return;

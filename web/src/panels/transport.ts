@@ -1,4 +1,4 @@
-// Run, pause, step, restart, speed; the timeline with the recording, and the way back to live.
+// Run, pause, step, restart, speed; the timeline with the recording, and the return to live.
 import { watchAll } from "../state/cell";
 import { fixed } from "../state/format";
 import type { Playback } from "../state/playback";

@@ -1,4 +1,4 @@
-// Display options and from where: camera, debris, layers.
+// Display options: camera, debris, layers.
 import { layerNames, type ShownLayer } from "../protocol/messages";
 import { ensembleLayer, ensembleTitle, infoOf, isEnsembleLayer, layerInfo } from "../scene/layers";
 import type { CameraMode, Viewpoint } from "../scene/rig";
@@ -56,7 +56,7 @@ export function viewBar(twin: Twin, stage: Stage): ViewBar {
     h("option", { value: "off" }, "no surface"), h("option", { value: "depth" }, "surface by depth"), h("option", { value: "speed" }, "surface by speed"));
   const layer = h("select", { "aria-label": "Map layer on the ground", onchange: () => (twin.layer.value = layer.value as ShownLayer | "none") },
     h("option", { value: "none" }, "no layer"), ...layerNames.map((name) => h("option", { value: name, title: layerInfo[name].help }, layerInfo[name].title)));
-  // A layer that stays chosen stays in the list, also while nothing has been picked up again.
+  // A selected layer remains in the list, also while there is no erosion again.
   const erosion = layer.querySelector<HTMLOptionElement>("option[value=erosion_depth]");
   watchAll([twin.cells.A.state, twin.cells.B.state, twin.layer], () => {
     const some = twin.scenarios.value.some((s) => (twin.cells[s].state.value?.volume_entrained_m3 ?? 0) > 0);

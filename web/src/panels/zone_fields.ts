@@ -1,4 +1,4 @@
-// What only zones have: resistances that differ from elsewhere, each behind a tick, and the stems of a forest.
+// Fields of zones only: resistances that differ from elsewhere, each with a check box, and the stems of a forest.
 import { fields as described } from "../protocol/schema";
 import { usualZone, type ZoneSet } from "../state/ground";
 import { limitsOf, type Given } from "../state/rules";
@@ -14,7 +14,7 @@ export interface ZoneFields {
 
 type Key = keyof typeof described.zone;
 
-/** `onset` gets what the server is to be told; null: as elsewhere. */
+/** `onset` receives the change for the server; null: as elsewhere. */
 export function zoneFields(scene: Given, onset: (change: ZoneSet) => void): ZoneFields {
   const made = new Map<Key, ValueField>();
   const make = (key: Key, more: HTMLElement[] = []): HTMLElement => {
@@ -32,7 +32,7 @@ export function zoneFields(scene: Given, onset: (change: ZoneSet) => void): Zone
   };
 }
 
-/** While a zone is drawn: the one thing in which it differs; more can be ticked once it is there. */
+/** While a zone is drawn: the one value in which it differs; more can be selected once it exists. */
 export function newZoneFields(onset: (zone: ZoneSet) => void): HTMLElement {
   const kinds = { friction: { ...usualZone.friction } as ZoneSet, forest: { ...usualZone.forest } as ZoneSet };
   let chosen: keyof typeof kinds = "friction";

@@ -3,7 +3,7 @@ import { decodeFrame, type Frame, type ScenarioName } from "./frame";
 import { decodeGrid, type Grid } from "./grid";
 import type { Action, Done, Ensemble, ExportFile, Impacts, LayerName, ProbeSeries, Recording, SceneInfo, Series, Session } from "./messages";
 
-/** What the server answered to a request that it refused. */
+/** The server's answer to a request that it refused. */
 export class Refused extends Error {
   constructor(readonly status: number, message: string) {
     super(message);
@@ -34,7 +34,7 @@ export class Api {
         const told = (await response.json()) as { error?: unknown };
         if (typeof told.error === "string") sentence = told.error;
       } catch {
-        // The answer was not JSON: the status has to do.
+        // The answer was not JSON: use the status.
       }
       throw new Refused(response.status, sentence);
     }
@@ -51,7 +51,7 @@ export class Api {
   scene = (): Promise<SceneInfo> => this.json("scene");
   terrain = async (maxCells: number): Promise<Grid> => decodeGrid(await this.binary(`terrain?max_cells=${maxCells}`));
   series = (s: ScenarioName): Promise<Series> => this.json(`scenarios/${s}/series`);
-  /** Of now, or as of a time of the recording. */
+  /** Now, or at a time of the recording. */
   impacts = (s: ScenarioName, time_s: number | null = null): Promise<Impacts> => this.json(`scenarios/${s}/impacts${at(time_s)}`);
   recording = (s: ScenarioName): Promise<Recording> => this.json(`scenarios/${s}/recording`);
   layer = async (s: ScenarioName, name: LayerName, time_s: number | null = null): Promise<Grid> =>

@@ -17,7 +17,7 @@ export interface Frame {
   flags: number;
   time_s: number;
   step: number;
-  /** Every stride-th particle id is here, beginning with 0. */
+  /** Contains every stride-th particle id, starting with 0. */
   stride: number;
   count: number;
   /** x, y, z (units of `scale`, from `origin`, in the local frame) and speed (units of `speedUnit`), four per particle. */
@@ -33,10 +33,10 @@ export interface Frame {
   mapSpeedUnit_mps: number;
 }
 
-/** Position that stands for "this particle is not there" in x, y and z. */
+/** Value of x, y and z for a particle that does not exist. */
 export const absent = 65535;
 
-/** Script time that unfolding the last frame took, ms; unpacking is done by the browser on another thread. */
+/** Script time for unfolding the last frame, ms; the browser decompresses on another thread. */
 export const lastDecode = { unfold_ms: 0 };
 
 const headBytes = 88;
@@ -44,7 +44,7 @@ const largestBody = 512 * 1024 * 1024;
 
 export class MalformedMessage extends Error {}
 
-/** Unpacks zlib data and fails unless it holds just `size` bytes. */
+/** Decompresses zlib data and fails unless it contains exactly `size` bytes. */
 export async function inflate(packed: Uint8Array, size: number): Promise<Uint8Array> {
   if (size > largestBody) throw new MalformedMessage(`body of ${size} bytes; the limit is ${largestBody}`);
   const out = new Uint8Array(size);

@@ -9,7 +9,7 @@ export interface Grid {
   cell: number;
   columns: number;
   rows: number;
-  /** By rows from the south; NaN: nothing there. */
+  /** By rows from the south; NaN: no value. */
   values: Float32Array;
 }
 
@@ -35,7 +35,7 @@ export async function decodeGrid(data: ArrayBuffer): Promise<Grid> {
   };
 }
 
-/** Bilinear value at a place; NaN outside, and where all of the four cells around hold nothing. */
+/** Bilinear value at a place; NaN outside, and where none of the four surrounding cells has a value. */
 export function gridAt(grid: Grid, x: number, y: number): number {
   const u = (x - grid.west) / grid.cell - 0.5;
   const v = (y - grid.south) / grid.cell - 0.5;

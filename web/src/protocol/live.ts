@@ -1,4 +1,4 @@
-// The WebSocket half of docs/protocol.md: connects, comes back after a break, decodes frames in order.
+// The WebSocket half of docs/protocol.md: connects, reconnects after a break, decodes frames in order.
 import { decodeFrame, type Frame, type ScenarioName } from "./frame";
 import type { Place, ServerMessage } from "./messages";
 
@@ -19,13 +19,13 @@ export class Live {
   private wait_s = firstWait_s;
   private everOpen = false;
   private view: View | null = null;
-  /** Id given by the last hello: sent again after a break, so that the same person comes back. */
+  /** Id given by the last hello: sent again after a break, so that the person is recognised. */
   person: string | null = null;
   private timer: number | undefined;
   // Of each scenario only the newest frame that waits is kept: a page that cannot keep up shows fewer frames.
   private readonly waiting = new Map<number, ArrayBuffer>();
   private decoding = false;
-  /** Milliseconds that decoding the last frame took on this thread and beside it. */
+  /** Time for decoding the last frame, on this thread and others, ms. */
   decode_ms = 0;
 
   constructor(private readonly token: string, private name: string, private readonly events: LiveEvents) {}
@@ -57,13 +57,13 @@ export class Live {
       this.wait_s = Math.min(2 * this.wait_s, longestWait_s);
     };
   }
-  /** Tries again at once instead of waiting. */
+  /** Retries immediately instead of waiting. */
   retry(): void {
     if (this.socket) return;
     clearTimeout(this.timer);
     this.start();
   }
-  /** Drops the connection as a break in the network would; it comes back by itself. */
+  /** Drops the connection as a break in the network would; it reconnects by itself. */
   drop(): void {
     this.socket?.close();
   }

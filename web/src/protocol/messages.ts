@@ -16,7 +16,7 @@ export interface Session {
   people: Person[];
   controller: string | null;
   you?: { role: Role };
-  /** Tokens that this person may pass on. */
+  /** Tokens that this person may share. */
   links?: { viewer?: string; controller?: string };
 }
 
@@ -50,7 +50,7 @@ export interface SceneInfo {
   gravity_mps2: number;
   flow_path: FlowPath | null;
   observations: Observation[];
-  /** Whether there is a picture of the ground to drape. */
+  /** Whether there is an orthophoto. */
   orthophoto: boolean;
   parameters: Parameter[];
   /** Keys of the scene that others need, with their values. */
@@ -128,17 +128,17 @@ export interface Zone extends ZoneValues {
 export interface Bed extends BedValues {
   id: string;
   name: string;
-  /** None: it comes from a raster, or lies everywhere. */
+  /** None: it comes from a raster, or covers everything. */
   polygons: Point[][][];
   area_m2: number;
   volume_m3: number;
   from_scene: boolean;
-  /** false: changed, it holds from the next restart. */
+  /** false: changed; in force after the next restart. */
   in_force: boolean;
 }
-/** density_kgpm3: null or left out is the material's rest density. */
+/** density_kgpm3: null or absent: the material's rest density. */
 export type HydrographRow = Omit<HydrographValues, "density_kgpm3"> & Partial<HydrographValues>;
-/** Debris that comes in while the run goes on: to the right of a line, seen along it, or all over an area. */
+/** Debris injected during the run: to the right of a line, seen along it, or over an area. */
 export interface Inflow extends InflowValues {
   id: string;
   name: string;
@@ -160,7 +160,7 @@ export interface Setup {
   zones: Zone[];
   beds: Bed[];
   inflows: Inflow[];
-  /** Beds or inflows differ from those that the run began with. */
+  /** Beds or inflows differ from those at the run's start. */
   pending_restart: boolean;
   undo: string | null;
   redo: string | null;
@@ -186,7 +186,7 @@ export interface BarrierImpact extends Impact {
   held_m3: number;
   peak_filling_height_m: number;
 }
-/** An obstacle that was taken away while the run went on, and what it had met until then. */
+/** An obstacle removed during the run, and its impact until then. */
 export interface RemovedImpact extends Impact { kind: "building" | "barrier"; removed_s: number; overtopped_m3?: number; held_m3?: number }
 export interface Impacts { buildings: Impact[]; barriers: BarrierImpact[]; removed: RemovedImpact[] }
 
@@ -234,12 +234,12 @@ export interface EnsembleMap {
   title: string;
   unit: string;
   kind: "probability" | "percentile";
-  /** The layer of a single run that it counts. */
+  /** The layer of a single run from which it is computed. */
   of: Exclude<LayerName, "depth" | "erosion_depth">;
   threshold: number | null;
   threshold_unit: string | null;
   percentile: number | null;
-  /** null: debris of no run came there by that measure. */
+  /** null: no run reached any place by that measure. */
   greatest: number | null;
 }
 export interface Ensemble {
@@ -252,7 +252,7 @@ export interface Ensemble {
   maps: EnsembleMap[];
 }
 export type EnsembleLayer = `ensemble/${string}/${string}`;
-/** What can lie on the ground: a layer of the run, or a map of an ensemble. */
+/** A layer on the ground: of the run, or a map of an ensemble. */
 export type ShownLayer = LayerName | EnsembleLayer;
 
 export type Action =
@@ -260,7 +260,7 @@ export type Action =
   | { action: "set_speed"; factor: number | null }
   | { action: "set_parameter"; key: string; value: number }
   | { action: "set_parameters"; values: Record<string, number> }
-  // With an id just what changes has to be given.
+  // With an id, only changed values need to be given.
   | { action: "put_release"; id?: string; name?: string; polygon?: Point[]; move_m?: Point } & Partial<ReleaseValues>
   | { action: "put_barrier"; id?: string; name?: string; line?: Point[]; openings?: BarrierOpening[] } & Partial<BarrierValues>
   | { action: "put_building"; id?: string; name?: string; footprint?: Point[]; move_m?: Point } & Partial<BuildingsValues>

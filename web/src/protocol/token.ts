@@ -1,4 +1,4 @@
-// The token comes in the link's fragment, which browsers do not send; it is then kept for this tab only.
+// The token is in the link's fragment, which browsers do not send; it is then kept for this tab only.
 const key = "talus-token";
 
 export function takeToken(): string {

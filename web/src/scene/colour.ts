@@ -1,5 +1,5 @@
-// Colour ramps with even steps of lightness (OKLab, Ottosson 2020), the same as those of the report. Because lightness
-// alone carries the order, they are read by colour-blind readers and in grey print as well.
+// Colour ramps with even steps of lightness (OKLab, Ottosson 2020), the same as those of the report. Lightness alone
+// carries the order, so they are readable with colour blindness and in greyscale.
 
 export type Rgb = [number, number, number];
 
@@ -70,7 +70,7 @@ export const ramps = {
   peak_speed: ramp(104, 0.11, 8, 0.13, 0.93, 0.28),
   peak_pressure: ramp(88, 0.08, -48, 0.14, 0.93, 0.26),
   arrival_time: ramp(215, 0.06, 118, 0.1, 0.3, 0.92),
-  /** Of a calibration, turned about: what fits best is dark. */
+  /** For a calibration, reversed: the best fit is dark. */
   misfit: ramp(262, 0.12, 95, 0.05, 0.34, 0.96),
   /** Share of an ensemble's runs: as in its GeoTIFF styles. */
   probability: ramp(300, 0.05, 262, 0.13, 0.94, 0.26),

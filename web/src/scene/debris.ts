@@ -1,5 +1,5 @@
-// Debris as round shaded points. The two frames lie in two vertex buffers as they came; the vertex shader mixes them,
-// so that nothing is done per particle between frames.
+// Debris as round shaded points. The two frames are in two vertex buffers as received; the vertex shader interpolates
+// between them, so that there is no work per particle between frames.
 import { BufferAttribute, BufferGeometry, DynamicDrawUsage, NormalBlending, Points, ShaderMaterial, Vector3, type Texture } from "three";
 import type { Frame } from "../protocol/frame";
 
@@ -35,7 +35,7 @@ const fragment = /* glsl */ `
     vec3 normal = vec3(at.x, -at.y, sqrt(1.0 - r2));
     vec3 colour = texture2D(uRamp, vec2(clamp(vShare, 0.002, 0.998), 0.5)).rgb;
     float light = 0.55 + 0.62 * max(dot(normal, uSun), 0.0);
-    // The rim parts grains from one another; where grains are a few pixels it would only darken them.
+    // The rim separates grains from one another; for grains of a few pixels it would only darken them.
     light *= 1.0 - vRim * smoothstep(0.55, 1.0, r2);
     gl_FragColor = vec4(colour * light, 1.0);
     #include <colorspace_fragment>
@@ -97,7 +97,7 @@ export class Debris {
       return;
     }
     if (older.count < frame.count) {
-      // Particles that are new have no earlier place.
+      // New particles have no earlier position.
       const padded = new Uint16Array(frame.particles.length).fill(65535);
       padded.set(older.particles);
       older = { ...older, particles: padded };

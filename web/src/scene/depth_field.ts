@@ -25,7 +25,7 @@ class WindowTexture {
       this.placing.set(0, 0, 0, 0);
       return;
     }
-    // One cell of nothing all around, so that filtering ends at zero.
+    // A border of one empty cell, so that filtering ends at zero.
     const image = this.texture.image;
     if (columns + 2 > image.width || rows + 2 > image.height) {
       this.texture.dispose();
@@ -51,7 +51,7 @@ class WindowTexture {
   }
 }
 
-/** Two windows that take turns: the older one is overwritten by a new frame. */
+/** Two alternating windows: a new frame overwrites the older one. */
 export class DepthField {
   private readonly windows = [new WindowTexture(), new WindowTexture()] as const;
   private newest = 0;

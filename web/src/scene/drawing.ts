@@ -43,7 +43,7 @@ export class Drawing {
     const tool = this.twin.tool.value;
     return tool.kind === "draw" ? tool.shape : tool.kind === "section" ? "section" : null;
   }
-  /** Ends drawing with the corners there are. */
+  /** Ends drawing with the current corners. */
   finish(): void {
     const { shape } = this;
     const points = this.draft.value;
@@ -73,7 +73,7 @@ export class Drawing {
   addPoint(point: Point): void {
     this.draft.value = [...this.draft.value, point];
     this.redraw();
-    // A section and an inflow's line are straight: two points make them.
+    // A section and an inflow's line are straight: two points define them.
     const { shape } = this;
     if (shape !== null && this.draft.value.length === (shape === "section" ? 2 : mostPoints(shape, this.twin.inflowByLine.value))) this.finish();
   }
@@ -108,7 +108,7 @@ export class Drawing {
     canvas.addEventListener("keydown", (event) => {
       if (this.twin.tool.value.kind === "none") return;
       if (event.key === " ") {
-        // Without a pointer, a point is put in the middle of the view.
+        // Without a pointer, a point is placed in the middle of the view.
         const box = canvas.getBoundingClientRect();
         const wide = box.width / Math.max(1, this.stage.views.size);
         const column = [...this.stage.views.keys()].indexOf(this.twin.edited.value);
@@ -173,7 +173,8 @@ export class Drawing {
       return;
     }
     const points = pointsOf(item);
-    // A scar traced from a survey has dozens of corners, and one outline cannot tell several parts: those move as a whole.
+    // A scar traced from a survey has dozens of corners, and one outline cannot describe several parts: those move as a
+    // whole.
     const whole = !canReshape(item) || points.length > 40;
     const isLine = lineOf(item) !== null;
     this.handles.show(item.name, points, twin.edited.value, whole ? "whole" : "all", {

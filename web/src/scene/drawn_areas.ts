@@ -1,4 +1,4 @@
-// Areas (releases; zones, beds, inflows) painted into one picture that lies on the ground.
+// Areas (releases; zones, beds, inflows) painted into one texture draped over the ground.
 import { CanvasTexture, LinearFilter, SRGBColorSpace, Vector4 } from "three";
 import type { Point } from "../protocol/messages";
 import type { Draped } from "./ground";
@@ -9,7 +9,7 @@ export interface Area {
   colour: string;
   /** Share of the ground's colour that is covered, 0 to 1. */
   opacity: number;
-  /** Told apart also where colours are not: lines that rise or fall to the right, level ones, dots. */
+  /** Distinguishable without colour: lines that rise or fall to the right, horizontal ones, dots. */
   pattern: "none" | "rising" | "falling" | "level" | "dots";
   /** Between lines or dots, m. */
   gap_m: number;
@@ -24,7 +24,7 @@ export class DrawnAreas {
 
   constructor(private readonly relief: Relief) {}
 
-  /** Paints the areas anew; the picture covers just them, so that its pixels are small. */
+  /** Repaints the areas; the texture covers only them, so that its pixels are small. */
   paint(areas: readonly Area[]): Draped {
     const points = areas.flatMap((a) => a.rings.flatMap((r) => [...r]));
     const context = this.canvas.getContext("2d");

@@ -1,7 +1,7 @@
-// Which two frames are shown and how far between them the display is: one frame interval behind the newest.
+// Selects the two displayed frames and the fraction between them: one frame interval behind the newest.
 import type { Frame } from "../protocol/frame";
 
-/** Farther apart in simulated time two frames are not joined: particles would cut corners. */
+/** Frames farther apart in simulated time are not interpolated: particles would cut corners. */
 const longestGap_s = 1.5;
 
 export class FrameClock {
@@ -10,7 +10,7 @@ export class FrameClock {
   private arrived_ms = 0;
   private interval_ms = 33;
 
-  /** True when the two frames follow each other and may be mixed. */
+  /** True when the two frames follow each other and may be interpolated. */
   push(frame: Frame, now_ms: number): boolean {
     const before = this.next;
     const gap = before === null ? -1 : frame.time_s - before.time_s;
@@ -29,7 +29,7 @@ export class FrameClock {
     if (this.previous === this.next) return 1;
     return Math.min(1, Math.max(0, (now_ms - this.arrived_ms) / this.interval_ms));
   }
-  /** Simulated time that is on display. */
+  /** Displayed simulated time. */
   time_s(now_ms: number): number | null {
     if (this.previous === null || this.next === null) return null;
     return this.previous.time_s + (this.next.time_s - this.previous.time_s) * this.fraction(now_ms);

@@ -17,7 +17,7 @@ export function rampTexture(at: (share: number) => Rgb): DataTexture {
   return texture;
 }
 
-/** Muted, so that debris and layers carry the strong colours: moss to straw to pale stone. */
+/** Muted, so that debris and layers stand out: moss to straw to pale stone. */
 function groundColour(share: number): Rgb {
   const stops: [number, Rgb][] = [
     [0, [190, 206, 178]], [0.25, [212, 216, 186]], [0.5, [229, 222, 197]], [0.75, [235, 227, 212]], [1, [246, 243, 238]],
@@ -106,7 +106,7 @@ const groundRamp = rampTexture(groundColour);
 const nothing = new DataTexture(new Uint8Array(4), 1, 1, RGBAFormat);
 nothing.needsUpdate = true;
 
-/** Filtered, so that the ground falls evenly from cell to cell. */
+/** Filtered, so that the ground changes smoothly from cell to cell. */
 function sunkTexture(depth: Grid): DataTexture {
   const texture = new DataTexture(depth.values.map((v) => (v > 0 ? v : 0)) as Float32Array<ArrayBuffer>, depth.columns, depth.rows, RedFormat, FloatType);
   texture.internalFormat = "R16F";
@@ -115,7 +115,7 @@ function sunkTexture(depth: Grid): DataTexture {
   return texture;
 }
 
-/** Contour interval that gives some 30 lines over the relief, and every fifth is an index contour. */
+/** Contour interval for about 30 lines over the relief; every fifth is an index contour. */
 export function contourInterval(relief: Relief): number {
   return roundStep((relief.highest - relief.lowest) / 40);
 }
@@ -183,13 +183,13 @@ export class Ground {
     this.set("uWide", wide.texture);
     this.set("uWidePlacing", wide.placing);
   }
-  /** A picture in place of the colours of elevation; null: none. */
+  /** An orthophoto instead of the elevation colours; null: none. */
   showPhoto(photo: Draped | null): void {
     this.set("uPhoto", photo?.texture ?? nothing);
     if (photo) this.set("uPhotoPlacing", photo.placing);
     this.set("uPhotoShown", photo ? 1 : 0);
   }
-  /** The ground lies deeper by `depth`, NaN: nowhere; null: as the scene has it. */
+  /** Lowers the ground by `depth`, NaN: unchanged; null: the scene's ground. */
   sink(depth: Grid | null): void {
     if (this.uniforms["uSunk"].value !== nothing) (this.uniforms["uSunk"].value as Texture).dispose();
     const { west, south, cell, columns, rows } = depth ?? { west: 0, south: 0, cell: 1, columns: 0, rows: 0 };

@@ -1,4 +1,4 @@
-// How zones, beds and inflows are seen: tints with a pattern each, outlines, arrows, names.
+// Display of zones, beds and inflows: tints with patterns, outlines, arrows, names.
 import type { Line2 } from "three/examples/jsm/lines/Line2.js";
 import type { Point, Setup } from "../protocol/messages";
 import { quantity } from "../state/format";
@@ -12,10 +12,10 @@ import type { Relief } from "./relief";
 
 const colours = { zone: "#00694f", bed: "#7a3d8f", inflow: "#0a5fae" };
 
-/** Lines of a wide area are farther apart: seen from where it fits into the view they would be a grey. */
+/** Lines of a wide area are farther apart: seen from a distance they would merge into grey. */
 const gapOf = (polygon: readonly (readonly Point[])[]): number => Math.min(25, Math.max(3, Math.sqrt(footprintArea([polygon])) / 16));
 
-/** From the lowest to what lies on top. */
+/** From bottom to top. */
 export function groundAreas(setup: Setup): Area[] {
   const areas = (polygons: readonly (readonly (readonly Point[])[])[], colour: string, opacity: number, pattern: Area["pattern"]): Area[] =>
     polygons.map((rings) => ({ rings, colour, opacity, pattern, gap_m: gapOf(rings) }));
@@ -45,7 +45,7 @@ export function groundLines(setup: Setup, relief: Relief): Line2[] {
   return lines;
 }
 
-/** selected: its handles take the place of its name. */
+/** selected: its handles replace its name. */
 export function groundLabels(setup: Setup, relief: Relief, selected: string | null): Label[] {
   const labels: Label[] = [];
   const put = (id: string, at: readonly Point[], text: string, kind: "zone" | "bed" | "inflow", priority: number): void => {

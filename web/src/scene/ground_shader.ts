@@ -1,4 +1,4 @@
-// What is put into three.js's Lambert shader to make it the ground.
+// Code inserted into three.js's Lambert shader for the ground.
 
 export const sharedHead = /* glsl */ `
   uniform sampler2D uDepth0, uDepth1;
@@ -23,7 +23,7 @@ const vertexHead = /* glsl */ `
   varying float vShade;
   varying vec3 vLocal;
   varying vec3 vGroundNormal;
-  // Depth (m) that debris picked up.
+  // Depth of erosion (m).
   float sunkAt(vec2 at) {
     vec2 uv = (at - uSunkPlacing.xy) * uSunkPlacing.zw;
     bool inside = all(greaterThan(uv, vec2(0.0))) && all(lessThan(uv, vec2(1.0)));
@@ -60,7 +60,7 @@ const head = /* glsl */ `
   float lineAt(float at, float width) {
     float gap = abs(fract(at - 0.5) - 0.5);
     float pixel = fwidth(at);
-    // Lines closer than some pixels melt into grey instead of flickering.
+    // Lines closer than a few pixels fade into grey instead of flickering.
     return (1.0 - smoothstep(width * pixel, (width + 1.0) * pixel, gap)) * (1.0 - smoothstep(0.12, 0.35, pixel));
   }
   vec4 areaIn(sampler2D picture, vec4 placing) {
@@ -84,7 +84,7 @@ const colour = /* glsl */ `
     float open = 0.34 + 0.66 * smoothstep(0.38, 0.94, vShade);
     ground *= open;
     if (uPhotoShown > 0.5) {
-      // A photograph has its own shade: the relief's only deepens it a little.
+      // A photograph contains shading: that of the relief only deepens it slightly.
       vec4 photo = texture2D(uPhoto, (vLocal.xy - uPhotoPlacing.xy) * uPhotoPlacing.zw);
       ground = mix(ground, photo.rgb * (0.7 + 0.3 * open), photo.a);
     }

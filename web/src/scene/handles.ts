@@ -1,4 +1,4 @@
-// Corners that can be dragged, or moved with the arrow keys: buttons that lie over the view.
+// Corners that can be dragged, or moved with the arrow keys: buttons over the view.
 import type { ScenarioName } from "../protocol/frame";
 import type { Point } from "../protocol/messages";
 import { middle } from "../state/shapes";
@@ -8,7 +8,7 @@ import type { Stage } from "./stage";
 export interface HandleEvents {
   /** The points while a corner is dragged, or an arrow key is down. */
   move(points: Point[]): void;
-  /** The points when the corner or the key was let go, and how far the first of them was moved; null: nothing was. */
+  /** The points when the corner or the key was released, and the displacement of the first one; null: not moved. */
   drop(points: Point[], moved_m: Point | null): void;
 }
 
@@ -19,7 +19,7 @@ export class Handles {
   private points: Point[] = [];
   private scenario: ScenarioName = "A";
   private first = 0; // the corner that the first button moves
-  /** The points when the drag or key press that goes on began: until it ends, what the server says is not shown. */
+  /** The points at the start of the current drag or key press: until it ends, updates from the server are not shown. */
   private before: Point[] | null = null;
 
   constructor(private readonly stage: Stage) {
@@ -115,7 +115,8 @@ export class Handles {
       const k = this.first + i;
       const [x, y] = k === this.points.length ? middle(this.points) : this.points[k];
       const at = this.stage.seenAt(this.stage.reliefOf(this.scenario).local(x, y, 0.3), this.scenario);
-      // One that is hidden gets no keys: who moves a corner out of the view by arrow keys can move it back.
+      // A hidden button gets no keys: the focused one stays, so that a corner moved out of the view by arrow keys can
+      // be moved back.
       button.hidden = button !== document.activeElement && (at === null || at.x < pane.left || at.x > pane.right || at.y < pane.top || at.y > pane.bottom);
       if (at) button.style.transform = `translate(${at.x - pane.left}px, ${at.y - pane.top}px) translate(-50%, -50%)`;
     });

@@ -1,4 +1,4 @@
-// Text at places of the scene, as HTML over the view. Of labels that would lie on one another the more important stays.
+// Text at places of the scene, as HTML over the view. Of overlapping labels the more important one is kept.
 import { Vector3, type PerspectiveCamera } from "three";
 import { h } from "../ui/dom";
 import type { Place } from "../protocol/messages";
@@ -11,7 +11,7 @@ export interface Label {
   kind: "chainage" | "observation" | "release" | "house" | "probe" | "person" | "barrier" | "zone" | "bed" | "inflow";
   colour?: string;
   priority: number;
-  /** Farther away than this the label is left out, m. */
+  /** Distance beyond which the label is hidden, m. */
   farthest?: number;
 }
 
@@ -61,7 +61,7 @@ export class Labels {
   private near(label: Label, camera: PerspectiveCamera): boolean {
     return label.farthest === undefined || camera.position.distanceTo(new Vector3(...label.at)) < label.farthest;
   }
-  /** Whether the ground stands between camera and place. */
+  /** Whether the ground hides the place from the camera. */
   private hidden(at: Place, camera: PerspectiveCamera): boolean {
     const from = camera.position;
     const [ox, oy, oz] = this.relief.origin;

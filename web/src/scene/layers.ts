@@ -1,4 +1,4 @@
-// The map layers: names, units, colours, and how a grid becomes something that lies on the ground.
+// The map layers: names, units, colours, and the conversion of a grid to a texture on the ground.
 import { DataTexture, FloatType, LinearFilter, RGFormat, Vector4 } from "three";
 import type { Grid } from "../protocol/grid";
 import type { Ensemble, EnsembleLayer, EnsembleMap, LayerName, Place, ShownLayer } from "../protocol/messages";
@@ -10,7 +10,7 @@ export interface LayerInfo {
   unit: string;
   ramp: Ramp;
   help: string;
-  /** Of a map of an ensemble: what it was counted from. */
+  /** For a map of an ensemble: its source. */
   from?: string;
 }
 
@@ -37,7 +37,7 @@ export function findMap(ensembles: readonly Ensemble[], name: EnsembleLayer): { 
   }
   return null;
 }
-/** How a layer is called and coloured. */
+/** Name and colours of a layer. */
 export function infoOf(name: ShownLayer, ensembles: readonly Ensemble[]): LayerInfo {
   if (!isEnsembleLayer(name)) return layerInfo[name];
   const found = findMap(ensembles, name);
@@ -61,7 +61,7 @@ export function rangeOfMap(map: EnsembleMap, values: Float32Array): [number, num
   return [0, map.kind === "probability" ? 100 : scaleEnd(values)];
 }
 
-/** A layer of the run in the unit of its legend: servers send SI. */
+/** A layer of the run in the unit of its legend: the server sends SI units. */
 export function inUnit(name: LayerName, grid: Grid): Grid {
   return name === "peak_pressure" ? { ...grid, values: grid.values.map((v) => 1e-3 * v) } : grid;
 }
@@ -77,7 +77,10 @@ export function shownValues(name: LayerName, grid: Grid): Float32Array {
   return grid.values.map((v) => (v >= least[name] ? v : NaN));
 }
 
-/** Round end of the scale: at or above all but the largest half per cent of values, so that one odd cell does not set it. */
+/**
+ * Round end of the scale: at or above all but the largest half per cent of values, so that a single outlier does not
+ * set it.
+ */
 export function scaleEnd(values: Float32Array): number {
   const some = values.filter((v) => !Number.isNaN(v)).sort();
   if (some.length === 0) return 1;
@@ -85,8 +88,8 @@ export function scaleEnd(values: Float32Array): number {
 }
 
 /**
- * B - A on the smallest grid that holds both: a server sends a layer only as far as debris came. A cell that only one of them
- * reached counts as 0 in the other. Times: only where both have one.
+ * B - A on the smallest grid that holds both: a server sends a layer only as far as debris spread. A cell that only
+ * one of them reached counts as 0 in the other. Times: only where both have one.
  */
 export function differenceOf(name: LayerName, a: Grid, b: Grid): Grid {
   const { cell } = a;

@@ -1,4 +1,4 @@
-// Where other people point, probes, the section line, and the own mark that others see.
+// Marks of other people, probes, the section line, and the user's own mark.
 import type { Line2 } from "three/examples/jsm/lines/Line2.js";
 import type { ScenarioName } from "../protocol/frame";
 import type { Place } from "../protocol/messages";
@@ -21,7 +21,7 @@ export function marks(twin: Twin, stage: Stage, layers: ShownLayers): HTMLElemen
   const people = new Map<string, HTMLElement>();
 
   const place = (): void => {
-    // Marks of people follow the camera on every picture; they are few.
+    // Marks of people follow the camera in every picture; there are only a few.
     for (const person of twin.people.value) {
       if (person.id === twin.you.value?.id) continue;
       const element = people.get(person.id);

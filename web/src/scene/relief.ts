@@ -1,4 +1,4 @@
-// The ground as heights on a regular grid: what lies where, and how much sky it sees.
+// The ground as heights on a regular grid: elevation, intersection with rays, and visible share of the sky.
 import type { Grid } from "../protocol/grid";
 import type { Place, Point } from "../protocol/messages";
 
@@ -49,7 +49,7 @@ export class Relief {
     return [x - this.origin[0], y - this.origin[1], this.at(x, y) + above - this.origin[2]];
   }
 
-  /** This ground less a depth, NaN: none. Each height takes the depth of the cell that it lies in. */
+  /** This ground lowered by a depth, NaN: none. Each height uses the depth of its cell. */
   lowered(depth: Grid): Relief {
     const { west, south, cell, columns, rows } = this.grid;
     const values = this.grid.values.slice();
@@ -67,7 +67,7 @@ export class Relief {
     return new Relief({ ...this.grid, values }, this.origin);
   }
 
-  /** Where a ray in the local frame meets the ground, as a world place; null if it does not. */
+  /** Intersection of a ray in the local frame with the ground, as a world place; null if there is none. */
   meet(from: Place, direction: Place): Place | null {
     const [ox, oy, oz] = this.origin;
     const gap = (t: number): number =>
@@ -95,11 +95,14 @@ export class Relief {
     return null;
   }
 
-  /** Share of the sky that each cell sees (0 to 1): 1 less the sine of the steepest way up, averaged over `directions` directions. */
+  /**
+   * Share of the sky that each cell sees (0 to 1): 1 less the sine of the steepest upward angle, averaged over
+   * `directions` directions.
+   */
   skyView(directions = 8, reach = 9): Float32Array {
     const { columns, rows, cell, values } = this.grid;
     const out = new Float32Array(columns * rows);
-    // It changes slowly from cell to cell: on large grids every second one is enough, and the rest lie between.
+    // It changes slowly from cell to cell: on large grids every second one is enough, and the rest are interpolated.
     const every = columns * rows > 50_000 ? 2 : 1;
     const steps: { dx: number; dy: number; run: number }[][] = [];
     for (let d = 0; d < directions; ++d) {

@@ -21,7 +21,7 @@ export class Rig {
 
   constructor(canvas: HTMLElement, private readonly relief: Relief, changed: () => void) {
     this.changed = () => {
-      // Clicks and keys ask where things are seen before the next picture is drawn, which may take long.
+      // Clicks and keys need screen positions before the next picture is drawn, which may take long.
       this.camera.updateMatrixWorld();
       changed();
     };
@@ -63,7 +63,7 @@ export class Rig {
     ];
     this.go({ position, target: target.toArray() }, animated);
   }
-  /** Direction in which the ground falls on the whole. */
+  /** Overall downhill direction of the ground. */
   private get down(): [number, number] {
     const { relief } = this;
     const { west, south } = relief.grid;
@@ -84,10 +84,10 @@ export class Rig {
     const target = this.relief.local(x, y);
     const tan = Math.tan((this.camera.fov * Math.PI) / 360);
     const distance = (0.54 * Math.max(this.relief.height, this.relief.width / this.camera.aspect)) / tan;
-    // Straight down has no "up": a hair to the south keeps north at the top.
+    // Looking straight down, "up" is undefined: a slight offset to the south keeps north at the top.
     this.go({ position: [target[0], target[1] - 0.001 * distance, target[2] + distance], target }, true);
   }
-  /** Brings a local place near the middle, from the present direction. */
+  /** Brings a local place near the centre, from the current direction. */
   visit(place: Place, distance: number): void {
     const away = this.camera.position.clone().sub(this.controls.target).setLength(distance);
     this.go({ position: [place[0] + away.x, place[1] + away.y, place[2] + away.z], target: place }, true);
@@ -111,7 +111,7 @@ export class Rig {
     this.held.clear();
     this.changed();
   }
-  /** Flying, a drag turns the head: the point to turn about is close ahead. Otherwise it is on the ground. */
+  /** While flying, a drag turns the camera on the spot: the pivot is close ahead. Otherwise it is on the ground. */
   private setPivot(close: boolean): void {
     const { camera, controls, relief } = this;
     const ahead = controls.target.clone().sub(camera.position).normalize();
@@ -167,7 +167,7 @@ export class Rig {
     this.changed();
   }
 
-  /** Moves the camera to `now`; true while it goes on moving. */
+  /** Moves the camera to `now`; true while it is still moving. */
   update(now_ms: number): boolean {
     const seconds = Math.min(0.1, (now_ms - this.last_ms) / 1000);
     this.last_ms = now_ms;

@@ -1,4 +1,4 @@
-// Everything that is drawn of one scenario.
+// All graphics of one scenario.
 import {
   Box3, Color, Group, Scene, Vector3, type BufferGeometry, type Mesh, type MeshLambertMaterial, type PerspectiveCamera, type Raycaster, type Texture,
 } from "three";
@@ -37,13 +37,13 @@ export class ScenarioView {
   readonly debris: Debris;
   readonly labels: Labels;
   readonly sky: Sky;
-  /** Lines and handles of what is being drawn or edited, and marks of people and probes. */
+  /** Lines and handles of the shape being drawn or edited, and marks of people and probes. */
   readonly overlay = new Group();
   extraLabels: Label[] = [];
   namesShown = true;
-  /** The ground as it is drawn: that of the scene less what debris picked up. */
+  /** The ground as it is drawn: that of the scene, lowered by erosion. */
   relief: Relief;
-  /** Id of what is being edited: its handles take the place of its name. */
+  /** Id of the shape being edited: its handles replace its name. */
   selected: string | null = null;
   private readonly depths: DepthField;
   private readonly solids = new Group();
@@ -113,7 +113,7 @@ export class ScenarioView {
     for (const barrier of setup.barriers) this.solids.add(barrierSolid(barrier, relief, barrierColour));
     const areas: Area[] = [];
     for (const release of setup.releases) {
-      // The thicker the release, the fuller its tint.
+      // The thicker the release, the stronger its tint.
       const tint = 0.10 + 0.30 * Math.min(1, (release.thickness_m ?? 1) / 4);
       areas.push({ rings: release.polygons, colour: releaseColour, opacity: tint, pattern: release.status === "held" ? "rising" : "none", gap_m: 2.5 });
     }
@@ -134,7 +134,9 @@ export class ScenarioView {
     if (this.setup) for (const line of groundLines(this.setup, this.relief)) this.outlines.add(line);
   }
 
-  /** The ground lies deeper by `depth`, NaN: nowhere; null: as the scene has it. Lines on it go along, solids stand as they stood. */
+  /**
+   * Lowers the ground by `depth`, NaN: unchanged; null: the scene's ground. Lines on it move with it, solids do not.
+   */
   sink(depth: Grid | null): void {
     this.relief = depth ? this.shared.relief.lowered(depth) : this.shared.relief;
     this.labels.relief = this.relief;
@@ -143,7 +145,7 @@ export class ScenarioView {
     this.drawOutlines();
   }
 
-  /** Colours houses and barriers by what hit them; `colourOf` answers null for untouched ones. */
+  /** Colours houses and barriers by impact; `colourOf` returns null for those not hit. */
   colourSolids(impacts: Impacts | null, colourOf: (id: string) => string | null, selected: string | null): void {
     for (const group of this.solids.children) {
       const id = group.userData["id"] as string;
@@ -161,7 +163,7 @@ export class ScenarioView {
     return group ? new Box3().setFromObject(group).getCenter(new Vector3()) : null;
   }
 
-  /** Id of the nearest house or barrier that the ray meets before the ground does. */
+  /** Id of the nearest house or barrier that the ray hits before the ground. */
   solidUnder(ray: Raycaster): string | null {
     const [first] = ray.intersectObjects(this.solids.children.map((group) => group.children[0]), false);
     if (!first) return null;
@@ -212,7 +214,7 @@ export class ScenarioView {
     this.labels.set(labels);
   }
 
-  /** Mixes the two frames for `now_ms`; true while something moves. */
+  /** Interpolates the two frames for `now_ms`; true while something moves. */
   update(now_ms: number, camera: PerspectiveCamera, pixels: number, fastest_mps: number): boolean {
     const fraction = this.clock.fraction(now_ms);
     this.debris.mix(fraction);

@@ -1,4 +1,4 @@
-// Keeps the chosen map layer of every scenario on its ground, fresh while the run goes on.
+// Keeps the selected map layer of every scenario on its ground, updated during the run.
 import type { Texture } from "three";
 import type { ScenarioName } from "../protocol/frame";
 import { gridAt, type Grid } from "../protocol/grid";
@@ -17,7 +17,7 @@ export class ShownLayers {
   /** Values at the ends of the legend. */
   readonly range = new Cell<readonly [number, number]>([0, 1]);
   readonly grids = new Map<ScenarioName, Grid>();
-  /** Time of the recording that the layers on display are of; null: now. */
+  /** Time of the recording of the displayed layers; null: now. */
   readonly shown_s = new Cell<number | null>(null);
   surfaceTop = 3;
   private ofNow: { key: string; grids: readonly Grid[] } | null = null;
@@ -57,7 +57,7 @@ export class ShownLayers {
   get isDifference(): boolean {
     return this.twin.difference.value && this.twin.scenarios.value.length > 1 && this.isLive;
   }
-  /** Value of the shown layer of a scenario, or of the difference, at a world place; null: no layer or nothing there. */
+  /** Value of the shown layer of a scenario, or of the difference, at a world place; null: no layer or no value. */
   valueAt(scenario: ScenarioName, x: number, y: number): number | null {
     const grid = this.difference ?? this.grids.get(scenario);
     const value = grid ? gridAt(grid, x, y) : NaN;
@@ -98,7 +98,7 @@ export class ShownLayers {
   private async layerOf(scenario: ScenarioName, name: LayerName, time: number | null = null): Promise<Grid> {
     return inUnit(name, await this.twin.api.layer(scenario, name, time));
   }
-  /** A map of an ensemble lies on every scenario's ground, whatever the time. */
+  /** A map of an ensemble lies on every scenario's ground, at any time. */
   private async loadMap(name: EnsembleLayer): Promise<void> {
     const found = findMap(this.twin.ensembles.value, name);
     if (!found) return;
@@ -113,7 +113,7 @@ export class ShownLayers {
     for (const s of this.twin.scenarios.value) this.grids.set(s, shown);
     this.lay(name, this.grids);
   }
-  /** While one looks back, colours stay those of now: maps of different times can be compared. */
+  /** In the recording, colours remain those of the current time, so that maps of different times can be compared. */
   private async presentFor(name: LayerName, names: readonly ScenarioName[], time: number | null): Promise<readonly Grid[] | null> {
     if (time === null) {
       this.ofNow = null;
@@ -136,7 +136,7 @@ export class ShownLayers {
       const ends = present && present.length > 1 ? differenceOf(name, present[0], present[1]) : difference;
       const end = scaleEnd(ends.values.map(Math.abs));
       this.range.value = [-end, end];
-      // Both views show it: so it can be read beside either flow.
+      // Both views show it, so that it can be compared with either flow.
       for (const s of twin.scenarios.value) all.set(s, difference);
     } else {
       let end = 0;

@@ -1,4 +1,4 @@
-// Lowers the ground of every scenario by what debris has picked up of its bed, while it does so and while one looks back.
+// Lowers the ground of every scenario by the erosion of its bed, live and in the recording.
 import type { ScenarioName } from "../protocol/frame";
 import { watchAll } from "../state/cell";
 import type { Twin } from "../state/twin";
@@ -8,8 +8,8 @@ import type { Stage } from "./stage";
 const every_ms = 1000;
 
 /**
- * What a ground is that has lost `entrained_m3` by now and is shown as of a time, null: now. Equal words are equal grounds; the empty one is
- * the ground of the scene, which needs no question.
+ * Key of a ground that has lost `entrained_m3` so far and is shown at a time, null: now. Equal keys mean equal
+ * grounds; the empty key is the ground of the scene, which needs no request.
  */
 export function groundKey(entrained_m3: number, time_s: number | null): string {
   if (!(entrained_m3 > 0)) return "";
@@ -45,7 +45,7 @@ export class Sinking {
         await Promise.all([...this.stage.views].map(([name, view]) => this.bring(name, view)));
       } while (this.again);
     } catch (error) {
-      // The next second asks again; a lost connection is told elsewhere.
+      // Retried after a second; a lost connection is reported elsewhere.
       console.warn(error);
     }
     this.busy = false;

@@ -1,7 +1,7 @@
 // Sky, sun and their light.
 import { BackSide, DirectionalLight, HemisphereLight, Mesh, ShaderMaterial, SphereGeometry, Vector3, type Box3, type Scene } from "three";
 
-/** Towards the sun: from the north-west, as maps are lit, so that relief is not read inside out. */
+/** Towards the sun: from the north-west, as maps are lit, so that relief is not perceived inverted. */
 export const towardsSun = new Vector3(-0.62, 0.5, 0.72).normalize();
 
 const vertex = /* glsl */ `
@@ -43,7 +43,7 @@ export class Sky {
     this.sun.shadow.normalBias = 0.15;
     scene.add(this.dome, fill, this.sun, this.sun.target);
   }
-  /** Makes shadows as sharp as the solids that throw them allow. */
+  /** Makes shadows as sharp as the extent of the solids allows. */
   aim(solids: Box3): void {
     if (solids.isEmpty()) {
       this.sun.castShadow = false;

@@ -27,7 +27,7 @@ export function houseSolid(building: Building, relief: Relief, colour: string): 
     shape.holes = holes.map((ring) => new Path(ring));
     return shape;
   });
-  // Walls go a little into the ground, so that no gap shows on a slope.
+  // Walls extend slightly into the ground, so that no gap is visible on a slope.
   const base = Math.min(building.base_m, ...building.footprint.flatMap((polygon) => polygon[0] ?? []).map(([x, y]) => relief.at(x, y))) - 0.5;
   const geometry = new ExtrudeGeometry(shapes, { depth: building.roof_m - base, bevelEnabled: false });
   geometry.translate(0, 0, base - oz);
@@ -81,7 +81,10 @@ function stations(line: Point[], openings: readonly BarrierOpening[], step: numb
 
 type BarrierForm = Pick<Barrier, "id" | "line" | "height_m" | "thickness_m"> & Partial<Pick<Barrier, "crest_elevation_m" | "openings" | "passing_share" | "clearance_m">>;
 
-/** A wall, or a net that one sees through, whose crest is `height_m` above the ground along its line, or level; openings are left out down to their sills. */
+/**
+ * A wall, or a translucent net, whose crest is `height_m` above the ground along its line, or level; openings are left
+ * out down to their sills.
+ */
 export function barrierSolid(barrier: BarrierForm, relief: Relief, colour: string): Group {
   const openings = barrier.openings ?? [];
   const places = stations(barrier.line, openings, Math.max(1, relief.grid.cell));

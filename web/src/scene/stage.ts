@@ -14,7 +14,7 @@ import { Resolution } from "./resolution";
 import { Rig } from "./rig";
 import { ScenarioView } from "./scenario_view";
 
-/** What a test or a curious user can read about speed: window.talusStats. */
+/** Performance figures for tests and users: window.talusStats. */
 export interface Stats {
   frames: number;
   /** Script time of the last display frame and of decoding the last message, ms. */
@@ -22,14 +22,14 @@ export interface Stats {
   draw_ms: number;
   /** From a frame's arrival to its decoding, waiting for the unpacking included. */
   decode_ms: number;
-  /** Script's part of that. */
+  /** Script time within that. */
   unfold_ms: number;
   upload_ms: number;
   particles: number;
   shownTime_s: number;
-  /** Pixels of the canvas per pixel of the page: lower while slow graphics draw what moves. */
+  /** Pixels of the canvas per pixel of the page: lower while slow graphics draw a moving picture. */
   pixelRatio: number;
-  /** How far the ground has sunk where debris picked up most, by scenario, m. */
+  /** Greatest depth of erosion, by scenario, m. */
   sunk_m: Partial<Record<ScenarioName, number>>;
 }
 declare global {
@@ -47,7 +47,7 @@ export class Stage {
   readonly rig: Rig;
   readonly views = new Map<ScenarioName, ScenarioView>();
   readonly stats: Stats = { frames: 0, script_ms: 0, draw_ms: 0, decode_ms: 0, unfold_ms: 0, upload_ms: 0, particles: 0, shownTime_s: 0, pixelRatio: 1, sunk_m: {} };
-  /** Speed at the upper end of the colours; it grows with what is seen, in round steps. */
+  /** Speed at the upper end of the colours; it grows with the displayed speeds, in round steps. */
   readonly fastest_mps = new Cell(10);
   /** Counts changes of the ground. */
   readonly sinkings = new Cell(0);
@@ -155,7 +155,7 @@ export class Stage {
     this.invalidate();
   }
 
-  /** `share` of the screen's pixels; what is on the canvas is gone if that changes it. */
+  /** `share` of the screen's pixels; a change clears the canvas. */
   private setSharpness(share: number): void {
     const ratio = share * Math.min(2, devicePixelRatio);
     if (ratio !== this.renderer.getPixelRatio()) this.renderer.setPixelRatio(ratio);
@@ -163,13 +163,13 @@ export class Stage {
   }
   private tick(now_ms: number): void {
     requestAnimationFrame((next) => this.tick(next));
-    // Frames of the server are timed by the same clock.
+    // Frames from the server are timed by the same clock.
     const now = Math.max(now_ms, 0);
     this.resolution.tick(now);
     if (this.rig.update(now)) this.invalidate();
     for (const view of this.views.values()) if (view.clock.moving(now)) this.due = true;
     if (!this.due) {
-      // What has been drawn in a hurry is drawn once more in full.
+      // A picture drawn at reduced resolution is drawn once more in full.
       if (this.stats.pixelRatio >= Math.min(2, devicePixelRatio) || !this.resolution.standsStill(now)) return;
       this.setSharpness(1);
       this.draw(now);
@@ -217,7 +217,7 @@ export class Stage {
     ++this.stats.frames;
     this.stats.script_ms = performance.now() - begun;
   }
-  /** What lies over a view whose left edge is at `left`, as boxes in that view. */
+  /** Elements that cover a view whose left edge is at `left`, as boxes in that view. */
   private covered(left: number): Box[] {
     if (!this.element.isConnected) return [];
     const own = this.canvas.getBoundingClientRect();
@@ -232,7 +232,7 @@ export class Stage {
     this.invalidate();
   }
 
-  /** What lies under a point of the page. */
+  /** The object under a point of the page. */
   hit(clientX: number, clientY: number): Hit | null {
     const box = this.canvas.getBoundingClientRect();
     const wide = box.width / Math.max(1, this.views.size);
@@ -246,7 +246,7 @@ export class Stage {
     const world = this.reliefOf(name).meet(camera.position.toArray(), direction.toArray());
     return world ? { scenario: name, world, x: clientX, y: clientY } : null;
   }
-  /** Where a local place is seen, in pixels of the page; null behind the camera. */
+  /** Position of a local place in pixels of the page; null behind the camera. */
   seenAt(local: Place, scenario: ScenarioName): { x: number; y: number } | null {
     const box = this.canvas.getBoundingClientRect();
     const wide = box.width / Math.max(1, this.views.size);
@@ -255,7 +255,7 @@ export class Stage {
     if (seen.z > 1 || column < 0) return null;
     return { x: box.left + column * wide + ((seen.x + 1) / 2) * wide, y: box.top + ((1 - seen.y) / 2) * box.height };
   }
-  /** Metres per pixel at the point that the camera looks at. */
+  /** Metres per pixel at the camera's target. */
   get metresPerPixel(): number {
     const { camera, controls } = this.rig;
     return (2 * camera.position.distanceTo(controls.target) * Math.tan((camera.fov * Math.PI) / 360)) / this.height;

@@ -1,10 +1,10 @@
-// What barriers have beside their line, as the page tells the server.
+// Values of barriers other than their line, as sent to the server.
 import type { Barrier, BarrierOpening } from "../protocol/messages";
 import type { BarrierValues } from "../protocol/schema";
 
 export type BarrierSet = Partial<BarrierValues & Pick<Barrier, "openings">>;
 
-/** The openings with one number of one of them changed; as they are where that is no number. */
+/** The openings with one number of one of them changed; unchanged if that is not a number. */
 export function openingsWith(openings: readonly BarrierOpening[], index: number, key: keyof BarrierOpening, value: number): BarrierOpening[] {
   return openings.map((o, k) => (k === index && Number.isFinite(value) && value >= 0 ? { ...o, [key]: value } : o));
 }

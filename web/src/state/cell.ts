@@ -1,4 +1,4 @@
-/** A value that tells its readers when it changes. */
+/** A value that notifies its readers of changes. */
 export class Cell<T> {
   private readonly readers = new Set<(value: T) => void>();
 
@@ -12,7 +12,7 @@ export class Cell<T> {
     this.held = next;
     for (const reader of [...this.readers]) reader(next);
   }
-  /** Calls `reader` now and on every change; the result ends that. */
+  /** Calls `reader` now and on every change; call the result to end this. */
   watch(reader: (value: T) => void): () => void {
     this.readers.add(reader);
     reader(this.held);

@@ -1,4 +1,4 @@
-// Changes of the setup as the page asks for them.
+// Changes of the setup by the page.
 import type { Action, HydrographRow, Point } from "../protocol/messages";
 import type { BarrierSet } from "./barriers";
 import type { BedSet, ZoneSet } from "./ground";
@@ -8,7 +8,7 @@ import type { Shape, Twin } from "./twin";
 
 const rounded = (points: readonly Point[]): Point[] => points.map(([x, y]) => [Number(x.toFixed(2)), Number(y.toFixed(2))]);
 
-/** A new shape of these corners, with the sizes set in the panel; it is selected once it is there. */
+/** A new shape of these corners, with the sizes set in the panel; it is selected once it exists. */
 export async function create(twin: Twin, shape: Shape, points: readonly Point[]): Promise<void> {
   const corners = rounded(points);
   const sizes = twin.newShape;
@@ -24,12 +24,12 @@ export async function create(twin: Twin, shape: Shape, points: readonly Point[])
   if (done?.created) twin.selection.value = { shape, id: done.created };
 }
 
-/** Sizes that several shapes have may be null here; the server says of which it is none. */
+/** Sizes that several shapes have may be null here; only the server knows for which that is invalid. */
 export interface Change extends Omit<BarrierSet, "thickness_m" | "height_m">, ZoneSet, BedSet {
   points?: readonly Point[]; move_m?: Point; name?: string; thickness_m?: number | null; height_m?: number | null; direction_deg?: number | null; hydrograph?: HydrographRow[];
 }
 
-/** Sends just what changes: all else stays as it is. */
+/** Sends only the changed values. */
 export async function change(twin: Twin, item: Item, what: Change): Promise<boolean> {
   const { points, move_m, ...sizes } = what;
   const by = move_m === undefined ? {} : { move_m: rounded([move_m])[0] };

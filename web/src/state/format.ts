@@ -25,7 +25,7 @@ export function quantity(value: number | null | undefined, unit: string, digits 
 export function count(value: number | null | undefined): string {
   return value === null || value === undefined || !Number.isFinite(value) ? nothing : number(Math.round(value), Math.max(1, String(Math.abs(Math.round(value))).length));
 }
-/** At a tick of a scale: without zeros that say nothing. */
+/** At a tick of a scale: without trailing zeros. */
 export function tick(value: number): string {
   return number(value, 3).replace(/(\.\d*?)0+$/, "$1").replace(/\.$/, "");
 }

@@ -1,4 +1,4 @@
-// What zones and beds have beside their outline: as the form shows it, as the server is told, and as a list says it.
+// Values of zones and beds other than their outline: in the form, for the server, and in a list.
 import type { Bed } from "../protocol/messages";
 import { fields, type BedValues, type ZoneValues } from "../protocol/schema";
 import { quantity, shownAs, tick, toldAs } from "./format";
@@ -15,7 +15,7 @@ export const usualZone = {
 } as const satisfies Record<string, ZoneSet>;
 export const usualBed = { depth_m: fields.bed.depth_m.first as number, law: "growth" as Bed["law"], growth_rate_per_m: fields.bed.growth_rate_per_m.first as number };
 
-/** What a change of law needs with it. */
+/** Values required by a change of law. */
 export const lawChange = (bed: BedSet, law: Bed["law"]): BedSet =>
   law === "shear" ? { law } : { law, growth_rate_per_m: bed.growth_rate_per_m ?? usualBed.growth_rate_per_m };
 

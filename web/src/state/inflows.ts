@@ -1,4 +1,4 @@
-// Hydrographs and the way in which an inflow goes.
+// Hydrographs and the direction of inflows.
 import type { HydrographRow, Inflow, Point } from "../protocol/messages";
 import { fields } from "../protocol/schema";
 import type { Relief } from "../scene/relief";
@@ -10,7 +10,7 @@ export const hydrographKeys = Object.keys(fields.hydrograph) as HydrographKey[];
 /** A surge that rises, stays and falls: 200 m3. */
 export const usualHydrograph: readonly HydrographRow[] = [[0, 0], [5, 10], [20, 10], [25, 0]].map(([time_s, discharge_m3ps]) => ({ time_s, discharge_m3ps, velocity_mps: 5 }));
 
-/** With one number of one row changed, in the order of time; null where that is no number that could hold. */
+/** With one number of one row changed, in the order of time; null if that is not a valid number. */
 export function rowsWith(rows: readonly HydrographRow[], index: number, key: HydrographKey, value: number): HydrographRow[] | null {
   const { low, high } = fields.hydrograph[key];
   if (!(value >= low && value <= high)) return null;
@@ -27,7 +27,7 @@ export const hasDensity = (rows: readonly HydrographRow[]): boolean => rows.some
 /** All rows with this density; null: with none of their own. */
 export const rowsOfDensity = (rows: readonly HydrographRow[], density: number | null): HydrographRow[] => rows.map((row) => ({ ...row, density_kgpm3: density }));
 
-/** As the server is told: a density that is not there is left out. */
+/** In the form for the server: an absent density is omitted. */
 export const told = (rows: readonly HydrographRow[]): HydrographRow[] => rows.map(({ density_kgpm3, ...row }) => (typeof density_kgpm3 === "number" ? { ...row, density_kgpm3 } : row));
 
 /** Discharge is linear between rows. */
@@ -42,7 +42,10 @@ function arrow([x, y]: Point, [u, v]: Point, length: number): Point[] {
   const side = (s: number): Point => [tip[0] - 0.35 * length * u + s * 0.22 * length * v, tip[1] - 0.35 * length * v - s * 0.22 * length * u];
   return [[x, y], tip, side(1), tip, side(-1)];
 }
-/** Where debris goes: arrows to the right of a line, seen from its first end, or one in an area's middle along its direction. */
+/**
+ * Direction of the debris: arrows to the right of a line, seen from its first end, or one in an area's middle along
+ * its direction.
+ */
 export function arrowsOf(line: readonly Point[]): Point[][] {
   const [[x0, y0], [x1, y1]] = line;
   const length = Math.hypot(x1 - x0, y1 - y0);

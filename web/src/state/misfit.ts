@@ -1,4 +1,4 @@
-// What the misfit map of a calibration is drawn from.
+// Scale and texts of the misfit map of a calibration.
 import type { CalibrationStatus, Parameter } from "../protocol/messages";
 
 /** Misfits range over decades, and near the best their differences matter most: a logarithm of 1 + misfit. */
@@ -10,7 +10,7 @@ export class MisfitScale {
     if (all.length === 0) return new MisfitScale(0, 1);
     const low = Math.min(...all);
     const high = Math.max(...all);
-    // Runs that fit alike should look alike, and not span all colours.
+    // Runs with similar misfit should look similar, and not span all colours.
     return new MisfitScale(low, Math.max(high, 1.5 * (1 + low) - 1));
   }
   share(misfit: number): number {
@@ -23,7 +23,7 @@ export class MisfitScale {
   }
 }
 
-/** Ranges that a calibration begins with; as in docs/calibration.md, otherwise around the present value. */
+/** Initial ranges of a calibration; as in docs/calibration.md, otherwise around the current value. */
 const usual: Record<string, [number, number]> = { "material.friction_coefficient": [0.1, 0.6], "material.viscosity": [0.01, 0.6] };
 export const freeAtFirst = Object.keys(usual);
 
@@ -46,7 +46,7 @@ export function rangeProblem(parameter: Parameter, low: number, high: number): s
   return null;
 }
 
-/** "about 3 min": no better than that is known. */
+/** "about 3 min": the estimate is not more accurate. */
 export function aboutTime(seconds: number | null): string {
   if (seconds === null || !Number.isFinite(seconds)) return "";
   if (seconds < 90) return `about ${Math.max(5, 5 * Math.round(seconds / 5))}\u202fs`;
@@ -56,7 +56,7 @@ export function aboutTime(seconds: number | null): string {
 
 const phases = { design: "spread over the ranges", search: "search for the best", check: "checks of the result" };
 
-/** How far a calibration is, in a sentence. */
+/** Progress of a calibration, in a sentence. */
 export function progressText(status: CalibrationStatus): string {
   const done = `${status.runs.length} of at most ${status.runs_at_most} runs`;
   const failed = status.runs_failed > 0 ? `, ${status.runs_failed} failed` : "";

@@ -1,7 +1,7 @@
-// What was known at an earlier time of the recording.
+// Data at an earlier time of the recording.
 import type { Column, Series, State } from "../protocol/messages";
 
-/** Series as far as a time; null: all of them. */
+/** Series up to a time; null: all of them. */
 export function seriesUntil(series: Series | null, time_s: number | null): Series | null {
   if (series === null || time_s === null) return series;
   const until = time_s + 1e-6;
@@ -11,7 +11,7 @@ export function seriesUntil(series: Series | null, time_s: number | null): Serie
   };
   const rows = kept(series.time["time_s"] ?? []);
   const time = Object.fromEntries(Object.entries(series.time).map(([name, column]) => [name, column.slice(0, rows)]));
-  // The front comes by in order of chainage, but a second surge may pass places that the first one left out.
+  // The front arrives in order of chainage, but a second surge may reach places that the first one missed.
   const { arrival_time_s } = series.front;
   const there = (column: Column): Column => column.filter((_, k) => (arrival_time_s[k] ?? Infinity) <= until);
   const { chainage_m, front_velocity_mps, particle_speed_mps } = series.front;
@@ -19,10 +19,10 @@ export function seriesUntil(series: Series | null, time_s: number | null): Serie
     particle_speed_mps: there(particle_speed_mps) } };
 }
 
-/** The front counts as moving for so long after it reached a new chainage, as at the server. */
+/** The front counts as moving for this time after reaching a new chainage, as in the server. */
 const lately_s = 1;
 
-/** The state as it was told at a time, from the row of the series at or before it; what no series holds stays that of now. */
+/** The state at a time, from the row of the series at or before it; values without a series remain current. */
 export function stateAt(state: State, series: Series | null, time_s: number | null): State {
   const past = time_s === null ? null : seriesUntil(series, time_s);
   const times = past?.time["time_s"] ?? [];

@@ -1,4 +1,4 @@
-// What of the ground a click means, where no house, barrier or release is.
+// Selects the shape on the ground for a click that hits no house, barrier or release.
 import type { Point, Setup } from "../protocol/messages";
 import { footprintArea, inside } from "./shapes";
 import type { Selection } from "./twin";
@@ -15,8 +15,8 @@ function distanceToLine([x, y]: Point, line: readonly Point[]): number {
 }
 
 /**
- * An inflow's line within reach, else the smallest area around the place. One that covers much of the terrain would take every
- * click that means nothing: it is selected in its list.
+ * An inflow's line within reach, else the smallest area around the place. One that covers much of the terrain would
+ * catch every stray click: it is selected in its list.
  */
 export function groundUnder(setup: Setup, at: Point, reach_m: number, terrain_m2: number): Selection | null {
   const line = setup.inflows.filter((i) => i.line !== null).map((i) => ({ id: i.id, far: distanceToLine(at, i.line ?? []) })).sort((a, b) => a.far - b.far)[0];

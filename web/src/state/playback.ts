@@ -31,7 +31,7 @@ export class Playback {
     this.stop();
     if (this.twin.replay_s.value === null) return;
     this.twin.replay_s.value = null;
-    // The server answers a new wish for frames with the present ones.
+    // The server answers a new request for frames with the current ones.
     this.twin.askForFrames();
   }
 
@@ -59,7 +59,7 @@ export class Playback {
     this.wanted = within;
     if (!this.busy) void this.fetch();
   }
-  /** Of the times asked for while one frame is under way only the last is fetched. */
+  /** Of the times requested while a frame is being fetched, only the last one is fetched. */
   private async fetch(): Promise<void> {
     this.busy = true;
     while (this.wanted !== null) {

@@ -1,4 +1,4 @@
-// Asks again for what the server does not push: series and impacts, while the run goes on and once after it stops.
+// Polls data that the server does not push: series and impacts, during the run and once after it stops.
 import type { ScenarioName } from "../protocol/frame";
 import type { Twin } from "./twin";
 
@@ -7,7 +7,7 @@ const every_ms = 1000;
 export class Refresher {
   private readonly stale = new Set<ScenarioName>(["A"]);
   private busy = false;
-  /** `also` is called after every refresh, for panels with questions of their own. */
+  /** `also` is called after every refresh, for panels with their own requests. */
   constructor(private readonly twin: Twin, private readonly also: () => void) {
     for (const name of ["A", "B"] as const) {
       let seen = "";
@@ -18,7 +18,7 @@ export class Refresher {
       });
       twin.cells[name].setup.watch(() => this.stale.add(name));
     }
-    // Live again: impacts are those of the time that was on display.
+    // Live again: the impacts are still those of the displayed time.
     twin.replay_s.watch((time) => {
       if (time !== null) return;
       for (const name of twin.scenarios.value) this.stale.add(name);
@@ -41,7 +41,7 @@ export class Refresher {
       }));
       this.also();
     } catch (error) {
-      // The next change asks again; a lost connection is told elsewhere.
+      // Retried at the next change; a lost connection is reported elsewhere.
       console.warn(error);
     }
     this.busy = false;

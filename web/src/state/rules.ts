@@ -1,4 +1,4 @@
-// What a value is tied to, told beside its field before anything is sent: the ties of the field table.
+// Constraints on a value, shown next to its field before anything is sent: the ties of the field table.
 import type { SceneInfo } from "../protocol/messages";
 import { fields, ties, type FieldDescription } from "../protocol/schema";
 import { quantity, tick } from "./format";
@@ -8,13 +8,13 @@ export interface Limits { low: number; high: number; hindrance: string | null; h
 
 export type Given = Pick<SceneInfo, "particle_spacing_m" | "settings">;
 
-/** Why the scene refuses a value of this key, whatever it is; null: it does not. */
+/** Why the scene refuses any value of this key; null: it does not. */
 export function hindranceOf(section: string, key: string, scene: Given): string | null {
   const needs = ties[section]?.[key]?.needs;
   return needs && scene.settings[needs.key] !== needs.value ? `Needs ${needs.key} = "${needs.value}": ${needs.why}.` : null;
 }
 
-/** The least value that the particle spacing allows, in the unit of the key; rounded up, as the server tells it. */
+/** The least value that the particle spacing allows, in the unit of the key; rounded up, as by the server. */
 export const leastOf = (section: string, key: string, scene: Given): number =>
   Math.ceil(1000 * (ties[section]?.[key]?.spacings ?? 0) * scene.particle_spacing_m) / 1000;
 

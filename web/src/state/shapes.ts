@@ -1,4 +1,4 @@
-// Plane geometry of what is drawn: areas, lengths, volumes.
+// Plane geometry of shapes: areas, lengths, volumes.
 import type { Barrier, Bed, Building, Inflow, Point, Release, Setup, Zone } from "../protocol/messages";
 import type { Relief } from "../scene/relief";
 import type { Selection, Shape } from "./twin";
@@ -92,7 +92,7 @@ export function itemsOf(setup: Setup | null, shape: Shape): Item[] {
 export function itemOf(setup: Setup | null, selection: Selection | null): Item | null {
   return selection === null ? null : (itemsOf(setup, selection.shape).find((item) => item.id === selection.id) ?? null);
 }
-/** The line of what is one, null of areas. */
+/** The line of a linear shape, null for areas. */
 export const lineOf = (item: Item): Point[] | null => (item.shape === "barrier" || item.shape === "inflow" ? item.line : null);
 /** Polygons of an area, each with its outer ring first. */
 export function partsOf(item: Item): Point[][][] {
@@ -112,10 +112,10 @@ export function pointsOf(item: Item): Point[] {
   const closed = line === null && points.length > 1 && first[0] === last[0] && first[1] === last[1];
   return closed ? points.slice(0, -1) : points;
 }
-/** What has several parts or holes cannot be sent back as one outline. */
+/** A shape with several parts or holes cannot be sent back as one outline. */
 export function canReshape(item: Item): boolean {
   const parts = partsOf(item);
   return lineOf(item) !== null || (parts.length === 1 && parts[0].length === 1);
 }
-/** What a raster tells, or what is everywhere, has no outline to move. */
+/** A shape from a raster, or one that covers everything, has no outline to move. */
 export const hasOutline = (item: Item): boolean => lineOf(item) !== null || partsOf(item).length > 0;

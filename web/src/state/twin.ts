@@ -1,4 +1,4 @@
-// What the page knows and what its parts agree on. Panels and views read cells; only this file talks to the server's actions.
+// The shared state of the page. Panels and views read cells; only this file talks to the server's actions.
 import { Api, Refused } from "../protocol/api";
 import type { Frame, ScenarioName } from "../protocol/frame";
 import { Live, type Connection } from "../protocol/live";
@@ -39,9 +39,9 @@ export class Twin {
   readonly scenarios = new Cell<ScenarioName[]>(["A"]);
   readonly edited = new Cell<ScenarioName>("A");
   readonly cells: Record<ScenarioName, ScenarioCells> = { A: emptyCells(), B: emptyCells() };
-  /** Time of the recording that is on display; null: live. */
+  /** Displayed time of the recording; null: live. */
   readonly replay_s = new Cell<number | null>(null);
-  /** Whether the frame of the recording that is on display is too compressed. */
+  /** Whether the displayed frame of the recording is too compressed. */
   readonly replaySqueezed = new Cell(false);
   readonly playing = new Cell(false);
   readonly layer = new Cell<ShownLayer | "none">("none");
@@ -58,11 +58,11 @@ export class Twin {
   readonly calibration = new Cell<CalibrationStatus | null>(null);
   readonly tool = new Cell<Tool>({ kind: "none" });
   readonly selection = new Cell<Selection | null>(null);
-  /** Thickness, height and so on that the next drawn shape gets. */
+  /** Thickness, height and other initial values of the next drawn shape. */
   readonly newShape = { release: { thickness_m: fields.release.thickness_m.first as number },
     barrier: { height_m: fields.barrier.height_m.first, thickness_m: fields.barrier.thickness_m.first, passing_share: null } as BarrierSet,
     building: { height_m: fields.buildings.height_m.first as number }, zone: { ...usualZone.friction } as ZoneSet, bed: { ...usualBed }, inflow: { hydrograph: usualHydrograph } };
-  /** Whether the next inflow is drawn as a line; else as an area. */
+  /** Whether the next inflow is drawn as a line; otherwise as an area. */
   readonly inflowByLine = new Cell(true);
   readonly probes = new Cell<readonly Probe[]>([]);
   readonly section = new Cell<readonly Point[] | null>(null);
@@ -88,7 +88,7 @@ export class Twin {
   onFrame(reader: (frame: Frame) => void): void {
     this.frameReaders.push(reader);
   }
-  /** Shows a frame of the recording as if it had come in. */
+  /** Shows a frame of the recording as if it had just been received. */
   showFrame(frame: Frame): void {
     for (const reader of this.frameReaders) reader(frame);
   }
@@ -102,7 +102,7 @@ export class Twin {
   askForFrames(): void {
     this.live.show({ scenarios: this.scenarios.value, rate_hz: 30, particle_cap: 100000 });
   }
-  /** The state at the time that is on display. */
+  /** The state at the displayed time. */
   shownState(scenario: ScenarioName = this.edited.value): State | null {
     const { state, series } = this.cells[scenario];
     return state.value && stateAt(state.value, series.value, this.replay_s.value);
@@ -110,7 +110,7 @@ export class Twin {
   get now(): ScenarioCells {
     return this.cells[this.edited.value];
   }
-  /** Why this person cannot change anything now; null: they can. */
+  /** Why this person cannot make changes now; null: they can. */
   get hindrance(): string | null {
     if (this.connection.value.state !== "open") return "The connection is lost; reconnecting automatically.";
     const you = this.you.value;
@@ -121,7 +121,7 @@ export class Twin {
     return holder ? `${holder.name} has control. Ask for it to change anything.` : "Nobody has control. Take it to change anything.";
   }
 
-  /** Asks for a change; a refusal is told to the user beside `anchor`, and answered by null. */
+  /** Requests a change; a refusal is shown to the user next to `anchor`, and returns null. */
   async act(action: Action, scenario: ScenarioName = this.edited.value): Promise<Done | null> {
     try {
       return await this.api.act(scenario, action);
@@ -130,7 +130,7 @@ export class Twin {
       return null;
     }
   }
-  /** Back to time 0 with the present setup, on display too. */
+  /** Back to time 0 with the current setup, also in the display. */
   async restart(): Promise<void> {
     if (this.replay_s.value !== null) {
       this.replay_s.value = null;

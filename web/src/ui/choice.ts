@@ -1,4 +1,4 @@
-// One of a few: radio buttons in a row.
+// A choice of a few: radio buttons in a row.
 import { freshId, h } from "./dom";
 
 export function choice<T extends string>(name: string, options: readonly (readonly [T, string])[], first: T, onset: (value: T) => void): HTMLElement {

@@ -3,7 +3,7 @@
 type Value = string | number | boolean | null | undefined | ((event: never) => void);
 export type Child = Node | string | null | undefined | false;
 
-/** `on...` functions become listeners; false, null and undefined leave an attribute out; true sets it bare. */
+/** `on...` functions become listeners; false, null and undefined omit an attribute; true sets it without a value. */
 export function h<K extends keyof HTMLElementTagNameMap>(name: K, attributes: Record<string, Value> = {}, ...children: Child[]): HTMLElementTagNameMap[K] {
   const element = document.createElement(name);
   for (const [key, value] of Object.entries(attributes)) {

@@ -6,10 +6,10 @@ import { freshId, h } from "./dom";
 export interface NumberField {
   element: HTMLElement;
   input: HTMLInputElement;
-  /** Shows a value that came from elsewhere; does nothing while the user is at it. */
+  /** Shows a value from elsewhere; does nothing while the user edits it. */
   show(value: number | null): void;
   enable(hindrance: string | null): void;
-  /** Narrows what is allowed; a hindrance of its own disables the field. */
+  /** Narrows the allowed range; a hindrance disables the field. */
   limit(limits: Limits): void;
   /** The nearest value that is allowed. */
   allowed(value: number): number;
@@ -21,7 +21,7 @@ export interface NumberFieldOptions {
   unit: string;
   low: number;
   high: number;
-  /** Ends of the slider, where those of the range are too far apart to drag. */
+  /** Ends of the slider, if the range is too wide for one. */
   sliderLow?: number;
   sliderHigh?: number;
   /** Value that is marked on the slider. */

@@ -1,4 +1,4 @@
-// A tick before a number: without it there is none.
+// A number with a check box: unticked, there is no value.
 import type { Limits } from "../state/rules";
 import { freshId, h } from "./dom";
 import { numberField, type NumberField, type NumberFieldOptions } from "./field";
@@ -10,7 +10,7 @@ export interface OptionalField {
   limit(limits: Limits): void;
 }
 
-/** usual: what the tick begins with. More fields that go with the number come and go with it. */
+/** usual: the initial value when ticked. Further fields that belong to the number are shown and hidden with it. */
 export function optionalField(label: string, title: string, usual: number, field: Omit<NumberFieldOptions, "onset">, onset: (value: number | null) => void,
   more: readonly HTMLElement[] = []): OptionalField {
   const id = freshId("has");
@@ -44,7 +44,7 @@ export function optionalField(label: string, title: string, usual: number, field
     },
     limit(limits) {
       refused = limits.hindrance;
-      // Beside the tick, which is all that is to be seen of a value that cannot be given.
+      // Next to the check box, the only visible part of a value that cannot be given.
       why.textContent = refused ?? "";
       why.hidden = refused === null;
       number.limit(limits);

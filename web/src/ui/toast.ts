@@ -1,10 +1,10 @@
-// Short notices, read out by screen readers. Errors stay longer and can be sent away.
+// Short notices, read out by screen readers. Errors stay longer and can be dismissed.
 import { button, h } from "./dom";
 
 export class Toasts {
   readonly polite = h("div", { class: "toasts", role: "status", "aria-live": "polite" });
   readonly urgent = h("div", { class: "toasts urgent", role: "alert", "aria-live": "assertive" });
-  /** The control used last: an error is shown beside it. */
+  /** The control used last: an error is shown next to it. */
   private anchor: Element | null = null;
 
   constructor() {

@@ -12,7 +12,10 @@ export interface ValueField {
   limit(limits: Limits): void;
 }
 
-/** `onset` gets values in the unit of the key; `none`: the value of an optional one that is unticked. Fields of `more` come and go with it. */
+/**
+ * `onset` receives values in the unit of the key; `none`: the value of an unticked optional one. Fields of `more` are
+ * shown and hidden with it.
+ */
 export function valueField(about: FieldDescription, value: number | null, onset: (value: number | null) => void, none: number | null = null,
   more: readonly HTMLElement[] = []): ValueField {
   const options = { label: about.label, unit: about.unit, low: about.low, high: about.high, sliderLow: about.sliderLow, sliderHigh: about.sliderHigh, help: about.help, value: null };
