@@ -169,8 +169,7 @@ Real turbulence_at(const Model& model, Real thickness) {
 /// - Voellmy (1955), "Ueber die Zerstoerungskraft von Lawinen": the shear stress rho g v^2 / xi on the ground below
 ///   flow of thickness h, distributed over its full depth, as a deceleration g v^2 / (xi h). The law applies to
 ///   the whole column; applied to the lowest layer alone, debris would shear off above it wherever internal friction
-///   is
-///   less than the slope. Debris more than a spacing above the flow's thickness is airborne and not affected. xi may
+///   is less than the slope. Debris more than a spacing above the flow's thickness is airborne and not affected. xi may
 ///   depend on the thickness (see turbulence_at).
 /// - Stems as cylinders across the flow (Petryk & Bosmajian 1975, "Analysis of flow through vegetation", eq. 4): a
 ///   deceleration C_D n D / 2 v^2 for n stems of diameter D per area.
