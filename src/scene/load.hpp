@@ -39,8 +39,9 @@ namespace talus {
 /// Fills scene.flow_path from its file, or by tracing. The terrain and the releases must be loaded.
 [[nodiscard]] Status load_flow_path(const ParsedScene& parsed, Scene& scene);
 
-/// Checks what was observed against terrain, flow path and buildings, and fills scene.deposit_outlines, affected_areas and elevation_changes. All of these
-/// are loaded. A chainage beyond the path is an error, but of an [[observation]] a note: it is only drawn.
+/// Checks what was observed against terrain, flow path and buildings, and fills scene.deposit_outlines, affected_areas
+/// and elevation_changes. All of these are loaded. A chainage beyond the path is an error, but of an [[observation]] a
+/// note: it is only drawn.
 [[nodiscard]] Status load_observations(const ParsedScene& parsed, Scene& scene);
 
 /// Adds the file, and for a Shapefile the files that belong to it, to scene.inputs.
