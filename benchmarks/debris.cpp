@@ -9,7 +9,7 @@ namespace {
 
 constexpr int steps = 20;  // until the initial lattice of the debris is disordered
 
-Model with_method(Model model, InternalFriction method) {
+sim::Model with_method(sim::Model model, params::InternalFriction method) {
     model.solver.internal_friction = method;
     return model;
 }
@@ -28,18 +28,18 @@ const Debris& debris_of(std::int64_t particles) {
     return *debris;
 }
 
-Stages::Stages(const Model& model) {
-    const cpu::ParticleStages particle = cpu::particle_stages_for(model.kernel.choice);
+Stages::Stages(const sim::Model& model) {
+    const sim::cpu::ParticleStages particle = sim::cpu::particle_stages_for(model.kernel.choice);
     const Stage update_velocities = {"update_velocities", [update = particle.update_velocities](
-                                                              const cpu::StageData& data, std::size_t first,
+                                                              const sim::cpu::StageData& data, std::size_t first,
                                                               std::size_t last) { (void)update(data, first, last); }};
     predict = {"predict", particle.predict};
     after_neighbours = {{"begin", particle.begin}};
     const auto add = [this](std::initializer_list<Stage> more) {
         after_neighbours.insert(after_neighbours.end(), more);
     };
-    if (model.solver.internal_friction == InternalFriction::stress) {
-        const cpu::StressStages stress = cpu::stress_stages_for(model.kernel.choice);
+    if (model.solver.internal_friction == params::InternalFriction::stress) {
+        const sim::cpu::StressStages stress = sim::cpu::stress_stages_for(model.kernel.choice);
         add({{"linearise", stress.linearise},
              {"contacts", particle.contacts},
              {"solve", stress.solve},
@@ -47,7 +47,7 @@ Stages::Stages(const Model& model) {
              {"find_spread", stress.find_spread},
              {"spread", stress.spread}});
     } else {
-        const cpu::PairStages pair = cpu::pair_stages_for(model.kernel.choice);
+        const sim::cpu::PairStages pair = sim::cpu::pair_stages_for(model.kernel.choice);
         add({{"pack_motion", particle.pack_motion},
              {"find_tolerated", pair.find_tolerated},
              {"contacts", particle.contacts},
@@ -61,7 +61,7 @@ Stages::Stages(const Model& model) {
          {"update_sleep", particle.update_sleep}});
 }
 
-Step::Step(const Debris& debris, InternalFriction method)
+Step::Step(const Debris& debris, params::InternalFriction method)
     : model_(with_method(debris.model(), method)),
       ground_(debris.ground()),
       state_(debris.state()),
@@ -76,12 +76,12 @@ Step::Step(const Debris& debris, InternalFriction method)
 /// As Backend::find_neighbours(), with the arrays that the stages read brought into the new order.
 void Step::find_neighbours() {
     const auto radius = static_cast<float>(model_.support_radius);
-    cpu::CellSort cell_sort(state_.count);
-    cpu::CellGrid grid;
-    cpu::NeighbourSearch search(state_.count);
+    sim::cpu::CellSort cell_sort(state_.count);
+    sim::cpu::CellGrid grid;
+    sim::cpu::NeighbourSearch search(state_.count);
     const auto by_cell = cell_sort.sort(work_.predicted, state_.count, radius, grid);
     const auto [order, awake] = search.find(work_.predicted, by_cell, state_.asleep, grid, radius);
-    const State before = state_;
+    const sim::State before = state_;
     state_.awake = awake;
     for (std::size_t i = 0; i < order.size(); ++i) state_.set_particle(i, before.particle(order[i]));
     search.write(neighbours_);
@@ -92,7 +92,7 @@ void Step::run_until(std::size_t place) {
 }
 
 void Step::run(const Stage& stage) {
-    stage.run({model_, ground_, state_, work_, neighbours_}, 0, (state_.count + block_size - 1) / block_size);
+    stage.run({model_, ground_, state_, work_, neighbours_}, 0, (state_.count + sim::block_size - 1) / sim::block_size);
 }
 
 void Step::remember() {

@@ -20,24 +20,24 @@ namespace talus::benchmarks {
 struct Debris {
     explicit Debris(int particles);
 
-    [[nodiscard]] const Model& model() const { return simulation.model(); }
-    [[nodiscard]] const Ground& ground() const { return simulation.ground(); }
-    [[nodiscard]] const State& state() const { return simulation.state(); }
+    [[nodiscard]] const sim::Model& model() const { return simulation.model(); }
+    [[nodiscard]] const sim::Ground& ground() const { return simulation.ground(); }
+    [[nodiscard]] const sim::State& state() const { return simulation.state(); }
 
     bench::Start start;
-    Simulation simulation;
+    sim::Simulation simulation;
 };
 [[nodiscard]] const Debris& debris_of(std::int64_t particles);
 
 /// A stage of a step that is compiled per instruction set; it works on blocks.
 struct Stage {
     std::string name;
-    std::function<void(const cpu::StageData&, std::size_t first, std::size_t last)> run;
+    std::function<void(const sim::cpu::StageData&, std::size_t first, std::size_t last)> run;
 };
 
 /// The stages of a step with one iteration, in order, before and after the neighbour search.
 struct Stages {
-    explicit Stages(const Model& model);
+    explicit Stages(const sim::Model& model);
 
     Stage predict;
     std::vector<Stage> after_neighbours;
@@ -46,7 +46,7 @@ struct Stages {
 /// A step in progress: the data of the stages, as in the backend.
 class Step {
   public:
-    Step(const Debris& debris, InternalFriction method);
+    Step(const Debris& debris, params::InternalFriction method);
 
     /// Runs the stages before the one at this index in Stages::after_neighbours.
     void run_until(std::size_t place);
@@ -63,17 +63,17 @@ class Step {
   private:
     void find_neighbours();
 
-    Model model_;
-    Ground ground_;
-    State state_;
-    cpu::Work work_;
-    cpu::NeighbourLists neighbours_;
+    sim::Model model_;
+    sim::Ground ground_;
+    sim::State state_;
+    sim::cpu::Work work_;
+    sim::cpu::NeighbourLists neighbours_;
     Stages stages_;
     struct Memory {
-        std::vector<cpu::DisplacedRow> displaced;
-        std::vector<cpu::MotionRow> motion;
-        VectorArray position, velocity, shift, contact_friction, corrected, end;
-        DeviatorArray stress;
+        std::vector<sim::cpu::DisplacedRow> displaced;
+        std::vector<sim::cpu::MotionRow> motion;
+        sim::VectorArray position, velocity, shift, contact_friction, corrected, end;
+        sim::DeviatorArray stress;
         std::vector<float> multiplier, contact_normal, still_time;
     };
     Memory memory_;

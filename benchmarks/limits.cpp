@@ -11,7 +11,7 @@
 
 #ifndef TALUS_LIMITS
 #define TALUS_LIMITS
-namespace talus::cpu {
+namespace talus::sim::cpu {
 namespace {
 
 struct Limits {
@@ -23,11 +23,11 @@ struct Limits {
 };
 
 }  // namespace
-}  // namespace talus::cpu
+}  // namespace talus::sim::cpu
 #endif
 
 HWY_BEFORE_NAMESPACE();
-namespace talus::cpu::HWY_NAMESPACE {
+namespace talus::sim::cpu::HWY_NAMESPACE {
 namespace {
 
 HWY_INLINE float total(const L& lanes) {
@@ -90,13 +90,13 @@ Limits make_limits() {
 }
 
 }  // namespace
-}  // namespace talus::cpu::HWY_NAMESPACE
+}  // namespace talus::sim::cpu::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
 #include <benchmark/benchmark.h>
 
-namespace talus::cpu {
+namespace talus::sim::cpu {
 
 HWY_EXPORT(make_limits);
 
@@ -150,5 +150,5 @@ void limit_arithmetic(benchmark::State& run) {
 BENCHMARK(limit_arithmetic)->Arg(2000);
 
 }  // namespace
-}  // namespace talus::cpu
+}  // namespace talus::sim::cpu
 #endif

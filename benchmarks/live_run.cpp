@@ -13,27 +13,27 @@ namespace talus::benchmarks {
 namespace {
 
 /// A plane of 20 degrees, 1600 m long, with 2400 m2 of it released, 2 m thick: it keeps sliding.
-std::shared_ptr<const Scene> plane_scene(std::int64_t particles) {
+std::shared_ptr<const scene::Scene> plane_scene(std::int64_t particles) {
     Grid<float> grid(GridGeometry{0, 0, 4, 400, 100});
     for (int row = 0; row < grid.geometry.rows; ++row) {
         for (int column = 0; column < grid.geometry.columns; ++column) {
             grid.at(column, row) = static_cast<float>(600 - 4 * column * std::tan(M_PI / 9));
         }
     }
-    Scene scene;
+    scene::Scene scene;
     scene.file = "plane.toml";
-    scene.terrain = Terrain(std::move(grid));
-    Release release;
+    scene.terrain = terrain::Terrain(std::move(grid));
+    terrain::Release release;
     release.name = "slab";
     release.patches.push_back({{{{40, 180}, {100, 180}, {100, 220}, {40, 220}}, {}}, 2});
     release.volume = release_volume(scene.terrain, release);
     scene.releases.push_back(std::move(release));
-    scene.flow_path = FlowPath({{20, 200}, {1580, 200}}, 60);
+    scene.flow_path = terrain::FlowPath({{20, 200}, {1580, 200}}, 60);
     scene.spec.solver.target_particle_count = static_cast<int>(particles);
     scene.spec.solver.stop_moving_share = 0;
     scene.spec.solver.end_time = 1e9;
     scene.spec.material.friction_coefficient = 0.3;
-    return std::make_shared<const Scene>(std::move(scene));
+    return std::make_shared<const scene::Scene>(std::move(scene));
 }
 
 constexpr int steps_before = 100;
@@ -58,7 +58,7 @@ BENCHMARK(live_step)->Apply(sizes)->UseRealTime();
 
 /// The same step of the same debris in a plain run.
 void plain_step(benchmark::State& run) {
-    const auto plain = std::move(*Run::start(*plane_scene(run.range(0))));
+    const auto plain = std::move(*run::Run::start(*plane_scene(run.range(0))));
     for (int k = 0; k < steps_before; ++k) (void)plain->advance();
     for (auto _ : run) benchmark::DoNotOptimize(plain->advance());
 }

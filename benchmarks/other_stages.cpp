@@ -20,8 +20,8 @@ struct Sorted {
         : sort(debris.state().count),
           by_cell(sort.sort(debris.state().position, debris.state().count, debris.model().support_radius, grid)) {}
 
-    cpu::CellSort sort;
-    cpu::CellGrid grid;
+    sim::cpu::CellSort sort;
+    sim::cpu::CellGrid grid;
     std::span<const std::uint32_t> by_cell;
 };
 
@@ -40,7 +40,7 @@ BENCHMARK(cell_sort)->Apply(sizes)->UseRealTime();
 void find_neighbours(benchmark::State& run) {
     const Debris& debris = debris_of(run.range(0));
     const Sorted sorted(debris);
-    cpu::NeighbourSearch search(debris.state().count);
+    sim::cpu::NeighbourSearch search(debris.state().count);
     for (auto _ : run) {
         benchmark::DoNotOptimize(search
                                      .find(debris.state().position, sorted.by_cell, debris.state().asleep, sorted.grid,
@@ -54,8 +54,8 @@ BENCHMARK(find_neighbours)->Apply(sizes)->UseRealTime();
 void write_neighbours(benchmark::State& run) {
     const Debris& debris = debris_of(run.range(0));
     const Sorted sorted(debris);
-    cpu::NeighbourSearch search(debris.state().count);
-    cpu::NeighbourLists lists(debris.state().count);
+    sim::cpu::NeighbourSearch search(debris.state().count);
+    sim::cpu::NeighbourLists lists(debris.state().count);
     (void)search.find(debris.state().position, sorted.by_cell, debris.state().asleep, sorted.grid,
                       static_cast<float>(debris.model().support_radius));
     for (auto _ : run) {
@@ -70,15 +70,16 @@ BENCHMARK(write_neighbours)->Apply(sizes)->UseRealTime();
 /// Maps, front and impact, of a state that does not move.
 void observe(benchmark::State& run) {
     const Debris& debris = debris_of(run.range(0));
-    Observer observer(debris.model(), debris.ground(), debris.state(), debris.start.flow_path, debris.start.outputs,
-                      default_map_cell(debris.ground().terrain.cell(), debris.model().particle_spacing));
+    observe::Observer observer(
+        debris.model(), debris.ground(), debris.state(), debris.start.flow_path, debris.start.outputs,
+        terrain::default_map_cell(debris.ground().terrain.cell(), debris.model().particle_spacing));
     for (auto _ : run) observer.after_step(debris.model(), debris.ground(), debris.state(), 0);
     per_particle(run, debris);
 }
 BENCHMARK(observe)->Apply(sizes)->UseRealTime();
 
-void sample_all(benchmark::State& run, const Debris& debris, const Ground& ground) {
-    const State& state = debris.state();
+void sample_all(benchmark::State& run, const Debris& debris, const sim::Ground& ground) {
+    const sim::State& state = debris.state();
     for (auto _ : run) {
         for (std::uint32_t i = 0; i < state.count; ++i) {
             benchmark::DoNotOptimize(sample_boundary(debris.model(), ground, state.position.at(i)));
@@ -96,24 +97,24 @@ BENCHMARK(boundary_with_buildings)->Apply(sizes);
 
 void boundary_of_ground_alone(benchmark::State& run) {
     const Debris& debris = debris_of(run.range(0));
-    sample_all(run, debris, Ground(debris.ground().terrain));
+    sample_all(run, debris, sim::Ground(debris.ground().terrain));
 }
 BENCHMARK(boundary_of_ground_alone)->Apply(sizes);
 
 /// Contact with ground and walls; each time as in the first iteration of a step.
 void contacts_one_by_one(benchmark::State& run) {
     const Debris& debris = debris_of(run.range(0));
-    const State& state = debris.state();
+    const sim::State& state = debris.state();
     const auto dt = static_cast<float>(state.time_step);
-    std::vector<Boundary<float>> boundary(state.count);
+    std::vector<sim::Boundary<float>> boundary(state.count);
     for (std::uint32_t i = 0; i < state.count; ++i)
         boundary[i] = sample_boundary(debris.model(), debris.ground(), state.position.at(i));
     for (auto _ : run) {
         for (std::uint32_t i = 0; i < state.count; ++i) {
-            ContactMemories<float> memories;
+            sim::ContactMemories<float> memories;
             benchmark::DoNotOptimize(resolve_contacts(debris.model(), boundary[i], LocalPoint{},
                                                       state.velocity.at(i) * dt, state.multiplier[i],
-                                                      uniform_grip<float>(debris.model()), memories));
+                                                      sim::uniform_grip<float>(debris.model()), memories));
         }
     }
     per_particle(run, debris);
@@ -122,7 +123,7 @@ BENCHMARK(contacts_one_by_one)->Apply(sizes);
 
 void free_end_one_by_one(benchmark::State& run) {
     const Debris& debris = debris_of(run.range(0));
-    const State& state = debris.state();
+    const sim::State& state = debris.state();
     const auto dt = static_cast<float>(state.time_step);
     for (auto _ : run) {
         for (std::uint32_t i = 0; i < state.count; ++i) {

@@ -11,7 +11,7 @@
 namespace talus::benchmarks {
 namespace {
 
-void run_stage(benchmark::State& run, InternalFriction method, std::size_t place) {
+void run_stage(benchmark::State& run, params::InternalFriction method, std::size_t place) {
     Step step(debris_of(run.range(0)), method);
     step.run_until(place);
     step.remember();
@@ -27,9 +27,9 @@ void run_stage(benchmark::State& run, InternalFriction method, std::size_t place
 
 /// "stress/solve", "pair/apply", ...
 bool register_stages() {
-    const Model& model = debris_of(smallest_size).model();
-    for (const InternalFriction method : {InternalFriction::stress, InternalFriction::pair}) {
-        Model with_method = model;
+    const sim::Model& model = debris_of(smallest_size).model();
+    for (const params::InternalFriction method : {params::InternalFriction::stress, params::InternalFriction::pair}) {
+        sim::Model with_method = model;
         with_method.solver.internal_friction = method;
         const std::vector<Stage> stages = Stages(with_method).after_neighbours;
         for (std::size_t place = 0; place < stages.size(); ++place) {

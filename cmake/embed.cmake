@@ -1,13 +1,13 @@
 # Files inside the program, so that nothing has to be found at run time.
 #
 # embed_files(TARGET NAMESPACE [BASE FOLDER] FILES...): adds to TARGET a source that holds the bytes of FILES (relative to the current
-# folder) and a header <NAMESPACE>.hpp that declares, in talus::NAMESPACE,
+# folder) and a header <NAMESPACE>.hpp that declares, in talus::<module>::NAMESPACE,
 #   - a std::string_view per file, named as the file with every other character than letters and digits as "_",
 #   - `files`: all of them with their names, in the order given. With BASE, names are paths relative to that folder.
 # The source is made again when a file changes.
 
 if(CMAKE_SCRIPT_MODE_FILE)
-  # Called as `cmake -DSPACE=... -DOUTPUT=... -DFILES=a|b -P embed.cmake` by the command below.
+  # Called as `cmake -DMODULE=... -DSPACE=... -DOUTPUT=... -DFILES=a|b -P embed.cmake` by the command below.
   string(REPLACE "|" ";" FILES "${FILES}")
   set(bodies "")
   set(views "")
@@ -28,8 +28,8 @@ if(CMAKE_SCRIPT_MODE_FILE)
     string(APPEND views "const std::string_view ${symbol}{reinterpret_cast<const char*>(${symbol}_bytes), ${size}};\n")
     string(APPEND rows "    {\"${file_name}\", {reinterpret_cast<const char*>(${symbol}_bytes), ${size}}},\n")
   endforeach()
-  file(WRITE "${OUTPUT}" "#include \"${SPACE}.hpp\"\n\nnamespace talus::${SPACE} {\nnamespace {\n${bodies}}\n${views}\
-const std::array<File, file_count> files = {{\n${rows}}};\n}  // namespace talus::${SPACE}\n")
+  file(WRITE "${OUTPUT}" "#include \"${SPACE}.hpp\"\n\nnamespace talus::${MODULE}::${SPACE} {\nnamespace {\n${bodies}}\n${views}\
+const std::array<File, file_count> files = {{\n${rows}}};\n}  // namespace talus::${MODULE}::${SPACE}\n")
   return()
 endif()
 
@@ -37,6 +37,7 @@ set(talus_embed_script ${CMAKE_CURRENT_LIST_FILE})
 
 function(embed_files target space)
   cmake_parse_arguments(PARSE_ARGV 2 embed "" "BASE" "")
+  string(REGEX REPLACE "^talus_" "" module ${target})
   set(folder ${CMAKE_CURRENT_BINARY_DIR}/embedded)
   set(paths "")
   set(declarations "")
@@ -57,7 +58,7 @@ function(embed_files target space)
 #include <array>
 #include <string_view>
 
-namespace talus::@space@ {
+namespace talus::@module@::@space@ {
 
 struct File {
     std::string_view name, content;
@@ -65,12 +66,12 @@ struct File {
 inline constexpr std::size_t file_count = @count@;
 extern const std::array<File, file_count> files;
 @declarations@
-}  // namespace talus::@space@
+}  // namespace talus::@module@::@space@
 ")
   list(JOIN paths "|" joined)
   add_custom_command(
     OUTPUT ${folder}/${space}.cpp
-    COMMAND ${CMAKE_COMMAND} -DSPACE=${space} -DOUTPUT=${folder}/${space}.cpp -DBASE=${embed_BASE} "-DFILES=${joined}"
+    COMMAND ${CMAKE_COMMAND} -DMODULE=${module} -DSPACE=${space} -DOUTPUT=${folder}/${space}.cpp -DBASE=${embed_BASE} "-DFILES=${joined}"
             -P ${talus_embed_script}
     DEPENDS ${paths} ${talus_embed_script}
     COMMENT "Embedding ${space}" VERBATIM)

@@ -22,7 +22,7 @@
 #include "scene/builtin.hpp"
 #include "temporary_folder.hpp"
 
-namespace talus {
+namespace talus::cli {
 namespace {
 
 namespace fs = std::filesystem;
@@ -138,8 +138,8 @@ int bench_command(const BenchArguments& arguments) {
     const TemporaryFolder unpacked;
     if (unpacked.path().empty()) return fail(exit_code::failure, "cannot make a temporary folder; set TMPDIR");
     watch.remove_at_once(unpacked.path());
-    const bool reads_files = std::count(plan.scenes.begin(), plan.scenes.end(), builtin_scene_name) > 0;
-    const Result<fs::path> builtin_scene = reads_files ? unpack_builtin_scene(unpacked.path()) : fs::path();
+    const bool reads_files = std::count(plan.scenes.begin(), plan.scenes.end(), scene::builtin_scene_name) > 0;
+    const Result<fs::path> builtin_scene = reads_files ? scene::unpack_builtin_scene(unpacked.path()) : fs::path();
     if (!builtin_scene) return fail(exit_code::failure, builtin_scene.error().message);
 
     ProgressReporter progress(progress_style(false, false));
@@ -154,8 +154,9 @@ int bench_command(const BenchArguments& arguments) {
     (void)std::fputs(bench::table_text(outcome.rows).c_str(), stdout);
     if (watch.stop_requested()) return exit_code::interrupted;
     Status written;
-    if (!arguments.json.empty()) written = write_text_file(arguments.json, bench::table_json(outcome.rows));
-    if (written && !arguments.svg.empty()) written = write_text_file(arguments.svg, bench::scaling_svg(outcome.rows));
+    if (!arguments.json.empty()) written = products::write_text_file(arguments.json, bench::table_json(outcome.rows));
+    if (written && !arguments.svg.empty())
+        written = products::write_text_file(arguments.svg, bench::scaling_svg(outcome.rows));
     return written ? exit_code::success : fail(exit_code::failure, written.error().message);
 }
 
@@ -201,4 +202,4 @@ void add_bench(CLI::App& program, std::vector<Command>& commands) {
     commands.push_back({app, [bench] { return bench_command(*bench); }});
 }
 
-}  // namespace talus
+}  // namespace talus::cli

@@ -17,7 +17,7 @@
 #include "scene_input.hpp"
 #include "throttled_progress.hpp"
 
-namespace talus {
+namespace talus::cli {
 namespace {
 
 namespace fs = std::filesystem;
@@ -51,12 +51,12 @@ observations can identify (docs/calibration.md).
 Exit codes: as talus run. A run that fails is excluded; 3: no run of the design was complete.
 )";
 
-Result<CalibrationPlan> read_arguments(const CalibrateArguments& arguments) {
-    EnsemblePlan factors;
+Result<calibrate::CalibrationPlan> read_arguments(const CalibrateArguments& arguments) {
+    ensemble::EnsemblePlan factors;
     for (const std::string& factor : arguments.factors) {
         TALUS_TRY(add_factor(factors, factor));
     }
-    CalibrationPlan plan;
+    calibrate::CalibrationPlan plan;
     plan.factors = std::move(factors.factors);
     plan.search.runs = arguments.runs.value_or(plan.search.runs);
     plan.search.design = arguments.design.value_or(plan.search.design);
@@ -75,12 +75,12 @@ int say_interrupted(const fs::path& path) {
                             path.string()));
 }
 
-int run_recovery(const CalibrateArguments& arguments, const CalibrationPlan& plan, const PlannedRuns& runs,
-                 const SceneInput& input, const fs::path& path, CalibrationOptions options,
-                 ThrottledProgress& reporter) {
+int run_recovery(const CalibrateArguments& arguments, const calibrate::CalibrationPlan& plan,
+                 const ensemble::PlannedRuns& runs, const SceneInput& input, const fs::path& path,
+                 calibrate::CalibrationOptions options, ThrottledProgress& reporter) {
     const std::size_t seeds = *arguments.recover;
     std::size_t seed = 0;
-    options.on_progress = [&](const CalibrationProgress& progress) {
+    options.on_progress = [&](const calibrate::CalibrationProgress& progress) {
         const std::string where = seed == 0 ? "runs with known values" : fmt::format("seed {} of {}", seed, seeds);
         reporter.report([&] { return where + ", " + progress_text(progress); },
                         [&] { return progress_json(progress); });
@@ -90,7 +90,7 @@ int run_recovery(const CalibrateArguments& arguments, const CalibrationPlan& pla
     reporter.clear();
     if (!recovery) return fail(exit_code::bad_input, recovery.error().message);
     if (recovery->interrupted) return say_interrupted(path);
-    if (Status s = write_text_file(path / "recovery.csv", recovery_table(*recovery)); !s) {
+    if (Status s = products::write_text_file(path / "recovery.csv", recovery_table(*recovery)); !s) {
         return fail(exit_code::failure, s.error().message);
     }
     if (arguments.json) {
@@ -101,17 +101,17 @@ int run_recovery(const CalibrateArguments& arguments, const CalibrationPlan& pla
     return exit_code::success;
 }
 
-int run_calibration(const CalibrateArguments& arguments, const CalibrationPlan& plan, const PlannedRuns& runs,
-                    const SceneInput& input, const fs::path& path, CalibrationOptions options,
-                    ThrottledProgress& reporter) {
-    const std::vector<ObservedValue> observed = observed_values(input.scene);
-    const auto folder = EnsembleFolder::open(
+int run_calibration(const CalibrateArguments& arguments, const calibrate::CalibrationPlan& plan,
+                    const ensemble::PlannedRuns& runs, const SceneInput& input, const fs::path& path,
+                    calibrate::CalibrationOptions options, ThrottledProgress& reporter) {
+    const std::vector<ensemble::ObservedValue> observed = ensemble::observed_values(input.scene);
+    const auto folder = ensemble::EnsembleFolder::open(
         path, calibration_definition("calibration", plan, runs, input.source, input.scene, observed, input.name));
     if (!folder) return fail(exit_code::bad_input, folder.error().message);
-    options.on_progress = [&](const CalibrationProgress& progress) {
+    options.on_progress = [&](const calibrate::CalibrationProgress& progress) {
         reporter.report([&] { return progress_text(progress); }, [&] { return progress_json(progress); });
     };
-    const auto made = calibrate(plan, runs, input.source, input.scene, observed, *folder, options);
+    const auto made = calibrate::calibrate(plan, runs, input.source, input.scene, observed, *folder, options);
     reporter.clear();
     if (!made) return fail(exit_code::fault, made.error().message);
     if (made->result.interrupted) return say_interrupted(path);
@@ -130,18 +130,18 @@ int run_calibration(const CalibrateArguments& arguments, const CalibrationPlan& 
 int calibrate_command(const CalibrateArguments& arguments) {
     if (!arguments.data.empty()) set_data_folder(arguments.data);
     InterruptWatch watch;
-    const Result<CalibrationPlan> plan = read_arguments(arguments);
+    const Result<calibrate::CalibrationPlan> plan = read_arguments(arguments);
     if (!plan) return fail(exit_code::bad_input, plan.error().message);
     const Result<SceneInput> input = open_scene(arguments.scene, arguments.overrides, watch);
     if (!input) return fail(exit_code::bad_input, input.error().message);
-    const Result<PlannedRuns> runs = plan_calibration(*plan, input->source, input->scene);
+    const Result<ensemble::PlannedRuns> runs = plan_calibration(*plan, input->source, input->scene);
     if (!runs) return fail(exit_code::bad_input, runs.error().message);
     const std::string ending = arguments.recover ? "_recovery" : "_calibration";
     const fs::path path =
         arguments.output.empty() ? fs::path("talus_out") / (input->short_name + ending) : fs::path(arguments.output);
 
     const int cores = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
-    CalibrationOptions options;
+    calibrate::CalibrationOptions options;
     const int threads = arguments.threads.value_or(cores);
     options.runs_at_once = std::min(threads, static_cast<int>(plan->search.at_once));
     options.threads_per_run = std::max(1, threads / options.runs_at_once);
@@ -188,4 +188,4 @@ void add_calibrate(CLI::App& program, std::vector<Command>& commands) {
     commands.push_back({app, [arguments] { return calibrate_command(*arguments); }});
 }
 
-}  // namespace talus
+}  // namespace talus::cli

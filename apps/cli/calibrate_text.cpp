@@ -10,30 +10,30 @@
 #include "core/number_or_null.hpp"
 #include "progress.hpp"
 
-namespace talus {
+namespace talus::cli {
 namespace {
 
 using Json = nlohmann::ordered_json;
 
 }  // namespace
 
-std::string calibration_text(const Calibration& c, const std::filesystem::path& folder) {
-    const CalibrationSummary s = summarise(c);
-    const SearchResult& r = c.result;
+std::string calibration_text(const calibrate::Calibration& c, const std::filesystem::path& folder) {
+    const calibrate::CalibrationSummary s = summarise(c);
+    const calibrate::SearchResult& r = c.result;
     std::string text = fmt::format("{} runs, {} failed; {}\nleast misfit {:.3g} in run {}\n\n", r.runs.size(), s.failed,
                                    r.settled ? "no further gain expected" : "stopped at the maximum number of runs",
                                    r.runs[*r.best].misfit, *r.best);
     text += fmt::format("{:<38}{:>11}{:>11}{:>11}{:>11}{:>12}\n", "factor", "best fit", "median", "95 % from", "to",
                         "width left");
     for (std::size_t k = 0; k < s.factors.size(); ++k) {
-        const FactorResult& f = s.factors[k];
+        const calibrate::FactorResult& f = s.factors[k];
         text += fmt::format("{:<38}{:>11.4g}{:>11.4g}{:>11.4g}{:>11.4g}{:>10.0f} %\n", c.factors[k].key, f.best,
                             f.median, f.low, f.high, 100 * f.kept);
     }
     text += fmt::format("\n{:<38}{:>11}{:>11}{:>11}{:>11}{:>12}  {}\n", "observation", "observed", "+-", "best fit",
                         "off by", "emulator +-", "unit");
     for (std::size_t j = 0; j < s.observations.size(); ++j) {
-        const ObservationResult& o = s.observations[j];
+        const calibrate::ObservationResult& o = s.observations[j];
         text += fmt::format("{:<38}{:>11.4g}{:>11.3g}{:>11}{:>11.1f}{:>12.3g}  {}\n", c.observed[j].name,
                             c.observed[j].value, c.observed[j].uncertainty,
                             std::isfinite(o.best) ? fmt::format("{:.4g}", o.best) : "none", o.deviation, o.left_out,
@@ -45,20 +45,20 @@ std::string calibration_text(const Calibration& c, const std::filesystem::path& 
            fmt::format("\n{}\n{}\n", (folder / "report.html").string(), (folder / "best_fit/scene.toml").string());
 }
 
-std::string calibration_line(const Calibration& c, const std::filesystem::path& folder) {
+std::string calibration_line(const calibrate::Calibration& c, const std::filesystem::path& folder) {
     Json json = {{"event", "result"}, {"folder", folder.string()}};
     json.update(calibration_json(c));
     return json.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 
-std::string progress_text(const CalibrationProgress& p) {
+std::string progress_text(const calibrate::CalibrationProgress& p) {
     std::string text = fmt::format("{}: {} of at most {} runs", search_phase_name(p.phase), p.done + p.failed, p.most);
     if (p.failed > 0) text += fmt::format(", {} failed", p.failed);
     if (std::isfinite(p.least_misfit)) text += fmt::format(", least misfit {:.3g}", p.least_misfit);
     return text + fmt::format(", at most about {} left", clock_text(p.wall_remaining));
 }
 
-std::string progress_json(const CalibrationProgress& p) {
+std::string progress_json(const calibrate::CalibrationProgress& p) {
     const Json json = {{"event", "progress"},
                        {"phase", search_phase_name(p.phase)},
                        {"runs_done", p.done},
@@ -69,10 +69,10 @@ std::string progress_json(const CalibrationProgress& p) {
     return json.dump();
 }
 
-std::string recovery_text(const Recovery& recovery, const std::filesystem::path& folder) {
+std::string recovery_text(const calibrate::Recovery& recovery, const std::filesystem::path& folder) {
     std::string text = fmt::format("{:<6}{:<38}{:>11}{:>11}{:>11}{:>11}{:>10}\n", "seed", "factor", "truth", "median",
                                    "95 % from", "to", "returned");
-    for (const RecoverySeed& seed : recovery.seeds) {
+    for (const calibrate::RecoverySeed& seed : recovery.seeds) {
         for (std::size_t k = 0; k < recovery.factors.size(); ++k) {
             text += fmt::format("{:<6}{:<38}{:>11.4g}{:>11.4g}{:>11.4g}{:>11.4g}{:>10}\n", seed.seed,
                                 recovery.factors[k].key, seed.truth[k], seed.median[k], seed.low[k], seed.high[k],
@@ -83,18 +83,18 @@ std::string recovery_text(const Recovery& recovery, const std::filesystem::path&
     text += "\n";
     for (std::size_t k = 0; k < recovery.factors.size(); ++k) {
         const auto hits = std::count_if(recovery.seeds.begin(), recovery.seeds.end(),
-                                        [&](const RecoverySeed& seed) { return seed.returned(k); });
+                                        [&](const calibrate::RecoverySeed& seed) { return seed.returned(k); });
         text +=
             fmt::format("{} recovered within its interval in {} of {} seeds\n", recovery.factors[k].key, hits, count);
     }
     const auto all = std::count_if(recovery.seeds.begin(), recovery.seeds.end(),
-                                   [](const RecoverySeed& seed) { return seed.returned(); });
+                                   [](const calibrate::RecoverySeed& seed) { return seed.returned(); });
     return text + fmt::format("all together in {} of {}\n{}\n", all, count, (folder / "recovery.csv").string());
 }
 
-std::string recovery_json(const Recovery& recovery) {
+std::string recovery_json(const calibrate::Recovery& recovery) {
     Json seeds = Json::array();
-    for (const RecoverySeed& seed : recovery.seeds) {
+    for (const calibrate::RecoverySeed& seed : recovery.seeds) {
         seeds.push_back({{"seed", seed.seed},
                          {"truth", seed.truth},
                          {"median", seed.median},
@@ -104,8 +104,8 @@ std::string recovery_json(const Recovery& recovery) {
                          {"runs", seed.runs}});
     }
     Json keys = Json::array();
-    for (const Factor& f : recovery.factors) keys.push_back(f.key);
+    for (const ensemble::Factor& f : recovery.factors) keys.push_back(f.key);
     return Json{{"event", "result"}, {"factors", keys}, {"seeds", seeds}}.dump();
 }
 
-}  // namespace talus
+}  // namespace talus::cli

@@ -9,7 +9,7 @@
 
 #include <fmt/format.h>
 
-namespace talus {
+namespace talus::cli {
 
 int fail(int code, const std::string& message) {
     std::string line = "talus: error: " + message;
@@ -51,4 +51,4 @@ void set_data_folder(const std::string& folder) {
     setenv("TALUS_DATA", folder.c_str(), 1);
 }
 
-}  // namespace talus
+}  // namespace talus::cli

@@ -9,7 +9,7 @@
 #include "core/result.hpp"
 
 /// The program's commands, one per file. Each declares its options next to its code.
-namespace talus {
+namespace talus::cli {
 
 struct Command {
     CLI::App* app;             ///< declared; whether it was called
@@ -40,4 +40,4 @@ int fail(int code, const std::string& message);
 /// Sets `${TALUS_DATA}` in scene paths to `folder`. Call before any thread starts.
 void set_data_folder(const std::string& folder);
 
-}  // namespace talus
+}  // namespace talus::cli

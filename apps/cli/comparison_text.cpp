@@ -6,7 +6,7 @@
 
 #include "variant_plan.hpp"
 
-namespace talus {
+namespace talus::cli {
 namespace {
 
 /// Three significant digits, without an exponent.
@@ -19,11 +19,11 @@ std::string value_text(double value) {
     return std::isfinite(value) ? short_number(value) : std::string("not reached");
 }
 
-std::string change_text(const Change& change, bool judged) {
-    if (change.verdict == Verdict::not_measured) return "not measured";
+std::string change_text(const run::Change& change, bool judged) {
+    if (change.verdict == run::Verdict::not_measured) return "not measured";
     std::string text = value_text(change.value);
     if (std::isfinite(change.percent)) text += fmt::format(" {:+.1f} %", change.percent);
-    return text + (judged && change.verdict == Verdict::fail ? " !" : "");
+    return text + (judged && change.verdict == run::Verdict::fail ? " !" : "");
 }
 
 /// Cells of a row, the first left-aligned, the others right-aligned. Two cells only: a name and a message.
@@ -48,21 +48,21 @@ std::string aligned(const std::vector<Cells>& rows) {
 }
 
 /// "front velocity at 121 m" over two lines, the unit below.
-void add_heading(const Quantity& quantity, Cells& above, Cells& below) {
+void add_heading(const run::Quantity& quantity, Cells& above, Cells& below) {
     std::size_t cut = quantity.name.find(" at ");
     if (cut == std::string::npos) cut = quantity.name.rfind(' ');
     above.push_back(quantity.name.substr(0, cut));
     below.push_back(cut == std::string::npos ? quantity.unit : quantity.name.substr(cut + 1) + ", " + quantity.unit);
 }
 
-std::string cost_text(const RunResult& result) {
+std::string cost_text(const run::RunResult& result) {
     return fmt::format("{:.0f}", result.wall_time);
 }
 
-std::string table(const Comparison& comparison, const RunResult& base) {
-    const bool judged = comparison.kind == ComparisonKind::convergence;
+std::string table(const run::Comparison& comparison, const run::RunResult& base) {
+    const bool judged = comparison.kind == run::ComparisonKind::convergence;
     Cells above{""}, below{""}, given{"as given"};
-    for (const Quantity& quantity : comparison.quantities) {
+    for (const run::Quantity& quantity : comparison.quantities) {
         add_heading(quantity, above, below);
         given.push_back(quantity.not_measured.empty() ? value_text(quantity.base) : "not measured");
     }
@@ -71,10 +71,10 @@ std::string table(const Comparison& comparison, const RunResult& base) {
     given.push_back(cost_text(base));
     if (judged) below.emplace_back("result");
     std::vector<Cells> rows{above, below, given};
-    for (const Comparison::Row& row : comparison.rows) {
+    for (const run::Comparison::Row& row : comparison.rows) {
         Cells cells{row.run.variant.name};
         if (row.run.result) {
-            for (const Change& change : row.changes) cells.push_back(change_text(change, judged));
+            for (const run::Change& change : row.changes) cells.push_back(change_text(change, judged));
             cells.push_back(cost_text(*row.run.result));
             if (judged) cells.emplace_back(verdict_name(row.verdict()));
         } else {
@@ -87,14 +87,14 @@ std::string table(const Comparison& comparison, const RunResult& base) {
 
 }  // namespace
 
-std::string comparison_text(const Comparison& comparison, const RunResult& base) {
-    const char* label = comparison.kind == ComparisonKind::convergence ? "convergence" : "sensitivity";
+std::string comparison_text(const run::Comparison& comparison, const run::RunResult& base) {
+    const char* label = comparison.kind == run::ComparisonKind::convergence ? "convergence" : "sensitivity";
     std::string text = fmt::format("  {:<16} {}\n", label, comparison.verdict_text()) + table(comparison, base);
-    for (const Quantity& quantity : comparison.quantities) {
+    for (const run::Quantity& quantity : comparison.quantities) {
         if (quantity.not_measured.empty()) continue;
         text += fmt::format("    not measured in the run as given: {} ({})\n", quantity.name, quantity.not_measured);
     }
     return text;
 }
 
-}  // namespace talus
+}  // namespace talus::cli

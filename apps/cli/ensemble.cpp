@@ -21,7 +21,7 @@
 #include "scene_input.hpp"
 #include "throttled_progress.hpp"
 
-namespace talus {
+namespace talus::cli {
 namespace {
 
 namespace fs = std::filesystem;
@@ -70,11 +70,11 @@ over ranks, and --shard i/n with talus ensemble merge does so without MPI, with 
 Exit codes: as talus run. A run that fails is listed with its fault, and the ensemble continues; 3: no run was complete.
 )";
 
-Status set_thresholds(Thresholds& thresholds, const std::string& depths, const std::string& speeds,
+Status set_thresholds(ensemble::Thresholds& thresholds, const std::string& depths, const std::string& speeds,
                       const std::string& pressures) {
     const auto set = [](std::vector<double>& values, const std::string& text, const char* option) -> Status {
         if (text.empty()) return {};
-        TALUS_ASSIGN(values, parse_thresholds(text, option));
+        TALUS_ASSIGN(values, ensemble::parse_thresholds(text, option));
         return {};
     };
     TALUS_TRY(set(thresholds.depth, depths, "--depth-m"));
@@ -91,19 +91,19 @@ void add_thresholds(CLI::App& command, std::string& depths, std::string& speeds,
 }
 
 /// The plan file, then the options over it.
-Result<EnsemblePlan> read_arguments(const EnsembleArguments& arguments) {
-    EnsemblePlan plan;
+Result<ensemble::EnsemblePlan> read_arguments(const EnsembleArguments& arguments) {
+    ensemble::EnsemblePlan plan;
     if (!arguments.plan.empty()) {
-        TALUS_ASSIGN(plan, read_plan(arguments.plan));
+        TALUS_ASSIGN(plan, ensemble::read_plan(arguments.plan));
     }
     for (const std::string& factor : arguments.factors) {
         TALUS_TRY(add_factor(plan, factor));
     }
     if (arguments.design) {
-        const auto design = design_of(*arguments.design);
+        const auto design = stats::design_of(*arguments.design);
         if (!design)
             return Error{fmt::format("--design {} is refused; it must be one of {}", *arguments.design,
-                                     fmt::join(design_names(), ", "))};
+                                     fmt::join(stats::design_names(), ", "))};
         plan.design = *design;
     }
     plan.runs = arguments.runs.value_or(plan.runs);
@@ -127,11 +127,12 @@ Result<std::pair<std::size_t, std::size_t>> parse_shard(const std::string& text)
 }
 
 /// Evaluates the runs of the folders and writes the results into `folder`.
-int write_results(const SceneInput& source, const PlannedRuns& runs, const std::vector<fs::path>& folders,
+int write_results(const SceneInput& source, const ensemble::PlannedRuns& runs, const std::vector<fs::path>& folders,
                   const fs::path& folder, bool quiet, bool json, ThrottledProgress& reporter) {
     reporter.say("evaluating the runs, writing maps, tables and report");
-    Result<Reduction> reduction = reduce(folders, runs.count(), runs.plan().thresholds,
-                                         intensity_guideline(source.scene.spec.outputs.intensity_guideline));
+    Result<ensemble::Reduction> reduction =
+        reduce(folders, runs.count(), runs.plan().thresholds,
+               report::intensity_guideline(source.scene.spec.outputs.intensity_guideline));
     if (!reduction) return fail(exit_code::failure, reduction.error().message);
     if (reduction->complete == 0) {
         reporter.clear();
@@ -140,7 +141,7 @@ int write_results(const SceneInput& source, const PlannedRuns& runs, const std::
                     fmt::format("no run of {} is complete, so there is nothing to evaluate; the first: {}",
                                 folder.string(), fault));
     }
-    const EnsembleResult result = summarise(source.scene, runs, *std::move(reduction));
+    const ensemble::EnsembleResult result = summarise(source.scene, runs, *std::move(reduction));
     const Status written = write_ensemble(result, folder);
     reporter.clear();
     if (!written) return fail(exit_code::failure, written.error().message);
@@ -153,7 +154,8 @@ int write_results(const SceneInput& source, const PlannedRuns& runs, const std::
 }
 
 /// Sets the number of simultaneous runs. One run on several threads is slower than as many runs on one thread each.
-void share_threads(const EnsembleArguments& arguments, const PlannedRuns& runs, int ranks, EnsembleOptions& options) {
+void share_threads(const EnsembleArguments& arguments, const ensemble::PlannedRuns& runs, int ranks,
+                   ensemble::EnsembleOptions& options) {
     const int cores = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
     const int threads = arguments.threads.value_or(ranks > 1 ? 1 : cores);
     const int share = static_cast<int>(std::max<std::size_t>(1, runs.count() / options.shard_count));
@@ -170,40 +172,40 @@ int ensemble_command(const EnsembleArguments& arguments) {
     const auto refuse = [&](const Error& error) {
         return ranks.first() ? fail(exit_code::bad_input, error.message) : exit_code::bad_input;
     };
-    Result<EnsemblePlan> plan = read_arguments(arguments);
+    Result<ensemble::EnsemblePlan> plan = read_arguments(arguments);
     if (!plan) return refuse(plan.error());
     const auto shard = parse_shard(arguments.shard);
     if (!shard) return refuse(shard.error());
     const Result<SceneInput> source = open_scene(arguments.scene, arguments.overrides, watch);
     if (!source) return refuse(source.error());
-    const Result<PlannedRuns> runs = PlannedRuns::make(*plan, source->source, source->scene);
+    const Result<ensemble::PlannedRuns> runs = ensemble::PlannedRuns::make(*plan, source->source, source->scene);
     if (!runs) return refuse(runs.error());
     const auto definition = ensemble_definition(*runs, source->source, source->scene, source->name);
 
     const fs::path path = arguments.output.empty() ? fs::path("talus_out") / (source->short_name + "_ensemble")
                                                    : fs::path(arguments.output);
-    std::optional<EnsembleFolder> folder;
+    std::optional<ensemble::EnsembleFolder> folder;
     if (ranks.first()) {
-        Result<EnsembleFolder> opened = EnsembleFolder::open(path, definition);
+        Result<ensemble::EnsembleFolder> opened = ensemble::EnsembleFolder::open(path, definition);
         if (!ranks.hear_first(opened.ok())) return fail(exit_code::bad_input, opened.error().message);
         folder.emplace(*std::move(opened));
     } else {
         if (!ranks.hear_first(false)) return exit_code::bad_input;
-        folder.emplace(EnsembleFolder::join(path));
+        folder.emplace(ensemble::EnsembleFolder::join(path));
     }
 
     ThrottledProgress reporter(arguments.quiet || !ranks.first(), arguments.json && ranks.first());
-    EnsembleOptions options;
+    ensemble::EnsembleOptions options;
     options.shard_count = shard->second * static_cast<std::size_t>(ranks.count());
     options.shard = shard->first + shard->second * static_cast<std::size_t>(ranks.rank());
     options.retry_failed = arguments.retry_failed;
     options.stop_requested = &watch.stop_requested();
-    options.on_progress = [&](const EnsembleProgress& progress) {
+    options.on_progress = [&](const ensemble::EnsembleProgress& progress) {
         reporter.report([&] { return progress_text(progress); }, [&] { return progress_json(progress); });
     };
     share_threads(arguments, *runs, ranks.count(), options);
 
-    const Result<EnsembleOutcome> outcome = run_ensemble(*runs, source->source, *folder, options);
+    const Result<ensemble::EnsembleOutcome> outcome = run_ensemble(*runs, source->source, *folder, options);
     reporter.clear();
     if (!outcome) (void)fail(exit_code::failure, outcome.error().message);
     const long broken = ranks.sum(outcome ? 0 : 1);
@@ -232,17 +234,17 @@ int merge_command(const MergeArguments& arguments) {
     if (arguments.output.empty() && arguments.folders.size() > 1) {
         return fail(exit_code::bad_input, "several folders are given; name the output folder with --output");
     }
-    const Result<nlohmann::ordered_json> definition = read_definition(arguments.folders.front());
+    const Result<nlohmann::ordered_json> definition = ensemble::read_definition(arguments.folders.front());
     if (!definition) return fail(exit_code::bad_input, definition.error().message);
     for (const std::string& folder : arguments.folders) {
-        const auto other = read_definition(folder);
+        const auto other = ensemble::read_definition(folder);
         if (!other) return fail(exit_code::bad_input, other.error().message);
-        if (const std::string differs = difference(*other, *definition); !differs.empty()) {
+        if (const std::string differs = ensemble::difference(*other, *definition); !differs.empty()) {
             return fail(exit_code::bad_input, fmt::format("{}: does not belong to the ensemble of {} ({})", folder,
                                                           arguments.folders.front(), differs));
         }
     }
-    Result<EnsemblePlan> plan = plan_of(*definition);
+    Result<ensemble::EnsemblePlan> plan = ensemble::plan_of(*definition);
     if (!plan) return fail(exit_code::bad_input, plan.error().message);
     if (Status s = set_thresholds(plan->thresholds, arguments.depths, arguments.speeds, arguments.pressures); !s) {
         return fail(exit_code::bad_input, s.error().message);
@@ -253,16 +255,16 @@ int merge_command(const MergeArguments& arguments) {
     if (!source)
         return fail(exit_code::bad_input,
                     source.error().message + (arguments.scene.empty() ? "; give its present path with --scene" : ""));
-    const Result<PlannedRuns> runs = PlannedRuns::make(*plan, source->source, source->scene);
+    const Result<ensemble::PlannedRuns> runs = ensemble::PlannedRuns::make(*plan, source->source, source->scene);
     if (!runs) return fail(exit_code::bad_input, runs.error().message);
     const auto made = ensemble_definition(*runs, source->source, source->scene, source->name);
-    if (const std::string differs = difference(*definition, made); !differs.empty()) {
+    if (const std::string differs = ensemble::difference(*definition, made); !differs.empty()) {
         return fail(exit_code::bad_input,
                     fmt::format("{}: has changed since this ensemble was run ({})", scene, differs));
     }
 
     const fs::path path = arguments.output.empty() ? arguments.folders.front() : arguments.output;
-    const Result<EnsembleFolder> folder = EnsembleFolder::open(path, *definition);
+    const Result<ensemble::EnsembleFolder> folder = ensemble::EnsembleFolder::open(path, *definition);
     if (!folder) return fail(exit_code::bad_input, folder.error().message);
     for (const std::string& from : arguments.folders) {
         if (Status s = take_runs(from, *folder, runs->count()); !s)
@@ -324,4 +326,4 @@ void add_ensemble(CLI::App& program, std::vector<Command>& commands) {
     commands.push_back({app, [ensemble] { return ensemble_command(*ensemble); }});
 }
 
-}  // namespace talus
+}  // namespace talus::cli

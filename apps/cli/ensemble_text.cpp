@@ -8,7 +8,7 @@
 #include "core/number_or_null.hpp"
 #include "progress.hpp"
 
-namespace talus {
+namespace talus::cli {
 namespace {
 
 std::string number_text(double value) {
@@ -17,19 +17,19 @@ std::string number_text(double value) {
 
 }  // namespace
 
-std::string ensemble_text(const EnsembleResult& result, const std::filesystem::path& folder) {
-    const Reduction& r = result.reduction;
+std::string ensemble_text(const ensemble::EnsembleResult& result, const std::filesystem::path& folder) {
+    const ensemble::Reduction& r = result.reduction;
     std::string text = fmt::format("{} of {} runs complete, {} failed{}\n\n", r.complete, result.runs->count(),
                                    r.failed, r.missing.empty() ? "" : fmt::format(", {} not run", r.missing.size()));
     text += fmt::format("{:<40}{:>10}{:>10}{:>10}  {}\n", "result", "5 %", "median", "95 %", "unit");
     for (std::size_t m = 0; m < result.measures.size(); ++m) {
         std::vector<double> values = result.values_of(m);
         text += fmt::format("{:<40}{:>10}{:>10}{:>10}  {}\n", result.measures[m].name,
-                            number_text(percentile(values, 5)), number_text(percentile(values, 50)),
-                            number_text(percentile(values, 95)), result.measures[m].unit);
+                            number_text(ensemble::percentile(values, 5)), number_text(ensemble::percentile(values, 50)),
+                            number_text(ensemble::percentile(values, 95)), result.measures[m].unit);
     }
     std::size_t shown = 0;
-    for (const BuildingOdds& b : r.buildings) {
+    for (const ensemble::BuildingOdds& b : r.buildings) {
         if (b.hit <= 0) continue;
         if (shown++ == 0) text += "\nbuilding, share of runs that hit it\n";
         if (shown <= 12) text += fmt::format("{:<40}{:>9.0f} %\n", b.name.empty() ? "unnamed" : b.name, 100 * b.hit);
@@ -38,20 +38,20 @@ std::string ensemble_text(const EnsembleResult& result, const std::filesystem::p
     return text + fmt::format("\n{}\n", (folder / "report.html").string());
 }
 
-std::string ensemble_json(const EnsembleResult& result, const std::filesystem::path& folder) {
+std::string ensemble_json(const ensemble::EnsembleResult& result, const std::filesystem::path& folder) {
     nlohmann::ordered_json json = {{"event", "result"}, {"folder", folder.string()}};
     json.update(statistics_json(result));
     return json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
 }
 
-std::string progress_text(const EnsembleProgress& p) {
+std::string progress_text(const ensemble::EnsembleProgress& p) {
     std::string text = fmt::format("{} of {} runs", p.done + p.failed, p.count);
     if (p.failed > 0) text += fmt::format(", {} failed", p.failed);
     if (p.runs_per_minute > 0) text += fmt::format(", {:.3g} runs per minute", p.runs_per_minute);
     return text + fmt::format(", about {} left", clock_text(p.wall_remaining));
 }
 
-std::string progress_json(const EnsembleProgress& p) {
+std::string progress_json(const ensemble::EnsembleProgress& p) {
     const nlohmann::ordered_json json = {
         {"event", "progress"},
         {"runs_done", p.done},
@@ -64,4 +64,4 @@ std::string progress_json(const EnsembleProgress& p) {
     return json.dump();
 }
 
-}  // namespace talus
+}  // namespace talus::cli

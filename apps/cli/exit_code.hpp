@@ -1,7 +1,7 @@
 #pragma once
 
 /// Exit codes of the program; printed by `talus --help`, used by scripts.
-namespace talus::exit_code {
+namespace talus::cli::exit_code {
 
 inline constexpr int success = 0;
 inline constexpr int failure = 1;        ///< the machine: disk full, out of memory
@@ -10,4 +10,4 @@ inline constexpr int fault = 3;          ///< a step could not be trusted; resul
 inline constexpr int case_failed = 4;    ///< talus validate: a case failed
 inline constexpr int interrupted = 130;  ///< Ctrl-C or SIGTERM; results until then are written
 
-}  // namespace talus::exit_code
+}  // namespace talus::cli::exit_code

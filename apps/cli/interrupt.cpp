@@ -8,7 +8,7 @@
 
 #include "exit_code.hpp"
 
-namespace talus {
+namespace talus::cli {
 namespace {
 
 constexpr int wake_signal = SIGUSR1;  // tells the waiting thread that the watch is over
@@ -69,4 +69,4 @@ void InterruptWatch::end_at_once() {
     _exit(exit_code::interrupted);
 }
 
-}  // namespace talus
+}  // namespace talus::cli

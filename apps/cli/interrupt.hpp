@@ -6,7 +6,7 @@
 #include <thread>
 #include <vector>
 
-namespace talus {
+namespace talus::cli {
 
 /// Turns Ctrl-C (SIGINT, SIGTERM, SIGHUP) into a request to stop; a second one removes the temporary folders and ends
 /// the program at once. The signals are taken by a thread that waits for them, so no code runs in a signal handler.
@@ -42,4 +42,4 @@ class InterruptWatch {
     std::thread thread_;
 };
 
-}  // namespace talus
+}  // namespace talus::cli

@@ -12,7 +12,7 @@
 #include "exit_code.hpp"
 #include "simd/dispatch.hpp"
 
-namespace talus {
+namespace talus::cli {
 namespace {
 
 constexpr const char* program_help = R"(
@@ -85,18 +85,18 @@ int talus_main(int argc, char** argv) {
 }
 
 }  // namespace
-}  // namespace talus
+}  // namespace talus::cli
 
 int main(int argc, char** argv) {
     // A closed pipe and a file size limit are errors to report; they must not terminate the program.
     signal(SIGPIPE, SIG_IGN);
     signal(SIGXFSZ, SIG_IGN);
     try {
-        return talus::talus_main(argc, argv);
+        return talus::cli::talus_main(argc, argv);
     } catch (const std::bad_alloc&) {
-        return talus::fail(talus::exit_code::failure,
-                           "out of memory; set a larger solver.particle_spacing_m or a smaller terrain.extent");
+        return talus::cli::fail(talus::cli::exit_code::failure,
+                                "out of memory; set a larger solver.particle_spacing_m or a smaller terrain.extent");
     } catch (const std::exception& error) {
-        return talus::fail(talus::exit_code::failure, error.what());
+        return talus::cli::fail(talus::cli::exit_code::failure, error.what());
     }
 }

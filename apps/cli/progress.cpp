@@ -13,7 +13,7 @@
 
 #include "core/number_or_null.hpp"
 
-namespace talus {
+namespace talus::cli {
 namespace {
 
 using namespace std::chrono_literals;
@@ -27,11 +27,11 @@ int terminal_columns() {
     return ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0 ? size.ws_col : 80;
 }
 
-std::string front_text(const Progress& p) {
+std::string front_text(const run::Progress& p) {
     return std::isnan(p.front_chainage) ? "front -" : fmt::format("front {:.0f} m", p.front_chainage);
 }
 
-std::string bar_text(const Progress& p, const std::optional<SeriesProgress>& series) {
+std::string bar_text(const run::Progress& p, const std::optional<run::SeriesProgress>& series) {
     const int columns = terminal_columns();
     const double share_done = series ? series->share_done : p.share_done;
     std::string facts = fmt::format(" {:3.0f} %  ", 100 * share_done);
@@ -45,7 +45,7 @@ std::string bar_text(const Progress& p, const std::optional<SeriesProgress>& ser
     return "[" + std::string(filled, '#') + std::string(width - filled, '.') + "]" + facts;
 }
 
-std::string line_text(const Progress& p, const std::optional<SeriesProgress>& series) {
+std::string line_text(const run::Progress& p, const std::optional<run::SeriesProgress>& series) {
     std::string text;
     if (series) text = fmt::format("run {} of {}, {}: ", series->run, series->count, series->name);
     text +=
@@ -60,7 +60,7 @@ void write(std::FILE* stream, const std::string& text) {
     (void)std::fflush(stream);
 }
 
-std::string json_text(const Progress& p, const std::optional<SeriesProgress>& series) {
+std::string json_text(const run::Progress& p, const std::optional<run::SeriesProgress>& series) {
     nlohmann::ordered_json event = {
         {"event", "progress"},
         {"time_s", p.time},
@@ -103,7 +103,7 @@ ProgressReporter::ProgressReporter(ProgressStyle style) : style_(style) {
     if (style == ProgressStyle::lines) next_ += 1s;  // a short run needs none, and the first estimates are poor
 }
 
-void ProgressReporter::report(const Progress& progress, const std::optional<SeriesProgress>& series) {
+void ProgressReporter::report(const run::Progress& progress, const std::optional<run::SeriesProgress>& series) {
     if (style_ == ProgressStyle::none) return;
     const auto now = std::chrono::steady_clock::now();
     if (now < next_) return;
@@ -141,4 +141,4 @@ void ProgressReporter::clear() {
     drawn_ = false;
 }
 
-}  // namespace talus
+}  // namespace talus::cli

@@ -7,7 +7,7 @@
 #include "run/run_scene.hpp"
 #include "run/variants.hpp"
 
-namespace talus {
+namespace talus::cli {
 
 enum class ProgressStyle {
     none,
@@ -24,7 +24,7 @@ class ProgressReporter {
   public:
     explicit ProgressReporter(ProgressStyle style);
     /// Call after every step; most calls return immediately. `series`: if the run is one of several.
-    void report(const Progress& progress, const std::optional<SeriesProgress>& series = std::nullopt);
+    void report(const run::Progress& progress, const std::optional<run::SeriesProgress>& series = std::nullopt);
     /// Replaces the bar by the current activity ("writing maps and report"); lines print it.
     void say(const std::string& what);
     /// Removes the bar from the terminal.
@@ -39,4 +39,4 @@ class ProgressReporter {
 /// "0:07", "12:34", "3:00:12".
 [[nodiscard]] std::string clock_text(double seconds);
 
-}  // namespace talus
+}  // namespace talus::cli

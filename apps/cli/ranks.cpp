@@ -7,7 +7,7 @@
 #include <mpi.h>
 #endif
 
-namespace talus {
+namespace talus::cli {
 namespace {
 
 /// Whether a launcher of MPI (OpenMPI, MPICH, Slurm's PMI) started this process among several.
@@ -75,4 +75,4 @@ Status Ranks::check() {
 
 #endif
 
-}  // namespace talus
+}  // namespace talus::cli

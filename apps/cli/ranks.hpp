@@ -2,7 +2,7 @@
 
 #include "core/result.hpp"
 
-namespace talus {
+namespace talus::cli {
 
 /// The processes of one `mpirun`, which share a file system. A single one if the program was started or built without
 /// MPI. Create it once, before threads start.
@@ -29,4 +29,4 @@ class Ranks {
     int rank_ = 0, count_ = 1;
 };
 
-}  // namespace talus
+}  // namespace talus::cli

@@ -17,7 +17,7 @@
 #include "temporary_folder.hpp"
 #include "twin/journal.hpp"
 
-namespace talus {
+namespace talus::cli {
 namespace {
 
 constexpr std::string_view builtin_prefix = "built-in:";
@@ -52,14 +52,14 @@ Result<std::string> read_file(const std::string& path) {
 }
 
 /// The scene that a journal names, or the one that the user names instead.
-Result<Scene> load_scene_of(const ReplayArguments& arguments, const twin::Journal& journal) {
+Result<scene::Scene> load_scene_of(const ReplayArguments& arguments, const twin::Journal& journal) {
     std::vector<std::string> overrides = journal.overrides;
     if (arguments.threads) overrides.push_back(fmt::format("solver.thread_count={}", *arguments.threads));
     const std::string file = arguments.scene.empty() ? journal.scene_file : arguments.scene;
-    if (!file.starts_with(builtin_prefix)) return load_scene(file, overrides);
+    if (!file.starts_with(builtin_prefix)) return scene::load_scene(file, overrides);
     const TemporaryFolder unpacked;
     if (unpacked.path().empty()) return Error{"cannot make a temporary folder for the built-in scene; set TMPDIR"};
-    return load_builtin_scene(unpacked.path(), overrides);
+    return scene::load_builtin_scene(unpacked.path(), overrides);
 }
 
 int replay_command(const ReplayArguments& arguments) {
@@ -80,7 +80,7 @@ int replay_command(const ReplayArguments& arguments) {
 
     const bool shows = !arguments.quiet && isatty(STDERR_FILENO) != 0;
     const auto replayed =
-        twin::replay(*journal, std::make_shared<const Scene>(*std::move(scene)), [&](std::uint64_t step) {
+        twin::replay(*journal, std::make_shared<const scene::Scene>(*std::move(scene)), [&](std::uint64_t step) {
             if (shows && step % 50 == 0) {
                 (void)std::fprintf(stderr, "\rstep %llu of %llu", static_cast<unsigned long long>(step),
                                    static_cast<unsigned long long>(journal->steps));
@@ -121,4 +121,4 @@ void add_replay(CLI::App& program, std::vector<Command>& commands) {
     commands.push_back({app, [replay] { return replay_command(*replay); }});
 }
 
-}  // namespace talus
+}  // namespace talus::cli

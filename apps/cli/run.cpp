@@ -25,7 +25,7 @@
 #include "summary.hpp"
 #include "variant_plan.hpp"
 
-namespace talus {
+namespace talus::cli {
 namespace {
 
 namespace fs = std::filesystem;
@@ -68,7 +68,7 @@ struct Job {
     VariantPlan plan;
     std::unique_ptr<DefaultParent> parent;  ///< of the output folder, unless the user named that
     fs::path shown;                         ///< the output folder as the user wrote it
-    OutputFolder output;
+    products::OutputFolder output;
 };
 
 Result<Job> open_job(const RunArguments& arguments, InterruptWatch& watch) {
@@ -81,7 +81,7 @@ Result<Job> open_job(const RunArguments& arguments, InterruptWatch& watch) {
     std::unique_ptr<DefaultParent> parent;
     if (arguments.output.empty()) parent = std::make_unique<DefaultParent>();
     const fs::path shown = parent ? fs::path(DefaultParent::name) / input.short_name : fs::path(arguments.output);
-    TALUS_ASSIGN(auto output, OutputFolder::create(shown, arguments.force));
+    TALUS_ASSIGN(auto output, products::OutputFolder::create(shown, arguments.force));
     watch.remove_at_once(output.path());
     return Job{std::move(input), std::move(plan), std::move(parent), shown, std::move(output)};
 }
@@ -92,10 +92,10 @@ class Onlooker {
     Onlooker(const RunArguments& arguments, const Job& job, ProgressReporter& progress, InterruptWatch& watch)
         : job_(job), progress_(progress), watch_(watch), notes_said_(arguments.quiet || arguments.json) {
         options_.stop_requested = &watch.stop_requested();
-        options_.on_progress = [this](const Progress& now) { report(now); };
+        options_.on_progress = [this](const run::Progress& now) { report(now); };
         if (job.input.scene.spec.outputs.particle_series_interval <= 0) return;
         series_.emplace(job.output.path() / "particles");
-        options_.on_frame = [this](const LocalFrame& frame, const State& state) {
+        options_.on_frame = [this](const LocalFrame& frame, const sim::State& state) {
             if (series_status_) series_status_ = series_->write_frame(frame, state);
             if (!series_status_) watch_.request_stop();
         };
@@ -103,7 +103,7 @@ class Onlooker {
     Onlooker(const Onlooker&) = delete;
     Onlooker& operator=(const Onlooker&) = delete;
 
-    [[nodiscard]] const RunOptions& options() const { return options_; }
+    [[nodiscard]] const run::RunOptions& options() const { return options_; }
     /// The run has ended. Errors: the particle series cannot be written.
     [[nodiscard]] Status finish() {
         if (series_ && series_status_) series_status_ = series_->finish();
@@ -111,7 +111,7 @@ class Onlooker {
     }
 
   private:
-    void report(const Progress& now) {
+    void report(const run::Progress& now) {
         // Notes are printed only now: an invalid input is refused with a single line.
         if (!std::exchange(notes_said_, true)) {
             for (const std::string& note : job_.input.scene.notes) print(fmt::format("note: {}\n", note));
@@ -123,14 +123,14 @@ class Onlooker {
     ProgressReporter& progress_;
     InterruptWatch& watch_;
     bool notes_said_;
-    RunOptions options_;
-    std::optional<ParticleSeries> series_;
+    run::RunOptions options_;
+    std::optional<products::ParticleSeries> series_;
     Status series_status_;
 };
 
-Status write_report(Job& job, const RunResult& result, const std::vector<Comparison>& comparisons,
+Status write_report(Job& job, const run::RunResult& result, const std::vector<run::Comparison>& comparisons,
                     InterruptWatch& watch) {
-    TALUS_TRY(write_products(job.input.scene, result, job.output.path(), comparisons));
+    TALUS_TRY(products::write_products(job.input.scene, result, job.output.path(), comparisons));
     // Replacing an earlier result takes two renames; a second Ctrl-C must not fall between them.
     const auto lock = watch.hold();
     return job.output.commit();
@@ -145,7 +145,7 @@ int run_command(const RunArguments& arguments) {
     auto job = open_job(arguments, watch);  // load
     if (!job) return fail(exit_code::bad_input, job.error().message);
     if (watch.stop_requested()) return fail(exit_code::interrupted, "interrupted before the run began");
-    const Scene& scene = job->input.scene;
+    const scene::Scene& scene = job->input.scene;
 
     Onlooker onlooker(arguments, *job, progress, watch);
     const auto result = run_scene(scene, onlooker.options());  // run; its observer measures every step
@@ -154,9 +154,10 @@ int run_command(const RunArguments& arguments) {
     if (Status s = onlooker.finish(); !s) return fail(exit_code::failure, s.error().message);
 
     const auto comparisons = job->plan.run(scene, *result, progress, watch.stop_requested());
-    const bool interrupted = result->status == RunStatus::interrupted ||
-                             (watch.stop_requested() && !std::all_of(comparisons.begin(), comparisons.end(),
-                                                                     [](const Comparison& c) { return c.all_ran(); }));
+    const bool interrupted =
+        result->status == run::RunStatus::interrupted ||
+        (watch.stop_requested() &&
+         !std::all_of(comparisons.begin(), comparisons.end(), [](const run::Comparison& c) { return c.all_ran(); }));
     progress.say(interrupted ? "interrupted: writing the results so far" : "writing maps, tables and report");
     const Status written = write_report(*job, *result, comparisons, watch);  // report
     progress.clear();
@@ -167,7 +168,7 @@ int run_command(const RunArguments& arguments) {
     } else if (!arguments.quiet) {
         print(summary_text(scene, *result, comparisons, job->shown));
     }
-    if (result->status != RunStatus::fault) return interrupted ? exit_code::interrupted : exit_code::success;
+    if (result->status != run::RunStatus::fault) return interrupted ? exit_code::interrupted : exit_code::success;
     return fail(exit_code::fault, fmt::format("{}; the results so far are in {}, marked partial", result->stop_reason,
                                               job->shown.string()));
 }
@@ -193,8 +194,8 @@ void add_run(CLI::App& program, std::vector<Command>& commands) {
     add_data_folder(*app, run->data);
     CLI::Option* quiet = app->add_flag("--quiet", run->quiet, "print only errors");
     app->add_flag("--json", run->json, "progress and result as one JSON object per line on stdout")->excludes(quiet);
-    app->footer([] { return run_help + scene_reference_text(); });
+    app->footer([] { return run_help + params::scene_reference_text(); });
     commands.push_back({app, [run] { return run_command(*run); }});
 }
 
-}  // namespace talus
+}  // namespace talus::cli

@@ -15,7 +15,7 @@
 #include "scene/check.hpp"
 #include "scene/new_scene.hpp"
 
-namespace talus {
+namespace talus::cli {
 namespace {
 
 struct CheckArguments {
@@ -37,12 +37,12 @@ int print_all(const std::string& text) {
 
 int check_command(const CheckArguments& arguments) {
     if (!arguments.data.empty()) set_data_folder(arguments.data);
-    const auto scene = load_scene(arguments.scene, arguments.overrides);
+    const auto scene = scene::load_scene(arguments.scene, arguments.overrides);
     if (!scene) return fail(exit_code::bad_input, scene.error().message);
     return print_all(describe_scene(*scene));
 }
 
-int new_command(const NewSceneOptions& options) {
+int new_command(const scene::NewSceneOptions& options) {
     const auto created = write_new_scene(options);
     if (!created) return fail(exit_code::bad_input, created.error().message);
     std::string text = fmt::format("wrote {}\n", created->file.string());
@@ -57,7 +57,7 @@ int export_builtin_command(const ExportArguments& arguments) {
                                                       "with --force",
                                                       arguments.folder));
     }
-    const auto file = unpack_builtin_scene(arguments.folder);
+    const auto file = scene::unpack_builtin_scene(arguments.folder);
     if (!file) return fail(exit_code::bad_input, file.error().message);
     return print_all(fmt::format("wrote {}\nrun it: talus run {}\n", file->string(), file->string()));
 }
@@ -76,7 +76,7 @@ void add_scene(CLI::App& program, std::vector<Command>& commands) {
     commands.push_back({check_app, [check] { return check_command(*check); }});
 
     CLI::App* new_app = app->add_subcommand("new", "write a commented scene for your own terrain");
-    const auto create = std::make_shared<NewSceneOptions>();
+    const auto create = std::make_shared<scene::NewSceneOptions>();
     new_app->add_option("--dem", create->dem, "terrain raster in a projected metric CRS")
         ->required()
         ->type_name("FILE");
@@ -107,9 +107,10 @@ void add_scene(CLI::App& program, std::vector<Command>& commands) {
     reference_app->add_flag("--markdown", *markdown, "as a Markdown document");
     reference_app->add_flag("--typescript", *typescript, "the live keys as types and form fields of the page");
     commands.push_back({reference_app, [markdown, typescript] {
-                            if (*typescript) return print_all(scene_typescript());
-                            return print_all(*markdown ? scene_reference_markdown() : scene_reference_text());
+                            if (*typescript) return print_all(params::scene_typescript());
+                            return print_all(*markdown ? params::scene_reference_markdown()
+                                                       : params::scene_reference_text());
                         }});
 }
 
-}  // namespace talus
+}  // namespace talus::cli

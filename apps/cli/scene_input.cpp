@@ -6,7 +6,7 @@
 #include "core/try.hpp"
 #include "scene/builtin.hpp"
 
-namespace talus {
+namespace talus::cli {
 
 namespace fs = std::filesystem;
 
@@ -25,8 +25,8 @@ Result<SceneInput> open_scene(const std::string& scene, const std::vector<std::s
         if (s.unpacked->path().empty())
             return Error{"cannot make a temporary folder for the built-in scene; set TMPDIR"};
         watch.remove_at_once(s.unpacked->path());
-        TALUS_ASSIGN(s.source.file, unpack_builtin_scene(s.unpacked->path()));
-        s.short_name = builtin_scene_name;
+        TALUS_ASSIGN(s.source.file, scene::unpack_builtin_scene(s.unpacked->path()));
+        s.short_name = scene::builtin_scene_name;
         s.name = builtin_prefix + s.short_name;
     } else {
         s.source.file = scene;
@@ -35,8 +35,8 @@ Result<SceneInput> open_scene(const std::string& scene, const std::vector<std::s
         const std::string folder = fs::absolute(scene).parent_path().filename().string();
         s.short_name = stem == "scene" && !folder.empty() ? folder : stem;
     }
-    TALUS_ASSIGN(s.scene, load_scene(s.source.file, overrides));
+    TALUS_ASSIGN(s.scene, scene::load_scene(s.source.file, overrides));
     return Result<SceneInput>(std::move(s));
 }
 
-}  // namespace talus
+}  // namespace talus::cli

@@ -10,19 +10,19 @@
 #include "scene/scene.hpp"
 #include "temporary_folder.hpp"
 
-namespace talus {
+namespace talus::cli {
 
 /// The scene of a command, on disk and loaded.
 struct SceneInput {
     std::unique_ptr<TemporaryFolder> unpacked;  ///< of the built-in scene
-    SceneSource source;
+    run::SceneSource source;
     std::string name;        ///< as in the definition of an ensemble or calibration
     std::string short_name;  ///< for the default output folder
-    Scene scene;
+    scene::Scene scene;
 };
 
 /// `scene` as given, empty or "built-in:sham_tseng" for the built-in one. Errors: as load_scene.
 [[nodiscard]] Result<SceneInput> open_scene(const std::string& scene, const std::vector<std::string>& overrides,
                                             InterruptWatch& watch);
 
-}  // namespace talus
+}  // namespace talus::cli

@@ -20,7 +20,7 @@
 #include "serve/server.hpp"
 #include "temporary_folder.hpp"
 
-namespace talus {
+namespace talus::cli {
 namespace {
 
 namespace fs = std::filesystem;
@@ -80,7 +80,7 @@ Result<serve::Tokens> choose_tokens(const std::vector<std::string>& given) {
     return tokens;
 }
 
-void print_links(const ServeArguments& arguments, const Scene& scene, const serve::Server& server) {
+void print_links(const ServeArguments& arguments, const scene::Scene& scene, const serve::Server& server) {
     if (arguments.quiet) return;
     const std::string control = server.link(serve::Role::controller), view = server.link(serve::Role::viewer);
     std::string text;
@@ -117,17 +117,17 @@ int serve_command(const ServeArguments& arguments) {
     fs::path file = arguments.scene;
     const fs::path unpacked = folder.path() / "scene";
     if (arguments.scene.empty()) {
-        auto scene_file = unpack_builtin_scene(unpacked);
+        auto scene_file = scene::unpack_builtin_scene(unpacked);
         if (!scene_file) return fail(exit_code::failure, scene_file.error().message);
         file = *scene_file;
     }
     std::vector<std::string> overrides = arguments.overrides;
     if (arguments.threads) overrides.push_back(fmt::format("solver.thread_count={}", *arguments.threads));
-    auto loaded = load_scene(file, overrides);
+    auto loaded = scene::load_scene(file, overrides);
     if (!loaded) return fail(exit_code::bad_input, loaded.error().message);
     if (arguments.scene.empty()) name_builtin_files(*loaded, unpacked);
     if (watch.stop_requested()) return exit_code::success;
-    const auto scene = std::make_shared<const Scene>(std::move(*loaded));
+    const auto scene = std::make_shared<const scene::Scene>(std::move(*loaded));
 
     std::mutex mutex;  // guards failure, which another thread writes
     std::string failure;
@@ -212,4 +212,4 @@ void add_serve(CLI::App& program, std::vector<Command>& commands) {
     commands.push_back({app, [serve] { return serve_command(*serve); }});
 }
 
-}  // namespace talus
+}  // namespace talus::cli

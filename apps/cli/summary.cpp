@@ -14,21 +14,21 @@
 #include "sim/compression.hpp"
 #include "variant_plan.hpp"
 
-namespace talus {
+namespace talus::cli {
 namespace {
 
-std::vector<const BuildingImpact*> buildings_hit(const Observation& observation) {
-    std::vector<const BuildingImpact*> hit;
-    for (const BuildingImpact& building : observation.buildings) {
+std::vector<const observe::BuildingImpact*> buildings_hit(const observe::Observation& observation) {
+    std::vector<const observe::BuildingImpact*> hit;
+    for (const observe::BuildingImpact& building : observation.buildings) {
         if (building.hit && !building.is_barrier) hit.push_back(&building);
     }
-    std::stable_sort(hit.begin(), hit.end(), [](const BuildingImpact* a, const BuildingImpact* b) {
+    std::stable_sort(hit.begin(), hit.end(), [](const observe::BuildingImpact* a, const observe::BuildingImpact* b) {
         return a->first_hit_time < b->first_hit_time;
     });
     return hit;
 }
 
-std::string buildings_text(const Observation& observation) {
+std::string buildings_text(const observe::Observation& observation) {
     constexpr std::size_t longest_list = 6;
     const auto hit = buildings_hit(observation);
     std::string text = fmt::format("{} of {}", hit.size(), hits_among(observation.buildings, false).all);
@@ -40,7 +40,7 @@ std::string buildings_text(const Observation& observation) {
     return text;
 }
 
-std::string barrier_text(const BuildingImpact& barrier) {
+std::string barrier_text(const observe::BuildingImpact& barrier) {
     return fmt::format("{}: peak force {:.0f} kN, {:.1f} m3 over it, {:.1f} m3 through openings, {:.1f} m3 held",
                        barrier.name, barrier.peak_force / 1000, barrier.overtopped_volume, barrier.passed_volume,
                        barrier.held_volume);
@@ -50,27 +50,28 @@ std::string speed_text(double speed) {
     return std::isfinite(speed) ? fmt::format("{:.1f} m/s", speed) : std::string("not known");
 }
 
-std::string compression_text(const Compression& c) {
+std::string compression_text(const observe::Compression& c) {
     std::string text = fmt::format(
         "mean {:.2f} % at worst (limit {:g} %), above {:g} % in {:.2g} % of the particles "
         "(limit {:g} %)",
-        100 * c.worst_mean, 100 * mean_compression_limit, 100 * squeezed_compression, 100 * c.worst_squeezed_share,
-        100 * squeezed_share_limit);
+        100 * c.worst_mean, 100 * sim::mean_compression_limit, 100 * sim::squeezed_compression,
+        100 * c.worst_squeezed_share, 100 * sim::squeezed_share_limit);
     if (c.time_share_iterated > 0)
         text += fmt::format(", extra iterations {:.2g} % of the time", 100 * c.time_share_iterated);
     return text;
 }
 
-std::string layers_text(const FlowThickness& flow, double spacing) {
+std::string layers_text(const observe::FlowThickness& flow, double spacing) {
     const double median = flow.median / spacing;
-    return fmt::format(
-        "the flow was {:.1f} particles thick in the median of the trail, {:.1f} in its thinnest tenth{}", median,
-        flow.thin / spacing,
-        median < FlowThickness::fewest_layers ? "; WARNING: fewer than 2, depths, speeds and forces mean little" : "");
+    return fmt::format("the flow was {:.1f} particles thick in the median of the trail, {:.1f} in its thinnest tenth{}",
+                       median, flow.thin / spacing,
+                       median < observe::FlowThickness::fewest_layers
+                           ? "; WARNING: fewer than 2, depths, speeds and forces mean little"
+                           : "");
 }
 
 /// What to change where compression is above its limits.
-std::string remedy(const SolverSpec& solver) {
+std::string remedy(const params::SolverSpec& solver) {
     return fmt::format("; raise solver.extra_iteration_count (now {}) or {}", solver.extra_iteration_count,
                        solver.time_step ? "lower solver.time_step_s"
                                         : "halve solver.largest_time_step_s and solver.displacement_limit");
@@ -82,32 +83,32 @@ std::string line(const char* label, const std::string& text) {
 
 }  // namespace
 
-std::string status_name(RunStatus status) {
+std::string status_name(run::RunStatus status) {
     switch (status) {
-        case RunStatus::complete:
+        case run::RunStatus::complete:
             return "complete";
-        case RunStatus::interrupted:
+        case run::RunStatus::interrupted:
             return "interrupted";
-        case RunStatus::fault:
+        case run::RunStatus::fault:
             return "fault";
     }
     return "";
 }
 
-std::string summary_text(const Scene& scene, const RunResult& result, const std::vector<Comparison>& comparisons,
-                         const std::filesystem::path& output) {
-    const Observation& seen = result.observation;
-    const TimeSample end = seen.timeseries.empty() ? TimeSample{} : seen.timeseries.back();
+std::string summary_text(const scene::Scene& scene, const run::RunResult& result,
+                         const std::vector<run::Comparison>& comparisons, const std::filesystem::path& output) {
+    const observe::Observation& seen = result.observation;
+    const observe::TimeSample end = seen.timeseries.empty() ? observe::TimeSample{} : seen.timeseries.back();
     std::string text = scene.spec.scene.title;
     const bool said = text.find("reconstruction") != std::string::npos;
     if (scene.spec.scene.reconstruction && !said) text += " (reconstruction)";
-    text += result.status == RunStatus::complete ? "\n" : ", PARTIAL RESULT\n";
+    text += result.status == run::RunStatus::complete ? "\n" : ", PARTIAL RESULT\n";
     text += line("stopped", result.stop_reason);
     text += line("simulated", fmt::format("{:.1f} s in {:.1f} s: {:.2f} x real time, {} particles of {:.3g} m",
                                           result.simulated_time, result.wall_time, result.real_time_factor(),
                                           result.particles, result.particle_spacing));
-    for (const ObservationSpec& observed : scene.spec.observations) {
-        const FrontSample front = front_at(seen, observed.chainage);
+    for (const params::ObservationSpec& observed : scene.spec.observations) {
+        const observe::FrontSample front = front_at(seen, observed.chainage);
         const std::string computed = std::isnan(front.arrival_time)
                                          ? "not reached"
                                          : fmt::format("{}, debris there {}", speed_text(front.front_velocity),
@@ -115,7 +116,7 @@ std::string summary_text(const Scene& scene, const RunResult& result, const std:
         text += line("front velocity", fmt::format("at {:g} m: {}; observed {:g} m/s", observed.chainage, computed,
                                                    observed.front_velocity));
     }
-    if (const RunOut& r = seen.run_out; std::isfinite(r.along_flow)) {
+    if (const observe::RunOut& r = seen.run_out; std::isfinite(r.along_flow)) {
         text += line("run-out",
                      fmt::format("{}{:.0f} m along the flow, {:.0f} m straight, drop {:.0f} m, runout angle "
                                  "{:.1f} degrees{}",
@@ -129,30 +130,30 @@ std::string summary_text(const Scene& scene, const RunResult& result, const std:
         text += line("picked up", fmt::format("{:.1f} m3 from the bed", seen.erosion.volume));
     }
     if (hits_among(seen.buildings, false).all > 0) text += line("buildings hit", buildings_text(seen));
-    for (const BuildingImpact& b : seen.buildings) {
+    for (const observe::BuildingImpact& b : seen.buildings) {
         if (b.is_barrier) text += line("barrier", barrier_text(b));
         if (!std::isnan(b.failure_time)) text += line("FAILED", fmt::format("{} at {:.2f} s", b.name, b.failure_time));
     }
     if (seen.thickness.known()) text += line("layers", layers_text(seen.thickness, result.particle_spacing));
     text += line("compression", compression_text(seen.compression));
-    const NumericalVerdict verdict = numerical_verdict(result, comparisons);
-    if (verdict.converged == Answer::no) {
+    const run::NumericalVerdict verdict = numerical_verdict(result, comparisons);
+    if (verdict.converged == run::Answer::no) {
         const bool squeezed = !seen.compression.within_limits();
         text += line("NOT CONVERGED",
                      verdict.text.substr(verdict.text.find(": ") + 2) + (squeezed ? remedy(scene.spec.solver) : ""));
     }
-    for (const Comparison& comparison : comparisons) text += comparison_text(comparison, result);
+    for (const run::Comparison& comparison : comparisons) text += comparison_text(comparison, result);
     text += line("report", (output / "report.html").string());
     return text;
 }
 
-std::string summary_json(const Scene& scene, const RunResult& result, const std::vector<Comparison>& comparisons,
-                         const std::filesystem::path& output) {
-    const Observation& seen = result.observation;
-    const TimeSample end = seen.timeseries.empty() ? TimeSample{} : seen.timeseries.back();
+std::string summary_json(const scene::Scene& scene, const run::RunResult& result,
+                         const std::vector<run::Comparison>& comparisons, const std::filesystem::path& output) {
+    const observe::Observation& seen = result.observation;
+    const observe::TimeSample end = seen.timeseries.empty() ? observe::TimeSample{} : seen.timeseries.back();
     auto observations = nlohmann::ordered_json::array();
-    for (const ObservationSpec& observed : scene.spec.observations) {
-        const FrontSample front = front_at(seen, observed.chainage);
+    for (const params::ObservationSpec& observed : scene.spec.observations) {
+        const observe::FrontSample front = front_at(seen, observed.chainage);
         observations.push_back({{"name", observed.name},
                                 {"chainage_m", observed.chainage},
                                 {"observed_front_velocity_mps", observed.front_velocity},
@@ -161,7 +162,7 @@ std::string summary_json(const Scene& scene, const RunResult& result, const std:
                                 {"arrival_time_s", number_or_null<nlohmann::ordered_json>(front.arrival_time)}});
     }
     auto buildings = nlohmann::ordered_json::array();
-    for (const BuildingImpact* building : buildings_hit(seen)) {
+    for (const observe::BuildingImpact* building : buildings_hit(seen)) {
         buildings.push_back({{"name", building->name},
                              {"first_hit_s", number_or_null<nlohmann::ordered_json>(building->first_hit_time)},
                              {"peak_impact_pressure_kPa", building->peak_impact_pressure / 1000},
@@ -196,11 +197,11 @@ std::string summary_json(const Scene& scene, const RunResult& result, const std:
         {"runout_angle_deg", number_or_null<nlohmann::ordered_json>(seen.run_out.runout_angle * degrees_per_radian)},
         {"observations", observations},
         {"buildings_hit", buildings},
-        {"structures", structures_json(seen)},
-        {"compression", compression_json(seen)},
+        {"structures", products::structures_json(seen)},
+        {"compression", products::compression_json(seen)},
     };
-    event.update(comparisons_json(comparisons));
+    event.update(products::comparisons_json(comparisons));
     return event.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
 }
 
-}  // namespace talus
+}  // namespace talus::cli

@@ -8,17 +8,19 @@
 #include "run/run_result.hpp"
 #include "scene/scene.hpp"
 
-namespace talus {
+namespace talus::cli {
 
 /// "complete", "interrupted" or "fault".
-[[nodiscard]] std::string status_name(RunStatus status);
+[[nodiscard]] std::string status_name(run::RunStatus status);
 
 /// The main results in a dozen lines, and a table per comparison.
-[[nodiscard]] std::string summary_text(const Scene& scene, const RunResult& result,
-                                       const std::vector<Comparison>& comparisons, const std::filesystem::path& output);
+[[nodiscard]] std::string summary_text(const scene::Scene& scene, const run::RunResult& result,
+                                       const std::vector<run::Comparison>& comparisons,
+                                       const std::filesystem::path& output);
 
 /// The same for programs: the last line of `talus run --json`.
-[[nodiscard]] std::string summary_json(const Scene& scene, const RunResult& result,
-                                       const std::vector<Comparison>& comparisons, const std::filesystem::path& output);
+[[nodiscard]] std::string summary_json(const scene::Scene& scene, const run::RunResult& result,
+                                       const std::vector<run::Comparison>& comparisons,
+                                       const std::filesystem::path& output);
 
-}  // namespace talus
+}  // namespace talus::cli

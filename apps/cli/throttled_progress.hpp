@@ -6,7 +6,7 @@
 
 #include "progress.hpp"
 
-namespace talus {
+namespace talus::cli {
 
 /// Prints text on stdout immediately.
 inline void print(const std::string& text) {
@@ -44,4 +44,4 @@ class ThrottledProgress {
     std::chrono::steady_clock::time_point next_ = std::chrono::steady_clock::now();
 };
 
-}  // namespace talus
+}  // namespace talus::cli

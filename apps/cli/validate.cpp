@@ -20,7 +20,7 @@
 #include "validate/page.hpp"
 #include "validate/suite.hpp"
 
-namespace talus {
+namespace talus::cli {
 namespace {
 
 namespace fs = std::filesystem;
@@ -55,7 +55,7 @@ Result<fs::path> find_case(const std::string& text, const fs::path& builtin) {
     if (fs::exists(fs::path(text) / "case.toml", error)) return fs::path(text);
     if (text.find('/') == std::string::npos && fs::exists(builtin / text / "case.toml", error)) return builtin / text;
     return Error{fmt::format("{}: neither a folder with a case.toml nor a case of the program; nearest: {}", text,
-                             nearest_word(text, validate::builtin_case_names()))};
+                             params::nearest_word(text, validate::builtin_case_names()))};
 }
 
 Result<std::vector<Case>> load_cases(const ValidateArguments& arguments, const fs::path& builtin) {
@@ -82,12 +82,12 @@ std::string list_text(const std::vector<Case>& cases) {
 
 Status write_outputs(const ValidateArguments& arguments, const std::vector<CaseResult>& results) {
     if (!arguments.json.empty()) {
-        TALUS_TRY(write_text_file(arguments.json, validate::table_json(results)));
+        TALUS_TRY(products::write_text_file(arguments.json, validate::table_json(results)));
     }
     if (!arguments.results.empty() || !arguments.html.empty()) {
         const report::Json data = validate::page_data(results);
-        if (!arguments.results.empty()) TALUS_TRY(write_results(data, arguments.results));
-        if (!arguments.html.empty()) TALUS_TRY(write_text_file(arguments.html, validate::page_html(data)));
+        if (!arguments.results.empty()) TALUS_TRY(products::write_results(data, arguments.results));
+        if (!arguments.html.empty()) TALUS_TRY(products::write_text_file(arguments.html, validate::page_html(data)));
     }
     if (!arguments.markdown.empty()) return validate::write_markdown(results, arguments.markdown);
     return {};
@@ -164,4 +164,4 @@ void add_validate(CLI::App& program, std::vector<Command>& commands) {
     commands.push_back({app, [validate] { return validate_command(*validate); }});
 }
 
-}  // namespace talus
+}  // namespace talus::cli

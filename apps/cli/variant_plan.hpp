@@ -9,7 +9,7 @@
 #include "run/comparison.hpp"
 #include "run/variants.hpp"
 
-namespace talus {
+namespace talus::cli {
 
 struct RunArguments {
     std::string scene;   ///< a scene file; empty: the built-in scene
@@ -28,29 +28,29 @@ struct RunArguments {
 class VariantPlan {
   public:
     /// Errors: a variant that cannot be run, before any run starts.
-    [[nodiscard]] static Result<VariantPlan> make(const RunArguments& arguments, const SceneSource& source,
-                                                  const Scene& scene);
+    [[nodiscard]] static Result<VariantPlan> make(const RunArguments& arguments, const run::SceneSource& source,
+                                                  const scene::Scene& scene);
 
     [[nodiscard]] bool empty() const { return variants_.empty(); }
 
     /// Reports the progress of the base; with variants, that of all runs together.
-    void report_base(ProgressReporter& reporter, const Progress& now) const;
+    void report_base(ProgressReporter& reporter, const run::Progress& now) const;
 
     /// Runs the variants one after the other and compares them with the base. After a stop request or a fault of the
     /// base the rest are listed as missing.
-    [[nodiscard]] std::vector<Comparison> run(const Scene& scene, const RunResult& base, ProgressReporter& reporter,
-                                              const std::atomic<bool>& stop_requested);
+    [[nodiscard]] std::vector<run::Comparison> run(const scene::Scene& scene, const run::RunResult& base,
+                                                   ProgressReporter& reporter, const std::atomic<bool>& stop_requested);
 
   private:
-    VariantPlan(SceneSource source, std::vector<Variant> variants, std::size_t refinement_count);
+    VariantPlan(run::SceneSource source, std::vector<run::Variant> variants, std::size_t refinement_count);
 
-    SceneSource source_;
-    std::vector<Variant> variants_;  // refinements, then named ones and variations
+    run::SceneSource source_;
+    std::vector<run::Variant> variants_;  // refinements, then named ones and variations
     std::size_t refinement_count_;
-    SeriesClock clock_;
+    run::SeriesClock clock_;
 };
 
 /// Tables for a terminal: values and changes of every variant.
-[[nodiscard]] std::string comparison_text(const Comparison& comparison, const RunResult& base);
+[[nodiscard]] std::string comparison_text(const run::Comparison& comparison, const run::RunResult& base);
 
-}  // namespace talus
+}  // namespace talus::cli

@@ -35,7 +35,7 @@ Status write_baseline(const std::filesystem::path& file, const Baseline& baselin
     for (const auto& [instruction_set, rates] : baseline) {
         for (const auto& [name, rate] : rates) json[instruction_set][name] = std::stod(fmt::format("{:.4g}", rate));
     }
-    return write_text_file(file, json.dump(2) + "\n");
+    return products::write_text_file(file, json.dump(2) + "\n");
 }
 
 std::vector<std::string> slower(const Rates& expected, const Rates& measured, double share) {

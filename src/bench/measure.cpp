@@ -33,8 +33,8 @@ double allocated_bytes() {
 #endif
 }
 
-double mean_neighbours(const Simulation& simulation) {
-    const cpu::NeighbourLists& lists = simulation.backend().neighbours();
+double mean_neighbours(const sim::Simulation& simulation) {
+    const sim::cpu::NeighbourLists& lists = simulation.backend().neighbours();
     const std::uint32_t count = simulation.state().count;
     double pairs = 0;
     for (std::uint32_t i = 0; i < count; ++i) pairs += lists.count_of(i);
@@ -42,9 +42,9 @@ double mean_neighbours(const Simulation& simulation) {
 }
 
 /// The start with the task's solver. All requested steps are measured, even if debris comes to rest.
-RunStart start_of(const Start& start, const Task& task) {
-    RunStart changed = start;
-    SolverSpec& solver = changed.model.solver;
+run::RunStart start_of(const Start& start, const Task& task) {
+    run::RunStart changed = start;
+    params::SolverSpec& solver = changed.model.solver;
     solver.internal_friction = task.method;
     solver.iteration_count = task.iterations;
     solver.thread_count = task.threads;
@@ -52,7 +52,7 @@ RunStart start_of(const Start& start, const Task& task) {
     return changed;
 }
 
-Status take_steps(Run& run, int steps, const std::atomic<bool>* stop_requested) {
+Status take_steps(run::Run& run, int steps, const std::atomic<bool>* stop_requested) {
     for (int i = 0; i < steps; ++i) {
         if (stop_requested && stop_requested->load()) return Error{"stopped by the user"};
         if (!run.advance()) return Error{run.stop_reason()};
@@ -63,17 +63,17 @@ Status take_steps(Run& run, int steps, const std::atomic<bool>* stop_requested) 
 /// Times of the repeats, each with the calibration before and after it.
 struct Repeats {
     std::vector<double> step_seconds, calibration_rate, relative_rate;
-    std::array<std::vector<double>, stage_count> stage_seconds;
+    std::array<std::vector<double>, sim::stage_count> stage_seconds;
 };
 
-Status run_repeats(Run& run, Row& row, Calibration& calibration, const std::atomic<bool>* stop_requested) {
-    const Simulation& simulation = run.simulation();
+Status run_repeats(run::Run& run, Row& row, Calibration& calibration, const std::atomic<bool>* stop_requested) {
+    const sim::Simulation& simulation = run.simulation();
     Repeats repeats;
     const double start_time = simulation.state().time;
     (void)calibration.measure();  // wakes the threads
     double rate_before = calibration.measure();
     for (int repeat = 0; repeat < row.repeats; ++repeat) {
-        const StageTimes before = simulation.stage_times();
+        const sim::StageTimes before = simulation.stage_times();
         const Clock::time_point start = Clock::now();
         TALUS_TRY(take_steps(run, row.steps, stop_requested));
         const double step_seconds = seconds_since(start) / row.steps;
@@ -83,7 +83,7 @@ Status run_repeats(Run& run, Row& row, Calibration& calibration, const std::atom
         repeats.step_seconds.push_back(step_seconds);
         repeats.calibration_rate.push_back(rate);
         repeats.relative_rate.push_back(row.particle_iterations() / step_seconds / rate);
-        for (std::size_t stage = 0; stage < stage_count; ++stage) {
+        for (std::size_t stage = 0; stage < sim::stage_count; ++stage) {
             const double spent = simulation.stage_times().seconds[stage] - before.seconds[stage];
             repeats.stage_seconds[stage].push_back(spent / row.steps);
         }
@@ -91,7 +91,7 @@ Status run_repeats(Run& run, Row& row, Calibration& calibration, const std::atom
     row.step_seconds = median(repeats.step_seconds);
     row.calibration_rate = median(repeats.calibration_rate);
     row.relative_rate = median(repeats.relative_rate);
-    for (std::size_t stage = 0; stage < stage_count; ++stage) {
+    for (std::size_t stage = 0; stage < sim::stage_count; ++stage) {
         row.stage_seconds[stage] = median(repeats.stage_seconds[stage]);
     }
     row.time_step = (simulation.state().time - start_time) / (row.steps * row.repeats);
@@ -112,7 +112,7 @@ Result<Row> measure_in_arena(const Start& start, const Task& task, Calibration& 
     row.fixed_time_step = start.model.solver.time_step.has_value();
 
     const double bytes_before = allocated_bytes();
-    Run run(start_of(start, task));
+    run::Run run(start_of(start, task));
     Status status = take_steps(run, row.warm_up, stop_requested);
     row.bytes_per_particle = std::max(0.0, allocated_bytes() - bytes_before) / std::max(1U, row.particles);
     if (status) status = run_repeats(run, row, calibration, stop_requested);
@@ -128,8 +128,8 @@ Result<Row> measure_in_arena(const Start& start, const Task& task, Calibration& 
 
 }  // namespace
 
-std::string_view method_name(InternalFriction method) {
-    return method == InternalFriction::pair ? "pair" : "stress";
+std::string_view method_name(params::InternalFriction method) {
+    return method == params::InternalFriction::pair ? "pair" : "stress";
 }
 
 const std::vector<std::string>& method_names() {
@@ -137,8 +137,8 @@ const std::vector<std::string>& method_names() {
     return names;
 }
 
-InternalFriction method_of(std::string_view name) {
-    return name == "pair" ? InternalFriction::pair : InternalFriction::stress;
+params::InternalFriction method_of(std::string_view name) {
+    return name == "pair" ? params::InternalFriction::pair : params::InternalFriction::stress;
 }
 
 int usual_steps(std::uint32_t particles) {
@@ -151,7 +151,9 @@ int usual_warm_up(std::uint32_t particles) {
 
 Result<Row> measure(const Start& start, const Task& task, Calibration& calibration,
                     const std::atomic<bool>* stop_requested) {
-    return Threads(task.threads).execute([&] { return measure_in_arena(start, task, calibration, stop_requested); });
+    return run::Threads(task.threads).execute([&] {
+        return measure_in_arena(start, task, calibration, stop_requested);
+    });
 }
 
 double median(std::vector<double> values) {

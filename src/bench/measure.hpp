@@ -24,7 +24,7 @@ struct Length {
 
 /// The measurement of one row of the table.
 struct Task {
-    InternalFriction method = InternalFriction::stress;
+    params::InternalFriction method = params::InternalFriction::stress;
     int iterations = 4;
     int threads = 1;
     Length length;
@@ -38,7 +38,7 @@ struct Row {
     int iterations = 0, threads = 0;
     int warm_up = 0, steps = 0, repeats = 0;  ///< steps per repeat
 
-    std::array<double, stage_count> stage_seconds{};  ///< per step
+    std::array<double, sim::stage_count> stage_seconds{};  ///< per step
     double step_seconds = 0;
     double time_step = 0;  ///< s, mean of the measured steps
     bool fixed_time_step = false;
@@ -55,10 +55,10 @@ struct Row {
 };
 
 /// "stress", "pair".
-[[nodiscard]] std::string_view method_name(InternalFriction method);
+[[nodiscard]] std::string_view method_name(params::InternalFriction method);
 [[nodiscard]] const std::vector<std::string>& method_names();
 /// The method of one of these names.
-[[nodiscard]] InternalFriction method_of(std::string_view name);
+[[nodiscard]] params::InternalFriction method_of(std::string_view name);
 
 /// Default number of steps of a repeat, and before the first: the more particles, the fewer.
 [[nodiscard]] int usual_steps(std::uint32_t particles);

@@ -22,19 +22,19 @@ constexpr double usual_speed = 3;  // m/s down the slope: fast enough for fricti
 
 /// A scene before it is filled with particles.
 struct World {
-    Terrain terrain;
-    std::vector<Building> buildings;
-    std::vector<Release> releases;
-    FlowPath flow_path;
-    MaterialSpec material;
-    SolverSpec solver;
-    OutputSpec outputs;
+    terrain::Terrain terrain;
+    std::vector<terrain::Building> buildings;
+    std::vector<terrain::Release> releases;
+    terrain::FlowPath flow_path;
+    params::MaterialSpec material;
+    params::SolverSpec solver;
+    params::OutputSpec outputs;
     double spacing = 0;  ///< m
     double speed = 0;    ///< m/s down the slope
 };
 
 /// Ground around the world's origin, with cells of 1 m.
-Terrain make_terrain(double x_min, double x_max, double y_max, double slope) {
+terrain::Terrain make_terrain(double x_min, double x_max, double y_max, double slope) {
     const int columns = static_cast<int>(std::ceil(x_max - x_min)), rows = 2 * static_cast<int>(std::ceil(y_max));
     Grid<float> grid(GridGeometry{x_min, -rows / 2.0, 1, columns, rows});
     for (int row = 0; row < rows; ++row) {
@@ -42,23 +42,23 @@ Terrain make_terrain(double x_min, double x_max, double y_max, double slope) {
             grid.at(column, row) = static_cast<float>(-std::tan(slope) * (grid.geometry.centre(column, row).x - x_min));
         }
     }
-    return Terrain(std::move(grid));
+    return terrain::Terrain(std::move(grid));
 }
 
 Polygon rectangle(double x_min, double y_min, double x_max, double y_max) {
     return {{{x_min, y_min}, {x_max, y_min}, {x_max, y_max}, {x_min, y_max}}, {}};
 }
 
-Building house(double x_min, double y_min, double edge) {
-    Building house;
+terrain::Building house(double x_min, double y_min, double edge) {
+    terrain::Building house;
     house.name = "house";
     house.footprint = {rectangle(x_min, y_min, x_min + edge, y_min + edge)};
     house.height = 6;
     return house;
 }
 
-Release block(const Polygon& outline, double thickness) {
-    Release release;
+terrain::Release block(const Polygon& outline, double thickness) {
+    terrain::Release release;
     release.name = "block";
     release.patches.push_back({outline, thickness});
     return release;
@@ -78,7 +78,7 @@ World slab(int particles) {
     for (const double middle : {-width / 4, width / 4}) {
         world.buildings.push_back(house(world.spacing, middle - width / 12, width / 6));
     }
-    world.flow_path = FlowPath({{-length - 5, 0}, {55, 0}}, width + 20);
+    world.flow_path = terrain::FlowPath({{-length - 5, 0}, {55, 0}}, width + 20);
     return world;
 }
 
@@ -92,12 +92,13 @@ World column(int particles) {
     world.terrain = make_terrain(-reach, reach, reach, 0);
     world.releases = {block(rectangle(-width / 2, -width / 2, width / 2, width / 2), height)};
     world.buildings = {house(width / 2 + world.spacing, -width / 4, width / 2)};
-    world.flow_path = FlowPath({{0, 0}, {reach - 1, 0}}, 2 * reach);
+    world.flow_path = terrain::FlowPath({{0, 0}, {reach - 1, 0}}, 2 * reach);
     return world;
 }
 
 Result<World> sham_tseng(int particles, const std::filesystem::path& builtin_scene) {
-    TALUS_ASSIGN(Scene scene, load_scene(builtin_scene, {"variant=paper"}));  // the same laws as in the other scenes
+    TALUS_ASSIGN(scene::Scene scene,
+                 scene::load_scene(builtin_scene, {"variant=paper"}));  // the same laws as in the other scenes
     World world;
     world.terrain = std::move(scene.terrain);
     world.buildings = std::move(scene.buildings);
@@ -108,7 +109,7 @@ Result<World> sham_tseng(int particles, const std::filesystem::path& builtin_sce
     world.outputs = scene.spec.outputs;
     world.speed = usual_speed;
     double volume = 0;
-    for (const Release& release : world.releases) volume += release.volume;
+    for (const terrain::Release& release : world.releases) volume += release.volume;
     world.spacing = std::cbrt(volume / particles);
     return world;
 }
@@ -116,7 +117,8 @@ Result<World> sham_tseng(int particles, const std::filesystem::path& builtin_sce
 /// Debris of one release, in columns on the spacing's lattice as seed_releases() stacks them.
 class Stack {
   public:
-    Stack(const Model& model, const Terrain& terrain, const Release& release, double speed, State& state)
+    Stack(const sim::Model& model, const terrain::Terrain& terrain, const terrain::Release& release, double speed,
+          sim::State& state)
         : model_(model), terrain_(terrain), release_(release), speed_(speed), state_(state) {}
 
     /// Adds the release's particles to the state, until that has `most`.
@@ -142,7 +144,7 @@ class Stack {
         const double thickness = release_.thickness_at(centre), cosine = terrain_.slope_cosine_at(centre);
         if (!(thickness > 0) || !(cosine > 0)) return;
         const LocalPoint plan = terrain_.frame().to_local({centre.x, centre.y, 0});
-        const GroundSample<float> ground = terrain_.sample(plan.x, plan.y);
+        const terrain::GroundSample<float> ground = terrain_.sample(plan.x, plan.y);
         const LocalPoint velocity = downhill(ground.normal);
         const double spacing = model_.particle_spacing, depth = thickness / cosine;
         const int layers = static_cast<int>(depth / spacing + threshold);
@@ -165,11 +167,11 @@ class Stack {
         return size > 1e-4F ? down * (static_cast<float>(speed_) / size) : LocalPoint{};
     }
 
-    const Model& model_;
-    const Terrain& terrain_;
-    const Release& release_;
+    const sim::Model& model_;
+    const terrain::Terrain& terrain_;
+    const terrain::Release& release_;
     double speed_;
-    State& state_;
+    sim::State& state_;
 };
 
 Start fill(std::string_view scene, World world, int particles) {
@@ -178,13 +180,13 @@ Start fill(std::string_view scene, World world, int particles) {
     start.flow_path = std::move(world.flow_path);
     start.outputs = world.outputs;
     place_buildings(world.terrain, world.buildings);
-    start.model = make_model(world.material, world.solver, world.spacing);
-    start.ground = Ground(std::move(world.terrain), std::move(world.buildings), start.model.support_radius);
+    start.model = sim::make_model(world.material, world.solver, world.spacing);
+    start.ground = sim::Ground(std::move(world.terrain), std::move(world.buildings), start.model.support_radius);
     // Columns on an outline make it a few particles more or fewer than requested.
     const auto most = static_cast<std::uint32_t>(1.05 * particles);
-    State& state = start.state;
+    sim::State& state = start.state;
     state.resize(most);
-    for (const Release& release : world.releases) {
+    for (const terrain::Release& release : world.releases) {
         const std::uint32_t first = state.count;
         Stack(start.model, start.ground.terrain, release, world.speed, state).fill(most);
         start.model.releases.push_back({release.name, 0, first, state.count});

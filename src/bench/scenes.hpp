@@ -20,7 +20,7 @@ namespace talus::bench {
 inline constexpr int fewest_particles = 500, most_particles = 4000000;
 
 /// Initial data of a measurement: the same for every method and number of threads.
-struct Start : RunStart {
+struct Start : run::RunStart {
     std::string scene;
 };
 

@@ -63,10 +63,10 @@ std::string rates_text(const std::vector<Row>& rows) {
 std::string shares_text(const std::vector<Row>& rows) {
     std::vector<Line> lines = {{"scene", "method", "particles", "threads"}};
     for (const Row& row : rows) lines.push_back(name_cells(row));
-    for (std::size_t stage = 0; stage < stage_count; ++stage) {
+    for (std::size_t stage = 0; stage < sim::stage_count; ++stage) {
         const auto share = [stage](const Row& row) { return 100 * row.stage_seconds[stage] / row.step_seconds; };
         if (std::none_of(rows.begin(), rows.end(), [&](const Row& row) { return share(row) >= 0.05; })) continue;
-        lines[0].emplace_back(step_stages[stage].short_name);
+        lines[0].emplace_back(sim::step_stages[stage].short_name);
         for (std::size_t row = 0; row < rows.size(); ++row) {
             lines[row + 1].push_back(fmt::format("{:.1f}", share(rows[row])));
         }
@@ -100,8 +100,8 @@ std::string table_json(const std::vector<Row>& rows) {
     Json list = Json::array();
     for (const Row& row : rows) {
         Json stages = Json::object();
-        for (std::size_t stage = 0; stage < stage_count; ++stage) {
-            stages[std::string(step_stages[stage].name)] = 1e3 * row.stage_seconds[stage];
+        for (std::size_t stage = 0; stage < sim::stage_count; ++stage) {
+            stages[std::string(sim::step_stages[stage].name)] = 1e3 * row.stage_seconds[stage];
         }
         list.push_back({
             {"scene", row.scene},

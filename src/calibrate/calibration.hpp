@@ -18,17 +18,17 @@
 #include "scene/scene.hpp"
 
 /// Back-analysis: finds the values of a scene that explain field observations, by runs of that scene.
-namespace talus {
+namespace talus::calibrate {
 
 struct CalibrationPlan {
-    std::vector<Factor> factors;  ///< free values with ranges or priors
+    std::vector<ensemble::Factor> factors;  ///< free values with ranges or priors
     SearchOptions search;
 };
 
 struct CalibrationProgress {
     SearchPhase phase = SearchPhase::design;
     std::size_t done = 0, failed = 0, most = 0;  ///< runs so far, and their maximum number
-    double least_misfit = never;
+    double least_misfit = observe::never;
     double wall_remaining = 0;  ///< s, an estimate; NaN: not known yet
 };
 
@@ -36,19 +36,19 @@ struct CalibrationProgress {
 struct CalibrationRun {
     std::size_t run = 0;
     SearchPhase phase = SearchPhase::design;
-    std::vector<double> values;  ///< of the factors
-    double misfit = never;       ///< as SearchRun::misfit
+    std::vector<double> values;      ///< of the factors
+    double misfit = observe::never;  ///< as SearchRun::misfit
 };
 
 /// A calibration and its results.
 struct Calibration {
-    const Scene* scene = nullptr;  ///< as given, before factors
-    std::vector<Factor> factors;
-    std::vector<ObservedValue> observed;
+    const scene::Scene* scene = nullptr;  ///< as given, before factors
+    std::vector<ensemble::Factor> factors;
+    std::vector<ensemble::ObservedValue> observed;
     SearchResult result;
-    std::vector<RunRecord> records;           ///< as result.runs
-    std::vector<std::string> best_overrides;  ///< "section.key=value" that make the scene that of the best run
-    double wall_time = 0;                     ///< s, of this call
+    std::vector<ensemble::RunRecord> records;  ///< as result.runs
+    std::vector<std::string> best_overrides;   ///< "section.key=value" that make the scene that of the best run
+    double wall_time = 0;                      ///< s, of this call
 };
 
 struct CalibrationOptions {
@@ -63,28 +63,29 @@ struct CalibrationOptions {
 
 /// The factors as runs of the scene. Errors: as PlannedRuns::make; a factor without a range; too few runs; nothing
 /// observed, or beyond the flow path.
-[[nodiscard]] Result<PlannedRuns> plan_calibration(const CalibrationPlan& plan, const SceneSource& source,
-                                                   const Scene& base);
+[[nodiscard]] Result<ensemble::PlannedRuns> plan_calibration(const CalibrationPlan& plan,
+                                                             const run::SceneSource& source, const scene::Scene& base);
 
 /// The definition that identifies a calibration, for EnsembleFolder::open; `kind`: "calibration", or that of other
 /// runs.
 [[nodiscard]] nlohmann::ordered_json calibration_definition(const std::string& kind, const CalibrationPlan& plan,
-                                                            const PlannedRuns& runs, const SceneSource& source,
-                                                            const Scene& base,
-                                                            const std::vector<ObservedValue>& observed,
+                                                            const ensemble::PlannedRuns& runs,
+                                                            const run::SceneSource& source, const scene::Scene& base,
+                                                            const std::vector<ensemble::ObservedValue>& observed,
                                                             const std::string& scene_name);
 
 /// Predictions of the scene's observations by its runs, which are stored in the folder; existing ones are reused.
 /// `observed`: to evaluate their misfit; `records` receives the runs. All must outlive the model.
-[[nodiscard]] ForwardModel scene_model(PlannedRuns& runs, const SceneSource& source,
-                                       const std::vector<ObservedValue>& observed, const EnsembleFolder& folder,
-                                       std::size_t most, const CalibrationOptions& options,
-                                       std::vector<RunRecord>& records);
+[[nodiscard]] ForwardModel scene_model(ensemble::PlannedRuns& runs, const run::SceneSource& source,
+                                       const std::vector<ensemble::ObservedValue>& observed,
+                                       const ensemble::EnsembleFolder& folder, std::size_t most,
+                                       const CalibrationOptions& options, std::vector<ensemble::RunRecord>& records);
 
 /// Computes the runs missing in the folder and finds the values that explain `observed` (as observed_values(base), or
 /// other values of the same). Errors: a record cannot be written, or is of another calibration; no run is complete.
-[[nodiscard]] Result<Calibration> calibrate(const CalibrationPlan& plan, PlannedRuns runs, const SceneSource& source,
-                                            const Scene& base, const std::vector<ObservedValue>& observed,
-                                            const EnsembleFolder& folder, const CalibrationOptions& options);
+[[nodiscard]] Result<Calibration> calibrate(const CalibrationPlan& plan, ensemble::PlannedRuns runs,
+                                            const run::SceneSource& source, const scene::Scene& base,
+                                            const std::vector<ensemble::ObservedValue>& observed,
+                                            const ensemble::EnsembleFolder& folder, const CalibrationOptions& options);
 
-}  // namespace talus
+}  // namespace talus::calibrate

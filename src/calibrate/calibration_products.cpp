@@ -14,7 +14,7 @@
 #include "products/text_file.hpp"
 #include "scene/builtin.hpp"
 
-namespace talus {
+namespace talus::calibrate {
 
 namespace fs = std::filesystem;
 
@@ -24,18 +24,18 @@ using Json = nlohmann::ordered_json;
 
 std::string run_csv(const Calibration& c) {
     std::string header = "run,phase,status";
-    for (const Factor& f : c.factors) header += "," + f.key;
-    for (const ObservedValue& o : c.observed) header += "," + o.key;
-    Csv csv(header + ",misfit,expected_improvement,wall_time_s,hash,fault");
+    for (const ensemble::Factor& f : c.factors) header += "," + f.key;
+    for (const ensemble::ObservedValue& o : c.observed) header += "," + o.key;
+    products::Csv csv(header + ",misfit,expected_improvement,wall_time_s,hash,fault");
     for (std::size_t i = 0; i < c.result.runs.size(); ++i) {
         const SearchRun& run = c.result.runs[i];
-        const RunRecord& record = c.records[i];
+        const ensemble::RunRecord& record = c.records[i];
         csv.number(static_cast<double>(i))
             .word(search_phase_name(run.phase))
             .word(record.complete() ? "complete" : "failed");
         for (const std::string& value : record.values) csv.word(value);
         for (std::size_t j = 0; j < c.observed.size(); ++j)
-            csv.number(j < run.predicted.size() ? run.predicted[j] : never);
+            csv.number(j < run.predicted.size() ? run.predicted[j] : observe::never);
         csv.number(run.misfit).number(run.improvement).number(record.wall_time).word(record.hash).word(record.fault);
         csv.end_row();
     }
@@ -45,8 +45,8 @@ std::string run_csv(const Calibration& c) {
 std::string factor_csv(const Calibration& c, const CalibrationSummary& s) {
     std::string header =
         "factor,best,median,low_95,high_95,prior_low_95,prior_high_95,share_of_prior_width,r_hat,effective_draws";
-    for (const Factor& f : c.factors) header += ",correlation_with_" + f.key;
-    Csv csv(header);
+    for (const ensemble::Factor& f : c.factors) header += ",correlation_with_" + f.key;
+    products::Csv csv(header);
     for (std::size_t k = 0; k < s.factors.size(); ++k) {
         const FactorResult& f = s.factors[k];
         csv.word(c.factors[k].key).number(f.best).number(f.median).number(f.low).number(f.high).number(f.prior_low);
@@ -60,7 +60,7 @@ std::string factor_csv(const Calibration& c, const CalibrationSummary& s) {
 }
 
 std::string observation_csv(const Calibration& c, const CalibrationSummary& s) {
-    Csv csv(
+    products::Csv csv(
         "observation,observed,uncertainty,best_run,deviation,posterior_median,posterior_low_95,posterior_high_95,"
         "emulator_rms_error,emulator_explained,run_noise,emulator_reach_told");
     for (std::size_t j = 0; j < s.observations.size(); ++j) {
@@ -74,8 +74,8 @@ std::string observation_csv(const Calibration& c, const CalibrationSummary& s) {
 
 std::string map_csv(const Calibration& c, const MisfitMap& map) {
     const bool plane = !map.y.empty();
-    Csv csv(plane ? fmt::format("{},{},misfit", c.factors[0].key, c.factors[1].key)
-                  : fmt::format("{},misfit", c.factors[0].key));
+    products::Csv csv(plane ? fmt::format("{},{},misfit", c.factors[0].key, c.factors[1].key)
+                            : fmt::format("{},misfit", c.factors[0].key));
     for (std::size_t i = 0; i < map.misfit.size(); ++i) {
         const std::size_t column = i % map.cells, row = i / map.cells;
         csv.number((map.x[column] + map.x[column + 1]) / 2);
@@ -87,8 +87,8 @@ std::string map_csv(const Calibration& c, const MisfitMap& map) {
 
 std::string draw_csv(const Calibration& c) {
     std::string header;
-    for (const Factor& f : c.factors) header += (header.empty() ? "" : ",") + f.key;
-    Csv csv(header);
+    for (const ensemble::Factor& f : c.factors) header += (header.empty() ? "" : ",") + f.key;
+    products::Csv csv(header);
     for (const auto& draw : c.result.posterior.draws) {
         for (std::size_t k = 0; k < c.factors.size(); ++k) csv.number(c.factors[k].distribution.quantile(draw[k]));
         csv.end_row();
@@ -97,24 +97,24 @@ std::string draw_csv(const Calibration& c) {
 }
 
 /// A scene file of the run of least misfit. Paths within its folder are relative.
-Status write_best_scene(const Calibration& c, const SceneSource& source, bool own_files, const fs::path& folder) {
+Status write_best_scene(const Calibration& c, const run::SceneSource& source, bool own_files, const fs::path& folder) {
     const fs::path to = (fs::absolute(folder) / "best_fit").lexically_normal();
     std::error_code error;
     fs::create_directories(to, error);
     if (error) return Error{fmt::format("{}: cannot be made: {}", to.string(), error.message())};
     fs::path file = source.file;
     if (own_files) {
-        TALUS_ASSIGN(file, unpack_builtin_scene(to));
+        TALUS_ASSIGN(file, scene::unpack_builtin_scene(to));
     }
     std::vector<std::string> overrides = source.overrides;
     const std::vector<std::string>& best = c.best_overrides;
     overrides.insert(overrides.end(), best.begin(), best.end());
-    TALUS_ASSIGN(SceneSpec spec, parse_scene(file, overrides));
-    for (const Section& section : scene_sections()) {
+    TALUS_ASSIGN(params::SceneSpec spec, scene::parse_scene(file, overrides));
+    for (const params::Section& section : params::scene_sections()) {
         for (std::size_t i = 0; i < section.count(spec); ++i) {
-            for (const Parameter& parameter : section.parameters) {
-                if (parameter.kind != ParameterKind::path) continue;
-                const ParameterValue value = parameter.get(spec, i);
+            for (const params::Parameter& parameter : section.parameters) {
+                if (parameter.kind != params::ParameterKind::path) continue;
+                const params::ParameterValue value = parameter.get(spec, i);
                 const auto* path = std::get_if<std::string>(&value);
                 if (path == nullptr) continue;
                 const std::string place = fs::absolute(*path).lexically_normal().string(), here = to.string() + "/";
@@ -122,11 +122,11 @@ Status write_best_scene(const Calibration& c, const SceneSource& source, bool ow
             }
         }
     }
-    const RunRecord& record = c.records[*c.result.best];
+    const ensemble::RunRecord& record = c.records[*c.result.best];
     const std::string header =
         fmt::format("The best fit of talus calibrate: run {} of {}, misfit {:.4g}. Running this gives hash {}.",
                     record.run, c.records.size(), c.result.runs[record.run].misfit, record.hash);
-    return write_text_file(to / "scene.toml", write_scene(spec, header));
+    return products::write_text_file(to / "scene.toml", write_scene(spec, header));
 }
 
 }  // namespace
@@ -187,20 +187,21 @@ Json calibration_json(const Calibration& c) {
             {"warnings", s.warnings}};
 }
 
-Status write_calibration(const Calibration& c, const SceneSource& source, bool own_files, const fs::path& folder) {
+Status write_calibration(const Calibration& c, const run::SceneSource& source, bool own_files, const fs::path& folder) {
     const CalibrationSummary s = summarise(c);
     const MisfitMap map = misfit_map(c);
-    TALUS_TRY(write_text_file(folder / "runs.csv", run_csv(c)));
-    TALUS_TRY(write_text_file(folder / "factors.csv", factor_csv(c, s)));
-    TALUS_TRY(write_text_file(folder / "observations.csv", observation_csv(c, s)));
-    TALUS_TRY(write_text_file(folder / "misfit_map.csv", map_csv(c, map)));
-    TALUS_TRY(write_text_file(folder / "posterior.csv", draw_csv(c)));
-    TALUS_TRY(write_text_file(folder / "misfit_map.svg", report::chart_file(report::misfit_chart(c, map))));
+    TALUS_TRY(products::write_text_file(folder / "runs.csv", run_csv(c)));
+    TALUS_TRY(products::write_text_file(folder / "factors.csv", factor_csv(c, s)));
+    TALUS_TRY(products::write_text_file(folder / "observations.csv", observation_csv(c, s)));
+    TALUS_TRY(products::write_text_file(folder / "misfit_map.csv", map_csv(c, map)));
+    TALUS_TRY(products::write_text_file(folder / "posterior.csv", draw_csv(c)));
+    TALUS_TRY(
+        products::write_text_file(folder / "misfit_map.svg", report::chart_file(calibrate::misfit_chart(c, map))));
     TALUS_TRY(write_best_scene(c, source, own_files, folder));
     const Json results = calibration_results(c, s, map);
-    TALUS_TRY(write_results(results, folder / "results.json"));
-    TALUS_TRY(write_text_file(folder / "report.html", calibration_report(results)));
-    return write_text_file(folder / "calibration.json", calibration_json(c).dump(2) + "\n");
+    TALUS_TRY(products::write_results(results, folder / "results.json"));
+    TALUS_TRY(products::write_text_file(folder / "report.html", calibration_report(results)));
+    return products::write_text_file(folder / "calibration.json", calibration_json(c).dump(2) + "\n");
 }
 
-}  // namespace talus
+}  // namespace talus::calibrate

@@ -9,7 +9,7 @@
 #include "calibrate/calibration.hpp"
 #include "core/result.hpp"
 
-namespace talus {
+namespace talus::calibrate {
 
 /// The result for one factor, in the unit of its key.
 struct FactorResult {
@@ -38,8 +38,8 @@ struct CalibrationSummary {
     std::vector<FactorResult> factors;
     std::vector<ObservationResult> observations;
     std::size_t complete = 0, failed = 0;
-    double checks_within = never;       ///< share of the checks within the 95 % interval of the emulators
-    std::vector<std::string> warnings;  ///< limitations that a reader must know, one sentence each
+    double checks_within = observe::never;  ///< share of the checks within the 95 % interval of the emulators
+    std::vector<std::string> warnings;      ///< limitations that a reader must know, one sentence each
 };
 [[nodiscard]] CalibrationSummary summarise(const Calibration& calibration);
 
@@ -53,12 +53,12 @@ struct MisfitMap {
 [[nodiscard]] MisfitMap misfit_map(const Calibration& calibration);
 
 /// The share of a distribution (not a list) that lies below a value.
-[[nodiscard]] double share_below(const Distribution& distribution, double value);
+[[nodiscard]] double share_below(const stats::Distribution& distribution, double value);
 
 /// runs.csv, factors.csv, observations.csv, misfit_map.csv, posterior.csv, calibration.json, results.json, report.html,
 /// misfit_map.svg and best_fit/scene.toml, the scene of the best fit, into the folder. `own_files`: the scene's files
 /// are unpacked into best_fit too (the built-in scene). Errors name the file and the cause.
-[[nodiscard]] Status write_calibration(const Calibration& calibration, const SceneSource& source, bool own_files,
+[[nodiscard]] Status write_calibration(const Calibration& calibration, const run::SceneSource& source, bool own_files,
                                        const std::filesystem::path& folder);
 
 /// Everything except draws and the map; values that do not exist are null.
@@ -71,4 +71,4 @@ struct MisfitMap {
 /// The self-contained page: showing `results` from calibration_results().
 [[nodiscard]] std::string calibration_report(const nlohmann::ordered_json& results);
 
-}  // namespace talus
+}  // namespace talus::calibrate

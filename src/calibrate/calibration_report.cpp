@@ -13,7 +13,7 @@
 #include "report/results.hpp"
 #include "report/table.hpp"
 
-namespace talus {
+namespace talus::calibrate {
 
 using namespace report;
 
@@ -41,8 +41,8 @@ Json key_figures_of(const Calibration& c, const CalibrationSummary& s) {
 
 std::string unit_of(const std::string& key) {
     const std::size_t dot = key.find('.');
-    const Section* section = find_section(key.substr(0, std::min(dot, key.find('['))));
-    const Parameter* parameter = section != nullptr ? section->find(key.substr(dot + 1)) : nullptr;
+    const params::Section* section = params::find_section(key.substr(0, std::min(dot, key.find('['))));
+    const params::Parameter* parameter = section != nullptr ? section->find(key.substr(dot + 1)) : nullptr;
     if (parameter == nullptr) return "";
     return parameter->unit == "m3" ? "m³" : parameter->unit;
 }
@@ -72,7 +72,7 @@ Json factors_of(const Calibration& c, const CalibrationSummary& s) {
 
 Json correlations_of(const Calibration& c) {
     std::vector<Column> columns = {{"factor", "", "", "", "code"}};
-    for (const Factor& f : c.factors) columns.push_back({f.key, f.key, "", "f2"});
+    for (const ensemble::Factor& f : c.factors) columns.push_back({f.key, f.key, "", "f2"});
     Json rows = table(columns);
     for (std::size_t k = 0; k < c.factors.size(); ++k) {
         Json row = {{"factor", c.factors[k].key}};
@@ -96,10 +96,10 @@ Json observations_of(const Calibration& c, const CalibrationSummary& s) {
                        {"unit", "Unit", "", "", "", ""}});
     for (std::size_t j = 0; j < s.observations.size(); ++j) {
         const ObservationResult& o = s.observations[j];
-        const ObservedValue& observed = c.observed[j];
-        const char* side = observed.kind == ObservedValue::Kind::at_least ? "≥ "
-                           : observed.kind == ObservedValue::Kind::below  ? "< "
-                                                                          : "";
+        const ensemble::ObservedValue& observed = c.observed[j];
+        const char* side = observed.kind == ensemble::ObservedValue::Kind::at_least ? "≥ "
+                           : observed.kind == ensemble::ObservedValue::Kind::below  ? "< "
+                                                                                    : "";
         rows["rows"].push_back(
             {{"name", observed.name},
              {"observed",
@@ -146,7 +146,7 @@ Json convergence_of(const Calibration& c, const CalibrationSummary& s) {
 
 Json calibration_results(const Calibration& c, const CalibrationSummary& s, const MisfitMap& map) {
     double wall = 0;
-    for (const RunRecord& record : c.records) wall += record.wall_time;
+    for (const ensemble::RunRecord& record : c.records) wall += record.wall_time;
     Json all = results_head("talus calibration", *c.scene);
     all.update({{"status", {{"name", "complete"}, {"partial", false}}},
                 {"key_figures", key_figures_of(c, s)},
@@ -175,4 +175,4 @@ std::string calibration_report(const Json& results) {
     return render(calibration_report_files::calibration_html, page);
 }
 
-}  // namespace talus
+}  // namespace talus::calibrate

@@ -6,7 +6,7 @@
 #include "calibrate/calibration_products.hpp"
 #include "ensemble/reduction.hpp"
 
-namespace talus {
+namespace talus::calibrate {
 namespace {
 
 constexpr std::size_t map_cells = 40, other_places = 48;
@@ -16,7 +16,7 @@ constexpr double largest_r_hat = 1.05;
 constexpr double fewest_draws = 400;
 
 FactorResult summarise_factor(const Calibration& c, std::size_t k) {
-    const Distribution& prior = c.factors[k].distribution;
+    const stats::Distribution& prior = c.factors[k].distribution;
     const Posterior& posterior = c.result.posterior;
     const double low = posterior.quantile(k, 2.5), middle = posterior.quantile(k, 50),
                  high = posterior.quantile(k, 97.5);
@@ -36,12 +36,12 @@ FactorResult summarise_factor(const Calibration& c, std::size_t k) {
 }
 
 /// The prediction, or its substitute if there is none.
-double filled(const ObservedValue& observed, double predicted) {
+double filled(const ensemble::ObservedValue& observed, double predicted) {
     return std::isfinite(predicted) ? predicted : observed.unreached;
 }
 
 ObservationResult summarise_observation(const Calibration& c, std::size_t j) {
-    const ObservedValue& observed = c.observed[j];
+    const ensemble::ObservedValue& observed = c.observed[j];
     const SearchResult& result = c.result;
     ObservationResult o;
     o.best = result.runs[*result.best].predicted[j];
@@ -51,22 +51,22 @@ ObservationResult summarise_observation(const Calibration& c, std::size_t j) {
         if (run.phase == SearchPhase::design && !run.predicted.empty())
             design.push_back(filled(observed, run.predicted[j]));
     }
-    o.prior_low = percentile(design, 5);
-    o.prior_high = percentile(design, 95);
-    const PredictionEmulator& emulator = result.fit.emulators[j];
+    o.prior_low = ensemble::percentile(design, 5);
+    o.prior_high = ensemble::percentile(design, 95);
+    const stats::PredictionEmulator& emulator = result.fit.emulators[j];
     for (std::size_t i = 0; i < result.posterior.draws.size(); ++i) {
-        const PredictionEmulator::Estimate e = emulator.at(result.posterior.draws[i]);
-        const double value = e.value.mean + std::sqrt(e.value.variance + e.value.noise) * normal_draw(7, i, j);
-        expected.push_back(draw(8, i, j) < e.reached ? value : observed.unreached);
+        const stats::PredictionEmulator::Estimate e = emulator.at(result.posterior.draws[i]);
+        const double value = e.value.mean + std::sqrt(e.value.variance + e.value.noise) * stats::normal_draw(7, i, j);
+        expected.push_back(stats::draw(8, i, j) < e.reached ? value : observed.unreached);
     }
-    o.median = percentile(expected, 50);
-    o.low = percentile(expected, 2.5);
-    o.high = percentile(expected, 97.5);
+    o.median = ensemble::percentile(expected, 50);
+    o.low = ensemble::percentile(expected, 2.5);
+    o.high = ensemble::percentile(expected, 97.5);
     o.reach_told = emulator.reach_told();
-    o.left_out = o.explained = o.noise = never;
+    o.left_out = o.explained = o.noise = observe::never;
     if (!emulator.value()) return o;
     double error = 0, spread = 0, mean = 0;
-    const std::vector<Emulator::LeftOut> all = emulator.value()->leave_one_out();
+    const std::vector<stats::Emulator::LeftOut> all = emulator.value()->leave_one_out();
     const auto n = static_cast<double>(all.size());
     for (const auto& run : all) mean += run.computed / n;
     for (const auto& run : all) {
@@ -74,7 +74,7 @@ ObservationResult summarise_observation(const Calibration& c, std::size_t j) {
         spread += (run.computed - mean) * (run.computed - mean) / n;
     }
     o.left_out = std::sqrt(error);
-    o.explained = spread > 0 ? 1 - error / spread : never;
+    o.explained = spread > 0 ? 1 - error / spread : observe::never;
     o.noise = emulator.value()->noise_deviation();
     return o;
 }
@@ -114,7 +114,7 @@ void warn_of_factors(const Calibration& c, CalibrationSummary& s) {
 void warn_of_observations(const Calibration& c, CalibrationSummary& s) {
     for (std::size_t j = 0; j < s.observations.size(); ++j) {
         const ObservationResult& o = s.observations[j];
-        const ObservedValue& observed = c.observed[j];
+        const ensemble::ObservedValue& observed = c.observed[j];
         if (std::abs(o.deviation) > 2) {
             s.warnings.push_back(fmt::format(
                 "{} is not explained: the best run gives {} against {} observed, {:.1f} standard deviations off.",
@@ -160,7 +160,7 @@ CalibrationSummary summarise(const Calibration& c) {
     return s;
 }
 
-double share_below(const Distribution& distribution, double value) {
+double share_below(const stats::Distribution& distribution, double value) {
     double low = 0, high = 1;
     for (int i = 0; i < 60; ++i) {
         const double share = (low + high) / 2;
@@ -174,23 +174,23 @@ MisfitMap misfit_map(const Calibration& c) {
     MisfitMap map;
     map.cells = map_cells;
     // A normal distribution has no ends; all are cut at their outermost half percent.
-    const auto share_at = [](const Distribution& prior, double part) {
-        return prior.kind == DistributionKind::normal ? 0.005 + 0.99 * part : part;
+    const auto share_at = [](const stats::Distribution& prior, double part) {
+        return prior.kind == stats::DistributionKind::normal ? 0.005 + 0.99 * part : part;
     };
     const auto limits = [&](std::size_t k) {
         std::vector<double> values;
         for (std::size_t i = 0; i <= map_cells; ++i) {
-            const Distribution& prior = c.factors[k].distribution;
+            const stats::Distribution& prior = c.factors[k].distribution;
             values.push_back(prior.quantile(share_at(prior, static_cast<double>(i) / map_cells)));
         }
         return values;
     };
     map.x = limits(0);
     if (factors > 1) map.y = limits(1);
-    Points places = {c.result.runs[*c.result.best].point};
+    stats::Points places = {c.result.runs[*c.result.best].point};
     if (factors > 2) {
-        const Points more = sample_points(DesignKind::latin_hypercube, other_places, factors, 1);
-        const Points& draws = c.result.posterior.draws;
+        const stats::Points more = sample_points(stats::DesignKind::latin_hypercube, other_places, factors, 1);
+        const stats::Points& draws = c.result.posterior.draws;
         places.insert(places.end(), more.begin(), more.end());
         for (std::size_t i = 0; i < other_places && !draws.empty(); ++i)
             places.push_back(draws[i * draws.size() / other_places]);
@@ -211,4 +211,4 @@ MisfitMap misfit_map(const Calibration& c) {
     return map;
 }
 
-}  // namespace talus
+}  // namespace talus::calibrate

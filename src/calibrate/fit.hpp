@@ -9,25 +9,26 @@
 #include "stats/sampler.hpp"
 
 /// Misfit of predictions, by runs and by emulators.
-namespace talus {
+namespace talus::calibrate {
 
 /// Twice the negative log likelihood of an observation, 0 where the prediction fits it perfectly: the square of the
 /// deviation in standard deviations; of damage -2 log of the probability of that side of its limit. `variance`: of the
 /// prediction, on top of the observation's own.
-[[nodiscard]] double misfit_of(const ObservedValue& observed, double predicted, double variance = 0);
+[[nodiscard]] double misfit_of(const ensemble::ObservedValue& observed, double predicted, double variance = 0);
 
 /// The sum over all observations; NaN among the predictions counts as ObservedValue::unreached.
-[[nodiscard]] double misfit_of(const std::vector<ObservedValue>& observed, const std::vector<double>& predicted);
+[[nodiscard]] double misfit_of(const std::vector<ensemble::ObservedValue>& observed,
+                               const std::vector<double>& predicted);
 
 /// Twice the negative logarithm of a factor's density over the greatest: 0 for ranges. `share`: of the distribution.
-[[nodiscard]] double prior_misfit(const Distribution& prior, double share);
+[[nodiscard]] double prior_misfit(const stats::Distribution& prior, double share);
 
 /// The factors of a calibration, its observations, and an emulator per observation. Places are shares of the factors'
 /// distributions: the prior is uniform over the unit cube.
 struct Fit {
-    std::vector<Distribution> priors;
-    std::vector<ObservedValue> observed;
-    std::vector<PredictionEmulator> emulators;  ///< as observed
+    std::vector<stats::Distribution> priors;
+    std::vector<ensemble::ObservedValue> observed;
+    std::vector<stats::PredictionEmulator> emulators;  ///< as observed
 
     /// Misfit of the observations and of the priors, where every prediction is the emulator's mean, or none.
     [[nodiscard]] double misfit_at(const std::vector<double>& point) const;
@@ -44,8 +45,8 @@ struct Fit {
 
 /// The distribution of the factors after the observations.
 struct Posterior {
-    std::vector<Points> chains;
-    Points draws;  ///< some of them, evenly thinned
+    std::vector<stats::Points> chains;
+    stats::Points draws;  ///< some of them, evenly thinned
     double accepted = 0;
     std::vector<double> r_hat, effective;  ///< per factor
 
@@ -58,6 +59,6 @@ struct Posterior {
 inline constexpr std::size_t chain_count = 4;
 
 /// Draws from the posterior of the fit. `runs`: possible starts of chains, in addition to some in the whole cube.
-[[nodiscard]] Posterior sample_posterior(const Fit& fit, const Points& runs, const ChainOptions& options);
+[[nodiscard]] Posterior sample_posterior(const Fit& fit, const stats::Points& runs, const stats::ChainOptions& options);
 
-}  // namespace talus
+}  // namespace talus::calibrate

@@ -10,27 +10,29 @@
 #include "ensemble/ensemble.hpp"
 #include "products/csv.hpp"
 
-namespace talus {
+namespace talus::calibrate {
 namespace {
 
 constexpr std::size_t most_draws_per_seed = 5;
 
 /// Whether a run predicts every observation itself.
-bool sees_everything(const RunRecord& record, std::size_t observations) {
+bool sees_everything(const ensemble::RunRecord& record, std::size_t observations) {
     return record.complete() && record.results.size() >= observations &&
            std::all_of(record.results.end() - static_cast<std::ptrdiff_t>(observations), record.results.end(),
                        [](double v) { return std::isfinite(v); });
 }
 
 /// Synthetic observations of a run, each with an error.
-std::vector<ObservedValue> observe(const RunRecord& record, std::vector<ObservedValue> as, std::uint64_t seed) {
+std::vector<ensemble::ObservedValue> observe(const ensemble::RunRecord& record, std::vector<ensemble::ObservedValue> as,
+                                             std::uint64_t seed) {
     const auto first = record.results.end() - static_cast<std::ptrdiff_t>(as.size());
     for (std::size_t j = 0; j < as.size(); ++j) {
-        const double seen = first[static_cast<std::ptrdiff_t>(j)] + as[j].uncertainty * normal_draw(seed, 1, j);
-        if (as[j].kind == ObservedValue::Kind::equal) {
+        const double seen = first[static_cast<std::ptrdiff_t>(j)] + as[j].uncertainty * stats::normal_draw(seed, 1, j);
+        if (as[j].kind == ensemble::ObservedValue::Kind::equal) {
             as[j].value = seen;
         } else {  // the limit is kept; observed is on which side of it the building appears to be
-            as[j].kind = seen >= as[j].value ? ObservedValue::Kind::at_least : ObservedValue::Kind::below;
+            as[j].kind =
+                seen >= as[j].value ? ensemble::ObservedValue::Kind::at_least : ensemble::ObservedValue::Kind::below;
         }
     }
     return as;
@@ -45,23 +47,23 @@ bool RecoverySeed::returned() const {
     return true;
 }
 
-Result<Recovery> recover(const CalibrationPlan& plan, const PlannedRuns& runs, const SceneSource& source,
-                         const Scene& base, const std::string& scene_name, const std::filesystem::path& folder,
+Result<Recovery> recover(const CalibrationPlan& plan, const ensemble::PlannedRuns& runs, const run::SceneSource& source,
+                         const scene::Scene& base, const std::string& scene_name, const std::filesystem::path& folder,
                          std::size_t seeds, const CalibrationOptions& options,
                          const std::function<void(std::size_t)>& on_seed) {
-    const std::vector<ObservedValue> observed = observed_values(base);
+    const std::vector<ensemble::ObservedValue> observed = ensemble::observed_values(base);
     Recovery made;
     made.factors = runs.plan().factors;
 
-    PlannedRuns truths = runs;
-    TALUS_ASSIGN(const auto all,
-                 EnsembleFolder::open(folder / "truths", calibration_definition("set of known runs", plan, runs, source,
-                                                                                base, observed, scene_name)));
-    std::vector<RunRecord> records;
+    ensemble::PlannedRuns truths = runs;
+    TALUS_ASSIGN(const auto all, ensemble::EnsembleFolder::open(
+                                     folder / "truths", calibration_definition("set of known runs", plan, runs, source,
+                                                                               base, observed, scene_name)));
+    std::vector<ensemble::RunRecord> records;
     const ForwardModel model =
         scene_model(truths, source, observed, all, most_draws_per_seed * seeds, options, records);
     std::vector<std::size_t> usable;
-    Points points;
+    stats::Points points;
     while (usable.size() < seeds) {
         if (points.size() >= most_draws_per_seed * seeds) {
             return Error{
@@ -69,7 +71,8 @@ Result<Recovery> recover(const CalibrationPlan& plan, const PlannedRuns& runs, c
                             "narrow the ranges",
                             points.size(), usable.size())};
         }
-        points = sample_points(DesignKind::monte_carlo, points.size() + seeds, made.factors.size(), plan.search.seed);
+        points =
+            sample_points(stats::DesignKind::monte_carlo, points.size() + seeds, made.factors.size(), plan.search.seed);
         TALUS_ASSIGN(const auto predicted, model(points, SearchPhase::design));
         if (!predicted) {
             made.interrupted = true;
@@ -85,10 +88,11 @@ Result<Recovery> recover(const CalibrationPlan& plan, const PlannedRuns& runs, c
         if (on_seed) on_seed(i);
         CalibrationPlan one = plan;
         one.search.seed = plan.search.seed + i;
-        const std::vector<ObservedValue> seen = observe(records[usable[i]], observed, one.search.seed);
-        TALUS_ASSIGN(const auto place, EnsembleFolder::open(folder / fmt::format("seed_{:02}", i + 1),
-                                                            calibration_definition("calibration", one, runs, source,
-                                                                                   base, seen, scene_name)));
+        const std::vector<ensemble::ObservedValue> seen = observe(records[usable[i]], observed, one.search.seed);
+        TALUS_ASSIGN(const auto place,
+                     ensemble::EnsembleFolder::open(
+                         folder / fmt::format("seed_{:02}", i + 1),
+                         calibration_definition("calibration", one, runs, source, base, seen, scene_name)));
         TALUS_ASSIGN(const auto found, calibrate(one, runs, source, base, seen, place, options));
         if (found.result.interrupted) {
             made.interrupted = true;
@@ -110,7 +114,7 @@ Result<Recovery> recover(const CalibrationPlan& plan, const PlannedRuns& runs, c
 }
 
 std::string recovery_table(const Recovery& recovery) {
-    Csv csv("seed,factor,truth,median,low_95,high_95,returned,runs,r_hat");
+    products::Csv csv("seed,factor,truth,median,low_95,high_95,returned,runs,r_hat");
     for (const RecoverySeed& seed : recovery.seeds) {
         for (std::size_t k = 0; k < recovery.factors.size(); ++k) {
             csv.number(static_cast<double>(seed.seed)).word(recovery.factors[k].key).number(seed.truth[k]);
@@ -121,4 +125,4 @@ std::string recovery_table(const Recovery& recovery) {
     return csv.text();
 }
 
-}  // namespace talus
+}  // namespace talus::calibrate

@@ -8,7 +8,7 @@
 #include "core/result.hpp"
 
 /// Tests whether a calibration recovers known values: with synthetic observations from runs with them.
-namespace talus {
+namespace talus::calibrate {
 
 /// One attempt.
 struct RecoverySeed {
@@ -26,7 +26,7 @@ struct RecoverySeed {
 };
 
 struct Recovery {
-    std::vector<Factor> factors;
+    std::vector<ensemble::Factor> factors;
     std::vector<RecoverySeed> seeds;
     bool interrupted = false;
 };
@@ -36,13 +36,13 @@ struct Recovery {
 /// the runs with known values in `truths`. Values whose debris does not reach the place of every observation are drawn
 /// again, since nothing would have been observed there. Resumes with the runs in the folders. `on_seed` is called with
 /// every new seed. Errors: as calibrate; too few values bring debris to all observations.
-[[nodiscard]] Result<Recovery> recover(const CalibrationPlan& plan, const PlannedRuns& runs, const SceneSource& source,
-                                       const Scene& base, const std::string& scene_name,
-                                       const std::filesystem::path& folder, std::size_t seeds,
-                                       const CalibrationOptions& options,
+[[nodiscard]] Result<Recovery> recover(const CalibrationPlan& plan, const ensemble::PlannedRuns& runs,
+                                       const run::SceneSource& source, const scene::Scene& base,
+                                       const std::string& scene_name, const std::filesystem::path& folder,
+                                       std::size_t seeds, const CalibrationOptions& options,
                                        const std::function<void(std::size_t)>& on_seed);
 
 /// recovery.csv: a row per seed and factor.
 [[nodiscard]] std::string recovery_table(const Recovery& recovery);
 
-}  // namespace talus
+}  // namespace talus::calibrate

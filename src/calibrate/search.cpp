@@ -10,7 +10,7 @@
 #include "observe/observation.hpp"
 #include "stats/optimise.hpp"
 
-namespace talus {
+namespace talus::calibrate {
 namespace {
 
 // The search ends when another run would neither fit better nor add information: expected improvement below a tenth of
@@ -20,11 +20,11 @@ constexpr double little_improvement = 0.01, little_uncertainty = 0.1;
 constexpr std::size_t quiet_rounds = 2;  // in a row
 constexpr double least_distance = 0.01;  // of the cube, between runs that reduce the emulators' uncertainty
 
-constexpr ChainOptions short_chains = {500, 500, 1}, long_chains = {3000, 8000, 1};
+constexpr stats::ChainOptions short_chains = {500, 500, 1}, long_chains = {3000, 8000, 1};
 
 class Searcher {
   public:
-    Searcher(const std::vector<Distribution>& priors, const std::vector<ObservedValue>& observed,
+    Searcher(const std::vector<stats::Distribution>& priors, const std::vector<ensemble::ObservedValue>& observed,
              const ForwardModel& model, const SearchOptions& options, const FitReader& on_fit)
         : priors_(priors), observed_(observed), model_(model), options_(options), on_fit_(on_fit) {}
 
@@ -32,36 +32,36 @@ class Searcher {
 
   private:
     /// Runs the model at more places; false: interrupted.
-    Result<bool> run(const Points& points, SearchPhase phase, const std::vector<double>& improvements = {});
+    Result<bool> run(const stats::Points& points, SearchPhase phase, const std::vector<double>& improvements = {});
     /// Emulators of all complete runs.
     void fit();
     /// The same with expected values for failed runs, so that their places are not chosen again.
     [[nodiscard]] Fit with_failed() const;
-    [[nodiscard]] Points run_points() const;
+    [[nodiscard]] stats::Points run_points() const;
     [[nodiscard]] double least_misfit(const Fit& fit) const;
-    void choose(Points& points, std::vector<double>& improvements);
-    [[nodiscard]] ChainOptions seeded(ChainOptions options) const {
+    void choose(stats::Points& points, std::vector<double>& improvements);
+    [[nodiscard]] stats::ChainOptions seeded(stats::ChainOptions options) const {
         options.seed = options_.seed * 1000 + result_.runs.size();
         return options;
     }
     void judge_checks(const Fit& before);
 
-    const std::vector<Distribution>& priors_;
-    const std::vector<ObservedValue>& observed_;
+    const std::vector<stats::Distribution>& priors_;
+    const std::vector<ensemble::ObservedValue>& observed_;
     const ForwardModel& model_;
     const SearchOptions options_;
     const FitReader& on_fit_;
     SearchResult result_;
 };
 
-Points Searcher::run_points() const {
-    Points points;
+stats::Points Searcher::run_points() const {
+    stats::Points points;
     for (const SearchRun& run : result_.runs) points.push_back(run.point);
     return points;
 }
 
-Result<bool> Searcher::run(const Points& points, SearchPhase phase, const std::vector<double>& improvements) {
-    Points all = run_points();
+Result<bool> Searcher::run(const stats::Points& points, SearchPhase phase, const std::vector<double>& improvements) {
+    stats::Points all = run_points();
     all.insert(all.end(), points.begin(), points.end());
     TALUS_ASSIGN(const auto predicted, model_(all, phase));
     if (!predicted) {
@@ -74,7 +74,7 @@ Result<bool> Searcher::run(const Points& points, SearchPhase phase, const std::v
         made.phase = phase;
         made.predicted = (*predicted)[result_.runs.size()];
         made.improvement = i < improvements.size() ? improvements[i] : 0;
-        made.misfit = never;
+        made.misfit = observe::never;
         if (!made.predicted.empty()) {
             made.misfit = misfit_of(observed_, made.predicted);
             for (std::size_t k = 0; k < priors_.size(); ++k) made.misfit += prior_misfit(priors_[k], points[i][k]);
@@ -87,7 +87,7 @@ Result<bool> Searcher::run(const Points& points, SearchPhase phase, const std::v
 }
 
 void Searcher::fit() {
-    Points points;
+    stats::Points points;
     for (const SearchRun& run : result_.runs) {
         if (!run.predicted.empty()) points.push_back(run.point);
     }
@@ -97,12 +97,12 @@ void Searcher::fit() {
         for (const SearchRun& run : result_.runs) {
             if (!run.predicted.empty()) values.push_back(run.predicted[j]);
         }
-        result_.fit.emulators.push_back(PredictionEmulator::fit(points, values, observed_[j].unreached));
+        result_.fit.emulators.push_back(stats::PredictionEmulator::fit(points, values, observed_[j].unreached));
     }
     if (on_fit_) on_fit_(result_);
 }
 
-bool near_any(const std::vector<double>& point, const Points& others) {
+bool near_any(const std::vector<double>& point, const stats::Points& others) {
     return std::any_of(others.begin(), others.end(), [&](const auto& other) {
         double square = 0;
         for (std::size_t k = 0; k < point.size(); ++k) square += (point[k] - other[k]) * (point[k] - other[k]);
@@ -112,7 +112,7 @@ bool near_any(const std::vector<double>& point, const Points& others) {
 
 Fit believe(const Fit& fit, const std::vector<double>& point) {
     Fit more = fit;
-    for (PredictionEmulator& emulator : more.emulators) emulator = emulator.believing(point);
+    for (stats::PredictionEmulator& emulator : more.emulators) emulator = emulator.believing(point);
     return more;
 }
 
@@ -133,9 +133,9 @@ double Searcher::least_misfit(const Fit& fit) const {
     return least;
 }
 
-void Searcher::choose(Points& points, std::vector<double>& improvements) {
+void Searcher::choose(stats::Points& points, std::vector<double>& improvements) {
     Fit fit = with_failed();
-    const Points runs = run_points();
+    const stats::Points runs = run_points();
     const Posterior posterior = sample_posterior(fit, runs, seeded(short_chains));
     const double least = least_misfit(fit);
     const std::size_t factors = priors_.size();
@@ -151,11 +151,11 @@ void Searcher::choose(Points& points, std::vector<double>& improvements) {
         std::vector<double> chosen;
         double improvement = 0;
         if (i % 2 == 0) {
-            const Objective objective = [&](const std::vector<double>& p) {
+            const stats::Objective objective = [&](const std::vector<double>& p) {
                 return -fit.expected_improvement(p, least);
             };
             const std::vector<double>& draw = posterior.draws[(i * 97) % posterior.draws.size()];
-            const Optimum most = minimise_in_cube(objective, factors, {best_point, draw}, 200 * factors);
+            const stats::Optimum most = stats::minimise_in_cube(objective, factors, {best_point, draw}, 200 * factors);
             chosen = most.at;
             improvement = -most.value;
             result_.improvement = std::max(result_.improvement, improvement);
@@ -169,7 +169,8 @@ void Searcher::choose(Points& points, std::vector<double>& improvements) {
                 most = share;
                 chosen = row;
             }
-            if (chosen.empty()) chosen = sample_points(DesignKind::monte_carlo, 1, factors, runs.size() + i).front();
+            if (chosen.empty())
+                chosen = sample_points(stats::DesignKind::monte_carlo, 1, factors, runs.size() + i).front();
             improvement = 0;
         }
         fit = believe(fit, chosen);
@@ -183,7 +184,7 @@ void Searcher::judge_checks(const Fit& before) {
         const SearchRun& run = result_.runs[i];
         if (run.phase != SearchPhase::check || run.predicted.empty()) continue;
         for (std::size_t j = 0; j < observed_.size(); ++j) {
-            const PredictionEmulator::Estimate e = before.emulators[j].at(run.point);
+            const stats::PredictionEmulator::Estimate e = before.emulators[j].at(run.point);
             const double deviation = std::sqrt(e.value.variance + e.value.noise);
             result_.checks.push_back({i, j, run.predicted[j], e.value.mean, deviation, e.reached});
         }
@@ -196,15 +197,15 @@ Result<SearchResult> Searcher::work() {
     const std::size_t wanted = options_.design > 0 ? options_.design : 10 * factors;
     const std::size_t design = std::max(factors + 2, std::min(wanted, (options_.runs - checks) * 2 / 3));
     bool went_on = false;
-    TALUS_ASSIGN(went_on,
-                 run(sample_points(DesignKind::latin_hypercube, design, factors, options_.seed), SearchPhase::design));
+    TALUS_ASSIGN(went_on, run(sample_points(stats::DesignKind::latin_hypercube, design, factors, options_.seed),
+                              SearchPhase::design));
     if (!went_on) return result_;
     if (!result_.best) return Error{"no run of the design is complete, so there is nothing to search by"};
     fit();
 
     std::size_t quiet = 0;
     while (result_.runs.size() + options_.at_once + checks <= options_.runs) {
-        Points points;
+        stats::Points points;
         std::vector<double> improvements;
         choose(points, improvements);
         const bool little = result_.improvement < little_improvement && result_.emulator_share < little_uncertainty;
@@ -222,8 +223,9 @@ Result<SearchResult> Searcher::work() {
     result_.posterior = found;
     if (checks == 0) return std::move(result_);
     const Fit before = result_.fit;
-    const Objective misfit = [&](const std::vector<double>& p) { return before.misfit_at(p); };
-    Points points = {minimise_in_cube(misfit, factors, {result_.runs[*result_.best].point}, 400 * factors).at};
+    const stats::Objective misfit = [&](const std::vector<double>& p) { return before.misfit_at(p); };
+    stats::Points points = {
+        stats::minimise_in_cube(misfit, factors, {result_.runs[*result_.best].point}, 400 * factors).at};
     for (std::size_t i = 1; i < checks; ++i) {
         points.push_back(found.draws[i * found.draws.size() / checks]);
     }
@@ -259,9 +261,10 @@ std::size_t fewest_runs(std::size_t factors) {
     return 2 * (factors + 2);
 }
 
-Result<SearchResult> search(const std::vector<Distribution>& priors, const std::vector<ObservedValue>& observed,
-                            const ForwardModel& model, const SearchOptions& options, const FitReader& on_fit) {
+Result<SearchResult> search(const std::vector<stats::Distribution>& priors,
+                            const std::vector<ensemble::ObservedValue>& observed, const ForwardModel& model,
+                            const SearchOptions& options, const FitReader& on_fit) {
     return Searcher(priors, observed, model, options, on_fit).work();
 }
 
-}  // namespace talus
+}  // namespace talus::calibrate

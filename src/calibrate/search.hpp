@@ -9,7 +9,7 @@
 #include "core/result.hpp"
 
 /// Finds the values of factors that explain observations, with few runs of an expensive model.
-namespace talus {
+namespace talus::calibrate {
 
 enum class SearchPhase { design, search, check };
 /// "design", "search", "check".
@@ -61,7 +61,8 @@ struct SearchResult {
 
 /// Computes runs at `points` and returns all their predictions, one row per point; empty rows: failed. It is called
 /// with the same points and more at the end. Empty: interrupted.
-using ForwardModel = std::function<Result<std::optional<Points>>(const Points& points, SearchPhase phase)>;
+using ForwardModel =
+    std::function<Result<std::optional<stats::Points>>(const stats::Points& points, SearchPhase phase)>;
 
 /// The state of a search after a round: runs, best and emulators; no posterior yet.
 using FitReader = std::function<void(const SearchResult& so_far)>;
@@ -70,8 +71,9 @@ using FitReader = std::function<void(const SearchResult& so_far)>;
 /// within the posterior, then draws from the posterior as a check, which are included in the result. The runs depend
 /// only on the model, the observations and the options. `priors` without lists. Errors: of the model, all runs of the
 /// design failed.
-[[nodiscard]] Result<SearchResult> search(const std::vector<Distribution>& priors,
-                                          const std::vector<ObservedValue>& observed, const ForwardModel& model,
-                                          const SearchOptions& options, const FitReader& on_fit = {});
+[[nodiscard]] Result<SearchResult> search(const std::vector<stats::Distribution>& priors,
+                                          const std::vector<ensemble::ObservedValue>& observed,
+                                          const ForwardModel& model, const SearchOptions& options,
+                                          const FitReader& on_fit = {});
 
-}  // namespace talus
+}  // namespace talus::calibrate

@@ -17,7 +17,7 @@
 #include "core/try.hpp"
 #include "run/run_scene.hpp"
 
-namespace talus {
+namespace talus::ensemble {
 namespace {
 
 using Clock = std::chrono::steady_clock;
@@ -25,7 +25,7 @@ using Clock = std::chrono::steady_clock;
 /// The runs of one process, taken one after the other by its threads.
 class Crew {
   public:
-    Crew(const PlannedRuns& runs, const SceneSource& source, const EnsembleFolder& folder,
+    Crew(const PlannedRuns& runs, const run::SceneSource& source, const EnsembleFolder& folder,
          const EnsembleOptions& options)
         : runs_(runs), source_(source), folder_(folder), options_(options) {}
 
@@ -38,12 +38,12 @@ class Crew {
         return failed_ || (options_.stop_requested && options_.stop_requested->load());
     }
     /// Empty if the run was interrupted.
-    [[nodiscard]] std::optional<std::pair<RunRecord, HazardMaps>> compute(std::size_t run, std::size_t worker);
-    void finish(const RunRecord& record, const HazardMaps& maps, std::size_t worker);
+    [[nodiscard]] std::optional<std::pair<RunRecord, observe::HazardMaps>> compute(std::size_t run, std::size_t worker);
+    void finish(const RunRecord& record, const observe::HazardMaps& maps, std::size_t worker);
     void report(std::size_t worker, double share);
 
     const PlannedRuns& runs_;
-    const SceneSource& source_;
+    const run::SceneSource& source_;
     const EnsembleFolder& folder_;
     const EnsembleOptions& options_;
 
@@ -76,44 +76,44 @@ void Crew::find_work() {
     }
 }
 
-std::optional<std::pair<RunRecord, HazardMaps>> Crew::compute(std::size_t run, std::size_t worker) {
+std::optional<std::pair<RunRecord, observe::HazardMaps>> Crew::compute(std::size_t run, std::size_t worker) {
     const PlannedRun planned = runs_.at(run);
     std::vector<std::string> overrides = source_.overrides;
     overrides.insert(overrides.end(), planned.overrides.begin(), planned.overrides.end());
     overrides.push_back(fmt::format("solver.thread_count={}", options_.threads_per_run));
 
-    std::pair<RunRecord, HazardMaps> made;
+    std::pair<RunRecord, observe::HazardMaps> made;
     RunRecord& record = made.first;
     record.run = run;
     record.values = planned.values;
-    const Result<Scene> scene = [&] {
+    const Result<scene::Scene> scene = [&] {
         const std::lock_guard lock(loading_);
-        return load_scene(source_.file, overrides);
+        return scene::load_scene(source_.file, overrides);
     }();
     if (!scene) {
         record.fault = scene.error().message;
         return made;
     }
-    RunOptions run_options;
+    run::RunOptions run_options;
     run_options.stop_requested = options_.stop_requested;
-    run_options.on_progress = [&](const Progress& now) { report(worker, now.share_done); };
-    Result<RunResult> result = run_scene(*scene, run_options);
+    run_options.on_progress = [&](const run::Progress& now) { report(worker, now.share_done); };
+    Result<run::RunResult> result = run_scene(*scene, run_options);
     if (!result) {
         record.fault = result.error().message;
         return made;
     }
-    if (result->status == RunStatus::interrupted) return std::nullopt;
+    if (result->status == run::RunStatus::interrupted) return std::nullopt;
     record.simulated_time = result->simulated_time;
     record.wall_time = result->wall_time;
     record.particles = result->particles;
     record.hash = to_hex(result->hash);
-    if (result->status == RunStatus::fault) {
+    if (result->status == run::RunStatus::fault) {
         record.fault = result->stop_reason;
         return made;
     }
     record.results = measure(*scene, *result);
     record.buildings = std::move(result->observation.buildings);
-    for (BuildingImpact& building : record.buildings) building.history.clear();
+    for (observe::BuildingImpact& building : record.buildings) building.history.clear();
     record.geometry = result->observation.maps.peak_depth.geometry;
     made.second = std::move(result->observation.maps);
     return made;
@@ -136,11 +136,11 @@ void Crew::report(std::size_t worker, double share) {
     const double computed = static_cast<double>(computed_);
     p.runs_per_minute = wall > 0 ? 60 * computed / wall : 0;
     const double left = static_cast<double>(p.count) - before - part;
-    p.wall_remaining = computed + part > 0 ? wall / (computed + part) * left : never;
+    p.wall_remaining = computed + part > 0 ? wall / (computed + part) * left : observe::never;
     options_.on_progress(p);
 }
 
-void Crew::finish(const RunRecord& record, const HazardMaps& maps, std::size_t worker) {
+void Crew::finish(const RunRecord& record, const observe::HazardMaps& maps, std::size_t worker) {
     const Status written = write_run_record(folder_.run_file(record.run), record, maps);
     {
         const std::lock_guard lock(mutex_);
@@ -191,9 +191,9 @@ Result<EnsembleOutcome> Crew::work() {
 
 }  // namespace
 
-Result<EnsembleOutcome> run_ensemble(const PlannedRuns& runs, const SceneSource& source, const EnsembleFolder& folder,
-                                     const EnsembleOptions& options) {
+Result<EnsembleOutcome> run_ensemble(const PlannedRuns& runs, const run::SceneSource& source,
+                                     const EnsembleFolder& folder, const EnsembleOptions& options) {
     return Crew(runs, source, folder, options).work();
 }
 
-}  // namespace talus
+}  // namespace talus::ensemble

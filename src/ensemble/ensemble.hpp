@@ -10,7 +10,7 @@
 #include "ensemble/plan.hpp"
 #include "run/variants.hpp"
 
-namespace talus {
+namespace talus::ensemble {
 
 /// Progress of an ensemble.
 struct EnsembleProgress {
@@ -39,7 +39,7 @@ struct EnsembleOutcome {
 
 /// Computes the runs of this process's share that are missing in the folder. A run that fails is recorded with its
 /// fault and the rest continue. Errors: a record cannot be written.
-[[nodiscard]] Result<EnsembleOutcome> run_ensemble(const PlannedRuns& runs, const SceneSource& source,
+[[nodiscard]] Result<EnsembleOutcome> run_ensemble(const PlannedRuns& runs, const run::SceneSource& source,
                                                    const EnsembleFolder& folder, const EnsembleOptions& options);
 
-}  // namespace talus
+}  // namespace talus::ensemble

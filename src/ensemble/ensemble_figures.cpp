@@ -12,14 +12,14 @@
 #include "report/colour.hpp"
 #include "report/number_text.hpp"
 
-namespace talus::report {
+namespace talus::ensemble {
 namespace {
 
 constexpr std::size_t run_out_measure = 0;  // in measures_of
 constexpr double infinite = std::numeric_limits<double>::infinity();
 
-ValueRange range_of(const std::vector<double>& values) {
-    ValueRange range{infinite, -infinite};
+report::ValueRange range_of(const std::vector<double>& values) {
+    report::ValueRange range{infinite, -infinite};
     for (const double v : values) range.include(v);
     return range;
 }
@@ -30,19 +30,19 @@ struct Histogram {
     std::vector<double> counts;
 };
 
-Histogram histogram_of(const std::vector<double>& values, const ValueRange& range) {
+Histogram histogram_of(const std::vector<double>& values, const report::ValueRange& range) {
     Histogram h;
     const double wanted = std::clamp(2 * std::cbrt(static_cast<double>(values.size())), 6.0, 40.0);
     const double spread = range.high - range.low;
-    h.width = round_step(spread > 0 ? spread / wanted : 1);
+    h.width = report::round_step(spread > 0 ? spread / wanted : 1);
     h.first = std::floor(range.low / h.width) * h.width;
     h.counts.assign(static_cast<std::size_t>(std::floor((range.high - h.first) / h.width)) + 1, 0);
     for (const double v : values) h.counts[static_cast<std::size_t>((v - h.first) / h.width)] += 1;
     return h;
 }
 
-double number_of(const Json& value) {
-    return value.is_number() ? value.get<double>() : never;
+double number_of(const report::Json& value) {
+    return value.is_number() ? value.get<double>() : observe::never;
 }
 
 /// A bar of the sensitivity figure.
@@ -53,9 +53,9 @@ struct Bar {
 };
 
 /// Of an effect_json().
-std::vector<Bar> bars_of(const Json& effect) {
+std::vector<Bar> bars_of(const report::Json& effect) {
     if (effect.contains("first_order")) {
-        const Json &first = effect["first_order"], &total = effect["total"];
+        const report::Json &first = effect["first_order"], &total = effect["total"];
         return {{number_of(first[0]), number_of(first[1]), number_of(first[2]), "effect-first", true},
                 {number_of(total[0]), number_of(total[1]), number_of(total[2]), "effect-total", true}};
     }
@@ -68,10 +68,10 @@ std::vector<Bar> bars_of(const Json& effect) {
 }
 
 /// The scale of one result's bars: shares and correlations have their own, elementary effects the result's unit.
-ValueRange scale_of(const Json& sensitivity, const Json& effects) {
+report::ValueRange scale_of(const report::Json& sensitivity, const report::Json& effects) {
     if (sensitivity["rank"].get<bool>()) return {-1, 1};
-    ValueRange range{0, sensitivity["variance"].get<bool>() ? 1 : 1e-12};
-    for (const Json& effect : effects) {
+    report::ValueRange range{0, sensitivity["variance"].get<bool>() ? 1 : 1e-12};
+    for (const report::Json& effect : effects) {
         for (const Bar& bar : bars_of(effect)) {
             range.include(bar.value);
             if (bar.whisker) range.include(std::min(bar.high, 1.3));
@@ -81,17 +81,17 @@ ValueRange scale_of(const Json& sensitivity, const Json& effects) {
     return range;
 }
 
-std::string value_text(const Json& sensitivity, const std::vector<Bar>& bars, const std::string& unit) {
+std::string value_text(const report::Json& sensitivity, const std::vector<Bar>& bars, const std::string& unit) {
     if (sensitivity["variance"].get<bool>())
-        return fmt::format("{} / {}", fixed(bars[0].value, 2), fixed(bars[1].value, 2));
-    if (sensitivity["screening"].get<bool>()) return fmt::format("{} {}", significant(bars[0].value, 3), unit);
-    return fixed(bars[0].value, 2);
+        return fmt::format("{} / {}", report::fixed(bars[0].value, 2), report::fixed(bars[1].value, 2));
+    if (sensitivity["screening"].get<bool>()) return fmt::format("{} {}", report::significant(bars[0].value, 3), unit);
+    return report::fixed(bars[0].value, 2);
 }
 
 /// The bars of one result and factor, `width` wide from `left`, with their value behind.
-void draw_effect(Svg& svg, const Json& sensitivity, const Json& result, std::size_t factor, double left, double width,
-                 double y, double row) {
-    const ValueRange scale = scale_of(sensitivity, result["effects"]);
+void draw_effect(report::Svg& svg, const report::Json& sensitivity, const report::Json& result, std::size_t factor,
+                 double left, double width, double y, double row) {
+    const report::ValueRange scale = scale_of(sensitivity, result["effects"]);
     const auto px = [&](double v) {
         return left + (std::clamp(v, scale.low, scale.high) - scale.low) / (scale.high - scale.low) * width;
     };
@@ -111,29 +111,29 @@ void draw_effect(Svg& svg, const Json& sensitivity, const Json& result, std::siz
 double number_of(const std::string& text) {
     char* end = nullptr;
     const double value = std::strtod(text.c_str(), &end);
-    return end != text.c_str() && *end == '\0' ? value : never;
+    return end != text.c_str() && *end == '\0' ? value : observe::never;
 }
 
 }  // namespace
 
-Json run_out_chart(const EnsembleResult& result) {
+report::Json run_out_chart(const EnsembleResult& result) {
     std::vector<double> values = result.values_of(run_out_measure);
     if (values.empty()) return {};
     const double low = percentile(values, 5), median = percentile(values, 50), high = percentile(values, 95);
     const Histogram h = histogram_of(values, range_of(values));
     const double end = h.first + h.width * static_cast<double>(h.counts.size());
-    const ValueRange x{h.first - h.width, end + h.width};
-    ValueRange counts{0, 1};
+    const report::ValueRange x{h.first - h.width, end + h.width};
+    report::ValueRange counts{0, 1};
     for (const double c : h.counts) counts.include(c);
     counts.high *= 1.22;
 
-    Plot left(66, 20, 420, 250, x, counts);
+    report::Plot left(66, 20, 420, 250, x, counts);
     left.axes("run-out (chainage of the front), m", "runs");
-    Curve inside{Curve::Shape::bars, "bar", "", {}, {}, {}, h.width}, outside = inside;
+    report::Curve inside{report::Curve::Shape::bars, "bar", "", {}, {}, {}, h.width}, outside = inside;
     outside.style = "bar outside";
     for (std::size_t i = 0; i < h.counts.size(); ++i) {
         const double from = h.first + h.width * static_cast<double>(i), middle = from + h.width / 2;
-        Curve& bars = middle < low || middle > high ? outside : inside;
+        report::Curve& bars = middle < low || middle > high ? outside : inside;
         bars.x.push_back(from);
         bars.y.push_back(h.counts[i]);
     }
@@ -141,13 +141,13 @@ Json run_out_chart(const EnsembleResult& result) {
     for (const double v : {low, median, high}) left.vertical(v, "percentile-line");
     const auto label = [&](double v, const char* anchor, double dx, double dy, const char* name) {
         left.label(v, counts.high, dx, dy, anchor, v == median ? "note-strong" : "note",
-                   fmt::format("{} {} m", name, fixed(v, 0)));
+                   fmt::format("{} {} m", name, report::fixed(v, 0)));
     };
     label(low, "end", -5, 14, "5 %:");
     label(median, "middle", 0, -5, "median");
     label(high, "start", 5, 14, "95 %:");
 
-    Plot right(570, 20, 412, 250, x, {0, 100});
+    report::Plot right(570, 20, 412, 250, x, {0, 100});
     right.axes("run-out (chainage of the front), m", "runs that go farther, %");
     std::vector<double> at = {x.low}, share = {100};
     const auto n = static_cast<double>(values.size());
@@ -160,51 +160,51 @@ Json run_out_chart(const EnsembleResult& result) {
     at.push_back(x.high);
     share.push_back(0);
     right.line(at, share, "series blue");
-    return chart_json({"Run-out of all runs", 1000, 320, {std::move(left), std::move(right)}});
+    return report::chart_json({"Run-out of all runs", 1000, 320, {std::move(left), std::move(right)}});
 }
 
-Json sensitivity_data(const EnsembleResult& result) {
+report::Json sensitivity_data(const EnsembleResult& result) {
     const auto& factors = result.runs->plan().factors;
     std::size_t used = 0;
-    SensitivityKind kind = SensitivityKind::rank;
-    Json names = Json::array(), rows = Json::array();
+    stats::SensitivityKind kind = stats::SensitivityKind::rank;
+    report::Json names = report::Json::array(), rows = report::Json::array();
     for (const Factor& f : factors) names.push_back(f.key);
     for (std::size_t m = 0; m < result.measures.size(); ++m) {
-        const Sensitivity& s = result.sensitivity[m];
+        const stats::Sensitivity& s = result.sensitivity[m];
         if (s.effects.empty()) continue;
         used = std::max(used, s.used);
         kind = s.kind;
-        Json effects = Json::array();
+        report::Json effects = report::Json::array();
         for (std::size_t k = 0; k < factors.size(); ++k)
             effects.push_back(effect_json(s.kind, factors[k].key, s.effects[k]));
         rows.push_back({{"name", result.measures[m].name}, {"unit", result.measures[m].unit}, {"effects", effects}});
     }
     if (used == 0) return {};
     return {{"used", used},
-            {"variance", kind == SensitivityKind::variance},
-            {"screening", kind == SensitivityKind::screening},
-            {"rank", kind == SensitivityKind::rank},
+            {"variance", kind == stats::SensitivityKind::variance},
+            {"screening", kind == stats::SensitivityKind::screening},
+            {"rank", kind == stats::SensitivityKind::rank},
             {"factors", names},
             {"rows", rows}};
 }
 
-std::string sensitivity_svg(const Json& sensitivity) {
+std::string sensitivity_svg(const report::Json& sensitivity) {
     constexpr double left = 270, row = 30, head = 30;
     constexpr std::size_t most_columns = 4;  // factors per row
-    const Json& factors = sensitivity["factors"];
-    Svg svg;
+    const report::Json& factors = sensitivity["factors"];
+    report::Svg svg;
     double y = 0;
     for (std::size_t first = 0; first < factors.size(); first += most_columns) {
         const std::size_t columns = std::min(most_columns, factors.size() - first);
         const double width = (1000 - left) / static_cast<double>(columns);
         for (std::size_t c = 0; c < columns; ++c) {
             svg.text("column-name", left + width * (static_cast<double>(c) + 0.5), y + 16,
-                     shortened(factors[first + c].get<std::string>(), static_cast<std::size_t>(width / 7.2)));
+                     report::shortened(factors[first + c].get<std::string>(), static_cast<std::size_t>(width / 7.2)));
         }
         y += head;
-        for (const Json& result : sensitivity["rows"]) {
+        for (const report::Json& result : sensitivity["rows"]) {
             svg.line("row-rule", 0, y, 1000, y);
-            svg.text("row-name", 0, y + 19, shortened(result["name"].get<std::string>(), 40));
+            svg.text("row-name", 0, y + 19, report::shortened(result["name"].get<std::string>(), 40));
             for (std::size_t c = 0; c < columns; ++c) {
                 const double from = left + width * static_cast<double>(c) + 12;
                 draw_effect(svg, sensitivity, result, first + c, from,
@@ -217,22 +217,22 @@ std::string sensitivity_svg(const Json& sensitivity) {
     return figure_svg(1000, y, "Sensitivity of every result to every factor", svg);
 }
 
-Json scatter_chart(const EnsembleResult& result) {
+report::Json scatter_chart(const EnsembleResult& result) {
     const auto& factors = result.runs->plan().factors;
     std::vector<std::size_t> shown;
     for (std::size_t k = 0; k < factors.size(); ++k) {
-        const Distribution& d = factors[k].distribution;
-        const bool texts = d.kind == DistributionKind::list && std::isnan(number_of(d.entries.front()));
+        const stats::Distribution& d = factors[k].distribution;
+        const bool texts = d.kind == stats::DistributionKind::list && std::isnan(number_of(d.entries.front()));
         if (!texts && shown.size() < 6) shown.push_back(k);
     }
     const std::vector<double> all = result.values_of(run_out_measure);
     if (shown.empty() || all.empty()) return {};
-    ValueRange y = range_of(all);
+    report::ValueRange y = range_of(all);
     const double margin = std::max(1.0, 0.08 * (y.high - y.low));
     y = {y.low - margin, y.high + margin};
     const std::size_t columns = std::min<std::size_t>(3, shown.size());
     const double width = 1000.0 / static_cast<double>(columns);
-    Chart chart{"Run-out against every factor", 1000, 0, {}};
+    report::Chart chart{"Run-out against every factor", 1000, 0, {}};
     for (std::size_t i = 0; i < shown.size(); ++i) {
         std::vector<double> xs, ys;
         for (const RunRecord& run : result.reduction.runs) {
@@ -240,12 +240,12 @@ Json scatter_chart(const EnsembleResult& result) {
             xs.push_back(number_of(run.values[shown[i]]));
             ys.push_back(run.results[run_out_measure]);
         }
-        ValueRange x = range_of(xs);
+        report::ValueRange x = range_of(xs);
         const double pad = 0.05 * (x.high - x.low);
         x = {x.low - pad, x.high + pad};
         const std::size_t row = i / columns;
-        Plot plot(width * static_cast<double>(i % columns) + 66, 300.0 * static_cast<double>(row) + 12, width - 84, 226,
-                  x, y);
+        report::Plot plot(width * static_cast<double>(i % columns) + 66, 300.0 * static_cast<double>(row) + 12,
+                          width - 84, 226, x, y);
         plot.axes(factors[shown[i]].key, i % columns == 0 ? "run-out, m" : "");
         plot.dots(xs, ys, xs.size() > 400 ? 2.2 : 4, "run-dot");
         chart.plots.push_back(std::move(plot));
@@ -254,4 +254,4 @@ Json scatter_chart(const EnsembleResult& result) {
     return chart_json(chart);
 }
 
-}  // namespace talus::report
+}  // namespace talus::ensemble

@@ -14,7 +14,7 @@
 #include "core/try.hpp"
 #include "products/text_file.hpp"
 
-namespace talus {
+namespace talus::ensemble {
 
 namespace fs = std::filesystem;
 
@@ -36,11 +36,11 @@ std::string shortened(const Json& value) {
 
 }  // namespace
 
-Json ensemble_definition(const PlannedRuns& runs, const SceneSource& source, const Scene& base,
+Json ensemble_definition(const PlannedRuns& runs, const run::SceneSource& source, const scene::Scene& base,
                          const std::string& scene_name) {
     const EnsemblePlan& plan = runs.plan();
     Json inputs = Json::array();
-    for (const InputFile& input : base.inputs) inputs.push_back({{"role", input.role}, {"hash", input.hash}});
+    for (const scene::InputFile& input : base.inputs) inputs.push_back({{"role", input.role}, {"hash", input.hash}});
     Json factors = Json::array();
     for (const Factor& f : plan.factors)
         factors.push_back({{"key", f.key}, {"distribution", f.distribution.written()}});
@@ -85,8 +85,8 @@ Result<Json> read_definition(const fs::path& folder, const std::string& kind) {
 Result<EnsemblePlan> plan_of(const Json& definition) {
     EnsemblePlan plan;
     try {
-        const auto design = design_of(definition.at("design").get<std::string>());
-        plan.design = design.value_or(DesignKind::latin_hypercube);
+        const auto design = stats::design_of(definition.at("design").get<std::string>());
+        plan.design = design.value_or(stats::DesignKind::latin_hypercube);
         plan.runs = definition.at("runs").get<std::size_t>();
         plan.levels = definition.at("levels").get<std::size_t>();
         plan.seed = definition.at("seed").get<std::uint64_t>();
@@ -138,7 +138,7 @@ Result<EnsembleFolder> EnsembleFolder::open(const fs::path& path, const Json& de
                 fmt::format("{}: holds another ensemble ({}); name another output folder", path.string(), differs)};
         }
     } else {
-        TALUS_TRY(write_text_file(path / "ensemble.json", definition.dump(2) + "\n"));
+        TALUS_TRY(products::write_text_file(path / "ensemble.json", definition.dump(2) + "\n"));
     }
     return Result<EnsembleFolder>(std::move(folder));
 }
@@ -179,4 +179,4 @@ Status take_runs(const fs::path& from, const EnsembleFolder& to, std::size_t cou
     return {};
 }
 
-}  // namespace talus
+}  // namespace talus::ensemble

@@ -9,12 +9,12 @@
 #include "ensemble/plan.hpp"
 #include "ensemble/run_record.hpp"
 
-namespace talus {
+namespace talus::ensemble {
 
 /// The definition that identifies an ensemble: inputs by checksum, overrides, design, seed, factors. Runs of two
 /// folders belong together if `difference` finds none; thresholds are included, but ignored by it.
-[[nodiscard]] nlohmann::ordered_json ensemble_definition(const PlannedRuns& runs, const SceneSource& source,
-                                                         const Scene& base, const std::string& scene_name);
+[[nodiscard]] nlohmann::ordered_json ensemble_definition(const PlannedRuns& runs, const run::SceneSource& source,
+                                                         const scene::Scene& base, const std::string& scene_name);
 
 /// The plan that a definition was made from. Errors: not as ensemble_definition writes it.
 [[nodiscard]] Result<EnsemblePlan> plan_of(const nlohmann::ordered_json& definition);
@@ -57,4 +57,4 @@ class EnsembleFolder {
 /// Why the runs of two ensembles do not belong together: "seed: 2, not 1"; empty if they do.
 [[nodiscard]] std::string difference(const nlohmann::ordered_json& there, const nlohmann::ordered_json& wanted);
 
-}  // namespace talus
+}  // namespace talus::ensemble

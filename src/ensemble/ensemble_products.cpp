@@ -16,7 +16,7 @@
 #include "products/results_json.hpp"
 #include "products/text_file.hpp"
 
-namespace talus {
+namespace talus::ensemble {
 
 namespace fs = std::filesystem;
 
@@ -43,12 +43,12 @@ std::string run_csv(const EnsembleResult& result) {
     std::string header = "run,status";
     for (const Factor& f : result.runs->plan().factors) header += "," + f.key;
     for (const Measure& m : result.measures) header += "," + m.key;
-    Csv csv(header + ",simulated_time_s,wall_time_s,particles,hash,fault");
+    products::Csv csv(header + ",simulated_time_s,wall_time_s,particles,hash,fault");
     for (const RunRecord& run : result.reduction.runs) {
         csv.number(static_cast<double>(run.run)).word(run.complete() ? "complete" : "failed");
         for (const std::string& value : run.values) csv.word(value);
         for (std::size_t m = 0; m < result.measures.size(); ++m)
-            csv.number(m < run.results.size() ? run.results[m] : never);
+            csv.number(m < run.results.size() ? run.results[m] : observe::never);
         csv.number(run.simulated_time).number(run.wall_time).number(run.particles).word(run.hash).word(run.fault);
         csv.end_row();
     }
@@ -58,10 +58,11 @@ std::string run_csv(const EnsembleResult& result) {
 std::string building_csv(const EnsembleResult& result) {
     std::string header = "name,probability_hit";
     for (const double p : result.runs->plan().thresholds.pressure) header += fmt::format(",probability_above_{}kPa", p);
-    Csv csv(header +
-            ",peak_impact_pressure_p50_kPa,peak_impact_pressure_p95_kPa,peak_depth_p50_m,peak_depth_p95_m,first_hit_"
-            "p05_s,first_hit_"
-            "p50_s");
+    products::Csv csv(
+        header +
+        ",peak_impact_pressure_p50_kPa,peak_impact_pressure_p95_kPa,peak_depth_p50_m,peak_depth_p95_m,first_hit_"
+        "p05_s,first_hit_"
+        "p50_s");
     for (const BuildingOdds& b : result.reduction.buildings) {
         csv.word(b.name).number(b.hit);
         for (const double share : b.over_pressure) csv.number(share);
@@ -74,15 +75,15 @@ std::string building_csv(const EnsembleResult& result) {
 std::string distribution_csv(const EnsembleResult& result) {
     std::string header = "result,runs,mean,standard_deviation,least,greatest";
     for (const double p : table_percentiles) header += fmt::format(",p{:02.0f}", p);
-    Csv csv(header);
+    products::Csv csv(header);
     for (std::size_t m = 0; m < result.measures.size(); ++m) {
         std::vector<double> values = result.values_of(m);
         double mean = 0, square = 0;
         const auto n = static_cast<double>(values.size());
         for (const double v : values) mean += v / n;
         for (const double v : values) square += (v - mean) * (v - mean);
-        csv.word(result.measures[m].key).number(n).number(values.empty() ? never : mean);
-        csv.number(values.size() > 1 ? std::sqrt(square / (n - 1)) : never);
+        csv.word(result.measures[m].key).number(n).number(values.empty() ? observe::never : mean);
+        csv.number(values.size() > 1 ? std::sqrt(square / (n - 1)) : observe::never);
         csv.number(percentile(values, 0)).number(percentile(values, 100));
         for (const double p : table_percentiles) csv.number(percentile(values, p));
         csv.end_row();
@@ -91,19 +92,20 @@ std::string distribution_csv(const EnsembleResult& result) {
 }
 
 std::string sensitivity_csv(const EnsembleResult& result) {
-    const SensitivityKind kind = result.sensitivity.front().kind;
-    Csv csv(kind == SensitivityKind::variance
-                ? "result,factor,first_order,first_order_low,first_order_high,total,total_low,total_high"
-            : kind == SensitivityKind::screening ? "result,factor,mean_absolute_effect,mean_effect,standard_deviation"
-                                                 : "result,factor,rank_correlation");
+    const stats::SensitivityKind kind = result.sensitivity.front().kind;
+    products::Csv csv(kind == stats::SensitivityKind::variance
+                          ? "result,factor,first_order,first_order_low,first_order_high,total,total_low,total_high"
+                      : kind == stats::SensitivityKind::screening
+                          ? "result,factor,mean_absolute_effect,mean_effect,standard_deviation"
+                          : "result,factor,rank_correlation");
     for (std::size_t m = 0; m < result.measures.size(); ++m) {
-        const Sensitivity& s = result.sensitivity[m];
+        const stats::Sensitivity& s = result.sensitivity[m];
         for (std::size_t k = 0; k < s.effects.size(); ++k) {
-            const FactorEffect& e = s.effects[k];
+            const stats::FactorEffect& e = s.effects[k];
             csv.word(result.measures[m].key).word(result.runs->plan().factors[k].key);
-            if (kind == SensitivityKind::variance) {
+            if (kind == stats::SensitivityKind::variance) {
                 csv.row({e.first.value, e.first.low, e.first.high, e.total.value, e.total.low, e.total.high});
-            } else if (kind == SensitivityKind::screening) {
+            } else if (kind == stats::SensitivityKind::screening) {
                 csv.row({e.mean_size, e.mean, e.deviation});
             } else {
                 csv.row({e.correlation});
@@ -125,15 +127,16 @@ void remove_old_maps(const fs::path& folder, const std::set<std::string>& wanted
     }
 }
 
-Status write_one(const EnsembleResult& result, const HazardMap& style, const Grid<float>& si, const fs::path& folder) {
+Status write_one(const EnsembleResult& result, const report::HazardMap& style, const Grid<float>& si,
+                 const fs::path& folder) {
     if (si.values.empty()) return {};  // no run came anywhere
-    const Grid<float> grid = in_unit(si, style.factor);
+    const Grid<float> grid = report::in_unit(si, style.factor);
     const std::string note = result.scene->spec.scene.reconstruction ? " (reconstruction)" : "";
-    const RasterBand band{&grid, fmt::format("{} of {} runs{}", style.description, result.reduction.complete, note),
-                          style.unit};
+    const geo::RasterBand band{
+        &grid, fmt::format("{} of {} runs{}", style.description, result.reduction.complete, note), style.unit};
     const std::string stem = (folder / style.file).string();
     TALUS_TRY(write_cog(stem + ".tif", band, result.scene->crs));
-    return write_text_file(stem + ".qml", qgis_style(style, greatest(grid)));
+    return products::write_text_file(stem + ".qml", qgis_style(style, report::greatest(grid)));
 }
 
 /// hazard_zones.gpkg: a feature per zone that occurs.
@@ -141,9 +144,9 @@ Status write_zone_polygons(const EnsembleResult& result, const fs::path& folder)
     const fs::path file = folder / "hazard_zones.gpkg";
     std::error_code error;
     fs::remove(file, error);  // layers are added to a file that is there
-    std::vector<OutputFeature> features;
-    TALUS_ASSIGN(auto classes, class_outlines(result.zones, result.matrix->zones.size()));
-    for (ClassOutline& zone : classes) {
+    std::vector<geo::OutputFeature> features;
+    TALUS_ASSIGN(auto classes, geo::class_outlines(result.zones, result.matrix->zones.size()));
+    for (geo::ClassOutline& zone : classes) {
         features.push_back({std::move(zone.polygons),
                             {},
                             {static_cast<double>(zone.number), result.matrix->zones[zone.number - 1].name,
@@ -157,18 +160,18 @@ Status write_zone_polygons(const EnsembleResult& result, const fs::path& folder)
 Status write_maps(const EnsembleResult& result, const fs::path& folder) {
     std::set<std::string> written;
     for (const EnsembleMap& map : result.reduction.maps) {
-        const HazardMap style = style_of(map);
+        const report::HazardMap style = style_of(map);
         written.insert(style.file);
         TALUS_TRY(write_one(result, style, map.grid, folder));
     }
     for (std::size_t k = 0; k < result.reduction.intensity.size(); ++k) {
-        const HazardMap style =
+        const report::HazardMap style =
             intensity_odds_style(result.guideline->classes[k], k + 1 == result.guideline->classes.size());
         written.insert(style.file);
         TALUS_TRY(write_one(result, style, result.reduction.intensity[k], folder));
     }
     if (result.matrix != nullptr) {
-        const HazardMap style = zone_style(*result.matrix);
+        const report::HazardMap style = zone_style(*result.matrix);
         written.insert(style.file);
         TALUS_TRY(write_one(result, style, result.zones, folder));
         TALUS_TRY(write_zone_polygons(result, folder));
@@ -189,20 +192,20 @@ std::vector<double> EnsembleResult::values_of(std::size_t measure) const {
     return values;
 }
 
-EnsembleResult summarise(const Scene& scene, const PlannedRuns& runs, Reduction reduction) {
+EnsembleResult summarise(const scene::Scene& scene, const PlannedRuns& runs, Reduction reduction) {
     EnsembleResult result;
     result.scene = &scene;
     result.runs = &runs;
     result.reduction = std::move(reduction);
     result.measures = measures_of(scene);
-    const GuidelineChoice guideline = scene.spec.outputs.intensity_guideline;
-    result.guideline = &intensity_guideline(guideline);
+    const params::GuidelineChoice guideline = scene.spec.outputs.intensity_guideline;
+    result.guideline = &report::intensity_guideline(guideline);
     if (const auto& years = runs.plan().return_period) {
         result.matrix = hazard_matrix(guideline);
         if (result.matrix != nullptr) result.zones = hazard_zones(*result.matrix, result.reduction.intensity, *years);
     }
     for (std::size_t m = 0; m < result.measures.size(); ++m) {
-        std::vector<double> values(runs.count(), never);
+        std::vector<double> values(runs.count(), observe::never);
         for (const RunRecord& run : result.reduction.runs) {
             if (run.complete() && m < run.results.size()) values[run.run] = run.results[m];
         }
@@ -211,9 +214,9 @@ EnsembleResult summarise(const Scene& scene, const PlannedRuns& runs, Reduction 
     return result;
 }
 
-HazardMap style_of(const EnsembleMap& map) {
+report::HazardMap style_of(const EnsembleMap& map) {
     if (map.kind == EnsembleMap::Kind::percentile) {
-        HazardMap style = hazard_maps().at(map.map);
+        report::HazardMap style = report::hazard_maps().at(map.map);
         style.grid = nullptr;
         style.file += fmt::format("_p{:02.0f}", map.level);
         style.title += fmt::format(", {:.0f}th percentile", map.level);
@@ -221,7 +224,7 @@ HazardMap style_of(const EnsembleMap& map) {
         return style;
     }
     const QuantityWords& words = threshold_words.at(map.map);
-    HazardMap style;
+    report::HazardMap style;
     style.file = fmt::format("probability_{}_{}{}", words.file, map.level, words.file_unit);
     style.title = fmt::format("Probability of {} over {} {}", words.name, map.level, words.unit);
     style.description = fmt::format("share of runs with {} over {} {}, in", words.name, map.level, words.unit);
@@ -233,8 +236,8 @@ HazardMap style_of(const EnsembleMap& map) {
     return style;
 }
 
-HazardMap intensity_odds_style(const IntensityClass& intensity, bool most_severe) {
-    HazardMap style;
+report::HazardMap intensity_odds_style(const report::IntensityClass& intensity, bool most_severe) {
+    report::HazardMap style;
     style.file = "probability_intensity_" + intensity.name;
     style.title = fmt::format("Probability of {} intensity{}", intensity.name, most_severe ? "" : " or higher");
     style.description =
@@ -247,13 +250,13 @@ HazardMap intensity_odds_style(const IntensityClass& intensity, bool most_severe
     return style;
 }
 
-Json effect_json(SensitivityKind kind, const std::string& factor, const FactorEffect& e) {
-    const auto interval = [](const Estimate& v) { return Json{v.value, v.low, v.high}; };
+Json effect_json(stats::SensitivityKind kind, const std::string& factor, const stats::FactorEffect& e) {
+    const auto interval = [](const stats::Estimate& v) { return Json{v.value, v.low, v.high}; };
     Json json = {{"factor", factor}};
-    if (kind == SensitivityKind::variance) {
+    if (kind == stats::SensitivityKind::variance) {
         json["first_order"] = interval(e.first);
         json["total"] = interval(e.total);
-    } else if (kind == SensitivityKind::screening) {
+    } else if (kind == stats::SensitivityKind::screening) {
         json["mean_absolute_effect"] = e.mean_size;
         json["mean_effect"] = e.mean;
         json["standard_deviation"] = e.deviation;
@@ -276,7 +279,7 @@ Json statistics_json(const EnsembleResult& result) {
         for (const double p : table_percentiles)
             entry[fmt::format("p{:02.0f}", p)] = number_or_null<Json>(percentile(values, p));
         entry["sensitivity"] = Json::array();
-        const Sensitivity& s = result.sensitivity[m];
+        const stats::Sensitivity& s = result.sensitivity[m];
         for (std::size_t k = 0; k < s.effects.size(); ++k)
             entry["sensitivity"].push_back(effect_json(s.kind, factors[k].key, s.effects[k]));
         measures.push_back(entry);
@@ -304,15 +307,15 @@ Json statistics_json(const EnsembleResult& result) {
 
 Status write_ensemble(const EnsembleResult& result, const fs::path& folder) {
     TALUS_TRY(write_maps(result, folder));
-    TALUS_TRY(write_text_file(folder / "runs.csv", run_csv(result)));
-    TALUS_TRY(write_text_file(folder / "buildings.csv", building_csv(result)));
-    TALUS_TRY(write_text_file(folder / "distributions.csv", distribution_csv(result)));
-    TALUS_TRY(write_text_file(folder / "sensitivity.csv", sensitivity_csv(result)));
+    TALUS_TRY(products::write_text_file(folder / "runs.csv", run_csv(result)));
+    TALUS_TRY(products::write_text_file(folder / "buildings.csv", building_csv(result)));
+    TALUS_TRY(products::write_text_file(folder / "distributions.csv", distribution_csv(result)));
+    TALUS_TRY(products::write_text_file(folder / "sensitivity.csv", sensitivity_csv(result)));
     const Json results = ensemble_results(result);
-    TALUS_TRY(write_results(results, folder / "results.json"));
+    TALUS_TRY(products::write_results(results, folder / "results.json"));
     TALUS_ASSIGN(const std::string report, ensemble_report(result, results));
-    TALUS_TRY(write_text_file(folder / "report.html", report));
-    return write_text_file(folder / "statistics.json", statistics_json(result).dump(2) + "\n");
+    TALUS_TRY(products::write_text_file(folder / "report.html", report));
+    return products::write_text_file(folder / "statistics.json", statistics_json(result).dump(2) + "\n");
 }
 
-}  // namespace talus
+}  // namespace talus::ensemble

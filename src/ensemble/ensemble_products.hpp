@@ -14,16 +14,16 @@
 #include "scene/scene.hpp"
 #include "stats/sensitivity.hpp"
 
-namespace talus {
+namespace talus::ensemble {
 
 /// The evaluated runs of an ensemble, from which its products are written.
 struct EnsembleResult {
-    const Scene* scene = nullptr;  ///< as given, before factors
+    const scene::Scene* scene = nullptr;  ///< as given, before factors
     const PlannedRuns* runs = nullptr;
     Reduction reduction;
     std::vector<Measure> measures;
-    std::vector<Sensitivity> sensitivity;  ///< per measure
-    const IntensityGuideline* guideline = nullptr;
+    std::vector<stats::Sensitivity> sensitivity;  ///< per measure
+    const report::IntensityGuideline* guideline = nullptr;
     const HazardMatrix* matrix = nullptr;  ///< where the plan has a return period and the guideline has such
     Grid<float> zones;                     ///< of the matrix
 
@@ -32,13 +32,13 @@ struct EnsembleResult {
 };
 
 /// Adds measures and sensitivity. `scene` and `runs` must outlive the result.
-[[nodiscard]] EnsembleResult summarise(const Scene& scene, const PlannedRuns& runs, Reduction reduction);
+[[nodiscard]] EnsembleResult summarise(const scene::Scene& scene, const PlannedRuns& runs, Reduction reduction);
 
 /// Name and colours of a map of an ensemble: "probability_depth_0.1m", "peak_depth_p95".
-[[nodiscard]] HazardMap style_of(const EnsembleMap& map);
+[[nodiscard]] report::HazardMap style_of(const EnsembleMap& map);
 
 /// How the map of an intensity class's probability is called and coloured: "probability_intensity_high".
-[[nodiscard]] HazardMap intensity_odds_style(const IntensityClass& intensity, bool most_severe);
+[[nodiscard]] report::HazardMap intensity_odds_style(const report::IntensityClass& intensity, bool most_severe);
 
 /// Maps (.tif + .qml), hazard_zones.gpkg where there are zones, runs.csv, buildings.csv, distributions.csv,
 /// sensitivity.csv, statistics.json, results.json and report.html into the folder, over those of an earlier call.
@@ -46,8 +46,8 @@ struct EnsembleResult {
 [[nodiscard]] Status write_ensemble(const EnsembleResult& result, const std::filesystem::path& folder);
 
 /// A factor's effect on a result as statistics.json and results.json have it.
-[[nodiscard]] nlohmann::ordered_json effect_json(SensitivityKind kind, const std::string& factor,
-                                                 const FactorEffect& effect);
+[[nodiscard]] nlohmann::ordered_json effect_json(stats::SensitivityKind kind, const std::string& factor,
+                                                 const stats::FactorEffect& effect);
 
 /// Counts, percentiles of every measure, odds of every building, sensitivity. A value that does not exist is null.
 [[nodiscard]] nlohmann::ordered_json statistics_json(const EnsembleResult& result);
@@ -58,4 +58,4 @@ struct EnsembleResult {
 /// The self-contained page of `results`, from ensemble_results(), with maps. Errors: a picture could not be encoded.
 [[nodiscard]] Result<std::string> ensemble_report(const EnsembleResult& result, const nlohmann::ordered_json& results);
 
-}  // namespace talus
+}  // namespace talus::ensemble

@@ -19,7 +19,7 @@
 #include "report/results.hpp"
 #include "report/table.hpp"
 
-namespace talus {
+namespace talus::ensemble {
 
 using namespace report;
 
@@ -84,14 +84,14 @@ Json key_figures_of(const EnsembleResult& result) {
 }
 
 /// The scene's own value of a factor's key, and its unit.
-std::pair<std::string, std::string> as_given(const Scene& scene, const std::string& key) {
+std::pair<std::string, std::string> as_given(const scene::Scene& scene, const std::string& key) {
     std::pair<std::string, std::string> found;
     const bool has_index = key.find('[') != std::string::npos;
-    for_each_value(scene.spec, [&](const Section& section, std::size_t index, const Parameter& parameter,
-                                   const ParameterValue& value) {
+    for_each_value(scene.spec, [&](const params::Section& section, std::size_t index,
+                                   const params::Parameter& parameter, const params::ParameterValue& value) {
         const bool plain_name = !has_index && index == 0 && key == section.name + "." + parameter.key;
         if (plain_name || key == key_path(section, index, parameter)) {
-            const std::string text = plain_text(value);
+            const std::string text = params::plain_text(value);
             found = {text.empty() ? "not given" : text, parameter.unit};
         }
     });
@@ -118,25 +118,25 @@ std::string design_text(const EnsembleResult& result) {
     const std::size_t factors = plan.factors.size();
     std::string text;
     switch (plan.design) {
-        case DesignKind::monte_carlo:
+        case stats::DesignKind::monte_carlo:
             text = fmt::format("{} independent draws (Monte Carlo)", result.runs->count());
             break;
-        case DesignKind::latin_hypercube:
+        case stats::DesignKind::latin_hypercube:
             text = fmt::format(
                 "Latin hypercube of {} runs: every factor takes each of {} equal shares of its probability once",
                 result.runs->count(), result.runs->count());
             break;
-        case DesignKind::sobol:
+        case stats::DesignKind::sobol:
             text = fmt::format("the first {} points of a shifted Sobol sequence", result.runs->count());
             break;
-        case DesignKind::grid:
+        case stats::DesignKind::grid:
             text = fmt::format("a grid of {} runs, every combination of levels", result.runs->count());
             break;
-        case DesignKind::saltelli:
+        case stats::DesignKind::saltelli:
             text = fmt::format("{} blocks of {} runs for Sobol indices (Saltelli et al. 2010)",
                                result.runs->count() / (factors + 2), factors + 2);
             break;
-        case DesignKind::morris:
+        case stats::DesignKind::morris:
             text = fmt::format("{} trajectories of {} runs for elementary effects (Morris 1991)",
                                result.runs->count() / (factors + 1), factors + 1);
             break;
@@ -311,7 +311,7 @@ Json buildings_of(const EnsembleResult& result) {
 }
 
 /// Field observations of the results for which there are any.
-std::string observed_text(const Scene& scene, const std::string& key) {
+std::string observed_text(const scene::Scene& scene, const std::string& key) {
     for (const ObservedValue& o : observed_values(scene)) {
         if (o.key != key) continue;
         const char* side = o.kind == ObservedValue::Kind::at_least ? "≥ "
@@ -374,7 +374,7 @@ Json failed_runs(const EnsembleResult& result) {
 double mean_wall_time(const EnsembleResult& result) {
     double sum = 0;
     for (const RunRecord& run : result.reduction.runs) sum += run.wall_time;
-    return result.reduction.runs.empty() ? never : sum / static_cast<double>(result.reduction.runs.size());
+    return result.reduction.runs.empty() ? observe::never : sum / static_cast<double>(result.reduction.runs.size());
 }
 
 }  // namespace
@@ -419,4 +419,4 @@ Result<std::string> ensemble_report(const EnsembleResult& result, const Json& re
     return render(ensemble_report_files::ensemble_html, page);
 }
 
-}  // namespace talus
+}  // namespace talus::ensemble

@@ -11,7 +11,7 @@
 #include "ensemble/ensemble_folder.hpp"
 #include "ensemble/ensemble_products.hpp"
 
-namespace talus {
+namespace talus::ensemble {
 namespace {
 
 namespace fs = std::filesystem;
@@ -88,4 +88,4 @@ Result<FinishedEnsemble> read_finished_ensemble(const fs::path& folder) {
     return made;
 }
 
-}  // namespace talus
+}  // namespace talus::ensemble

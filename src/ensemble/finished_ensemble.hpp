@@ -11,14 +11,14 @@
 #include "ensemble/reduction.hpp"
 #include "report/hazard_map.hpp"
 
-namespace talus {
+namespace talus::ensemble {
 
 /// A map of an ensemble in its folder.
 struct FinishedMap {
     EnsembleMap::Kind kind = EnsembleMap::Kind::probability;
-    std::size_t map = 0;  ///< index into recorded_maps
-    double level = 0;     ///< the threshold in the map's unit, or the percentile in %
-    HazardMap style;      ///< name, title, unit
+    std::size_t map = 0;      ///< index into recorded_maps
+    double level = 0;         ///< the threshold in the map's unit, or the percentile in %
+    report::HazardMap style;  ///< name, title, unit
     std::filesystem::path file;
 };
 
@@ -35,4 +35,4 @@ struct FinishedEnsemble {
 /// missing, nothing mapped.
 [[nodiscard]] Result<FinishedEnsemble> read_finished_ensemble(const std::filesystem::path& folder);
 
-}  // namespace talus
+}  // namespace talus::ensemble

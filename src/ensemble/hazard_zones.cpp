@@ -6,7 +6,7 @@
 
 #include <fmt/format.h>
 
-namespace talus {
+namespace talus::ensemble {
 namespace {
 
 constexpr int residual = 1, low = 2, medium = 3, high = 4;
@@ -38,14 +38,14 @@ int HazardMatrix::zone_of(std::size_t intensity, double return_period) const {
     return zone[intensity][static_cast<std::size_t>(period)];
 }
 
-const HazardMatrix* hazard_matrix(GuidelineChoice guideline) {
+const HazardMatrix* hazard_matrix(params::GuidelineChoice guideline) {
     static const HazardMatrix debris_flow = swiss_matrix(false), flood = swiss_matrix(true);
     switch (guideline) {
-        case GuidelineChoice::swiss_debris_flow:
+        case params::GuidelineChoice::swiss_debris_flow:
             return &debris_flow;
-        case GuidelineChoice::swiss_flood:
+        case params::GuidelineChoice::swiss_flood:
             return &flood;
-        case GuidelineChoice::garcia_2003:
+        case params::GuidelineChoice::garcia_2003:
             break;
     }
     return nullptr;
@@ -65,8 +65,8 @@ Grid<float> hazard_zones(const HazardMatrix& matrix, const std::vector<Grid<floa
     return zones;
 }
 
-HazardMap zone_style(const HazardMatrix& matrix) {
-    HazardMap style;
+report::HazardMap zone_style(const HazardMatrix& matrix) {
+    report::HazardMap style;
     style.file = "hazard_zones";
     style.title = "Hazard zones";
     style.description = "hazard zones, " + matrix.name + ":";
@@ -77,4 +77,4 @@ HazardMap zone_style(const HazardMatrix& matrix) {
     return style;
 }
 
-}  // namespace talus
+}  // namespace talus::ensemble

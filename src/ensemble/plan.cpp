@@ -12,17 +12,17 @@
 #include "sim/sources/seed.hpp"
 #include "terrain/map_cell.hpp"
 
-namespace talus {
+namespace talus::ensemble {
 namespace {
 
 constexpr std::size_t most_runs = 1000000;
 
 /// The section and the key of "section.key" or "section[0].key", where both exist.
-const Parameter* find_parameter(std::string_view key_path) {
+const params::Parameter* find_parameter(std::string_view key_path) {
     const std::size_t dot = key_path.find('.');
     if (dot == std::string_view::npos) return nullptr;
     const std::string_view name = key_path.substr(0, dot);
-    const Section* section = find_section(name.substr(0, name.find('[')));
+    const params::Section* section = params::find_section(name.substr(0, name.find('[')));
     return section != nullptr ? section->find(key_path.substr(dot + 1)) : nullptr;
 }
 
@@ -55,8 +55,8 @@ Error about_factor(const Error& error) {
 }
 
 /// Cuts a normal distribution to what the key allows; everything else is checked by parsing its ends.
-void cut_to_range(Distribution& d, const Range& range) {
-    if (d.kind != DistributionKind::normal) return;
+void cut_to_range(stats::Distribution& d, const params::Range& range) {
+    if (d.kind != stats::DistributionKind::normal) return;
     const auto inward = [](double bound, bool included, double towards) {
         return included ? bound : std::nextafter(bound, towards);
     };
@@ -66,60 +66,61 @@ void cut_to_range(Distribution& d, const Range& range) {
 
 /// Extreme values of the factor, or all entries of its list.
 std::vector<std::string> ends_of(const Factor& factor, bool whole) {
-    const Distribution& d = factor.distribution;
-    if (d.kind == DistributionKind::list) return d.entries;
+    const stats::Distribution& d = factor.distribution;
+    if (d.kind == stats::DistributionKind::list) return d.entries;
     return {number_text(d.quantile(0), whole), number_text(d.quantile(1), whole)};
 }
 
-Status check_factor(const Factor& factor, bool whole, const SceneSource& source) {
+Status check_factor(const Factor& factor, bool whole, const run::SceneSource& source) {
     const std::vector<std::string> replaced = replaced_by(factor.key);
     for (const std::string& value : ends_of(factor, whole)) {
         std::vector<std::string> overrides = source.overrides;
         overrides.insert(overrides.end(), replaced.begin(), replaced.end());
         overrides.push_back(factor.key + "=" + value);
-        if (const auto parsed = parse_scene(source.file, overrides); !parsed) return about_factor(parsed.error());
+        if (const auto parsed = scene::parse_scene(source.file, overrides); !parsed)
+            return about_factor(parsed.error());
     }
     return {};
 }
 
-Result<Points> make_points(const EnsemblePlan& plan, const std::vector<std::size_t>& levels) {
+Result<stats::Points> make_points(const EnsemblePlan& plan, const std::vector<std::size_t>& levels) {
     const std::size_t factors = plan.factors.size();
     const auto too_few = [&](std::size_t fewest, std::string_view block) {
         return Error{fmt::format("runs = {} is refused; {} of {} factors needs at least {} ({})", plan.runs,
                                  design_name(plan.design), factors, fewest, block)};
     };
     switch (plan.design) {
-        case DesignKind::grid: {
+        case stats::DesignKind::grid: {
             double count = 1;
             for (const std::size_t n : levels) count *= static_cast<double>(n);
             if (count > static_cast<double>(most_runs)) {
                 return Error{
                     fmt::format("a grid of {:.3g} runs is refused; it must have at most {}", count, most_runs)};
             }
-            return grid_points(levels);
+            return stats::grid_points(levels);
         }
-        case DesignKind::saltelli: {
-            if (2 * factors > sobol_dimensions) break;
+        case stats::DesignKind::saltelli: {
+            if (2 * factors > stats::sobol_dimensions) break;
             const std::size_t block = factors + 2;
             if (plan.runs < 2 * block) return too_few(2 * block, fmt::format("two blocks of factors + 2 = {}", block));
-            return saltelli_points(plan.runs / block, factors, plan.seed);
+            return stats::saltelli_points(plan.runs / block, factors, plan.seed);
         }
-        case DesignKind::morris: {
+        case stats::DesignKind::morris: {
             const std::size_t block = factors + 1;
             if (plan.runs < 2 * block)
                 return too_few(2 * block, fmt::format("two trajectories of factors + 1 = {}", block));
-            return morris_points(plan.runs / block, factors, plan.seed);
+            return stats::morris_points(plan.runs / block, factors, plan.seed);
         }
-        case DesignKind::sobol:
-            if (factors > sobol_dimensions) break;
+        case stats::DesignKind::sobol:
+            if (factors > stats::sobol_dimensions) break;
             return sample_points(plan.design, plan.runs, factors, plan.seed);
-        case DesignKind::monte_carlo:
-        case DesignKind::latin_hypercube:
+        case stats::DesignKind::monte_carlo:
+        case stats::DesignKind::latin_hypercube:
             return sample_points(plan.design, plan.runs, factors, plan.seed);
     }
-    return Error{fmt::format("{} factors are refused; the design {} takes at most {}", factors,
-                             design_name(plan.design),
-                             plan.design == DesignKind::saltelli ? sobol_dimensions / 2 : sobol_dimensions)};
+    return Error{fmt::format(
+        "{} factors are refused; the design {} takes at most {}", factors, design_name(plan.design),
+        plan.design == stats::DesignKind::saltelli ? stats::sobol_dimensions / 2 : stats::sobol_dimensions)};
 }
 
 }  // namespace
@@ -128,7 +129,7 @@ Status add_factor(EnsemblePlan& plan, std::string_view text) {
     const std::size_t equals = text.find('=');
     const auto refused = [&](std::string_view why) { return Error{fmt::format("factor \"{}\": {}", text, why)}; };
     if (equals == std::string_view::npos || equals == 0) return refused("write section.key=low:high");
-    Result<Distribution> distribution = parse_distribution(text.substr(equals + 1));
+    Result<stats::Distribution> distribution = stats::parse_distribution(text.substr(equals + 1));
     if (!distribution) return refused(distribution.error().message);
     const std::string key(text.substr(0, equals));
     const auto same =
@@ -160,7 +161,8 @@ Result<std::vector<double>> parse_thresholds(std::string_view text, std::string_
     }
 }
 
-Result<PlannedRuns> PlannedRuns::make(const EnsemblePlan& plan, const SceneSource& source, const Scene& base) {
+Result<PlannedRuns> PlannedRuns::make(const EnsemblePlan& plan, const run::SceneSource& source,
+                                      const scene::Scene& base) {
     PlannedRuns runs;
     runs.plan_ = plan;
     if (plan.factors.empty()) {
@@ -171,31 +173,32 @@ Result<PlannedRuns> PlannedRuns::make(const EnsemblePlan& plan, const SceneSourc
     }
     bool own_spacing = false;
     for (Factor& factor : runs.plan_.factors) {
-        const Parameter* parameter = find_parameter(factor.key);
-        const bool number = parameter != nullptr &&
-                            (parameter->kind == ParameterKind::number || parameter->kind == ParameterKind::integer);
-        if (parameter != nullptr && !number && factor.distribution.kind != DistributionKind::list) {
+        const params::Parameter* parameter = find_parameter(factor.key);
+        const bool number = parameter != nullptr && (parameter->kind == params::ParameterKind::number ||
+                                                     parameter->kind == params::ParameterKind::integer);
+        if (parameter != nullptr && !number && factor.distribution.kind != stats::DistributionKind::list) {
             return Error{fmt::format("factor {}: is not a number; give a list of its values", factor.key)};
         }
-        if (plan.design == DesignKind::grid && !factor.distribution.weights.empty()) {
+        if (plan.design == stats::DesignKind::grid && !factor.distribution.weights.empty()) {
             return Error{fmt::format("factor {}: has weights, but a grid runs every value once; choose another design",
                                      factor.key)};
         }
-        runs.whole_.push_back(parameter != nullptr && parameter->kind == ParameterKind::integer);
+        runs.whole_.push_back(parameter != nullptr && parameter->kind == params::ParameterKind::integer);
         if (parameter != nullptr && number) cut_to_range(factor.distribution, parameter->range);
         TALUS_TRY(check_factor(factor, runs.whole_.back(), source));
         own_spacing =
             own_spacing || factor.key == "solver.particle_spacing_m" || factor.key == "solver.target_particle_count";
-        runs.levels_.push_back(factor.distribution.kind == DistributionKind::list ? factor.distribution.entries.size()
-                                                                                  : plan.levels);
+        runs.levels_.push_back(factor.distribution.kind == stats::DistributionKind::list
+                                   ? factor.distribution.entries.size()
+                                   : plan.levels);
     }
     if (plan.levels < 2 || plan.levels > 1000) {
         return Error{fmt::format("levels = {} is refused; it must be 2 to 1000", plan.levels)};
     }
     TALUS_ASSIGN(runs.points_, make_points(plan, runs.levels_));
 
-    const double spacing = choose_particle_spacing(base.spec.solver, total_volume(base));
-    const double cell = base.spec.outputs.map_cell.value_or(default_map_cell(base.terrain.cell(), spacing));
+    const double spacing = sim::choose_particle_spacing(base.spec.solver, total_volume(base));
+    const double cell = base.spec.outputs.map_cell.value_or(terrain::default_map_cell(base.terrain.cell(), spacing));
     if (!own_spacing) runs.fixed_.push_back(fmt::format("solver.particle_spacing_m={:.9g}", spacing));
     runs.fixed_.push_back(fmt::format("outputs.map_cell_m={:.17g}", cell));
     return runs;
@@ -208,13 +211,13 @@ PlannedRun PlannedRuns::at(std::size_t run) const {
     for (std::size_t k = 0; k < plan_.factors.size(); ++k) {
         const Factor& factor = plan_.factors[k];
         double share = points_[run][k];
-        const bool bounded = factor.distribution.kind == DistributionKind::uniform ||
-                             factor.distribution.kind == DistributionKind::log_uniform;
-        if (plan_.design == DesignKind::grid && bounded) {  // from end to end
+        const bool bounded = factor.distribution.kind == stats::DistributionKind::uniform ||
+                             factor.distribution.kind == stats::DistributionKind::log_uniform;
+        if (plan_.design == stats::DesignKind::grid && bounded) {  // from end to end
             const auto n = static_cast<double>(levels_[k]);
             share = (share * n - 0.5) / (n - 1);
         }
-        const bool list = factor.distribution.kind == DistributionKind::list;
+        const bool list = factor.distribution.kind == stats::DistributionKind::list;
         planned.values.push_back(list ? factor.distribution.entry(share)
                                       : number_text(factor.distribution.quantile(share), whole_[k]));
         const std::vector<std::string> replaced = replaced_by(factor.key);
@@ -224,4 +227,4 @@ PlannedRun PlannedRuns::at(std::size_t run) const {
     return planned;
 }
 
-}  // namespace talus
+}  // namespace talus::ensemble

@@ -15,12 +15,12 @@
 #include "stats/distribution.hpp"
 
 /// The plan of an ensemble: factors, number of runs, thresholds.
-namespace talus {
+namespace talus::ensemble {
 
 /// A key of the scene that varies from run to run.
 struct Factor {
     std::string key;  ///< "material.friction_coefficient", "release[0].volume_m3"
-    Distribution distribution;
+    stats::Distribution distribution;
 };
 
 /// A run counts towards a probability where it exceeds the threshold. In the units of the maps.
@@ -31,7 +31,7 @@ struct Thresholds {
 };
 
 struct EnsemblePlan {
-    DesignKind design = DesignKind::latin_hypercube;
+    stats::DesignKind design = stats::DesignKind::latin_hypercube;
     std::size_t runs = 64;   ///< at most; designs that come in blocks take the largest number that fits
     std::size_t levels = 5;  ///< per factor of a grid; a list has as many as it has entries
     std::uint64_t seed = 1;
@@ -61,25 +61,25 @@ class PlannedRuns {
   public:
     /// Checks every factor against the scene and its allowed range. Errors: no factor, no such key, not a number where
     /// a range is given, an invalid value, more factors or runs than the design can have, too few runs.
-    [[nodiscard]] static Result<PlannedRuns> make(const EnsemblePlan& plan, const SceneSource& source,
-                                                  const Scene& base);
+    [[nodiscard]] static Result<PlannedRuns> make(const EnsemblePlan& plan, const run::SceneSource& source,
+                                                  const scene::Scene& base);
 
     [[nodiscard]] std::size_t count() const { return points_.size(); }
     [[nodiscard]] const EnsemblePlan& plan() const { return plan_; }
-    [[nodiscard]] const Points& points() const { return points_; }
+    [[nodiscard]] const stats::Points& points() const { return points_; }
     [[nodiscard]] const std::vector<std::string>& fixed() const { return fixed_; }
     [[nodiscard]] PlannedRun at(std::size_t run) const;
     /// Replaces the points of the design by these of the unit cube, with a number per factor.
-    void set_points(Points points) { points_ = std::move(points); }
+    void set_points(stats::Points points) { points_ = std::move(points); }
 
   private:
     PlannedRuns() = default;
 
     EnsemblePlan plan_;
-    Points points_;
+    stats::Points points_;
     std::vector<std::string> fixed_;   // overrides that all runs share
     std::vector<bool> whole_;          // per factor: only whole numbers
     std::vector<std::size_t> levels_;  // per factor of a grid
 };
 
-}  // namespace talus
+}  // namespace talus::ensemble

@@ -10,7 +10,7 @@
 #include "scene/parse.hpp"
 #include "scene/toml_file.hpp"
 
-namespace talus {
+namespace talus::ensemble {
 namespace {
 
 /// Reads a plan's TOML; every unknown key is an error.
@@ -38,22 +38,23 @@ class PlanReader {
 
   private:
     [[nodiscard]] Error refused(const toml::source_region& at, const std::string& what, const std::string& why) const {
-        return Error{fmt::format("{}:{}: {} {}", name_, at.begin.line, one_line(what, 120), why)};
+        return Error{fmt::format("{}:{}: {} {}", name_, at.begin.line, scene::one_line(what, 120), why)};
     }
     [[nodiscard]] Error unknown(const toml::key& key, const std::vector<std::string>& known) const {
         return refused(key.source(), fmt::format("unknown key \"{}\";", key.str()),
-                       "nearest known key: " + nearest_word(key.str(), known));
+                       "nearest known key: " + params::nearest_word(key.str(), known));
     }
 
     Status read_ensemble(const toml::table& table) {
         for (const auto& [key, node] : table) {
-            const std::string what = fmt::format("ensemble.{} = {}", key.str(), toml_text_of(node));
+            const std::string what = fmt::format("ensemble.{} = {}", key.str(), scene::toml_text_of(node));
             if (key.str() == "design") {
                 const auto name = node.value<std::string>();
-                const auto design = name ? design_of(*name) : std::nullopt;
+                const auto design = name ? stats::design_of(*name) : std::nullopt;
                 if (!design) {
-                    return refused(key.source(), what,
-                                   fmt::format("is refused; it must be one of {}", fmt::join(design_names(), ", ")));
+                    return refused(
+                        key.source(), what,
+                        fmt::format("is refused; it must be one of {}", fmt::join(stats::design_names(), ", ")));
                 }
                 plan_.design = *design;
                 continue;
@@ -95,7 +96,7 @@ class PlanReader {
             const std::string what = fmt::format("thresholds.{}", key.str());
             Result<std::vector<double>> parsed = parse_thresholds(text, what);
             if (!parsed) {
-                return refused(key.source(), fmt::format("{} = {}", what, toml_text_of(node)),
+                return refused(key.source(), fmt::format("{} = {}", what, scene::toml_text_of(node)),
                                "is refused; it must be ascending numbers from 0, such as [0.5, 1]");
             }
             *values = *std::move(parsed);
@@ -107,7 +108,7 @@ class PlanReader {
         Factor factor;
         std::string kind = "uniform";
         for (const auto& [key, node] : table) {
-            const std::string what = fmt::format("factor.{} = {}", key.str(), toml_text_of(node));
+            const std::string what = fmt::format("factor.{} = {}", key.str(), scene::toml_text_of(node));
             if (key.str() == "key" || key.str() == "distribution") {
                 const auto text = node.value_exact<std::string>();
                 if (!text) return refused(key.source(), what, "is refused; it must be a text");
@@ -118,7 +119,7 @@ class PlanReader {
                     return refused(key.source(), what, "is refused; it must be a list of values");
                 for (const toml::node& item : *items) {
                     const auto text = item.value_exact<std::string>();
-                    factor.distribution.entries.push_back(text ? *text : toml_text_of(item));
+                    factor.distribution.entries.push_back(text ? *text : scene::toml_text_of(item));
                 }
                 kind = "list";
             } else if (key.str() == "weights") {
@@ -141,10 +142,11 @@ class PlanReader {
         if (factor.key.empty())
             return refused(table.source(), "factor.key",
                            "is missing; it must be a key of the scene, such as material.friction_coefficient");
-        constexpr std::array kinds = {DistributionKind::uniform, DistributionKind::log_uniform,
-                                      DistributionKind::normal, DistributionKind::triangular, DistributionKind::list};
+        constexpr std::array kinds = {stats::DistributionKind::uniform, stats::DistributionKind::log_uniform,
+                                      stats::DistributionKind::normal, stats::DistributionKind::triangular,
+                                      stats::DistributionKind::list};
         bool known = false;
-        for (const DistributionKind k : kinds) {
+        for (const stats::DistributionKind k : kinds) {
             if (kind != distribution_name(k)) continue;
             factor.distribution.kind = k;
             known = true;
@@ -160,19 +162,19 @@ class PlanReader {
         if (const std::string problem = factor.distribution.problem(); !problem.empty()) {
             return refused(table.source(), what, problem);
         }
-        if (!factor.distribution.weights.empty() && factor.distribution.kind != DistributionKind::list) {
+        if (!factor.distribution.weights.empty() && factor.distribution.kind != stats::DistributionKind::list) {
             return refused(table.source(), what, "weights are those of values, which are not given");
         }
         const bool bounded = std::isfinite(factor.distribution.low) && std::isfinite(factor.distribution.high);
-        if (!bounded && factor.distribution.kind != DistributionKind::normal &&
-            factor.distribution.kind != DistributionKind::list) {
+        if (!bounded && factor.distribution.kind != stats::DistributionKind::normal &&
+            factor.distribution.kind != stats::DistributionKind::list) {
             return refused(table.source(), what, "low and high must be given");
         }
         plan_.factors.push_back(std::move(factor));
         return {};
     }
 
-    static double* number_of(Distribution& d, std::string_view key) {
+    static double* number_of(stats::Distribution& d, std::string_view key) {
         if (key == "low") return &d.low;
         if (key == "high") return &d.high;
         if (key == "mode" || key == "mean") return &d.middle;
@@ -187,8 +189,8 @@ class PlanReader {
 }  // namespace
 
 Result<EnsemblePlan> read_plan(const std::filesystem::path& file) {
-    TALUS_ASSIGN(const toml::table root, read_toml_file(file, "plan"));
+    TALUS_ASSIGN(const toml::table root, scene::read_toml_file(file, "plan"));
     return PlanReader(file.string()).read(root);
 }
 
-}  // namespace talus
+}  // namespace talus::ensemble

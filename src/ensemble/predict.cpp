@@ -5,7 +5,7 @@
 
 #include <fmt/format.h>
 
-namespace talus {
+namespace talus::ensemble {
 namespace {
 
 constexpr double gravity = 9.81;                                 // m/s2
@@ -21,24 +21,25 @@ bool in_any(const std::vector<Polygon>& polygons, const PlanPoint& p) {
 
 }  // namespace
 
-double predict_front_velocity(const Observation& run, double chainage) {
+double predict_front_velocity(const observe::Observation& run, double chainage) {
     return front_at(run, chainage).front_velocity;
 }
 
-double predict_arrival_time(const Observation& run, double chainage) {
+double predict_arrival_time(const observe::Observation& run, double chainage) {
     return front_at(run, chainage).arrival_time;
 }
 
-double predict_run_out(const Observation& run) {
+double predict_run_out(const observe::Observation& run) {
     return run.run_out.front_chainage;
 }
 
-double predict_run_up(const Observation& run, const Terrain& terrain, const PlanPoint& place, double search_radius) {
+double predict_run_up(const observe::Observation& run, const terrain::Terrain& terrain, const PlanPoint& place,
+                      double search_radius) {
     const Grid<float>& depth = run.maps.peak_depth;
     const double here = value_at(depth, place);
     if (here > 0) return here;
     const double mark = terrain.elevation_at(place);
-    double highest = never;
+    double highest = observe::never;
     const GridGeometry& g = depth.geometry;
     for (int row = 0; row < g.rows; ++row) {
         for (int column = 0; column < g.columns; ++column) {
@@ -49,20 +50,20 @@ double predict_run_up(const Observation& run, const Terrain& terrain, const Plan
             if (!(surface <= highest)) highest = surface;
         }
     }
-    if (std::isnan(highest)) return never;
+    if (std::isnan(highest)) return observe::never;
     return std::min(0.0, highest - mark);  // debris uphill that did not reach the place counts as just below it
 }
 
-double predict_deposit_depth(const Observation& run, const PlanPoint& place) {
+double predict_deposit_depth(const observe::Observation& run, const PlanPoint& place) {
     const double depth = value_at(run.maps.deposit_depth, place);
     return depth > 0 ? depth : 0;
 }
 
-double predict_building_pressure(const Observation& run, const std::string& building) {
-    for (const BuildingImpact& impact : run.buildings) {
+double predict_building_pressure(const observe::Observation& run, const std::string& building) {
+    for (const observe::BuildingImpact& impact : run.buildings) {
         if (impact.name == building) return impact.hit ? impact.peak_impact_pressure : 0;
     }
-    return never;
+    return observe::never;
 }
 
 double predict_outline_overlap(const Grid<float>& map, const std::vector<Polygon>& outline, double depth) {
@@ -81,8 +82,8 @@ double predict_outline_overlap(const Grid<float>& map, const std::vector<Polygon
     return either > 0 ? std::clamp(both / either, 0.0, 1.0) : 0;
 }
 
-double predict_elevation_agreement(const Observation& run, const Grid<float>& observed,
-                                   const std::vector<Release>& releases, double detection_limit) {
+double predict_elevation_agreement(const observe::Observation& run, const Grid<float>& observed,
+                                   const std::vector<terrain::Release>& releases, double detection_limit) {
     const auto known = [](float value) { return std::isnan(value) ? 0.0 : static_cast<double>(value); };
     const auto detected = [&](double change) { return std::abs(change) < detection_limit ? 0.0 : change; };
     const GridGeometry& g = observed.geometry;
@@ -91,8 +92,9 @@ double predict_elevation_agreement(const Observation& run, const Grid<float>& ob
         for (int column = 0; column < g.columns; ++column) {
             if (std::isnan(observed.at(column, row))) continue;  // not surveyed
             const PlanPoint p = g.centre(column, row);
-            const bool released = std::any_of(releases.begin(), releases.end(),
-                                              [&](const Release& release) { return release.thickness_at(p) > 0; });
+            const bool released = std::any_of(releases.begin(), releases.end(), [&](const terrain::Release& release) {
+                return release.thickness_at(p) > 0;
+            });
             if (released) continue;
             const double was = detected(observed.at(column, row));
             const double is =
@@ -104,12 +106,12 @@ double predict_elevation_agreement(const Observation& run, const Grid<float>& ob
     return together > 0 ? 1 - apart / together : 0;
 }
 
-double superelevation_velocity(const SuperelevationSpec& m) {
+double superelevation_velocity(const params::SuperelevationSpec& m) {
     return std::sqrt(gravity * m.bend_radius * m.level_difference / (m.correction_factor * m.width));
 }
 
-std::vector<ObservedValue> observed_values(const Scene& scene) {
-    const SceneSpec& spec = scene.spec;
+std::vector<ObservedValue> observed_values(const scene::Scene& scene) {
+    const params::SceneSpec& spec = scene.spec;
     std::vector<ObservedValue> all;
     const auto add = [&](const char* section, std::size_t i, const char* quantity, std::string name, const char* unit,
                          double value, double uncertainty) {
@@ -117,62 +119,62 @@ std::vector<ObservedValue> observed_values(const Scene& scene) {
                        ObservedValue::Kind::equal, 0});
     };
     for (std::size_t i = 0; i < spec.observations.size(); ++i) {
-        const ObservationSpec& o = spec.observations[i];
+        const params::ObservationSpec& o = spec.observations[i];
         add("observation", i, "front_velocity_mps", fmt::format("Front velocity at {:.6g} m", o.chainage), "m/s",
             o.front_velocity, o.standard_deviation());
     }
     for (std::size_t i = 0; i < spec.superelevations.size(); ++i) {
-        const SuperelevationSpec& o = spec.superelevations[i];
+        const params::SuperelevationSpec& o = spec.superelevations[i];
         const double velocity = superelevation_velocity(o);
         add("superelevation", i, "front_velocity_mps", fmt::format("Velocity in the bend at {:.6g} m", o.chainage),
             "m/s", velocity, o.uncertainty.value_or(superelevation_share * velocity));
     }
     for (std::size_t i = 0; i < spec.arrivals.size(); ++i) {
-        const ArrivalSpec& o = spec.arrivals[i];
+        const params::ArrivalSpec& o = spec.arrivals[i];
         add("arrival", i, "time_s", fmt::format("Arrival at {:.6g} m", o.chainage), "s", o.time,
             o.uncertainty.value_or(time_share * o.time));
         all.back().unreached = std::max(spec.solver.end_time, o.time + 5 * all.back().uncertainty);
     }
     for (std::size_t i = 0; i < spec.run_ups.size(); ++i) {
-        const RunUpSpec& o = spec.run_ups[i];
+        const params::RunUpSpec& o = spec.run_ups[i];
         add("run_up", i, "height_m", label(o.name, fmt::format("Run-up mark {}", i + 1)), "m", o.height, o.uncertainty);
         all.back().unreached = -run_up_radius;
     }
     for (std::size_t i = 0; i < spec.deposit_depths.size(); ++i) {
-        const DepositDepthSpec& o = spec.deposit_depths[i];
+        const params::DepositDepthSpec& o = spec.deposit_depths[i];
         add("deposit_depth", i, "depth_m", label(o.name, fmt::format("Deposit depth {}", i + 1)), "m", o.depth,
             o.uncertainty);
     }
     for (std::size_t i = 0; i < spec.damages.size(); ++i) {
-        const DamageSpec& o = spec.damages[i];
+        const params::DamageSpec& o = spec.damages[i];
         add("damage", i, "pressure_Pa", fmt::format("Pressure on {} ({})", o.building, o.damaged ? "damaged" : "not"),
             "Pa", o.pressure, o.uncertainty);
         all.back().kind = o.damaged ? ObservedValue::Kind::at_least : ObservedValue::Kind::below;
     }
     for (std::size_t i = 0; i < spec.observed_run_outs.size(); ++i) {
-        const ObservedRunOutSpec& o = spec.observed_run_outs[i];
+        const params::ObservedRunOutSpec& o = spec.observed_run_outs[i];
         add("observed_run_out", i, "chainage_m", label(o.name, "Run-out"), "m", o.chainage, o.uncertainty);
     }
     for (std::size_t i = 0; i < spec.deposit_outlines.size(); ++i) {
-        const OutlineSpec& o = spec.deposit_outlines[i];
+        const params::OutlineSpec& o = spec.deposit_outlines[i];
         add("deposit_outline", i, "overlap", label(o.name, fmt::format("Overlap with deposit outline {}", i + 1)), "",
             1, o.uncertainty);
     }
     for (std::size_t i = 0; i < spec.affected_areas.size(); ++i) {
-        const OutlineSpec& o = spec.affected_areas[i];
+        const params::OutlineSpec& o = spec.affected_areas[i];
         add("affected_area", i, "overlap", label(o.name, fmt::format("Overlap with affected area {}", i + 1)), "", 1,
             o.uncertainty);
     }
     for (std::size_t i = 0; i < spec.elevation_changes.size(); ++i) {
-        const ElevationChangeSpec& o = spec.elevation_changes[i];
+        const params::ElevationChangeSpec& o = spec.elevation_changes[i];
         add("elevation_change", i, "agreement", label(o.name, fmt::format("Agreement with elevation change {}", i + 1)),
             "", 1, o.uncertainty);
     }
     return all;
 }
 
-std::vector<double> predicted_values(const Scene& scene, const Observation& run) {
-    const SceneSpec& spec = scene.spec;
+std::vector<double> predicted_values(const scene::Scene& scene, const observe::Observation& run) {
+    const params::SceneSpec& spec = scene.spec;
     std::vector<double> all;
     for (const auto& o : spec.observations) all.push_back(predict_front_velocity(run, o.chainage));
     for (const auto& o : spec.superelevations) all.push_back(predict_front_velocity(run, o.chainage));
@@ -203,4 +205,4 @@ double deviation_of(const ObservedValue& observed, double predicted) {
     return deviation;
 }
 
-}  // namespace talus
+}  // namespace talus::ensemble

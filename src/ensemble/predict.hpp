@@ -12,30 +12,30 @@
 
 /// What a run predicts for each kind of field observation, by one function each. NaN: the run gives no such value,
 /// because debris did not reach the place.
-namespace talus {
+namespace talus::ensemble {
 
 /// m/s, at which the front first reached a chainage.
-[[nodiscard]] double predict_front_velocity(const Observation& run, double chainage);
+[[nodiscard]] double predict_front_velocity(const observe::Observation& run, double chainage);
 
 /// s, at which it did.
-[[nodiscard]] double predict_arrival_time(const Observation& run, double chainage);
+[[nodiscard]] double predict_arrival_time(const observe::Observation& run, double chainage);
 
 /// m, farthest chainage of the front.
-[[nodiscard]] double predict_run_out(const Observation& run);
+[[nodiscard]] double predict_run_out(const observe::Observation& run);
 
 inline constexpr double run_up_radius = 15;  ///< m, in which debris near a run-up mark counts
 
 /// Height reached by debris above the ground at a place, m. Where debris did not reach it, the distance of the highest
 /// debris within `search_radius` m below the place, as a negative number: a run that nearly reaches a mark on a bank is
 /// better than one that stays in the bed.
-[[nodiscard]] double predict_run_up(const Observation& run, const Terrain& terrain, const PlanPoint& place,
-                                    double search_radius = run_up_radius);
+[[nodiscard]] double predict_run_up(const observe::Observation& run, const terrain::Terrain& terrain,
+                                    const PlanPoint& place, double search_radius = run_up_radius);
 
 /// m, vertical deposit at a place; 0 where there is none.
-[[nodiscard]] double predict_deposit_depth(const Observation& run, const PlanPoint& place);
+[[nodiscard]] double predict_deposit_depth(const observe::Observation& run, const PlanPoint& place);
 
 /// Pa, peak impact pressure on the building of that name; 0 if it was not hit, NaN if there is none.
-[[nodiscard]] double predict_building_pressure(const Observation& run, const std::string& building);
+[[nodiscard]] double predict_building_pressure(const observe::Observation& run, const std::string& building);
 
 /// Area that both the outline and a map's cells of more than `depth` m cover, over the area that either does: 0 to 1
 /// (Jaccard 1901).
@@ -45,12 +45,12 @@ inline constexpr double run_up_radius = 15;  ///< m, in which debris near a run-
 /// one: 1 - sum |computed - observed| / sum (|computed| + |observed|), 0 to 1 (Bray & Curtis 1957). A change below
 /// `detection_limit` m counts as none. Cells within a release are left out: what failed there left no deposit, and the
 /// terrain may be that before or after.
-[[nodiscard]] double predict_elevation_agreement(const Observation& run, const Grid<float>& observed,
-                                                 const std::vector<Release>& releases, double detection_limit);
+[[nodiscard]] double predict_elevation_agreement(const observe::Observation& run, const Grid<float>& observed,
+                                                 const std::vector<terrain::Release>& releases, double detection_limit);
 
 /// m/s, the velocity derived from superelevated marks: v^2 = g R dh / (k b), the forced vortex with a correction factor
 /// (Prochaska et al. 2008, Engineering Geology 97). The channel's slope is neglected.
-[[nodiscard]] double superelevation_velocity(const SuperelevationSpec& marks);
+[[nodiscard]] double superelevation_velocity(const params::SuperelevationSpec& marks);
 
 /// A field observation as a number with its standard deviation.
 struct ObservedValue {
@@ -66,12 +66,12 @@ struct ObservedValue {
 };
 
 /// All observations of a scene, in the order of its sections.
-[[nodiscard]] std::vector<ObservedValue> observed_values(const Scene& scene);
+[[nodiscard]] std::vector<ObservedValue> observed_values(const scene::Scene& scene);
 
 /// The predictions of a run for them, in the same order.
-[[nodiscard]] std::vector<double> predicted_values(const Scene& scene, const Observation& run);
+[[nodiscard]] std::vector<double> predicted_values(const scene::Scene& scene, const observe::Observation& run);
 
 /// (predicted - observed) / uncertainty; of damage 0 on the right side of the limit. NaN where nothing is predicted.
 [[nodiscard]] double deviation_of(const ObservedValue& observed, double predicted);
 
-}  // namespace talus
+}  // namespace talus::ensemble

@@ -9,7 +9,7 @@
 
 #include "core/try.hpp"
 
-namespace talus {
+namespace talus::ensemble {
 
 namespace fs = std::filesystem;
 
@@ -30,8 +30,8 @@ struct Stack {
 };
 
 /// Offset of a run's map from that of the stack, in cells.
-int offset_of(double low, double stack_low, double cell) {
-    return static_cast<int>(std::lround((low - stack_low) / cell));
+int offset_of(double edge, double stack_edge, double cell) {
+    return static_cast<int>(std::lround((edge - stack_edge) / cell));
 }
 
 Status check_grid(const GridGeometry& a, const GridGeometry& b, std::size_t run) {
@@ -157,12 +157,12 @@ std::vector<EnsembleMap> wanted_maps(const Thresholds& thresholds) {
 }
 
 /// Per class the share of runs in which a place has that intensity or a higher one.
-Result<std::vector<Grid<float>>> intensity_shares(const Stack& stack, const IntensityGuideline& guideline,
+Result<std::vector<Grid<float>>> intensity_shares(const Stack& stack, const report::IntensityGuideline& guideline,
                                                   std::size_t runs) {
     std::vector<Grid<float>> shares(guideline.classes.size(), Grid<float>(stack.geometry, 0));
     for (const auto& [file, record] : stack.layers) {
         const GridGeometry& g = record->geometry;
-        HazardMaps maps;
+        observe::HazardMaps maps;
         for (const std::size_t map : {depth_map, speed_map, arrival_map}) {
             Grid<float>& grid = maps.*recorded_maps[map];
             grid.geometry = g;
@@ -189,12 +189,12 @@ Result<std::vector<Grid<float>>> intensity_shares(const Stack& stack, const Inte
 }
 
 /// One number of every complete run's building, `absent` where it was not hit.
-std::vector<double> values_of(const std::vector<RunRecord>& runs, std::size_t building, double BuildingImpact::*member,
-                              double absent) {
+std::vector<double> values_of(const std::vector<RunRecord>& runs, std::size_t building,
+                              double observe::BuildingImpact::*member, double absent) {
     std::vector<double> values;
     for (const RunRecord& run : runs) {
         if (!run.complete() || building >= run.buildings.size()) continue;
-        const BuildingImpact& b = run.buildings[building];
+        const observe::BuildingImpact& b = run.buildings[building];
         values.push_back(b.hit ? b.*member : absent);
     }
     return values;
@@ -212,19 +212,19 @@ BuildingOdds odds_of(const std::vector<RunRecord>& runs, std::size_t building, c
     if (count == 0) return odds;
     const auto n = static_cast<double>(count);
     odds.hit = static_cast<double>(hits) / n;
-    std::vector<double> pressures = values_of(runs, building, &BuildingImpact::peak_impact_pressure, 0);
+    std::vector<double> pressures = values_of(runs, building, &observe::BuildingImpact::peak_impact_pressure, 0);
     for (const double limit : thresholds.pressure) {
         const auto over = std::count_if(pressures.begin(), pressures.end(), [&](double p) { return p > 1e3 * limit; });
         odds.over_pressure.push_back(static_cast<double>(over) / n);
     }
     odds.median_pressure = percentile(pressures, 50);
     odds.high_pressure = percentile(pressures, 95);
-    std::vector<double> depths = values_of(runs, building, &BuildingImpact::peak_depth, 0);
+    std::vector<double> depths = values_of(runs, building, &observe::BuildingImpact::peak_depth, 0);
     odds.median_depth = percentile(depths, 50);
     odds.high_depth = percentile(depths, 95);
     const double late = std::numeric_limits<double>::infinity();
-    std::vector<double> times = values_of(runs, building, &BuildingImpact::first_hit_time, late);
-    const auto known = [](double t) { return std::isfinite(t) ? t : never; };
+    std::vector<double> times = values_of(runs, building, &observe::BuildingImpact::first_hit_time, late);
+    const auto known = [](double t) { return std::isfinite(t) ? t : observe::never; };
     odds.early_hit = known(percentile(times, 5));
     odds.median_hit = known(percentile(times, 50));
     return odds;
@@ -233,13 +233,13 @@ BuildingOdds odds_of(const std::vector<RunRecord>& runs, std::size_t building, c
 }  // namespace
 
 double percentile(std::vector<double>& values, double percent) {
-    if (values.empty()) return never;
+    if (values.empty()) return observe::never;
     std::sort(values.begin(), values.end());
     return values[rank_of(values.size(), percent)];
 }
 
 Result<Reduction> reduce(const std::vector<fs::path>& folders, std::size_t count, const Thresholds& thresholds,
-                         const IntensityGuideline& guideline, std::size_t memory) {
+                         const report::IntensityGuideline& guideline, std::size_t memory) {
     Reduction out;
     std::vector<fs::path> files;
     for (std::size_t run = 0; run < count; ++run) {
@@ -273,4 +273,4 @@ Result<Reduction> reduce(const std::vector<fs::path>& folders, std::size_t count
     return out;
 }
 
-}  // namespace talus
+}  // namespace talus::ensemble

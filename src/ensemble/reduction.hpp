@@ -12,7 +12,7 @@
 #include "report/intensity.hpp"
 
 /// Combined evaluation of the runs of an ensemble.
-namespace talus {
+namespace talus::ensemble {
 
 /// A map that counts runs or orders them.
 struct EnsembleMap {
@@ -30,7 +30,8 @@ struct BuildingOdds {
     std::vector<double> over_pressure;  ///< share of runs with an impact pressure above each pressure threshold
     double median_pressure = 0, high_pressure = 0;  ///< Pa, 50th and 95th percentile; runs that miss it count as 0
     double median_depth = 0, high_depth = 0;        ///< m, likewise
-    double early_hit = never, median_hit = never;   ///< s, 5th and 50th percentile; NaN: hit by fewer runs
+    double early_hit = observe::never,
+           median_hit = observe::never;  ///< s, 5th and 50th percentile; NaN: hit by fewer runs
 };
 
 struct Reduction {
@@ -56,7 +57,7 @@ inline constexpr std::array<double, 3> mapped_percentiles = {5, 50, 95};
 /// read, maps of different cells.
 [[nodiscard]] Result<Reduction> reduce(const std::vector<std::filesystem::path>& folders, std::size_t count,
                                        const Thresholds& thresholds,
-                                       const IntensityGuideline& guideline = intensity_guideline({}),
+                                       const report::IntensityGuideline& guideline = report::intensity_guideline({}),
                                        std::size_t memory = std::size_t{256} << 20);
 
-}  // namespace talus
+}  // namespace talus::ensemble

@@ -16,15 +16,15 @@
 #include "ensemble/predict.hpp"
 #include "products/text_file.hpp"
 
-namespace talus {
+namespace talus::ensemble {
 namespace {
 
 using Json = nlohmann::ordered_json;
 
 static_assert(std::endian::native == std::endian::little, "records are written as the machine holds them");
 
-double number_of(const Json& json) {
-    return json.is_number() ? json.get<double>() : never;
+double number_or_never(const Json& json) {
+    return json.is_number() ? json.get<double>() : observe::never;
 }
 
 Json numbers_json(const std::vector<double>& values) {
@@ -33,7 +33,7 @@ Json numbers_json(const std::vector<double>& values) {
     return list;
 }
 
-Json building_json(const BuildingImpact& b) {
+Json building_json(const observe::BuildingImpact& b) {
     return {b.name,
             b.hit,
             number_or_null<Json>(b.first_hit_time),
@@ -43,14 +43,14 @@ Json building_json(const BuildingImpact& b) {
             number_or_null<Json>(b.peak_dynamic_pressure)};
 }
 
-BuildingImpact building_of(const Json& j) {
-    return {j.at(0).get<std::string>(), j.at(1).get<bool>(), number_of(j.at(2)), number_of(j.at(3)),
-            number_of(j.at(4)),         number_of(j.at(5)),  number_of(j.at(6))};
+observe::BuildingImpact building_of(const Json& j) {
+    return {j.at(0).get<std::string>(), j.at(1).get<bool>(),      number_or_never(j.at(2)), number_or_never(j.at(3)),
+            number_or_never(j.at(4)),   number_or_never(j.at(5)), number_or_never(j.at(6))};
 }
 
 Json header_json(const RunRecord& r) {
     Json buildings = Json::array();
-    for (const BuildingImpact& b : r.buildings) buildings.push_back(building_json(b));
+    for (const observe::BuildingImpact& b : r.buildings) buildings.push_back(building_json(b));
     const GridGeometry& g = r.geometry;
     return {{"run", r.run},
             {"fault", r.fault},
@@ -69,7 +69,7 @@ RunRecord record_of(const Json& j) {
     r.run = j.at("run").get<std::size_t>();
     r.fault = j.at("fault").get<std::string>();
     r.values = j.at("values").get<std::vector<std::string>>();
-    for (const Json& v : j.at("results")) r.results.push_back(number_of(v));
+    for (const Json& v : j.at("results")) r.results.push_back(number_or_never(v));
     for (const Json& b : j.at("buildings")) r.buildings.push_back(building_of(b));
     r.simulated_time = j.at("simulated_time_s").get<double>();
     r.wall_time = j.at("wall_time_s").get<double>();
@@ -82,7 +82,7 @@ RunRecord record_of(const Json& j) {
 }
 
 /// Ground that debris reached, m2.
-double reached_area(const HazardMaps& maps) {
+double reached_area(const observe::HazardMaps& maps) {
     std::size_t cells = 0;
     for (const float v : maps.peak_depth.values) cells += std::isnan(v) ? 0 : 1;
     const double cell = maps.peak_depth.geometry.cell;
@@ -99,7 +99,7 @@ double greatest_of(const Grid<float>& grid) {
 
 }  // namespace
 
-std::vector<Measure> measures_of(const Scene& scene) {
+std::vector<Measure> measures_of(const scene::Scene& scene) {
     std::vector<Measure> list = {{"run_out_m", "Run-out along the flow", "m"},
                                  {"run_out_straight_m", "Run-out in a straight line", "m"},
                                  {"drop_m", "Drop from crown to toe", "m"},
@@ -114,8 +114,8 @@ std::vector<Measure> measures_of(const Scene& scene) {
     return list;
 }
 
-std::vector<double> measure(const Scene& scene, const RunResult& result) {
-    const Observation& o = result.observation;
+std::vector<double> measure(const scene::Scene& scene, const run::RunResult& result) {
+    const observe::Observation& o = result.observation;
     std::vector<double> values = {o.run_out.along_flow,
                                   o.run_out.straight,
                                   o.run_out.drop,
@@ -132,7 +132,7 @@ std::vector<double> measure(const Scene& scene, const RunResult& result) {
     return values;
 }
 
-Status write_run_record(const std::filesystem::path& file, const RunRecord& record, const HazardMaps& maps) {
+Status write_run_record(const std::filesystem::path& file, const RunRecord& record, const observe::HazardMaps& maps) {
     std::string text = header_json(record).dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
     for (const auto map : recorded_maps) {
         const std::vector<float>& values = (maps.*map).values;
@@ -143,7 +143,7 @@ Status write_run_record(const std::filesystem::path& file, const RunRecord& reco
     }
     const std::filesystem::path unfinished =
         file.parent_path() / fmt::format(".{}.{}", file.filename().string(), getpid());
-    TALUS_TRY(write_text_file(unfinished, text));
+    TALUS_TRY(products::write_text_file(unfinished, text));
     std::error_code error;
     std::filesystem::rename(unfinished, file, error);
     if (error) return Error{fmt::format("{}: cannot be given its name: {}", file.string(), error.message())};
@@ -182,4 +182,4 @@ Result<std::vector<float>> read_map_rows(const std::filesystem::path& file, cons
     return rows;
 }
 
-}  // namespace talus
+}  // namespace talus::ensemble

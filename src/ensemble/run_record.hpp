@@ -14,7 +14,7 @@
 
 /// The record of a run in an ensemble: a small file with a line of JSON (values, scalar results, buildings) and the
 /// peak maps as they are, so that it can be evaluated again without a new run.
-namespace talus {
+namespace talus::ensemble {
 
 /// A scalar result of a run.
 struct Measure {
@@ -24,17 +24,17 @@ struct Measure {
 };
 
 /// The scalar results of every run of a scene, in a fixed order.
-[[nodiscard]] std::vector<Measure> measures_of(const Scene& scene);
+[[nodiscard]] std::vector<Measure> measures_of(const scene::Scene& scene);
 
 /// The values of measures_of; NaN where a run gives none.
-[[nodiscard]] std::vector<double> measure(const Scene& scene, const RunResult& result);
+[[nodiscard]] std::vector<double> measure(const scene::Scene& scene, const run::RunResult& result);
 
 struct RunRecord {
     std::size_t run = 0;              ///< index in the plan
     std::string fault;                ///< why there is no result; empty: complete
     std::vector<std::string> values;  ///< of the factors
     std::vector<double> results;      ///< as measures_of
-    std::vector<BuildingImpact> buildings;
+    std::vector<observe::BuildingImpact> buildings;
     double simulated_time = 0, wall_time = 0;  ///< s
     std::uint32_t particles = 0;
     std::string hash;       ///< of the state at the end
@@ -44,14 +44,14 @@ struct RunRecord {
 };
 
 /// The maps that a record holds, in the order of the file.
-inline constexpr std::array<Grid<float> HazardMaps::*, 5> recorded_maps = {
-    &HazardMaps::peak_depth, &HazardMaps::peak_speed, &HazardMaps::peak_pressure, &HazardMaps::arrival_time,
-    &HazardMaps::deposit_depth};
+inline constexpr std::array<Grid<float> observe::HazardMaps::*, 5> recorded_maps = {
+    &observe::HazardMaps::peak_depth, &observe::HazardMaps::peak_speed, &observe::HazardMaps::peak_pressure,
+    &observe::HazardMaps::arrival_time, &observe::HazardMaps::deposit_depth};
 
 /// Writes under a temporary name first, so that a file with the final name is complete. `maps` all have
 /// record.geometry.
 [[nodiscard]] Status write_run_record(const std::filesystem::path& file, const RunRecord& record,
-                                      const HazardMaps& maps);
+                                      const observe::HazardMaps& maps);
 
 /// The record without its maps. Errors: missing, truncated, not such a file.
 [[nodiscard]] Result<RunRecord> read_run_record(const std::filesystem::path& file);
@@ -60,4 +60,4 @@ inline constexpr std::array<Grid<float> HazardMaps::*, 5> recorded_maps = {
 [[nodiscard]] Result<std::vector<float>> read_map_rows(const std::filesystem::path& file, const RunRecord& record,
                                                        std::size_t map, int first, int last);
 
-}  // namespace talus
+}  // namespace talus::ensemble

@@ -4,7 +4,7 @@
 
 #include <gdal_alg.h>
 
-namespace talus {
+namespace talus::geo {
 namespace {
 
 struct Found {
@@ -41,4 +41,4 @@ std::vector<Contour> contours(const Grid<float>& elevation, double interval) {
     return std::move(found.contours);
 }
 
-}  // namespace talus
+}  // namespace talus::geo

@@ -5,7 +5,7 @@
 #include "core/geometry.hpp"
 #include "core/grid.hpp"
 
-namespace talus {
+namespace talus::geo {
 
 /// A line of equal elevation; closed where it ends at its start.
 struct Contour {
@@ -16,4 +16,4 @@ struct Contour {
 /// Contour lines at whole multiples of `interval` up to the edges of the grid, by GDAL. None where no cell has a value.
 [[nodiscard]] std::vector<Contour> contours(const Grid<float>& elevation, double interval);
 
-}  // namespace talus
+}  // namespace talus::geo

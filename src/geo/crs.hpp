@@ -2,7 +2,7 @@
 
 #include <string>
 
-namespace talus {
+namespace talus::geo {
 
 /// A coordinate reference system as read from data.
 struct Crs {
@@ -14,4 +14,4 @@ struct Crs {
     [[nodiscard]] std::string label() const;
 };
 
-}  // namespace talus
+}  // namespace talus::geo

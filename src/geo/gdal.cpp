@@ -9,7 +9,7 @@
 #include <cpl_error.h>
 #include <fmt/format.h>
 
-namespace talus {
+namespace talus::geo {
 
 namespace {
 
@@ -110,4 +110,4 @@ std::string mended_name(const std::string& file, const std::string& suffix, cons
     return shell_quoted((path.parent_path() / (stem + extension)).string());
 }
 
-}  // namespace talus
+}  // namespace talus::geo

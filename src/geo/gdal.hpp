@@ -7,7 +7,7 @@
 #include "core/result.hpp"
 
 /// Shared by the readers and writers of this module. Not for other modules.
-namespace talus {
+namespace talus::geo {
 
 /// Registers the drivers and prevents GDAL from writing to stderr, in any thread. Repeated calls cost nothing.
 void prepare_gdal();
@@ -44,4 +44,4 @@ class GdalMessages {
 /// A name for the corrected copy of a file, quoted for a shell: "dem.tif", "_utm", ".tif" gives "dem_utm.tif".
 [[nodiscard]] std::string mended_name(const std::string& file, const std::string& suffix, const std::string& extension);
 
-}  // namespace talus
+}  // namespace talus::geo

@@ -10,7 +10,7 @@
 #include "core/try.hpp"
 #include "geo/mesh_faces.hpp"
 
-namespace talus {
+namespace talus::geo {
 namespace {
 
 using nlohmann::json;
@@ -347,4 +347,4 @@ Result<GltfAccessor> GltfFile::accessor(std::size_t index) const {
     return numbers;
 }
 
-}  // namespace talus
+}  // namespace talus::geo

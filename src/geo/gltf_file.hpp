@@ -11,7 +11,7 @@
 
 #include "core/result.hpp"
 
-namespace talus {
+namespace talus::geo {
 
 /// Numbers of a glTF accessor, checked to lie in their buffer.
 struct GltfAccessor {
@@ -72,4 +72,4 @@ class GltfFile {
 /// A whole number, not negative and below 2^40, so that sums and products of a few stay whole; false if it is not one.
 [[nodiscard]] bool gltf_size(const nlohmann::json& value, std::size_t& size);
 
-}  // namespace talus
+}  // namespace talus::geo

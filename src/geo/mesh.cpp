@@ -11,7 +11,7 @@
 #include "geo/mesh_faces.hpp"
 #include "terrain/barrier.hpp"
 
-namespace talus {
+namespace talus::geo {
 namespace {
 
 std::string lower_case(std::string text) {
@@ -92,7 +92,7 @@ Result<std::vector<RoofFace>> find_roofs(const std::vector<MeshFace>& faces) {
             Ring hole = plan_of(face[k]);
             if (hole.size() >= 3) roof.outline.holes.push_back(std::move(hole));
         }
-        if (meets_itself(roof.outline.outer)) {
+        if (terrain::meets_itself(roof.outline.outer)) {
             const PlanPoint& p = roof.outline.outer.front();
             return Error{fmt::format("the outline of the face at ({:.1f}, {:.1f}) crosses itself", p.x, p.y)};
         }
@@ -109,4 +109,4 @@ Result<std::vector<MeshBuilding>> read_mesh_buildings(const std::string& file, c
     return ends_with(name, ".obj") ? read_obj(file) : read_city_json(file, terrain_crs);
 }
 
-}  // namespace talus
+}  // namespace talus::geo

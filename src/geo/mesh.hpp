@@ -8,7 +8,7 @@
 #include "core/result.hpp"
 #include "geo/crs.hpp"
 
-namespace talus {
+namespace talus::geo {
 
 /// A face of a roof seen from above, taken to be level at its mean elevation.
 struct RoofFace {
@@ -35,4 +35,4 @@ struct MeshBuilding {
 [[nodiscard]] Result<std::vector<MeshBuilding>> read_mesh_buildings(const std::string& file, const Crs& terrain_crs,
                                                                     std::vector<std::string>& more_files);
 
-}  // namespace talus
+}  // namespace talus::geo

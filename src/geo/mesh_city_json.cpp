@@ -7,7 +7,7 @@
 #include "core/try.hpp"
 #include "geo/mesh_faces.hpp"
 
-namespace talus {
+namespace talus::geo {
 namespace {
 
 using nlohmann::json;
@@ -186,4 +186,4 @@ Result<std::vector<MeshBuilding>> read_city_json(const std::string& file, const 
     return reader.read_buildings();
 }
 
-}  // namespace talus
+}  // namespace talus::geo

@@ -8,7 +8,7 @@
 #include "geo/mesh.hpp"
 
 /// Shared by the readers of meshes.
-namespace talus {
+namespace talus::geo {
 
 inline constexpr std::size_t most_mesh_faces = 30'000;  ///< of a file; walls are compared with each other
 inline constexpr std::size_t most_face_corners = 1'000;
@@ -29,4 +29,4 @@ using MeshFace = std::vector<std::vector<WorldPoint>>;
                                                           std::vector<std::string>& more_files);
 [[nodiscard]] Result<std::vector<MeshBuilding>> read_city_json(const std::string& file, const Crs& terrain_crs);
 
-}  // namespace talus
+}  // namespace talus::geo

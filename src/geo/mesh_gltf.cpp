@@ -8,7 +8,7 @@
 #include "geo/gltf_file.hpp"
 #include "geo/mesh_faces.hpp"
 
-namespace talus {
+namespace talus::geo {
 namespace {
 
 using nlohmann::json;
@@ -258,4 +258,4 @@ Result<std::vector<MeshBuilding>> read_gltf(const std::string& file, std::vector
     return GltfReader(file, gltf).read();
 }
 
-}  // namespace talus
+}  // namespace talus::geo

@@ -6,7 +6,7 @@
 #include "core/try.hpp"
 #include "geo/mesh_faces.hpp"
 
-namespace talus {
+namespace talus::geo {
 namespace {
 
 class ObjReader {
@@ -99,4 +99,4 @@ Result<std::vector<MeshBuilding>> read_obj(const std::string& file) {
     return ObjReader(file).read(text);
 }
 
-}  // namespace talus
+}  // namespace talus::geo

@@ -16,7 +16,7 @@
 #include "geo/gdal.hpp"
 #include "geo/spatial_reference.hpp"
 
-namespace talus {
+namespace talus::geo {
 namespace {
 
 struct FreeTranslateOptions {
@@ -208,4 +208,4 @@ Result<Orthophoto> read_orthophoto(const std::string& file, const Crs& crs, cons
     return photo;
 }
 
-}  // namespace talus
+}  // namespace talus::geo

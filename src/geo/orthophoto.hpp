@@ -6,7 +6,7 @@
 #include "core/result.hpp"
 #include "geo/crs.hpp"
 
-namespace talus {
+namespace talus::geo {
 
 /// An orthophoto in a format for browsers.
 struct Orthophoto {
@@ -24,4 +24,4 @@ struct Orthophoto {
 [[nodiscard]] Result<Orthophoto> read_orthophoto(const std::string& file, const Crs& crs, const Extent& extent,
                                                  int most_pixels);
 
-}  // namespace talus
+}  // namespace talus::geo

@@ -8,7 +8,7 @@
 #include "core/result.hpp"
 #include "geo/crs.hpp"
 
-namespace talus {
+namespace talus::geo {
 
 /// A raster band on square north-aligned cells, and the metadata of its file.
 struct Raster {
@@ -44,4 +44,4 @@ struct RasterBand {
 /// Writes a single-band Cloud-Optimised GeoTIFF: float32, nodata -9999 for NaN, overviews, unit and description.
 [[nodiscard]] Status write_cog(const std::string& file, const RasterBand& band, const Crs& crs);
 
-}  // namespace talus
+}  // namespace talus::geo

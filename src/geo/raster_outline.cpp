@@ -8,7 +8,7 @@
 #include "core/try.hpp"
 #include "geo/gdal.hpp"
 
-namespace talus {
+namespace talus::geo {
 namespace {
 
 /// Without the repeated last point.
@@ -78,4 +78,4 @@ Result<std::vector<ClassOutline>> class_outlines(const Grid<float>& classes, std
     return outlines;
 }
 
-}  // namespace talus
+}  // namespace talus::geo

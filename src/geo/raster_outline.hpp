@@ -7,7 +7,7 @@
 #include "core/grid.hpp"
 #include "core/result.hpp"
 
-namespace talus {
+namespace talus::geo {
 
 /// The outlines of the cells above zero, along their edges, with holes; cells that touch only at a corner are separate.
 /// By GDAL. Empty: there is no such cell.
@@ -23,4 +23,4 @@ struct ClassOutline {
 /// The outlines of the cells with the values 1, 2, ... `count`, of each that occurs.
 [[nodiscard]] Result<std::vector<ClassOutline>> class_outlines(const Grid<float>& classes, std::size_t count);
 
-}  // namespace talus
+}  // namespace talus::geo

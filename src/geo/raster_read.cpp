@@ -10,7 +10,7 @@
 #include "geo/raster_source.hpp"
 #include "geo/spatial_reference.hpp"
 
-namespace talus {
+namespace talus::geo {
 
 namespace {
 
@@ -219,4 +219,4 @@ Result<Raster> read_map_raster(const std::string& file, const Crs& terrain_crs) 
     return read_over_terrain(file, terrain_crs, Kind::map);
 }
 
-}  // namespace talus
+}  // namespace talus::geo

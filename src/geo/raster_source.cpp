@@ -13,7 +13,7 @@
 #include "geo/gdal.hpp"
 #include "geo/spatial_reference.hpp"
 
-namespace talus {
+namespace talus::geo {
 
 namespace {
 
@@ -288,4 +288,4 @@ Result<RasterSource> open_raster(const std::string& file, int band, const Crs* o
     return Result<RasterSource>(std::move(source));
 }
 
-}  // namespace talus
+}  // namespace talus::geo

@@ -10,7 +10,7 @@
 #include "geo/crs.hpp"
 
 /// A raster file that has passed the checks on format and georeference. Not for other modules.
-namespace talus {
+namespace talus::geo {
 
 struct RasterSource {
     GDALDatasetUniquePtr data;
@@ -33,4 +33,4 @@ struct RasterSource {
 /// The command that declares `value` as the nodata value of a file, given the name of its driver.
 [[nodiscard]] std::string declare_nodata_command(const std::string& file, const std::string& driver, double value);
 
-}  // namespace talus
+}  // namespace talus::geo

@@ -12,7 +12,7 @@
 #include "geo/raster.hpp"
 #include "geo/spatial_reference.hpp"
 
-namespace talus {
+namespace talus::geo {
 
 namespace {
 
@@ -101,4 +101,4 @@ Status write_cog(const std::string& file, const RasterBand& band, const Crs& crs
     return status;
 }
 
-}  // namespace talus
+}  // namespace talus::geo

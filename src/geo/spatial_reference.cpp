@@ -10,7 +10,7 @@
 
 #include "geo/gdal.hpp"
 
-namespace talus {
+namespace talus::geo {
 
 namespace {
 
@@ -140,4 +140,4 @@ std::optional<double> scale_factor(const OGRSpatialReference& reference, const P
     return sum / 2;
 }
 
-}  // namespace talus
+}  // namespace talus::geo

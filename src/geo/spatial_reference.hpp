@@ -9,7 +9,7 @@
 #include "geo/crs.hpp"
 
 /// Coordinate reference systems as GDAL holds them. Not for other modules.
-namespace talus {
+namespace talus::geo {
 
 /// Without its vertical part: maps of depth and speed are not heights.
 [[nodiscard]] Crs to_crs(const OGRSpatialReference& reference);
@@ -30,4 +30,4 @@ namespace talus {
 /// Grid distance over true distance at a place, the mean of both axes; empty where it cannot be computed.
 [[nodiscard]] std::optional<double> scale_factor(const OGRSpatialReference& reference, const PlanPoint& p);
 
-}  // namespace talus
+}  // namespace talus::geo

@@ -9,7 +9,7 @@
 #include "core/result.hpp"
 #include "geo/crs.hpp"
 
-namespace talus {
+namespace talus::geo {
 
 using Attribute = std::variant<std::monostate, double, std::string>;  ///< monostate: null
 
@@ -56,4 +56,4 @@ struct OutputFeature {
                                             const std::vector<Field>& fields,
                                             const std::vector<OutputFeature>& features, const Crs& crs);
 
-}  // namespace talus
+}  // namespace talus::geo

@@ -12,7 +12,7 @@
 #include "geo/spatial_reference.hpp"
 #include "geo/vector.hpp"
 
-namespace talus {
+namespace talus::geo {
 
 namespace {
 
@@ -340,4 +340,4 @@ Result<LineLayer> read_line(const std::string& file, const std::string& layer, c
     return LineLayer{std::move(line), source.reprojection};
 }
 
-}  // namespace talus
+}  // namespace talus::geo

@@ -12,7 +12,7 @@
 #include "geo/spatial_reference.hpp"
 #include "geo/vector.hpp"
 
-namespace talus {
+namespace talus::geo {
 
 namespace {
 
@@ -99,4 +99,4 @@ Status write_geopackage_layer(const std::string& file, const std::string& layer,
     return {};
 }
 
-}  // namespace talus
+}  // namespace talus::geo

@@ -3,7 +3,7 @@
 #include <gdal.h>
 #include <ogr_srs_api.h>
 
-namespace talus {
+namespace talus::geo {
 
 std::string gdal_version() {
     return GDALVersionInfo("RELEASE_NAME");
@@ -15,4 +15,4 @@ std::string proj_version() {
     return std::to_string(major) + "." + std::to_string(minor) + "." + std::to_string(patch);
 }
 
-}  // namespace talus
+}  // namespace talus::geo

@@ -5,7 +5,7 @@
 
 #include "terrain/barrier.hpp"
 
-namespace talus {
+namespace talus::observe {
 namespace {
 
 /// Width of the area on which a particle presses, in spacings. The debris that it represents extends as far as its
@@ -15,7 +15,8 @@ constexpr double contact_spacings = 2;
 
 }  // namespace
 
-ImpactRecorder::ImpactRecorder(const Model& model, const Ground& ground, const State& state, const OutputSpec& outputs)
+ImpactRecorder::ImpactRecorder(const sim::Model& model, const sim::Ground& ground, const sim::State& state,
+                               const params::OutputSpec& outputs)
     : edge_(outputs.impact_patch_edge),
       contact_size_(std::max(edge_, contact_spacings * model.particle_spacing)),
       least_depth_(outputs.arrival_depth),
@@ -25,14 +26,14 @@ ImpactRecorder::ImpactRecorder(const Model& model, const Ground& ground, const S
     jumped_ = false;
 }
 
-void ImpactRecorder::follow(const Model& model, const Ground& ground, const State& state) {
+void ImpactRecorder::follow(const sim::Model& model, const sim::Ground& ground, const sim::State& state) {
     jumped_ = true;
     impacts_.resize(ground.buildings.size());
     records_.resize(ground.buildings.size());
     crossings_.resize(ground.buildings.size());
     for (std::size_t b = 0; b < impacts_.size(); ++b) {
         impacts_[b].name = ground.buildings[b].name;
-        const std::optional<BarrierSpec>& barrier = ground.buildings[b].barrier;
+        const std::optional<params::BarrierSpec>& barrier = ground.buildings[b].barrier;
         impacts_[b].is_barrier = barrier.has_value();
         impacts_[b].passing_share = barrier ? barrier->passing_share.value_or(never) : never;
         if (!stands(ground.buildings[b])) {
@@ -51,7 +52,7 @@ void ImpactRecorder::follow(const Model& model, const Ground& ground, const Stat
     }
 }
 
-void ImpactRecorder::follow_inflow(const State& state) {
+void ImpactRecorder::follow_inflow(const sim::State& state) {
     for (const auto& crossings : crossings_) {
         if (crossings) crossings->follow(state);
     }
@@ -63,15 +64,17 @@ void ImpactRecorder::expect(std::uint32_t particles) {
     }
 }
 
-void ImpactRecorder::watch(const Model& model, const Ground& ground, const State& state, std::size_t building) {
-    const std::optional<BarrierSpec>& barrier = ground.buildings[building].barrier;
+void ImpactRecorder::watch(const sim::Model& model, const sim::Ground& ground, const sim::State& state,
+                           std::size_t building) {
+    const std::optional<params::BarrierSpec>& barrier = ground.buildings[building].barrier;
     if (!barrier) return;
     crossings_[building] = std::make_unique<Overtopping>(model, ground.terrain, *barrier);
     crossings_[building]->follow(state);
     crossings_[building]->after_step(state);  // initialises with the current positions
 }
 
-void ImpactRecorder::forget(const Model& model, const Ground& ground, const State& state, std::size_t building) {
+void ImpactRecorder::forget(const sim::Model& model, const sim::Ground& ground, const sim::State& state,
+                            std::size_t building) {
     impacts_[building] = {.name = impacts_[building].name,
                           .is_barrier = impacts_[building].is_barrier,
                           .passing_share = impacts_[building].passing_share};
@@ -95,7 +98,7 @@ void ImpactRecorder::drop_slots(std::size_t building) {
     record.first_slot = no_slot;
 }
 
-void ImpactRecorder::add_contact(const State& state, const BuildingContact& contact) {
+void ImpactRecorder::add_contact(const sim::State& state, const sim::BuildingContact& contact) {
     const auto building = static_cast<std::size_t>(contact.building);
     BuildingImpact& impact = impacts_[building];
     Record& record = records_[building];
@@ -130,7 +133,7 @@ double ImpactRecorder::highest_pressure(const Record& record) const {
     return highest;
 }
 
-void ImpactRecorder::take_approach(const Model& model, const Ground& ground, const State& state) {
+void ImpactRecorder::take_approach(const sim::Model& model, const sim::Ground& ground, const sim::State& state) {
     for (Record& record : records_) record.depth = record.dynamic_pressure = 0;
     approach_.update(model, state, patches_);
     for (const WallApproach::Flow& flow : approach_.flows()) {
@@ -153,15 +156,16 @@ void ImpactRecorder::take_approach(const Model& model, const Ground& ground, con
     }
 }
 
-void ImpactRecorder::update_peaks(const Ground& ground, std::size_t building, const State& state) {
+void ImpactRecorder::update_peaks(const sim::Ground& ground, std::size_t building, const sim::State& state) {
     const Record& record = records_[building];
     const double force = force_on(record), pressure = record.pressure;
     BuildingImpact& impact = impacts_[building];
     impact.peak_force = std::max(impact.peak_force, force);
     impact.peak_impact_pressure = std::max(impact.peak_impact_pressure, pressure);
 
-    const Building& body = ground.buildings[building];
-    const bool broken = body.barrier && force > body.resistance.force_per_metre * length_of(body.barrier->line);
+    const terrain::Building& body = ground.buildings[building];
+    const bool broken =
+        body.barrier && force > body.resistance.force_per_metre * terrain::length_of(body.barrier->line);
     if (std::isnan(impact.failure_time) && (broken || pressure > body.resistance.pressure)) {
         impact.failure_time = state.time;
         failed_.push_back(building);
@@ -177,11 +181,11 @@ void ImpactRecorder::take_overtopping(std::size_t building) {
     impact.passed_volume = crossings->passed_volume();
 }
 
-void ImpactRecorder::after_step(const Model& model, const Ground& ground, const State& state) {
+void ImpactRecorder::after_step(const sim::Model& model, const sim::Ground& ground, const sim::State& state) {
     touched_.clear();
     failed_.clear();
     if (impacts_.empty()) return;
-    for (const BuildingContact& contact : state.building_contacts) add_contact(state, contact);
+    for (const sim::BuildingContact& contact : state.building_contacts) add_contact(state, contact);
     sums_.advance(state.time, state.time_step);
     take_approach(model, ground, state);
     for (const std::uint32_t slot : sums_.added()) {
@@ -205,7 +209,7 @@ void ImpactRecorder::after_step(const Model& model, const Ground& ground, const 
     }
 }
 
-void ImpactRecorder::add_row(const State& state) {
+void ImpactRecorder::add_row(const sim::State& state) {
     for (std::size_t b = 0; b < impacts_.size(); ++b) {
         BuildingImpact& impact = impacts_[b];
         if (!impact.hit) continue;
@@ -228,7 +232,7 @@ void ImpactRecorder::add_row(const State& state) {
     }
 }
 
-std::vector<BuildingImpact> ImpactRecorder::complete(const State& state) const {
+std::vector<BuildingImpact> ImpactRecorder::complete(const sim::State& state) const {
     std::vector<BuildingImpact> impacts = impacts_;
     for (std::size_t b = 0; b < impacts.size(); ++b) {
         if (crossings_[b]) impacts[b].held_volume = crossings_[b]->filling(state).volume;
@@ -236,4 +240,4 @@ std::vector<BuildingImpact> ImpactRecorder::complete(const State& state) const {
     return impacts;
 }
 
-}  // namespace talus
+}  // namespace talus::observe

@@ -14,7 +14,7 @@
 #include "sim/model.hpp"
 #include "sim/state.hpp"
 
-namespace talus {
+namespace talus::observe {
 
 /// Impact of debris on buildings and barriers, from the impulses of every step and the particles that cross a barrier's
 /// line.
@@ -27,26 +27,27 @@ namespace talus {
 class ImpactRecorder {
   public:
     /// Uses from `outputs` the filter window, the patch edge and the depth above which debris has a velocity.
-    ImpactRecorder(const Model& model, const Ground& ground, const State& state, const OutputSpec& outputs);
+    ImpactRecorder(const sim::Model& model, const sim::Ground& ground, const sim::State& state,
+                   const params::OutputSpec& outputs);
 
     /// Call when model or state were changed between two steps. Buildings keep their index; new ones follow.
-    void follow(const Model& model, const Ground& ground, const State& state);
+    void follow(const sim::Model& model, const sim::Ground& ground, const sim::State& state);
     /// Call when particles were injected between two steps and nothing else was changed.
-    void follow_inflow(const State& state);
+    void follow_inflow(const sim::State& state);
     /// Reserves memory for this number of particles.
     void expect(std::uint32_t particles);
     /// Resets a building's record, for example after it was moved.
-    void forget(const Model& model, const Ground& ground, const State& state, std::size_t building);
+    void forget(const sim::Model& model, const sim::Ground& ground, const sim::State& state, std::size_t building);
 
-    void after_step(const Model& model, const Ground& ground, const State& state);
+    void after_step(const sim::Model& model, const sim::Ground& ground, const sim::State& state);
 
     /// Adds a sample to the history of every structure that has been hit.
-    void add_row(const State& state);
+    void add_row(const sim::State& state);
 
     /// Without the values that complete() fills in.
     [[nodiscard]] const std::vector<BuildingImpact>& impacts() const { return impacts_; }
     /// Including the debris that barriers hold back now.
-    [[nodiscard]] std::vector<BuildingImpact> complete(const State& state) const;
+    [[nodiscard]] std::vector<BuildingImpact> complete(const sim::State& state) const;
     /// Buildings whose resistance was exceeded in the last step.
     [[nodiscard]] const std::vector<std::size_t>& failed() const { return failed_; }
     /// nullptr: not a barrier, or a failed one.
@@ -63,16 +64,16 @@ class ImpactRecorder {
         double peak_depth = 0, peak_dynamic_pressure = 0, peak_speed = 0;  // so far, hit or not
     };
 
-    void add_contact(const State& state, const BuildingContact& contact);
+    void add_contact(const sim::State& state, const sim::BuildingContact& contact);
     void give_slots(std::size_t building);
     void drop_slots(std::size_t building);
-    void take_approach(const Model& model, const Ground& ground, const State& state);
-    void update_peaks(const Ground& ground, std::size_t building, const State& state);
+    void take_approach(const sim::Model& model, const sim::Ground& ground, const sim::State& state);
+    void update_peaks(const sim::Ground& ground, std::size_t building, const sim::State& state);
     /// Now, of the patch where it is highest, Pa.
     [[nodiscard]] double highest_pressure(const Record& record) const;
     [[nodiscard]] double force_on(const Record& record) const;  // N
     /// Starts watching a building's line if it is a barrier that stands.
-    void watch(const Model& model, const Ground& ground, const State& state, std::size_t building);
+    void watch(const sim::Model& model, const sim::Ground& ground, const sim::State& state, std::size_t building);
     void take_overtopping(std::size_t building);
 
     double edge_, contact_size_, least_depth_;  // m
@@ -88,4 +89,4 @@ class ImpactRecorder {
     bool jumped_ = false;                                  // particles were moved since the last step
 };
 
-}  // namespace talus
+}  // namespace talus::observe

@@ -4,11 +4,11 @@
 #include <cmath>
 #include <limits>
 
-namespace talus {
+namespace talus::observe {
 
-Erosion measure_erosion(const Ground& ground, const FlowPath& flow_path, double chainage_interval) {
+Erosion measure_erosion(const sim::Ground& ground, const terrain::FlowPath& flow_path, double chainage_interval) {
     Erosion erosion;
-    const Bed& bed = ground.bed;
+    const terrain::Bed& bed = ground.bed;
     if (bed.empty()) return erosion;
     const GridGeometry& g = ground.terrain.elevation().geometry;
     const double area = g.cell * g.cell;
@@ -66,4 +66,4 @@ Grid<float> erosion_depth(const GridGeometry& terrain, const std::vector<float>&
     return depth;
 }
 
-}  // namespace talus
+}  // namespace talus::observe

@@ -7,14 +7,15 @@
 #include "sim/ground.hpp"
 #include "terrain/flow_path.hpp"
 
-namespace talus {
+namespace talus::observe {
 
 /// Erosion of the bed: its depth, and the volume upstream of every `chainage_interval` m of the flow path. Erosion
 /// outside the path's corridor counts in the map and the total volume only.
-[[nodiscard]] Erosion measure_erosion(const Ground& ground, const FlowPath& flow_path, double chainage_interval);
+[[nodiscard]] Erosion measure_erosion(const sim::Ground& ground, const terrain::FlowPath& flow_path,
+                                      double chainage_interval);
 
 /// Depths of Bed::eroded as a map: the cells of the terrain that lost something and two more on every side. NaN: no
 /// erosion. Empty if there is no such cell.
 [[nodiscard]] Grid<float> erosion_depth(const GridGeometry& terrain, const std::vector<float>& eroded);
 
-}  // namespace talus
+}  // namespace talus::observe

@@ -9,7 +9,7 @@
 
 #include "simd/parallel.hpp"
 
-namespace talus {
+namespace talus::observe {
 namespace {
 
 constexpr std::size_t group = 64;  ///< particles examined together; usually none is relevant
@@ -19,14 +19,14 @@ constexpr double fastest_front = 1.5;
 
 }  // namespace
 
-std::uint32_t front_particle_count(const State& state) {
+std::uint32_t front_particle_count(const sim::State& state) {
     const std::uint32_t released = state.released() + state.entrained;
     const auto share = static_cast<std::uint32_t>(std::ceil(0.001 * released));
     return std::max(1U, std::min(released, std::max(5U, share)));
 }
 
-FrontTracker::FrontTracker(const Model& model, const Ground& ground, const State& state, FlowPath flow_path,
-                           double chainage_interval, double velocity_window)
+FrontTracker::FrontTracker(const sim::Model& model, const sim::Ground& ground, const sim::State& state,
+                           terrain::FlowPath flow_path, double chainage_interval, double velocity_window)
     : flow_path_(std::move(flow_path)),
       interval_(chainage_interval),
       window_(velocity_window),
@@ -41,7 +41,7 @@ FrontTracker::FrontTracker(const Model& model, const Ground& ground, const State
     farthest_ = current_;
 }
 
-void FrontTracker::follow(const State& state) {
+void FrontTracker::follow(const sim::State& state) {
     front_count_ = front_particle_count(state);
     if (flow_path_.empty()) return;
     candidates_.resize(std::max<std::size_t>(candidates_.size(), state.count));
@@ -49,7 +49,7 @@ void FrontTracker::follow(const State& state) {
                                                      [](std::uint8_t held) { return held != 0; }));
 }
 
-std::uint32_t FrontTracker::find_candidates(const Ground& ground, const State& state, double from) {
+std::uint32_t FrontTracker::find_candidates(const sim::Ground& ground, const sim::State& state, double from) {
     // Debris behind the front is excluded without locating it: it is outside the rectangle around the path beyond, or
     // in a cell of the path's table that does not reach so far.
     const WorldPoint& origin = ground.terrain.frame().origin;
@@ -96,7 +96,7 @@ std::uint32_t FrontTracker::find_candidates(const Ground& ground, const State& s
         std::plus<>{});
 }
 
-std::uint32_t FrontTracker::find_front(const Ground& ground, const State& state) {
+std::uint32_t FrontTracker::find_front(const sim::Ground& ground, const sim::State& state) {
     std::uint32_t held = 0;
     const auto find_enough = [&](double from) {
         held = find_candidates(ground, state, from);
@@ -115,7 +115,7 @@ std::uint32_t FrontTracker::find_front(const Ground& ground, const State& state)
     return held;
 }
 
-FrontTracker::Head FrontTracker::head_behind(double front, const State& state) {
+FrontTracker::Head FrontTracker::head_behind(double front, const sim::State& state) {
     const auto from = static_cast<float>(std::max(0.0, front - head_length_));
     // Always in the same order: the sum would depend on it.
     const auto end = candidates_.begin() + candidate_count_;
@@ -132,7 +132,7 @@ FrontTracker::Head FrontTracker::head_behind(double front, const State& state) {
     return {sum / static_cast<double>(count), fastest};
 }
 
-void FrontTracker::after_step(const Ground& ground, const State& state) {
+void FrontTracker::after_step(const sim::Ground& ground, const sim::State& state) {
     if (flow_path_.empty()) return;
     front_count_ = front_particle_count(state);
     if (candidates_.size() < state.count) candidates_.resize(state.count + state.count / 2);
@@ -196,4 +196,4 @@ std::vector<FrontSample> FrontTracker::samples() const {
     return samples;
 }
 
-}  // namespace talus
+}  // namespace talus::observe

@@ -9,11 +9,11 @@
 #include "sim/state.hpp"
 #include "terrain/flow_path.hpp"
 
-namespace talus {
+namespace talus::observe {
 
 /// Particles that have to lie beyond a position for it to count as reached: 5, or 0.1 % of the released volume if that
 /// is more, so that a single stray particle is not a front.
-[[nodiscard]] std::uint32_t front_particle_count(const State& state);
+[[nodiscard]] std::uint32_t front_particle_count(const sim::State& state);
 
 /// The front along the flow path: where it is, when it first reached each chainage and how fast it was there.
 ///
@@ -22,16 +22,16 @@ namespace talus {
 class FrontTracker {
   public:
     /// `flow_path` may be empty: then there is no front. Intervals and window in m of chainage.
-    FrontTracker(const Model& model, const Ground& ground, const State& state, FlowPath flow_path,
-                 double chainage_interval, double velocity_window);
+    FrontTracker(const sim::Model& model, const sim::Ground& ground, const sim::State& state,
+                 terrain::FlowPath flow_path, double chainage_interval, double velocity_window);
 
-    void after_step(const Ground& ground, const State& state);
+    void after_step(const sim::Ground& ground, const sim::State& state);
     /// Call when the state was changed between two steps.
-    void follow(const State& state);
+    void follow(const sim::State& state);
     /// Reserves memory for this number of particles.
     void expect(std::uint32_t particles) { candidates_.reserve(particles); }
 
-    [[nodiscard]] const FlowPath& flow_path() const { return flow_path_; }
+    [[nodiscard]] const terrain::FlowPath& flow_path() const { return flow_path_; }
     /// Chainage of the front now, m; NaN: none on the path.
     [[nodiscard]] double current() const { return current_; }
     /// Farthest chainage so far, m; NaN: none yet.
@@ -47,20 +47,20 @@ class FrontTracker {
     };
 
     /// Finds the candidates beyond `from` and returns how many particles are held.
-    std::uint32_t find_candidates(const Ground& ground, const State& state, double from);
+    std::uint32_t find_candidates(const sim::Ground& ground, const sim::State& state, double from);
     /// Sets current_ and returns how many particles are held.
-    std::uint32_t find_front(const Ground& ground, const State& state);
+    std::uint32_t find_front(const sim::Ground& ground, const sim::State& state);
     /// Speeds of the debris at the front, m/s.
     struct Head {
         double mean = never, fastest = never;
     };
-    [[nodiscard]] Head head_behind(double front, const State& state);
+    [[nodiscard]] Head head_behind(double front, const sim::State& state);
     /// Whether the front went from the previous chainage to this one faster than the debris there moves: at a corner of
     /// the path, or because other debris entered its corridor.
     [[nodiscard]] bool jumped_to(std::size_t bin) const;
     [[nodiscard]] double fitted_velocity(std::size_t middle) const;
 
-    FlowPath flow_path_;
+    terrain::FlowPath flow_path_;
     double interval_ = 1, window_ = 10, head_length_ = 0;
     std::size_t front_count_ = 1;
     std::uint32_t held_ = 0;
@@ -71,4 +71,4 @@ class FrontTracker {
     std::vector<Head> head_;
 };
 
-}  // namespace talus
+}  // namespace talus::observe

@@ -11,7 +11,7 @@
 #include "simd/lanes.hpp"
 #include "simd/parallel.hpp"
 
-namespace talus {
+namespace talus::observe {
 namespace {
 
 constexpr float one = 1 << 12;  ///< a weight of 1 along one axis
@@ -22,7 +22,7 @@ constexpr std::size_t grain = 2048;  ///< particles per task
 
 using L = simd::Lanes<4>;
 constexpr std::size_t chunk = 16;  ///< particles whose shares are computed at once
-static_assert(chunk <= array_padding);
+static_assert(chunk <= sim::array_padding);
 
 /// Whole-number weights of the cells before, at and after the particles' along one axis: a quadratic B-spline. Shares
 /// beyond the map's edge stay in its outermost cell.
@@ -48,8 +48,8 @@ struct AxisShares {
 
 }  // namespace
 
-MapAccumulator::MapAccumulator(const Model& model, const Ground& ground, const State& state, double map_cell,
-                               double arrival_depth)
+MapAccumulator::MapAccumulator(const sim::Model& model, const sim::Ground& ground, const sim::State& state,
+                               double map_cell, double arrival_depth)
     : inverse_cell_(1 / map_cell),
       particle_volume_(model.particle_volume()),
       rest_density_(model.rest_density),
@@ -120,7 +120,7 @@ class MapAccumulator::Patches {
     std::array<Patch, columns * rows> patches_;
 };
 
-void MapAccumulator::find_shares(const State& state, std::size_t first, bool densities, Shares& shares) const {
+void MapAccumulator::find_shares(const sim::State& state, std::size_t first, bool densities, Shares& shares) const {
     const L x_offset(x_offset_), y_offset(y_offset_), inverse_cell(inverse_cell_);
     for (std::size_t k = 0; k < chunk; k += L::size) {
         const std::size_t i = first + k;
@@ -142,7 +142,7 @@ void MapAccumulator::find_shares(const State& state, std::size_t first, bool den
     }
 }
 
-void MapAccumulator::spread(const State& state, bool densities, std::size_t first, std::size_t last) {
+void MapAccumulator::spread(const sim::State& state, bool densities, std::size_t first, std::size_t last) {
     Patches patches(*this);
     Shares shares{};
     for (std::size_t i = first; i < last; i += chunk) {
@@ -218,7 +218,7 @@ void MapAccumulator::make_room(std::size_t particles) {
     if (active_.size() < wanted) active_.resize(std::min(tile_at_.size(), wanted + wanted / 2));
 }
 
-void MapAccumulator::follow(const Model& model, const State& state) {
+void MapAccumulator::follow(const sim::Model& model, const sim::State& state) {
     make_room(state.count);
     if (model.rest_density == rest_density_) return;
     keep_pressures();
@@ -264,14 +264,14 @@ void MapAccumulator::update_peaks(Tile& tile, double time) const {
     }
 }
 
-void MapAccumulator::spread_all(const State& state, bool densities) {
+void MapAccumulator::spread_all(const sim::State& state, bool densities) {
     ++adds_;
     active_count_ = 0;
     simd::parallel_ranges(state.count, grain,
                           [&](std::size_t first, std::size_t last) { spread(state, densities, first, last); });
 }
 
-void MapAccumulator::take_densities(const State& state) {
+void MapAccumulator::take_densities(const sim::State& state) {
     keep_pressures();
     spread_all(state, true);
     simd::parallel_ranges(active_count_, 16, [&](std::size_t first, std::size_t last) {
@@ -287,7 +287,7 @@ void MapAccumulator::take_densities(const State& state) {
     });
 }
 
-void MapAccumulator::add(const State& state) {
+void MapAccumulator::add(const sim::State& state) {
     make_room(state.count);
     if (!state.density_of_id.empty()) take_densities(state);
     spread_all(state, false);
@@ -296,4 +296,4 @@ void MapAccumulator::add(const State& state) {
     });
 }
 
-}  // namespace talus
+}  // namespace talus::observe

@@ -14,7 +14,7 @@
 #include "sim/model.hpp"
 #include "sim/state.hpp"
 
-namespace talus {
+namespace talus::observe {
 
 /// Peak maps, accumulated after every step.
 ///
@@ -28,15 +28,16 @@ namespace talus {
 class MapAccumulator {
   public:
     /// The map's corner is the terrain grid's. `arrival_depth`, `map_cell` in m.
-    MapAccumulator(const Model& model, const Ground& ground, const State& state, double map_cell, double arrival_depth);
+    MapAccumulator(const sim::Model& model, const sim::Ground& ground, const sim::State& state, double map_cell,
+                   double arrival_depth);
 
     /// Call when model or state were changed between two steps. Peak pressures so far keep the previous density.
-    void follow(const Model& model, const State& state);
+    void follow(const sim::Model& model, const sim::State& state);
     /// Reserves memory for this number of particles; call before their number exceeds its previous maximum.
     void make_room(std::size_t particles);
 
     /// Updates the peaks with the current state. Particles of releases that have not started do not count.
-    void add(const State& state);
+    void add(const sim::State& state);
 
     /// Volume on the map at the last `add`, m3: exactly the particles added.
     [[nodiscard]] double volume() const;
@@ -89,18 +90,18 @@ class MapAccumulator {
     class Patches;
 
     /// Sums over the cells of all particles, weighted by their speeds or densities.
-    void spread_all(const State& state, bool densities);
+    void spread_all(const sim::State& state, bool densities);
     /// Finds the mean density of every cell, of particles that have densities of their own.
-    void take_densities(const State& state);
+    void take_densities(const sim::State& state);
     /// Stores peak pressures from now on, as they no longer follow from peak speeds.
     void keep_pressures();
     [[nodiscard]] double density_in(const Tile& tile, std::size_t cell) const {
         return tile.density.empty() ? rest_density_ : static_cast<double>(tile.density[cell]);
     }
     /// The shares of the next particles and their cells.
-    void find_shares(const State& state, std::size_t first, bool densities, Shares& shares) const;
+    void find_shares(const sim::State& state, std::size_t first, bool densities, Shares& shares) const;
     /// Adds particles [first, last) to their tiles.
-    void spread(const State& state, bool densities, std::size_t first, std::size_t last);
+    void spread(const sim::State& state, bool densities, std::size_t first, std::size_t last);
     /// Moves the sums of a patch into the tiles that it lies over.
     void take(Patch& patch);
     /// Created if it does not exist yet.
@@ -128,4 +129,4 @@ class MapAccumulator {
     PlanPoint first_particle_;  // world, for the frame of an empty map
 };
 
-}  // namespace talus
+}  // namespace talus::observe

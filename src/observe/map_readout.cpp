@@ -6,7 +6,7 @@
 #include "observe/map_accumulator.hpp"
 #include "observe/map_units.hpp"
 
-namespace talus {
+namespace talus::observe {
 
 MapAccumulator::CellSum MapAccumulator::sum_of(const Tile& tile, std::size_t cell) const {
     return tile.added == adds_ ? tile.sums[cell] : CellSum{};
@@ -102,4 +102,4 @@ HazardMaps MapAccumulator::maps() const {
     return maps;
 }
 
-}  // namespace talus
+}  // namespace talus::observe

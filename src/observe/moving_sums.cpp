@@ -1,6 +1,6 @@
 #include "observe/moving_sums.hpp"
 
-namespace talus {
+namespace talus::observe {
 
 void MovingSums::add(std::size_t slot, double amount) {
     Slot& s = slots_[slot];
@@ -57,4 +57,4 @@ void MovingSums::clear(std::size_t first, std::size_t count) {
     }
 }
 
-}  // namespace talus
+}  // namespace talus::observe

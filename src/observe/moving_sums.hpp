@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-namespace talus {
+namespace talus::observe {
 
 /// Sums over numbered slots within a time window that ends now. Cost depends on what is added, not on the number of
 /// slots. A step that straddles the window's start, or is longer than it, counts with the part inside.
@@ -48,4 +48,4 @@ class MovingSums {
     std::vector<std::uint32_t> adding_, added_;
 };
 
-}  // namespace talus
+}  // namespace talus::observe

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace talus {
+namespace talus::observe {
 namespace {
 
 /// The value that so many tenths of them stay below. Changes their order.
@@ -24,7 +24,7 @@ Deposit measure_deposit(const Grid<float>& deposit_depth, double least_depth) {
     return {cell_area * static_cast<double>(depths.size()), tenth(depths, 9)};
 }
 
-Grid<float> normal_to_slope(const Grid<float>& depth, const Terrain& terrain) {
+Grid<float> normal_to_slope(const Grid<float>& depth, const terrain::Terrain& terrain) {
     Grid<float> thickness = depth;
     for (int r = 0; r < depth.geometry.rows; ++r) {
         for (int c = 0; c < depth.geometry.columns; ++c) {
@@ -34,7 +34,7 @@ Grid<float> normal_to_slope(const Grid<float>& depth, const Terrain& terrain) {
     return thickness;
 }
 
-FlowThickness measure_thickness(const Grid<float>& peak_depth, const Terrain& terrain, double least_depth) {
+FlowThickness measure_thickness(const Grid<float>& peak_depth, const terrain::Terrain& terrain, double least_depth) {
     const Grid<float> thickness = normal_to_slope(peak_depth, terrain);
     std::vector<float> reached;
     for (std::size_t i = 0; i < thickness.values.size(); ++i) {
@@ -59,4 +59,4 @@ FrontSample front_at(const Observation& observation, double chainage) {
             between(a.particle_speed, b.particle_speed)};
 }
 
-}  // namespace talus
+}  // namespace talus::observe

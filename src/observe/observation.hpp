@@ -10,7 +10,7 @@
 #include "terrain/terrain.hpp"
 
 /// The measurements of a run: plain results in SI units.
-namespace talus {
+namespace talus::observe {
 
 inline constexpr double never = std::numeric_limits<double>::quiet_NaN();
 
@@ -175,11 +175,11 @@ struct Observation {
 [[nodiscard]] Deposit measure_deposit(const Grid<float>& deposit_depth, double least_depth);
 
 /// Vertical depth times the cosine of the ground's slope, on the same cells.
-[[nodiscard]] Grid<float> normal_to_slope(const Grid<float>& depth, const Terrain& terrain);
-[[nodiscard]] FlowThickness measure_thickness(const Grid<float>& peak_depth, const Terrain& terrain,
+[[nodiscard]] Grid<float> normal_to_slope(const Grid<float>& depth, const terrain::Terrain& terrain);
+[[nodiscard]] FlowThickness measure_thickness(const Grid<float>& peak_depth, const terrain::Terrain& terrain,
                                               double least_depth);
 
 /// The front at a chainage, interpolated between samples; NaN where debris never came.
 [[nodiscard]] FrontSample front_at(const Observation& observation, double chainage);
 
-}  // namespace talus
+}  // namespace talus::observe

@@ -14,7 +14,7 @@
 #include "sim/particle_density.hpp"
 #include "simd/parallel.hpp"
 
-namespace talus {
+namespace talus::observe {
 namespace {
 
 /// Counts and energies over the particles, as far as they are summed for every row.
@@ -24,7 +24,7 @@ struct Totals {
     double height = 0;         ///< sum over the particles, m above the lowest terrain
 };                             ///< both weighed by density over rest density
 
-Totals sum_up(const Model& model, const State& state, double deposited_speed) {
+Totals sum_up(const sim::Model& model, const sim::State& state, double deposited_speed) {
     const bool own_densities = !state.density_of_id.empty();
     return simd::reduce_ranges(
         state.count, 1024, Totals{},
@@ -51,7 +51,7 @@ Totals sum_up(const Model& model, const State& state, double deposited_speed) {
         });
 }
 
-TimeSample make_sample(const Model& model, const State& state, double deposited_speed, double front_chainage,
+TimeSample make_sample(const sim::Model& model, const sim::State& state, double deposited_speed, double front_chainage,
                        double steps_per_second) {
     const Totals totals = sum_up(model, state, deposited_speed);
     TimeSample sample;
@@ -77,8 +77,8 @@ TimeSample make_sample(const Model& model, const State& state, double deposited_
 }  // namespace
 
 struct Observer::Parts {
-    Parts(const Model& model, const Ground& ground, const State& state, const FlowPath& flow_path, const OutputSpec& o,
-          double map_cell)
+    Parts(const sim::Model& model, const sim::Ground& ground, const sim::State& state,
+          const terrain::FlowPath& flow_path, const params::OutputSpec& o, double map_cell)
         : outputs(o),
           maps(model, ground, state, map_cell, o.arrival_depth),
           front(model, ground, state, flow_path, o.chainage_interval, o.front_velocity_window),
@@ -88,7 +88,7 @@ struct Observer::Parts {
     }
 
     /// Stores the positions of the particles with ids from `first_id`.
-    void keep_starts(const State& state, std::uint32_t first_id) {
+    void keep_starts(const sim::State& state, std::uint32_t first_id) {
         start.resize(state.seeded);
         for (std::uint32_t i = 0; i < state.count; ++i) {
             const std::uint32_t id = state.id[i];
@@ -97,18 +97,18 @@ struct Observer::Parts {
     }
 
     /// The debris of all existing releases at its start.
-    [[nodiscard]] ReleasedMass measure_starts(const Model& model, const Ground& ground) const {
-        State lay;
+    [[nodiscard]] ReleasedMass measure_starts(const sim::Model& model, const sim::Ground& ground) const {
+        sim::State lay;
         lay.resize(start.size());
         const auto add = [&](std::uint32_t first, std::uint32_t last) {
             for (std::uint32_t id = first; id < last; ++id) lay.position.set(lay.count++, start[id]);
         };
-        for (const ReleaseGroup& release : model.releases) add(release.first_particle, release.last_particle);
+        for (const sim::ReleaseGroup& release : model.releases) add(release.first_particle, release.last_particle);
         for (const auto& [first, last] : came_in) add(first, last);
         return measure_release(ground, lay);
     }
 
-    void watch_compression(const Model& model, const State& state) {
+    void watch_compression(const sim::Model& model, const sim::State& state) {
         const auto keep = [&](double value, double& worst, double& time) {
             if (value <= worst) return;
             worst = value;
@@ -123,12 +123,12 @@ struct Observer::Parts {
         ++steps;
     }
 
-    void add_row(const Model& model, const State& state) {
+    void add_row(const sim::Model& model, const sim::State& state) {
         timeseries.push_back(make_sample(model, state, outputs.deposited_speed, front.current(), steps_per_second));
         impact.add_row(state);
     }
 
-    OutputSpec outputs;
+    params::OutputSpec outputs;
     MapAccumulator maps;
     FrontTracker front;
     ImpactRecorder impact;
@@ -144,8 +144,8 @@ struct Observer::Parts {
     std::uint64_t iterations = 0, steps = 0;
 };
 
-Observer::Observer(const Model& model, const Ground& ground, const State& state, const FlowPath& flow_path,
-                   const OutputSpec& outputs, double map_cell)
+Observer::Observer(const sim::Model& model, const sim::Ground& ground, const sim::State& state,
+                   const terrain::FlowPath& flow_path, const params::OutputSpec& outputs, double map_cell)
     : parts_(std::make_unique<Parts>(model, ground, state, flow_path, outputs, map_cell)) {
     parts_->maps.add(state);
     parts_->add_row(model, state);
@@ -153,11 +153,12 @@ Observer::Observer(const Model& model, const Ground& ground, const State& state,
 
 Observer::~Observer() = default;
 
-void Observer::observe(const Model& model, const Ground& ground, const State& state) {
+void Observer::observe(const sim::Model& model, const sim::Ground& ground, const sim::State& state) {
     after_step(model, ground, state, parts_->rate.update(state.step));
 }
 
-void Observer::after_step(const Model& model, const Ground& ground, const State& state, double steps_per_second) {
+void Observer::after_step(const sim::Model& model, const sim::Ground& ground, const sim::State& state,
+                          double steps_per_second) {
     Parts& p = *parts_;
     p.maps.add(state);
     p.front.after_step(ground, state);
@@ -172,7 +173,8 @@ void Observer::after_step(const Model& model, const Ground& ground, const State&
     }
 }
 
-void Observer::follow(const Model& model, const Ground& ground, const State& state, std::uint32_t first_new_id) {
+void Observer::follow(const sim::Model& model, const sim::Ground& ground, const sim::State& state,
+                      std::uint32_t first_new_id) {
     Parts& p = *parts_;
     p.keep_starts(state, first_new_id);
     p.released = p.measure_starts(model, ground);
@@ -182,7 +184,7 @@ void Observer::follow(const Model& model, const Ground& ground, const State& sta
     p.impact.follow(model, ground, state);
 }
 
-void Observer::follow_inflow(const State& state, std::uint32_t first_new_id) {
+void Observer::follow_inflow(const sim::State& state, std::uint32_t first_new_id) {
     Parts& p = *parts_;
     if (first_new_id == state.seeded) return;
     p.keep_starts(state, first_new_id);
@@ -203,7 +205,8 @@ void Observer::expect(std::uint32_t particles) {
     parts_->impact.expect(particles);
 }
 
-void Observer::forget_building(const Model& model, const Ground& ground, const State& state, std::size_t building) {
+void Observer::forget_building(const sim::Model& model, const sim::Ground& ground, const sim::State& state,
+                               std::size_t building) {
     parts_->impact.forget(model, ground, state, building);
 }
 
@@ -223,7 +226,7 @@ const TimeSample& Observer::latest() const {
     return parts_->timeseries.back();
 }
 
-TimeSample Observer::sample(const Model& model, const State& state) const {
+TimeSample Observer::sample(const sim::Model& model, const sim::State& state) const {
     const Parts& p = *parts_;
     return make_sample(model, state, p.outputs.deposited_speed, p.front.current(), p.steps_per_second);
 }
@@ -244,7 +247,7 @@ const MapAccumulator& Observer::maps() const {
     return parts_->maps;
 }
 
-Observation Observer::finish(const Model& model, const Ground& ground, const State& state) const {
+Observation Observer::finish(const sim::Model& model, const sim::Ground& ground, const sim::State& state) const {
     const Parts& p = *parts_;
     Observation observation;
     observation.maps = p.maps.maps();
@@ -269,4 +272,4 @@ Observation Observer::finish(const Model& model, const Ground& ground, const Sta
     return observation;
 }
 
-}  // namespace talus
+}  // namespace talus::observe

@@ -15,31 +15,34 @@
 #include "sim/step_watcher.hpp"
 #include "terrain/flow_path.hpp"
 
-namespace talus {
+namespace talus::observe {
 
 /// Watches a run: a stage of the step, so that peaks see every step. Its cost depends on the number of particles, its
 /// result not on the number of threads.
-class Observer final : public StepWatcher {
+class Observer final : public sim::StepWatcher {
   public:
     /// `flow_path` may be empty: then there is no front against chainage. `map_cell` in m.
-    Observer(const Model& model, const Ground& ground, const State& state, const FlowPath& flow_path,
-             const OutputSpec& outputs, double map_cell);
+    Observer(const sim::Model& model, const sim::Ground& ground, const sim::State& state,
+             const terrain::FlowPath& flow_path, const params::OutputSpec& outputs, double map_cell);
     ~Observer() override;
 
     /// As a stage of a step: after_step() with the steps per second of wall time.
-    void observe(const Model& model, const Ground& ground, const State& state) override;
-    void follow_inflow(const State& state, std::uint32_t first_new_id) override;
+    void observe(const sim::Model& model, const sim::Ground& ground, const sim::State& state) override;
+    void follow_inflow(const sim::State& state, std::uint32_t first_new_id) override;
     [[nodiscard]] const std::vector<std::size_t>& failed_buildings() const override;
 
     /// Measures a completed step. `steps_per_second` is copied to the time series.
-    void after_step(const Model& model, const Ground& ground, const State& state, double steps_per_second);
+    void after_step(const sim::Model& model, const sim::Ground& ground, const sim::State& state,
+                    double steps_per_second);
 
     /// Call when model, ground or state were changed between two steps: particles with ids from `first_new_id` are new.
-    void follow(const Model& model, const Ground& ground, const State& state, std::uint32_t first_new_id);
+    void follow(const sim::Model& model, const sim::Ground& ground, const sim::State& state,
+                std::uint32_t first_new_id);
     /// Reserves memory for this number of particles, so that injecting them allocates nothing.
     void expect(std::uint32_t particles);
     /// Resets the record of a building, for example after it was moved.
-    void forget_building(const Model& model, const Ground& ground, const State& state, std::size_t building);
+    void forget_building(const sim::Model& model, const sim::Ground& ground, const sim::State& state,
+                         std::size_t building);
 
     /// Debris that has crossed a barrier's line; nullptr: not a barrier, or a failed one.
     [[nodiscard]] const Overtopping* overtopping(std::size_t building) const;
@@ -50,7 +53,7 @@ class Observer final : public StepWatcher {
     [[nodiscard]] const TimeSample& latest() const;
 
     /// The current state as a row of the time series.
-    [[nodiscard]] TimeSample sample(const Model& model, const State& state) const;
+    [[nodiscard]] TimeSample sample(const sim::Model& model, const sim::State& state) const;
 
     // What has been measured so far.
     [[nodiscard]] const std::vector<TimeSample>& timeseries() const;
@@ -59,11 +62,11 @@ class Observer final : public StepWatcher {
     [[nodiscard]] const MapAccumulator& maps() const;
 
     /// The complete results, with the debris in its current position as deposit.
-    [[nodiscard]] Observation finish(const Model& model, const Ground& ground, const State& state) const;
+    [[nodiscard]] Observation finish(const sim::Model& model, const sim::Ground& ground, const sim::State& state) const;
 
   private:
     struct Parts;
     std::unique_ptr<Parts> parts_;
 };
 
-}  // namespace talus
+}  // namespace talus::observe

@@ -8,11 +8,11 @@
 #include "sim/physics/net.hpp"
 #include "terrain/barrier.hpp"
 
-namespace talus {
+namespace talus::observe {
 namespace {
 
 /// Highest ground under the line, world.
-double highest_ground(const Terrain& terrain, const std::vector<PlanPoint>& line) {
+double highest_ground(const terrain::Terrain& terrain, const std::vector<PlanPoint>& line) {
     double highest = -std::numeric_limits<double>::infinity();
     for (const PlanPoint& p : line) highest = std::max(highest, terrain.elevation_at(p));
     return highest;
@@ -33,7 +33,7 @@ PlanPoint point_at(const std::vector<PlanPoint>& line, double chainage) {
 
 }  // namespace
 
-Overtopping::Overtopping(const Model& model, const Terrain& terrain, const BarrierSpec& shape)
+Overtopping::Overtopping(const sim::Model& model, const terrain::Terrain& terrain, const params::BarrierSpec& shape)
     : particle_volume_(model.particle_volume()),
       section_(4 * model.particle_spacing),
       half_thickness_(shape.thickness / 2) {
@@ -47,13 +47,13 @@ Overtopping::Overtopping(const Model& model, const Terrain& terrain, const Barri
         near_.include(local);
         line_.push_back({static_cast<float>(local.x), static_cast<float>(local.y)});
     }
-    for (const BarrierOpeningSpec& opening : shape.openings) {
+    for (const params::BarrierOpeningSpec& opening : shape.openings) {
         const double ground = terrain.elevation_at(point_at(shape.line, opening.position));
         openings_.push_back({opening.position - opening.width / 2, opening.position + opening.width / 2,
                              shape.crest_elevation.value_or(ground + shape.height.value_or(0)) - origin.z});
     }
     if (shape.clearance) {  // the gap below follows the ground: a row of openings, a metre wide each
-        const double length = length_of(shape.line);
+        const double length = terrain::length_of(shape.line);
         for (double chainage = 0; chainage < length; ++chainage) {
             const double ground = terrain.elevation_at(point_at(shape.line, std::min(chainage + 0.5, length)));
             openings_.push_back({chainage - 1e-3, chainage + 1, ground + *shape.clearance - origin.z});
@@ -61,7 +61,7 @@ Overtopping::Overtopping(const Model& model, const Terrain& terrain, const Barri
     }
     if (shape.passing_share) {
         passing_share_ = static_cast<float>(*shape.passing_share);
-        const double length = length_of(shape.line);
+        const double length = terrain::length_of(shape.line);
         for (double chainage = 0; chainage < length + 1; ++chainage) {
             const double ground = terrain.elevation_at(point_at(shape.line, std::min(chainage, length)));
             crest_.push_back(shape.crest_elevation.value_or(ground + shape.height.value_or(0)) - origin.z);
@@ -100,11 +100,11 @@ bool Overtopping::in_opening(double chainage, double z) const {
 }
 
 bool Overtopping::in_mesh(std::uint32_t id, double chainage, double z) const {
-    if (crest_.empty() || !(grain_rank(id) < passing_share_)) return false;
+    if (crest_.empty() || !(sim::grain_rank(id) < passing_share_)) return false;
     return z < crest_[std::min(static_cast<std::size_t>(std::max(0.0, chainage)), crest_.size() - 1)];
 }
 
-void Overtopping::after_step(const State& state, bool jumped) {
+void Overtopping::after_step(const sim::State& state, bool jumped) {
     if (jumped) {
         for (Track& track : tracks_) track.step = 0;
     }
@@ -163,7 +163,7 @@ Overtopping::Place Overtopping::place_of(double x, double y) const {
     return place;
 }
 
-Overtopping::Filling Overtopping::filling(const State& state) const {
+Overtopping::Filling Overtopping::filling(const sim::State& state) const {
     double length = 0;
     for (std::size_t k = 0; k + 1 < line_.size(); ++k) {
         length += std::hypot(static_cast<double>(line_[k + 1].x) - line_[k].x,
@@ -197,4 +197,4 @@ Overtopping::Filling Overtopping::filling(const State& state) const {
             static_cast<double>(deepest) * particle_volume_ / area};
 }
 
-}  // namespace talus
+}  // namespace talus::observe

@@ -10,20 +10,20 @@
 #include "sim/model.hpp"
 #include "sim/state.hpp"
 
-namespace talus {
+namespace talus::observe {
 
 /// Volume of debris that passes a barrier: particles that cross its line between two steps, less those that return,
 /// each counted once: over the crest, or below it through an opening or the meshes of a net. Debris that flows around
 /// its ends does not count. Only debris in a rectangle around the line is examined.
 class Overtopping {
   public:
-    Overtopping(const Model& model, const Terrain& terrain, const BarrierSpec& shape);
+    Overtopping(const sim::Model& model, const terrain::Terrain& terrain, const params::BarrierSpec& shape);
 
     /// Reserves memory for the particles, so that no step has to.
-    void follow(const State& state) { tracks_.resize(std::max<std::size_t>(tracks_.size(), state.seeded)); }
+    void follow(const sim::State& state) { tracks_.resize(std::max<std::size_t>(tracks_.size(), state.seeded)); }
     void expect(std::uint32_t particles) { tracks_.reserve(particles); }
     /// `jumped`: particles may have been moved since the last call; nothing counts as a crossing.
-    void after_step(const State& state, bool jumped = false);
+    void after_step(const sim::State& state, bool jumped = false);
 
     [[nodiscard]] double volume() const { return beyond(over_); }            ///< m3, over the crest
     [[nodiscard]] double passed_volume() const { return beyond(through_); }  ///< m3, through openings and meshes
@@ -34,7 +34,7 @@ class Overtopping {
         double volume = 0;  ///< m3 within five heights of the line and between its ends
         double height = 0;  ///< m, the mean depth of the deepest of the sections, four spacings square, along the face
     };
-    [[nodiscard]] Filling filling(const State& state) const;
+    [[nodiscard]] Filling filling(const sim::State& state) const;
 
   private:
     struct Point {
@@ -78,4 +78,4 @@ class Overtopping {
     std::uint64_t calls_ = 0;
 };
 
-}  // namespace talus
+}  // namespace talus::observe

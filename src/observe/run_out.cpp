@@ -9,12 +9,12 @@
 #include "observe/front_tracker.hpp"
 #include "observe/trail.hpp"
 
-namespace talus {
+namespace talus::observe {
 namespace {
 
 /// Highest particle and centre of mass of the particles for which `counts` is true, in double and in sorted order.
 template <class Counts>
-ReleasedMass measure_mass(const Ground& ground, const State& state, const Counts& counts) {
+ReleasedMass measure_mass(const sim::Ground& ground, const sim::State& state, const Counts& counts) {
     ReleasedMass mass;
     double n = 0;
     WorldPoint sum;
@@ -61,11 +61,11 @@ void set_distances(std::vector<Reach>& reached, std::size_t beyond, const WorldP
 
 }  // namespace
 
-ReleasedMass measure_release(const Ground& ground, const State& state) {
+ReleasedMass measure_release(const sim::Ground& ground, const sim::State& state) {
     return measure_mass(ground, state, [](std::uint32_t) { return true; });
 }
 
-RunOut measure_run_out(const Ground& ground, const State& state, const Grid<float>& covered,
+RunOut measure_run_out(const sim::Ground& ground, const sim::State& state, const Grid<float>& covered,
                        const ReleasedMass& released, double front_chainage) {
     RunOut run_out;
     run_out.front_chainage = front_chainage;
@@ -106,4 +106,4 @@ RunOut measure_run_out(const Ground& ground, const State& state, const Grid<floa
     return run_out;
 }
 
-}  // namespace talus
+}  // namespace talus::observe

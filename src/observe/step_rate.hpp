@@ -3,7 +3,7 @@
 #include <chrono>
 #include <cstdint>
 
-namespace talus {
+namespace talus::observe {
 
 /// Steps per second of wall time, over the last half second.
 class StepRate {
@@ -28,4 +28,4 @@ class StepRate {
     double rate_ = 0;
 };
 
-}  // namespace talus
+}  // namespace talus::observe

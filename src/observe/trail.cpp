@@ -7,7 +7,7 @@
 #include <limits>
 #include <utility>
 
-namespace talus {
+namespace talus::observe {
 namespace {
 
 constexpr double unreached = std::numeric_limits<double>::infinity();
@@ -160,4 +160,4 @@ double TrailWays::to(const PlanPoint& p) const {
     return cell < 0 ? never : bend_length(cell) + distance(bend(cell), p);
 }
 
-}  // namespace talus
+}  // namespace talus::observe

@@ -8,7 +8,7 @@
 #include "core/grid.hpp"
 #include "observe/observation.hpp"
 
-namespace talus {
+namespace talus::observe {
 
 /// Lengths in plan of the shortest paths over the ground that debris covered, from one place: the run-out along the
 /// flow, around bends and around ground that was not covered. Independent of any drawn or traced flow path.
@@ -46,4 +46,4 @@ class TrailWays {
     std::vector<std::pair<double, Cell>> open_;
 };
 
-}  // namespace talus
+}  // namespace talus::observe

@@ -7,9 +7,9 @@
 #include "sim/particle_density.hpp"
 #include "simd/parallel.hpp"
 
-namespace talus {
+namespace talus::observe {
 
-void WallApproach::update(const Model& model, const State& state, const WallPatches& patches) {
+void WallApproach::update(const sim::Model& model, const sim::State& state, const WallPatches& patches) {
     flows_.clear();
     const std::vector<WallPatches::Column>& columns = patches.columns();
     if (columns.empty()) return;
@@ -51,4 +51,4 @@ void WallApproach::update(const Model& model, const State& state, const WallPatc
     wetted_.clear();
 }
 
-}  // namespace talus
+}  // namespace talus::observe

@@ -8,7 +8,7 @@
 #include "sim/model.hpp"
 #include "sim/state.hpp"
 
-namespace talus {
+namespace talus::observe {
 
 /// The flow in front of walls: for every column of the patches, the debris between the wall and one edge of the
 /// reference area away from it. A particle is one spacing wide in plan and counts with the part of it inside.
@@ -18,7 +18,7 @@ class WallApproach {
     explicit WallApproach(double edge) : edge_(edge) {}
 
     /// Updates with the current debris.
-    void update(const Model& model, const State& state, const WallPatches& patches);
+    void update(const sim::Model& model, const sim::State& state, const WallPatches& patches);
 
     struct Flow {
         std::int32_t building = -1;
@@ -42,4 +42,4 @@ class WallApproach {
     std::vector<Flow> flows_;
 };
 
-}  // namespace talus
+}  // namespace talus::observe

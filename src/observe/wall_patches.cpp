@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace talus {
+namespace talus::observe {
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
@@ -24,11 +24,12 @@ double turning(const Ring& ring) {
 
 }  // namespace
 
-WallPatches::WallPatches(const Terrain& terrain, const std::vector<Building>& buildings, double edge, double reach)
+WallPatches::WallPatches(const terrain::Terrain& terrain, const std::vector<terrain::Building>& buildings, double edge,
+                         double reach)
     : edge_(edge), patches_(buildings.size(), 0) {
     const double origin_z = terrain.frame().origin.z;
     for (std::size_t b = 0; b < buildings.size(); ++b) {
-        const Building& building = buildings[b];
+        const terrain::Building& building = buildings[b];
         if (!stands(building)) continue;
         for (std::size_t p = 0; p < building.footprint.size(); ++p) {
             const Polygon& part = building.footprint[p];
@@ -58,7 +59,7 @@ void WallPatches::add_column(Column column, double height) {
 }
 
 /// `clearance` of the wall's foot above the ground, m.
-void WallPatches::add_walls(const Terrain& terrain, const Ring& ring, bool hole, double clearance, double roof,
+void WallPatches::add_walls(const terrain::Terrain& terrain, const Ring& ring, bool hole, double clearance, double roof,
                             int building) {
     const LocalFrame& frame = terrain.frame();
     const bool turned = (turning(ring) < 0) != hole;  // the solid must be on the left
@@ -81,7 +82,7 @@ void WallPatches::add_walls(const Terrain& terrain, const Ring& ring, bool hole,
     }
 }
 
-void WallPatches::add_roof(const Terrain& terrain, const Polygon& part, double roof, int building) {
+void WallPatches::add_roof(const terrain::Terrain& terrain, const Polygon& part, double roof, int building) {
     const LocalFrame& frame = terrain.frame();
     const Extent extent = extent_of(part);
     const int parts = parts_of(extent.width(), edge_);
@@ -133,4 +134,4 @@ void WallPatches::fill_bins(double reach) {
     }
 }
 
-}  // namespace talus
+}  // namespace talus::observe

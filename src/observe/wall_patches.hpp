@@ -12,7 +12,7 @@
 #include "terrain/buildings.hpp"
 #include "terrain/terrain.hpp"
 
-namespace talus {
+namespace talus::observe {
 
 /// The walls and roofs of structures, divided into patches of a reference area, independent of the particles. A wall is
 /// divided along into equal columns no narrower than the area's edge, a column upward from the ground into equal
@@ -45,7 +45,8 @@ class WallPatches {
 
     WallPatches() = default;
     /// `edge`: of the reference area, m. `reach`: distance from a wall, in plan, within which it is found, m.
-    WallPatches(const Terrain& terrain, const std::vector<Building>& buildings, double edge, double reach);
+    WallPatches(const terrain::Terrain& terrain, const std::vector<terrain::Building>& buildings, double edge,
+                double reach);
 
     [[nodiscard]] const std::vector<Column>& columns() const { return columns_; }
     [[nodiscard]] std::uint32_t patches_of(std::size_t building) const { return patches_[building]; }
@@ -78,8 +79,9 @@ class WallPatches {
     }
 
   private:
-    void add_walls(const Terrain& terrain, const Ring& ring, bool hole, double clearance, double roof, int building);
-    void add_roof(const Terrain& terrain, const Polygon& part, double roof, int building);
+    void add_walls(const terrain::Terrain& terrain, const Ring& ring, bool hole, double clearance, double roof,
+                   int building);
+    void add_roof(const terrain::Terrain& terrain, const Polygon& part, double roof, int building);
     void add_column(Column column, double height);
     void fill_bins(double reach);
 
@@ -126,4 +128,4 @@ void WallPatches::spread(std::int32_t building, const LocalPoint& at, double siz
     });
 }
 
-}  // namespace talus
+}  // namespace talus::observe

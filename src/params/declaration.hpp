@@ -10,7 +10,7 @@
 #include "params/fields.hpp"
 
 /// Helpers with which the files of this folder declare the sections of the field table.
-namespace talus {
+namespace talus::params {
 
 constexpr Range above(double low) {
     return {.low = low, .low_included = false};
@@ -208,4 +208,4 @@ class Declaration {
 /// The sections of field observations.
 [[nodiscard]] std::vector<Section> declare_observations();
 
-}  // namespace talus
+}  // namespace talus::params

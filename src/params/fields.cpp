@@ -10,7 +10,7 @@
 
 #include "params/declaration.hpp"
 
-namespace talus {
+namespace talus::params {
 namespace {
 
 Section declare_scene() {
@@ -354,4 +354,4 @@ void for_each_value(
     }
 }
 
-}  // namespace talus
+}  // namespace talus::params

@@ -14,7 +14,7 @@
 
 /// The field table: every tunable of a scene, declared once in *fields.cpp. The parser, the scene writer, --help,
 /// docs/scene-reference.md and the manifest all read it. Defaults are the member initialisers in spec.hpp.
-namespace talus {
+namespace talus::params {
 
 enum class ParameterKind { boolean, integer, number, text, path, choice, text_list, extent, points };
 
@@ -206,4 +206,4 @@ void for_each_value(const SceneSpec& spec,
 /// Levenshtein's distance: insertions, deletions and replacements that turn `a` into `b`.
 [[nodiscard]] std::size_t edit_distance(std::string_view a, std::string_view b);
 
-}  // namespace talus
+}  // namespace talus::params

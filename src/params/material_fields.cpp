@@ -2,7 +2,7 @@
 
 #include "params/declaration.hpp"
 
-namespace talus {
+namespace talus::params {
 namespace {
 
 /// Resistance other than Coulomb friction and viscosity.
@@ -161,4 +161,4 @@ Section declare_zone() {
     return s.take();
 }
 
-}  // namespace talus
+}  // namespace talus::params

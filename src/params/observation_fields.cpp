@@ -1,6 +1,6 @@
 #include "params/declaration.hpp"
 
-namespace talus {
+namespace talus::params {
 namespace {
 
 /// The keys that every kind of observation has.
@@ -164,4 +164,4 @@ std::vector<Section> declare_observations() {
             declare_affected_area(), declare_elevation_change()};
 }
 
-}  // namespace talus
+}  // namespace talus::params

@@ -5,7 +5,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-namespace talus {
+namespace talus::params {
 namespace {
 
 constexpr std::size_t line_length = 110;
@@ -178,4 +178,4 @@ std::string scene_reference_text() {
     return out;
 }
 
-}  // namespace talus
+}  // namespace talus::params

@@ -5,7 +5,7 @@
 #include "params/fields.hpp"
 
 /// Texts generated from the field table.
-namespace talus {
+namespace talus::params {
 
 /// A commented scene file. Values that differ from the default are set; every other key is there as a comment with its
 /// default, unit, allowed range and help. `header`: comment lines at the top, without the "# ".
@@ -20,4 +20,4 @@ namespace talus {
 /// The reference for a terminal.
 [[nodiscard]] std::string scene_reference_text();
 
-}  // namespace talus
+}  // namespace talus::params

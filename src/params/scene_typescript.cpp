@@ -5,7 +5,7 @@
 
 #include "params/scene_text.hpp"
 
-namespace talus {
+namespace talus::params {
 namespace {
 
 /// The page's unit for a key's unit, and the factor to convert to it.
@@ -113,4 +113,4 @@ std::string scene_typescript() {
            ties + "};\n";
 }
 
-}  // namespace talus
+}  // namespace talus::params

@@ -5,7 +5,7 @@
 
 #include "params/declaration.hpp"
 
-namespace talus {
+namespace talus::params {
 
 Section declare_release() {
     Declaration<ReleaseSpec> s("release",
@@ -181,4 +181,4 @@ Section declare_hydrograph() {
     return s.take();
 }
 
-}  // namespace talus
+}  // namespace talus::params

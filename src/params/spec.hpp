@@ -8,7 +8,7 @@
 
 /// The content of a scene file, in SI units and radians. Plain data: the field table (fields.hpp) declares key, unit,
 /// default, range and help of every member once, and parser, --help, documentation and manifest are made from it.
-namespace talus {
+namespace talus::params {
 
 /// `[scene]`: what the run is about.
 struct SceneInfo {
@@ -366,4 +366,4 @@ struct SceneSpec {
     std::vector<VariantSpec> variants;
 };
 
-}  // namespace talus
+}  // namespace talus::params

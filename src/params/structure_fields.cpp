@@ -1,7 +1,7 @@
 // Obstacles: buildings, barriers.
 #include "params/declaration.hpp"
 
-namespace talus {
+namespace talus::params {
 
 Section declare_buildings() {
     Declaration<BuildingsSpec> s("buildings", "Solid obstacles with vertical walls and flat roofs.",
@@ -104,4 +104,4 @@ Section declare_barrier_opening() {
     return s.take();
 }
 
-}  // namespace talus
+}  // namespace talus::params

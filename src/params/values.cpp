@@ -6,7 +6,7 @@
 
 #include "params/fields.hpp"
 
-namespace talus {
+namespace talus::params {
 namespace {
 
 std::string quoted(const std::string& text) {
@@ -169,4 +169,4 @@ std::string nearest_word(std::string_view word, const std::vector<std::string>& 
     return nearest;
 }
 
-}  // namespace talus
+}  // namespace talus::params

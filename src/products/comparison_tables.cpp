@@ -5,13 +5,13 @@
 #include "products/text_file.hpp"
 #include "products/writers.hpp"
 
-namespace talus {
+namespace talus::products {
 
 namespace {
 
-std::string header(const Comparison& comparison) {
+std::string header(const run::Comparison& comparison) {
     std::string text = "variant,overrides,outcome";
-    for (const Quantity& quantity : comparison.quantities) {
+    for (const run::Quantity& quantity : comparison.quantities) {
         text += "," + quantity.key + "_" + quantity.suffix + "," + quantity.key + "_change_percent";
     }
     return text +
@@ -19,32 +19,33 @@ std::string header(const Comparison& comparison) {
            "worst_squeezed_share";
 }
 
-void add_cost(Csv& csv, const RunResult& result) {
+void add_cost(Csv& csv, const run::RunResult& result) {
     csv.row({static_cast<double>(result.particles), result.particle_spacing, static_cast<double>(result.steps),
              result.simulated_time, result.wall_time, result.observation.compression.worst_mean,
              result.observation.compression.worst_squeezed_share});
 }
 
-std::string outcome(const Comparison& comparison, const Comparison::Row& row) {
+std::string outcome(const run::Comparison& comparison, const run::Comparison::Row& row) {
     if (!row.run.result) return "missing: " + row.run.missing;
-    if (comparison.kind == ComparisonKind::sensitivity) return "complete";
+    if (comparison.kind == run::ComparisonKind::sensitivity) return "complete";
     return verdict_name(row.verdict());
 }
 
-std::string comparison_table(const Comparison& comparison, const RunResult& base) {
+std::string comparison_table(const run::Comparison& comparison, const run::RunResult& base) {
     Csv csv(header(comparison));
     csv.word("as given").word("").word("base");
-    for (const Quantity& quantity : comparison.quantities) csv.number(quantity.base).number(never);
+    for (const run::Quantity& quantity : comparison.quantities) csv.number(quantity.base).number(observe::never);
     add_cost(csv, base);
-    for (const Comparison::Row& row : comparison.rows) {
+    for (const run::Comparison::Row& row : comparison.rows) {
         std::string overrides;
         for (const std::string& text : row.run.variant.overrides) overrides += (overrides.empty() ? "" : " ") + text;
         csv.word(row.run.variant.name).word(overrides).word(outcome(comparison, row));
-        for (const Change& change : row.changes) csv.number(change.value).number(change.percent);
+        for (const run::Change& change : row.changes) csv.number(change.value).number(change.percent);
         if (row.run.result) {
             add_cost(csv, *row.run.result);
         } else {
-            csv.row({never, never, never, never, never, never, never});
+            csv.row({observe::never, observe::never, observe::never, observe::never, observe::never, observe::never,
+                     observe::never});
         }
     }
     return csv.text();
@@ -52,13 +53,13 @@ std::string comparison_table(const Comparison& comparison, const RunResult& base
 
 }  // namespace
 
-Status write_comparisons(const std::vector<Comparison>& comparisons, const RunResult& base,
+Status write_comparisons(const std::vector<run::Comparison>& comparisons, const run::RunResult& base,
                          const std::filesystem::path& folder) {
-    for (const Comparison& comparison : comparisons) {
-        const char* name = comparison.kind == ComparisonKind::convergence ? "convergence.csv" : "variants.csv";
+    for (const run::Comparison& comparison : comparisons) {
+        const char* name = comparison.kind == run::ComparisonKind::convergence ? "convergence.csv" : "variants.csv";
         TALUS_TRY(write_text_file(folder / name, comparison_table(comparison, base)));
     }
     return {};
 }
 
-}  // namespace talus
+}  // namespace talus::products

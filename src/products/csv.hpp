@@ -7,7 +7,7 @@
 
 #include <fmt/format.h>
 
-namespace talus {
+namespace talus::products {
 
 /// A table as RFC 4180 has it: comma, point, quotes only where needed, UTF-8.
 class Csv {
@@ -50,4 +50,4 @@ class Csv {
     bool first_ = true;
 };
 
-}  // namespace talus
+}  // namespace talus::products

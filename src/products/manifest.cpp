@@ -19,7 +19,7 @@
 #include "report/hardware.hpp"
 #include "report/hazard_map.hpp"
 
-namespace talus {
+namespace talus::products {
 
 namespace {
 
@@ -40,27 +40,27 @@ struct ToJson {
 };
 
 /// As in the scene file: a table per section, a list of tables where it repeats.
-Json parameters(const SceneSpec& spec) {
+Json parameters(const params::SceneSpec& spec) {
     Json all = Json::object();
-    for (const Section& section : scene_sections())
+    for (const params::Section& section : params::scene_sections())
         all[section.name] = section.repeats ? Json::array() : Json::object();
-    for_each_value(
-        spec, [&](const Section& section, std::size_t index, const Parameter& parameter, const ParameterValue& value) {
-            Json& table = section.repeats ? all[section.name][index] : all[section.name];
-            table[parameter.key] = std::visit(ToJson{}, value);
-        });
+    for_each_value(spec, [&](const params::Section& section, std::size_t index, const params::Parameter& parameter,
+                             const params::ParameterValue& value) {
+        Json& table = section.repeats ? all[section.name][index] : all[section.name];
+        table[parameter.key] = std::visit(ToJson{}, value);
+    });
     return all;
 }
 
 /// Values that the program chose where the scene does not set them.
-Json resolved(const Scene& scene, const RunResult& result) {
+Json resolved(const scene::Scene& scene, const run::RunResult& result) {
     Json releases = Json::array();
-    for (const Release& release : scene.releases) {
+    for (const terrain::Release& release : scene.releases) {
         releases.push_back(
             {{"name", release.name}, {"start_time_s", release.spec.start_time}, {"volume_m3", release.volume}});
     }
     Json inflows = Json::array();
-    for (const Inflow& inflow : scene.inflows) {
+    for (const terrain::Inflow& inflow : scene.inflows) {
         inflows.push_back({{"name", inflow.name},
                            {"volume_m3", inflow.volume()},
                            {"volume_by_the_end_m3", inflow.volume_until(result.simulated_time)}});
@@ -84,7 +84,7 @@ Json resolved(const Scene& scene, const RunResult& result) {
             {"inflows", inflows}};
 }
 
-Json terrain(const Scene& scene) {
+Json terrain(const scene::Scene& scene) {
     const GridGeometry& g = scene.terrain.elevation().geometry;
     const WorldPoint origin = scene.terrain.frame().origin;
     return {{"crs", scene.crs.label()},
@@ -99,30 +99,30 @@ Json terrain(const Scene& scene) {
             {"local_origin_m", {origin.x, origin.y, origin.z}}};
 }
 
-Json inputs(const Scene& scene) {
+Json inputs(const scene::Scene& scene) {
     Json all = Json::array();
-    for (const InputFile& input : scene.inputs) {
+    for (const scene::InputFile& input : scene.inputs) {
         all.push_back({{"role", input.role}, {"path", input.path}, {"bytes", input.bytes}, {"fnv1a_64", input.hash}});
     }
     return all;
 }
 
-Json results(const RunResult& result) {
-    const Observation& o = result.observation;
+Json results(const run::RunResult& result) {
+    const observe::Observation& o = result.observation;
     Json greatest_values = Json::object();
-    for (const HazardMap& map : hazard_maps()) {
+    for (const report::HazardMap& map : report::hazard_maps()) {
         const std::string suffix = std::string(map.unit) == "m/s" ? "mps" : map.unit;
-        greatest_values[std::string(map.file) + "_" + suffix] = greatest(o.maps.*map.grid) * map.factor;
+        greatest_values[std::string(map.file) + "_" + suffix] = report::greatest(o.maps.*map.grid) * map.factor;
     }
     Json volumes = {{"released_m3", o.volume_released}, {"entrained_m3", o.erosion.volume}};
     if (!o.timeseries.empty()) {
-        const TimeSample& last = o.timeseries.back();
+        const observe::TimeSample& last = o.timeseries.back();
         volumes["held_m3"] = last.volume_held;
         volumes["moving_m3"] = last.volume_moving;
         volumes["deposited_m3"] = last.volume_deposited;
         volumes["left_m3"] = last.volume_left;
     }
-    const Hits buildings = hits_among(o.buildings, false), barriers = hits_among(o.buildings, true);
+    const observe::Hits buildings = hits_among(o.buildings, false), barriers = hits_among(o.buildings, true);
     return {{"front_chainage_m", o.run_out.front_chainage},
             {"run_out_along_flow_m", o.run_out.along_flow},
             {"run_out_straight_m", o.run_out.straight},
@@ -140,10 +140,10 @@ Json results(const RunResult& result) {
             {"compression", compression_json(o)}};
 }
 
-Json performance(const RunResult& result) {
+Json performance(const run::RunResult& result) {
     const double steps = static_cast<double>(result.steps);
-    const double per_step = steps > 0 ? 1 / steps : never;
-    const double per_wall = result.wall_time > 0 ? 1 / result.wall_time : never;
+    const double per_step = steps > 0 ? 1 / steps : observe::never;
+    const double per_wall = result.wall_time > 0 ? 1 / result.wall_time : observe::never;
     Json stages = Json::array();
     double rest = result.wall_time;
     const auto add = [&](std::string_view name, double seconds) {
@@ -152,8 +152,8 @@ Json performance(const RunResult& result) {
                           {"per_step_ms", 1e3 * seconds * per_step},
                           {"share", seconds * per_wall}});
     };
-    for (std::size_t i = 0; i < stage_count; ++i) {
-        add(step_stages[i].name, result.stage_times.seconds[i]);
+    for (std::size_t i = 0; i < sim::stage_count; ++i) {
+        add(sim::step_stages[i].name, result.stage_times.seconds[i]);
         rest -= result.stage_times.seconds[i];
     }
     add("other", std::max(0.0, rest));
@@ -167,8 +167,11 @@ Json performance(const RunResult& result) {
 }
 
 Json versions() {
-    return {{"talus", TALUS_VERSION},    {"gdal", gdal_version()},         {"proj", proj_version()},
-            {"tbb", TBB_VERSION_STRING}, {"compiler", compiler_version()},
+    return {{"talus", TALUS_VERSION},
+            {"gdal", geo::gdal_version()},
+            {"proj", geo::proj_version()},
+            {"tbb", TBB_VERSION_STRING},
+            {"compiler", report::compiler_version()},
 #ifdef NDEBUG
             {"assertions", false}
 #else
@@ -178,7 +181,7 @@ Json versions() {
 }
 
 Json hardware() {
-    const Hardware machine = this_machine();
+    const report::Hardware machine = report::this_machine();
     return {{"cpu", machine.cpu},
             {"logical_cores", machine.logical_cores},
             {"memory_GiB", machine.memory_GiB},
@@ -200,35 +203,35 @@ Json files_in(const std::filesystem::path& folder) {
 
 }  // namespace
 
-const char* status_text(RunStatus status) {
+const char* status_text(run::RunStatus status) {
     switch (status) {
-        case RunStatus::complete:
+        case run::RunStatus::complete:
             return "complete";
-        case RunStatus::interrupted:
+        case run::RunStatus::interrupted:
             return "interrupted";
-        case RunStatus::fault:
+        case run::RunStatus::fault:
             return "fault";
     }
     return "";
 }
 
-std::string caveat(const Scene& scene, const RunResult& result) {
+std::string caveat(const scene::Scene& scene, const run::RunResult& result) {
     std::string text = scene.spec.scene.reconstruction ? "reconstruction" : "";
-    if (result.status != RunStatus::complete) {
+    if (result.status != run::RunStatus::complete) {
         text += (text.empty() ? "" : ", ") + std::string("partial result: ") + status_text(result.status);
     }
     return text.empty() ? "" : " (" + text + ")";
 }
 
-Status write_manifest(const Scene& scene, const RunResult& result, const std::vector<Comparison>& comparisons,
-                      const std::filesystem::path& folder) {
-    const SceneInfo& info = scene.spec.scene;
+Status write_manifest(const scene::Scene& scene, const run::RunResult& result,
+                      const std::vector<run::Comparison>& comparisons, const std::filesystem::path& folder) {
+    const params::SceneInfo& info = scene.spec.scene;
     const Json manifest = {
         {"program", "talus"},
         {"title", info.title},
         {"created", fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::chrono::system_clock::now()))},
         {"status", status_text(result.status)},
-        {"partial", result.status != RunStatus::complete},
+        {"partial", result.status != run::RunStatus::complete},
         {"stop_reason", result.stop_reason},
         {"reconstruction", info.reconstruction},
         {"result_hash", to_hex(result.hash)},
@@ -252,4 +255,4 @@ Status write_manifest(const Scene& scene, const RunResult& result, const std::ve
     return write_text_file(folder / "manifest.json", text + "\n");
 }
 
-}  // namespace talus
+}  // namespace talus::products

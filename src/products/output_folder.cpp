@@ -9,7 +9,7 @@
 #include "core/try.hpp"
 #include "products/products.hpp"
 
-namespace talus {
+namespace talus::products {
 
 namespace fs = std::filesystem;
 
@@ -130,4 +130,4 @@ Status OutputFolder::commit() {
     return {};
 }
 
-}  // namespace talus
+}  // namespace talus::products

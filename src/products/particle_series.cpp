@@ -12,7 +12,7 @@
 #include "core/try.hpp"
 #include "products/text_file.hpp"
 
-namespace talus {
+namespace talus::products {
 
 namespace {
 
@@ -40,7 +40,7 @@ class AppendedData {
     std::string bytes_;
 };
 
-std::vector<float> interleaved(const VectorArray& array, std::size_t count) {
+std::vector<float> interleaved(const sim::VectorArray& array, std::size_t count) {
     std::vector<float> values(3 * count);
     for (std::size_t i = 0; i < count; ++i) {
         values[3 * i] = array.x[i];
@@ -63,7 +63,7 @@ std::string frame_name(std::size_t number) {
 
 ParticleSeries::ParticleSeries(std::filesystem::path folder) : folder_(std::move(folder)) {}
 
-Status ParticleSeries::write_frame(const LocalFrame& frame, const State& state) {
+Status ParticleSeries::write_frame(const LocalFrame& frame, const sim::State& state) {
     std::error_code failed;
     std::filesystem::create_directories(folder_, failed);
     if (failed) return Error{fmt::format("{}: cannot be made: {}", folder_.string(), failed.message())};
@@ -133,4 +133,4 @@ Status ParticleSeries::finish() {
     return write_text_file(folder_ / "particles.pvd", text);
 }
 
-}  // namespace talus
+}  // namespace talus::products

@@ -7,14 +7,14 @@
 #include "core/result.hpp"
 #include "sim/state.hpp"
 
-namespace talus {
+namespace talus::products {
 
 /// Particles over time for ParaView: a .vtp per frame and a .pvd that lists them. Positions are local; the origin is
 /// stored as field data of every frame.
 class ParticleSeries {
   public:
     explicit ParticleSeries(std::filesystem::path folder);
-    [[nodiscard]] Status write_frame(const LocalFrame& frame, const State& state);
+    [[nodiscard]] Status write_frame(const LocalFrame& frame, const sim::State& state);
     [[nodiscard]] Status finish();
 
   private:
@@ -22,4 +22,4 @@ class ParticleSeries {
     std::vector<double> times_;
 };
 
-}  // namespace talus
+}  // namespace talus::products

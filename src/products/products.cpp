@@ -9,13 +9,13 @@
 #include "report/report.hpp"
 #include "report/results.hpp"
 
-namespace talus {
+namespace talus::products {
 
 namespace {
 
 /// A file whose name shows that the run did not end by itself.
-Status write_partial_note(const RunResult& result, const std::filesystem::path& folder) {
-    if (result.status == RunStatus::complete) return {};
+Status write_partial_note(const run::RunResult& result, const std::filesystem::path& folder) {
+    if (result.status == run::RunStatus::complete) return {};
     const std::string text = fmt::format(
         "These results are partial: the run ended after {:.6g} s of simulated time ({}).\n{}\n"
         "Peaks, run-out and impacts are those up to then; the deposit is where debris was at that moment.\n",
@@ -24,8 +24,8 @@ Status write_partial_note(const RunResult& result, const std::filesystem::path& 
 }
 
 /// results.json and report.html, which displays it.
-Status write_report(const Scene& scene, const RunResult& result, const std::vector<Comparison>& comparisons,
-                    const std::filesystem::path& folder) {
+Status write_report(const scene::Scene& scene, const run::RunResult& result,
+                    const std::vector<run::Comparison>& comparisons, const std::filesystem::path& folder) {
     const report::Json results = report::run_results(scene, result, comparisons);
     TALUS_TRY(write_results(results, folder / "results.json"));
     TALUS_ASSIGN(const auto page, report::run_report(scene, result, results));
@@ -34,8 +34,8 @@ Status write_report(const Scene& scene, const RunResult& result, const std::vect
 
 }  // namespace
 
-Status write_products(const Scene& scene, const RunResult& result, const std::filesystem::path& folder,
-                      const std::vector<Comparison>& comparisons) {
+Status write_products(const scene::Scene& scene, const run::RunResult& result, const std::filesystem::path& folder,
+                      const std::vector<run::Comparison>& comparisons) {
     TALUS_TRY(write_partial_note(result, folder));
     TALUS_TRY(write_maps(scene, result, folder));
     TALUS_TRY(write_tables(scene, result, folder));
@@ -46,4 +46,4 @@ Status write_products(const Scene& scene, const RunResult& result, const std::fi
     return write_manifest(scene, result, comparisons, folder);
 }
 
-}  // namespace talus
+}  // namespace talus::products

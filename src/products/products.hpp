@@ -9,7 +9,7 @@
 #include "run/run_result.hpp"
 #include "scene/scene.hpp"
 
-namespace talus {
+namespace talus::products {
 
 /// A result folder being written: under a temporary name next to the final one, and renamed when complete, so that an
 /// incomplete folder never has the final name.
@@ -39,7 +39,8 @@ class OutputFolder {
 /// Writes maps (.tif + .qml), front.csv, buildings.csv, results.gpkg, timeseries.csv, manifest.json, results.json,
 /// report.html; where there are comparisons with variants of the scene, convergence.csv and variants.csv too. Errors
 /// name the file and the cause (disk full, ...).
-[[nodiscard]] Status write_products(const Scene& scene, const RunResult& result, const std::filesystem::path& folder,
-                                    const std::vector<Comparison>& comparisons = {});
+[[nodiscard]] Status write_products(const scene::Scene& scene, const run::RunResult& result,
+                                    const std::filesystem::path& folder,
+                                    const std::vector<run::Comparison>& comparisons = {});
 
-}  // namespace talus
+}  // namespace talus::products

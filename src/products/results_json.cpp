@@ -6,33 +6,33 @@
 #include "products/text_file.hpp"
 #include "sim/compression.hpp"
 
-namespace talus {
+namespace talus::products {
 
 namespace {
 
 using Json = nlohmann::ordered_json;
 
-Json answer_json(Answer answer) {
-    return answer == Answer::unknown ? Json() : Json(answer == Answer::yes);
+Json answer_json(run::Answer answer) {
+    return answer == run::Answer::unknown ? Json() : Json(answer == run::Answer::yes);
 }
 
-Json variant_json(const Comparison& comparison, const Comparison::Row& row) {
+Json variant_json(const run::Comparison& comparison, const run::Comparison::Row& row) {
     Json variant = {{"name", row.run.variant.name}, {"overrides", row.run.variant.overrides}};
     if (!row.run.result) {
         variant["missing"] = row.run.missing;
         return variant;
     }
-    const bool judged = comparison.kind == ComparisonKind::convergence;
+    const bool judged = comparison.kind == run::ComparisonKind::convergence;
     if (judged) variant["verdict"] = verdict_name(row.verdict());
     Json values = Json::object();
     for (std::size_t i = 0; i < comparison.quantities.size(); ++i) {
-        const Quantity& quantity = comparison.quantities[i];
-        const Change& change = row.changes[i];
+        const run::Quantity& quantity = comparison.quantities[i];
+        const run::Change& change = row.changes[i];
         Json& value = values[quantity.key];
         value = {{"value_" + quantity.suffix, change.value}, {"change_percent", change.percent}};
         if (judged) value["verdict"] = verdict_name(change.verdict);
     }
-    const RunResult& result = *row.run.result;
+    const run::RunResult& result = *row.run.result;
     variant["values"] = values;
     variant["compression"] = compression_json(result.observation);
     variant["particles"] = result.particles;
@@ -44,55 +44,55 @@ Json variant_json(const Comparison& comparison, const Comparison::Row& row) {
     return variant;
 }
 
-Json comparison_json(const Comparison& comparison) {
+Json comparison_json(const run::Comparison& comparison) {
     Json json = Json::object();
-    const bool judged = comparison.kind == ComparisonKind::convergence;
+    const bool judged = comparison.kind == run::ComparisonKind::convergence;
     if (judged) json["converged"] = answer_json(comparison.converged());
     json["verdict"] = comparison.verdict_text();
     json["quantities"] = Json::array();
-    for (const Quantity& quantity : comparison.quantities) {
+    for (const run::Quantity& quantity : comparison.quantities) {
         Json entry = {{"key", quantity.key}, {"name", quantity.name}, {"base_" + quantity.suffix, quantity.base}};
         if (judged) entry["limit_percent"] = quantity.limit_percent;
         if (!quantity.not_measured.empty()) entry["not_measured"] = quantity.not_measured;
         json["quantities"].push_back(entry);
     }
     json["variants"] = Json::array();
-    for (const Comparison::Row& row : comparison.rows) json["variants"].push_back(variant_json(comparison, row));
+    for (const run::Comparison::Row& row : comparison.rows) json["variants"].push_back(variant_json(comparison, row));
     return json;
 }
 
 }  // namespace
 
-Json compression_json(const Observation& observation) {
-    const Compression& c = observation.compression;
+Json compression_json(const observe::Observation& observation) {
+    const observe::Compression& c = observation.compression;
     return {{"within_limits", c.within_limits()},
             {"worst_mean", c.worst_mean},
             {"worst_mean_time_s", c.worst_mean_time},
-            {"mean_limit", mean_compression_limit},
+            {"mean_limit", sim::mean_compression_limit},
             {"worst_squeezed_share", c.worst_squeezed_share},
             {"worst_squeezed_time_s", c.worst_squeezed_time},
-            {"squeezed_share_limit", squeezed_share_limit},
-            {"squeezed_compression", squeezed_compression},
+            {"squeezed_share_limit", sim::squeezed_share_limit},
+            {"squeezed_compression", sim::squeezed_compression},
             {"worst_max", c.worst_max},
             {"worst_max_time_s", c.worst_max_time},
             {"time_share_above_a_limit", c.time_share_above},
-            {"time_share_limit", Compression::time_share_limit},
+            {"time_share_limit", observe::Compression::time_share_limit},
             {"mean_iterations", c.mean_iterations},
             {"time_share_with_extra_iterations", c.time_share_iterated}};
 }
 
-Json comparisons_json(const std::vector<Comparison>& comparisons) {
+Json comparisons_json(const std::vector<run::Comparison>& comparisons) {
     Json json = Json::object();
-    for (const Comparison& comparison : comparisons) {
-        json[comparison.kind == ComparisonKind::convergence ? "convergence" : "sensitivity"] =
+    for (const run::Comparison& comparison : comparisons) {
+        json[comparison.kind == run::ComparisonKind::convergence ? "convergence" : "sensitivity"] =
             comparison_json(comparison);
     }
     return json;
 }
 
-Json structures_json(const Observation& observation) {
+Json structures_json(const observe::Observation& observation) {
     Json list = Json::array();
-    for (const BuildingImpact& b : observation.buildings) {
+    for (const observe::BuildingImpact& b : observation.buildings) {
         if (!b.hit && !b.is_barrier) continue;
         Json entry = {{"name", b.name},
                       {"kind", kind_of(b)},
@@ -122,4 +122,4 @@ Status write_results(const Json& results, const std::filesystem::path& file) {
     return write_text_file(file, results.dump(1, ' ', false, Json::error_handler_t::replace) + "\n");
 }
 
-}  // namespace talus
+}  // namespace talus::products

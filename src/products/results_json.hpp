@@ -8,19 +8,19 @@
 #include "run/comparison.hpp"
 
 /// Parts of a result as the manifest and `talus run --json` both give them. A value that does not exist is null.
-namespace talus {
+namespace talus::products {
 
 /// Worst compression, its time, its limits, and whether the run stayed within them.
-[[nodiscard]] nlohmann::ordered_json compression_json(const Observation& observation);
+[[nodiscard]] nlohmann::ordered_json compression_json(const observe::Observation& observation);
 
 /// An object with the keys "convergence" and "sensitivity", where present: verdict, quantities, and every variant with
 /// its values, changes and cost.
-[[nodiscard]] nlohmann::ordered_json comparisons_json(const std::vector<Comparison>& comparisons);
+[[nodiscard]] nlohmann::ordered_json comparisons_json(const std::vector<run::Comparison>& comparisons);
 
 /// Structures that were hit, with their peaks, and every barrier. A value that does not exist is null.
-[[nodiscard]] nlohmann::ordered_json structures_json(const Observation& observation);
+[[nodiscard]] nlohmann::ordered_json structures_json(const observe::Observation& observation);
 
 /// The content of a report, as the file results.json (docs/results.md). Errors name the file and the cause.
 [[nodiscard]] Status write_results(const nlohmann::ordered_json& results, const std::filesystem::path& file);
 
-}  // namespace talus
+}  // namespace talus::products

@@ -6,19 +6,19 @@
 #include "products/text_file.hpp"
 #include "products/writers.hpp"
 
-namespace talus {
+namespace talus::products {
 
 namespace {
 
-std::string front_table(const Observation& observation) {
+std::string front_table(const observe::Observation& observation) {
     Csv csv("chainage_m,first_arrival_time_s,front_velocity_mps,front_particle_speed_mps");
-    for (const FrontSample& f : observation.front) {
+    for (const observe::FrontSample& f : observation.front) {
         csv.row({f.chainage, f.arrival_time, f.front_velocity, f.particle_speed});
     }
     return csv.text();
 }
 
-std::string run_out_table(const RunOut& r) {
+std::string run_out_table(const observe::RunOut& r) {
     Csv csv(
         "run_out_along_flow_m,run_out_straight_m,at_least,toe_x_m,toe_y_m,drop_m,runout_angle_deg,travel_angle_deg,"
         "front_chainage_m");
@@ -31,23 +31,23 @@ std::string run_out_table(const RunOut& r) {
     return csv.text();
 }
 
-std::string building_table(const Scene& scene, const Observation& observation) {
+std::string building_table(const scene::Scene& scene, const observe::Observation& observation) {
     Csv csv(
         "name,hit,first_hit_time_s,peak_force_kN,peak_impact_pressure_kPa,peak_dynamic_pressure_kPa,peak_depth_m,"
         "filter_window_s,patch_edge_m,height_m,height_assumed,kind,impulse_kNs,failed_s,overtopped_m3,first_overtopped_"
         "s,passed_m3,"
         "held_m3,peak_held_m3,peak_filling_height_m,removed_time_s");
     for (std::size_t i = 0; i < observation.buildings.size(); ++i) {
-        const BuildingImpact& b = observation.buildings[i];
+        const observe::BuildingImpact& b = observation.buildings[i];
         csv.word(b.name).word(b.hit ? "yes" : "no").number(b.first_hit_time);
         csv.number(b.peak_force / 1e3).number(b.peak_impact_pressure / 1e3).number(b.peak_dynamic_pressure / 1e3);
         csv.number(b.peak_depth).number(scene.spec.outputs.impact_filter_window);
         csv.number(scene.spec.outputs.impact_patch_edge);
-        const Building* building = i < scene.buildings.size() ? &scene.buildings[i] : nullptr;
-        csv.number(building != nullptr ? building->height : never);
+        const terrain::Building* building = i < scene.buildings.size() ? &scene.buildings[i] : nullptr;
+        csv.number(building != nullptr ? building->height : observe::never);
         csv.word(building != nullptr && building->height_assumed ? "yes" : "no");
         csv.word(kind_of(b)).number(b.impulse / 1e3).number(b.failure_time);
-        const auto of_barrier = [&](double value) { return b.is_barrier ? value : never; };
+        const auto of_barrier = [&](double value) { return b.is_barrier ? value : observe::never; };
         csv.number(of_barrier(b.overtopped_volume)).number(b.first_overtopping_time);
         csv.number(of_barrier(b.passed_volume)).number(of_barrier(b.held_volume));
         csv.number(of_barrier(b.peak_held_volume)).number(of_barrier(b.peak_filling_height));
@@ -58,13 +58,13 @@ std::string building_table(const Scene& scene, const Observation& observation) {
 }
 
 /// A row per structure that was hit and row of the time series from then on.
-std::string structure_table(const Observation& observation) {
+std::string structure_table(const observe::Observation& observation) {
     Csv csv(
         "name,time_s,force_kN,impact_pressure_kPa,depth_m,dynamic_pressure_kPa,impulse_kNs,overtopped_m3,passed_m3,"
         "held_m3,filling_height_m");
-    for (const BuildingImpact& b : observation.buildings) {
-        const auto of_barrier = [&](double value) { return b.is_barrier ? value : never; };
-        for (const StructureSample& s : b.history) {
+    for (const observe::BuildingImpact& b : observation.buildings) {
+        const auto of_barrier = [&](double value) { return b.is_barrier ? value : observe::never; };
+        for (const observe::StructureSample& s : b.history) {
             csv.word(b.name).number(s.time).number(s.force / 1e3).number(s.impact_pressure / 1e3).number(s.depth);
             csv.number(s.dynamic_pressure / 1e3).number(s.impulse / 1e3);
             csv.number(of_barrier(s.overtopped_volume)).number(of_barrier(s.passed_volume));
@@ -75,14 +75,14 @@ std::string structure_table(const Observation& observation) {
     return csv.text();
 }
 
-std::string time_table(const Observation& observation) {
+std::string time_table(const observe::Observation& observation) {
     Csv csv(
         "time_s,front_chainage_m,volume_entrained_m3,volume_held_m3,volume_moving_m3,volume_deposited_m3,volume_left_"
         "m3,"
         "volume_balance_m3,kinetic_energy_J,potential_energy_J,largest_speed_mps,mean_compression,max_compression,"
         "squeezed_share,"
         "time_step_s,steps_per_second");
-    for (const TimeSample& s : observation.timeseries) {
+    for (const observe::TimeSample& s : observation.timeseries) {
         const double balance = s.volume_released + s.volume_entrained -
                                (s.volume_held + s.volume_moving + s.volume_deposited + s.volume_left);
         csv.row({s.time, s.front_chainage, s.volume_entrained, s.volume_held, s.volume_moving, s.volume_deposited,
@@ -92,7 +92,7 @@ std::string time_table(const Observation& observation) {
     return csv.text();
 }
 
-std::string erosion_table(const Erosion& erosion) {
+std::string erosion_table(const observe::Erosion& erosion) {
     Csv csv("chainage_m,volume_entrained_upstream_m3");
     for (std::size_t k = 0; k < erosion.chainage.size(); ++k) csv.row({erosion.chainage[k], erosion.upstream[k]});
     return csv.text();
@@ -100,8 +100,8 @@ std::string erosion_table(const Erosion& erosion) {
 
 }  // namespace
 
-Status write_tables(const Scene& scene, const RunResult& result, const std::filesystem::path& folder) {
-    const Observation& observation = result.observation;
+Status write_tables(const scene::Scene& scene, const run::RunResult& result, const std::filesystem::path& folder) {
+    const observe::Observation& observation = result.observation;
     TALUS_TRY(write_text_file(folder / "front.csv", front_table(observation)));
     TALUS_TRY(write_text_file(folder / "run_out.csv", run_out_table(observation.run_out)));
     TALUS_TRY(write_text_file(folder / "buildings.csv", building_table(scene, observation)));
@@ -112,4 +112,4 @@ Status write_tables(const Scene& scene, const RunResult& result, const std::file
     return write_text_file(folder / "timeseries.csv", time_table(observation));
 }
 
-}  // namespace talus
+}  // namespace talus::products

@@ -7,7 +7,7 @@
 
 #include <fmt/format.h>
 
-namespace talus {
+namespace talus::products {
 
 Status write_text_file(const std::filesystem::path& file, std::string_view text) {
     std::FILE* out = std::fopen(file.c_str(), "wb");
@@ -22,4 +22,4 @@ Status write_text_file(const std::filesystem::path& file, std::string_view text)
     return Error{fmt::format("{}: cannot be written: {}", file.string(), std::strerror(cause))};
 }
 
-}  // namespace talus
+}  // namespace talus::products

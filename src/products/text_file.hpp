@@ -5,10 +5,10 @@
 
 #include "core/result.hpp"
 
-namespace talus {
+namespace talus::products {
 
 /// Writes a whole file. A full disk may be reported only when the file is closed, so that is checked too. Errors name
 /// the file and the cause; an incomplete file is deleted.
 [[nodiscard]] Status write_text_file(const std::filesystem::path& file, std::string_view text);
 
-}  // namespace talus
+}  // namespace talus::products

@@ -7,42 +7,42 @@
 #include "products/writers.hpp"
 #include "report/intensity.hpp"
 
-namespace talus {
+namespace talus::products {
 
 namespace {
 
-Attribute yes_or_no(bool value) {
+geo::Attribute yes_or_no(bool value) {
     return std::string(value ? "yes" : "no");
 }
 
 /// The columns are those of buildings.csv.
-Status write_buildings(const Scene& scene, const Observation& observation, const std::string& file) {
-    const std::vector<Field> fields = {{"name", true},
-                                       {"hit", true},
-                                       {"first_hit_time_s"},
-                                       {"peak_force_kN"},
-                                       {"peak_impact_pressure_kPa"},
-                                       {"peak_dynamic_pressure_kPa"},
-                                       {"peak_depth_m"},
-                                       {"filter_window_s"},
-                                       {"patch_edge_m"},
-                                       {"height_m"},
-                                       {"height_assumed", true},
-                                       {"kind", true},
-                                       {"impulse_kNs"},
-                                       {"failed_s"},
-                                       {"overtopped_m3"},
-                                       {"first_overtopped_s"},
-                                       {"passed_m3"},
-                                       {"held_m3"},
-                                       {"peak_held_m3"},
-                                       {"peak_filling_height_m"},
-                                       {"removed_time_s"}};
-    std::vector<OutputFeature> features;
+Status write_buildings(const scene::Scene& scene, const observe::Observation& observation, const std::string& file) {
+    const std::vector<geo::Field> fields = {{"name", true},
+                                            {"hit", true},
+                                            {"first_hit_time_s"},
+                                            {"peak_force_kN"},
+                                            {"peak_impact_pressure_kPa"},
+                                            {"peak_dynamic_pressure_kPa"},
+                                            {"peak_depth_m"},
+                                            {"filter_window_s"},
+                                            {"patch_edge_m"},
+                                            {"height_m"},
+                                            {"height_assumed", true},
+                                            {"kind", true},
+                                            {"impulse_kNs"},
+                                            {"failed_s"},
+                                            {"overtopped_m3"},
+                                            {"first_overtopped_s"},
+                                            {"passed_m3"},
+                                            {"held_m3"},
+                                            {"peak_held_m3"},
+                                            {"peak_filling_height_m"},
+                                            {"removed_time_s"}};
+    std::vector<geo::OutputFeature> features;
     for (std::size_t i = 0; i < scene.buildings.size() && i < observation.buildings.size(); ++i) {
-        const Building& building = scene.buildings[i];
-        const BuildingImpact& b = observation.buildings[i];
-        const auto of_barrier = [&](double value) { return b.is_barrier ? value : never; };
+        const terrain::Building& building = scene.buildings[i];
+        const observe::BuildingImpact& b = observation.buildings[i];
+        const auto of_barrier = [&](double value) { return b.is_barrier ? value : observe::never; };
         features.push_back({building.footprint,
                             {},
                             {b.name,
@@ -71,12 +71,12 @@ Status write_buildings(const Scene& scene, const Observation& observation, const
 }
 
 /// A polygon per patch; `volume_m3` is that of the whole release.
-Status write_releases(const Scene& scene, const std::string& file) {
-    std::vector<OutputFeature> features;
-    for (const Release& release : scene.releases) {
-        for (const ReleasePatch& patch : release.patches) {
+Status write_releases(const scene::Scene& scene, const std::string& file) {
+    std::vector<geo::OutputFeature> features;
+    for (const terrain::Release& release : scene.releases) {
+        for (const terrain::ReleasePatch& patch : release.patches) {
             // Where a raster gives the thickness there is no single value.
-            const double thickness = release.thickness_raster ? never : patch.thickness;
+            const double thickness = release.thickness_raster ? observe::never : patch.thickness;
             features.push_back(
                 {{patch.polygon}, {}, {release.name, release.spec.start_time, thickness, release.volume}});
         }
@@ -87,10 +87,10 @@ Status write_releases(const Scene& scene, const std::string& file) {
 }
 
 /// The front sample nearest to a chainage; null beyond the front.
-const FrontSample* front_near(const std::vector<FrontSample>& front, double chainage, double reach) {
+const observe::FrontSample* front_near(const std::vector<observe::FrontSample>& front, double chainage, double reach) {
     const auto after = std::lower_bound(front.begin(), front.end(), chainage,
-                                        [](const FrontSample& f, double c) { return f.chainage < c; });
-    const FrontSample* best = nullptr;
+                                        [](const observe::FrontSample& f, double c) { return f.chainage < c; });
+    const observe::FrontSample* best = nullptr;
     for (const auto it : {after, after == front.begin() ? after : after - 1}) {
         if (it == front.end() || std::abs(it->chainage - chainage) > reach) continue;
         if (best == nullptr || std::abs(it->chainage - chainage) < std::abs(best->chainage - chainage)) best = &*it;
@@ -99,10 +99,10 @@ const FrontSample* front_near(const std::vector<FrontSample>& front, double chai
 }
 
 /// A short line across the path every 10 m, with the values of the front there.
-std::vector<OutputFeature> chainage_marks(const Scene& scene, const Observation& observation) {
+std::vector<geo::OutputFeature> chainage_marks(const scene::Scene& scene, const observe::Observation& observation) {
     constexpr double spacing = 10, half_width = 3, half_span = 1;  // m
-    const FlowPath& path = scene.flow_path;
-    std::vector<OutputFeature> features;
+    const terrain::FlowPath& path = scene.flow_path;
+    std::vector<geo::OutputFeature> features;
     for (int k = 0; k * spacing <= path.length(); ++k) {
         const double chainage = k * spacing;
         const PlanPoint middle = path.point_at(chainage);
@@ -111,23 +111,24 @@ std::vector<OutputFeature> chainage_marks(const Scene& scene, const Observation&
         if (!(span > 0)) continue;
         const double across_x = -(after.y - before.y) / span * half_width;
         const double across_y = (after.x - before.x) / span * half_width;
-        const FrontSample* front = front_near(observation.front, chainage, 0.51 * scene.spec.outputs.chainage_interval);
+        const observe::FrontSample* front =
+            front_near(observation.front, chainage, 0.51 * scene.spec.outputs.chainage_interval);
         features.push_back({{},
                             {{middle.x - across_x, middle.y - across_y}, {middle.x + across_x, middle.y + across_y}},
-                            {chainage, front != nullptr ? front->arrival_time : never,
-                             front != nullptr ? front->front_velocity : never}});
+                            {chainage, front != nullptr ? front->arrival_time : observe::never,
+                             front != nullptr ? front->front_velocity : observe::never}});
     }
     return features;
 }
 
 /// The cells of every intensity class that occurs, a feature per class.
-Status write_intensity(const Scene& scene, const Observation& observation, const std::string& file) {
-    const IntensityGuideline& guideline = intensity_guideline(scene.spec.outputs.intensity_guideline);
+Status write_intensity(const scene::Scene& scene, const observe::Observation& observation, const std::string& file) {
+    const report::IntensityGuideline& guideline = report::intensity_guideline(scene.spec.outputs.intensity_guideline);
     const Grid<float> map = intensity_map(guideline, observation.maps);
-    std::vector<OutputFeature> features;
-    TALUS_ASSIGN(auto outlines, class_outlines(map, guideline.classes.size()));
-    for (ClassOutline& outline : outlines) {
-        const IntensityClass& c = guideline.classes[outline.number - 1];
+    std::vector<geo::OutputFeature> features;
+    TALUS_ASSIGN(auto outlines, geo::class_outlines(map, guideline.classes.size()));
+    for (geo::ClassOutline& outline : outlines) {
+        const report::IntensityClass& c = guideline.classes[outline.number - 1];
         features.push_back({std::move(outline.polygons),
                             {},
                             {static_cast<double>(outline.number), c.name, c.criterion, guideline.name, outline.area}});
@@ -139,18 +140,18 @@ Status write_intensity(const Scene& scene, const Observation& observation, const
 
 }  // namespace
 
-Status write_vectors(const Scene& scene, const RunResult& result, const std::filesystem::path& folder) {
+Status write_vectors(const scene::Scene& scene, const run::RunResult& result, const std::filesystem::path& folder) {
     const std::string file = (folder / "results.gpkg").string();
-    const Observation& observation = result.observation;
+    const observe::Observation& observation = result.observation;
     TALUS_TRY(write_buildings(scene, observation, file));
     TALUS_TRY(write_releases(scene, file));
     TALUS_TRY(write_intensity(scene, observation, file));
     if (scene.flow_path.empty()) return {};
-    const OutputFeature line{
+    const geo::OutputFeature line{
         {}, scene.flow_path.points(), {scene.flow_path.length(), yes_or_no(scene.flow_path_traced)}};
     TALUS_TRY(write_geopackage_layer(file, "flow_path", {{"length_m"}, {"traced", true}}, {line}, scene.crs));
     return write_geopackage_layer(file, "chainage", {{"chainage_m"}, {"first_arrival_time_s"}, {"front_velocity_mps"}},
                                   chainage_marks(scene, observation), scene.crs);
 }
 
-}  // namespace talus
+}  // namespace talus::products

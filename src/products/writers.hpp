@@ -10,32 +10,36 @@
 #include "scene/scene.hpp"
 
 /// The parts of write_products, one per kind of file. Lengths in m, times in s unless a suffix says otherwise.
-namespace talus {
+namespace talus::products {
 
 /// peak_depth.tif, ..., intensity.tif, and erosion_depth.tif where anything was eroded, each with a QGIS style beside
 /// it.
-[[nodiscard]] Status write_maps(const Scene& scene, const RunResult& result, const std::filesystem::path& folder);
+[[nodiscard]] Status write_maps(const scene::Scene& scene, const run::RunResult& result,
+                                const std::filesystem::path& folder);
 
 /// front.csv, run_out.csv, buildings.csv, structures_over_time.csv, timeseries.csv, and erosion.csv where there is a
 /// bed. A value that does not exist is an empty field.
-[[nodiscard]] Status write_tables(const Scene& scene, const RunResult& result, const std::filesystem::path& folder);
+[[nodiscard]] Status write_tables(const scene::Scene& scene, const run::RunResult& result,
+                                  const std::filesystem::path& folder);
 
 /// results.gpkg with the layers buildings, release, intensity (polygons of each class), flow_path and chainage (a short
 /// line across the path per mark).
-[[nodiscard]] Status write_vectors(const Scene& scene, const RunResult& result, const std::filesystem::path& folder);
+[[nodiscard]] Status write_vectors(const scene::Scene& scene, const run::RunResult& result,
+                                   const std::filesystem::path& folder);
 
 /// convergence.csv, variants.csv: a row for the base and one per variant, with values, changes in percent and cost.
-[[nodiscard]] Status write_comparisons(const std::vector<Comparison>& comparisons, const RunResult& base,
+[[nodiscard]] Status write_comparisons(const std::vector<run::Comparison>& comparisons, const run::RunResult& base,
                                        const std::filesystem::path& folder);
 
 /// manifest.json: everything needed to repeat and to assess the run. A value that does not exist is null.
-[[nodiscard]] Status write_manifest(const Scene& scene, const RunResult& result,
-                                    const std::vector<Comparison>& comparisons, const std::filesystem::path& folder);
+[[nodiscard]] Status write_manifest(const scene::Scene& scene, const run::RunResult& result,
+                                    const std::vector<run::Comparison>& comparisons,
+                                    const std::filesystem::path& folder);
 
 /// "complete", "interrupted" or "fault".
-[[nodiscard]] const char* status_text(RunStatus status);
+[[nodiscard]] const char* status_text(run::RunStatus status);
 
 /// The caveat that every product carries: " (reconstruction, partial: interrupted)", or nothing.
-[[nodiscard]] std::string caveat(const Scene& scene, const RunResult& result);
+[[nodiscard]] std::string caveat(const scene::Scene& scene, const run::RunResult& result);
 
-}  // namespace talus
+}  // namespace talus::products

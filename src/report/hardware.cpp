@@ -5,7 +5,7 @@
 #include <sys/utsname.h>
 #include <thread>
 
-namespace talus {
+namespace talus::report {
 
 namespace {
 
@@ -46,4 +46,4 @@ std::string compiler_version() {
 #endif
 }
 
-}  // namespace talus
+}  // namespace talus::report

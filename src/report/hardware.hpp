@@ -2,7 +2,7 @@
 
 #include <string>
 
-namespace talus {
+namespace talus::report {
 
 /// The machine that a run was made on, as reported by the system.
 struct Hardware {
@@ -17,4 +17,4 @@ struct Hardware {
 /// "GCC 12.2.0", "Clang 17.0.6".
 [[nodiscard]] std::string compiler_version();
 
-}  // namespace talus
+}  // namespace talus::report

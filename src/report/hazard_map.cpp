@@ -8,7 +8,7 @@
 
 #include "report/number_text.hpp"
 
-namespace talus {
+namespace talus::report {
 
 namespace {
 
@@ -18,7 +18,7 @@ std::string item(const std::string& upper_limit, const report::Colour& colour, i
 }
 
 HazardMap map(const char* file, const char* title, const char* description, const char* unit, double factor,
-              Grid<float> HazardMaps::*grid, std::vector<double> breaks, const report::Ramp& ramp) {
+              Grid<float> observe::HazardMaps::*grid, std::vector<double> breaks, const report::Ramp& ramp) {
     return {file, title, description, unit, factor, grid, std::move(breaks), ramp};
 }
 
@@ -52,7 +52,7 @@ std::string category_style(const HazardMap& map) {
 }  // namespace
 
 const std::vector<HazardMap>& hazard_maps() {
-    using Maps = HazardMaps;
+    using Maps = observe::HazardMaps;
     // Breaks at 15 and 30 kPa separate slight, extensive and complete damage to buildings not of reinforced concrete
     // (Kang & Kim 2014); depths of 0.5 and 1 m are the limits of common intensity classes.
     static const std::vector<HazardMap> maps = {
@@ -150,4 +150,4 @@ std::string qgis_style(const HazardMap& map, double largest) {
         classes.breaks.front(), std::max(largest, classes.breaks.back()), items);
 }
 
-}  // namespace talus
+}  // namespace talus::report

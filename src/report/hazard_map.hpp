@@ -6,7 +6,7 @@
 #include "observe/observation.hpp"
 #include "report/colour.hpp"
 
-namespace talus {
+namespace talus::report {
 
 /// A class of a map that has no measure.
 struct Category {
@@ -16,12 +16,12 @@ struct Category {
 
 /// A map among the products: where it comes from, what it is called, how it is coloured.
 struct HazardMap {
-    std::string file;                         ///< without extension: "peak_depth"
-    std::string title;                        ///< "Peak depth"
-    std::string description;                  ///< of the band
-    std::string unit;                         ///< of the band and of `breaks`
-    double factor = 1;                        ///< from SI to `unit`
-    Grid<float> HazardMaps::*grid = nullptr;  ///< nullptr: not one of a single run's maps
+    std::string file;                                  ///< without extension: "peak_depth"
+    std::string title;                                 ///< "Peak depth"
+    std::string description;                           ///< of the band
+    std::string unit;                                  ///< of the band and of `breaks`
+    double factor = 1;                                 ///< from SI to `unit`
+    Grid<float> observe::HazardMaps::*grid = nullptr;  ///< nullptr: not one of a single run's maps
     std::vector<double> breaks;  ///< lower limits of the classes; below the first: not drawn. Empty: even classes
     report::Ramp ramp;
     double full_scale = 0;  ///< classes reach at least up to here, so that maps of a kind have the same colours
@@ -46,4 +46,4 @@ struct HazardMap {
 /// A QGIS 3 layer style: classes with labels in the map's unit, transparent below the first one and at nodata.
 [[nodiscard]] std::string qgis_style(const HazardMap& map, double largest);
 
-}  // namespace talus
+}  // namespace talus::report

@@ -6,7 +6,7 @@
 
 #include <fmt/format.h>
 
-namespace talus {
+namespace talus::report {
 namespace {
 
 // Apart from the yellow to red of buildings that were hit, and ever darker.
@@ -56,11 +56,11 @@ int IntensityGuideline::class_of(double depth, double speed) const {
     return 0;
 }
 
-const IntensityGuideline& intensity_guideline(GuidelineChoice choice) {
+const IntensityGuideline& intensity_guideline(params::GuidelineChoice choice) {
     return guidelines().at(static_cast<std::size_t>(choice));
 }
 
-Grid<float> intensity_map(const IntensityGuideline& guideline, const HazardMaps& maps) {
+Grid<float> intensity_map(const IntensityGuideline& guideline, const observe::HazardMaps& maps) {
     Grid<float> classes(maps.peak_depth.geometry, std::numeric_limits<float>::quiet_NaN());
     for (std::size_t i = 0; i < classes.values.size(); ++i) {
         if (std::isnan(maps.arrival_time.values[i])) continue;
@@ -83,4 +83,4 @@ HazardMap intensity_style(const IntensityGuideline& guideline) {
     return style;
 }
 
-}  // namespace talus
+}  // namespace talus::report

@@ -10,7 +10,7 @@
 #include "report/hazard_map.hpp"
 
 /// Intensity classes of published guidelines, each a table of data, from peak depth and peak speed.
-namespace talus {
+namespace talus::report {
 
 /// A way into a class: all of these are exceeded.
 struct IntensityLimit {
@@ -36,13 +36,13 @@ struct IntensityGuideline {
     [[nodiscard]] int class_of(double depth, double speed) const;
 };
 
-[[nodiscard]] const IntensityGuideline& intensity_guideline(GuidelineChoice choice);
+[[nodiscard]] const IntensityGuideline& intensity_guideline(params::GuidelineChoice choice);
 
 /// Class numbers from 1 up wherever debris arrived; NaN elsewhere. Peak depth and peak speed need not have occurred at
 /// one moment, so that a class may be too high, not too low.
-[[nodiscard]] Grid<float> intensity_map(const IntensityGuideline& guideline, const HazardMaps& maps);
+[[nodiscard]] Grid<float> intensity_map(const IntensityGuideline& guideline, const observe::HazardMaps& maps);
 
 /// How it is written and drawn.
 [[nodiscard]] HazardMap intensity_style(const IntensityGuideline& guideline);
 
-}  // namespace talus
+}  // namespace talus::report

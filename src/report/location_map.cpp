@@ -11,7 +11,7 @@
 
 namespace talus::report {
 
-Result<Json> location_figure(const Scene& scene, const MapContent& content) {
+Result<Json> location_figure(const scene::Scene& scene, const MapContent& content) {
     const Extent area = map_frame(scene, content).area, terrain = scene.terrain.elevation().geometry.extent();
     constexpr double most_shown = 0.5;  // of the terrain: maps of so much of it say by themselves where they are
     if (area.width() * area.height() > most_shown * terrain.width() * terrain.height()) return Json();

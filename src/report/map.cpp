@@ -171,7 +171,7 @@ void draw_classes(Svg& svg, const MapLayer& shown, const Classes& classes, doubl
     }
 }
 
-std::string building_title(const Building& building, const BuildingImpact& impact) {
+std::string building_title(const terrain::Building& building, const observe::BuildingImpact& impact) {
     std::string title = building.name.empty() ? kind_of(impact) : building.name;
     if (!std::isnan(impact.removed_time)) title += fmt::format(" (until {} s)", fixed(impact.removed_time, 1));
     if (!impact.hit) return title + ": not reached";
@@ -192,26 +192,26 @@ Classes classes_of(const HazardMap& layer, double most) {
 
 }  // namespace
 
-int impact_class(const BuildingImpact& impact) {
+int impact_class(const observe::BuildingImpact& impact) {
     if (!impact.hit) return 0;
     return impact.peak_impact_pressure < 15e3 ? 1 : impact.peak_impact_pressure < 30e3 ? 2 : 3;
 }
 
-MapFrame map_frame(const Scene& scene, const MapContent& content) {
+MapFrame map_frame(const scene::Scene& scene, const MapContent& content) {
     const Extent terrain = scene.terrain.elevation().geometry.extent();
     std::vector<Extent> parts;
     if (const auto wet = wet_extent(*content.reached)) parts.push_back(*wet);
-    for (const Release& release : scene.releases) {
+    for (const terrain::Release& release : scene.releases) {
         if (!release.patches.empty() || release.thickness_raster) parts.push_back(release.extent());
     }
-    for (const Inflow& inflow : scene.inflows) {
+    for (const terrain::Inflow& inflow : scene.inflows) {
         for (const Polygon& part : inflow.area) parts.push_back(extent_of(part));
         if (inflow.over_area()) continue;
         for (const PlanPoint& end : {inflow.from, inflow.to}) parts.push_back({end.x, end.y, end.x, end.y});
     }
     if (!scene.flow_path.empty()) {
         double last = content.farthest_chainage;
-        for (const ObservationSpec& o : scene.spec.observations)
+        for (const params::ObservationSpec& o : scene.spec.observations)
             last = std::isnan(last) ? o.chainage : std::max(last, o.chainage);
         const double end = std::isnan(last) ? scene.flow_path.length() : std::min(scene.flow_path.length(), 1.2 * last);
         for (int k = 0; k <= 100; ++k) {
@@ -236,8 +236,8 @@ MapFrame map_frame(const Scene& scene, const MapContent& content) {
     return frame;
 }
 
-MapContent map_content(const Scene& scene, const RunResult& result) {
-    const Observation& observation = result.observation;
+MapContent map_content(const scene::Scene& scene, const run::RunResult& result) {
+    const observe::Observation& observation = result.observation;
     MapContent content;
     content.reached = &observation.maps.peak_depth;
     content.farthest_chainage = observation.run_out.front_chainage;
@@ -246,7 +246,7 @@ MapContent map_content(const Scene& scene, const RunResult& result) {
     content.buildings.title = barriers ? "Structures, impact pressure" : "Buildings, impact pressure";
     content.buildings.class_names = {"not reached", "hit, below 15 kPa", "hit, 15 – 30 kPa", "hit, over 30 kPa"};
     for (std::size_t i = 0; i < std::min(scene.buildings.size(), observation.buildings.size()); ++i) {
-        const BuildingImpact& impact = observation.buildings[i];
+        const observe::BuildingImpact& impact = observation.buildings[i];
         content.buildings.classes.push_back(impact_class(impact));
         content.buildings.titles.push_back(building_title(scene.buildings[i], impact));
         content.buildings.removed.push_back(!std::isnan(impact.removed_time));
@@ -293,8 +293,8 @@ Svg::Attribute clip() {
 }
 
 /// Elements shared by all maps, referenced by id.
-std::string definitions(const Scene& scene, const MapContent& content, const MapFrame& frame, const std::string& relief,
-                        double key_top, double& contour_interval) {
+std::string definitions(const scene::Scene& scene, const MapContent& content, const MapFrame& frame,
+                        const std::string& relief, double key_top, double& contour_interval) {
     Svg svg;
     svg.open("svg", {{"class", "definitions"}, {"width", 0.0}, {"height", 0.0}, {"aria-hidden", "true"}});
     svg.open("defs", {});
@@ -322,7 +322,7 @@ std::string definitions(const Scene& scene, const MapContent& content, const Map
 
 }  // namespace
 
-Result<Json> map_figures(const Scene& scene, const MapContent& content) {
+Result<Json> map_figures(const scene::Scene& scene, const MapContent& content) {
     const MapFrame frame = map_frame(scene, content);
     const Grid<float> ground = crop(scene.terrain.elevation(), frame.area, 900);
     const double pixels_per_metre = 1150 / std::max(frame.area.width(), frame.area.height());

@@ -62,28 +62,28 @@ struct MapContent {
 };
 
 /// The maps of a single run. `result` must outlive them.
-[[nodiscard]] MapContent map_content(const Scene& scene, const RunResult& result);
+[[nodiscard]] MapContent map_content(const scene::Scene& scene, const run::RunResult& result);
 
 /// The area of interest: the ground reached by debris, the releases, the flow path (to 20 % beyond the run-out and the
 /// last observation), the buildings hit, and a margin, kept within the terrain.
-[[nodiscard]] MapFrame map_frame(const Scene& scene, const MapContent& content);
+[[nodiscard]] MapFrame map_frame(const scene::Scene& scene, const MapContent& content);
 
 /// Data of the template `maps`: `definitions`, a hidden <svg> with the shared parts of all maps; `layers`, one per map;
 /// `read_out` for the page's script: position and values of the maps. And `contour_interval`, m. Errors: a picture
 /// could not be encoded.
-[[nodiscard]] Result<Json> map_figures(const Scene& scene, const MapContent& content);
+[[nodiscard]] Result<Json> map_figures(const scene::Scene& scene, const MapContent& content);
 
 /// Data of the template `zones`: zones and beds over the relief of the maps. Null where there are none. Errors: a
 /// picture could not be encoded.
-[[nodiscard]] Result<Json> zone_figure(const Scene& scene, const MapContent& content, double contour_interval);
+[[nodiscard]] Result<Json> zone_figure(const scene::Scene& scene, const MapContent& content, double contour_interval);
 
 /// Impact class of a building: 0 not hit, 1 below 15 kPa, 2 to 30 kPa, 3 above. The limits are those between slight,
 /// extensive and complete damage to buildings not of reinforced concrete (Kang & Kim 2014).
-[[nodiscard]] int impact_class(const BuildingImpact& impact);
+[[nodiscard]] int impact_class(const observe::BuildingImpact& impact);
 
 /// The terrain with the area of the maps in it, as the template shows it. Null where the maps show most of it.
 /// Errors: a picture could not be encoded.
-[[nodiscard]] Result<Json> location_figure(const Scene& scene, const MapContent& content);
+[[nodiscard]] Result<Json> location_figure(const scene::Scene& scene, const MapContent& content);
 
 /// The scale of a map on A4 paper, 1 : ratio, a round one at which map and key fit beside the margins; and how wide map
 /// and key then are, mm. report.css prints them so.
@@ -91,10 +91,11 @@ struct MapContent {
 [[nodiscard]] double print_width(const MapFrame& frame);
 
 // The parts of the drawing that all maps share.
-void draw_contours(Svg& svg, const Scene& scene, const MapFrame& frame, double& interval);
-void draw_vectors(Svg& svg, const Scene& scene, const BuildingMarks& marks, const MapFrame& frame);
-void draw_frame(Svg& svg, const Scene& scene, const MapContent& content, const MapFrame& frame);
-void draw_key(Svg& svg, const Scene& scene, const BuildingMarks& marks, const MapFrame& frame, double contour_interval);
+void draw_contours(Svg& svg, const scene::Scene& scene, const MapFrame& frame, double& interval);
+void draw_vectors(Svg& svg, const scene::Scene& scene, const BuildingMarks& marks, const MapFrame& frame);
+void draw_frame(Svg& svg, const scene::Scene& scene, const MapContent& content, const MapFrame& frame);
+void draw_key(Svg& svg, const scene::Scene& scene, const BuildingMarks& marks, const MapFrame& frame,
+              double contour_interval);
 /// Scale bar, scale on paper and north; (x, y) is its upper left corner.
 void draw_scale(Svg& svg, const MapFrame& frame, double x, double y);
 /// A picture over an area of the frame, cut where the frame ends.
@@ -104,6 +105,6 @@ void draw_image(Svg& svg, std::string_view css_class, double x, double y, double
 void draw_swatch(Svg& svg, double x, double y, const Colour& colour);
 
 /// Height of what draw_key draws, SVG units.
-[[nodiscard]] double key_height(const Scene& scene);
+[[nodiscard]] double key_height(const scene::Scene& scene);
 
 }  // namespace talus::report

@@ -31,7 +31,7 @@ std::string polygon_data(const MapFrame& frame, const Polygon& polygon) {
 }
 
 /// The elevation of an index contour, written along its middle where the line is straight enough to carry it.
-void draw_contour_label(Svg& svg, const MapFrame& frame, const Contour& contour) {
+void draw_contour_label(Svg& svg, const MapFrame& frame, const geo::Contour& contour) {
     const auto& points = contour.points;
     double length = 0;
     std::vector<double> along = {0};
@@ -97,8 +97,8 @@ void draw_cased(Svg& svg, const std::string& style, const std::string& data, std
     svg.path(style, data, title);
 }
 
-void draw_flow_path(Svg& svg, const Scene& scene, const MapFrame& frame) {
-    const FlowPath& path = scene.flow_path;
+void draw_flow_path(Svg& svg, const scene::Scene& scene, const MapFrame& frame) {
+    const terrain::FlowPath& path = scene.flow_path;
     if (path.empty()) return;
     const std::string d = path_data(frame, path.points());
     draw_cased(svg, "flow-path", d);
@@ -118,9 +118,9 @@ void draw_flow_path(Svg& svg, const Scene& scene, const MapFrame& frame) {
     }
 }
 
-void draw_observations(Svg& svg, const Scene& scene, const MapFrame& frame) {
+void draw_observations(Svg& svg, const scene::Scene& scene, const MapFrame& frame) {
     if (scene.flow_path.empty()) return;
-    for (const ObservationSpec& o : scene.spec.observations) {
+    for (const params::ObservationSpec& o : scene.spec.observations) {
         const PlanPoint p = scene.flow_path.point_at(o.chainage), before = scene.flow_path.point_at(o.chainage - 2),
                         after = scene.flow_path.point_at(o.chainage + 2);
         const double run = std::max(1e-9, std::hypot(after.x - before.x, after.y - before.y));
@@ -132,7 +132,7 @@ void draw_observations(Svg& svg, const Scene& scene, const MapFrame& frame) {
 }
 
 /// A line with an arrow in the direction of flow, or the outline of an area.
-void draw_inflow(Svg& svg, const Inflow& inflow, const MapFrame& frame) {
+void draw_inflow(Svg& svg, const terrain::Inflow& inflow, const MapFrame& frame) {
     std::string d;
     for (const Polygon& part : inflow.area) d += polygon_data(frame, part);
     if (!inflow.over_area()) {
@@ -152,7 +152,7 @@ void draw_inflow(Svg& svg, const Inflow& inflow, const MapFrame& frame) {
 
 }  // namespace
 
-void draw_contours(Svg& svg, const Scene& scene, const MapFrame& frame, double& interval) {
+void draw_contours(Svg& svg, const scene::Scene& scene, const MapFrame& frame, double& interval) {
     const Grid<float> ground = crop(scene.terrain.elevation(), frame.area, 320);
     ValueRange relief{std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
     for (const float v : ground.values) relief.include(v);
@@ -162,7 +162,7 @@ void draw_contours(Svg& svg, const Scene& scene, const MapFrame& frame, double& 
     if (std::abs(interval / std::pow(10, std::floor(std::log10(interval))) - 2.5) < 1e-6) interval *= 2;
     std::string fine, index;
     Svg labels;
-    for (const Contour& contour : contours(ground, interval)) {
+    for (const geo::Contour& contour : geo::contours(ground, interval)) {
         const bool labelled = std::lround(contour.elevation / interval) % 5 == 0;
         (labelled ? index : fine) += path_data(frame, contour.points);
         if (labelled) draw_contour_label(labels, frame, contour);
@@ -172,10 +172,10 @@ void draw_contours(Svg& svg, const Scene& scene, const MapFrame& frame, double& 
     svg.append(labels);
 }
 
-void draw_vectors(Svg& svg, const Scene& scene, const BuildingMarks& marks, const MapFrame& frame) {
+void draw_vectors(Svg& svg, const scene::Scene& scene, const BuildingMarks& marks, const MapFrame& frame) {
     std::vector<Label> labels;
     for (std::size_t i = 0; i < scene.buildings.size(); ++i) {
-        const Building& building = scene.buildings[i];
+        const terrain::Building& building = scene.buildings[i];
         std::string d;
         Extent around{1e300, 1e300, -1e300, -1e300};
         for (const Polygon& polygon : building.footprint) {
@@ -197,18 +197,18 @@ void draw_vectors(Svg& svg, const Scene& scene, const BuildingMarks& marks, cons
                               shortened(building.name, 24)});
         }
     }
-    for (const Release& release : scene.releases) {
+    for (const terrain::Release& release : scene.releases) {
         std::string d;
-        for (const ReleasePatch& patch : release.patches) d += polygon_data(frame, patch.polygon);
+        for (const terrain::ReleasePatch& patch : release.patches) d += polygon_data(frame, patch.polygon);
         draw_cased(svg, "release", d, release.name);
     }
-    for (const Inflow& inflow : scene.inflows) draw_inflow(svg, inflow, frame);
+    for (const terrain::Inflow& inflow : scene.inflows) draw_inflow(svg, inflow, frame);
     draw_flow_path(svg, scene, frame);
     draw_observations(svg, scene, frame);
     draw_labels(svg, std::move(labels));
 }
 
-void draw_frame(Svg& svg, const Scene& scene, const MapContent& content, const MapFrame& frame) {
+void draw_frame(Svg& svg, const scene::Scene& scene, const MapContent& content, const MapFrame& frame) {
     const double step = round_step(std::max(frame.area.width(), frame.area.height()) / 6);
     const int digits = step < 1 ? 1 : 0;
     std::vector<double> east, north;
@@ -239,13 +239,13 @@ void draw_frame(Svg& svg, const Scene& scene, const MapContent& content, const M
     if (content.not_converged) svg.text("map-flag", left, first + (reconstruction ? line_height : 0), "NOT CONVERGED");
 }
 
-double key_height(const Scene& scene) {
+double key_height(const scene::Scene& scene) {
     const int rows = 2 + (scene.releases.empty() ? 0 : 1) + (scene.inflows.empty() ? 0 : 1) +
                      (scene.spec.observations.empty() ? 0 : 1) + (scene.buildings.empty() ? 0 : 5);
     return 20.0 * rows + 100;
 }
 
-void draw_key(Svg& svg, const Scene& scene, const BuildingMarks& marks, const MapFrame& frame,
+void draw_key(Svg& svg, const scene::Scene& scene, const BuildingMarks& marks, const MapFrame& frame,
               double contour_interval) {
     const double x = frame.right() + 20;
     double y = 0;

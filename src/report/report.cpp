@@ -6,7 +6,7 @@
 
 namespace talus::report {
 
-Result<std::string> run_report(const Scene& scene, const RunResult& result, const Json& results) {
+Result<std::string> run_report(const scene::Scene& scene, const run::RunResult& result, const Json& results) {
     MapContent content = map_content(scene, result);
     content.not_converged = results["verdict"]["not_converged"];
     TALUS_ASSIGN(auto maps, map_figures(scene, content));

@@ -11,6 +11,7 @@ namespace talus::report {
 
 /// The self-contained report of `results`, from run_results(), with maps of the run. Errors: a picture of a map could
 /// not be encoded.
-[[nodiscard]] Result<std::string> run_report(const Scene& scene, const RunResult& result, const Json& results);
+[[nodiscard]] Result<std::string> run_report(const scene::Scene& scene, const run::RunResult& result,
+                                             const Json& results);
 
 }  // namespace talus::report

@@ -18,7 +18,7 @@ namespace talus::report {
 namespace {
 
 struct Peak {
-    double value = never;
+    double value = observe::never;
     PlanPoint at;
 };
 
@@ -35,7 +35,7 @@ Peak peak_of(const Grid<float>& map) {
 }
 
 /// "at chainage 88 m", or the coordinates where the path does not pass.
-std::string place(const Scene& scene, const Peak& peak) {
+std::string place(const scene::Scene& scene, const Peak& peak) {
     if (std::isnan(peak.value)) return "no debris mapped";
     if (!scene.flow_path.empty()) {
         if (const auto on_path = scene.flow_path.locate(peak.at)) {
@@ -50,10 +50,10 @@ struct MassBalance {
     bool closes = false;
 };
 
-MassBalance mass_balance(const Observation& observation) {
+MassBalance mass_balance(const observe::Observation& observation) {
     MassBalance m;
     if (!observation.timeseries.empty()) {
-        const TimeSample& s = observation.timeseries.back();
+        const observe::TimeSample& s = observation.timeseries.back();
         m.entrained = s.volume_entrained;
         m.held = s.volume_held;
         m.moving = s.volume_moving;
@@ -71,8 +71,8 @@ std::string plural(std::size_t n, std::string_view word) {
     return fmt::format("{} {}{}", n, word, n == 1 ? "" : "s");
 }
 
-Json status(const RunResult& result) {
-    const bool fault = result.status == RunStatus::fault, complete = result.status == RunStatus::complete;
+Json status(const run::RunResult& result) {
+    const bool fault = result.status == run::RunStatus::fault, complete = result.status == run::RunStatus::complete;
     return {{"name", complete ? "complete"
                      : fault  ? "fault"
                               : "interrupted"},
@@ -82,29 +82,29 @@ Json status(const RunResult& result) {
             {"simulated_time_s", result.simulated_time}};
 }
 
-Json verdict(const RunResult& result, const std::vector<Comparison>& comparisons) {
-    const NumericalVerdict said = numerical_verdict(result, comparisons);
-    const Json converged = said.converged == Answer::unknown ? Json() : Json(said.converged == Answer::yes);
+Json verdict(const run::RunResult& result, const std::vector<run::Comparison>& comparisons) {
+    const run::NumericalVerdict said = numerical_verdict(result, comparisons);
+    const Json converged = said.converged == run::Answer::unknown ? Json() : Json(said.converged == run::Answer::yes);
     std::string text = said.text;
     text[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(text[0])));
-    return {{"converged", converged}, {"not_converged", said.converged == Answer::no}, {"text", text}};
+    return {{"converged", converged}, {"not_converged", said.converged == run::Answer::no}, {"text", text}};
 }
 
-Json compression(const Scene& scene, const RunResult& result) {
-    const Compression& c = result.observation.compression;
-    const SolverSpec& solver = scene.spec.solver;
+Json compression(const scene::Scene& scene, const run::RunResult& result) {
+    const observe::Compression& c = result.observation.compression;
+    const params::SolverSpec& solver = scene.spec.solver;
     return {{"within_limits", c.within_limits()},
             {"worst_mean_percent", 100 * c.worst_mean},
             {"worst_mean_time_s", c.worst_mean_time},
-            {"mean_limit_percent", 100 * mean_compression_limit},
+            {"mean_limit_percent", 100 * sim::mean_compression_limit},
             {"worst_squeezed_percent", 100 * c.worst_squeezed_share},
             {"worst_squeezed_time_s", c.worst_squeezed_time},
-            {"squeezed_limit_percent", 100 * squeezed_share_limit},
-            {"squeezed_compression_percent", 100 * squeezed_compression},
+            {"squeezed_limit_percent", 100 * sim::squeezed_share_limit},
+            {"squeezed_compression_percent", 100 * sim::squeezed_compression},
             {"worst_percent", 100 * c.worst_max},
             {"worst_time_s", c.worst_max_time},
             {"time_above_a_limit_percent", 100 * c.time_share_above},
-            {"time_limit_percent", 100 * Compression::time_share_limit},
+            {"time_limit_percent", 100 * observe::Compression::time_share_limit},
             {"iteration_count", solver.iteration_count},
             {"extra_iteration_count", solver.extra_iteration_count},
             {"mean_iterations", c.mean_iterations},
@@ -112,8 +112,8 @@ Json compression(const Scene& scene, const RunResult& result) {
             {"fixed_time_step", solver.time_step.has_value()}};
 }
 
-Json flow_thickness(const RunResult& result) {
-    const FlowThickness& flow = result.observation.thickness;
+Json flow_thickness(const run::RunResult& result) {
+    const observe::FlowThickness& flow = result.observation.thickness;
     if (!flow.known()) return nullptr;
     return {{"median_m", flow.median},
             {"thinnest_tenth_m", flow.thin},
@@ -121,8 +121,8 @@ Json flow_thickness(const RunResult& result) {
             {"thinnest_tenth_layers", flow.thin / result.particle_spacing}};
 }
 
-Json key_figures(const Scene& scene, const RunResult& result) {
-    const Observation& o = result.observation;
+Json key_figures(const scene::Scene& scene, const run::RunResult& result) {
+    const observe::Observation& o = result.observation;
     const MassBalance mass = mass_balance(o);
     Json all = Json::array();
     const auto add = [&](const char* key, const char* name, Json value, const char* format, const char* unit,
@@ -150,9 +150,9 @@ Json key_figures(const Scene& scene, const RunResult& result) {
         ran ? fmt::format("travel angle of the centre of mass {}°",
                           fixed(o.run_out.travel_angle * degrees_per_radian, 1))
             : "");
-    const Hits hits = hits_among(o.buildings, false), barriers_hit = hits_among(o.buildings, true);
-    const BuildingImpact* worst = nullptr;
-    for (const BuildingImpact& b : o.buildings) {
+    const observe::Hits hits = hits_among(o.buildings, false), barriers_hit = hits_among(o.buildings, true);
+    const observe::BuildingImpact* worst = nullptr;
+    for (const observe::BuildingImpact& b : o.buildings) {
         if (b.is_barrier || !b.hit) continue;
         if (worst == nullptr || b.peak_impact_pressure > worst->peak_impact_pressure) worst = &b;
     }
@@ -181,13 +181,13 @@ Json key_figures(const Scene& scene, const RunResult& result) {
 }
 
 /// Thickness of the flow in particles.
-Json layers(const RunResult& result) {
-    const FlowThickness& flow = result.observation.thickness;
+Json layers(const run::RunResult& result) {
+    const observe::FlowThickness& flow = result.observation.thickness;
     if (!flow.known()) return fact("Layers of particles", "debris reached no map cell");
     const double median = flow.median / result.particle_spacing;
-    const bool enough = median >= FlowThickness::fewest_layers;
-    const std::string warning =
-        fmt::format("fewer than {}: depths, speeds and forces mean little", fixed(FlowThickness::fewest_layers, 0));
+    const bool enough = median >= observe::FlowThickness::fewest_layers;
+    const std::string warning = fmt::format("fewer than {}: depths, speeds and forces mean little",
+                                            fixed(observe::FlowThickness::fewest_layers, 0));
     return fact("Layers of particles",
                 fmt::format("median {} ({} m), thinnest tenth of the trail {} ({} m), when the flow was thickest at "
                             "each place{}",
@@ -196,13 +196,13 @@ Json layers(const RunResult& result) {
                 enough ? "" : warning, enough);
 }
 
-Json quality(const Scene& scene, const RunResult& result) {
-    const Observation& o = result.observation;
-    const char* state = result.status == RunStatus::complete      ? "complete"
-                        : result.status == RunStatus::interrupted ? "partial: interrupted"
-                                                                  : "partial: stopped by a fault";
+Json quality(const scene::Scene& scene, const run::RunResult& result) {
+    const observe::Observation& o = result.observation;
+    const char* state = result.status == run::RunStatus::complete      ? "complete"
+                        : result.status == run::RunStatus::interrupted ? "partial: interrupted"
+                                                                       : "partial: stopped by a fault";
     const MassBalance mass = mass_balance(o);
-    const Compression& c = o.compression;
+    const observe::Compression& c = o.compression;
     return {
         fact("Status", result.stop_reason.empty() ? state : state + ("; " + result.stop_reason)),
         fact("Simulated time",
@@ -217,9 +217,9 @@ Json quality(const Scene& scene, const RunResult& result) {
              fmt::format(
                  "worst mean over the debris {} % (at {} s; limit {} %), more than {} % in {} % of the particles "
                  "at worst (limit {} %), worst particle {} %: ",
-                 fixed(100 * c.worst_mean, 2), fixed(c.worst_mean_time, 1), fixed(100 * mean_compression_limit, 0),
-                 fixed(100 * squeezed_compression, 0), fixed(100 * c.worst_squeezed_share, 2),
-                 fixed(100 * squeezed_share_limit, 0), fixed(100 * c.worst_max, 1)),
+                 fixed(100 * c.worst_mean, 2), fixed(c.worst_mean_time, 1), fixed(100 * sim::mean_compression_limit, 0),
+                 fixed(100 * sim::squeezed_compression, 0), fixed(100 * c.worst_squeezed_share, 2),
+                 fixed(100 * sim::squeezed_share_limit, 0), fixed(100 * c.worst_max, 1)),
              c.within_limits() ? "within limits"
                                : fmt::format("above a limit during {} % of the simulated time",
                                              significant(100 * c.time_share_above, 2)),
@@ -240,7 +240,7 @@ Json quality(const Scene& scene, const RunResult& result) {
     };
 }
 
-Json title_block(const ReportSpec& report) {
+Json title_block(const params::ReportSpec& report) {
     const auto given = [](const std::string& text) { return text.empty() ? Json() : Json(text); };
     const Json block = {{"client", given(report.client)},
                         {"reference", given(report.reference)},
@@ -253,7 +253,7 @@ Json title_block(const ReportSpec& report) {
     return empty ? Json() : block;
 }
 
-Json observations(const Scene& scene, const RunResult& result) {
+Json observations(const scene::Scene& scene, const run::RunResult& result) {
     if (scene.spec.observations.empty()) return {};
     Json rows = table({{"observation", "Observation", ""},
                        {"chainage_m", "Chainage", "m", "f0"},
@@ -263,8 +263,8 @@ Json observations(const Scene& scene, const RunResult& result) {
                        {"particle_speed_mps", "Particle speed", "m/s", "f1"},
                        {"arrival_s", "Arrival", "s", "f1"},
                        {"source", "Source", "", "", "source"}});
-    for (const ObservationSpec& observed : scene.spec.observations) {
-        const FrontSample computed = front_at(result.observation, observed.chainage);
+    for (const params::ObservationSpec& observed : scene.spec.observations) {
+        const observe::FrontSample computed = front_at(result.observation, observed.chainage);
         rows["rows"].push_back({{"observation", observed.name},
                                 {"chainage_m", observed.chainage},
                                 {"observed_mps", observed.front_velocity},
@@ -288,8 +288,8 @@ Json results_head(std::string_view format) {
             {"report", nullptr}};
 }
 
-Json results_head(std::string_view format, const Scene& scene) {
-    const SceneInfo& info = scene.spec.scene;
+Json results_head(std::string_view format, const scene::Scene& scene) {
+    const params::SceneInfo& info = scene.spec.scene;
     Json head = results_head(format);
     head["title"] = info.title.empty() ? scene.file.stem().string() : info.title;
     head["description"] = info.description;
@@ -299,7 +299,8 @@ Json results_head(std::string_view format, const Scene& scene) {
     return head;
 }
 
-Json run_results(const Scene& scene, const RunResult& result, const std::vector<Comparison>& comparisons) {
+Json run_results(const scene::Scene& scene, const run::RunResult& result,
+                 const std::vector<run::Comparison>& comparisons) {
     Json all = results_head("talus results", scene);
     all.update({{"status", status(result)},
                 {"verdict", verdict(result, comparisons)},
@@ -331,7 +332,7 @@ Json run_results(const Scene& scene, const RunResult& result, const std::vector<
                 {"defaults", defaults(scene)},
                 {"inputs", inputs(scene)},
                 {"computation", computation(scene, result)}});
-    for (const Comparison& compared : comparisons) {
+    for (const run::Comparison& compared : comparisons) {
         all["comparisons"].push_back(comparison(compared, scene, result));
     }
     return all;

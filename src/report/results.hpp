@@ -15,48 +15,49 @@ constexpr int results_version = 2;
 
 /// The head of every results.json: `format`, version, program and time; then, if given, the scene's description.
 [[nodiscard]] Json results_head(std::string_view format);
-[[nodiscard]] Json results_head(std::string_view format, const Scene& scene);
+[[nodiscard]] Json results_head(std::string_view format, const scene::Scene& scene);
 
-[[nodiscard]] Json run_results(const Scene& scene, const RunResult& result, const std::vector<Comparison>& comparisons);
+[[nodiscard]] Json run_results(const scene::Scene& scene, const run::RunResult& result,
+                               const std::vector<run::Comparison>& comparisons);
 
 // Its parts. Null where there is nothing to tell.
 /// What `[report]` says: client, reference, ...; null where it says nothing.
-[[nodiscard]] Json title_block(const ReportSpec& report);
-[[nodiscard]] Json status(const RunResult& result);
+[[nodiscard]] Json title_block(const params::ReportSpec& report);
+[[nodiscard]] Json status(const run::RunResult& result);
 /// Compression of the debris, and what to change if it was too high.
-[[nodiscard]] Json compression(const Scene& scene, const RunResult& result);
-[[nodiscard]] Json key_figures(const Scene& scene, const RunResult& result);
-[[nodiscard]] Json quality(const Scene& scene, const RunResult& result);
+[[nodiscard]] Json compression(const scene::Scene& scene, const run::RunResult& result);
+[[nodiscard]] Json key_figures(const scene::Scene& scene, const run::RunResult& result);
+[[nodiscard]] Json quality(const scene::Scene& scene, const run::RunResult& result);
 /// Computed front velocities compared with those observed in the field.
-[[nodiscard]] Json observations(const Scene& scene, const RunResult& result);
+[[nodiscard]] Json observations(const scene::Scene& scene, const run::RunResult& result);
 /// Classes of a guideline and the area of each.
-[[nodiscard]] Json intensity(const Scene& scene, const RunResult& result);
-[[nodiscard]] Json buildings(const Scene& scene, const RunResult& result);
-[[nodiscard]] Json barriers(const RunResult& result);
+[[nodiscard]] Json intensity(const scene::Scene& scene, const run::RunResult& result);
+[[nodiscard]] Json buildings(const scene::Scene& scene, const run::RunResult& result);
+[[nodiscard]] Json barriers(const run::RunResult& result);
 /// Force over time on the structures that were hit.
-[[nodiscard]] Json force_chart(const RunResult& result);
+[[nodiscard]] Json force_chart(const run::RunResult& result);
 /// Front velocity, ground profile and arrival time against chainage, one below the other.
-[[nodiscard]] Json front_chart(const Scene& scene, const RunResult& result);
+[[nodiscard]] Json front_chart(const scene::Scene& scene, const run::RunResult& result);
 /// Extends both ranges to include the front velocities observed in the field.
-void include_observations(const Scene& scene, ValueRange& chainages, ValueRange& speeds);
+void include_observations(const scene::Scene& scene, ValueRange& chainages, ValueRange& speeds);
 /// Draws these velocities with one standard deviation to either side.
-void mark_observations(const Scene& scene, Plot& velocity);
+void mark_observations(const scene::Scene& scene, Plot& velocity);
 /// Energy, volumes, largest speed and compression over time.
-[[nodiscard]] Json time_chart(const RunResult& result);
-[[nodiscard]] Json zones(const Scene& scene);
-[[nodiscard]] Json inflow(const Scene& scene, const RunResult& result);
-[[nodiscard]] Json erosion(const Scene& scene, const RunResult& result);
-[[nodiscard]] Json comparison(const Comparison& comparison, const Scene& scene, const RunResult& base);
+[[nodiscard]] Json time_chart(const run::RunResult& result);
+[[nodiscard]] Json zones(const scene::Scene& scene);
+[[nodiscard]] Json inflow(const scene::Scene& scene, const run::RunResult& result);
+[[nodiscard]] Json erosion(const scene::Scene& scene, const run::RunResult& result);
+[[nodiscard]] Json comparison(const run::Comparison& comparison, const scene::Scene& scene, const run::RunResult& base);
 /// Which laws the scene uses.
-[[nodiscard]] Json method(const Scene& scene);
-[[nodiscard]] Json chosen_values(const Scene& scene, const RunResult& result);
+[[nodiscard]] Json method(const scene::Scene& scene);
+[[nodiscard]] Json chosen_values(const scene::Scene& scene, const run::RunResult& result);
 /// The keys that the scene sets, and those at their defaults with their number.
-[[nodiscard]] Json parameters(const Scene& scene);
-[[nodiscard]] Json defaults(const Scene& scene);
+[[nodiscard]] Json parameters(const scene::Scene& scene);
+[[nodiscard]] Json defaults(const scene::Scene& scene);
 /// The defaults on which the result rests, for each that the scene does not set, with their number.
-[[nodiscard]] Json not_set(const Scene& scene, const RunResult& result);
-[[nodiscard]] Json inputs(const Scene& scene);
-[[nodiscard]] Json computation(const Scene& scene, const RunResult& result);
+[[nodiscard]] Json not_set(const scene::Scene& scene, const run::RunResult& result);
+[[nodiscard]] Json inputs(const scene::Scene& scene);
+[[nodiscard]] Json computation(const scene::Scene& scene, const run::RunResult& result);
 
 /// "1 building", "2 buildings"
 [[nodiscard]] std::string plural(std::size_t n, std::string_view word);

@@ -27,56 +27,56 @@ std::string capitalised(std::string text) {
 }
 
 /// "Run-out" is not broken at its hyphen.
-std::string heading(const Quantity& quantity) {
+std::string heading(const run::Quantity& quantity) {
     std::string name = capitalised(quantity.name);
     if (const std::size_t hyphen = name.find('-'); hyphen != std::string::npos) name.replace(hyphen, 1, "\u2011");
     return name;
 }
 
-Json change_cell(const Quantity& quantity, const Change& change, bool judged) {
-    if (change.verdict == Verdict::not_measured) return "not measured";
+Json change_cell(const run::Quantity& quantity, const run::Change& change, bool judged) {
+    if (change.verdict == run::Verdict::not_measured) return "not measured";
     Json cell = {{"value", std::isfinite(change.value) ? Json(change.value) : Json("not reached")},
                  {"change_percent", number_or_null<Json>(change.percent)}};
     cell["note"] = std::isfinite(change.percent)  ? formatted(change.percent, "d1") + " %"
                    : std::isfinite(quantity.base) ? "base reached it"
                                                   : "base did not";
-    if (judged) cell["note_tone"] = change.verdict == Verdict::pass ? "good" : "bad";
+    if (judged) cell["note_tone"] = change.verdict == run::Verdict::pass ? "good" : "bad";
     return cell;
 }
 
-Json wall_time(const RunResult& result) {
+Json wall_time(const run::RunResult& result) {
     return {{"value", result.wall_time}, {"format", result.wall_time < 10 ? "f1" : "f0"}};
 }
 
-Json cost_of(const RunResult& result) {
-    const Compression& c = result.observation.compression;
+Json cost_of(const run::RunResult& result) {
+    const observe::Compression& c = result.observation.compression;
     return {
         {"compression", fmt::format("{} / {}", fixed(100 * c.worst_mean, 2), fixed(100 * c.worst_squeezed_share, 1))},
         {"particles", result.particles},
         {"wall_time_s", wall_time(result)}};
 }
 
-Json missing_row(const std::vector<Column>& columns, Json row, const VariantRun& run) {
+Json missing_row(const std::vector<Column>& columns, Json row, const run::VariantRun& run) {
     row["fills"] = columns[1].key;
     row[columns[1].key] = "missing: " + run.missing;
     return row;
 }
 
 /// A row per run with its changes.
-Json rows_of_runs(const Comparison& comparison, const RunResult& base) {
+Json rows_of_runs(const run::Comparison& comparison, const run::RunResult& base) {
     std::vector<Column> columns = {{"run", "Run", ""}};
-    for (const Quantity& q : comparison.quantities)
+    for (const run::Quantity& q : comparison.quantities)
         columns.push_back({q.key, heading(q), q.unit, "s3", "", "not measured"});
     columns.push_back({"compression", "Compression", "mean / squeezed, %", "", "n"});
     columns.push_back({"particles", "Particles", "", "f0"});
     columns.push_back({"wall_time_s", "Wall time", "s", "f0"});
     Json all = table(columns, "comparison");
     Json first = {{"row_style", "base"}, {"run", {{"value", base_name}, {"sample", base_style}}}};
-    for (const Quantity& q : comparison.quantities) first[q.key] = number_or_null<Json>(q.base);
+    for (const run::Quantity& q : comparison.quantities) first[q.key] = number_or_null<Json>(q.base);
     first.update(cost_of(base));
     all["rows"].push_back(std::move(first));
     for (std::size_t i = 0; i < comparison.rows.size(); ++i) {
-        const Comparison::Row& given = comparison.rows[i];
+        const run::Comparison::Row& given = comparison.rows[i];
         Json row = {{"run", {{"value", given.run.variant.name}, {"sample", variant_style(i)}}}};
         if (!given.run.result) {
             all["rows"].push_back(missing_row(columns, std::move(row), given.run));
@@ -92,7 +92,7 @@ Json rows_of_runs(const Comparison& comparison, const RunResult& base) {
 }
 
 /// A row per quantity with its limit, a column per run: there are few runs and, with buildings, many quantities.
-Json rows_of_quantities(const Comparison& comparison, const RunResult& base) {
+Json rows_of_quantities(const run::Comparison& comparison, const run::RunResult& base) {
     std::vector<Column> columns = {{"quantity", "Quantity", ""}, {"base", base_name, "", "s3", "", "not measured"}};
     const auto key_of = [](std::size_t i) { return fmt::format("run_{}", i); };
     for (std::size_t i = 0; i < comparison.rows.size(); ++i)
@@ -101,27 +101,27 @@ Json rows_of_quantities(const Comparison& comparison, const RunResult& base) {
     Json all = table(columns, "comparison");
     const auto add = [&](Json row, const auto& cell) {
         for (std::size_t i = 0; i < comparison.rows.size(); ++i) {
-            const Comparison::Row& run = comparison.rows[i];
+            const run::Comparison::Row& run = comparison.rows[i];
             row[key_of(i)] = run.run.result ? cell(run) : Json("missing");
         }
         all["rows"].push_back(std::move(row));
     };
     for (std::size_t k = 0; k < comparison.quantities.size(); ++k) {
-        const Quantity& q = comparison.quantities[k];
+        const run::Quantity& q = comparison.quantities[k];
         Json row = {{"quantity", capitalised(q.name) + (q.unit.empty() ? "" : ", " + q.unit)},
                     {"base", number_or_null<Json>(q.base)}};
         row["limit"] = q.limit_percent > 0 ? Json(q.limit_percent) : Json("the same");
-        add(std::move(row), [&](const Comparison::Row& run) { return change_cell(q, run.changes[k], true); });
+        add(std::move(row), [&](const run::Comparison::Row& run) { return change_cell(q, run.changes[k], true); });
     }
-    const auto squeezed = [](const RunResult& result) { return cost_of(result)["compression"]; };
+    const auto squeezed = [](const run::RunResult& result) { return cost_of(result)["compression"]; };
     add({{"quantity", "Compression, mean / squeezed, %"}, {"base", squeezed(base)}, {"limit", ""}},
-        [&](const Comparison::Row& run) { return squeezed(*run.run.result); });
+        [&](const run::Comparison::Row& run) { return squeezed(*run.run.result); });
     add({{"quantity", "Particles"}, {"base", {{"value", base.particles}, {"format", "f0"}}}, {"limit", ""}},
-        [](const Comparison::Row& run) {
+        [](const run::Comparison::Row& run) {
             return Json{{"value", run.run.result->particles}, {"format", "f0"}};
         });
     add({{"quantity", "Wall time, s"}, {"base", wall_time(base)}, {"limit", ""}},
-        [](const Comparison::Row& run) { return wall_time(*run.run.result); });
+        [](const run::Comparison::Row& run) { return wall_time(*run.run.result); });
     return all;
 }
 
@@ -130,9 +130,9 @@ struct Front {
     std::vector<double> chainage, velocity, arrival;
 };
 
-Front front_of(std::string style, std::string name, const Observation& observation) {
+Front front_of(std::string style, std::string name, const observe::Observation& observation) {
     Front front{std::move(style), std::move(name), {}, {}, {}};
-    for (const FrontSample& s : observation.front) {
+    for (const observe::FrontSample& s : observation.front) {
         front.chainage.push_back(s.chainage);
         front.velocity.push_back(s.front_velocity);
         front.arrival.push_back(s.arrival_time);
@@ -141,10 +141,10 @@ Front front_of(std::string style, std::string name, const Observation& observati
 }
 
 /// Front velocity and arrival time against chainage, all runs in one plot: the base first, as a broad line.
-Json chart(const Comparison& comparison, const Scene& scene, const RunResult& base) {
+Json chart(const run::Comparison& comparison, const scene::Scene& scene, const run::RunResult& base) {
     std::vector<Front> fronts{front_of(base_style, base_name, base.observation)};
     for (std::size_t i = 0; i < comparison.rows.size(); ++i) {
-        const VariantRun& run = comparison.rows[i].run;
+        const run::VariantRun& run = comparison.rows[i].run;
         if (run.result) fronts.push_back(front_of(variant_style(i), run.variant.name, run.result->observation));
     }
     ValueRange x{0, 0}, speeds{0, 1}, times{0, 1};
@@ -162,7 +162,7 @@ Json chart(const Comparison& comparison, const Scene& scene, const RunResult& ba
     velocity.axes("", "front velocity, m/s");
     arrival.axes("chainage along the flow path, m", "arrival, s");
     velocity.key = arrival.key = Plot::Key::none;  // named above the figure
-    for (const ObservationSpec& o : scene.spec.observations) {
+    for (const params::ObservationSpec& o : scene.spec.observations) {
         velocity.vertical(o.chainage, "observation-line");
         arrival.vertical(o.chainage, "observation-line");
     }
@@ -179,31 +179,31 @@ Json chart(const Comparison& comparison, const Scene& scene, const RunResult& ba
 
 }  // namespace
 
-Json comparison(const Comparison& comparison, const Scene& scene, const RunResult& base) {
-    const bool judged = comparison.kind == ComparisonKind::convergence;
-    const bool converged = judged && comparison.converged() == Answer::yes;
+Json comparison(const run::Comparison& comparison, const scene::Scene& scene, const run::RunResult& base) {
+    const bool judged = comparison.kind == run::ComparisonKind::convergence;
+    const bool converged = judged && comparison.converged() == run::Answer::yes;
     Json not_measured = Json::array();
-    for (const Quantity& q : comparison.quantities) {
+    for (const run::Quantity& q : comparison.quantities) {
         if (!q.not_measured.empty()) not_measured.push_back({{"name", q.name}, {"why", q.not_measured}});
     }
     Json named = Json::array();
-    for (const Comparison::Row& row : comparison.rows) {
-        const Variant& variant = row.run.variant;
+    for (const run::Comparison::Row& row : comparison.rows) {
+        const run::Variant& variant = row.run.variant;
         if (variant.about.empty()) continue;
         named.push_back({{"name", variant.name}, {"sets", variant.overrides}, {"about", variant.about}});
     }
     const bool velocities = std::any_of(comparison.quantities.begin(), comparison.quantities.end(),
-                                        [](const Quantity& q) { return q.unit == "m/s"; });
+                                        [](const run::Quantity& q) { return q.unit == "m/s"; });
     Json missing = Json::array();
-    for (const Comparison::Row& row : comparison.rows) {
+    for (const run::Comparison::Row& row : comparison.rows) {
         if (!row.run.result) missing.push_back({{"name", row.run.variant.name}, {"why", row.run.missing}});
     }
     return {{"kind_of_comparison", judged ? "convergence" : "sensitivity"},
             {"convergence", judged},
             {"converged", converged},
-            {"not_known", judged && comparison.converged() == Answer::unknown},
+            {"not_known", judged && comparison.converged() == run::Answer::unknown},
             {"verdict", capitalised(comparison.verdict_text())},
-            {"counting_force_percent", 100 * counting_force_share},
+            {"counting_force_percent", 100 * run::counting_force_share},
             {"table", judged ? rows_of_quantities(comparison, base) : rows_of_runs(comparison, base)},
             {"not_measured", std::move(not_measured)},
             {"missing", judged ? std::move(missing) : Json::array()},

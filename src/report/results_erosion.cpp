@@ -8,8 +8,8 @@ namespace talus::report {
 namespace {
 
 /// Released volume and volume eroded upstream, against chainage.
-Json erosion_chart(const RunResult& result) {
-    const Erosion& erosion = result.observation.erosion;
+Json erosion_chart(const run::RunResult& result) {
+    const observe::Erosion& erosion = result.observation.erosion;
     if (erosion.chainage.empty() || !(erosion.volume > 0)) return {};
     // To slightly beyond the last increase of the volume.
     const auto last = std::find_if(erosion.upstream.begin(), erosion.upstream.end(),
@@ -31,8 +31,8 @@ Json erosion_chart(const RunResult& result) {
     return chart_json({"Volume against chainage", 1000, 325, {std::move(plot)}});
 }
 
-Json bed_json(const BedSpec& bed) {
-    const bool growth = bed.law == EntrainmentLaw::growth;
+Json bed_json(const params::BedSpec& bed) {
+    const bool growth = bed.law == params::EntrainmentLaw::growth;
     return {{"name", bed.name},
             {"depth_m", bed.depth ? Json(*bed.depth) : Json()},
             {"depth_from_raster", !bed.depth && !bed.depth_raster.empty()},
@@ -46,19 +46,19 @@ Json bed_json(const BedSpec& bed) {
 
 }  // namespace
 
-Json erosion(const Scene& scene, const RunResult& result) {
+Json erosion(const scene::Scene& scene, const run::RunResult& result) {
     if (scene.bed.empty()) return {};
     const double volume = result.observation.erosion.volume;
     Json json = {{"volume_m3", volume},
                  {"share_of_released", volume / result.observation.volume_released},
                  {"beds", Json::array()},
                  {"chart", erosion_chart(result)}};
-    for (const BedSpec& bed : scene.spec.beds) json["beds"].push_back(bed_json(bed));
+    for (const params::BedSpec& bed : scene.spec.beds) json["beds"].push_back(bed_json(bed));
     return json;
 }
 
-Json zones(const Scene& scene) {
-    const MaterialSpec& material = scene.spec.material;
+Json zones(const scene::Scene& scene) {
+    const params::MaterialSpec& material = scene.spec.material;
     if (scene.spec.zones.empty() && scene.bed.empty()) return {};
     return {{"elsewhere", scene.spec.zones.empty()
                               ? Json()

@@ -21,7 +21,7 @@ struct Bend {
 };
 
 /// Bends of more than 30 degrees, measured between the directions `reach` metres before and after.
-std::vector<Bend> bends(const FlowPath& path, double end) {
+std::vector<Bend> bends(const terrain::FlowPath& path, double end) {
     const double reach = std::clamp(0.05 * path.length(), 6.0, 20.0);
     const auto turn_at = [&](double c) {
         const PlanPoint a = path.point_at(c - reach), m = path.point_at(c), b = path.point_at(c + reach);
@@ -52,7 +52,7 @@ struct Profile {
     double step = 1;
 };
 
-Profile profile_along(const Scene& scene, double end) {
+Profile profile_along(const scene::Scene& scene, double end) {
     Profile p;
     p.step = end / 600;
     for (int i = 0; i <= 600; ++i) {
@@ -68,9 +68,9 @@ struct Columns {
     std::vector<double> chainage, velocity, speed, arrival;
 };
 
-Columns front_columns(const Observation& observation) {
+Columns front_columns(const observe::Observation& observation) {
     Columns c;
-    for (const FrontSample& s : observation.front) {
+    for (const observe::FrontSample& s : observation.front) {
         c.chainage.push_back(s.chainage);
         c.velocity.push_back(s.front_velocity);
         c.speed.push_back(s.particle_speed);
@@ -79,14 +79,15 @@ Columns front_columns(const Observation& observation) {
     return c;
 }
 
-void draw_profile(Plot& plot, const Scene& scene, const RunResult& result, const Profile& profile, double end) {
+void draw_profile(Plot& plot, const scene::Scene& scene, const run::RunResult& result, const Profile& profile,
+                  double end) {
     const std::vector<double> floor(profile.chainage.size(), profile.range.low);
     std::vector<double> top = profile.elevation;
     for (double& z : top) z = std::isnan(z) ? profile.range.low : z;
     plot.band(profile.chainage, floor, top, "ground-fill");
     plot.line(profile.chainage, profile.elevation, "ground-line");
 
-    const RunOut& run_out = result.observation.run_out;
+    const observe::RunOut& run_out = result.observation.run_out;
     const auto crown = scene.flow_path.locate(run_out.crown), toe = scene.flow_path.locate(run_out.toe);
     if (crown && toe && toe->chainage > crown->chainage) {
         const double foot = profile.at(toe->chainage);
@@ -123,16 +124,16 @@ void draw_profile(Plot& plot, const Scene& scene, const RunResult& result, const
 
 }  // namespace
 
-void include_observations(const Scene& scene, ValueRange& chainages, ValueRange& speeds) {
-    for (const ObservationSpec& o : scene.spec.observations) {
+void include_observations(const scene::Scene& scene, ValueRange& chainages, ValueRange& speeds) {
+    for (const params::ObservationSpec& o : scene.spec.observations) {
         chainages.include(o.chainage);
         speeds.include(o.front_velocity + o.standard_deviation());
     }
 }
 
-void mark_observations(const Scene& scene, Plot& velocity) {
+void mark_observations(const scene::Scene& scene, Plot& velocity) {
     const double cap = 4 * (velocity.x_range.high - velocity.x_range.low) / velocity.width;  // half of it, 4 SVG units
-    for (const ObservationSpec& o : scene.spec.observations) {
+    for (const params::ObservationSpec& o : scene.spec.observations) {
         const double low = std::max(0.0, o.front_velocity - o.standard_deviation());
         const double high = o.front_velocity + o.standard_deviation();
         const std::vector<double> middle(2, o.chainage), ends{o.chainage - cap, o.chainage + cap};
@@ -142,7 +143,7 @@ void mark_observations(const Scene& scene, Plot& velocity) {
     }
 }
 
-Json front_chart(const Scene& scene, const RunResult& result) {
+Json front_chart(const scene::Scene& scene, const run::RunResult& result) {
     const Columns front = front_columns(result.observation);
     ValueRange reached{0, front.chainage.empty() ? 0 : front.chainage.back()}, speeds{0, 1}, times{0, 1};
     include_observations(scene, reached, speeds);
@@ -163,7 +164,7 @@ Json front_chart(const Scene& scene, const RunResult& result) {
     velocity.line(front.chainage, front.velocity, "series blue", "front velocity d(chainage)/dt");
     velocity.line(front.chainage, front.speed, "series orange", "mean particle speed at the front");
     std::vector<double> row_ends;  // SVG x up to which each row of labels is taken
-    for (const ObservationSpec& o : scene.spec.observations) {
+    for (const params::ObservationSpec& o : scene.spec.observations) {
         velocity.vertical(o.chainage, "observation-line");
         // Labels stand above the curves; one that would overlap its neighbour moves down a row.
         const std::string value = fmt::format("observed {} m/s at {} m", plain(o.front_velocity), plain(o.chainage));
@@ -200,21 +201,21 @@ Json front_chart(const Scene& scene, const RunResult& result) {
                        {std::move(velocity), std::move(ground), std::move(arrival)}});
 }
 
-Json time_chart(const RunResult& result) {
+Json time_chart(const run::RunResult& result) {
     const auto& rows = result.observation.timeseries;
     if (rows.size() < 2) return {};
     const std::size_t stride = std::max<std::size_t>(1, rows.size() / 800);
     std::vector<double> t, kinetic, potential, total, speed, mean_compression, squeezed, zero, deposited, moving, held,
         left;
     double lowest = std::numeric_limits<double>::infinity(), most_energy = 0;
-    for (const TimeSample& s : rows) lowest = std::min(lowest, s.potential_energy);
-    for (const TimeSample& s : rows)
+    for (const observe::TimeSample& s : rows) lowest = std::min(lowest, s.potential_energy);
+    for (const observe::TimeSample& s : rows)
         most_energy = std::max(most_energy, s.kinetic_energy + s.potential_energy - lowest);
     const bool mega = most_energy >= 2e6;
     const double unit = mega ? 1e-6 : 1e-3;
-    ValueRange energies{0, 0}, speeds{0, 1}, compressions{0, 100 * squeezed_share_limit * 1.1};
+    ValueRange energies{0, 0}, speeds{0, 1}, compressions{0, 100 * sim::squeezed_share_limit * 1.1};
     for (std::size_t i = 0; i < rows.size(); i += stride) {
-        const TimeSample& s = rows[i];
+        const observe::TimeSample& s = rows[i];
         t.push_back(s.time);
         kinetic.push_back(s.kinetic_energy * unit);
         potential.push_back((s.potential_energy - lowest) * unit);
@@ -260,8 +261,8 @@ Json time_chart(const RunResult& result) {
     compressed.axes("time, s", "compression and squeezed share, %");
     compressed.line(t, mean_compression, "series blue", "mean compression");
     compressed.line(t, squeezed, "series purple", "squeezed share");
-    static_assert(mean_compression_limit == squeezed_share_limit);  // one line for both
-    compressed.horizontal(100 * mean_compression_limit, "limit blue", "limit of both");
+    static_assert(sim::mean_compression_limit == sim::squeezed_share_limit);  // one line for both
+    compressed.horizontal(100 * sim::mean_compression_limit, "limit blue", "limit of both");
     return chart_json({"Energy, volumes, largest speed and compression over time",
                        1000,
                        600,

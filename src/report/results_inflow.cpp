@@ -11,11 +11,11 @@
 namespace talus::report {
 namespace {
 
-double density_of(const InflowSample& row, const Inflow& inflow, const Scene& scene) {
+double density_of(const params::InflowSample& row, const terrain::Inflow& inflow, const scene::Scene& scene) {
     return inflow.has_density() ? row.density : scene.spec.material.rest_density;
 }
 
-std::string way_in(const Inflow& inflow) {
+std::string way_in(const terrain::Inflow& inflow) {
     if (!inflow.over_area()) return "across a line";
     double area = 0;
     for (const Polygon& part : inflow.area) area += plan_area(part);
@@ -24,28 +24,29 @@ std::string way_in(const Inflow& inflow) {
                                              : "down the slope");
 }
 
-Json mass_of(const Inflow& inflow) {
+Json mass_of(const terrain::Inflow& inflow) {
     const double mass = inflow.mass_until(inflow.hydrograph.back().time);
     return {{"mass_t", mass / 1e3}, {"mean_density_kgpm3", mass / inflow.volume()}};
 }
 
 }  // namespace
 
-Json inflow(const Scene& scene, const RunResult& result) {
+Json inflow(const scene::Scene& scene, const run::RunResult& result) {
     if (scene.inflows.empty()) return {};
     ValueRange time{0, result.simulated_time}, discharges{0, 0}, velocities{0, 0};
-    for (const Inflow& one : scene.inflows) {
-        for (const InflowSample& row : one.hydrograph) {
+    for (const terrain::Inflow& one : scene.inflows) {
+        for (const params::InflowSample& row : one.hydrograph) {
             time.include(row.time);
             discharges.include(row.discharge);
             velocities.include(row.velocity);
         }
     }
     const auto any = [&](const auto& holds) { return std::any_of(scene.inflows.begin(), scene.inflows.end(), holds); };
-    const bool densities = any([](const Inflow& one) { return one.has_density(); });
+    const bool densities = any([](const terrain::Inflow& one) { return one.has_density(); });
     ValueRange density_range{0, 0};
-    for (const Inflow& one : scene.inflows) {
-        for (const InflowSample& row : one.hydrograph) density_range.include(1.08 * density_of(row, one, scene));
+    for (const terrain::Inflow& one : scene.inflows) {
+        for (const params::InflowSample& row : one.hydrograph)
+            density_range.include(1.08 * density_of(row, one, scene));
     }
     discharges.high *= 1.08;
     velocities.high *= 1.08;
@@ -56,9 +57,9 @@ Json inflow(const Scene& scene, const RunResult& result) {
     density.axes("time, s", "density, kg/m³");
     Json list = Json::array();
     for (std::size_t k = 0; k < scene.inflows.size(); ++k) {
-        const Inflow& one = scene.inflows[k];
+        const terrain::Inflow& one = scene.inflows[k];
         std::vector<double> t, q, v, rho;
-        for (const InflowSample& row : one.hydrograph) {
+        for (const params::InflowSample& row : one.hydrograph) {
             t.push_back(row.time);
             q.push_back(row.discharge);
             v.push_back(row.velocity);
@@ -78,8 +79,8 @@ Json inflow(const Scene& scene, const RunResult& result) {
     chart.plots = {std::move(discharge), std::move(velocity)};
     if (densities) chart.plots.push_back(std::move(density));
     return {{"list", std::move(list)},
-            {"over_lines", any([](const Inflow& one) { return !one.over_area(); })},
-            {"over_areas", any([](const Inflow& one) { return one.over_area(); })},
+            {"over_lines", any([](const terrain::Inflow& one) { return !one.over_area(); })},
+            {"over_areas", any([](const terrain::Inflow& one) { return one.over_area(); })},
             {"densities", densities},
             {"chart", chart_json(chart)}};
 }

@@ -4,7 +4,7 @@
 
 namespace talus::report {
 
-Json intensity(const Scene& scene, const RunResult& result) {
+Json intensity(const scene::Scene& scene, const run::RunResult& result) {
     const IntensityGuideline& guideline = intensity_guideline(scene.spec.outputs.intensity_guideline);
     const Grid<float> map = intensity_map(guideline, result.observation.maps);
     Json rows = table({{"class", "Class", ""},

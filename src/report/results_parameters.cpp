@@ -14,15 +14,15 @@
 namespace talus::report {
 namespace {
 
-std::string_view kernel_name(KernelChoice kernel) {
+std::string_view kernel_name(params::KernelChoice kernel) {
     switch (kernel) {
-        case KernelChoice::wendland_c2:
+        case params::KernelChoice::wendland_c2:
             return "Wendland C2 with its own gradient";
-        case KernelChoice::cubic_spline:
+        case params::KernelChoice::cubic_spline:
             return "cubic spline with its own gradient";
-        case KernelChoice::spiky:
+        case params::KernelChoice::spiky:
             return "spiky with its own gradient";
-        case KernelChoice::poly6_spiky:
+        case params::KernelChoice::poly6_spiky:
             return "Poly6 density, Spiky gradient (Macklin & Mueller 2013)";
     }
     return "";
@@ -34,8 +34,8 @@ std::string bytes_text(std::uint64_t bytes) {
 }
 
 /// Resistance other than friction and viscosity, if any.
-void add_resistances(Json& rows, const Scene& scene) {
-    const MaterialSpec& material = scene.spec.material;
+void add_resistances(Json& rows, const scene::Scene& scene) {
+    const params::MaterialSpec& material = scene.spec.material;
     const auto add = [&](const std::string& name, const std::string& text) { rows.push_back(fact(name, text)); };
     if (material.viscosity_on_ground) add("Viscosity on the ground", "the debris sticks to it");
     if (material.turbulent_friction) {
@@ -45,7 +45,7 @@ void add_resistances(Json& rows, const Scene& scene) {
         add("Turbulent friction", fmt::format("ξ = {} m/s²{}", plain(*material.turbulent_friction), at));
     }
     if (material.cohesion > 0) add("Cohesion", fmt::format("{} Pa", plain(material.cohesion)));
-    for (const ReleaseSpec& release : scene.spec.releases) {
+    for (const params::ReleaseSpec& release : scene.spec.releases) {
         const double ratio = release.pore_pressure_ratio.value_or(material.pore_pressure_ratio);
         if (ratio <= 0) continue;
         const std::string decay = material.pore_pressure_decay_time
@@ -58,13 +58,13 @@ void add_resistances(Json& rows, const Scene& scene) {
             fmt::format("f = {}, half way at I = {}, grains of {} m", plain(*material.inertial_friction_coefficient),
                         plain(material.inertial_number), plain(material.grain_diameter)));
     }
-    for (const ZoneSpec& zone : scene.spec.zones) {
+    for (const params::ZoneSpec& zone : scene.spec.zones) {
         std::string says;
         const auto say = [&](const std::string& text) { says += (says.empty() ? "" : ", ") + text; };
         if (zone.friction_coefficient) say(fmt::format("f = {}", plain(*zone.friction_coefficient)));
         if (zone.turbulent_friction) say(fmt::format("ξ = {} m/s²", plain(*zone.turbulent_friction)));
         if (zone.cohesion) say(fmt::format("cohesion {} Pa", plain(*zone.cohesion)));
-        if (zone.raster_holds != ZoneRaster::zone_number) say("coefficients of its raster");
+        if (zone.raster_holds != params::ZoneRaster::zone_number) say("coefficients of its raster");
         if (zone.stem_density > 0) {
             say(fmt::format("{} stems of {} m per m²", plain(zone.stem_density), plain(zone.stem_diameter)));
         }
@@ -72,22 +72,22 @@ void add_resistances(Json& rows, const Scene& scene) {
     }
 }
 
-bool has_pore_pressure(const SceneSpec& spec) {
+bool has_pore_pressure(const params::SceneSpec& spec) {
     return spec.material.pore_pressure_ratio > 0 ||
            std::any_of(spec.releases.begin(), spec.releases.end(),
-                       [](const ReleaseSpec& r) { return r.pore_pressure_ratio.value_or(0) > 0; });
+                       [](const params::ReleaseSpec& r) { return r.pore_pressure_ratio.value_or(0) > 0; });
 }
 
 /// The rows of a section have its name above the first.
-std::string heading_of(const Section& section, std::size_t index) {
+std::string heading_of(const params::Section& section, std::size_t index) {
     return fmt::format("[{}]", section.repeats ? fmt::format("{} {}", section.name, index + 1) : section.name);
 }
 
 }  // namespace
 
-Json chosen_values(const Scene& scene, const RunResult& result) {
-    const SolverSpec& solver = scene.spec.solver;
-    const MaterialSpec& material = scene.spec.material;
+Json chosen_values(const scene::Scene& scene, const run::RunResult& result) {
+    const params::SolverSpec& solver = scene.spec.solver;
+    const params::MaterialSpec& material = scene.spec.material;
     Json rows = Json::array();
     const auto add = [&](const char* name, const std::string& text) { rows.push_back(fact(name, text)); };
     add("Particle spacing", fmt::format("{} m", plain(result.particle_spacing)));
@@ -118,29 +118,29 @@ Json chosen_values(const Scene& scene, const RunResult& result) {
 namespace {
 
 /// What is said of a value, as an entry of a table: what happens where there is none.
-Json shown(const Parameter& parameter, const ParameterValue& value) {
-    const std::string text = plain_text(value);
+Json shown(const params::Parameter& parameter, const params::ParameterValue& value) {
+    const std::string text = params::plain_text(value);
     if (!text.empty()) return text;
     return {{"value", parameter.absent.empty() ? "not given" : parameter.absent}, {"tone", "absent"}};
 }
 
 /// Whether the scene says what the value is, or something has changed it since.
-bool is_set(const Scene& scene, const Section& section, std::size_t index, const Parameter& parameter,
-            const ParameterValue& value) {
+bool is_set(const scene::Scene& scene, const params::Section& section, std::size_t index,
+            const params::Parameter& parameter, const params::ParameterValue& value) {
     return scene.given_keys.count(key_path(section, index, parameter)) > 0 ||
-           toml_text(value) != toml_text(default_value(section, parameter));
+           params::toml_text(value) != params::toml_text(default_value(section, parameter));
 }
 
 /// The keys that are set, or those that are not.
-Json parameter_table(const Scene& scene, bool set) {
+Json parameter_table(const scene::Scene& scene, bool set) {
     Json rows = table({{"key", "Key", "", "", "code"},
                        {"value", "Value", "", "", "value"},
                        {"unit", "Unit", "", "", "", ""},
                        {"help", "Meaning", "", "", "help"}},
                       "parameters");
     std::string open;
-    for_each_value(scene.spec, [&](const Section& section, std::size_t index, const Parameter& parameter,
-                                   const ParameterValue& value) {
+    for_each_value(scene.spec, [&](const params::Section& section, std::size_t index,
+                                   const params::Parameter& parameter, const params::ParameterValue& value) {
         // Printed in full elsewhere: at the top, under Assumptions, beside the computed front velocities.
         if (section.name == "scene" || section.name == "report" || section.name == "observation") return;
         if (is_set(scene, section, index, parameter, value) != set) return;
@@ -158,20 +158,20 @@ Json parameter_table(const Scene& scene, bool set) {
 }
 
 /// Whether a result rests on a default of this run.
-bool matters(const Scene& scene, const RunResult& result, const Section& section, std::size_t index,
-             const Parameter& parameter) {
+bool matters(const scene::Scene& scene, const run::RunResult& result, const params::Section& section, std::size_t index,
+             const params::Parameter& parameter) {
     const auto& impacts = result.observation.buildings;
     const auto any = [&](const auto& what) { return std::any_of(impacts.begin(), impacts.end(), what); };
     if (section.name == "buildings") {
-        if (!any([](const BuildingImpact& b) { return b.hit && !b.is_barrier; })) return false;
+        if (!any([](const observe::BuildingImpact& b) { return b.hit && !b.is_barrier; })) return false;
         if (parameter.key == "resistance_Pa") return scene.spec.buildings.resistance_attribute.empty();
         return std::any_of(scene.buildings.begin(), scene.buildings.end(),
-                           [](const Building& b) { return b.height_assumed; });
+                           [](const terrain::Building& b) { return b.height_assumed; });
     }
-    if (section.name == "outputs") return any([](const BuildingImpact& b) { return b.hit; });
+    if (section.name == "outputs") return any([](const observe::BuildingImpact& b) { return b.hit; });
     if (section.name == "release") return !scene.spec.releases[index].volume;
     if (section.name == "bed") {
-        return parameter.key == "law" || scene.spec.beds[index].law == EntrainmentLaw::shear;
+        return parameter.key == "law" || scene.spec.beds[index].law == params::EntrainmentLaw::shear;
     }
     if (parameter.key == "building_friction_coefficient") return !impacts.empty();
     if (parameter.key == "viscosity") return !scene.spec.material.kinematic_viscosity;
@@ -180,17 +180,17 @@ bool matters(const Scene& scene, const RunResult& result, const Section& section
 
 }  // namespace
 
-Json parameters(const Scene& scene) {
+Json parameters(const scene::Scene& scene) {
     return parameter_table(scene, true);
 }
 
-Json defaults(const Scene& scene) {
+Json defaults(const scene::Scene& scene) {
     Json rows = parameter_table(scene, false);
     const std::size_t count = rows["rows"].size();
     return {{"count", count}, {"table", std::move(rows)}};
 }
 
-Json not_set(const Scene& scene, const RunResult& result) {
+Json not_set(const scene::Scene& scene, const run::RunResult& result) {
     Json rows = table({{"assumption", "Assumption", ""},
                        {"value", "Value", "", "", "value"},
                        {"unit", "Unit", "", "", "", ""},
@@ -199,14 +199,14 @@ Json not_set(const Scene& scene, const RunResult& result) {
     const auto add = [&](const std::string& what, Json value, const std::string& unit, const std::string& key) {
         rows["rows"].push_back({{"assumption", what}, {"value", std::move(value)}, {"unit", unit}, {"key", key}});
     };
-    for_each_value(scene.spec, [&](const Section& section, std::size_t index, const Parameter& parameter,
-                                   const ParameterValue& value) {
+    for_each_value(scene.spec, [&](const params::Section& section, std::size_t index,
+                                   const params::Parameter& parameter, const params::ParameterValue& value) {
         if (parameter.assumption.empty() || is_set(scene, section, index, parameter, value)) return;
         if (!matters(scene, result, section, index, parameter)) return;
         add(parameter.assumption, shown(parameter, value), parameter.unit, key_path(section, index, parameter));
     });
     for (std::size_t i = 0; i < scene.releases.size(); ++i) {
-        const Release& release = scene.releases[i];
+        const terrain::Release& release = scene.releases[i];
         if (!release.spec.volume || release.patches.empty()) continue;
         add(fmt::format("Thickness of {}, the same everywhere, from its volume", release.name),
             significant(release.patches.front().thickness, 3), "m", fmt::format("release[{}].thickness_m", i));
@@ -217,16 +217,17 @@ Json not_set(const Scene& scene, const RunResult& result) {
     return count == 0 ? Json() : Json{{"count", count}, {"table", std::move(rows)}};
 }
 
-Json method(const Scene& scene) {
-    const MaterialSpec& material = scene.spec.material;
+Json method(const scene::Scene& scene) {
+    const params::MaterialSpec& material = scene.spec.material;
     const auto& all_zones = scene.spec.zones;
     const auto any_zone = [&](const auto& holds) { return std::any_of(all_zones.begin(), all_zones.end(), holds); };
-    const bool turbulent = material.turbulent_friction || any_zone([](const ZoneSpec& zone) {
-                               return zone.turbulent_friction || zone.raster_holds == ZoneRaster::turbulent_friction;
-                           });
+    const bool turbulent =
+        material.turbulent_friction || any_zone([](const params::ZoneSpec& zone) {
+            return zone.turbulent_friction || zone.raster_holds == params::ZoneRaster::turbulent_friction;
+        });
     const auto& all_barriers = scene.spec.barriers;
     const auto given = [](const auto& value) { return value ? Json(*value) : Json(); };
-    const bool pairwise = scene.spec.solver.internal_friction == InternalFriction::pair;
+    const bool pairwise = scene.spec.solver.internal_friction == params::InternalFriction::pair;
     return {{"pairwise_internal_friction", pairwise},
             {"turbulent_friction",
              turbulent ? Json{{"thickness_m", given(material.turbulent_friction_thickness)}} : Json()},
@@ -235,18 +236,18 @@ Json method(const Scene& scene) {
              has_pore_pressure(scene.spec) ? Json{{"decay_time_s", given(material.pore_pressure_decay_time)}} : Json()},
             {"inertial_friction", material.inertial_friction_coefficient.has_value()},
             {"viscosity_on_ground", static_cast<bool>(material.viscosity_on_ground)},
-            {"stems", any_zone([](const ZoneSpec& zone) { return zone.stem_density > 0; })},
+            {"stems", any_zone([](const params::ZoneSpec& zone) { return zone.stem_density > 0; })},
             {"nets", std::any_of(all_barriers.begin(), all_barriers.end(),
-                                 [](const BarrierSpec& b) { return b.passing_share.has_value(); })},
+                                 [](const params::BarrierSpec& b) { return b.passing_share.has_value(); })},
             {"zones", !all_zones.empty()}};
 }
 
-Json inputs(const Scene& scene) {
+Json inputs(const scene::Scene& scene) {
     Json rows = table({{"role", "Input", ""},
                        {"path", "File", "", "", "path"},
                        {"size", "Size", "", "", "n"},
                        {"fnv1a_64", "Checksum (FNV-1a 64)", "", "", "code"}});
-    for (const InputFile& input : scene.inputs) {
+    for (const scene::InputFile& input : scene.inputs) {
         rows["rows"].push_back({{"role", input.role},
                                 {"path", input.path},
                                 {"size", bytes_text(input.bytes)},
@@ -256,13 +257,13 @@ Json inputs(const Scene& scene) {
     return rows;
 }
 
-Json computation(const Scene& scene, const RunResult& result) {
+Json computation(const scene::Scene& scene, const run::RunResult& result) {
     const Hardware machine = this_machine();
     const GridGeometry& grid = scene.terrain.elevation().geometry;
     Json rows = {
         fact("Result hash", fmt::format("{:016x}, of time, positions and velocities at the end", result.hash)),
-        fact("Program", fmt::format("talus {}, GDAL {}, PROJ {}, compiled with {}", TALUS_VERSION, gdal_version(),
-                                    proj_version(), compiler_version())),
+        fact("Program", fmt::format("talus {}, GDAL {}, PROJ {}, compiled with {}", TALUS_VERSION, geo::gdal_version(),
+                                    geo::proj_version(), compiler_version())),
         fact("Hardware",
              fmt::format("{}, {} of {} logical cores used{}{}{}",
                          machine.cpu.empty() ? "processor not named by the system" : machine.cpu, result.thread_count,
@@ -278,8 +279,8 @@ Json computation(const Scene& scene, const RunResult& result) {
     double total = 0;
     for (const double s : result.stage_times.seconds) total += s;
     std::string stages;
-    for (std::size_t k = 0; total > 0 && k < stage_count; ++k) {
-        stages += fmt::format("{}{}\u00a0{}\u00a0%", k == 0 ? "" : ", ", step_stages[k].name,
+    for (std::size_t k = 0; total > 0 && k < sim::stage_count; ++k) {
+        stages += fmt::format("{}{}\u00a0{}\u00a0%", k == 0 ? "" : ", ", sim::step_stages[k].name,
                               fixed(100 * result.stage_times.seconds[k] / total, 0));
     }
     if (!stages.empty()) rows.push_back(fact("Time per stage", stages));

@@ -18,9 +18,9 @@ constexpr std::size_t most_nets = 4;   // a plot each
 constexpr std::size_t most_rows = 30;  // of the table of buildings
 
 /// Structures with a history to draw, those under the greatest force first.
-std::vector<const BuildingImpact*> drawn(const RunResult& result) {
-    std::vector<const BuildingImpact*> all;
-    for (const BuildingImpact& impact : result.observation.buildings) {
+std::vector<const observe::BuildingImpact*> drawn(const run::RunResult& result) {
+    std::vector<const observe::BuildingImpact*> all;
+    for (const observe::BuildingImpact& impact : result.observation.buildings) {
         if (impact.history.size() > 1 && impact.peak_force > 0) all.push_back(&impact);
     }
     std::stable_sort(all.begin(), all.end(),
@@ -29,7 +29,7 @@ std::vector<const BuildingImpact*> drawn(const RunResult& result) {
     return all;
 }
 
-std::string name_of(const BuildingImpact& impact) {
+std::string name_of(const observe::BuildingImpact& impact) {
     return impact.name.empty() ? "unnamed" : impact.name;
 }
 
@@ -38,9 +38,9 @@ Json seconds(double time) {
 }
 
 /// {"name": ..., "time_s": ...} of those that have such a time; starting with the second, "another".
-Json events(const std::vector<BuildingImpact>& impacts, double BuildingImpact::*time) {
+Json events(const std::vector<observe::BuildingImpact>& impacts, double observe::BuildingImpact::*time) {
     Json list = Json::array();
-    for (const BuildingImpact& impact : impacts) {
+    for (const observe::BuildingImpact& impact : impacts) {
         if (std::isnan(impact.*time)) continue;
         list.push_back({{"name", name_of(impact)}, {"time_s", impact.*time}, {"another", !list.empty()}});
     }
@@ -48,9 +48,9 @@ Json events(const std::vector<BuildingImpact>& impacts, double BuildingImpact::*
 }
 
 /// Balance of the debris that reached a net, for each net that was reached.
-Json net_balances(const std::vector<BuildingImpact>& impacts) {
+Json net_balances(const std::vector<observe::BuildingImpact>& impacts) {
     Json list = Json::array();
-    for (const BuildingImpact& net : impacts) {
+    for (const observe::BuildingImpact& net : impacts) {
         if (!net.hit || std::isnan(net.passing_share)) continue;
         const double all = net.held_volume + net.passed_volume + net.overtopped_volume;
         list.push_back({{"name", name_of(net)},
@@ -66,9 +66,9 @@ Json net_balances(const std::vector<BuildingImpact>& impacts) {
 }
 
 /// Volumes held by nets, passing them and overtopping them, over time.
-Json net_chart(const RunResult& result) {
-    std::vector<const BuildingImpact*> nets;
-    for (const BuildingImpact& impact : result.observation.buildings) {
+Json net_chart(const run::RunResult& result) {
+    std::vector<const observe::BuildingImpact*> nets;
+    for (const observe::BuildingImpact& impact : result.observation.buildings) {
         if (!std::isnan(impact.passing_share) && impact.history.size() > 1) nets.push_back(&impact);
     }
     std::stable_sort(nets.begin(), nets.end(),
@@ -77,10 +77,10 @@ Json net_chart(const RunResult& result) {
     if (nets.empty()) return {};
     constexpr double step = 270;
     Chart chart{"What nets held and let through", 1000, step * static_cast<double>(nets.size()) + 20, {}};
-    for (const BuildingImpact* net : nets) {
+    for (const observe::BuildingImpact* net : nets) {
         ValueRange time{0, 0}, volume{0, 1e-3};
         std::vector<double> t, held, through, over;
-        for (const StructureSample& s : net->history) {
+        for (const observe::StructureSample& s : net->history) {
             t.push_back(s.time);
             held.push_back(s.held_volume);
             through.push_back(s.passed_volume);
@@ -101,7 +101,8 @@ Json net_chart(const RunResult& result) {
     return chart_json(chart);
 }
 
-Json building_rows(const Scene& scene, const std::vector<BuildingImpact>& impacts, std::vector<std::size_t> hit) {
+Json building_rows(const scene::Scene& scene, const std::vector<observe::BuildingImpact>& impacts,
+                   std::vector<std::size_t> hit) {
     std::stable_sort(hit.begin(), hit.end(), [&](std::size_t a, std::size_t b) {
         return impacts[a].peak_impact_pressure > impacts[b].peak_impact_pressure;
     });
@@ -113,7 +114,7 @@ Json building_rows(const Scene& scene, const std::vector<BuildingImpact>& impact
                        {"peak_depth_m", "Depth at walls", "m", "f2"},
                        {"height_m", "Height", "m", "f1"}});
     for (std::size_t k = 0; k < std::min(most_rows, hit.size()); ++k) {
-        const BuildingImpact& b = impacts[hit[k]];
+        const observe::BuildingImpact& b = impacts[hit[k]];
         Json name = {{"value", name_of(b)}, {"mark", fmt::format("hit-{}", impact_class(b))}};
         if (!std::isnan(b.removed_time)) name["note"] = fmt::format("until {} s", fixed(b.removed_time, 1));
         Json height;
@@ -134,20 +135,20 @@ Json building_rows(const Scene& scene, const std::vector<BuildingImpact>& impact
 
 }  // namespace
 
-Json buildings(const Scene& scene, const RunResult& result) {
+Json buildings(const scene::Scene& scene, const run::RunResult& result) {
     const auto& impacts = result.observation.buildings;
     const std::size_t count = hits_among(impacts, false).all;
     if (count == 0) return {};
     std::vector<std::size_t> hit;
-    std::vector<BuildingImpact> all;
+    std::vector<observe::BuildingImpact> all;
     for (std::size_t i = 0; i < impacts.size(); ++i) {
         if (impacts[i].is_barrier) continue;
         all.push_back(impacts[i]);
         if (impacts[i].hit) hit.push_back(i);
     }
-    const auto assumed = static_cast<std::size_t>(std::count_if(scene.buildings.begin(), scene.buildings.end(),
-                                                                [](const Building& b) { return b.height_assumed; }));
-    const Json removed = events(all, &BuildingImpact::removed_time);
+    const auto assumed = static_cast<std::size_t>(std::count_if(
+        scene.buildings.begin(), scene.buildings.end(), [](const terrain::Building& b) { return b.height_assumed; }));
+    const Json removed = events(all, &observe::BuildingImpact::removed_time);
     return {{"count", plural(count, "building")},
             {"hit", hit.size()},
             {"none_hit", hit.empty()},
@@ -157,7 +158,7 @@ Json buildings(const Scene& scene, const RunResult& result) {
             {"assumed_heights", assumed > 0 ? Json(assumed) : Json()}};
 }
 
-Json barriers(const RunResult& result) {
+Json barriers(const run::RunResult& result) {
     const auto& impacts = result.observation.buildings;
     Json rows;
     if (std::any_of(impacts.begin(), impacts.end(), [](const auto& b) { return b.is_barrier; })) {
@@ -172,7 +173,7 @@ Json barriers(const RunResult& result) {
                       {"held_m3", "Held at the end", "m³", "f1"},
                       {"peak_held_m3", "Held at most", "m³", "f1"},
                       {"peak_filling_height_m", "Filled at most", "m", "f2"}});
-        for (const BuildingImpact& b : impacts) {
+        for (const observe::BuildingImpact& b : impacts) {
             if (!b.is_barrier) continue;
             rows["rows"].push_back({{"name", name_of(b)},
                                     {"first_hit_s", seconds(b.first_hit_time)},
@@ -187,18 +188,18 @@ Json barriers(const RunResult& result) {
                                     {"peak_filling_height_m", b.peak_filling_height}});
         }
     }
-    return {{"failures", events(impacts, &BuildingImpact::failure_time)},
+    return {{"failures", events(impacts, &observe::BuildingImpact::failure_time)},
             {"table", std::move(rows)},
             {"nets", net_balances(impacts)},
             {"net_volumes", net_chart(result)}};
 }
 
-Json force_chart(const RunResult& result) {
-    const std::vector<const BuildingImpact*> all = drawn(result);
+Json force_chart(const run::RunResult& result) {
+    const std::vector<const observe::BuildingImpact*> all = drawn(result);
     if (all.empty()) return {};
     ValueRange time{0, 0}, forces{0, 0};
-    for (const BuildingImpact* impact : all) {
-        for (const StructureSample& s : impact->history) {
+    for (const observe::BuildingImpact* impact : all) {
+        for (const observe::StructureSample& s : impact->history) {
             time.include(s.time);
             forces.include(s.force / 1e3);
         }
@@ -209,7 +210,7 @@ Json force_chart(const RunResult& result) {
     plot.key = Plot::Key::beside;
     for (std::size_t k = 0; k < all.size(); ++k) {
         std::vector<double> t, force;
-        for (const StructureSample& s : all[k]->history) {
+        for (const observe::StructureSample& s : all[k]->history) {
             t.push_back(s.time);
             force.push_back(s.force / 1e3);
         }

@@ -30,7 +30,7 @@ std::uint8_t bed_class(std::size_t material) {
 }
 
 /// Zones as areas, beds as stripes.
-ClassImage picture_of(const Scene& scene, const MapFrame& frame) {
+ClassImage picture_of(const scene::Scene& scene, const MapFrame& frame) {
     const GridGeometry& g = scene.terrain.elevation().geometry;
     const double pixels_per_metre = 900 / std::max(frame.area.width(), frame.area.height());
     ClassImage image;
@@ -62,10 +62,11 @@ ClassImage picture_of(const Scene& scene, const MapFrame& frame) {
 }
 
 /// The values of a zone, one per line.
-std::vector<std::string> values_of(const ZoneSpec& zone) {
+std::vector<std::string> values_of(const params::ZoneSpec& zone) {
     std::vector<std::string> lines;
-    if (zone.raster_holds == ZoneRaster::friction_coefficient) lines.emplace_back("friction as its raster says");
-    if (zone.raster_holds == ZoneRaster::turbulent_friction) lines.emplace_back("ξ as its raster says");
+    if (zone.raster_holds == params::ZoneRaster::friction_coefficient)
+        lines.emplace_back("friction as its raster says");
+    if (zone.raster_holds == params::ZoneRaster::turbulent_friction) lines.emplace_back("ξ as its raster says");
     if (zone.friction_coefficient) lines.push_back(fmt::format("friction {}", plain(*zone.friction_coefficient)));
     if (zone.turbulent_friction) lines.push_back(fmt::format("ξ {} m/s²", plain(*zone.turbulent_friction)));
     if (zone.cohesion) lines.push_back(fmt::format("cohesion {} Pa", plain(*zone.cohesion)));
@@ -77,12 +78,12 @@ std::vector<std::string> values_of(const ZoneSpec& zone) {
     return lines;
 }
 
-std::vector<std::string> values_of(const BedSpec& bed) {
+std::vector<std::string> values_of(const params::BedSpec& bed) {
     std::vector<std::string> lines;
     lines.push_back(bed.depth                  ? fmt::format("{} m deep", plain(*bed.depth))
                     : bed.depth_raster.empty() ? "as deep as its polygons say"
                                                : "as deep as its raster says");
-    if (bed.law == EntrainmentLaw::growth) {
+    if (bed.law == params::EntrainmentLaw::growth) {
         lines.push_back(fmt::format("growth {} per m", plain(bed.growth_rate.value_or(0))));
     } else {
         lines.push_back(fmt::format("above {} Pa", plain(bed.critical_shear_stress)));
@@ -116,7 +117,7 @@ double draw_entry(Svg& svg, double x, double y, const Colour& colour, bool strip
 
 }  // namespace
 
-Result<Json> zone_figure(const Scene& scene, const MapContent& content, double contour_interval) {
+Result<Json> zone_figure(const scene::Scene& scene, const MapContent& content, double contour_interval) {
     if (scene.spec.zones.empty() && scene.bed.empty()) return Json();
     const MapFrame frame = map_frame(scene, content);
     TALUS_ASSIGN(auto picture, png_uri(picture_of(scene, frame)));
@@ -130,11 +131,11 @@ Result<Json> zone_figure(const Scene& scene, const MapContent& content, double c
     svg.text("legend-title", x, frame.top + 14, "On the ground");
     double y = frame.top + 26;
     for (std::size_t k = 0; k < scene.spec.zones.size(); ++k) {
-        const ZoneSpec& zone = scene.spec.zones[k];
+        const params::ZoneSpec& zone = scene.spec.zones[k];
         y += draw_entry(svg, x, y, zone_colours.at(k % zone_colours.size()), false, zone.name, values_of(zone));
     }
     for (std::size_t k = 0; k < scene.spec.beds.size(); ++k) {
-        const BedSpec& bed = scene.spec.beds[k];
+        const params::BedSpec& bed = scene.spec.beds[k];
         y += draw_entry(svg, x, y, bed_colours.at(k % bed_colours.size()), true, bed.name, values_of(bed));
     }
     svg.open("g", {{"transform", translation(0, y + 8)}});

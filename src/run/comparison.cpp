@@ -7,25 +7,25 @@
 
 #include <fmt/format.h>
 
-namespace talus {
+namespace talus::run {
 namespace {
 
 struct Measure {
     Quantity quantity;
-    std::function<double(const Observation&)> value;
-    std::function<bool(const Observation&)> same = {};  // where a number alone is not enough: whether it is the same as
-                                                        // in the base
+    std::function<double(const observe::Observation&)> value;
+    std::function<bool(const observe::Observation&)> same = {};  // where a number alone is not enough: whether it is
+                                                                 // the same as in the base
 };
 
-double first_building_hit(const Observation& observation) {
-    double first = never;
-    for (const BuildingImpact& building : observation.buildings) {
+double first_building_hit(const observe::Observation& observation) {
+    double first = observe::never;
+    for (const observe::BuildingImpact& building : observation.buildings) {
         if (building.hit) first = std::fmin(first, building.first_hit_time);  // fmin ignores NaN
     }
     return first;
 }
 
-Measure front_velocity(const Scene& scene, double chainage) {
+Measure front_velocity(const scene::Scene& scene, double chainage) {
     Measure m;
     m.quantity = {.key = fmt::format("front_velocity_at_{:g}_m", chainage),
                   .suffix = "mps",
@@ -33,17 +33,17 @@ Measure front_velocity(const Scene& scene, double chainage) {
                   .unit = "m/s",
                   .not_measured = scene.flow_path.empty() ? "the scene has no flow path"
                                                           : "the front did not get there, or jumped along the path"};
-    m.value = [chainage](const Observation& o) { return front_at(o, chainage).front_velocity; };
+    m.value = [chainage](const observe::Observation& o) { return front_at(o, chainage).front_velocity; };
     return m;
 }
 
 /// The chainage, in whole intervals of front.csv, at 90 % of the front's run in the base.
-double late_chainage(const Scene& scene, const Observation& base) {
+double late_chainage(const scene::Scene& scene, const observe::Observation& base) {
     const double interval = scene.spec.outputs.chainage_interval;
     return interval * std::floor(0.9 * base.run_out.front_chainage / interval);
 }
 
-Measure arrival(const Scene& scene, const Observation& base) {
+Measure arrival(const scene::Scene& scene, const observe::Observation& base) {
     Measure m;
     m.quantity.suffix = m.quantity.unit = "s";
     const bool hit = std::isfinite(first_building_hit(base));
@@ -57,7 +57,7 @@ Measure arrival(const Scene& scene, const Observation& base) {
         m.quantity.key = fmt::format("front_arrival_at_{:g}_m", chainage);
         m.quantity.name = fmt::format("front arrival at {:g} m", chainage);
         m.quantity.not_measured = "the front started beyond";
-        m.value = [chainage](const Observation& o) { return front_at(o, chainage).arrival_time; };
+        m.value = [chainage](const observe::Observation& o) { return front_at(o, chainage).arrival_time; };
     }
     return m;
 }
@@ -69,7 +69,7 @@ Measure run_out() {
                   .name = "run-out",
                   .unit = "m",
                   .not_measured = "no debris is left to measure"};
-    m.value = [](const Observation& o) { return o.run_out.along_flow; };
+    m.value = [](const observe::Observation& o) { return o.run_out.along_flow; };
     return m;
 }
 
@@ -81,7 +81,7 @@ Measure deposit_area() {
                   .unit = "m²",
                   .limit_percent = 10,
                   .not_measured = "nothing was deposited"};
-    m.value = [](const Observation& o) { return o.deposit.area > 0 ? o.deposit.area : never; };
+    m.value = [](const observe::Observation& o) { return o.deposit.area > 0 ? o.deposit.area : observe::never; };
     return m;
 }
 
@@ -93,32 +93,32 @@ Measure deposit_depth() {
                   .unit = "m",
                   .limit_percent = 10,
                   .not_measured = "nothing was deposited"};
-    m.value = [](const Observation& o) { return o.deposit.depth; };
+    m.value = [](const observe::Observation& o) { return o.deposit.depth; };
     return m;
 }
 
-double largest_force(const Observation& observation) {
+double largest_force(const observe::Observation& observation) {
     double largest = 0;
-    for (const BuildingImpact& b : observation.buildings) largest = std::max(largest, b.peak_force);
+    for (const observe::BuildingImpact& b : observation.buildings) largest = std::max(largest, b.peak_force);
     return largest;
 }
 
 /// Indices of the buildings on which the force was a sufficient share of the largest.
-std::vector<std::size_t> counting_hits(const Observation& observation) {
+std::vector<std::size_t> counting_hits(const observe::Observation& observation) {
     const double least = counting_force_share * largest_force(observation);
     std::vector<std::size_t> hits;
     for (std::size_t i = 0; i < observation.buildings.size(); ++i) {
-        const BuildingImpact& b = observation.buildings[i];
+        const observe::BuildingImpact& b = observation.buildings[i];
         if (b.hit && b.peak_force >= least) hits.push_back(i);
     }
     return hits;
 }
 
-void add_buildings(const Observation& base, std::vector<Measure>& all) {
+void add_buildings(const observe::Observation& base, std::vector<Measure>& all) {
     const std::vector<std::size_t> hits = counting_hits(base);
     for (const bool barriers : {false, true}) {
         if (hits_among(base.buildings, barriers).all == 0) continue;
-        const auto hits_in = [barriers](const Observation& o) {
+        const auto hits_in = [barriers](const observe::Observation& o) {
             std::vector<std::size_t> list = counting_hits(o);
             std::erase_if(list, [&](std::size_t i) { return o.buildings[i].is_barrier != barriers; });
             return list;
@@ -130,36 +130,37 @@ void add_buildings(const Observation& base, std::vector<Measure>& all) {
                          .unit = "",
                          .limit_percent = 0,
                          .not_measured = barriers ? "no barrier was hit" : "no building was hit"};
-        list.value = [hits_in](const Observation& o) {
+        list.value = [hits_in](const observe::Observation& o) {
             const std::size_t count = hits_in(o).size();
-            return count > 0 ? static_cast<double>(count) : never;
+            return count > 0 ? static_cast<double>(count) : observe::never;
         };
-        list.same = [hits_in, of_base = hits_in(base)](const Observation& o) { return hits_in(o) == of_base; };
+        list.same = [hits_in, of_base = hits_in(base)](const observe::Observation& o) { return hits_in(o) == of_base; };
         all.push_back(std::move(list));
     }
     for (const std::size_t i : hits) {
         const std::string name = base.buildings[i].name;
         const auto add = [&](const char* key, const char* suffix, const char* what, const char* unit, double scale,
-                             double BuildingImpact::*member) {
+                             double observe::BuildingImpact::*member) {
             Measure m;
             m.quantity = {.key = fmt::format("{}_{}", key, i),
                           .suffix = suffix,
                           .name = fmt::format("{} on {}", what, name),
                           .unit = unit,
                           .limit_percent = 15};
-            m.value = [=](const Observation& o) {
-                return i < o.buildings.size() && o.buildings[i].hit ? o.buildings[i].*member / scale : never;
+            m.value = [=](const observe::Observation& o) {
+                return i < o.buildings.size() && o.buildings[i].hit ? o.buildings[i].*member / scale : observe::never;
             };
             all.push_back(std::move(m));
         };
-        add("peak_force", "kN", "force", "kN", 1e3, &BuildingImpact::peak_force);
-        add("peak_impact_pressure", "kPa", "impact pressure", "kPa", 1e3, &BuildingImpact::peak_impact_pressure);
+        add("peak_force", "kN", "force", "kN", 1e3, &observe::BuildingImpact::peak_force);
+        add("peak_impact_pressure", "kPa", "impact pressure", "kPa", 1e3,
+            &observe::BuildingImpact::peak_impact_pressure);
     }
 }
 
-std::vector<Measure> measures(ComparisonKind kind, const Scene& scene, const Observation& base) {
+std::vector<Measure> measures(ComparisonKind kind, const scene::Scene& scene, const observe::Observation& base) {
     std::vector<Measure> all;
-    for (const ObservationSpec& observed : scene.spec.observations) {
+    for (const params::ObservationSpec& observed : scene.spec.observations) {
         Measure m = front_velocity(scene, observed.chainage);
         const bool twice =
             std::any_of(all.begin(), all.end(), [&](const Measure& a) { return a.quantity.key == m.quantity.key; });
@@ -177,9 +178,9 @@ std::vector<Measure> measures(ComparisonKind kind, const Scene& scene, const Obs
     return all;
 }
 
-Change change_from(const Measure& measure, const Observation& observation) {
+Change change_from(const Measure& measure, const observe::Observation& observation) {
     const double base = measure.quantity.base, value = measure.value(observation);
-    Change change{value, never, Verdict::fail};
+    Change change{value, observe::never, Verdict::fail};
     if (!std::isfinite(base) && !std::isfinite(value)) {
         change.verdict = Verdict::not_measured;
     } else if (base == value) {
@@ -266,7 +267,8 @@ std::string Comparison::verdict_text() const {
     return "convergence not known: " + (missing.empty() ? "nothing could be measured" : missing);
 }
 
-Comparison compare(ComparisonKind kind, const Scene& scene, const RunResult& base, std::vector<VariantRun> runs) {
+Comparison compare(ComparisonKind kind, const scene::Scene& scene, const RunResult& base,
+                   std::vector<VariantRun> runs) {
     const std::vector<Measure> all = measures(kind, scene, base.observation);
     Comparison comparison;
     comparison.kind = kind;
@@ -282,7 +284,7 @@ Comparison compare(ComparisonKind kind, const Scene& scene, const RunResult& bas
 }
 
 NumericalVerdict numerical_verdict(const RunResult& result, const std::vector<Comparison>& comparisons) {
-    const Compression& compression = result.observation.compression;
+    const observe::Compression& compression = result.observation.compression;
     if (!compression.within_limits()) {
         return {Answer::no, fmt::format("not converged: debris too compressed during {:.2g} % of the simulated time",
                                         100 * compression.time_share_above)};
@@ -294,4 +296,4 @@ NumericalVerdict numerical_verdict(const RunResult& result, const std::vector<Co
     return {Answer::unknown, "convergence not tested"};
 }
 
-}  // namespace talus
+}  // namespace talus::run

@@ -8,7 +8,7 @@
 #include "scene/scene.hpp"
 
 /// Changes of a scene's results by its variants, in percent of its run as given (the base).
-namespace talus {
+namespace talus::run {
 
 /// A number by which runs are compared.
 struct Quantity {
@@ -17,7 +17,7 @@ struct Quantity {
     std::string name;          ///< "front velocity at 121 m"
     std::string unit;          ///< "m/s"
     double limit_percent = 5;  ///< change under refinement above which a scene is not converged
-    double base = never;
+    double base = observe::never;
     std::string not_measured = {};  ///< why the base gives no value; empty where it does
 };
 
@@ -33,8 +33,8 @@ enum class Verdict {
 
 /// One quantity of one variant.
 struct Change {
-    double value = never;
-    double percent = never;  ///< of the base's value; NaN: one of the two is unknown, or the base's is zero
+    double value = observe::never;
+    double percent = observe::never;  ///< of the base's value; NaN: one of the two is unknown, or the base's is zero
     Verdict verdict = Verdict::missing;
 };
 
@@ -69,7 +69,7 @@ struct Comparison {
 /// which buildings are hit, and force and pressure on each. Arrival is the first hit of any building if the base hits
 /// one, else when the front passed 90 % of the chainage that it reached in the base. A building counts as hit if its
 /// force reaches `counting_force_share` of the largest in the run: a touch is not a hit.
-[[nodiscard]] Comparison compare(ComparisonKind kind, const Scene& scene, const RunResult& base,
+[[nodiscard]] Comparison compare(ComparisonKind kind, const scene::Scene& scene, const RunResult& base,
                                  std::vector<VariantRun> runs);
 inline constexpr double counting_force_share = 0.05;
 
@@ -80,4 +80,4 @@ struct NumericalVerdict {
 };
 [[nodiscard]] NumericalVerdict numerical_verdict(const RunResult& result, const std::vector<Comparison>& comparisons);
 
-}  // namespace talus
+}  // namespace talus::run

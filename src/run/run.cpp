@@ -10,10 +10,10 @@
 #include "sim/sources/seed.hpp"
 #include "terrain/map_cell.hpp"
 
-namespace talus {
+namespace talus::run {
 namespace {
 
-Status check_particle_count(const Model& model, std::uint32_t seeded, std::uint32_t to_come) {
+Status check_particle_count(const sim::Model& model, std::uint32_t seeded, std::uint32_t to_come) {
     const double particles = static_cast<double>(seeded) + to_come;
     if (particles <= model.solver.particle_limit) return {};
     return Error{
@@ -24,14 +24,14 @@ Status check_particle_count(const Model& model, std::uint32_t seeded, std::uint3
 
 }  // namespace
 
-Result<std::unique_ptr<Run>> Run::start(const Scene& scene, std::optional<double> particle_spacing) {
-    const SceneSpec& spec = scene.spec;
-    const double spacing = particle_spacing.value_or(choose_particle_spacing(spec.solver, total_volume(scene)));
+Result<std::unique_ptr<Run>> Run::start(const scene::Scene& scene, std::optional<double> particle_spacing) {
+    const params::SceneSpec& spec = scene.spec;
+    const double spacing = particle_spacing.value_or(sim::choose_particle_spacing(spec.solver, total_volume(scene)));
     return Threads(spec.solver.thread_count).execute([&]() -> Result<std::unique_ptr<Run>> {
-        Model model = make_model(spec.material, spec.solver, spacing, scene.cover);
-        Ground ground(scene.terrain, scene.buildings, model.support_radius, scene.bed);
-        TALUS_ASSIGN(State state, seed_releases(model, ground, scene.releases));
-        InflowFeeder inflow(model, ground.terrain.frame(), scene.inflows);
+        sim::Model model = sim::make_model(spec.material, spec.solver, spacing, scene.cover);
+        sim::Ground ground(scene.terrain, scene.buildings, model.support_radius, scene.bed);
+        TALUS_ASSIGN(sim::State state, seed_releases(model, ground, scene.releases));
+        sim::InflowFeeder inflow(model, ground.terrain.frame(), scene.inflows);
         TALUS_TRY(check_particle_count(model, state.count, inflow.to_come()));
         return std::make_unique<Run>(RunStart{std::move(model), std::move(ground), std::move(state), std::move(inflow),
                                               scene.flow_path, spec.outputs});
@@ -42,7 +42,8 @@ Run::Run(RunStart start)
     : threads_(start.model.solver.thread_count),
       simulation_(std::move(start.model), std::move(start.ground), std::move(start.state), std::move(start.inflow)),
       observer_(model(), ground(), state(), start.flow_path, start.outputs,
-                start.outputs.map_cell.value_or(default_map_cell(ground().terrain.cell(), model().particle_spacing))),
+                start.outputs.map_cell.value_or(
+                    terrain::default_map_cell(ground().terrain.cell(), model().particle_spacing))),
       rest_(model().solver, start.outputs.deposited_speed),
       deposited_speed_(start.outputs.deposited_speed),
       endless_(start.endless),
@@ -96,9 +97,10 @@ void Run::take_step() {
     }
 }
 
-void Run::change(const std::function<std::uint32_t(Model&, Ground&, State&)>& edit) {
+void Run::change(const std::function<std::uint32_t(sim::Model&, sim::Ground&, sim::State&)>& edit) {
     std::uint32_t first_new_id = 0;
-    simulation_.change([&](Model& model, Ground& ground, State& state) { first_new_id = edit(model, ground, state); });
+    simulation_.change(
+        [&](sim::Model& model, sim::Ground& ground, sim::State& state) { first_new_id = edit(model, ground, state); });
     observer_.follow(model(), ground(), state(), first_new_id);
     rest_.stir(state().time);
     if (phase_ == RunPhase::at_rest) stop(RunPhase::ready, "");
@@ -130,4 +132,4 @@ RunResult Run::result(const std::string& unfinished) const {
     return result;
 }
 
-}  // namespace talus
+}  // namespace talus::run

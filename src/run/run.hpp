@@ -15,16 +15,16 @@
 #include "sim/simulation.hpp"
 #include "sim/sources/inflow.hpp"
 
-namespace talus {
+namespace talus::run {
 
 /// Initial data of a run.
 struct RunStart {
-    Model model;
-    Ground ground;
-    State state;
-    InflowFeeder inflow = {};
-    FlowPath flow_path = {};  ///< empty: no front against chainage
-    OutputSpec outputs = {};
+    sim::Model model;
+    sim::Ground ground;
+    sim::State state;
+    sim::InflowFeeder inflow = {};
+    terrain::FlowPath flow_path = {};  ///< empty: no front against chainage
+    params::OutputSpec outputs = {};
     /// Continues at rest, beyond solver.end_time and after a fault: the caller decides when it ends.
     bool endless = false;
 };
@@ -38,7 +38,7 @@ class Run {
 
     /// A run of a loaded scene, with its releases seeded. `particle_spacing`, m: absent, the scene's own. Errors: a
     /// release smaller than a particle, more particles than solver.particle_limit, including those of inflows.
-    [[nodiscard]] static Result<std::unique_ptr<Run>> start(const Scene& scene,
+    [[nodiscard]] static Result<std::unique_ptr<Run>> start(const scene::Scene& scene,
                                                             std::optional<double> particle_spacing = {});
 
     /// Takes a step and measures it. False: the run was over before, or the step cannot be trusted; see phase().
@@ -48,18 +48,18 @@ class Run {
 
     /// Lets `edit` change model, ground and state, as Simulation::change() does; a run at rest becomes ready again.
     /// `edit` returns the id of the first new particle.
-    void change(const std::function<std::uint32_t(Model&, Ground&, State&)>& edit);
+    void change(const std::function<std::uint32_t(sim::Model&, sim::Ground&, sim::State&)>& edit);
     /// Resets the record of a building, for example after it was moved.
     void forget_building(std::size_t building) { observer_.forget_building(model(), ground(), state(), building); }
 
     [[nodiscard]] RunPhase phase() const { return phase_; }
     /// Why it is at rest, ended or at fault; empty while ready.
     [[nodiscard]] const std::string& stop_reason() const { return stop_reason_; }
-    [[nodiscard]] const Model& model() const { return simulation_.model(); }
-    [[nodiscard]] const Ground& ground() const { return simulation_.ground(); }
-    [[nodiscard]] const State& state() const { return simulation_.state(); }
-    [[nodiscard]] const Simulation& simulation() const { return simulation_; }
-    [[nodiscard]] const Observer& observer() const { return observer_; }
+    [[nodiscard]] const sim::Model& model() const { return simulation_.model(); }
+    [[nodiscard]] const sim::Ground& ground() const { return simulation_.ground(); }
+    [[nodiscard]] const sim::State& state() const { return simulation_.state(); }
+    [[nodiscard]] const sim::Simulation& simulation() const { return simulation_; }
+    [[nodiscard]] const observe::Observer& observer() const { return observer_; }
     /// Parallel work on the run must use them.
     [[nodiscard]] const Threads& threads() const { return threads_; }
     [[nodiscard]] double wall_time() const { return wall_time_; }  ///< s, of the steps alone
@@ -74,8 +74,8 @@ class Run {
     [[nodiscard]] bool no_debris() const { return state().count == 0 && simulation_.inflow().to_come() == 0; }
 
     Threads threads_;
-    Simulation simulation_;
-    Observer observer_;
+    sim::Simulation simulation_;
+    observe::Observer observer_;
     RestDetector rest_;
     double deposited_speed_;
     bool endless_;
@@ -84,4 +84,4 @@ class Run {
     double wall_time_ = 0, smallest_time_step_, largest_time_step_ = 0;
 };
 
-}  // namespace talus
+}  // namespace talus::run

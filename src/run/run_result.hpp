@@ -6,7 +6,7 @@
 #include "observe/observation.hpp"
 #include "sim/stage_times.hpp"
 
-namespace talus {
+namespace talus::run {
 
 enum class RunPhase {
     ready,    ///< advance() would take a step
@@ -20,8 +20,8 @@ enum class RunStatus { complete, interrupted, fault };
 struct RunResult {
     RunStatus status = RunStatus::complete;
     std::string stop_reason;  ///< "debris came to rest (less than 0.1 % of it moving for 3 s)", the fault, ...
-    Observation observation;
-    StageTimes stage_times;
+    observe::Observation observation;
+    sim::StageTimes stage_times;
     std::uint64_t hash = 0;       ///< of time, ids, positions and velocities at the end, in id order
     std::uint32_t particles = 0;  ///< from releases and inflows, without removed or entrained ones
     std::uint64_t steps = 0;
@@ -35,4 +35,4 @@ struct RunResult {
     [[nodiscard]] double real_time_factor() const { return wall_time > 0 ? simulated_time / wall_time : 0; }
 };
 
-}  // namespace talus
+}  // namespace talus::run

@@ -4,11 +4,11 @@
 
 #include "run/run.hpp"
 
-namespace talus {
+namespace talus::run {
 namespace {
 
 Progress progress_of(const Run& run) {
-    const State& state = run.state();
+    const sim::State& state = run.state();
     Progress progress{};
     progress.time = state.time;
     progress.end_time = run.model().solver.end_time;
@@ -24,7 +24,7 @@ Progress progress_of(const Run& run) {
 
 }  // namespace
 
-Result<RunResult> run_scene(const Scene& scene, const RunOptions& options) {
+Result<RunResult> run_scene(const scene::Scene& scene, const RunOptions& options) {
     const auto started = Run::start(scene);
     if (!started) return Error{scene.file.string() + ": " + started.error().message};
     Run& run = **started;
@@ -44,4 +44,4 @@ Result<RunResult> run_scene(const Scene& scene, const RunOptions& options) {
     return run.result();
 }
 
-}  // namespace talus
+}  // namespace talus::run

@@ -10,7 +10,7 @@
 #include "sim/model.hpp"
 #include "sim/state.hpp"
 
-namespace talus {
+namespace talus::run {
 
 /// Progress after a step.
 struct Progress {
@@ -24,13 +24,13 @@ struct Progress {
 };
 
 struct RunOptions {
-    std::function<void(const Progress&)> on_progress;               ///< called after every step
-    std::function<void(const LocalFrame&, const State&)> on_frame;  ///< called every particle_series_interval
-    const std::atomic<bool>* stop_requested = nullptr;              ///< ends the run as interrupted
+    std::function<void(const Progress&)> on_progress;                    ///< called after every step
+    std::function<void(const LocalFrame&, const sim::State&)> on_frame;  ///< called every particle_series_interval
+    const std::atomic<bool>* stop_requested = nullptr;                   ///< ends the run as interrupted
 };
 
 /// Runs a scene from beginning to end: until debris rests, end_time, a fault, or stop_requested.
 /// Errors (before anything ran): as Run::start(), with the scene's file.
-[[nodiscard]] Result<RunResult> run_scene(const Scene& scene, const RunOptions& options);
+[[nodiscard]] Result<RunResult> run_scene(const scene::Scene& scene, const RunOptions& options);
 
-}  // namespace talus
+}  // namespace talus::run

@@ -7,7 +7,7 @@
 
 #include "simd/parallel.hpp"
 
-namespace talus {
+namespace talus::run {
 namespace {
 
 /// So few particles form no front (front_particle_count), however few there are in total.
@@ -20,10 +20,10 @@ constexpr double fast_share = 1e-4;
 
 }  // namespace
 
-Motion motion_of(const State& state, double deposited_speed) {
+Motion motion_of(const sim::State& state, double deposited_speed) {
     const auto slow = static_cast<float>(deposited_speed * deposited_speed);
     const auto fast = static_cast<float>(fast_ratio * fast_ratio) * slow;
-    const VectorArray& v = state.velocity;
+    const sim::VectorArray& v = state.velocity;
     return simd::reduce_ranges(
         state.count, 8192, Motion{},
         [&](std::size_t first, std::size_t last, Motion sum) {
@@ -39,7 +39,7 @@ Motion motion_of(const State& state, double deposited_speed) {
         });
 }
 
-bool RestDetector::at_rest(const State& state, bool waiting) {
+bool RestDetector::at_rest(const sim::State& state, bool waiting) {
     const double debris = state.count;
     const Motion motion = motion_of(state, deposited_speed_);
     const double enough = std::clamp(share_ * debris, std::min<double>(fewest, debris), debris);
@@ -54,13 +54,13 @@ std::string RestDetector::reason() const {
     return fmt::format("debris came to rest (less than {:.3g} % of it moving for {:.3g} s)", 100 * share_, duration_);
 }
 
-bool still_waiting(const Model& model, const State& state) {
-    return std::any_of(model.releases.begin(), model.releases.end(), [&](const ReleaseGroup& release) {
+bool still_waiting(const sim::Model& model, const sim::State& state) {
+    return std::any_of(model.releases.begin(), model.releases.end(), [&](const sim::ReleaseGroup& release) {
         return state.time <= release.start_time && std::isfinite(release.start_time);
     });
 }
 
-std::string end_time_reason(const Model& model, const State& state, double deposited_speed) {
+std::string end_time_reason(const sim::Model& model, const sim::State& state, double deposited_speed) {
     std::string reached = fmt::format("reached solver.end_time_s = {:.4g}", model.solver.end_time);
     const std::uint32_t moving = motion_of(state, deposited_speed).moving;
     if (moving == 0) return reached;
@@ -68,4 +68,4 @@ std::string end_time_reason(const Model& model, const State& state, double depos
                        moving * model.particle_volume(), 100.0 * moving / state.count);
 }
 
-}  // namespace talus
+}  // namespace talus::run

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <thread>
 
-namespace talus {
+namespace talus::run {
 namespace {
 
 int processor_threads() {
@@ -17,4 +17,4 @@ Threads::Threads(int wanted) : count_(wanted > 0 ? wanted : processor_threads())
     limit_.emplace(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(count_));
 }
 
-}  // namespace talus
+}  // namespace talus::run

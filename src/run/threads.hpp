@@ -5,7 +5,7 @@
 #include <tbb/global_control.h>
 #include <tbb/task_arena.h>
 
-namespace talus {
+namespace talus::run {
 
 /// The threads of one piece of work: all parallel computation takes place within one of these, so that several in a
 /// program do not slow each other down.
@@ -29,4 +29,4 @@ class Threads {
     mutable tbb::task_arena arena_;
 };
 
-}  // namespace talus
+}  // namespace talus::run

@@ -11,24 +11,24 @@
 #include "sim/physics/viscosity.hpp"
 #include "sim/sources/seed.hpp"
 
-namespace talus {
+namespace talus::run {
 namespace {
 
 constexpr std::string_view base_name = "as given";
 
-double spacing_of(const Scene& scene) {
-    return choose_particle_spacing(scene.spec.solver, total_volume(scene));
+double spacing_of(const scene::Scene& scene) {
+    return sim::choose_particle_spacing(scene.spec.solver, total_volume(scene));
 }
 
-double particles_of(const Scene& scene) {
+double particles_of(const scene::Scene& scene) {
     return total_volume(scene) / std::pow(spacing_of(scene), 3);
 }
 
 /// What a run costs, in arbitrary units: particles times iterations, over the time step at a speed that debris has.
-double effort_of(const Scene& scene) {
+double effort_of(const scene::Scene& scene) {
     constexpr double usual_speed = 10;         // m/s
     constexpr double beside_iterations = 2.2;  // cost of neighbours, contacts and observation, in iterations
-    const SolverSpec& solver = scene.spec.solver;
+    const params::SolverSpec& solver = scene.spec.solver;
     const double adaptive =
         std::min(solver.largest_time_step, solver.displacement_limit * spacing_of(scene) / usual_speed);
     return particles_of(scene) * (solver.iteration_count + beside_iterations) / solver.time_step.value_or(adaptive);
@@ -62,26 +62,26 @@ std::string of_variant(const Variant& variant, std::string_view message) {
     return fmt::format("variant {}: {}", variant.name, message);
 }
 
-Result<Scene> load_variant(const SceneSource& source, const Variant& variant) {
+Result<scene::Scene> load_variant(const SceneSource& source, const Variant& variant) {
     std::vector<std::string> overrides = source.overrides;
     overrides.insert(overrides.end(), variant.overrides.begin(), variant.overrides.end());
-    Result<Scene> scene = load_scene(source.file, overrides);
+    Result<scene::Scene> scene = scene::load_scene(source.file, overrides);
     if (!scene) return Error{of_variant(variant, scene.error().message)};
     return scene;
 }
 
-double kinematic_viscosity_of(const Scene& scene) {
-    const MaterialSpec& material = scene.spec.material;
+double kinematic_viscosity_of(const scene::Scene& scene) {
+    const params::MaterialSpec& material = scene.spec.material;
     if (material.kinematic_viscosity) return *material.kinematic_viscosity;
     const double spacing = spacing_of(scene), radius = scene.spec.solver.support_ratio * spacing;
-    return kinematic_viscosity(material.viscosity,
-                               make_kernel(scene.spec.solver.kernel, spacing, radius).second_moment);
+    return sim::kinematic_viscosity(material.viscosity,
+                                    sim::make_kernel(scene.spec.solver.kernel, spacing, radius).second_moment);
 }
 
 }  // namespace
 
-std::vector<Variant> refinements(const Scene& base) {
-    const SolverSpec& solver = base.spec.solver;
+std::vector<Variant> refinements(const scene::Scene& base) {
+    const params::SolverSpec& solver = base.spec.solver;
     Variant step{.name = "half the time step", .overrides = {}};
     if (solver.time_step) {
         step.overrides = {fmt::format("solver.time_step_s={}", *solver.time_step / 2)};
@@ -93,7 +93,7 @@ std::vector<Variant> refinements(const Scene& base) {
     Variant iterations{.name = "double the iterations",
                        .overrides = {fmt::format("solver.iteration_count={}", 2 * solver.iteration_count)}};
     const double map_cell =
-        base.spec.outputs.map_cell.value_or(default_map_cell(base.terrain.cell(), spacing_of(base)));
+        base.spec.outputs.map_cell.value_or(terrain::default_map_cell(base.terrain.cell(), spacing_of(base)));
     Variant particles{.name = "three times the particles",
                       .overrides = {fmt::format("solver.particle_spacing_m={}", spacing_of(base) / std::cbrt(3.0)),
                                     // The same smoothing would be another material at another spacing.
@@ -119,9 +119,9 @@ Result<std::vector<Variant>> variations(std::string_view text) {
     return variants;
 }
 
-std::vector<Variant> named_variants(const SceneSpec& scene) {
+std::vector<Variant> named_variants(const params::SceneSpec& scene) {
     std::vector<Variant> variants;
-    for (const VariantSpec& named : scene.variants) {
+    for (const params::VariantSpec& named : scene.variants) {
         std::string about = named.notes;
         if (!named.source.empty()) about += fmt::format("{}Source: {}", about.empty() ? "" : " ", named.source);
         variants.push_back({.name = named.name, .overrides = named.set, .about = std::move(about)});
@@ -129,10 +129,10 @@ std::vector<Variant> named_variants(const SceneSpec& scene) {
     return variants;
 }
 
-Result<std::vector<Variant>> prepare_variants(const SceneSource& source, const Scene& base,
+Result<std::vector<Variant>> prepare_variants(const SceneSource& source, const scene::Scene& base,
                                               std::vector<Variant> variants) {
     for (Variant& variant : variants) {
-        TALUS_ASSIGN(const Scene scene, load_variant(source, variant));
+        TALUS_ASSIGN(const scene::Scene scene, load_variant(source, variant));
         const auto limit = static_cast<double>(scene.spec.solver.particle_limit);
         if (particles_of(scene) > limit) {
             return Error{fmt::format("variant {}: about {:.0f} particles, more than solver.particle_limit = {:.0f}",
@@ -149,7 +149,7 @@ VariantRun run_variant(const SceneSource& source, const Variant& variant, const 
         run.missing = "interrupted before it began";
         return run;
     }
-    const Result<Scene> scene = load_variant(source, variant);
+    const Result<scene::Scene> scene = load_variant(source, variant);
     if (!scene) {
         run.missing = scene.error().message;
         return run;
@@ -202,4 +202,4 @@ void SeriesClock::variant_ended() {
     ++run_;
 }
 
-}  // namespace talus
+}  // namespace talus::run

@@ -11,7 +11,7 @@
 #include "scene/scene.hpp"
 
 /// Runs of a scene with some of its values set differently, beside its run as given (the base).
-namespace talus {
+namespace talus::run {
 
 struct Variant {
     std::string name;                    ///< "half the time step", "material.friction_coefficient = 0.3"
@@ -34,18 +34,18 @@ struct SceneSource {
 };
 
 /// Half the time step at every moment, double the iterations, three times the particles.
-[[nodiscard]] std::vector<Variant> refinements(const Scene& base);
+[[nodiscard]] std::vector<Variant> refinements(const scene::Scene& base);
 
 /// A variant per value of "section.key=value,value,...", or "section[index].key=..."; commas in brackets or quotes do
 /// not separate. Errors: no key, no value.
 [[nodiscard]] Result<std::vector<Variant>> variations(std::string_view text);
 
 /// The named variants of the scene file.
-[[nodiscard]] std::vector<Variant> named_variants(const SceneSpec& scene);
+[[nodiscard]] std::vector<Variant> named_variants(const params::SceneSpec& scene);
 
 /// Loads every variant once, so that an invalid one is refused before a long run of the base, and fills in `effort`.
 /// Errors: as load_scene, and more particles than the limit.
-[[nodiscard]] Result<std::vector<Variant>> prepare_variants(const SceneSource& source, const Scene& base,
+[[nodiscard]] Result<std::vector<Variant>> prepare_variants(const SceneSource& source, const scene::Scene& base,
                                                             std::vector<Variant> variants);
 
 /// Loads and runs one. A failure is not an error: `missing` gives the reason.
@@ -78,4 +78,4 @@ class SeriesClock {
     double base_wall_time_ = 0, base_end_time_ = 0;  // s
 };
 
-}  // namespace talus
+}  // namespace talus::run

@@ -5,17 +5,17 @@
 
 #include <fmt/format.h>
 
-namespace talus {
+namespace talus::scene {
 namespace {
 
-std::string attribute_names(const PolygonLayer& layer) {
+std::string attribute_names(const geo::PolygonLayer& layer) {
     std::string names;
     for (const auto& [name, value] : layer.features.front().attributes) names += (names.empty() ? "" : ", ") + name;
     return names.empty() ? "none" : names;
 }
 
 /// The attribute as a number, also from a text column that holds one.
-std::optional<double> number_of(const Attribute& attribute) {
+std::optional<double> number_of(const geo::Attribute& attribute) {
     if (const auto* number = std::get_if<double>(&attribute)) return *number;
     const auto* text = std::get_if<std::string>(&attribute);
     if (!text || text->empty()) return std::nullopt;
@@ -28,7 +28,7 @@ std::optional<double> number_of(const Attribute& attribute) {
     }
 }
 
-std::string attribute_text(const Attribute& attribute) {
+std::string attribute_text(const geo::Attribute& attribute) {
     if (const auto* number = std::get_if<double>(&attribute)) return fmt::format("{}", *number);
     if (const auto* text = std::get_if<std::string>(&attribute)) return "\"" + *text + "\"";
     return "empty";
@@ -36,7 +36,7 @@ std::string attribute_text(const Attribute& attribute) {
 
 }  // namespace
 
-Result<double> read_length(const std::string& file, const PolygonLayer& layer, std::size_t feature,
+Result<double> read_length(const std::string& file, const geo::PolygonLayer& layer, std::size_t feature,
                            const LengthAttribute& attribute) {
     const auto& attributes = layer.features[feature].attributes;
     const auto found = attributes.find(attribute.name);
@@ -52,4 +52,4 @@ Result<double> read_length(const std::string& file, const PolygonLayer& layer, s
     return *length;
 }
 
-}  // namespace talus
+}  // namespace talus::scene

@@ -6,7 +6,7 @@
 #include "core/result.hpp"
 #include "geo/vector.hpp"
 
-namespace talus {
+namespace talus::scene {
 
 /// An attribute that must hold a length above 0 m.
 struct LengthAttribute {
@@ -17,7 +17,7 @@ struct LengthAttribute {
 
 /// The attribute of a feature, also from a text column that holds a number, m. Errors: no such attribute (lists the
 /// existing ones), not a number, not above 0 to `most`.
-[[nodiscard]] Result<double> read_length(const std::string& file, const PolygonLayer& layer, std::size_t feature,
+[[nodiscard]] Result<double> read_length(const std::string& file, const geo::PolygonLayer& layer, std::size_t feature,
                                          const LengthAttribute& attribute);
 
-}  // namespace talus
+}  // namespace talus::scene

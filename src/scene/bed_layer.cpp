@@ -4,10 +4,10 @@
 #include <cmath>
 #include <cstdint>
 
-namespace talus {
+namespace talus::scene {
 namespace {
 
-BedMaterial material_of(const BedSpec& spec) {
+terrain::BedMaterial material_of(const params::BedSpec& spec) {
     return {spec.name,
             spec.law,
             spec.growth_rate.value_or(0),
@@ -18,7 +18,7 @@ BedMaterial material_of(const BedSpec& spec) {
 
 /// `depth_at`: m at a world plan position; no layer where it is not above 0.
 template <class DepthAt, class Visit>
-void visit_cells(const Terrain& terrain, const Extent& extent, const DepthAt& depth_at, const Visit& visit) {
+void visit_cells(const terrain::Terrain& terrain, const Extent& extent, const DepthAt& depth_at, const Visit& visit) {
     const Grid<float>& elevation = terrain.elevation();
     const GridGeometry& g = elevation.geometry;
     const auto nearest = [&](double along, int cells) {
@@ -38,7 +38,7 @@ void visit_cells(const Terrain& terrain, const Extent& extent, const DepthAt& de
 
 }  // namespace
 
-void for_each_cell(const BedLayer& layer, const Terrain& terrain,
+void for_each_cell(const BedLayer& layer, const terrain::Terrain& terrain,
                    const std::function<void(std::size_t cell, double depth)>& visit) {
     const Grid<float>* raster = layer.depth_raster.get();
     const auto depth_at = [&](const PlanPoint& p, double depth) -> double {
@@ -56,7 +56,7 @@ void for_each_cell(const BedLayer& layer, const Terrain& terrain,
     }
 }
 
-BedAmount amount_of(const BedLayer& layer, const Terrain& terrain) {
+BedAmount amount_of(const BedLayer& layer, const terrain::Terrain& terrain) {
     const double cell_area = terrain.cell() * terrain.cell();
     BedAmount amount;
     for_each_cell(layer, terrain, [&](std::size_t, double depth) {
@@ -67,8 +67,8 @@ BedAmount amount_of(const BedLayer& layer, const Terrain& terrain) {
     return amount;
 }
 
-Bed lay_bed(const std::vector<BedLayer>& layers, const Terrain& terrain) {
-    Bed bed;
+terrain::Bed lay_bed(const std::vector<BedLayer>& layers, const terrain::Terrain& terrain) {
+    terrain::Bed bed;
     if (layers.empty()) return bed;
     const std::size_t cells = terrain.elevation().values.size();
     bed.material_at.assign(cells, 0);
@@ -85,4 +85,4 @@ Bed lay_bed(const std::vector<BedLayer>& layers, const Terrain& terrain) {
     return bed;
 }
 
-}  // namespace talus
+}  // namespace talus::scene

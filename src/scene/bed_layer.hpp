@@ -11,7 +11,7 @@
 #include "terrain/bed.hpp"
 #include "terrain/terrain.hpp"
 
-namespace talus {
+namespace talus::scene {
 
 /// A layer of loose material and its extent.
 struct BedLayer {
@@ -20,22 +20,22 @@ struct BedLayer {
         double depth = 0;  ///< m, vertical
         bool operator==(const Part&) const = default;
     };
-    BedSpec spec;
+    params::BedSpec spec;
     std::vector<Part> parts;                          ///< none: the extent of the raster; without a raster, everywhere
     std::shared_ptr<const Grid<float>> depth_raster;  ///< m; nullptr: the depth of the parts, or that of `spec`
 };
 
 /// Calls `visit(cell, depth)` for the cells of known ground whose centre is on the layer; m, above 0.
-void for_each_cell(const BedLayer& layer, const Terrain& terrain,
+void for_each_cell(const BedLayer& layer, const terrain::Terrain& terrain,
                    const std::function<void(std::size_t cell, double depth)>& visit);
 
 struct BedAmount {
     double area = 0, volume = 0, deepest = 0;  ///< m2 in plan, m3, m
 };
-[[nodiscard]] BedAmount amount_of(const BedLayer& layer, const Terrain& terrain);
+[[nodiscard]] BedAmount amount_of(const BedLayer& layer, const terrain::Terrain& terrain);
 
 /// Layers on the cells of the terrain; where several overlap the last one applies. There may be at most
 /// Bed::most_materials. Empty, and free of cost, without layers.
-[[nodiscard]] Bed lay_bed(const std::vector<BedLayer>& layers, const Terrain& terrain);
+[[nodiscard]] terrain::Bed lay_bed(const std::vector<BedLayer>& layers, const terrain::Terrain& terrain);
 
-}  // namespace talus
+}  // namespace talus::scene

@@ -9,7 +9,7 @@
 #include "core/try.hpp"
 #include "params/fields.hpp"
 
-namespace talus {
+namespace talus::scene {
 
 Result<std::filesystem::path> unpack_builtin_scene(const std::filesystem::path& folder) {
     std::error_code error;
@@ -33,12 +33,13 @@ void name_builtin_files(Scene& scene, const std::filesystem::path& folder) {
     };
     scene.file = named(scene.file.string());
     for (InputFile& input : scene.inputs) input.path = named(input.path);
-    for (const Section& section : scene_sections()) {
+    for (const params::Section& section : params::scene_sections()) {
         for (std::size_t index = 0; index < section.count(scene.spec); ++index) {
-            for (const Parameter& parameter : section.parameters) {
-                const ParameterValue value = parameter.get(scene.spec, index);
+            for (const params::Parameter& parameter : section.parameters) {
+                const params::ParameterValue value = parameter.get(scene.spec, index);
                 const auto* path = std::get_if<std::string>(&value);
-                if (parameter.kind == ParameterKind::path && path) parameter.set(scene.spec, index, named(*path));
+                if (parameter.kind == params::ParameterKind::path && path)
+                    parameter.set(scene.spec, index, named(*path));
             }
         }
     }
@@ -51,4 +52,4 @@ Result<Scene> load_builtin_scene(const std::filesystem::path& folder, const std:
     return scene;
 }
 
-}  // namespace talus
+}  // namespace talus::scene

@@ -8,7 +8,7 @@
 #include "core/result.hpp"
 #include "scene/scene.hpp"
 
-namespace talus {
+namespace talus::scene {
 
 /// Name of the scene that the program carries inside itself: scenes/<name> of the sources.
 inline constexpr std::string_view builtin_scene_name = "sham_tseng";
@@ -25,4 +25,4 @@ void name_builtin_files(Scene& scene, const std::filesystem::path& folder);
 [[nodiscard]] Result<Scene> load_builtin_scene(const std::filesystem::path& folder,
                                                const std::vector<std::string>& overrides = {});
 
-}  // namespace talus
+}  // namespace talus::scene

@@ -10,7 +10,7 @@
 #include "sim/sources/seed.hpp"
 #include "terrain/map_cell.hpp"
 
-namespace talus {
+namespace talus::scene {
 namespace {
 
 std::string terrain_line(const Scene& scene) {
@@ -27,9 +27,9 @@ std::string terrain_line(const Scene& scene) {
         scene.spec.terrain.extent ? ", cropped" : "");
 }
 
-std::string release_line(const Scene& scene, const Release& release) {
+std::string release_line(const Scene& scene, const terrain::Release& release) {
     double plan = 0;
-    for (const ReleasePatch& patch : release.patches) plan += plan_area(patch.polygon);
+    for (const terrain::ReleasePatch& patch : release.patches) plan += plan_area(patch.polygon);
     const double slope_area = release_slope_area(scene.terrain, release);
     return fmt::format(
         "release     \"{}\": {:.6g} m3, {:.6g} m2 in plan, mean thickness {:.3g} m, starts at {:.4g} s\n", release.name,
@@ -54,14 +54,14 @@ std::string particle_line(const Scene& scene, double volume, double spacing) {
 std::string buildings_line(const Scene& scene) {
     if (scene.buildings.empty()) return "buildings   none\n";
     const auto assumed = std::count_if(scene.buildings.begin(), scene.buildings.end(),
-                                       [](const Building& building) { return building.height_assumed; });
+                                       [](const terrain::Building& building) { return building.height_assumed; });
     const auto barriers = std::count_if(scene.buildings.begin(), scene.buildings.end(),
-                                        [](const Building& building) { return building.barrier.has_value(); });
+                                        [](const terrain::Building& building) { return building.barrier.has_value(); });
     std::string text = fmt::format("buildings   {}, {} with an assumed height\n",
                                    static_cast<std::ptrdiff_t>(scene.buildings.size()) - barriers, assumed);
-    const auto nets = std::count_if(scene.buildings.begin(), scene.buildings.end(), [](const Building& building) {
-        return building.barrier && building.barrier->passing_share;
-    });
+    const auto nets = std::count_if(
+        scene.buildings.begin(), scene.buildings.end(),
+        [](const terrain::Building& building) { return building.barrier && building.barrier->passing_share; });
     if (barriers > 0)
         text += fmt::format("barriers    {}", barriers) + (nets > 0 ? fmt::format(", {} of them nets\n", nets) : "\n");
     return text;
@@ -74,21 +74,21 @@ std::string describe_scene(const Scene& scene) {
     if (scene.spec.scene.reconstruction) out += "            its inputs are reconstructed, not surveyed\n";
     out += terrain_line(scene);
     const double volume = total_volume(scene);
-    for (const Release& release : scene.releases) out += release_line(scene, release);
-    for (const Inflow& inflow : scene.inflows) {
+    for (const terrain::Release& release : scene.releases) out += release_line(scene, release);
+    for (const terrain::Inflow& inflow : scene.inflows) {
         out += fmt::format("inflow      \"{}\": {:.4g} m3 between {:.6g} and {:.6g} s\n", inflow.name, inflow.volume(),
                            inflow.hydrograph.front().time, inflow.hydrograph.back().time);
     }
-    const double spacing = choose_particle_spacing(scene.spec.solver, volume);
+    const double spacing = sim::choose_particle_spacing(scene.spec.solver, volume);
     out += particle_line(scene, volume, spacing);
     out += fmt::format("map cell    {:.4g} m\n",
-                       scene.spec.outputs.map_cell.value_or(default_map_cell(scene.terrain.cell(), spacing)));
+                       scene.spec.outputs.map_cell.value_or(terrain::default_map_cell(scene.terrain.cell(), spacing)));
     out += buildings_line(scene);
     out += scene.flow_path.empty()
                ? "flow path   none\n"
                : fmt::format("flow path   {:.0f} m, {}\n", scene.flow_path.length(),
                              scene.flow_path_traced ? "traced downhill from the release" : "from its file");
-    for (const VariantSpec& variant : scene.spec.variants) {
+    for (const params::VariantSpec& variant : scene.spec.variants) {
         out += fmt::format("variant     {}: {}\n", variant.name, fmt::join(variant.set, ", "));
     }
     if (!scene.notes.empty()) out += "notes\n";
@@ -96,4 +96,4 @@ std::string describe_scene(const Scene& scene) {
     return out;
 }
 
-}  // namespace talus
+}  // namespace talus::scene

@@ -4,10 +4,10 @@
 
 #include "scene/scene.hpp"
 
-namespace talus {
+namespace talus::scene {
 
 /// Summary of a loaded scene and of what running it needs, as lines for a terminal: terrain, releases, particles and
 /// spacing, map cell, buildings, flow path, and every note. Says so when the particles exceed the solver's limit.
 [[nodiscard]] std::string describe_scene(const Scene& scene);
 
-}  // namespace talus
+}  // namespace talus::scene

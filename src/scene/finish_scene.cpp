@@ -5,7 +5,7 @@
 #include "core/try.hpp"
 #include "scene/parse.hpp"
 
-namespace talus {
+namespace talus::scene {
 namespace {
 
 /// Replaces every `${NAME}`; the error is the end of a message about the key.
@@ -34,18 +34,18 @@ bool is_driver_name(const std::string& text) {
 }
 
 Status resolve_paths(ParsedScene& scene) {
-    for (const Section& section : scene_sections()) {
+    for (const params::Section& section : params::scene_sections()) {
         for (std::size_t index = 0; index < section.count(scene.spec); ++index) {
-            for (const Parameter& parameter : section.parameters) {
-                const ParameterValue value = parameter.get(scene.spec, index);
+            for (const params::Parameter& parameter : section.parameters) {
+                const params::ParameterValue value = parameter.get(scene.spec, index);
                 const auto* text = std::get_if<std::string>(&value);
-                if (parameter.kind != ParameterKind::path || !text) continue;
+                if (parameter.kind != params::ParameterKind::path || !text) continue;
                 const Result<std::string> expanded = expand_environment(*text);
                 if (!expanded) {
                     const std::string& obtain = scene.spec.terrain.obtain;
                     const bool tell = section.name == "terrain" && !obtain.empty();
                     return Error{fmt::format("{} = {} {}{}", scene.at(key_path(section, index, parameter)),
-                                             toml_text(value), expanded.error().message,
+                                             params::toml_text(value), expanded.error().message,
                                              tell ? "; to obtain the file: " + one_line(obtain, 4000) : "")};
                 }
                 const std::filesystem::path path = scene.file.parent_path() / *expanded;
@@ -60,7 +60,7 @@ Status resolve_paths(ParsedScene& scene) {
 }  // namespace
 
 Status check_rules(const ParsedScene& scene, double particle_spacing) {
-    for (const Section& section : scene_sections()) {
+    for (const params::Section& section : params::scene_sections()) {
         for (std::size_t index = 0; index < section.count(scene.spec); ++index) {
             auto broken = wrong_choice(section, scene.spec, index, false);
             if (!broken) broken = broken_rule(section, scene.spec, index, particle_spacing);
@@ -73,18 +73,18 @@ Status check_rules(const ParsedScene& scene, double particle_spacing) {
 
 Status finish_scene(ParsedScene& scene) {
     for (std::size_t i = 0; i < scene.spec.releases.size(); ++i) {
-        const ReleaseSpec& release = scene.spec.releases[i];
+        const params::ReleaseSpec& release = scene.spec.releases[i];
         if (!release.file.empty() || !release.thickness_raster.empty()) continue;
         return Error{scene.at(fmt::format("release[{}].file", i)) +
                      " is missing; it must be a file path in quotes, or thickness_raster be given"};
     }
     TALUS_TRY(check_rules(scene, 0));
     for (std::size_t i = 0; i < scene.spec.beds.size(); ++i) {
-        const BedSpec& bed = scene.spec.beds[i];
-        if (bed.law == EntrainmentLaw::growth || !bed.growth_rate) continue;
+        const params::BedSpec& bed = scene.spec.beds[i];
+        if (bed.law == params::EntrainmentLaw::growth || !bed.growth_rate) continue;
         return Error{scene.at(fmt::format("bed[{}].growth_rate_per_m", i)) + ": is not for law = \"shear\""};
     }
     return resolve_paths(scene);
 }
 
-}  // namespace talus
+}  // namespace talus::scene

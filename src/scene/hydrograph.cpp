@@ -15,7 +15,7 @@
 #include "params/fields.hpp"
 #include "scene/load.hpp"
 
-namespace talus {
+namespace talus::scene {
 namespace {
 
 std::string trimmed(const std::string& text) {
@@ -39,7 +39,7 @@ bool read_number(const std::string& text, double& value) {
 
 }  // namespace
 
-Result<std::vector<InflowSample>> read_hydrograph(const InflowSpec& inflow) {
+Result<std::vector<params::InflowSample>> read_hydrograph(const params::InflowSpec& inflow) {
     const std::string& file = inflow.hydrograph;
     std::ifstream in(file, std::ios::binary);
     std::error_code code;
@@ -47,9 +47,9 @@ Result<std::vector<InflowSample>> read_hydrograph(const InflowSpec& inflow) {
     std::string line;
     std::getline(in, line);
     const std::vector<std::string> header = fields_of(line.substr(0, 1000));
-    const Section& table = live_section("hydrograph");
-    std::vector<std::pair<const Parameter*, std::size_t>> columns;  // and its position in a line
-    for (const Parameter& column : table.parameters) {
+    const params::Section& table = params::live_section("hydrograph");
+    std::vector<std::pair<const params::Parameter*, std::size_t>> columns;  // and its position in a line
+    for (const params::Parameter& column : table.parameters) {
         const auto found = std::find(header.begin(), header.end(), column.key);
         if (found != header.end()) {
             columns.emplace_back(&column, found - header.begin());
@@ -60,7 +60,7 @@ Result<std::vector<InflowSample>> read_hydrograph(const InflowSpec& inflow) {
                             file, column.key)};
         }
     }
-    SceneSpec read;
+    params::SceneSpec read;
     read.inflows.push_back(inflow);
     for (std::size_t number = 2; std::getline(in, line); ++number) {
         if (trimmed(line).empty()) continue;
@@ -88,7 +88,7 @@ Result<std::vector<InflowSample>> read_hydrograph(const InflowSpec& inflow) {
     return std::move(read.hydrograph);
 }
 
-Status check_hydrograph(const Inflow& inflow, const SolverSpec& solver, const std::string& at) {
+Status check_hydrograph(const terrain::Inflow& inflow, const params::SolverSpec& solver, const std::string& at) {
     if (!(inflow.volume() > 0)) return Error{at + ": brings no debris at all"};
     const double start = inflow.hydrograph.front().time;
     if (start < solver.end_time) return {};
@@ -96,7 +96,7 @@ Status check_hydrograph(const Inflow& inflow, const SolverSpec& solver, const st
                              solver.end_time)};
 }
 
-Status check_line(const Inflow& inflow, const Terrain& terrain, const std::string& at) {
+Status check_line(const terrain::Inflow& inflow, const terrain::Terrain& terrain, const std::string& at) {
     const double east = inflow.to.x - inflow.from.x, north = inflow.to.y - inflow.from.y;
     if (!(std::hypot(east, north) > 0)) return Error{at + ": both ends of the line are the same place"};
     for (int k = 0; k <= 100; ++k) {
@@ -108,4 +108,4 @@ Status check_line(const Inflow& inflow, const Terrain& terrain, const std::strin
     return {};
 }
 
-}  // namespace talus
+}  // namespace talus::scene

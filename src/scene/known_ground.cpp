@@ -8,9 +8,9 @@
 #include "scene/polygons.hpp"
 #include "terrain/barrier.hpp"
 
-namespace talus {
+namespace talus::scene {
 
-KnownGround known_ground(const Polygon& polygon, const Terrain& terrain) {
+KnownGround known_ground(const Polygon& polygon, const terrain::Terrain& terrain) {
     KnownGround ground;
     const auto look = [&](const PlanPoint& p) {
         const bool known = !std::isnan(terrain.elevation_at(p));
@@ -22,15 +22,15 @@ KnownGround known_ground(const Polygon& polygon, const Terrain& terrain) {
     return ground;
 }
 
-Status check_ground(const Terrain& terrain, const Polygon& polygon, const std::string& at, bool whole) {
+Status check_ground(const terrain::Terrain& terrain, const Polygon& polygon, const std::string& at, bool whole) {
     const KnownGround ground = known_ground(polygon, terrain);
     if (ground.any && !(whole && ground.bare)) return {};
     return Error{fmt::format("{}: reaches {}, where the ground is not known; the terrain covers {} at most", at,
                              place_text(*ground.bare), extent_text(covered_extent(terrain)))};
 }
 
-Status check_area(const Terrain& terrain, const Polygon& polygon, const std::string& at, bool whole) {
-    if (meets_itself(polygon.outer)) return Error{at + ": touches or crosses itself"};
+Status check_area(const terrain::Terrain& terrain, const Polygon& polygon, const std::string& at, bool whole) {
+    if (terrain::meets_itself(polygon.outer)) return Error{at + ": touches or crosses itself"};
     if (!(plan_area(polygon) > 0)) return Error{at + ": has no area"};
     return check_ground(terrain, polygon, at, whole);
 }
@@ -42,9 +42,9 @@ std::string shared_ground(const Polygon& a, const Polygon& b) {
                        place_text(overlap.place));
 }
 
-std::string covers_no_cell(const Terrain& terrain) {
+std::string covers_no_cell(const terrain::Terrain& terrain) {
     return fmt::format("covers the centre of no cell of the terrain, {} in cells of {:.6g} m",
                        extent_text(covered_extent(terrain)), terrain.cell());
 }
 
-}  // namespace talus
+}  // namespace talus::scene

@@ -14,7 +14,7 @@
 #include "scene/viscosity_limit.hpp"
 #include "sim/sources/seed.hpp"
 
-namespace talus {
+namespace talus::scene {
 namespace {
 
 /// "scene.toml" in the folder "valley" is called valley, "valley.toml" too.
@@ -38,9 +38,9 @@ void hash_file(InputFile& input) {
 
 /// Adds `sign` times the depths of a raster, the mean over each cell, to the ground. No data counts as none.
 Status add_depths(const ParsedScene& parsed, const std::string& key, const std::string& file, double sign,
-                  Raster& ground, Scene& scene) {
+                  geo::Raster& ground, Scene& scene) {
     if (file.empty()) return {};
-    const Result<Raster> depths = read_value_raster(file, ground.crs);
+    const Result<geo::Raster> depths = read_value_raster(file, ground.crs);
     if (!depths) return Error{parsed.at("terrain." + key) + ": " + depths.error().message};
     record_input("terrain " + key, file, scene);
     const GridGeometry& g = ground.grid.geometry;
@@ -72,14 +72,14 @@ Status add_depths(const ParsedScene& parsed, const std::string& key, const std::
 
 double total_volume(const Scene& scene) {
     double volume = 0;
-    for (const Release& release : scene.releases) volume += release.volume;
-    for (const Inflow& inflow : scene.inflows) volume += inflow.volume();
+    for (const terrain::Release& release : scene.releases) volume += release.volume;
+    for (const terrain::Inflow& inflow : scene.inflows) volume += inflow.volume();
     return volume;
 }
 
 Status load_terrain(const ParsedScene& parsed, Scene& scene) {
-    const TerrainSpec& spec = parsed.spec.terrain;
-    Result<Raster> raster = read_terrain_raster(spec.file, spec.band, spec.extent);
+    const params::TerrainSpec& spec = parsed.spec.terrain;
+    Result<geo::Raster> raster = geo::read_terrain_raster(spec.file, spec.band, spec.extent);
     if (!raster) {
         std::string message = parsed.at("terrain.file") + ": " + raster.error().message;
         std::error_code code;
@@ -102,7 +102,7 @@ Status load_terrain(const ParsedScene& parsed, Scene& scene) {
     }
     TALUS_TRY(add_depths(parsed, "deposit", spec.deposit, 1, *raster, scene));
     TALUS_TRY(add_depths(parsed, "erosion", spec.erosion, -1, *raster, scene));
-    scene.terrain = Terrain(std::move(raster->grid));
+    scene.terrain = terrain::Terrain(std::move(raster->grid));
     if (!spec.orthophoto.empty()) {
         const Extent extent = scene.terrain.elevation().geometry.extent();
         if (Status s = check_orthophoto(spec.orthophoto, scene.crs, extent); !s) {
@@ -133,7 +133,7 @@ std::string extent_text(const Extent& e) {
     return fmt::format("x {:.1f} to {:.1f}, y {:.1f} to {:.1f}", e.x_min, e.x_max, e.y_min, e.y_max);
 }
 
-Extent covered_extent(const Terrain& terrain) {
+Extent covered_extent(const terrain::Terrain& terrain) {
     return terrain.elevation().geometry.extent().grown(-terrain.cell() / 2);
 }
 
@@ -151,7 +151,7 @@ Result<Scene> assemble_scene(const ParsedScene& parsed) {
     TALUS_TRY(load_releases(parsed, scene));
     TALUS_TRY(load_bed(parsed, scene));
     TALUS_TRY(load_inflows(parsed, scene));
-    const double spacing = choose_particle_spacing(scene.spec.solver, total_volume(scene));
+    const double spacing = sim::choose_particle_spacing(scene.spec.solver, total_volume(scene));
     if (const auto broken = too_viscous(scene.spec.material, scene.spec.solver, spacing)) {
         return Error{parsed.at("material." + broken->key) + broken->text};
     }
@@ -169,4 +169,4 @@ Result<Scene> load_scene(const std::filesystem::path& file, const std::vector<st
     return assemble_scene(parsed);
 }
 
-}  // namespace talus
+}  // namespace talus::scene

@@ -7,7 +7,7 @@
 #include "scene/scene.hpp"
 
 /// The parts of load_scene. Each adds its changes of the inputs to the scene's notes.
-namespace talus {
+namespace talus::scene {
 
 /// Loads and checks everything that the parsed scene names.
 [[nodiscard]] Result<Scene> assemble_scene(const ParsedScene& parsed);
@@ -34,7 +34,7 @@ namespace talus {
 [[nodiscard]] Status load_barriers(const ParsedScene& parsed, Scene& scene);
 
 /// Plan area of a building on a release, m2; touching outlines do not count.
-[[nodiscard]] double shared_area(const Release& release, const Building& building);
+[[nodiscard]] double shared_area(const terrain::Release& release, const terrain::Building& building);
 
 /// Fills scene.flow_path from its file, or by tracing. The terrain and the releases must be loaded.
 [[nodiscard]] Status load_flow_path(const ParsedScene& parsed, Scene& scene);
@@ -54,6 +54,6 @@ void record_input(const std::string& role, const std::string& path, Scene& scene
 [[nodiscard]] std::string extent_text(const Extent& extent);
 
 /// The largest area of known ground: the hull of the cell centres.
-[[nodiscard]] Extent covered_extent(const Terrain& terrain);
+[[nodiscard]] Extent covered_extent(const terrain::Terrain& terrain);
 
-}  // namespace talus
+}  // namespace talus::scene

@@ -8,7 +8,7 @@
 #include "sim/sources/seed.hpp"
 #include "terrain/barrier.hpp"
 
-namespace talus {
+namespace talus::scene {
 namespace {
 
 std::string path_of(std::size_t index) {
@@ -17,7 +17,7 @@ std::string path_of(std::size_t index) {
 
 Status read_line_of(const ParsedScene& parsed, std::size_t index, Scene& scene, const std::string& name,
                     std::vector<PlanPoint>& line) {
-    const BarrierSpec& spec = scene.spec.barriers[index];
+    const params::BarrierSpec& spec = scene.spec.barriers[index];
     line = spec.line;
     if (spec.file.empty()) {
         if (line.size() >= 2) return {};
@@ -43,7 +43,7 @@ Status check_names(const ParsedScene& parsed, const Scene& scene, std::size_t fi
                                      parsed.at(path_of(k - first) + ".name"), scene.buildings[k].name)};
         }
     }
-    const std::vector<BarrierOpeningSpec>& openings = scene.spec.barrier_openings;
+    const std::vector<params::BarrierOpeningSpec>& openings = scene.spec.barrier_openings;
     for (std::size_t k = 0; k < openings.size(); ++k) {
         std::string names;
         bool found = false;
@@ -62,26 +62,26 @@ Status check_names(const ParsedScene& parsed, const Scene& scene, std::size_t fi
 }  // namespace
 
 Status load_barriers(const ParsedScene& parsed, Scene& scene) {
-    TALUS_TRY(check_rules(parsed, choose_particle_spacing(scene.spec.solver, total_volume(scene))));
+    TALUS_TRY(check_rules(parsed, sim::choose_particle_spacing(scene.spec.solver, total_volume(scene))));
     const std::size_t first = scene.buildings.size();
     for (std::size_t k = 0; k < scene.spec.barriers.size(); ++k) {
-        const BarrierSpec& spec = scene.spec.barriers[k];
+        const params::BarrierSpec& spec = scene.spec.barriers[k];
         const std::string path = path_of(k);
         const std::string name = spec.name.empty() ? fmt::format("barrier {}", k + 1) : spec.name;
-        BarrierSpec shape = spec;
+        params::BarrierSpec shape = spec;
         shape.file.clear();
         shape.layer.clear();
         TALUS_TRY(read_line_of(parsed, k, scene, name, shape.line));
-        for (const BarrierOpeningSpec& opening : scene.spec.barrier_openings) {
+        for (const params::BarrierOpeningSpec& opening : scene.spec.barrier_openings) {
             if (opening.barrier != name) continue;
             shape.openings.push_back(opening);
             shape.openings.back().barrier.clear();
         }
-        Result<Building> barrier = make_barrier(scene.terrain, name, shape);
+        Result<terrain::Building> barrier = make_barrier(scene.terrain, name, shape);
         if (!barrier) {
             return Error{parsed.at(path + (spec.file.empty() ? ".line_m" : ".file")) + ": " + barrier.error().message};
         }
-        for (const Release& release : scene.releases) {
+        for (const terrain::Release& release : scene.releases) {
             const double area = shared_area(release, *barrier);
             if (area <= 0) continue;
             return Error{
@@ -94,4 +94,4 @@ Status load_barriers(const ParsedScene& parsed, Scene& scene) {
     return check_names(parsed, scene, first);
 }
 
-}  // namespace talus
+}  // namespace talus::scene

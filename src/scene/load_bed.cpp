@@ -10,26 +10,26 @@
 #include "scene/known_ground.hpp"
 #include "scene/load.hpp"
 
-namespace talus {
+namespace talus::scene {
 namespace {
 
 Status load_one(const ParsedScene& parsed, std::size_t index, Scene& scene) {
-    BedSpec& spec = scene.spec.beds[index];
+    params::BedSpec& spec = scene.spec.beds[index];
     if (spec.name.empty()) spec.name = fmt::format("bed {}", index + 1);
     const std::string label = fmt::format("bed \"{}\"", spec.name);
     const auto refused = [&](const char* key, const Error& error) {
         return Error{parsed.at(fmt::format("bed[{}].{}", index, key)) + ": " + error.message};
     };
-    const double deepest = parameter_of("bed", "depth_m").range.high;
+    const double deepest = params::parameter_of("bed", "depth_m").range.high;
     BedLayer bed;
     if (!spec.depth_raster.empty()) {
-        Result<Raster> read = read_value_raster(spec.depth_raster, scene.crs);
+        Result<geo::Raster> read = read_value_raster(spec.depth_raster, scene.crs);
         if (!read) return refused("depth_raster", read.error());
         record_input(label + " depth", spec.depth_raster, scene);
         bed.depth_raster = std::make_shared<const Grid<float>>(std::move(read->grid));
     }
     if (!spec.file.empty()) {
-        const Result<PolygonLayer> layer = read_polygons(spec.file, spec.layer, scene.crs);
+        const Result<geo::PolygonLayer> layer = read_polygons(spec.file, spec.layer, scene.crs);
         if (!layer) return refused("file", layer.error());
         record_input(label, spec.file, scene);
         if (!layer->reprojection.empty()) scene.notes.push_back(label + ": " + layer->reprojection);
@@ -64,9 +64,9 @@ Status load_one(const ParsedScene& parsed, std::size_t index, Scene& scene) {
 
 Status load_bed(const ParsedScene& parsed, Scene& scene) {
     if (scene.spec.beds.empty()) return {};
-    if (scene.spec.beds.size() > Bed::most_materials) {
+    if (scene.spec.beds.size() > terrain::Bed::most_materials) {
         return Error{fmt::format("{}: {} beds are too many; there can be {}", parsed.at("bed[0].name"),
-                                 scene.spec.beds.size(), Bed::most_materials)};
+                                 scene.spec.beds.size(), terrain::Bed::most_materials)};
     }
     for (std::size_t i = 0; i < scene.spec.beds.size(); ++i) {
         TALUS_TRY(load_one(parsed, i, scene));
@@ -75,4 +75,4 @@ Status load_bed(const ParsedScene& parsed, Scene& scene) {
     return {};
 }
 
-}  // namespace talus
+}  // namespace talus::scene

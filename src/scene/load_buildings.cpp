@@ -13,29 +13,29 @@
 #include "scene/load.hpp"
 #include "scene/polygons.hpp"
 
-namespace talus {
+namespace talus::scene {
 namespace {
 
 /// Maximum height of any building, m.
 double highest_building() {
-    return parameter_of("buildings", "default_height_m").range.high;
+    return params::parameter_of("buildings", "default_height_m").range.high;
 }
 
 /// Whether any part of the footprint stands on known ground.
-bool on_terrain(const PolygonFeature& feature, const Terrain& terrain) {
+bool on_terrain(const geo::PolygonFeature& feature, const terrain::Terrain& terrain) {
     return std::any_of(feature.parts.begin(), feature.parts.end(),
                        [&](const Polygon& part) { return known_ground(part, terrain).any; });
 }
 
-bool any_has(const PolygonLayer& layer, const std::string& attribute) {
-    for (const PolygonFeature& feature : layer.features) {
+bool any_has(const geo::PolygonLayer& layer, const std::string& attribute) {
+    for (const geo::PolygonFeature& feature : layer.features) {
         if (feature.attributes.count(attribute) > 0) return true;
     }
     return false;
 }
 
 Status check_attribute(const ParsedScene& parsed, const std::string& key, const std::string& attribute,
-                       const PolygonLayer& layer) {
+                       const geo::PolygonLayer& layer) {
     if (attribute.empty() || any_has(layer, attribute)) return {};
     std::string names;
     for (const auto& [name, value] : layer.features.front().attributes) names += (names.empty() ? "" : ", ") + name;
@@ -43,7 +43,7 @@ Status check_attribute(const ParsedScene& parsed, const std::string& key, const 
                              parsed.spec.buildings.file, names.empty() ? "none" : names)};
 }
 
-double number_of(const PolygonFeature& feature, const std::string& attribute) {
+double number_of(const geo::PolygonFeature& feature, const std::string& attribute) {
     const auto found = feature.attributes.find(attribute);
     if (found == feature.attributes.end()) return 0;
     if (const auto* number = std::get_if<double>(&found->second)) return *number;
@@ -51,7 +51,7 @@ double number_of(const PolygonFeature& feature, const std::string& attribute) {
     return 0;
 }
 
-std::string name_of(const PolygonFeature& feature, const std::string& attribute, std::size_t number) {
+std::string name_of(const geo::PolygonFeature& feature, const std::string& attribute, std::size_t number) {
     const auto found = feature.attributes.find(attribute);
     if (found != feature.attributes.end()) {
         if (const auto* text = std::get_if<std::string>(&found->second); text && !text->empty()) return *text;
@@ -62,8 +62,8 @@ std::string name_of(const PolygonFeature& feature, const std::string& attribute,
 
 /// A building whose ground fails is no obstacle: it moves with the debris.
 void leave_out_buildings_on_releases(Scene& scene) {
-    std::erase_if(scene.buildings, [&](const Building& building) {
-        for (const Release& release : scene.releases) {
+    std::erase_if(scene.buildings, [&](const terrain::Building& building) {
+        for (const terrain::Release& release : scene.releases) {
             const double area = shared_area(release, building);
             if (area <= 0) continue;
             scene.notes.push_back(
@@ -76,13 +76,13 @@ void leave_out_buildings_on_releases(Scene& scene) {
     });
 }
 
-std::string attribute_of(const MeshBuilding& mesh, const std::string& name) {
+std::string attribute_of(const geo::MeshBuilding& mesh, const std::string& name) {
     const auto found = mesh.attributes.find(name);
     return found == mesh.attributes.end() ? "" : found->second;
 }
 
 Status check_mesh_keys(const ParsedScene& parsed) {
-    const BuildingsSpec& spec = parsed.spec.buildings;
+    const params::BuildingsSpec& spec = parsed.spec.buildings;
     for (const auto& [key, given] :
          {std::pair{"layer", !spec.layer.empty()}, std::pair{"height_attribute", !spec.height_attribute.empty()}}) {
         if (!given) continue;
@@ -95,7 +95,7 @@ Status check_mesh_keys(const ParsedScene& parsed) {
 
 /// Every roof face becomes a part of the footprint with a roof of its own.
 Status load_mesh_buildings(const ParsedScene& parsed, Scene& scene, std::size_t& outside) {
-    const BuildingsSpec& spec = scene.spec.buildings;
+    const params::BuildingsSpec& spec = scene.spec.buildings;
     TALUS_TRY(check_mesh_keys(parsed));
     std::vector<std::string> more_files;
     const auto meshes = read_mesh_buildings(spec.file, scene.crs, more_files);
@@ -103,13 +103,13 @@ Status load_mesh_buildings(const ParsedScene& parsed, Scene& scene, std::size_t&
     record_input("buildings", spec.file, scene);
     for (const std::string& file : more_files) record_input("buildings", file, scene);
     std::size_t sunk = 0;
-    for (const MeshBuilding& mesh : *meshes) {
-        PolygonFeature plan;
-        Building building;
-        static_cast<BuildingSpec&>(building) = spec;
+    for (const geo::MeshBuilding& mesh : *meshes) {
+        geo::PolygonFeature plan;
+        terrain::Building building;
+        static_cast<params::BuildingSpec&>(building) = spec;
         building.height = 0;  // relative to the ground, until that is known
         double highest = -std::numeric_limits<double>::infinity();
-        for (const RoofFace& roof : mesh.roofs) {
+        for (const geo::RoofFace& roof : mesh.roofs) {
             plan.parts.push_back(roof.outline);
             building.part_roof_elevations.push_back(roof.elevation);
             highest = std::max(highest, roof.elevation);
@@ -119,7 +119,7 @@ Status load_mesh_buildings(const ParsedScene& parsed, Scene& scene, std::size_t&
             continue;
         }
         building.footprint = std::move(plan.parts);
-        std::vector<Building> placed{building};
+        std::vector<terrain::Building> placed{building};
         place_buildings(scene.terrain, placed);  // with no height: the mean ground below it
         building.roof_elevation = highest;
         building.height = highest - placed.front().roof_elevation;
@@ -151,8 +151,8 @@ Status load_mesh_buildings(const ParsedScene& parsed, Scene& scene, std::size_t&
 }
 
 Status load_footprints(const ParsedScene& parsed, Scene& scene, std::size_t& outside) {
-    const BuildingsSpec& spec = scene.spec.buildings;
-    const Result<PolygonLayer> layer = read_polygons(spec.file, spec.layer, scene.crs);
+    const params::BuildingsSpec& spec = scene.spec.buildings;
+    const Result<geo::PolygonLayer> layer = read_polygons(spec.file, spec.layer, scene.crs);
     if (!layer) return Error{parsed.at("buildings.file") + ": " + layer.error().message};
     record_input("buildings", spec.file, scene);
     if (!layer->reprojection.empty()) scene.notes.push_back("buildings: " + layer->reprojection);
@@ -161,15 +161,15 @@ Status load_footprints(const ParsedScene& parsed, Scene& scene, std::size_t& out
     TALUS_TRY(check_attribute(parsed, "buildings.resistance_attribute", spec.resistance_attribute, *layer));
     std::size_t assumed = 0;
     for (std::size_t i = 0; i < layer->features.size(); ++i) {
-        const PolygonFeature& feature = layer->features[i];
+        const geo::PolygonFeature& feature = layer->features[i];
         if (!on_terrain(feature, scene.terrain)) {
             ++outside;
             continue;
         }
-        Building building;
+        terrain::Building building;
         building.name = name_of(feature, spec.name_attribute, i + 1);
         building.footprint = feature.parts;
-        static_cast<BuildingSpec&>(building) = spec;
+        static_cast<params::BuildingSpec&>(building) = spec;
         const double height = number_of(feature, spec.height_attribute);
         const double resistance = number_of(feature, spec.resistance_attribute);
         if (spec.resistance) building.resistance.pressure = *spec.resistance;
@@ -197,9 +197,9 @@ Status load_footprints(const ParsedScene& parsed, Scene& scene, std::size_t& out
 
 }  // namespace
 
-double shared_area(const Release& release, const Building& building) {
+double shared_area(const terrain::Release& release, const terrain::Building& building) {
     double area = 0;
-    for (const ReleasePatch& patch : release.patches) {
+    for (const terrain::ReleasePatch& patch : release.patches) {
         for (const Polygon& part : building.footprint) {
             const Overlap overlap = overlap_of(patch.polygon, part);
             if (is_true_overlap(overlap, patch.polygon, part)) area += overlap.area;
@@ -209,11 +209,11 @@ double shared_area(const Release& release, const Building& building) {
 }
 
 Status load_buildings(const ParsedScene& parsed, Scene& scene) {
-    const BuildingsSpec& spec = scene.spec.buildings;
+    const params::BuildingsSpec& spec = scene.spec.buildings;
     if (spec.file.empty()) return {};
     std::size_t outside = 0;
-    Status loaded =
-        is_mesh_file(spec.file) ? load_mesh_buildings(parsed, scene, outside) : load_footprints(parsed, scene, outside);
+    Status loaded = geo::is_mesh_file(spec.file) ? load_mesh_buildings(parsed, scene, outside)
+                                                 : load_footprints(parsed, scene, outside);
     if (!loaded) return loaded;
     if (scene.buildings.empty()) {
         return Error{
@@ -230,4 +230,4 @@ Status load_buildings(const ParsedScene& parsed, Scene& scene) {
     return {};
 }
 
-}  // namespace talus
+}  // namespace talus::scene

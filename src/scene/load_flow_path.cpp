@@ -8,7 +8,7 @@
 #include "scene/load.hpp"
 #include "scene/polygons.hpp"
 
-namespace talus {
+namespace talus::scene {
 namespace {
 
 double distance(const PlanPoint& a, const PlanPoint& b) {
@@ -38,9 +38,9 @@ double distance_to_line(const PlanPoint& p, const std::vector<PlanPoint>& line) 
 
 void note_far_releases(Scene& scene, const std::vector<PlanPoint>& line) {
     const double allowed = scene.spec.flow_path.corridor_width / 2;
-    for (const Release& release : scene.releases) {
+    for (const terrain::Release& release : scene.releases) {
         double nearest = std::numeric_limits<double>::infinity();
-        for (const ReleasePatch& patch : release.patches) {
+        for (const terrain::ReleasePatch& patch : release.patches) {
             for_each_inside(patch.polygon, scene.terrain.cell(),
                             [&](const PlanPoint& p) { nearest = std::min(nearest, distance_to_line(p, line)); });
         }
@@ -58,7 +58,7 @@ struct ReleaseRelief {
     PlanPoint crown, lowest;
 };
 
-ReleaseRelief relief_of(const std::vector<Polygon>& parts, const Terrain& terrain) {
+ReleaseRelief relief_of(const std::vector<Polygon>& parts, const terrain::Terrain& terrain) {
     ReleaseRelief relief;
     double highest = -std::numeric_limits<double>::infinity(), lowest = -highest;
     Extent extent = extent_of(parts.front());
@@ -92,9 +92,9 @@ struct Source {
 
 Source largest_source(const Scene& scene) {
     if (scene.releases.empty()) {
-        const Inflow& inflow =
-            *std::max_element(scene.inflows.begin(), scene.inflows.end(),
-                              [](const Inflow& a, const Inflow& b) { return a.volume() < b.volume(); });
+        const terrain::Inflow& inflow = *std::max_element(
+            scene.inflows.begin(), scene.inflows.end(),
+            [](const terrain::Inflow& a, const terrain::Inflow& b) { return a.volume() < b.volume(); });
         if (inflow.over_area()) {
             const ReleaseRelief relief = relief_of(inflow.area, scene.terrain);
             return {"inflow \"" + inflow.name + "\"", relief.crown, relief.lowest};
@@ -102,10 +102,11 @@ Source largest_source(const Scene& scene) {
         const PlanPoint middle{(inflow.from.x + inflow.to.x) / 2, (inflow.from.y + inflow.to.y) / 2};
         return {"inflow \"" + inflow.name + "\"", middle, middle};
     }
-    const Release& largest = *std::max_element(scene.releases.begin(), scene.releases.end(),
-                                               [](const Release& a, const Release& b) { return a.volume < b.volume; });
+    const terrain::Release& largest =
+        *std::max_element(scene.releases.begin(), scene.releases.end(),
+                          [](const terrain::Release& a, const terrain::Release& b) { return a.volume < b.volume; });
     std::vector<Polygon> parts;
-    for (const ReleasePatch& patch : largest.patches) parts.push_back(patch.polygon);
+    for (const terrain::ReleasePatch& patch : largest.patches) parts.push_back(patch.polygon);
     const ReleaseRelief relief = relief_of(parts, scene.terrain);
     return {"release \"" + largest.name + "\"", relief.crown, relief.lowest};
 }
@@ -114,7 +115,8 @@ Status trace_from_release(const ParsedScene& parsed, Scene& scene) {
     const Source relief = largest_source(scene);
     const Extent extent = scene.terrain.elevation().geometry.extent();
     const double longest = 2 * std::hypot(extent.width(), extent.height());
-    const Result<std::vector<PlanPoint>> traced = trace_flow_path(scene.terrain.elevation(), relief.lowest, longest);
+    const Result<std::vector<PlanPoint>> traced =
+        terrain::trace_flow_path(scene.terrain.elevation(), relief.lowest, longest);
     if (!traced) return Error{parsed.file.string() + ": " + traced.error().message};
     // Chainage starts at the crown: it starts with a straight line through the release.
     std::vector<PlanPoint> points{relief.crown, relief.lowest};
@@ -124,7 +126,7 @@ Status trace_from_release(const ParsedScene& parsed, Scene& scene) {
         scene.notes.emplace_back("flow path: no way downhill leads from the release, there is no chainage; draw one");
         return {};
     }
-    scene.flow_path = FlowPath(points, scene.spec.flow_path.corridor_width);
+    scene.flow_path = terrain::FlowPath(points, scene.spec.flow_path.corridor_width);
     scene.flow_path_traced = true;
     scene.notes.push_back(fmt::format("flow path: traced downhill from {}, {:.0f} m from its crown at {} to {}",
                                       relief.label, scene.flow_path.length(), place_text(points.front()),
@@ -136,9 +138,9 @@ Status trace_from_release(const ParsedScene& parsed, Scene& scene) {
 }  // namespace
 
 Status load_flow_path(const ParsedScene& parsed, Scene& scene) {
-    const FlowPathSpec& spec = scene.spec.flow_path;
+    const params::FlowPathSpec& spec = scene.spec.flow_path;
     if (spec.file.empty()) return trace_from_release(parsed, scene);
-    const Result<LineLayer> layer = read_line(spec.file, spec.layer, scene.crs);
+    const Result<geo::LineLayer> layer = read_line(spec.file, spec.layer, scene.crs);
     if (!layer) return Error{parsed.at("flow_path.file") + ": " + layer.error().message};
     record_input("flow path", spec.file, scene);
     if (!layer->reprojection.empty()) scene.notes.push_back("flow path: " + layer->reprojection);
@@ -163,9 +165,9 @@ Status load_flow_path(const ParsedScene& parsed, Scene& scene) {
         scene.notes.push_back(
             fmt::format("flow path: {} of its {} points lie outside the terrain", outside, points.size()));
     }
-    scene.flow_path = FlowPath(points, spec.corridor_width);
+    scene.flow_path = terrain::FlowPath(points, spec.corridor_width);
     note_far_releases(scene, points);
     return {};
 }
 
-}  // namespace talus
+}  // namespace talus::scene

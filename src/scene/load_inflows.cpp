@@ -8,11 +8,11 @@
 #include "scene/known_ground.hpp"
 #include "scene/load.hpp"
 
-namespace talus {
+namespace talus::scene {
 namespace {
 
-Status load_line(const InflowSpec& spec, const std::string& at, const std::string& label, Inflow& inflow,
-                 Scene& scene) {
+Status load_line(const params::InflowSpec& spec, const std::string& at, const std::string& label,
+                 terrain::Inflow& inflow, Scene& scene) {
     std::vector<PlanPoint> line = spec.line;
     if (!spec.file.empty()) {
         auto layer = read_line(spec.file, spec.layer, scene.crs);
@@ -29,19 +29,19 @@ Status load_line(const InflowSpec& spec, const std::string& at, const std::strin
     return check_line(inflow, scene.terrain, at);
 }
 
-Status load_area(const InflowSpec& spec, const std::string& at, const std::string& label, Inflow& inflow,
-                 Scene& scene) {
+Status load_area(const params::InflowSpec& spec, const std::string& at, const std::string& label,
+                 terrain::Inflow& inflow, Scene& scene) {
     if (!spec.polygon.empty()) {
         if (spec.polygon.size() < 3) {
             return Error{fmt::format("{}: has {} corners; an area needs three or more", at, spec.polygon.size())};
         }
         inflow.area.push_back({spec.polygon, {}});
     } else {
-        const Result<PolygonLayer> layer = read_polygons(spec.polygon_file, spec.layer, scene.crs);
+        const Result<geo::PolygonLayer> layer = read_polygons(spec.polygon_file, spec.layer, scene.crs);
         if (!layer) return Error{at + ": " + layer.error().message};
         record_input(label, spec.polygon_file, scene);
         if (!layer->reprojection.empty()) scene.notes.push_back(label + ": " + layer->reprojection);
-        for (const PolygonFeature& feature : layer->features) {
+        for (const geo::PolygonFeature& feature : layer->features) {
             inflow.area.insert(inflow.area.end(), feature.parts.begin(), feature.parts.end());
         }
     }
@@ -49,7 +49,7 @@ Status load_area(const InflowSpec& spec, const std::string& at, const std::strin
     return {};
 }
 
-std::string where_from(const Inflow& inflow, const Terrain& terrain) {
+std::string where_from(const terrain::Inflow& inflow, const terrain::Terrain& terrain) {
     if (inflow.over_area()) {
         double area = 0;
         for (const Polygon& part : inflow.area) area += plan_area(part);
@@ -68,10 +68,10 @@ std::string where_from(const Inflow& inflow, const Terrain& terrain) {
                        rise > 0.05 ? "; turn the line if it should come from the other side" : "");
 }
 
-Result<Inflow> load_inflow(const ParsedScene& parsed, std::size_t index, Scene& scene) {
-    const InflowSpec& spec = scene.spec.inflows[index];
+Result<terrain::Inflow> load_inflow(const ParsedScene& parsed, std::size_t index, Scene& scene) {
+    const params::InflowSpec& spec = scene.spec.inflows[index];
     const std::string path = fmt::format("inflow[{}].", index);
-    Inflow inflow;
+    terrain::Inflow inflow;
     inflow.name = spec.name.empty() ? fmt::format("inflow {}", index + 1) : spec.name;
     const std::string label = fmt::format("inflow \"{}\"", inflow.name);
     inflow.spec = spec;
@@ -81,23 +81,23 @@ Result<Inflow> load_inflow(const ParsedScene& parsed, std::size_t index, Scene& 
                                                                      : "polygon_file"));
     TALUS_TRY(spec.over_area() ? load_area(spec, at, label, inflow, scene) : load_line(spec, at, label, inflow, scene));
     const std::string at_hydrograph = parsed.at(path + "hydrograph");
-    Result<std::vector<InflowSample>> rows = read_hydrograph(spec);
+    Result<std::vector<params::InflowSample>> rows = read_hydrograph(spec);
     if (!rows) return Error{at_hydrograph + ": " + rows.error().message};
     record_input(label + " hydrograph", spec.hydrograph, scene);
     inflow.hydrograph = std::move(*rows);
     TALUS_TRY(check_hydrograph(inflow, scene.spec.solver, at_hydrograph));
     scene.notes.push_back(fmt::format("{}: {:.6g} m3 {}", label, inflow.volume(), where_from(inflow, scene.terrain)));
-    return Result<Inflow>(std::move(inflow));
+    return Result<terrain::Inflow>(std::move(inflow));
 }
 
 }  // namespace
 
 Status load_inflows(const ParsedScene& parsed, Scene& scene) {
     for (std::size_t index = 0; index < scene.spec.inflows.size(); ++index) {
-        TALUS_ASSIGN(Inflow inflow, load_inflow(parsed, index, scene));
+        TALUS_ASSIGN(terrain::Inflow inflow, load_inflow(parsed, index, scene));
         scene.inflows.push_back(std::move(inflow));
     }
     return {};
 }
 
-}  // namespace talus
+}  // namespace talus::scene

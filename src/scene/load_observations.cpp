@@ -9,12 +9,12 @@
 #include "geo/vector.hpp"
 #include "scene/load.hpp"
 
-namespace talus {
+namespace talus::scene {
 namespace {
 
 void note_observations(Scene& scene) {
     for (std::size_t i = 0; i < scene.spec.observations.size(); ++i) {
-        const ObservationSpec& observation = scene.spec.observations[i];
+        const params::ObservationSpec& observation = scene.spec.observations[i];
         if (scene.flow_path.empty() || observation.chainage <= scene.flow_path.length()) continue;
         scene.notes.push_back(
             fmt::format("observation[{}]: chainage {:.6g} m lies beyond the flow path's end at {:.1f} m", i,
@@ -48,12 +48,12 @@ Status check_places(const ParsedScene& parsed, const Scene& scene, const std::ve
 }
 
 Status check_damages(const ParsedScene& parsed, const Scene& scene) {
-    const std::vector<DamageSpec>& damages = scene.spec.damages;
+    const std::vector<params::DamageSpec>& damages = scene.spec.damages;
     for (std::size_t i = 0; i < damages.size(); ++i) {
         std::vector<std::string> names;
-        for (const Building& building : scene.buildings) names.push_back(building.name);
+        for (const terrain::Building& building : scene.buildings) names.push_back(building.name);
         if (std::find(names.begin(), names.end(), damages[i].building) != names.end()) continue;
-        const std::string nearest = nearest_word(damages[i].building, names);
+        const std::string nearest = params::nearest_word(damages[i].building, names);
         return Error{fmt::format("{} = \"{}\" is no building of the scene; {}",
                                  parsed.at(fmt::format("damage[{}].building", i)), one_line(damages[i].building, 80),
                                  nearest.empty() ? "it has none" : "nearest name: " + nearest)};
@@ -62,10 +62,10 @@ Status check_damages(const ParsedScene& parsed, const Scene& scene) {
 }
 
 /// `what` in words: "deposit outline"; `section` as in the scene file.
-Status load_outlines(const ParsedScene& parsed, const std::vector<OutlineSpec>& specs, const char* section,
+Status load_outlines(const ParsedScene& parsed, const std::vector<params::OutlineSpec>& specs, const char* section,
                      const char* what, std::vector<std::vector<Polygon>>& outlines, Scene& scene) {
     for (std::size_t i = 0; i < specs.size(); ++i) {
-        const Result<PolygonLayer> layer = read_polygons(specs[i].file, specs[i].layer, scene.crs);
+        const Result<geo::PolygonLayer> layer = read_polygons(specs[i].file, specs[i].layer, scene.crs);
         if (!layer) {
             return Error{parsed.at(fmt::format("{}[{}].file", section, i)) + ": " + layer.error().message};
         }
@@ -73,7 +73,7 @@ Status load_outlines(const ParsedScene& parsed, const std::vector<OutlineSpec>& 
         record_input(label, specs[i].file, scene);
         if (!layer->reprojection.empty()) scene.notes.push_back(label + ": " + layer->reprojection);
         std::vector<Polygon>& outline = outlines.emplace_back();
-        for (const PolygonFeature& feature : layer->features) {
+        for (const geo::PolygonFeature& feature : layer->features) {
             outline.insert(outline.end(), feature.parts.begin(), feature.parts.end());
         }
     }
@@ -82,9 +82,9 @@ Status load_outlines(const ParsedScene& parsed, const std::vector<OutlineSpec>& 
 
 Status load_elevation_changes(const ParsedScene& parsed, Scene& scene) {
     for (std::size_t i = 0; i < scene.spec.elevation_changes.size(); ++i) {
-        const ElevationChangeSpec& spec = scene.spec.elevation_changes[i];
+        const params::ElevationChangeSpec& spec = scene.spec.elevation_changes[i];
         const std::string at = parsed.at(fmt::format("elevation_change[{}].file", i)) + ": ";
-        Result<Raster> change = read_value_raster(spec.file, scene.crs);
+        Result<geo::Raster> change = read_value_raster(spec.file, scene.crs);
         if (!change) return Error{at + change.error().message};
         const std::vector<float>& values = change->grid.values;
         const bool any = std::any_of(values.begin(), values.end(), [&](float v) {
@@ -104,7 +104,7 @@ Status load_elevation_changes(const ParsedScene& parsed, Scene& scene) {
 
 Status load_observations(const ParsedScene& parsed, Scene& scene) {
     note_observations(scene);
-    const SceneSpec& spec = scene.spec;
+    const params::SceneSpec& spec = scene.spec;
     TALUS_TRY(check_chainages(parsed, scene, spec.superelevations, "superelevation"));
     TALUS_TRY(check_chainages(parsed, scene, spec.arrivals, "arrival"));
     TALUS_TRY(check_chainages(parsed, scene, spec.observed_run_outs, "observed_run_out"));
@@ -118,4 +118,4 @@ Status load_observations(const ParsedScene& parsed, Scene& scene) {
     return load_elevation_changes(parsed, scene);
 }
 
-}  // namespace talus
+}  // namespace talus::scene

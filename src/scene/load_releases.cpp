@@ -12,15 +12,15 @@
 #include "scene/load.hpp"
 #include "scene/polygons.hpp"
 
-namespace talus {
+namespace talus::scene {
 namespace {
 
 /// Maximum thickness of any release, m.
 double thickest() {
-    return parameter_of("release", "thickness_m").range.high;
+    return params::parameter_of("release", "thickness_m").range.high;
 }
 
-Result<double> feature_thickness(const ReleaseSpec& spec, const PolygonLayer& layer, std::size_t feature) {
+Result<double> feature_thickness(const params::ReleaseSpec& spec, const geo::PolygonLayer& layer, std::size_t feature) {
     if (spec.thickness) return *spec.thickness;
     if (spec.thickness_attribute.empty()) return 1.0;  // a raster replaces it, a target volume scales it
     return read_length(spec.file, layer, feature, {spec.thickness_attribute, "thickness", thickest()});
@@ -47,11 +47,12 @@ Status check_covered(const Polygon& polygon, const std::string& label, const Sce
 }
 
 /// The raster must hold thickness somewhere on the patches; missing parts are noted.
-Status check_thickness_raster(const ReleaseSpec& spec, const std::string& label, const Release& release, Scene& scene) {
+Status check_thickness_raster(const params::ReleaseSpec& spec, const std::string& label,
+                              const terrain::Release& release, Scene& scene) {
     std::size_t points = 0, with_thickness = 0;
     double thickest_here = 0;
     const double step = std::min(scene.terrain.cell(), release.thickness_raster->geometry.cell) / 2;
-    for (const ReleasePatch& patch : release.patches) {
+    for (const terrain::ReleasePatch& patch : release.patches) {
         for_each_inside(patch.polygon, step, [&](const PlanPoint& p) {
             const double thickness = release.thickness_at(p);
             ++points;
@@ -76,7 +77,8 @@ Status check_thickness_raster(const ReleaseSpec& spec, const std::string& label,
 }
 
 /// Sets the uniform thickness that gives the target volume.
-Status spread_volume(const ReleaseSpec& spec, const std::string& label, Release& release, Scene& scene) {
+Status spread_volume(const params::ReleaseSpec& spec, const std::string& label, terrain::Release& release,
+                     Scene& scene) {
     const double slope_area = release_volume(scene.terrain, release);  // the patches are 1 m thick so far
     const double thickness = slope_area > 0 ? *spec.volume / slope_area : 0;
     if (!(thickness > 0) || thickness > thickest()) {
@@ -85,17 +87,17 @@ Status spread_volume(const ReleaseSpec& spec, const std::string& label, Release&
                         "{:.0f} m",
                         label, *spec.volume, slope_area, thickness, thickest())};
     }
-    for (ReleasePatch& patch : release.patches) patch.thickness = thickness;
+    for (terrain::ReleasePatch& patch : release.patches) patch.thickness = thickness;
     scene.notes.push_back(fmt::format("{}: {:.6g} m3 over {:.4g} m2 of slope is a uniform thickness of {:.4g} m", label,
                                       *spec.volume, slope_area, thickness));
     return {};
 }
 
 /// Mean downhill direction in plan under the patches. Errors: the ground is level.
-Result<PlanPoint> downhill(const Release& release, const Terrain& terrain) {
+Result<PlanPoint> downhill(const terrain::Release& release, const terrain::Terrain& terrain) {
     const double h = terrain.cell();
     double east = 0, north = 0, points = 0;  // rises per metre, summed up
-    for (const ReleasePatch& patch : release.patches) {
+    for (const terrain::ReleasePatch& patch : release.patches) {
         for_each_inside(patch.polygon, h / 2, [&](const PlanPoint& p) {
             const double rise_east = terrain.elevation_at({p.x + h, p.y}) - terrain.elevation_at({p.x - h, p.y});
             const double rise_north = terrain.elevation_at({p.x, p.y + h}) - terrain.elevation_at({p.x, p.y - h});
@@ -121,12 +123,13 @@ void move(Polygon& polygon, const PlanPoint& by) {
 }
 
 /// Moves the patches along and across the slope; returns the displacement.
-Result<PlanPoint> shift(const ReleaseSpec& spec, const std::string& label, Release& release, Scene& scene) {
+Result<PlanPoint> shift(const params::ReleaseSpec& spec, const std::string& label, terrain::Release& release,
+                        Scene& scene) {
     if (spec.shift_along == 0 && spec.shift_across == 0) return PlanPoint{0, 0};
     TALUS_ASSIGN(const PlanPoint down, downhill(release, scene.terrain));
     const PlanPoint by{spec.shift_along * down.x - spec.shift_across * down.y,
                        spec.shift_along * down.y + spec.shift_across * down.x};
-    for (ReleasePatch& patch : release.patches) move(patch.polygon, by);
+    for (terrain::ReleasePatch& patch : release.patches) move(patch.polygon, by);
     scene.notes.push_back(
         fmt::format("{}: moved by {:.4g} m to the east and {:.4g} m to the north, {:.4g} m down the "
                     "slope and {:.4g} m to the left",
@@ -135,7 +138,7 @@ Result<PlanPoint> shift(const ReleaseSpec& spec, const std::string& label, Relea
 }
 
 /// Notes the volume of the release next to that of its raster.
-void note_raster_volume(const std::string& label, const Release& release, Scene& scene) {
+void note_raster_volume(const std::string& label, const terrain::Release& release, Scene& scene) {
     const Grid<float>& raster = *release.thickness_raster;
     double sum = 0;
     for (const float thickness : raster.values) sum += thickness > 0 ? static_cast<double>(thickness) : 0;
@@ -146,8 +149,8 @@ void note_raster_volume(const std::string& label, const Release& release, Scene&
         release.vertical() ? "vertical" : "normal to the slope (thickness_direction)"));
 }
 
-Result<Release> load_release(const ParsedScene& parsed, std::size_t index, Scene& scene) {
-    ReleaseSpec& spec = scene.spec.releases[index];
+Result<terrain::Release> load_release(const ParsedScene& parsed, std::size_t index, Scene& scene) {
+    params::ReleaseSpec& spec = scene.spec.releases[index];
     if (spec.name.empty()) spec.name = fmt::format("release {}", index + 1);
     const std::string label = fmt::format("release \"{}\"", spec.name);
     const std::string path = fmt::format("release[{}].", index);
@@ -155,11 +158,11 @@ Result<Release> load_release(const ParsedScene& parsed, std::size_t index, Scene
         return Error{parsed.at(path + key) + ": " + error.message};
     };
 
-    Release release;
+    terrain::Release release;
     release.name = spec.name;
     release.spec = spec;
     if (!spec.file.empty()) {
-        const Result<PolygonLayer> layer = read_polygons(spec.file, spec.layer, scene.crs);
+        const Result<geo::PolygonLayer> layer = read_polygons(spec.file, spec.layer, scene.crs);
         if (!layer) return refused("file", layer.error());
         record_input(label, spec.file, scene);
         if (!layer->reprojection.empty()) scene.notes.push_back(label + ": " + layer->reprojection);
@@ -170,7 +173,7 @@ Result<Release> load_release(const ParsedScene& parsed, std::size_t index, Scene
         }
     }
     if (!spec.thickness_raster.empty()) {
-        Result<Raster> raster = read_value_raster(spec.thickness_raster, scene.crs);
+        Result<geo::Raster> raster = read_value_raster(spec.thickness_raster, scene.crs);
         if (!raster) return refused("thickness_raster", raster.error());
         record_input(label + " thickness", spec.thickness_raster, scene);
         if (raster->crs_assumed) {
@@ -179,7 +182,7 @@ Result<Release> load_release(const ParsedScene& parsed, std::size_t index, Scene
         }
         release.thickness_raster = std::move(raster->grid);
         if (spec.file.empty()) {
-            const auto outlines = outlines_above_zero(*release.thickness_raster);
+            const auto outlines = geo::outlines_above_zero(*release.thickness_raster);
             if (!outlines) return refused("thickness_raster", outlines.error());
             for (const Polygon& outline : *outlines) release.patches.push_back({outline, 0});
         }
@@ -188,7 +191,7 @@ Result<Release> load_release(const ParsedScene& parsed, std::size_t index, Scene
     const Result<PlanPoint> by = shift(spec, label, release, scene);
     if (!by) return refused(moved, by.error());
     const bool as_drawn = by->x == 0 && by->y == 0;
-    for (const ReleasePatch& patch : release.patches) {
+    for (const terrain::ReleasePatch& patch : release.patches) {
         if (Status s = check_covered(patch.polygon, label, scene); !s) {
             return refused(!as_drawn ? moved : spec.file.empty() ? "thickness_raster" : "file", s.error());
         }
@@ -206,7 +209,7 @@ Result<Release> load_release(const ParsedScene& parsed, std::size_t index, Scene
     release.volume = release_volume(scene.terrain, release);
     if (!(release.volume > 0)) return refused("file", Error{label + " has no volume; its polygons have no area"});
     if (release.thickness_raster) note_raster_volume(label, release, scene);
-    return Result<Release>(std::move(release));
+    return Result<terrain::Release>(std::move(release));
 }
 
 /// Debris must not be released twice from the same ground.
@@ -247,10 +250,10 @@ Status check_overlaps(const ParsedScene& parsed, const Scene& scene) {
 
 Status load_releases(const ParsedScene& parsed, Scene& scene) {
     for (std::size_t i = 0; i < scene.spec.releases.size(); ++i) {
-        TALUS_ASSIGN(Release release, load_release(parsed, i, scene));
+        TALUS_ASSIGN(terrain::Release release, load_release(parsed, i, scene));
         scene.releases.push_back(std::move(release));
     }
     return check_overlaps(parsed, scene);
 }
 
-}  // namespace talus
+}  // namespace talus::scene

@@ -13,7 +13,7 @@
 #include "scene/load.hpp"
 #include "scene/polygons.hpp"
 
-namespace talus {
+namespace talus::scene {
 namespace {
 
 /// "x y, x y, x y".
@@ -31,7 +31,7 @@ std::optional<Polygon> parse_polygon(const std::string& text) {
     return polygon;
 }
 
-Result<std::vector<Polygon>> read_outline(const ZoneSpec& spec, const std::string& label, Scene& scene) {
+Result<std::vector<Polygon>> read_outline(const params::ZoneSpec& spec, const std::string& label, Scene& scene) {
     std::vector<Polygon> parts;
     if (!spec.polygon.empty()) {
         const std::optional<Polygon> polygon = parse_polygon(spec.polygon);
@@ -44,23 +44,23 @@ Result<std::vector<Polygon>> read_outline(const ZoneSpec& spec, const std::strin
         parts.push_back(*polygon);
         return parts;
     }
-    TALUS_ASSIGN(const PolygonLayer layer, read_polygons(spec.file, spec.layer, scene.crs));
+    TALUS_ASSIGN(const geo::PolygonLayer layer, read_polygons(spec.file, spec.layer, scene.crs));
     record_input(label, spec.file, scene);
     if (!layer.reprojection.empty()) scene.notes.push_back(label + ": " + layer.reprojection);
-    for (const PolygonFeature& feature : layer.features) {
+    for (const geo::PolygonFeature& feature : layer.features) {
         parts.insert(parts.end(), feature.parts.begin(), feature.parts.end());
     }
     return parts;
 }
 
 /// The key whose range a coefficient has, also where it comes from a raster.
-const Parameter& key_of(ZoneRaster raster) {
-    return parameter_of(
-        "zone", raster == ZoneRaster::friction_coefficient ? "friction_coefficient" : "turbulent_friction_mps2");
+const params::Parameter& key_of(params::ZoneRaster raster) {
+    return params::parameter_of("zone", raster == params::ZoneRaster::friction_coefficient ? "friction_coefficient"
+                                                                                           : "turbulent_friction_mps2");
 }
 
 /// The cells of the terrain that the raster covers, with its values. Errors: a coefficient out of range.
-Result<ZoneCells> read_cells(const ZoneSpec& spec, const Grid<float>& raster, const GridGeometry& terrain) {
+Result<ZoneCells> read_cells(const params::ZoneSpec& spec, const Grid<float>& raster, const GridGeometry& terrain) {
     ZoneCells cells;
     const GridGeometry& from = raster.geometry;
     for (int row = 0; row < terrain.rows; ++row) {
@@ -72,7 +72,7 @@ Result<ZoneCells> read_cells(const ZoneSpec& spec, const Grid<float>& raster, co
             if (std::isnan(value) || (spec.raster_value && value != static_cast<float>(*spec.raster_value))) continue;
             cells.cell.push_back(terrain.index(column, row));
             cells.value.push_back(value);
-            if (spec.raster_holds == ZoneRaster::zone_number) continue;
+            if (spec.raster_holds == params::ZoneRaster::zone_number) continue;
             const std::string allowed = problem_with(key_of(spec.raster_holds), double{value});
             if (!allowed.empty()) {
                 return Error{
@@ -84,7 +84,7 @@ Result<ZoneCells> read_cells(const ZoneSpec& spec, const Grid<float>& raster, co
 }
 
 Status load_zone(const ParsedScene& parsed, std::size_t index, Scene& scene) {
-    ZoneSpec& spec = scene.spec.zones[index];
+    params::ZoneSpec& spec = scene.spec.zones[index];
     if (spec.name.empty()) spec.name = fmt::format("zone {}", index + 1);
     const std::string label = fmt::format("zone \"{}\"", spec.name);
     const char* key = !spec.file.empty() ? "file" : !spec.polygon.empty() ? "polygon" : "raster";
@@ -99,7 +99,7 @@ Status load_zone(const ParsedScene& parsed, std::size_t index, Scene& scene) {
         if (!parts) return refused(parts.error());
         zone.outline = std::move(*parts);
     } else {
-        const Result<Raster> raster = read_value_raster(spec.raster, scene.crs);
+        const Result<geo::Raster> raster = read_value_raster(spec.raster, scene.crs);
         if (!raster) return refused(raster.error());
         record_input(label, spec.raster, scene);
         Result<ZoneCells> cells = read_cells(spec, raster->grid, terrain);
@@ -128,4 +128,4 @@ Status load_zones(const ParsedScene& parsed, Scene& scene) {
     return {};
 }
 
-}  // namespace talus
+}  // namespace talus::scene

@@ -14,7 +14,7 @@
 #include "scene/load.hpp"
 #include "scene/reach.hpp"
 
-namespace talus {
+namespace talus::scene {
 namespace {
 
 namespace fs = std::filesystem;
@@ -39,9 +39,9 @@ std::string name_from(const fs::path& folder, const std::string& file) {
 }
 
 /// The first of the names that all features have, with a value in at least one of them.
-std::string find_attribute(const PolygonLayer& layer, const std::vector<std::string>& names) {
+std::string find_attribute(const geo::PolygonLayer& layer, const std::vector<std::string>& names) {
     for (const std::string& name : names) {
-        for (const PolygonFeature& feature : layer.features) {
+        for (const geo::PolygonFeature& feature : layer.features) {
             const auto found = feature.attributes.find(name);
             if (found != feature.attributes.end() && !std::holds_alternative<std::monostate>(found->second))
                 return name;
@@ -51,10 +51,10 @@ std::string find_attribute(const PolygonLayer& layer, const std::vector<std::str
 }
 
 Status check_number(const std::string& section, const std::string& key, const std::string& option,
-                    const ParameterValue& value) {
-    const std::string problem = problem_with(*find_section(section)->find(key), value);
+                    const params::ParameterValue& value) {
+    const std::string problem = problem_with(*params::find_section(section)->find(key), value);
     if (problem.empty()) return {};
-    return Error{fmt::format("{} {} is refused; it must be {}", option, plain_text(value), problem)};
+    return Error{fmt::format("{} {} is refused; it must be {}", option, params::plain_text(value), problem)};
 }
 
 Status check_options(const NewSceneOptions& options) {
@@ -86,7 +86,7 @@ ParsedScene scene_from(const NewSceneOptions& options) {
     parsed.file = options.folder / "scene.toml";
     parsed.spec.terrain.file = absolute_name(options.dem);
     parsed.spec.buildings.file = absolute_name(options.buildings);
-    ReleaseSpec& release = parsed.spec.releases.emplace_back();
+    params::ReleaseSpec& release = parsed.spec.releases.emplace_back();
     release.file = absolute_name(options.release);
     release.name = options.release.stem().string();
     release.thickness = options.thickness;
@@ -96,8 +96,8 @@ ParsedScene scene_from(const NewSceneOptions& options) {
     return parsed;
 }
 
-Status choose_thickness(ParsedScene& parsed, const PolygonLayer& layer) {
-    ReleaseSpec& release = parsed.spec.releases.front();
+Status choose_thickness(ParsedScene& parsed, const geo::PolygonLayer& layer) {
+    params::ReleaseSpec& release = parsed.spec.releases.front();
     if (release.thickness || release.volume) return {};
     release.thickness_attribute = find_attribute(layer, {"thickness_m", "thickness"});
     if (!release.thickness_attribute.empty()) return {};
@@ -143,14 +143,14 @@ Result<NewScene> write_new_scene(const NewSceneOptions& options) {
     Scene whole;
     whole.spec = parsed.spec;
     TALUS_TRY(load_terrain(parsed, whole));
-    const Result<PolygonLayer> layer = read_polygons(parsed.spec.releases[0].file, "", whole.crs);
+    const Result<geo::PolygonLayer> layer = read_polygons(parsed.spec.releases[0].file, "", whole.crs);
     if (!layer) return Error{"new scene: release[0].file: " + layer.error().message};
     TALUS_TRY(choose_thickness(parsed, *layer));
     whole.spec.releases = parsed.spec.releases;
     TALUS_TRY(load_releases(parsed, whole));
     parsed.spec.terrain.extent = choose_extent(whole);
     if (!options.buildings.empty()) {
-        const Result<PolygonLayer> buildings = read_polygons(parsed.spec.buildings.file, "", whole.crs);
+        const Result<geo::PolygonLayer> buildings = read_polygons(parsed.spec.buildings.file, "", whole.crs);
         if (!buildings) return Error{"new scene: buildings.file: " + buildings.error().message};
         parsed.spec.buildings.height_attribute = find_attribute(*buildings, {"height_m", "height"});
         parsed.spec.buildings.name_attribute = find_attribute(*buildings, {"name"});
@@ -159,7 +159,7 @@ Result<NewScene> write_new_scene(const NewSceneOptions& options) {
     // As a run would load it: everything is checked before writing.
     TALUS_ASSIGN(Scene scene, assemble_scene(parsed));
 
-    SceneSpec spec = parsed.spec;
+    params::SceneSpec spec = parsed.spec;
     spec.scene.title = scene.spec.scene.title;
     spec.terrain.file = name_from(options.folder, spec.terrain.file);
     spec.buildings.file = name_from(options.folder, spec.buildings.file);
@@ -179,4 +179,4 @@ Result<NewScene> write_new_scene(const NewSceneOptions& options) {
     return made;
 }
 
-}  // namespace talus
+}  // namespace talus::scene

@@ -7,7 +7,7 @@
 
 #include "core/result.hpp"
 
-namespace talus {
+namespace talus::scene {
 
 /// Arguments of `talus scene new`. At most one of thickness and volume; neither: an attribute of the polygons named
 /// thickness_m or thickness, otherwise 2 m, which the scene then lists as an assumption.
@@ -31,4 +31,4 @@ struct NewScene {
 /// nothing remains.
 [[nodiscard]] Result<NewScene> write_new_scene(const NewSceneOptions& options);
 
-}  // namespace talus
+}  // namespace talus::scene

@@ -10,34 +10,34 @@
 #include "scene/scene.hpp"
 #include "scene/toml_file.hpp"
 
-namespace talus {
+namespace talus::scene {
 namespace {
 
-std::string header_of(const Section& section) {
+std::string header_of(const params::Section& section) {
     return section.repeats ? "[[" + section.name + "]]" : "[" + section.name + "]";
 }
 
 /// The section the key belongs to, or the nearest key of this section.
-std::string unknown_key(const Section& section, std::string_view key) {
+std::string unknown_key(const params::Section& section, std::string_view key) {
     const std::string start = fmt::format("unknown key \"{}\" in {}; ", one_line(key, 80), header_of(section));
     std::vector<std::string> keys;
-    for (const Parameter& parameter : section.parameters) keys.push_back(parameter.key);
-    for (const Section& other : scene_sections()) {
+    for (const params::Parameter& parameter : section.parameters) keys.push_back(parameter.key);
+    for (const params::Section& other : params::scene_sections()) {
         if (other.find(key)) return start + "it belongs in " + header_of(other);
     }
-    return start + "nearest known key: " + nearest_word(key, keys);
+    return start + "nearest known key: " + params::nearest_word(key, keys);
 }
 
 std::string unknown_section(std::string_view name) {
     std::vector<std::string> names;
-    for (const Section& section : scene_sections()) {
+    for (const params::Section& section : params::scene_sections()) {
         names.push_back(section.name);
         if (section.find(name)) {
             return fmt::format("key \"{}\" stands outside a section; it belongs in {}", name, header_of(section));
         }
     }
     return fmt::format("unknown section \"{}\"; nearest known section: {}", one_line(name, 80),
-                       nearest_word(name, names));
+                       params::nearest_word(name, names));
 }
 
 constexpr std::string_view variant_override = "variant=";
@@ -48,7 +48,7 @@ class SceneReader {
 
     Status read_file(const toml::table& root) {
         for (const auto& [key, node] : root) {
-            const Section* section = find_section(key.str());
+            const params::Section* section = params::find_section(key.str());
             if (!section) return Error{place(key.source()) + ": " + unknown_section(key.str())};
             TALUS_TRY(read_section(*section, node, place(key.source())));
         }
@@ -71,14 +71,14 @@ class SceneReader {
         std::vector<std::string> names;
         for (std::size_t i = 0; i < scene_.spec.variants.size(); ++i) {
             if (scene_.spec.variants[i].name == name) return use_variant(i);
-            names.push_back(toml_text(scene_.spec.variants[i].name));
+            names.push_back(params::toml_text(scene_.spec.variants[i].name));
         }
         return Error{fmt::format("--variant {}: the scene has no [[variant]] of that name; {}", one_line(name, 80),
                                  names.empty() ? "it has none" : fmt::format("it has {}", fmt::join(names, ", ")))};
     }
 
     Status use_variant(std::size_t index) {
-        const VariantSpec variant = scene_.spec.variants[index];
+        const params::VariantSpec variant = scene_.spec.variants[index];
         const std::string where =
             fmt::format("{} \"{}\"", scene_.at(fmt::format("variant[{}].set", index)), variant.name);
         for (const std::string& text : variant.set) TALUS_TRY(read_value(text, where));
@@ -99,19 +99,19 @@ class SceneReader {
             index_text = section_name.substr(bracket + 1, section_name.size() - bracket - 2);
             section_name.resize(bracket);
         }
-        const Section* section = find_section(section_name);
+        const params::Section* section = params::find_section(section_name);
         if (!section) return Error{where + ": " + unknown_section(section_name)};
         const std::string key = text.substr(dot + 1, equals - dot - 1);
-        const Parameter* parameter = section->find(key);
+        const params::Parameter* parameter = section->find(key);
         if (!parameter) return Error{where + ": " + unknown_key(*section, key)};
         TALUS_ASSIGN(const std::size_t index, override_index(*section, index_text, where));
         return override_value(*section, index, *parameter, text.substr(equals + 1), where);
     }
 
     [[nodiscard]] Status check_required() const {
-        for (const Section& section : scene_sections()) {
+        for (const params::Section& section : params::scene_sections()) {
             for (std::size_t index = 0; index < section.count(scene_.spec); ++index) {
-                for (const Parameter& parameter : section.parameters) {
+                for (const params::Parameter& parameter : section.parameters) {
                     const std::string path = key_path(section, index, parameter);
                     if (!parameter.required || scene_.places.count(path) > 0) continue;
                     return Error{fmt::format("{} is missing; it must be {}", scene_.at(path), allowed_text(parameter))};
@@ -131,11 +131,11 @@ class SceneReader {
         return fmt::format("{}:{}", name_, region.begin.line);
     }
 
-    static std::string section_path(const Section& section, std::size_t index) {
+    static std::string section_path(const params::Section& section, std::size_t index) {
         return section.repeats ? fmt::format("{}[{}]", section.name, index) : section.name;
     }
 
-    Status read_section(const Section& section, const toml::node& node, const std::string& where) {
+    Status read_section(const params::Section& section, const toml::node& node, const std::string& where) {
         if (!section.repeats) {
             if (const toml::table* table = node.as_table()) return read_table(section, 0, *table, where);
             return Error{fmt::format("{}: {} must be one section; write [{}]", where, section.name, section.name)};
@@ -157,32 +157,35 @@ class SceneReader {
         return {};
     }
 
-    Status read_table(const Section& section, std::size_t index, const toml::table& table, const std::string& where) {
+    Status read_table(const params::Section& section, std::size_t index, const toml::table& table,
+                      const std::string& where) {
         scene_.places[section_path(section, index)] = where;
         for (const auto& [key, node] : table) {
-            const Parameter* parameter = section.find(key.str());
+            const params::Parameter* parameter = section.find(key.str());
             if (!parameter) return Error{place(key.source()) + ": " + unknown_key(section, key.str())};
             TALUS_TRY(read_parameter(section, index, *parameter, node, place(key.source())));
         }
         return {};
     }
 
-    Status read_parameter(const Section& section, std::size_t index, const Parameter& parameter, const toml::node& node,
-                          const std::string& where) {
+    Status read_parameter(const params::Section& section, std::size_t index, const params::Parameter& parameter,
+                          const toml::node& node, const std::string& where) {
         const auto refused = [&](const std::string& allowed) {
             return Error{fmt::format("{}: {} = {} is refused; it must be {}", where,
                                      key_path(section, index, parameter), toml_text_of(node), allowed)};
         };
-        const std::optional<ParameterValue> value = to_parameter_value(node, parameter.kind);
+        const std::optional<params::ParameterValue> value = to_parameter_value(node, parameter.kind);
         if (!value) return refused(allowed_text(parameter));
         if (const std::string problem = problem_with(parameter, *value); !problem.empty()) return refused(problem);
-        if (parameter.required && toml_text(*value) == "\"\"") return refused(allowed_text(parameter) + ", not empty");
+        if (parameter.required && params::toml_text(*value) == "\"\"")
+            return refused(allowed_text(parameter) + ", not empty");
         parameter.set(scene_.spec, index, *value);
         scene_.places[key_path(section, index, parameter)] = where;
         return {};
     }
 
-    [[nodiscard]] Result<std::size_t> override_index(const Section& section, const std::optional<std::string>& text,
+    [[nodiscard]] Result<std::size_t> override_index(const params::Section& section,
+                                                     const std::optional<std::string>& text,
                                                      const std::string& where) const {
         const std::size_t count = section.count(scene_.spec);
         if (!section.repeats) {
@@ -200,7 +203,7 @@ class SceneReader {
         return std::size_t{std::stoul(*text)};
     }
 
-    Status override_value(const Section& section, std::size_t index, const Parameter& parameter,
+    Status override_value(const params::Section& section, std::size_t index, const params::Parameter& parameter,
                           const std::string& text, const std::string& where) {
         const bool can_be_absent =
             !parameter.required && std::holds_alternative<std::monostate>(default_value(section, parameter));
@@ -209,8 +212,9 @@ class SceneReader {
             scene_.places.erase(key_path(section, index, parameter));
             return {};
         }
-        const bool is_text = parameter.kind == ParameterKind::text || parameter.kind == ParameterKind::path ||
-                             parameter.kind == ParameterKind::choice;
+        const bool is_text = parameter.kind == params::ParameterKind::text ||
+                             parameter.kind == params::ParameterKind::path ||
+                             parameter.kind == params::ParameterKind::choice;
         const bool in_quotes = !text.empty() && (text.front() == '"' || text.front() == '\'');
         if (is_text && !in_quotes) {  // a shell has taken the quotes away already
             return read_parameter(section, index, parameter, toml::value<std::string>(text), where);
@@ -253,9 +257,9 @@ Result<ParsedScene> parse_scene_with_places(const std::filesystem::path& file,
     return scene;
 }
 
-Result<SceneSpec> parse_scene(const std::filesystem::path& file, const std::vector<std::string>& overrides) {
+Result<params::SceneSpec> parse_scene(const std::filesystem::path& file, const std::vector<std::string>& overrides) {
     TALUS_ASSIGN(ParsedScene scene, parse_scene_with_places(file, overrides));
     return std::move(scene.spec);
 }
 
-}  // namespace talus
+}  // namespace talus::scene

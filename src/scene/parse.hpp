@@ -9,12 +9,12 @@
 #include "core/result.hpp"
 #include "params/fields.hpp"
 
-namespace talus {
+namespace talus::scene {
 
 /// A scene's values and the place where each was given, for messages after parsing.
 struct ParsedScene {
     std::filesystem::path file;
-    SceneSpec spec;
+    params::SceneSpec spec;
     std::map<std::string, std::string> places;  ///< "release[0].file" or "release[0]" -> "scene.toml:12" or "--set ..."
 
     /// "scene.toml:12: release[0].file"; for a key that was not given, the line of its section or the scene file.
@@ -34,4 +34,4 @@ struct ParsedScene {
 /// Without line breaks and control characters, which would garble a terminal, and cut after `longest` bytes.
 [[nodiscard]] std::string one_line(std::string_view text, std::size_t longest = 400);
 
-}  // namespace talus
+}  // namespace talus::scene

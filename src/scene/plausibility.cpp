@@ -11,7 +11,7 @@
 #include "core/angle.hpp"
 #include "sim/sources/seed.hpp"
 
-namespace talus {
+namespace talus::scene {
 namespace {
 
 constexpr std::size_t most_samples = 250'000;
@@ -60,9 +60,9 @@ double angle(double rise_over_run) {
 }
 
 /// Mean over its area, degrees.
-double mean_slope(const Scene& scene, const Release& release) {
+double mean_slope(const Scene& scene, const terrain::Release& release) {
     double plan = 0;
-    for (const ReleasePatch& patch : release.patches) plan += plan_area(patch.polygon);
+    for (const terrain::ReleasePatch& patch : release.patches) plan += plan_area(patch.polygon);
     const double on_slope = release_slope_area(scene.terrain, release);
     return on_slope > 0 ? std::acos(std::min(1.0, plan / on_slope)) * degrees_per_radian : 0;
 }
@@ -91,7 +91,7 @@ void note_implausible_terrain(Scene& scene) {
         found.push_back(
             fmt::format("a tenth of its cells lie over {:.2g} cells above or below their neighbours", rough));
     }
-    for (const Release& release : scene.releases) {
+    for (const terrain::Release& release : scene.releases) {
         const double slope = mean_slope(scene, release);
         if (slope <= steepest_release) continue;
         found.push_back(
@@ -108,8 +108,8 @@ void note_implausible_terrain(Scene& scene) {
 void note_coarse_particles(Scene& scene) {
     if (scene.releases.empty()) return;
     constexpr double layers = 5;
-    const double spacing = choose_particle_spacing(scene.spec.solver, total_volume(scene));
-    for (const Release& release : scene.releases) {
+    const double spacing = sim::choose_particle_spacing(scene.spec.solver, total_volume(scene));
+    for (const terrain::Release& release : scene.releases) {
         const double area = release_slope_area(scene.terrain, release);
         const double thickness = area > 0 ? release.volume / area : 0;
         if (!(thickness > 0) || spacing <= thickness / layers) continue;
@@ -129,4 +129,4 @@ void note_coarse_particles(Scene& scene) {
     }
 }
 
-}  // namespace talus
+}  // namespace talus::scene

@@ -2,7 +2,7 @@
 
 #include "scene/scene.hpp"
 
-namespace talus {
+namespace talus::scene {
 
 /// Adds a note about a terrain whose slopes, relief or roughness are implausible for natural ground, for example with
 /// elevations in feet and plan coordinates in metres. The releases must be loaded.
@@ -11,4 +11,4 @@ void note_implausible_terrain(Scene& scene);
 /// Adds a note about releases too thin to be resolved by several layers of particles.
 void note_coarse_particles(Scene& scene);
 
-}  // namespace talus
+}  // namespace talus::scene

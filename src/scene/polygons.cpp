@@ -4,7 +4,7 @@
 #include <cmath>
 #include <vector>
 
-namespace talus {
+namespace talus::scene {
 namespace {
 
 constexpr int most_lines = 2000;
@@ -105,4 +105,4 @@ void for_each_on_rings(const Polygon& polygon, double step, const std::function<
     for (const Ring& hole : polygon.holes) walk(hole);
 }
 
-}  // namespace talus
+}  // namespace talus::scene

@@ -5,7 +5,7 @@
 #include "core/geometry.hpp"
 #include "core/grid.hpp"
 
-namespace talus {
+namespace talus::scene {
 
 /// Where two polygons cover the same ground.
 struct Overlap {
@@ -30,4 +30,4 @@ void for_each_cell_inside(const Polygon& polygon, const GridGeometry& grid,
 /// Calls `visit` along all rings, corners included, at most `step` apart.
 void for_each_on_rings(const Polygon& polygon, double step, const std::function<void(const PlanPoint&)>& visit);
 
-}  // namespace talus
+}  // namespace talus::scene

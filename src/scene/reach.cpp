@@ -8,7 +8,7 @@
 
 #include "scene/polygons.hpp"
 
-namespace talus {
+namespace talus::scene {
 namespace {
 
 struct Neighbour {
@@ -27,7 +27,8 @@ constexpr std::array<Neighbour, 8> neighbours{{{1, 0, 1},
 
 }  // namespace
 
-Extent reachable_extent(const Terrain& terrain, const std::vector<Release>& releases, double travel_angle) {
+Extent reachable_extent(const terrain::Terrain& terrain, const std::vector<terrain::Release>& releases,
+                        double travel_angle) {
     const Grid<float>& elevation = terrain.elevation();
     const GridGeometry& g = elevation.geometry;
     const double loss = std::tan(travel_angle) * g.cell;
@@ -42,11 +43,11 @@ Extent reachable_extent(const Terrain& terrain, const std::vector<Release>& rele
         open.emplace(height, k);
     };
     Extent reached = releases.front().extent();
-    for (const Release& release : releases) {
+    for (const terrain::Release& release : releases) {
         const Extent e = release.extent();
         reached.include({e.x_min, e.y_min});
         reached.include({e.x_max, e.y_max});
-        for (const ReleasePatch& patch : release.patches) {
+        for (const terrain::ReleasePatch& patch : release.patches) {
             for_each_inside(patch.polygon, g.cell / 2, [&](const PlanPoint& p) {
                 const int column = std::clamp(static_cast<int>((p.x - g.x_min) / g.cell), 0, g.columns - 1);
                 const int row = std::clamp(static_cast<int>((p.y - g.y_min) / g.cell), 0, g.rows - 1);
@@ -71,4 +72,4 @@ Extent reachable_extent(const Terrain& terrain, const std::vector<Release>& rele
     return reached;
 }
 
-}  // namespace talus
+}  // namespace talus::scene

@@ -19,7 +19,7 @@
 #include "terrain/release.hpp"
 #include "terrain/terrain.hpp"
 
-namespace talus {
+namespace talus::scene {
 
 /// A file that the scene read.
 struct InputFile {
@@ -32,21 +32,21 @@ struct InputFile {
 /// A scene file with all its inputs loaded, checked and transformed to the terrain's CRS.
 struct Scene {
     std::filesystem::path file;
-    SceneSpec spec;
+    params::SceneSpec spec;
     std::set<std::string> given_keys;  ///< by file, variant or command line: "material.viscosity", "release[0].file"
-    Crs crs;
+    geo::Crs crs;
     std::string vertical_unit;
     double nodata_share = 0;
-    Terrain terrain;
+    terrain::Terrain terrain;
     std::vector<Zone> zones;
-    GroundCover cover;                   ///< of the zones
+    terrain::GroundCover cover;          ///< of the zones
     std::vector<std::uint16_t> zone_at;  ///< by cell of the terrain, for display: 1 + the last zone there; 0: none
-    std::vector<Release> releases;
+    std::vector<terrain::Release> releases;
     std::vector<BedLayer> bed_layers;
-    Bed bed;  ///< of the layers
-    std::vector<Inflow> inflows;
-    std::vector<Building> buildings;
-    FlowPath flow_path;
+    terrain::Bed bed;  ///< of the layers
+    std::vector<terrain::Inflow> inflows;
+    std::vector<terrain::Building> buildings;
+    terrain::FlowPath flow_path;
     bool flow_path_traced = false;
     std::vector<std::vector<Polygon>> deposit_outlines;  ///< as in SceneSpec::deposit_outlines
     std::vector<std::vector<Polygon>> affected_areas;    ///< as in SceneSpec::affected_areas
@@ -60,12 +60,12 @@ struct Scene {
 
 /// Reads a scene file, its values checked against the field table; relative paths are resolved against its folder,
 /// `${NAME}` in a path against the environment. `overrides`: "section.key=value", applied after the file.
-[[nodiscard]] Result<SceneSpec> parse_scene(const std::filesystem::path& file,
-                                            const std::vector<std::string>& overrides = {});
+[[nodiscard]] Result<params::SceneSpec> parse_scene(const std::filesystem::path& file,
+                                                    const std::vector<std::string>& overrides = {});
 
 /// Loads everything that the scene names. Errors as listed at the readers, and: release outside the terrain or over
 /// nodata, no thickness above zero, overlapping releases, buildings outside.
 [[nodiscard]] Result<Scene> load_scene(const std::filesystem::path& file,
                                        const std::vector<std::string>& overrides = {});
 
-}  // namespace talus
+}  // namespace talus::scene

@@ -11,7 +11,7 @@
 #include "core/try.hpp"
 #include "scene/parse.hpp"
 
-namespace talus {
+namespace talus::scene {
 namespace {
 
 constexpr std::uintmax_t largest_file = 16 << 20;  // bytes; such a file is a page of text
@@ -78,12 +78,12 @@ std::string toml_text_of(const toml::node& node) {
     return one_line(out.str(), 80);
 }
 
-std::optional<ParameterValue> to_parameter_value(const toml::node& node, ParameterKind kind) {
+std::optional<params::ParameterValue> to_parameter_value(const toml::node& node, params::ParameterKind kind) {
     switch (kind) {
-        case ParameterKind::boolean:
+        case params::ParameterKind::boolean:
             if (const auto value = node.value_exact<bool>()) return *value;
             return std::nullopt;
-        case ParameterKind::integer: {
+        case params::ParameterKind::integer: {
             if (const auto value = node.value_exact<std::int64_t>()) return *value;
             const auto number = node.value_exact<double>();  // users write 1e6 for a whole number; TOML calls it a
                                                              // float
@@ -92,15 +92,15 @@ std::optional<ParameterValue> to_parameter_value(const toml::node& node, Paramet
             }
             return std::nullopt;
         }
-        case ParameterKind::number:
+        case params::ParameterKind::number:
             if (node.is_number()) return node.value<double>();
             return std::nullopt;
-        case ParameterKind::text:
-        case ParameterKind::path:
-        case ParameterKind::choice:
+        case params::ParameterKind::text:
+        case params::ParameterKind::path:
+        case params::ParameterKind::choice:
             if (const auto value = node.value_exact<std::string>()) return *value;
             return std::nullopt;
-        case ParameterKind::text_list: {
+        case params::ParameterKind::text_list: {
             const toml::array* items = node.as_array();
             if (!items) return std::nullopt;
             std::vector<std::string> texts;
@@ -111,7 +111,7 @@ std::optional<ParameterValue> to_parameter_value(const toml::node& node, Paramet
             }
             return texts;
         }
-        case ParameterKind::extent: {
+        case params::ParameterKind::extent: {
             const toml::array* items = node.as_array();
             if (!items || items->size() != 4) return std::nullopt;
             double numbers[4];
@@ -121,7 +121,7 @@ std::optional<ParameterValue> to_parameter_value(const toml::node& node, Paramet
             }
             return Extent{numbers[0], numbers[1], numbers[2], numbers[3]};
         }
-        case ParameterKind::points: {
+        case params::ParameterKind::points: {
             const toml::array* items = node.as_array();
             if (!items) return std::nullopt;
             std::vector<PlanPoint> points;
@@ -152,4 +152,4 @@ std::string one_line(std::string_view text, std::size_t longest) {
     return out;
 }
 
-}  // namespace talus
+}  // namespace talus::scene

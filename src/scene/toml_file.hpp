@@ -10,7 +10,7 @@
 #include "params/fields.hpp"
 
 /// Shared by all readers of TOML files.
-namespace talus {
+namespace talus::scene {
 
 /// Reads a whole file; messages call it `what` ("scene"). Errors: missing, a folder, too large, not UTF-8, not TOML
 /// (with the line).
@@ -20,6 +20,7 @@ namespace talus {
 [[nodiscard]] std::string toml_text_of(const toml::node& node);
 
 /// The node as a value of the parameter's kind; empty if it is of another kind.
-[[nodiscard]] std::optional<ParameterValue> to_parameter_value(const toml::node& node, ParameterKind kind);
+[[nodiscard]] std::optional<params::ParameterValue> to_parameter_value(const toml::node& node,
+                                                                       params::ParameterKind kind);
 
-}  // namespace talus
+}  // namespace talus::scene

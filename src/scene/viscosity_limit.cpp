@@ -7,33 +7,35 @@
 #include "sim/physics/kernel.hpp"
 #include "sim/physics/viscosity.hpp"
 
-namespace talus {
+namespace talus::scene {
 namespace {
 
-double longest_step(const SolverSpec& solver) {
+double longest_step(const params::SolverSpec& solver) {
     return solver.time_step.value_or(solver.largest_time_step);
 }
 
 }  // namespace
 
-double highest_viscosity(const SolverSpec& solver) {
-    return viscosity_reference_step / longest_step(solver);
+double highest_viscosity(const params::SolverSpec& solver) {
+    return sim::viscosity_reference_step / longest_step(solver);
 }
 
-std::optional<Violation> too_viscous(const MaterialSpec& material, const SolverSpec& solver, double particle_spacing) {
+std::optional<params::Violation> too_viscous(const params::MaterialSpec& material, const params::SolverSpec& solver,
+                                             double particle_spacing) {
     double given = material.viscosity, highest = highest_viscosity(solver);
     const char* key = "viscosity";
     if (material.kinematic_viscosity) {
-        const Kernel kernel = make_kernel(solver.kernel, particle_spacing, solver.support_ratio * particle_spacing);
+        const sim::Kernel kernel =
+            sim::make_kernel(solver.kernel, particle_spacing, solver.support_ratio * particle_spacing);
         given = *material.kinematic_viscosity;
-        highest = kinematic_viscosity(highest, kernel.second_moment);
+        highest = sim::kinematic_viscosity(highest, kernel.second_moment);
         key = "kinematic_viscosity_m2ps";
     }
     if (given <= highest) return {};
-    return Violation{
+    return params::Violation{
         key, fmt::format(" = {:.4g} is refused; with particles of {:.3g} m and steps of up to {:.3g} s it must be at "
                          "most {:.4g}; larger particles or shorter steps allow more",
                          given, particle_spacing, longest_step(solver), std::floor(1e4 * highest) / 1e4)};
 }
 
-}  // namespace talus
+}  // namespace talus::scene

@@ -4,21 +4,21 @@
 
 #include "scene/polygons.hpp"
 
-namespace talus {
+namespace talus::scene {
 namespace {
 
 constexpr float as_elsewhere = std::numeric_limits<float>::quiet_NaN();
 
 /// `value`: of the zone's raster in that cell.
-void lay(const ZoneSpec& spec, float value, CoverCell& cell) {
+void lay(const params::ZoneSpec& spec, float value, terrain::CoverCell& cell) {
     if (spec.friction_coefficient) cell.friction_coefficient = static_cast<float>(*spec.friction_coefficient);
     if (spec.turbulent_friction) cell.inverse_turbulent_friction = static_cast<float>(1 / *spec.turbulent_friction);
     if (spec.cohesion) cell.cohesion = static_cast<float>(*spec.cohesion);
     if (spec.stem_density > 0) {
         cell.stem_drag = static_cast<float>(spec.stem_drag_coefficient * spec.stem_density * spec.stem_diameter / 2);
     }
-    if (spec.raster_holds == ZoneRaster::friction_coefficient) cell.friction_coefficient = value;
-    if (spec.raster_holds == ZoneRaster::turbulent_friction) cell.inverse_turbulent_friction = 1 / value;
+    if (spec.raster_holds == params::ZoneRaster::friction_coefficient) cell.friction_coefficient = value;
+    if (spec.raster_holds == params::ZoneRaster::turbulent_friction) cell.inverse_turbulent_friction = 1 / value;
 }
 
 }  // namespace
@@ -41,10 +41,10 @@ double area_of(const Zone& zone, const GridGeometry& terrain) {
     return area;
 }
 
-LaidZones lay_zones(const std::vector<Zone>& zones, const Terrain& terrain) {
+LaidZones lay_zones(const std::vector<Zone>& zones, const terrain::Terrain& terrain) {
     LaidZones laid;
     if (zones.empty()) return laid;
-    Grid<CoverCell> cells(terrain.elevation().geometry, {as_elsewhere, as_elsewhere, as_elsewhere, 0});
+    Grid<terrain::CoverCell> cells(terrain.elevation().geometry, {as_elsewhere, as_elsewhere, as_elsewhere, 0});
     laid.zone_at.assign(cells.values.size(), 0);
     std::uint16_t number = 0;
     for (const Zone& zone : zones) {
@@ -54,8 +54,8 @@ LaidZones lay_zones(const std::vector<Zone>& zones, const Terrain& terrain) {
             laid.zone_at[cell] = number;
         });
     }
-    laid.cover = GroundCover(cells);
+    laid.cover = terrain::GroundCover(cells);
     return laid;
 }
 
-}  // namespace talus
+}  // namespace talus::scene

@@ -12,7 +12,7 @@
 #include "terrain/ground_cover.hpp"
 #include "terrain/terrain.hpp"
 
-namespace talus {
+namespace talus::scene {
 
 /// The raster of a zone on the cells of the terrain.
 struct ZoneCells {
@@ -22,7 +22,7 @@ struct ZoneCells {
 
 /// Ground with its own resistance.
 struct Zone {
-    ZoneSpec spec;
+    params::ZoneSpec spec;
     std::vector<Polygon> outline;            ///< world; of a zone without cells
     std::shared_ptr<const ZoneCells> cells;  ///< nullptr: the zone is where its outline is
 };
@@ -37,11 +37,11 @@ void for_each_cell(const Zone& zone, const GridGeometry& terrain,
 
 /// Zones on the cells of the terrain. Where they overlap, the values of the later one apply.
 struct LaidZones {
-    GroundCover cover;
+    terrain::GroundCover cover;
     std::vector<std::uint16_t> zone_at;  ///< by cell of the terrain: 1 + the last zone there; 0: none
 };
 
 /// Empty, and free of cost, without zones.
-[[nodiscard]] LaidZones lay_zones(const std::vector<Zone>& zones, const Terrain& terrain);
+[[nodiscard]] LaidZones lay_zones(const std::vector<Zone>& zones, const terrain::Terrain& terrain);
 
-}  // namespace talus
+}  // namespace talus::scene

@@ -34,19 +34,19 @@ double rounded(double value) {
     return std::round(value / unit) * unit;
 }
 
-const Parameter* find_live_parameter(const std::string& key) {
-    for (const Parameter* parameter : twin::live_parameters()) {
+const params::Parameter* find_live_parameter(const std::string& key) {
+    for (const params::Parameter* parameter : twin::live_parameters()) {
         if ("material." + parameter->key == key) return parameter;
     }
     return nullptr;
 }
 
 /// One of "parameters" of the body.
-Result<Factor> read_factor(const json& entry) {
+Result<ensemble::Factor> read_factor(const json& entry) {
     if (!entry.is_object()) return Error{"parameters: each is an object with key, low and high"};
     const auto number = [&](const char* name) {
         const auto found = entry.find(name);
-        return found != entry.end() && found->is_number() ? found->get<double>() : never;
+        return found != entry.end() && found->is_number() ? found->get<double>() : observe::never;
     };
     const auto name = entry.find("key");
     const std::string key = name != entry.end() && name->is_string() ? name->get<std::string>() : "";
@@ -54,8 +54,8 @@ Result<Factor> read_factor(const json& entry) {
         return Error{fmt::format("parameters: key = {}: must be one of the scene's parameters",
                                  name == entry.end() ? json().dump() : name->dump().substr(0, 80))};
     }
-    Factor factor{key, {}};
-    factor.distribution.kind = DistributionKind::uniform;
+    ensemble::Factor factor{key, {}};
+    factor.distribution.kind = stats::DistributionKind::uniform;
     factor.distribution.low = number("low");
     factor.distribution.high = number("high");
     if (!(factor.distribution.low < factor.distribution.high)) {
@@ -64,8 +64,8 @@ Result<Factor> read_factor(const json& entry) {
     return factor;
 }
 
-Result<CalibrationPlan> read_plan(const json& wanted) {
-    CalibrationPlan plan;
+Result<calibrate::CalibrationPlan> read_plan(const json& wanted) {
+    calibrate::CalibrationPlan plan;
     const auto list = wanted.is_object() ? wanted.find("parameters") : wanted.end();
     if (list == wanted.end() || !list->is_array() || list->empty() || list->size() > most_parameters) {
         return Error{
@@ -73,7 +73,7 @@ Result<CalibrationPlan> read_plan(const json& wanted) {
     }
     for (const json& entry : *list) {
         TALUS_ASSIGN(auto factor, read_factor(entry));
-        for (const Factor& other : plan.factors) {
+        for (const ensemble::Factor& other : plan.factors) {
             if (other.key == factor.key) return Error{fmt::format("parameters: {} is given twice", other.key)};
         }
         plan.factors.push_back(std::move(factor));
@@ -87,16 +87,16 @@ Result<CalibrationPlan> read_plan(const json& wanted) {
     return plan;
 }
 
-json observations_json(const std::vector<ObservedValue>& observed) {
+json observations_json(const std::vector<ensemble::ObservedValue>& observed) {
     json list = json::array();
-    for (const ObservedValue& o : observed) {
+    for (const ensemble::ObservedValue& o : observed) {
         list.push_back({{"name", o.name},
                         {"unit", o.unit},
                         {"observed", o.value},
                         {"uncertainty", o.uncertainty},
-                        {"is", o.kind == ObservedValue::Kind::equal      ? "equal"
-                               : o.kind == ObservedValue::Kind::at_least ? "at_least"
-                                                                         : "below"},
+                        {"is", o.kind == ensemble::ObservedValue::Kind::equal      ? "equal"
+                               : o.kind == ensemble::ObservedValue::Kind::at_least ? "at_least"
+                                                                                   : "below"},
                         {"best", nullptr},
                         {"deviation", nullptr}});
     }
@@ -105,11 +105,11 @@ json observations_json(const std::vector<ObservedValue>& observed) {
 
 }  // namespace
 
-Calibrations::Calibrations(std::shared_ptr<const Scene> scene, CalibrationSettings settings,
+Calibrations::Calibrations(std::shared_ptr<const scene::Scene> scene, CalibrationSettings settings,
                            std::function<void(json)> tell)
     : scene_(std::move(scene)),
       settings_(std::move(settings)),
-      observed_(observed_values(*scene_)),
+      observed_(ensemble::observed_values(*scene_)),
       tell_(std::move(tell)) {
     json why_not;
     if (observed_.empty()) {
@@ -199,13 +199,13 @@ fs::path Calibrations::new_folder() const {
     }
 }
 
-void Calibrations::work(const CalibrationPlan& plan, const std::string& by, const Respond& respond) {
+void Calibrations::work(const calibrate::CalibrationPlan& plan, const std::string& by, const Respond& respond) {
     pthread_setname_np(pthread_self(), "calibration");
     setpriority(PRIO_PROCESS, 0, niceness);  // of this thread and those that it starts
     const fs::path folder = new_folder();
     Ending ending;
     try {
-        const Result<PlannedRuns> runs = plan_calibration(plan, settings_.source, *scene_);
+        const Result<ensemble::PlannedRuns> runs = plan_calibration(plan, settings_.source, *scene_);
         if (!runs) {
             {
                 const std::lock_guard lock(mutex_);
@@ -216,7 +216,7 @@ void Calibrations::work(const CalibrationPlan& plan, const std::string& by, cons
         }
         begin(plan, by);
         std::string names;
-        for (const Factor& factor : plan.factors) {
+        for (const ensemble::Factor& factor : plan.factors) {
             names += (names.empty() ? "" : ", ") + twin::label_of(*find_live_parameter(factor.key));
         }
         const std::string done = fmt::format("calibration of {} with at most {} runs", names, plan.search.runs);
@@ -230,17 +230,18 @@ void Calibrations::work(const CalibrationPlan& plan, const std::string& by, cons
     end(ending);  // the caller of the next start joins this thread with the lock held: it must not be locked again here
 }
 
-Calibrations::Ending Calibrations::calibrate_in(const fs::path& path, const CalibrationPlan& plan,
-                                                const PlannedRuns& runs) {
-    const auto folder = EnsembleFolder::open(path, calibration_definition("calibration", plan, runs, settings_.source,
-                                                                          *scene_, observed_, settings_.scene_name));
+Calibrations::Ending Calibrations::calibrate_in(const fs::path& path, const calibrate::CalibrationPlan& plan,
+                                                const ensemble::PlannedRuns& runs) {
+    const auto folder = ensemble::EnsembleFolder::open(
+        path,
+        calibration_definition("calibration", plan, runs, settings_.source, *scene_, observed_, settings_.scene_name));
     if (!folder) return {"failed", folder.error().message};
-    CalibrationOptions options;
+    calibrate::CalibrationOptions options;
     options.stop_requested = &stop_;
-    options.on_progress = [this](const CalibrationProgress& now) { take_progress(now); };
-    options.on_run = [this](const CalibrationRun& run) { take_run(run); };
-    options.on_fit = [this](const Calibration& now) { take_fit(now); };
-    const auto made = calibrate(plan, runs, settings_.source, *scene_, observed_, *folder, options);
+    options.on_progress = [this](const calibrate::CalibrationProgress& now) { take_progress(now); };
+    options.on_run = [this](const calibrate::CalibrationRun& run) { take_run(run); };
+    options.on_fit = [this](const calibrate::Calibration& now) { take_fit(now); };
+    const auto made = calibrate::calibrate(plan, runs, settings_.source, *scene_, observed_, *folder, options);
     if (!made) return {"failed", made.error().message};
     if (made->result.interrupted || stop_) return {"cancelled", ""};
     take_fit(*made);
@@ -250,11 +251,11 @@ Calibrations::Ending Calibrations::calibrate_in(const fs::path& path, const Cali
     return {"done", written ? "" : written.error().message};
 }
 
-void Calibrations::begin(const CalibrationPlan& plan, const std::string& by) {
+void Calibrations::begin(const calibrate::CalibrationPlan& plan, const std::string& by) {
     const std::lock_guard lock(mutex_);
     json parameters = json::array();
-    for (const Factor& factor : plan.factors) {
-        const Parameter& parameter = *find_live_parameter(factor.key);
+    for (const ensemble::Factor& factor : plan.factors) {
+        const params::Parameter& parameter = *find_live_parameter(factor.key);
         parameters.push_back({{"key", factor.key},
                               {"label", twin::label_of(parameter)},
                               {"unit", parameter.unit},
@@ -266,7 +267,7 @@ void Calibrations::begin(const CalibrationPlan& plan, const std::string& by) {
     status_["message"] = "";
     status_["observations"] = observations_json(observed_);
     status_["parameters"] = parameters;
-    status_["phase"] = search_phase_name(SearchPhase::design);
+    status_["phase"] = search_phase_name(calibrate::SearchPhase::design);
     status_["runs_at_most"] = plan.search.runs;
     status_["runs_failed"] = 0;
     status_["runs"] = json::array();
@@ -274,7 +275,7 @@ void Calibrations::begin(const CalibrationPlan& plan, const std::string& by) {
     tell_now();
 }
 
-void Calibrations::take_run(const CalibrationRun& run) {
+void Calibrations::take_run(const calibrate::CalibrationRun& run) {
     const std::lock_guard lock(mutex_);
     json made = {
         {"values", run.values}, {"phase", search_phase_name(run.phase)}, {"misfit", number_or_null<json>(run.misfit)}};
@@ -290,16 +291,16 @@ void Calibrations::take_run(const CalibrationRun& run) {
     tell_now();
 }
 
-void Calibrations::take_progress(const CalibrationProgress& now) {
+void Calibrations::take_progress(const calibrate::CalibrationProgress& now) {
     const std::lock_guard lock(mutex_);
     status_["phase"] = search_phase_name(now.phase);
     status_["wall_remaining_s"] = number_or_null<json>(now.wall_remaining);
     if (Clock::now() - told_ >= tell_every) tell_now();
 }
 
-void Calibrations::take_fit(const Calibration& now) {
+void Calibrations::take_fit(const calibrate::Calibration& now) {
     if (!now.result.best) return;
-    const MisfitMap map = misfit_map(now);
+    const calibrate::MisfitMap map = misfit_map(now);
     json misfit = json::array();
     for (const double value : map.misfit) misfit.push_back(number_or_null<json>(rounded(value)));
     const std::vector<double>& predicted = now.result.runs[*now.result.best].predicted;
@@ -313,11 +314,11 @@ void Calibrations::take_fit(const Calibration& now) {
     tell_now();
 }
 
-void Calibrations::take_result(const Calibration& made) {
-    const CalibrationSummary summary = summarise(made);
+void Calibrations::take_result(const calibrate::Calibration& made) {
+    const calibrate::CalibrationSummary summary = summarise(made);
     json parameters = json::array();
     for (std::size_t k = 0; k < summary.factors.size(); ++k) {
-        const FactorResult& f = summary.factors[k];
+        const calibrate::FactorResult& f = summary.factors[k];
         parameters.push_back({{"key", made.factors[k].key},
                               {"best", f.best},
                               {"median", f.median},

@@ -21,7 +21,7 @@ namespace talus::serve {
 
 /// What calibrations run, and where.
 struct CalibrationSettings {
-    SceneSource source;            ///< loads the session's scene again; no file: there are no calibrations
+    run::SceneSource source;       ///< loads the session's scene again; no file: there are no calibrations
     std::string scene_name;        ///< for the record
     bool own_files = false;        ///< as in write_calibration
     std::filesystem::path folder;  ///< an existing one; each calibration records its runs in a folder there
@@ -33,7 +33,7 @@ struct CalibrationSettings {
 class Calibrations {
   public:
     /// `tell` is called with describe() after every change, from any thread.
-    Calibrations(std::shared_ptr<const Scene> scene, CalibrationSettings settings,
+    Calibrations(std::shared_ptr<const scene::Scene> scene, CalibrationSettings settings,
                  std::function<void(nlohmann::json)> tell);
     ~Calibrations();
     Calibrations(const Calibrations&) = delete;
@@ -56,22 +56,22 @@ class Calibrations {
         const char* state = "failed";
         std::string message;
     };
-    void work(const CalibrationPlan& plan, const std::string& by, const Respond& respond);
-    [[nodiscard]] Ending calibrate_in(const std::filesystem::path& folder, const CalibrationPlan& plan,
-                                      const PlannedRuns& runs);
-    void begin(const CalibrationPlan& plan, const std::string& by);
-    void take_run(const CalibrationRun& run);
-    void take_fit(const Calibration& now);
-    void take_progress(const CalibrationProgress& now);
-    void take_result(const Calibration& made);
+    void work(const calibrate::CalibrationPlan& plan, const std::string& by, const Respond& respond);
+    [[nodiscard]] Ending calibrate_in(const std::filesystem::path& folder, const calibrate::CalibrationPlan& plan,
+                                      const ensemble::PlannedRuns& runs);
+    void begin(const calibrate::CalibrationPlan& plan, const std::string& by);
+    void take_run(const calibrate::CalibrationRun& run);
+    void take_fit(const calibrate::Calibration& now);
+    void take_progress(const calibrate::CalibrationProgress& now);
+    void take_result(const calibrate::Calibration& made);
     void end(const Ending& ending);
     /// Under the lock: sends the current state.
     void tell_now();
     [[nodiscard]] std::filesystem::path new_folder() const;
 
-    std::shared_ptr<const Scene> scene_;
+    std::shared_ptr<const scene::Scene> scene_;
     const CalibrationSettings settings_;
-    const std::vector<ObservedValue> observed_;
+    const std::vector<ensemble::ObservedValue> observed_;
     std::function<void(nlohmann::json)> tell_;
     std::atomic<bool> stop_{false};
     mutable std::mutex mutex_;  // guards the following members

@@ -34,27 +34,27 @@ json number_or_null(bool there, double value) {
 
 }  // namespace
 
-Result<Ensembles::Ensemble> Ensembles::read_one(const fs::path& folder, const Scene& scene) {
+Result<Ensembles::Ensemble> Ensembles::read_one(const fs::path& folder, const scene::Scene& scene) {
     Ensemble made;
-    TALUS_ASSIGN(made.about, read_finished_ensemble(folder));
-    for (const InputFile& input : scene.inputs) {
+    TALUS_ASSIGN(made.about, ensemble::read_finished_ensemble(folder));
+    for (const scene::InputFile& input : scene.inputs) {
         if (input.role == "terrain" && !made.about.terrain_hash.empty()) {
             made.same_terrain = input.hash == made.about.terrain_hash;
         }
     }
     const Extent terrain = scene.terrain.elevation().geometry.extent();
-    for (FinishedMap& map : made.about.maps) {
+    for (ensemble::FinishedMap& map : made.about.maps) {
         TALUS_ASSIGN(const auto raster, read_map_raster(map.file.string(), scene.crs));
         const GridGeometry& grid = raster.grid.geometry;
         TALUS_TRY(check_extent(map.file, grid.extent(), terrain, std::max(grid.cell, scene.terrain.cell())));
         made.maps.push_back({std::move(map), std::make_shared<const std::string>(twin::encode_grid(raster.grid)),
-                             greatest(raster.grid)});
+                             report::greatest(raster.grid)});
     }
     made.about.maps.clear();
     return Result<Ensemble>(std::move(made));
 }
 
-Result<Ensembles> Ensembles::read(const std::vector<fs::path>& folders, const Scene& scene) {
+Result<Ensembles> Ensembles::read(const std::vector<fs::path>& folders, const scene::Scene& scene) {
     Ensembles all;
     for (const fs::path& folder : folders) {
         TALUS_ASSIGN(auto ensemble, read_one(folder, scene));
@@ -67,13 +67,13 @@ json Ensembles::describe() const {
     json list = json::array();
     for (const Ensemble& ensemble : ensembles_) {
         json factors = json::array(), maps = json::array();
-        for (const Factor& f : ensemble.about.factors) {
+        for (const ensemble::Factor& f : ensemble.about.factors) {
             factors.push_back({{"key", f.key}, {"distribution", f.distribution.text()}});
         }
         for (const Map& map : ensemble.maps) {
-            const FinishedMap& about = map.about;
-            const bool probability = about.kind == EnsembleMap::Kind::probability;
-            const HazardMap& counted = hazard_maps().at(about.map);
+            const ensemble::FinishedMap& about = map.about;
+            const bool probability = about.kind == ensemble::EnsembleMap::Kind::probability;
+            const report::HazardMap& counted = report::hazard_maps().at(about.map);
             maps.push_back({{"name", about.style.file},
                             {"title", about.style.title},
                             {"unit", about.style.unit},

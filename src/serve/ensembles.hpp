@@ -20,7 +20,8 @@ class Ensembles {
     Ensembles() = default;
 
     /// Errors, each naming folder or file: no ensemble, not finished, another CRS, off the scene's terrain, damaged.
-    [[nodiscard]] static Result<Ensembles> read(const std::vector<std::filesystem::path>& folders, const Scene& scene);
+    [[nodiscard]] static Result<Ensembles> read(const std::vector<std::filesystem::path>& folders,
+                                                const scene::Scene& scene);
 
     /// As `GET /api/ensembles`.
     [[nodiscard]] nlohmann::json describe() const;
@@ -29,16 +30,16 @@ class Ensembles {
 
   private:
     struct Map {
-        FinishedMap about;
+        ensemble::FinishedMap about;
         Bytes grid;
         double greatest = 0;  // 0: debris reached no cell by that measure
     };
     struct Ensemble {
-        FinishedEnsemble about;
+        ensemble::FinishedEnsemble about;
         std::vector<Map> maps;
         bool same_terrain = true;
     };
-    [[nodiscard]] static Result<Ensemble> read_one(const std::filesystem::path& folder, const Scene& scene);
+    [[nodiscard]] static Result<Ensemble> read_one(const std::filesystem::path& folder, const scene::Scene& scene);
 
     std::vector<Ensemble> ensembles_;
 };

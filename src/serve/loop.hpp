@@ -23,7 +23,7 @@ class Loop {
     /// Opens the scene as scenario A, paused at time 0. Threads as `solver.thread_count` says. `watcher` is called from
     /// the loop's thread, `failed` is called there once on a failure such as lack of memory; nothing runs after that.
     /// Errors: as twin::Scenario::open.
-    [[nodiscard]] static Result<std::unique_ptr<Loop>> start(std::shared_ptr<const Scene> scene,
+    [[nodiscard]] static Result<std::unique_ptr<Loop>> start(std::shared_ptr<const scene::Scene> scene,
                                                              twin::ScenarioOptions options, Watcher& watcher,
                                                              std::function<void(std::string)> failed);
     /// Ends after the current step or task; waiting tasks are discarded.
@@ -34,12 +34,12 @@ class Loop {
     void post(Task task);
 
   private:
-    Loop(std::unique_ptr<Threads> threads, std::unique_ptr<twin::Scenario> first, Watcher& watcher,
+    Loop(std::unique_ptr<run::Threads> threads, std::unique_ptr<twin::Scenario> first, Watcher& watcher,
          std::function<void(std::string)> failed);
     void run();
     void work_until_done();
 
-    std::unique_ptr<Threads> threads_;
+    std::unique_ptr<run::Threads> threads_;
     Scenarios scenarios_;
     std::function<void(std::string)> failed_;
     std::mutex mutex_;

@@ -12,11 +12,11 @@ namespace {
 
 using Schema = nlohmann::ordered_json;  // its keys stay in order
 
-Schema schema_of(const Parameter& parameter) {
-    Schema schema = {{"type", parameter.kind == ParameterKind::choice ? "string" : "number"}};
+Schema schema_of(const params::Parameter& parameter) {
+    Schema schema = {{"type", parameter.kind == params::ParameterKind::choice ? "string" : "number"}};
     if (!parameter.absent.empty()) schema["type"] = {schema["type"], "null"};
     if (!parameter.choices.empty()) schema["enum"] = parameter.choices;
-    const Range& range = parameter.range;
+    const params::Range& range = parameter.range;
     if (std::isfinite(range.low)) schema[range.low_included ? "minimum" : "exclusiveMinimum"] = range.low;
     if (std::isfinite(range.high)) schema[range.high_included ? "maximum" : "exclusiveMaximum"] = range.high;
     schema["description"] = parameter.help + (parameter.absent.empty() ? "" : " null: " + parameter.absent + ".");
@@ -26,14 +26,14 @@ Schema schema_of(const Parameter& parameter) {
 /// Calls f(parameter) for the live parameters of the section.
 template <class F>
 void for_each_live(const std::string& section, const F& f) {
-    for (const Parameter& parameter : live_section(section).parameters) {
+    for (const params::Parameter& parameter : params::live_section(section).parameters) {
         if (!parameter.live.empty()) f(parameter);
     }
 }
 
 /// A key that several actions have is described for each of them.
 void add_action(const std::string& action, const std::string& section, Schema& properties) {
-    for_each_live(section, [&](const Parameter& parameter) {
+    for_each_live(section, [&](const params::Parameter& parameter) {
         Schema schema = schema_of(parameter);
         schema["description"] = action + ": " + schema["description"].get<std::string>();
         if (properties.contains(parameter.live)) {
@@ -55,7 +55,7 @@ void fill_in(Schema& node) {
     for (const char* kind : {"x-section", "x-section-input"}) {
         if (!node.contains(kind)) continue;
         const bool output = std::string(kind) == "x-section";
-        for_each_live(node[kind].get<std::string>(), [&](const Parameter& parameter) {
+        for_each_live(node[kind].get<std::string>(), [&](const params::Parameter& parameter) {
             if (output || parameter.required) node["required"].push_back(parameter.live);
             if (!node["properties"].contains(parameter.live)) {
                 node["properties"][parameter.live] = schema_of(parameter);

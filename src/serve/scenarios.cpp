@@ -115,7 +115,7 @@ Result<twin::Done> Scenarios::steer(const std::string& name, const json& action)
     if (furthest_behind() == nullptr) {
         // At rest, debris may move again when something changes; the request to run is then kept.
         const bool can_come = std::any_of(slots_.begin(), slots_.end(), [](const Slot& slot) {
-            return slot.scenario && slot.scenario->phase() == RunPhase::at_rest;
+            return slot.scenario && slot.scenario->phase() == run::RunPhase::at_rest;
         });
         if (name == "step" || !can_come) {
             return Error{

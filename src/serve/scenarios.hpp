@@ -89,7 +89,7 @@ class Scenarios {
         nlohmann::json told_setup;
         std::uint32_t ids = 0;  // particle ids in the newest frame
 
-        [[nodiscard]] bool ready() const { return scenario && scenario->phase() == RunPhase::ready; }
+        [[nodiscard]] bool ready() const { return scenario && scenario->phase() == run::RunPhase::ready; }
     };
     static void advance(Slot& slot);
     [[nodiscard]] Slot* furthest_behind();

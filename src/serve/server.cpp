@@ -144,7 +144,7 @@ Result<std::unique_ptr<Server>> Server::listen(ServerOptions options) {
     return std::unique_ptr<Server>(new Server(std::move(parts)));
 }
 
-Status Server::serve(std::shared_ptr<const Scene> scene) {
+Status Server::serve(std::shared_ptr<const scene::Scene> scene) {
     Parts& parts = *parts_;
     const ServerOptions& options = parts.options;
     TALUS_ASSIGN(parts.ensembles, Ensembles::read(options.ensembles, *scene));

@@ -38,7 +38,7 @@ class Server {
     /// Binds the port. Errors: bad address, port in use, bad tokens.
     [[nodiscard]] static Result<std::unique_ptr<Server>> listen(ServerOptions options);
     /// Opens the scene and starts answering; once. Errors: the scene cannot be run, an ensemble cannot be shown on it.
-    [[nodiscard]] Status serve(std::shared_ptr<const Scene> scene);
+    [[nodiscard]] Status serve(std::shared_ptr<const scene::Scene> scene);
     ~Server();
     Server(const Server&) = delete;
     Server& operator=(const Server&) = delete;

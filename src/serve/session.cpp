@@ -39,7 +39,7 @@ bool read_mark(const json& at, std::optional<std::array<double, 3>>& mark) {
 
 }  // namespace
 
-Session::Session(Thread thread, std::shared_ptr<const Scene> scene, Tokens tokens)
+Session::Session(Thread thread, std::shared_ptr<const scene::Scene> scene, Tokens tokens)
     : thread_(std::move(thread)), scene_(std::move(scene)), tokens_(std::move(tokens)) {}
 
 Session::~Session() {

@@ -39,7 +39,7 @@ struct Thread {
 /// functions of Watcher is for the server's thread.
 class Session final : public Watcher {
   public:
-    Session(Thread thread, std::shared_ptr<const Scene> scene, Tokens tokens);
+    Session(Thread thread, std::shared_ptr<const scene::Scene> scene, Tokens tokens);
     ~Session() override;
 
     /// Opens the scene; once, before anything else. Errors: as Loop::start.
@@ -58,7 +58,7 @@ class Session final : public Watcher {
     [[nodiscard]] People& people() { return people_; }
     /// For work of fractions of a second that should not delay either thread.
     [[nodiscard]] Worker& worker() { return *worker_; }
-    [[nodiscard]] const std::shared_ptr<const Scene>& scene() const { return scene_; }
+    [[nodiscard]] const std::shared_ptr<const scene::Scene>& scene() const { return scene_; }
     /// Notifies everybody, soon.
     void people_changed();
     /// As `GET /api/session`.
@@ -93,7 +93,7 @@ class Session final : public Watcher {
     [[nodiscard]] Clock::duration people_interval() const;
 
     Thread thread_;
-    std::shared_ptr<const Scene> scene_;
+    std::shared_ptr<const scene::Scene> scene_;
     Tokens tokens_;
     People people_;
     std::map<Viewer*, View> viewers_;

@@ -8,7 +8,7 @@
 #include "sim/physics/net.hpp"
 #include "sim/relax.hpp"
 
-namespace talus {
+namespace talus::sim {
 
 void append_particles(State& state, const State& more, std::uint32_t first_id) {
     // Multipliers and stresses are pressures times the square of their time step.
@@ -121,4 +121,4 @@ void remove_building(const Model& model, Ground& ground, State& state, std::size
     wake(state, local.grown(2 * model.support_radius));
 }
 
-}  // namespace talus
+}  // namespace talus::sim

@@ -9,7 +9,7 @@
 #include "sim/state.hpp"
 
 /// Edits to a state between two steps, within Simulation::change().
-namespace talus {
+namespace talus::sim {
 
 /// Adds the particles of `more` (see seed_releases), their ids raised by `first_id`, and counts them as seeded.
 void append_particles(State& state, const State& more, std::uint32_t first_id);
@@ -34,4 +34,4 @@ void clear_solids(const Model& model, const Ground& ground, State& state, const 
 /// Removes a building's solid; debris resting on it or against it is woken.
 void remove_building(const Model& model, Ground& ground, State& state, std::size_t building);
 
-}  // namespace talus
+}  // namespace talus::sim

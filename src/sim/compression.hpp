@@ -1,7 +1,7 @@
 #pragma once
 
 /// How far debris may be denser than at rest: compression is max(0, density / rest density - 1).
-namespace talus {
+namespace talus::sim {
 
 /// A particle above this is squeezed.
 inline constexpr double squeezed_compression = 0.03;
@@ -21,4 +21,4 @@ template <class State>
     return state.mean_compression > mean_compression_limit / 2 || state.squeezed_share > squeezed_share_limit / 2;
 }
 
-}  // namespace talus
+}  // namespace talus::sim

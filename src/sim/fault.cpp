@@ -5,7 +5,7 @@
 
 #include <fmt/format.h>
 
-namespace talus {
+namespace talus::sim {
 
 double speed_bound(const Model& model, double highest_energy_head) {
     const double fall = std::max(0.0, highest_energy_head) + model.particle_spacing;
@@ -48,4 +48,4 @@ Status find_fault(const Model& model, const State& state, double highest_energy_
     return {};
 }
 
-}  // namespace talus
+}  // namespace talus::sim

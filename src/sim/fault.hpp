@@ -4,7 +4,7 @@
 #include "sim/model.hpp"
 #include "sim/state.hpp"
 
-namespace talus {
+namespace talus::sim {
 
 /// The speed, m/s, above which a particle has more energy than a fall from the highest debris to the lowest ground
 /// (local z = 0) explains. Pressure can transfer energy from the tail to the front, hence the margin of 50 %.
@@ -14,4 +14,4 @@ namespace talus {
 /// `highest_energy_head`: greatest z + v^2 / 2g of any particle when it was released, local m.
 [[nodiscard]] Status find_fault(const Model& model, const State& state, double highest_energy_head);
 
-}  // namespace talus
+}  // namespace talus::sim

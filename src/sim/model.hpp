@@ -11,7 +11,7 @@
 #include "sim/physics/kernel.hpp"
 #include "terrain/ground_cover.hpp"
 
-namespace talus {
+namespace talus::sim {
 
 /// When a release starts and its particles: ids [first_particle, last_particle).
 struct ReleaseGroup {
@@ -49,10 +49,10 @@ struct Model {
     double pore_pressure_ratio = 0;       ///< r_u, at the start of a release
     double pore_pressure_decay_time = 0;  ///< s; 0: constant
     InertialFriction inertial_friction;   ///< inside
-    GroundCover cover;                    ///< where the ground has its own resistance
+    terrain::GroundCover cover;           ///< where the ground has its own resistance
     double gravity = 9.80665;             ///< m/s2
 
-    SolverSpec solver;
+    params::SolverSpec solver;
 
     Kernel kernel;           ///< density and gradient, with the calibrated particle volume folded in
     BoundaryTable boundary;  ///< density share of a half-space of ground
@@ -64,4 +64,4 @@ struct Model {
     [[nodiscard]] double particle_mass() const { return rest_density * particle_volume(); }
 };
 
-}  // namespace talus
+}  // namespace talus::sim

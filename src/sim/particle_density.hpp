@@ -6,7 +6,7 @@
 #include "sim/model.hpp"
 #include "sim/state.hpp"
 
-namespace talus {
+namespace talus::sim {
 
 /// kg/m3, of a particle: its own where a hydrograph sets one, otherwise the material's. Forces, pressures, energies and
 /// masses follow from it. Motion does not: the solver moves volumes, so a denser particle pushes no harder on a lighter
@@ -18,4 +18,4 @@ namespace talus {
     return own ? static_cast<double>(state.density_of_id[id]) : model.rest_density;
 }
 
-}  // namespace talus
+}  // namespace talus::sim

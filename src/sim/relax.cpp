@@ -8,7 +8,7 @@
 #include "sim/cpu/backend.hpp"
 #include "sim/step.hpp"
 
-namespace talus {
+namespace talus::sim {
 namespace {
 
 /// Takes steps without inertia until `done`: velocities are reset after each.
@@ -53,7 +53,7 @@ Model without_forces(const Model& model) {
     still.turbulent_friction = still.cohesion = 0;
     still.inertial_friction = {};
     still.cover = {};
-    still.solver.internal_friction = InternalFriction::pair;
+    still.solver.internal_friction = params::InternalFriction::pair;
     return still;
 }
 
@@ -95,4 +95,4 @@ void push_apart(const Model& model, const Ground& ground, State& state) {
     creep(still, ground, state, max_rounds, [](const State& s) { return s.max_compression < dense_enough; });
 }
 
-}  // namespace talus
+}  // namespace talus::sim

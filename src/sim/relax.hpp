@@ -8,7 +8,7 @@
 #include "sim/state.hpp"
 
 /// Moves particles that were placed, not brought to their position by a step, until they fit; none gains speed.
-namespace talus {
+namespace talus::sim {
 
 /// Moves a local position out of the solids that it lies in, to their surface, and up to the ground. Calls `on_wall`
 /// with the normal of every surface that it is moved out of.
@@ -18,7 +18,7 @@ void put_out_of_solids(const Model& model, const Ground& ground, LocalPoint& p, 
     const auto touching = static_cast<float>(model.contact_distance());
     // Once per wall at most in a corner; touching buildings act as one solid.
     for (int wall = 0; wall < 4 && ground.solids.inside(p, grain_rank); ++wall) {
-        const SolidSample<float> nearest = ground.solids.nearest(p, grain_rank);
+        const terrain::SolidSample<float> nearest = ground.solids.nearest(p, grain_rank);
         p += nearest.normal * (touching - nearest.distance);
         on_wall(nearest.normal);
     }
@@ -36,4 +36,4 @@ void relax(const Model& model, const Ground& ground, State& state, const std::ve
 /// not move. Positions change; time and velocities are reset.
 void push_apart(const Model& model, const Ground& ground, State& state);
 
-}  // namespace talus
+}  // namespace talus::sim

@@ -14,7 +14,7 @@
 #include "sim/step.hpp"
 #include "simd/parallel.hpp"
 
-namespace talus {
+namespace talus::sim {
 
 /// The parts of a step other than moving particles.
 struct Simulation::OwnStages {
@@ -149,4 +149,4 @@ double potential_energy(const Model& model, const State& state) {
                [](double a, double b) { return a + b; });
 }
 
-}  // namespace talus
+}  // namespace talus::sim

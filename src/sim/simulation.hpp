@@ -14,7 +14,7 @@
 #include "sim/state.hpp"
 #include "sim/step_watcher.hpp"
 
-namespace talus {
+namespace talus::sim {
 
 /// A model, its ground and state, its inflows, and the backend that advances it.
 class Simulation {
@@ -68,4 +68,4 @@ class Simulation {
 /// Sum of m g z over the particles, J, z above the frame's origin.
 [[nodiscard]] double potential_energy(const Model& model, const State& state);
 
-}  // namespace talus
+}  // namespace talus::sim

@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <string_view>
 
-namespace talus {
+namespace talus::sim {
 
 // clang-format off
 /// All that happens in a step, in order: X(name, short name for tables, what it does). The enumeration, the timings and
@@ -79,4 +79,4 @@ class StageTimer {
     std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
-}  // namespace talus
+}  // namespace talus::sim

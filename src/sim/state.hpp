@@ -6,7 +6,7 @@
 #include "core/geometry.hpp"
 #include "sim/physics/stress.hpp"
 
-namespace talus {
+namespace talus::sim {
 
 /// Number of particles processed together, in one or several vector registers.
 inline constexpr std::size_t block_size = 16;
@@ -140,7 +140,7 @@ struct State {
     std::vector<BuildingContact> building_contacts;
 
     void resize(std::size_t n) {
-#define TALUS_RESIZE(array, element, name) talus::resize(name, n);
+#define TALUS_RESIZE(array, element, name) sim::resize(name, n);
         TALUS_PARTICLE_ARRAYS(TALUS_RESIZE)
 #undef TALUS_RESIZE
     }
@@ -201,4 +201,4 @@ std::uint32_t State::remove_if(const Gone& gone, const OnKept& on_kept) {
     return gone_count;
 }
 
-}  // namespace talus
+}  // namespace talus::sim

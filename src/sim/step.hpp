@@ -6,7 +6,7 @@
 #include "sim/model.hpp"
 #include "sim/stage_times.hpp"
 
-namespace talus {
+namespace talus::sim {
 
 /// The parts of a step other than moving particles (see Simulation). This one has none: particles are moved by the
 /// state's time step.
@@ -68,4 +68,4 @@ void step(Backend& backend, const Model& model, const Ground& ground, State& sta
     (void)step(backend, model, ground, state, times, MotionAlone{});  // which finds no fault
 }
 
-}  // namespace talus
+}  // namespace talus::sim

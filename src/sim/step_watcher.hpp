@@ -8,7 +8,7 @@
 #include "sim/model.hpp"
 #include "sim/state.hpp"
 
-namespace talus {
+namespace talus::sim {
 
 /// Takes part in the steps of a Simulation from outside the solver: measures, and decides from that which structures
 /// fail.
@@ -27,4 +27,4 @@ class StepWatcher {
     [[nodiscard]] virtual const std::vector<std::size_t>& failed_buildings() const = 0;
 };
 
-}  // namespace talus
+}  // namespace talus::sim

@@ -6,7 +6,7 @@
 
 /// Systems of equations with a symmetric positive definite matrix, by Cholesky's method. Matrices are n x n by rows, of
 /// which only the lower triangle is used.
-namespace talus {
+namespace talus::stats {
 
 /// Replaces the matrix by L with L L^T equal to it; false (contents then undefined) where it is not positive definite.
 inline bool cholesky(std::vector<double>& matrix, std::size_t n) {
@@ -44,4 +44,4 @@ inline void solve_upper(const std::vector<double>& factor, std::vector<double>& 
     }
 }
 
-}  // namespace talus
+}  // namespace talus::stats

@@ -7,7 +7,7 @@
 #include <numeric>
 #include <utility>
 
-namespace talus {
+namespace talus::stats {
 namespace {
 
 constexpr std::array<std::pair<DesignKind, std::string_view>, 6> names = {{
@@ -159,4 +159,4 @@ Points morris_points(std::size_t trajectories, std::size_t factors, std::uint64_
     return points;
 }
 
-}  // namespace talus
+}  // namespace talus::stats

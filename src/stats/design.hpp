@@ -8,7 +8,7 @@
 
 /// Positions of the runs of an ensemble in the unit cube. A design depends only on its kind, its size and the seed, so
 /// that run 17 is the same run on any machine, shard or rank.
-namespace talus {
+namespace talus::stats {
 
 enum class DesignKind {
     monte_carlo,      ///< independent draws
@@ -49,4 +49,4 @@ using Points = std::vector<std::vector<double>>;
 /// `trajectories` blocks of factors + 1 runs, each of which changes one factor of the run before.
 [[nodiscard]] Points morris_points(std::size_t trajectories, std::size_t factors, std::uint64_t seed);
 
-}  // namespace talus
+}  // namespace talus::stats

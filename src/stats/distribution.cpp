@@ -9,7 +9,7 @@
 
 #include <fmt/format.h>
 
-namespace talus {
+namespace talus::stats {
 namespace {
 
 /// Standard normal distribution function.
@@ -247,4 +247,4 @@ const char* distribution_name(DistributionKind kind) {
     return "list";
 }
 
-}  // namespace talus
+}  // namespace talus::stats

@@ -8,7 +8,7 @@
 #include "core/result.hpp"
 
 /// Distribution of a factor of an ensemble.
-namespace talus {
+namespace talus::stats {
 
 enum class DistributionKind { uniform, log_uniform, normal, triangular, list };
 
@@ -43,4 +43,4 @@ struct Distribution {
 /// "uniform", "log_uniform", "normal", "triangular", "list".
 [[nodiscard]] const char* distribution_name(DistributionKind kind);
 
-}  // namespace talus
+}  // namespace talus::stats

@@ -8,7 +8,7 @@
 #include "stats/cholesky.hpp"
 #include "stats/optimise.hpp"
 
-namespace talus {
+namespace talus::stats {
 namespace {
 
 // Variances of the trend's coefficients, of scaled values: a change of four standard deviations across the cube is not
@@ -157,4 +157,4 @@ std::vector<Emulator::LeftOut> Emulator::leave_one_out() const {
     return all;
 }
 
-}  // namespace talus
+}  // namespace talus::stats

@@ -5,7 +5,7 @@
 
 #include "stats/design.hpp"
 
-namespace talus {
+namespace talus::stats {
 
 /// Interpolates a predicted number between runs by a Gaussian process over the unit cube of the factors (Rasmussen &
 /// Williams 2006, "Gaussian Processes for Machine Learning", chapters 2, 4 and 5).
@@ -62,4 +62,4 @@ class Emulator {
     std::vector<double> weights_;  // inverse covariance times values
 };
 
-}  // namespace talus
+}  // namespace talus::stats

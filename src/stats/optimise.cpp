@@ -6,7 +6,7 @@
 #include <memory>
 #include <nlopt.h>
 
-namespace talus {
+namespace talus::stats {
 namespace {
 
 /// The objective as NLopt calls it. It keeps the best point itself, which NLopt's last one need not be.
@@ -61,4 +61,4 @@ Optimum minimise_in_cube(const Objective& objective, std::size_t dimensions,
     return best;
 }
 
-}  // namespace talus
+}  // namespace talus::stats

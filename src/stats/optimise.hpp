@@ -6,7 +6,7 @@
 
 /// Minimisation of functions of a few variables, without derivatives: NLopt (Johnson, "The NLopt nonlinear-optimization
 /// package") behind two calls. Deterministic: the same function gives the same result on every machine.
-namespace talus {
+namespace talus::stats {
 
 using Objective = std::function<double(const std::vector<double>&)>;
 
@@ -26,4 +26,4 @@ struct Optimum {
 [[nodiscard]] Optimum minimise_in_cube(const Objective& objective, std::size_t dimensions,
                                        const std::vector<std::vector<double>>& starts, std::size_t evaluations);
 
-}  // namespace talus
+}  // namespace talus::stats

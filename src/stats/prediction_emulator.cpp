@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace talus {
+namespace talus::stats {
 
 namespace {
 
@@ -63,4 +63,4 @@ double PredictionEmulator::reach_told() const {
     return right / count;
 }
 
-}  // namespace talus
+}  // namespace talus::stats

@@ -5,7 +5,7 @@
 
 #include "stats/emulator.hpp"
 
-namespace talus {
+namespace talus::stats {
 
 /// Predictions of runs for one observation: whether debris reaches the place at all, and the value if it does. A front
 /// that stops in a bend gives no value, not a small one, so a single smooth function over both would invent values in
@@ -41,4 +41,4 @@ class PredictionEmulator {
     double unreached_ = 0;
 };
 
-}  // namespace talus
+}  // namespace talus::stats

@@ -8,7 +8,7 @@
 
 #include "stats/cholesky.hpp"
 
-namespace talus {
+namespace talus::stats {
 namespace {
 
 constexpr double wanted_acceptance = 0.3;       // between the best of one dimension (0.44) and of many (0.23)
@@ -184,4 +184,4 @@ double effective_size(const std::vector<std::vector<double>>& chains) {
     return std::min(total, total / (1 + 2 * sum));
 }
 
-}  // namespace talus
+}  // namespace talus::stats

@@ -8,7 +8,7 @@
 #include "stats/design.hpp"
 
 /// Draws from a density over the unit cube that is known up to a factor.
-namespace talus {
+namespace talus::stats {
 
 using LogDensity = std::function<double(const std::vector<double>&)>;
 
@@ -43,4 +43,4 @@ struct Chains {
 /// A standard normal number from the seed and two counters (Box & Muller 1958).
 [[nodiscard]] double normal_draw(std::uint64_t seed, std::uint64_t row, std::uint64_t column);
 
-}  // namespace talus
+}  // namespace talus::stats

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numeric>
 
-namespace talus {
+namespace talus::stats {
 namespace {
 
 constexpr std::size_t fewest = 4;       // blocks or runs, minimum for an estimate
@@ -176,4 +176,4 @@ Sensitivity sensitivity_of(DesignKind design, const Points& points, const std::v
     return out;
 }
 
-}  // namespace talus
+}  // namespace talus::stats

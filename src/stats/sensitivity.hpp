@@ -6,7 +6,7 @@
 #include "stats/design.hpp"
 
 /// Which factors a scalar result depends on.
-namespace talus {
+namespace talus::stats {
 
 enum class SensitivityKind {
     variance,   ///< Sobol indices, from a saltelli design
@@ -39,4 +39,4 @@ struct Sensitivity {
 /// `results`: one per run of the plan, NaN where a run failed, is missing or gave none. An incomplete block is ignored.
 [[nodiscard]] Sensitivity sensitivity_of(DesignKind design, const Points& points, const std::vector<double>& results);
 
-}  // namespace talus
+}  // namespace talus::stats

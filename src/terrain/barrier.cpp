@@ -7,7 +7,7 @@
 
 #include "core/try.hpp"
 
-namespace talus {
+namespace talus::terrain {
 namespace {
 
 constexpr double usual_part = 2;         ///< m of line
@@ -72,10 +72,10 @@ Status check_line(const Terrain& terrain, const std::vector<PlanPoint>& line) {
     return {};
 }
 
-Status check_openings(const BarrierSpec& shape) {
+Status check_openings(const params::BarrierSpec& shape) {
     const double length = length_of(shape.line);
     for (std::size_t k = 0; k < shape.openings.size(); ++k) {
-        const BarrierOpeningSpec& a = shape.openings[k];
+        const params::BarrierOpeningSpec& a = shape.openings[k];
         if (a.position - a.width / 2 < 0 || a.position + a.width / 2 > length) {
             return Error{fmt::format("opening {}: reaches from {:.6g} to {:.6g} m along a line of {:.6g} m", k + 1,
                                      a.position - a.width / 2, a.position + a.width / 2, length)};
@@ -86,7 +86,7 @@ Status check_openings(const BarrierSpec& shape) {
                             a.sill, shape.height.value_or(0))};
         }
         for (std::size_t other = 0; other < k; ++other) {
-            const BarrierOpeningSpec& b = shape.openings[other];
+            const params::BarrierOpeningSpec& b = shape.openings[other];
             if (std::abs(a.position - b.position) < (a.width + b.width) / 2) {
                 return Error{fmt::format("openings {} and {}: overlap", other + 1, k + 1)};
             }
@@ -95,8 +95,8 @@ Status check_openings(const BarrierSpec& shape) {
     return {};
 }
 
-const BarrierOpeningSpec* opening_at(const BarrierSpec& shape, double chainage) {
-    for (const BarrierOpeningSpec& opening : shape.openings) {
+const params::BarrierOpeningSpec* opening_at(const params::BarrierSpec& shape, double chainage) {
+    for (const params::BarrierOpeningSpec& opening : shape.openings) {
         if (std::abs(chainage - opening.position) < opening.width / 2) return &opening;
     }
     return nullptr;
@@ -104,12 +104,12 @@ const BarrierOpeningSpec* opening_at(const BarrierSpec& shape, double chainage) 
 
 /// Positions, as shares, at which a segment from chainage `from` to `to` is cut: into equal parts, and at the ends of
 /// openings.
-std::vector<double> find_cuts(const BarrierSpec& shape, double from, double to, double part_length) {
+std::vector<double> find_cuts(const params::BarrierSpec& shape, double from, double to, double part_length) {
     const int parts = std::max(1, static_cast<int>(std::ceil((to - from) / part_length)));
     std::vector<double> cuts;
     cuts.reserve(static_cast<std::size_t>(parts) + 1 + 2 * shape.openings.size());
     for (int p = 0; p <= parts; ++p) cuts.push_back(static_cast<double>(p) / parts);
-    for (const BarrierOpeningSpec& opening : shape.openings) {
+    for (const params::BarrierOpeningSpec& opening : shape.openings) {
         for (const double end : {opening.position - opening.width / 2, opening.position + opening.width / 2}) {
             const double share = (end - from) / (to - from);
             if (share > 0 && share < 1) cuts.push_back(share);
@@ -124,7 +124,7 @@ std::vector<double> find_cuts(const BarrierSpec& shape, double from, double to, 
 
 }  // namespace
 
-Result<Building> make_barrier(const Terrain& terrain, const std::string& name, const BarrierSpec& shape) {
+Result<Building> make_barrier(const Terrain& terrain, const std::string& name, const params::BarrierSpec& shape) {
     const std::vector<PlanPoint>& line = shape.line;
     TALUS_TRY(check_line(terrain, line));
     TALUS_TRY(check_openings(shape));
@@ -161,7 +161,7 @@ Result<Building> make_barrier(const Terrain& terrain, const std::string& name, c
             }
             double roof = shape.crest_elevation.value_or(ground + shape.height.value_or(0));
             highest = std::max(highest, roof - ground);
-            if (const BarrierOpeningSpec* opening = opening_at(shape, chainage + (from + to) / 2 * length)) {
+            if (const params::BarrierOpeningSpec* opening = opening_at(shape, chainage + (from + to) / 2 * length)) {
                 if (!(opening->sill > 0)) continue;
                 roof = std::min(roof, ground + opening->sill);
             }
@@ -220,4 +220,4 @@ bool meets_itself(const Ring& ring) {
     return false;
 }
 
-}  // namespace talus
+}  // namespace talus::terrain

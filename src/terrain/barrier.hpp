@@ -8,13 +8,14 @@
 #include "terrain/buildings.hpp"
 #include "terrain/terrain.hpp"
 
-namespace talus {
+namespace talus::terrain {
 
 /// A wall or a net along a line: one solid of many short parts with mitred joints, each with a roof of its own, so that
 /// the crest follows the ground (or is level). In an opening the roof is the sill; without a sill there is no solid.
 /// Errors: the line leaves the known ground, crosses itself, turns back, or has bends too close for the thickness;
 /// openings that overlap, lie beyond the line's ends or have a sill as high as the crest; a crest below all ground.
-[[nodiscard]] Result<Building> make_barrier(const Terrain& terrain, const std::string& name, const BarrierSpec& shape);
+[[nodiscard]] Result<Building> make_barrier(const Terrain& terrain, const std::string& name,
+                                            const params::BarrierSpec& shape);
 
 /// Length along the ground's plan, m.
 [[nodiscard]] double length_of(const std::vector<PlanPoint>& line);
@@ -25,4 +26,4 @@ namespace talus {
 /// Whether a closed ring touches or crosses itself, or has an edge of no length.
 [[nodiscard]] bool meets_itself(const Ring& ring);
 
-}  // namespace talus
+}  // namespace talus::terrain

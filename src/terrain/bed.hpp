@@ -7,12 +7,12 @@
 
 #include "params/spec.hpp"
 
-namespace talus {
+namespace talus::terrain {
 
 /// A kind of loose material on the ground.
 struct BedMaterial {
     std::string name;
-    EntrainmentLaw law = EntrainmentLaw::growth;
+    params::EntrainmentLaw law = params::EntrainmentLaw::growth;
     double growth_rate = 0;            ///< 1/m
     double critical_shear_stress = 0;  ///< Pa
     double erosion_rate = 0;           ///< m/s, vertical
@@ -31,4 +31,4 @@ struct Bed {
     static constexpr std::size_t most_materials = 255;
 };
 
-}  // namespace talus
+}  // namespace talus::terrain

@@ -5,7 +5,7 @@
 #include <limits>
 #include <utility>
 
-namespace talus {
+namespace talus::terrain {
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
@@ -376,4 +376,4 @@ template SolidSample<double> BuildingSolids::second_nearest(const Vec3<double>&,
 template bool BuildingSolids::inside(const Vec3<float>&, float) const;
 template bool BuildingSolids::inside(const Vec3<double>&, float) const;
 
-}  // namespace talus
+}  // namespace talus::terrain

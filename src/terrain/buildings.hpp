@@ -11,7 +11,7 @@
 #include "params/spec.hpp"
 #include "terrain/terrain.hpp"
 
-namespace talus {
+namespace talus::terrain {
 
 /// Resistance of a structure to the filtered force of debris normal to its walls. Above it, the structure is removed.
 struct Resistance {
@@ -22,14 +22,15 @@ struct Resistance {
 
 /// A solid with vertical walls and a flat roof, from below the ground up to `roof_elevation` (not finite: no solid).
 /// Its parts may have separate roofs, such as those of a wall whose crest follows the ground.
-struct Building : BuildingSpec {
+struct Building : params::BuildingSpec {
     std::string name;
     std::vector<Polygon> footprint;              ///< world plan coordinates
     bool height_assumed = false;                 ///< from the default, not from the data
     double roof_elevation = 0;                   ///< m, world; set by place_buildings
     std::vector<double> part_roof_elevations{};  ///< m, world, per part of the footprint; empty: one roof for all
     Resistance resistance{};
-    std::optional<BarrierSpec> barrier{};  ///< its specification without the name, if it is a barrier (make_barrier)
+    std::optional<params::BarrierSpec>
+        barrier{};  ///< its specification without the name, if it is a barrier (make_barrier)
 };
 
 /// Whether there is a solid.
@@ -137,4 +138,4 @@ class BuildingSolids {
     std::vector<std::uint32_t> bin_start_, bin_solids_;
 };
 
-}  // namespace talus
+}  // namespace talus::terrain

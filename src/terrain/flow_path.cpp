@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-namespace talus {
+namespace talus::terrain {
 namespace {
 
 struct Projection {
@@ -179,4 +179,4 @@ PlanPoint FlowPath::point_at(double chainage) const {
     return {a.x + share * (b.x - a.x), a.y + share * (b.y - a.y)};
 }
 
-}  // namespace talus
+}  // namespace talus::terrain

@@ -9,7 +9,7 @@
 #include "core/grid.hpp"
 #include "core/result.hpp"
 
-namespace talus {
+namespace talus::terrain {
 
 /// A plan position relative to the flow path.
 struct PathPosition {
@@ -86,4 +86,4 @@ class FlowPath {
 [[nodiscard]] Result<std::vector<PlanPoint>> trace_flow_path(const Grid<float>& elevation, const PlanPoint& start,
                                                              double longest);
 
-}  // namespace talus
+}  // namespace talus::terrain

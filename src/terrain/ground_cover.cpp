@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace talus {
+namespace talus::terrain {
 
 GroundCover::GroundCover(const Grid<CoverCell>& cells)
     : last_column_(cells.geometry.columns - 1),
@@ -18,4 +18,4 @@ GroundCover::GroundCover(const Grid<CoverCell>& cells)
     }
 }
 
-}  // namespace talus
+}  // namespace talus::terrain

@@ -6,7 +6,7 @@
 #include "core/grid.hpp"
 #include "core/number.hpp"
 
-namespace talus {
+namespace talus::terrain {
 
 /// Resistance of a cell's ground where it differs; NaN: as elsewhere.
 struct CoverCell {
@@ -42,4 +42,4 @@ class GroundCover {
     bool drags_ = false;
 };
 
-}  // namespace talus
+}  // namespace talus::terrain

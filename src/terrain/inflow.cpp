@@ -2,11 +2,11 @@
 
 #include <algorithm>
 
-namespace talus {
+namespace talus::terrain {
 namespace {
 
 /// Integral of a column from the first row until `time`: exact, as it is linear between rows.
-double integral(const std::vector<InflowSample>& rows, double InflowSample::*column, double time) {
+double integral(const std::vector<params::InflowSample>& rows, double params::InflowSample::*column, double time) {
     double sum = 0;
     for (std::size_t k = 0; k + 1 < rows.size() && time > rows[k].time; ++k) {
         const double length = rows[k + 1].time - rows[k].time;
@@ -18,29 +18,29 @@ double integral(const std::vector<InflowSample>& rows, double InflowSample::*col
 }
 
 /// A column at a time, that of the first or last row outside the hydrograph.
-double value_at(const std::vector<InflowSample>& rows, double InflowSample::*column, double time) {
+double value_at(const std::vector<params::InflowSample>& rows, double params::InflowSample::*column, double time) {
     const auto after = std::upper_bound(rows.begin(), rows.end(), time,
-                                        [](double t, const InflowSample& row) { return t < row.time; });
+                                        [](double t, const params::InflowSample& row) { return t < row.time; });
     if (after == rows.begin()) return rows.front().*column;
     if (after == rows.end()) return rows.back().*column;
-    const InflowSample &a = *(after - 1), &b = *after;
+    const params::InflowSample &a = *(after - 1), &b = *after;
     return a.*column + (b.*column - a.*column) * (time - a.time) / (b.time - a.time);
 }
 
 }  // namespace
 
 double Inflow::volume_until(double time) const {
-    return integral(hydrograph, &InflowSample::discharge, time);
+    return integral(hydrograph, &params::InflowSample::discharge, time);
 }
 
 double Inflow::way_until(double time) const {
-    return integral(hydrograph, &InflowSample::velocity, time);
+    return integral(hydrograph, &params::InflowSample::velocity, time);
 }
 
 double Inflow::mass_until(double time) const {
     double sum = 0;
     for (std::size_t k = 0; k + 1 < hydrograph.size() && time > hydrograph[k].time; ++k) {
-        const InflowSample &a = hydrograph[k], &b = hydrograph[k + 1];
+        const params::InflowSample &a = hydrograph[k], &b = hydrograph[k + 1];
         const double length = b.time - a.time, share = time < b.time ? (time - a.time) / length : 1;
         const double rise = b.discharge - a.discharge, denser = b.density - a.density;
         // A product of two straight lines, integrated.
@@ -52,14 +52,14 @@ double Inflow::mass_until(double time) const {
 }
 
 double Inflow::velocity_at(double time) const {
-    return value_at(hydrograph, &InflowSample::velocity, time);
+    return value_at(hydrograph, &params::InflowSample::velocity, time);
 }
 
 double Inflow::density_between(double early, double late) const {
     const double volume = volume_until(late) - volume_until(early);
     // Too little to divide by: no inflow, or for too short a time.
-    if (!(volume > 1e-9 * this->volume())) return value_at(hydrograph, &InflowSample::density, late);
+    if (!(volume > 1e-9 * this->volume())) return value_at(hydrograph, &params::InflowSample::density, late);
     return (mass_until(late) - mass_until(early)) / volume;
 }
 
-}  // namespace talus
+}  // namespace talus::terrain

@@ -6,16 +6,16 @@
 #include "core/geometry.hpp"
 #include "params/spec.hpp"
 
-namespace talus {
+namespace talus::terrain {
 
 /// Inflow of debris across a straight line, at right angles to it and towards its right, seen from `from` to `to`; or
 /// over an area.
 struct Inflow {
     std::string name;
-    PlanPoint from, to;                    ///< world
-    std::vector<InflowSample> hydrograph;  ///< by time, two rows or more
-    std::vector<Polygon> area = {};        ///< world; empty: across the line
-    InflowSpec spec = {};                  ///< its specification by scene or user, without the name
+    PlanPoint from, to;                            ///< world
+    std::vector<params::InflowSample> hydrograph;  ///< by time, two rows or more
+    std::vector<Polygon> area = {};                ///< world; empty: across the line
+    params::InflowSpec spec = {};                  ///< its specification by scene or user, without the name
 
     [[nodiscard]] bool over_area() const { return !area.empty(); }
     [[nodiscard]] bool has_density() const { return hydrograph.front().density > 0; }
@@ -33,4 +33,4 @@ struct Inflow {
     [[nodiscard]] double volume() const { return volume_until(hydrograph.back().time); }
 };
 
-}  // namespace talus
+}  // namespace talus::terrain

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace talus {
+namespace talus::terrain {
 
 double default_map_cell(double terrain_cell, double particle_spacing) {
     const double wanted = 2.5 * particle_spacing;
@@ -11,4 +11,4 @@ double default_map_cell(double terrain_cell, double particle_spacing) {
     return terrain_cell * std::max(1.0, std::round(wanted / terrain_cell));
 }
 
-}  // namespace talus
+}  // namespace talus::terrain

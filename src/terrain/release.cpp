@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace talus {
+namespace talus::terrain {
 namespace {
 
 /// 0 outside the raster, where there is no data and where it is <= 0.
@@ -111,9 +111,9 @@ double release_volume(const Terrain& terrain, const Release& release) {
 double release_slope_area(const Terrain& terrain, const Release& release) {
     Release sheet = release;  // 1 m thick everywhere: its volume is the area
     sheet.thickness_raster.reset();
-    sheet.spec.thickness_direction = ThicknessDirection::normal;
+    sheet.spec.thickness_direction = params::ThicknessDirection::normal;
     for (ReleasePatch& patch : sheet.patches) patch.thickness = 1;
     return release_volume(terrain, sheet);
 }
 
-}  // namespace talus
+}  // namespace talus::terrain

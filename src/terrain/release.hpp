@@ -9,7 +9,7 @@
 #include "params/spec.hpp"
 #include "terrain/terrain.hpp"
 
-namespace talus {
+namespace talus::terrain {
 
 /// A polygon of failing ground with its thickness, m.
 struct ReleasePatch {
@@ -24,12 +24,12 @@ struct Release {
     std::vector<ReleasePatch> patches;            ///< not overlapping
     std::optional<Grid<float>> thickness_raster;  ///< if present, replaces the patches' thickness (NaN, <= 0: none)
     double volume = 0;                            ///< m3, as integrated by release_volume
-    ReleaseSpec spec;                             ///< its specification by scene or user, without the name
+    params::ReleaseSpec spec;                     ///< its specification by scene or user, without the name
 
     /// Thickness as measured at a world plan position; 0 outside the patches.
     [[nodiscard]] double thickness_at(const PlanPoint& p) const;
     /// Whether thickness is measured vertically, not normal to the slope.
-    [[nodiscard]] bool vertical() const { return spec.thickness_direction == ThicknessDirection::vertical; }
+    [[nodiscard]] bool vertical() const { return spec.thickness_direction == params::ThicknessDirection::vertical; }
     /// Vertical depth there; 0 where the terrain does not cover it.
     [[nodiscard]] double depth_at(const Terrain& terrain, const PlanPoint& p) const;
     [[nodiscard]] Extent extent() const;
@@ -42,4 +42,4 @@ struct Release {
 /// Area of its patches on the slope, m2.
 [[nodiscard]] double release_slope_area(const Terrain& terrain, const Release& release);
 
-}  // namespace talus
+}  // namespace talus::terrain

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-namespace talus {
+namespace talus::terrain {
 namespace {
 
 /// Rise over one cell at a node between its neighbours: central, but zero at a summit or a bottom and at most twice
@@ -106,4 +106,4 @@ double Terrain::slope_cosine_at(const PlanPoint& p) const {
     return sample(x, y).normal.z;
 }
 
-}  // namespace talus
+}  // namespace talus::terrain

@@ -8,7 +8,7 @@
 #include "core/grid.hpp"
 #include "core/number.hpp"
 
-namespace talus {
+namespace talus::terrain {
 
 /// The ground below a plan position.
 template <class Real>
@@ -143,4 +143,4 @@ class Terrain {
     float inverse_cell_ = 0;
 };
 
-}  // namespace talus
+}  // namespace talus::terrain

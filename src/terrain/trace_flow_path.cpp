@@ -8,7 +8,7 @@
 
 #include "terrain/flow_path.hpp"
 
-namespace talus {
+namespace talus::terrain {
 namespace {
 
 struct Step {
@@ -235,4 +235,4 @@ Result<std::vector<PlanPoint>> trace_flow_path(const Grid<float>& elevation, con
     return simplify(points, g.cell / 4);
 }
 
-}  // namespace talus
+}  // namespace talus::terrain

@@ -63,19 +63,19 @@ std::string in_quotes(const std::string& name) {
     return "\"" + name + "\"";
 }
 
-const std::string& name_of(const Release& release) {
+const std::string& name_of(const terrain::Release& release) {
     return release.name;
 }
-const std::string& name_of(const Building& building) {
+const std::string& name_of(const terrain::Building& building) {
     return building.name;
 }
-const std::string& name_of(const Zone& zone) {
+const std::string& name_of(const scene::Zone& zone) {
     return zone.spec.name;
 }
-const std::string& name_of(const BedLayer& layer) {
+const std::string& name_of(const scene::BedLayer& layer) {
     return layer.spec.name;
 }
-const std::string& name_of(const Inflow& inflow) {
+const std::string& name_of(const terrain::Inflow& inflow) {
     return inflow.name;
 }
 
@@ -109,16 +109,16 @@ Status ActionReader::set_parameters() {
 
 Status ActionReader::set_parameter(const json& entry) {
     TALUS_ASSIGN(const auto key, read_text(entry, "key"));
-    const auto found = std::find_if(live_parameters().begin(), live_parameters().end(), [&](const Parameter* p) {
-        return key.has_value() && "material." + p->key == *key;
-    });
+    const auto found =
+        std::find_if(live_parameters().begin(), live_parameters().end(),
+                     [&](const params::Parameter* p) { return key.has_value() && "material." + p->key == *key; });
     if (found == live_parameters().end()) {
         std::vector<std::string> names;
-        for (const Parameter* p : live_parameters()) names.push_back("material." + p->key);
+        for (const params::Parameter* p : live_parameters()) names.push_back("material." + p->key);
         return Error{
             fmt::format("key = {}: must be one of {}", shown(entry.value("key", json())), fmt::join(names, ", "))};
     }
-    const Parameter& parameter = **found;
+    const params::Parameter& parameter = **found;
     const auto value = read_number(entry, "value", parameter.range, parameter.unit);
     if (!value) return Error{fmt::format("{}: {}", *key, value.error().message)};
     const bool may_follow = !parameter.absent.empty();  // null: equal to the key that it follows
@@ -126,15 +126,15 @@ Status ActionReader::set_parameter(const json& entry) {
         return Error{fmt::format("{}: value: missing; must be {}", *key, allowed_text(parameter))};
     }
     const double before = value_in_force(edit_.setup.material, parameter, context_.viscosity);
-    SceneSpec spec;
+    params::SceneSpec spec;
     spec.material = edit_.setup.material;
-    parameter.set(spec, 0, *value ? ParameterValue(**value) : ParameterValue());
+    parameter.set(spec, 0, *value ? params::ParameterValue(**value) : params::ParameterValue());
     if (parameter.key == "viscosity") spec.material.kinematic_viscosity.reset();
     spec.solver = context_.scene.spec.solver;
-    if (Status s = check_live_rules(*find_section("material"), spec, context_.particle_spacing); !s) {
+    if (Status s = check_live_rules(*params::find_section("material"), spec, context_.particle_spacing); !s) {
         return Error{"material." + s.error().message};
     }
-    if (const auto broken = too_viscous(spec.material, spec.solver, context_.particle_spacing)) {
+    if (const auto broken = scene::too_viscous(spec.material, spec.solver, context_.particle_spacing)) {
         return Error{"material." + broken->key + broken->text};
     }
     edit_.setup.material = spec.material;
@@ -176,8 +176,8 @@ Status ActionReader::put_release() {
         [&](const ReleaseSetup* existing, const std::string& name) {
             return read_release(action_, context_, edit_.setup, existing, name);
         },
-        [](Release release) {
-            return ReleaseSetup{"", std::make_shared<const Release>(std::move(release))};
+        [](terrain::Release release) {
+            return ReleaseSetup{"", std::make_shared<const terrain::Release>(std::move(release))};
         },
         [&](const ReleaseSetup& release, const ReleaseSetup* existing) {
             const double volume = release.body->volume;
@@ -193,13 +193,13 @@ Status ActionReader::put_barrier() {
         [&](const BarrierSetup* existing, const std::string& name) {
             return read_barrier(action_, context_, existing != nullptr ? existing->body.get() : nullptr, name);
         },
-        [](Building body) {
-            return BarrierSetup{"", std::make_shared<const Building>(std::move(body))};
+        [](terrain::Building body) {
+            return BarrierSetup{"", std::make_shared<const terrain::Building>(std::move(body))};
         },
         [](const BarrierSetup& barrier, const BarrierSetup* existing) {
-            const BarrierSpec& shape = barrier.shape();
+            const params::BarrierSpec& shape = barrier.shape();
             std::string size = fmt::format(" {}: {:.1f} m long, {:.3g} m high, {:.3g} m thick",
-                                           existing != nullptr ? "changed" : "placed", length_of(shape.line),
+                                           existing != nullptr ? "changed" : "placed", terrain::length_of(shape.line),
                                            barrier.body->height, shape.thickness);
             if (!shape.passing_share) return size;
             return size + fmt::format(", a net: {:.3g} % pass its meshes", 100 * *shape.passing_share);
@@ -212,8 +212,8 @@ Status ActionReader::put_building() {
         [&](const BuildingSetup* existing, const std::string& name) {
             return read_building(action_, context_, existing != nullptr ? existing->body.get() : nullptr, name);
         },
-        [](Building body) {
-            return BuildingSetup{"", std::make_shared<const Building>(std::move(body))};
+        [](terrain::Building body) {
+            return BuildingSetup{"", std::make_shared<const terrain::Building>(std::move(body))};
         },
         [&](const BuildingSetup& building, const BuildingSetup* existing) {
             const char* done = existing == nullptr ? "placed" : action_.contains("move_m") ? "moved" : "changed";
@@ -228,9 +228,9 @@ Status ActionReader::put_zone() {
         [&](const ZoneSetup* existing, const std::string& name) {
             return read_zone(action_, context_, existing != nullptr ? existing->body.get() : nullptr, name);
         },
-        [&](Zone zone) {
+        [&](scene::Zone zone) {
             const double area = area_of(zone, terrain);
-            return ZoneSetup{"", std::make_shared<const Zone>(std::move(zone)), area};
+            return ZoneSetup{"", std::make_shared<const scene::Zone>(std::move(zone)), area};
         },
         [](const ZoneSetup& zone, const ZoneSetup* existing) {
             return fmt::format(" {}: {:.0f} m2", existing != nullptr ? "changed" : "drawn", zone.area);
@@ -238,15 +238,15 @@ Status ActionReader::put_zone() {
 }
 
 Status ActionReader::put_bed() {
-    const Terrain& terrain = context_.scene.terrain;
+    const terrain::Terrain& terrain = context_.scene.terrain;
     return put(
         edit_.setup.beds, "bed", next_.bed,
         [&](const BedSetup* existing, const std::string& name) {
             return read_bed(action_, context_, existing != nullptr ? existing->body.get() : nullptr, name);
         },
-        [&](BedLayer layer) {
-            const BedAmount amount = amount_of(layer, terrain);
-            return BedSetup{"", std::make_shared<const BedLayer>(std::move(layer)), amount};
+        [&](scene::BedLayer layer) {
+            const scene::BedAmount amount = amount_of(layer, terrain);
+            return BedSetup{"", std::make_shared<const scene::BedLayer>(std::move(layer)), amount};
         },
         [&](const BedSetup& bed, const BedSetup* existing) {
             return fmt::format(" {}: {:.0f} m3{}", existing != nullptr ? "changed" : "drawn", bed.amount.volume,
@@ -260,8 +260,8 @@ Status ActionReader::put_inflow() {
         [&](const InflowSetup* existing, const std::string& name) {
             return read_inflow(action_, context_, edit_.setup, existing, name);
         },
-        [](Inflow inflow) {
-            return InflowSetup{"", std::make_shared<const Inflow>(std::move(inflow))};
+        [](terrain::Inflow inflow) {
+            return InflowSetup{"", std::make_shared<const terrain::Inflow>(std::move(inflow))};
         },
         [&](const InflowSetup& inflow, const InflowSetup* existing) {
             return fmt::format(" {}: {:.0f} m3{}", existing != nullptr ? "changed" : "drawn", inflow.body->volume(),

@@ -13,7 +13,7 @@ namespace talus::twin {
 
 /// Context against which an action is checked.
 struct ActionContext {
-    const Scene& scene;
+    const scene::Scene& scene;
     double particle_spacing;  ///< m
     double viscosity;         ///< in force
     std::function<bool(const std::string& release_id)> has_begun;

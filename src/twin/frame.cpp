@@ -72,7 +72,7 @@ struct Bounds {
     float fastest = 0;
 };
 
-Bounds bounds_of(const State& state) {
+Bounds bounds_of(const sim::State& state) {
     constexpr float infinity = std::numeric_limits<float>::infinity();
     Bounds b{{infinity, infinity, infinity}, {-infinity, -infinity, -infinity}, 0};
     const std::array<const std::vector<float>*, 3> axes{&state.position.x, &state.position.y, &state.position.z};
@@ -95,8 +95,8 @@ Bounds bounds_of(const State& state) {
 
 }  // namespace
 
-Frame make_frame(const State& state, const MapAccumulator::Present& debris, std::uint32_t slots, unsigned stride,
-                 unsigned flags) {
+Frame make_frame(const sim::State& state, const observe::MapAccumulator::Present& debris, std::uint32_t slots,
+                 unsigned stride, unsigned flags) {
     Frame frame;
     frame.time = state.time;
     frame.step = state.step;

@@ -36,8 +36,8 @@ struct Frame {
 using FramePtr = std::shared_ptr<const Frame>;
 
 /// `slots`: more than any id. Every `stride`-th id is in the frame.
-[[nodiscard]] Frame make_frame(const State& state, const MapAccumulator::Present& debris, std::uint32_t slots,
-                               unsigned stride, unsigned flags);
+[[nodiscard]] Frame make_frame(const sim::State& state, const observe::MapAccumulator::Present& debris,
+                               std::uint32_t slots, unsigned stride, unsigned flags);
 
 /// The frame as sent to clients.
 [[nodiscard]] std::string encode(const Frame& frame, int scenario_index, unsigned further_flags = 0);

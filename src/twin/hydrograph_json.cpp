@@ -11,12 +11,14 @@
 
 namespace talus::twin {
 
-Result<std::vector<InflowSample>> read_hydrograph_rows(const nlohmann::json& list, const InflowSpec& inflow) {
-    if (!list.is_array() || list.size() < fewest_rows || list.size() > most_rows) {
-        return Error{fmt::format("hydrograph = {}: must be a list of {} rows or more", shown(list), fewest_rows)};
+Result<std::vector<params::InflowSample>> read_hydrograph_rows(const nlohmann::json& list,
+                                                               const params::InflowSpec& inflow) {
+    if (!list.is_array() || list.size() < scene::fewest_rows || list.size() > scene::most_rows) {
+        return Error{
+            fmt::format("hydrograph = {}: must be a list of {} rows or more", shown(list), scene::fewest_rows)};
     }
-    SceneSpec read = scene_with(inflow);
-    TALUS_TRY(read_live_list(list, "hydrograph", live_section("hydrograph"), read, 0));
+    params::SceneSpec read = scene_with(inflow);
+    TALUS_TRY(read_live_list(list, "hydrograph", params::live_section("hydrograph"), read, 0));
     return std::move(read.hydrograph);
 }
 

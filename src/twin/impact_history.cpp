@@ -7,8 +7,8 @@
 namespace talus::twin {
 namespace {
 
-bool same(const BuildingImpact& a, const BuildingImpact& b) {
-    const auto numbers = [](const BuildingImpact& i) {
+bool same(const observe::BuildingImpact& a, const observe::BuildingImpact& b) {
+    const auto numbers = [](const observe::BuildingImpact& i) {
         return std::array{
             i.peak_force, i.peak_impact_pressure, i.peak_depth,          i.peak_dynamic_pressure, i.peak_speed,
             i.impulse,    i.held_volume,          i.peak_filling_height, i.overtopped_volume,     i.passed_volume};
@@ -18,10 +18,10 @@ bool same(const BuildingImpact& a, const BuildingImpact& b) {
 
 }  // namespace
 
-void ImpactHistory::add(std::size_t obstacle, double time, const BuildingImpact& impact) {
+void ImpactHistory::add(std::size_t obstacle, double time, const observe::BuildingImpact& impact) {
     if (obstacle >= entries_.size()) entries_.resize(obstacle + 1);
     auto& entries = entries_[obstacle];
-    if (same(entries.empty() ? BuildingImpact{} : entries.back().second, impact)) return;
+    if (same(entries.empty() ? observe::BuildingImpact{} : entries.back().second, impact)) return;
     entries.emplace_back(time, impact);
     entries.back().second.name.clear();
     entries.back().second.history.clear();
@@ -31,12 +31,12 @@ void ImpactHistory::forget(std::size_t obstacle) {
     if (obstacle < entries_.size()) entries_[obstacle].clear();
 }
 
-BuildingImpact ImpactHistory::at(std::size_t obstacle, double time) const {
+observe::BuildingImpact ImpactHistory::at(std::size_t obstacle, double time) const {
     if (obstacle >= entries_.size()) return {};
     const auto& entries = entries_[obstacle];
     const auto after = std::upper_bound(entries.begin(), entries.end(), time + 1e-9,
                                         [](double t, const auto& entry) { return t < entry.first; });
-    return after == entries.begin() ? BuildingImpact{} : (after - 1)->second;
+    return after == entries.begin() ? observe::BuildingImpact{} : (after - 1)->second;
 }
 
 }  // namespace talus::twin

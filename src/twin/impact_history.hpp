@@ -12,13 +12,13 @@ namespace talus::twin {
 class ImpactHistory {
   public:
     /// In the order of time.
-    void add(std::size_t obstacle, double time, const BuildingImpact& impact);
+    void add(std::size_t obstacle, double time, const observe::BuildingImpact& impact);
     void forget(std::size_t obstacle);
     /// The last entry at or before a time, without name and samples.
-    [[nodiscard]] BuildingImpact at(std::size_t obstacle, double time) const;
+    [[nodiscard]] observe::BuildingImpact at(std::size_t obstacle, double time) const;
 
   private:
-    std::vector<std::vector<std::pair<double, BuildingImpact>>> entries_;  // by obstacle
+    std::vector<std::vector<std::pair<double, observe::BuildingImpact>>> entries_;  // by obstacle
 };
 
 }  // namespace talus::twin

@@ -10,7 +10,7 @@ constexpr const char* high = "high";
 
 }  // namespace
 
-const char* intensity_class(const BuildingImpact& impact) {
+const char* intensity_class(const observe::BuildingImpact& impact) {
     if (!impact.hit) return nullptr;
     return impact.peak_depth > high_intensity_depth && impact.peak_speed > high_intensity_speed ? high : medium;
 }

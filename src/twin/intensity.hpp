@@ -14,7 +14,7 @@ inline constexpr double high_intensity_speed = 1;  ///< m/s
 
 /// Name of the class of a building, by peak depth at its walls and peak depth-averaged speed within a cell of them;
 /// nullptr: not hit.
-[[nodiscard]] const char* intensity_class(const BuildingImpact& impact);
+[[nodiscard]] const char* intensity_class(const observe::BuildingImpact& impact);
 
 /// Classes, rule and source, as GET /api/scene has them.
 [[nodiscard]] nlohmann::json intensity_json();

@@ -66,7 +66,7 @@ class JournalReader {
 
 json write_journal(const Journal& journal) {
     json inputs = json::array(), actions = json::array();
-    for (const InputFile& input : journal.inputs) {
+    for (const scene::InputFile& input : journal.inputs) {
         inputs.push_back({{"role", input.role}, {"path", input.path}, {"fnv1a_64", input.hash}});
     }
     for (const JournalEntry& entry : journal.entries) {
@@ -139,11 +139,11 @@ Result<Journal> read_journal(const std::string& text) {
     return journal;
 }
 
-std::vector<std::string> changed_inputs(const Journal& journal, const Scene& scene) {
+std::vector<std::string> changed_inputs(const Journal& journal, const scene::Scene& scene) {
     std::vector<std::string> sentences;
-    for (const InputFile& then : journal.inputs) {
+    for (const scene::InputFile& then : journal.inputs) {
         const auto now = std::find_if(scene.inputs.begin(), scene.inputs.end(),
-                                      [&](const InputFile& input) { return input.role == then.role; });
+                                      [&](const scene::InputFile& input) { return input.role == then.role; });
         if (now == scene.inputs.end()) {
             sentences.push_back(
                 fmt::format("the session read {} ({}); the scene does not any more", then.role, then.path));
@@ -155,7 +155,7 @@ std::vector<std::string> changed_inputs(const Journal& journal, const Scene& sce
     return sentences;
 }
 
-Result<Replayed> replay(const Journal& journal, std::shared_ptr<const Scene> scene,
+Result<Replayed> replay(const Journal& journal, std::shared_ptr<const scene::Scene> scene,
                         const std::function<bool(std::uint64_t)>& on_step) {
     // A replay needs no frames.
     TALUS_ASSIGN(auto opened, Scenario::open_at(journal, std::move(scene), {journal.overrides, 1e9, 0}));
@@ -163,7 +163,7 @@ Result<Replayed> replay(const Journal& journal, std::shared_ptr<const Scene> sce
     bool stopped = false;
     const auto go_to = [&](std::uint64_t step) -> Status {
         while (scenario.step() < step && !stopped) {
-            if (scenario.phase() != RunPhase::ready) {
+            if (scenario.phase() != run::RunPhase::ready) {
                 return Error{
                     fmt::format("step = {}: the run ended at step {} ({})", step, scenario.step(), scenario.message())};
             }

@@ -26,7 +26,7 @@ struct JournalEntry {
 struct Journal {
     std::string scene_file;  ///< absolute, or "built-in:sham_tseng/scene.toml"
     std::vector<std::string> overrides;
-    std::vector<InputFile> inputs;
+    std::vector<scene::InputFile> inputs;
     nlohmann::json first_setup = nlohmann::json::object();  ///< write_setup
     NextNumbers next;
     std::vector<JournalEntry> entries;
@@ -42,7 +42,7 @@ struct Journal {
 [[nodiscard]] Result<Journal> read_journal(const std::string& text);
 
 /// A sentence for every input of the scene that has changed since the session.
-[[nodiscard]] std::vector<std::string> changed_inputs(const Journal& journal, const Scene& scene);
+[[nodiscard]] std::vector<std::string> changed_inputs(const Journal& journal, const scene::Scene& scene);
 
 /// The result of a replay of a journal.
 struct Replayed {
@@ -53,7 +53,7 @@ struct Replayed {
 
 /// Runs a journal on its scene. `on_step` gets the number of each step; false stops. Errors: the setup does not fit the
 /// scene, an action fails, the run ends before the journal does.
-[[nodiscard]] Result<Replayed> replay(const Journal& journal, std::shared_ptr<const Scene> scene,
+[[nodiscard]] Result<Replayed> replay(const Journal& journal, std::shared_ptr<const scene::Scene> scene,
                                       const std::function<bool(std::uint64_t step)>& on_step = {});
 
 }  // namespace talus::twin

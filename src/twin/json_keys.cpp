@@ -31,7 +31,7 @@ Status check_keys(const json& object, std::initializer_list<std::string_view> al
     return check_keys(object, std::vector<std::string>(), allowed);
 }
 
-Result<std::optional<double>> read_number(const json& object, const std::string& key, const Range& range,
+Result<std::optional<double>> read_number(const json& object, const std::string& key, const params::Range& range,
                                           const std::string& unit) {
     const auto found = object.find(key);
     if (found == object.end() || found->is_null()) return std::optional<double>();

@@ -24,7 +24,7 @@ namespace talus::twin {
 
 /// Empty where the key is absent or null. Errors: not a number, outside the range. `unit` is for the message.
 [[nodiscard]] Result<std::optional<double>> read_number(const nlohmann::json& object, const std::string& key,
-                                                        const Range& range, const std::string& unit);
+                                                        const params::Range& range, const std::string& unit);
 
 /// Empty where absent or null. Errors: not a text, empty, longer than `longest` bytes. Control characters are removed.
 [[nodiscard]] Result<std::optional<std::string>> read_text(const nlohmann::json& object, const std::string& key,

@@ -9,13 +9,13 @@
 
 namespace talus::twin {
 
-Result<std::unique_ptr<LiveRun>> LiveRun::start(const Scene& scene, const Setup& setup, double spacing,
+Result<std::unique_ptr<LiveRun>> LiveRun::start(const scene::Scene& scene, const Setup& setup, double spacing,
                                                 const ScenarioOptions& options) {
-    TALUS_ASSIGN(auto run, Run::start(scene_of(scene, setup), spacing));
+    TALUS_ASSIGN(auto run, run::Run::start(scene_of(scene, setup), spacing));
     return std::unique_ptr<LiveRun>(new LiveRun(std::move(run), setup, options));
 }
 
-LiveRun::LiveRun(std::unique_ptr<Run> run, Setup setup, const ScenarioOptions& options)
+LiveRun::LiveRun(std::unique_ptr<run::Run> run, Setup setup, const ScenarioOptions& options)
     : run_(std::move(run)),
       begun_with_(std::move(setup)),
       setup_(begun_with_),
@@ -38,7 +38,7 @@ double LiveRun::start_time_of(const std::string& release_id) const {
 }
 
 bool LiveRun::too_compressed() const {
-    return talus::too_compressed(state());
+    return sim::too_compressed(state());
 }
 
 FramePtr LiveRun::frame(unsigned stride, unsigned flags) const {
@@ -63,7 +63,7 @@ void LiveRun::record_impacts() {
 }
 
 void LiveRun::advance() {
-    if (phase() != RunPhase::ready) return;
+    if (phase() != run::RunPhase::ready) return;
     for (std::size_t g = 0; g < groups_.size(); ++g) {
         groups_[g].begun = groups_[g].begun || model().releases[g].start_time <= state().time;
     }
@@ -74,18 +74,18 @@ void LiveRun::advance() {
     record();
 }
 
-BuildingImpact LiveRun::impact_now(std::size_t obstacle) const {
-    BuildingImpact impact = observer().impacts()[obstacle];
-    if (const Overtopping* crossings = observer().overtopping(obstacle)) {
+observe::BuildingImpact LiveRun::impact_now(std::size_t obstacle) const {
+    observe::BuildingImpact impact = observer().impacts()[obstacle];
+    if (const observe::Overtopping* crossings = observer().overtopping(obstacle)) {
         impact.held_volume = crossings->filling(state()).volume;
     }
     return impact;
 }
 
-BuildingImpact LiveRun::impact_on(const std::string& obstacle_id, std::optional<double> time) const {
+observe::BuildingImpact LiveRun::impact_on(const std::string& obstacle_id, std::optional<double> time) const {
     const auto k = static_cast<std::size_t>(find_id(obstacles_, obstacle_id) - obstacles_.data());
     if (!time) return impact_now(k);
-    BuildingImpact impact = impact_history_.at(k, *time);
+    observe::BuildingImpact impact = impact_history_.at(k, *time);
     impact.name = observer().impacts()[k].name;
     return impact;
 }
@@ -112,9 +112,9 @@ void LiveRun::note_failed() {
     }
 }
 
-RunResult LiveRun::result() const {
-    RunResult result = run_->result("written while running,");
-    std::vector<BuildingImpact> standing;
+run::RunResult LiveRun::result() const {
+    run::RunResult result = run_->result("written while running,");
+    std::vector<observe::BuildingImpact> standing;
     const auto take = [&](const auto& entries) {
         for (const auto& entry : entries) {
             const auto k = static_cast<std::size_t>(find_id(obstacles_, entry.id) - obstacles_.data());

@@ -21,8 +21,8 @@ namespace talus::twin {
 class LiveRun {
   public:
     /// `spacing`: of the particles, m. Errors: as of Run::start().
-    [[nodiscard]] static Result<std::unique_ptr<LiveRun>> start(const Scene& scene, const Setup& setup, double spacing,
-                                                                const ScenarioOptions& options);
+    [[nodiscard]] static Result<std::unique_ptr<LiveRun>> start(const scene::Scene& scene, const Setup& setup,
+                                                                double spacing, const ScenarioOptions& options);
 
     /// Takes a step if ready.
     void advance();
@@ -39,12 +39,12 @@ class LiveRun {
     /// s; infinity: it waits for its trigger.
     [[nodiscard]] double start_time_of(const std::string& release_id) const;
 
-    [[nodiscard]] RunPhase phase() const { return run_->phase(); }
+    [[nodiscard]] run::RunPhase phase() const { return run_->phase(); }
     [[nodiscard]] const std::string& message() const { return run_->stop_reason(); }
-    [[nodiscard]] const Model& model() const { return run_->model(); }
-    [[nodiscard]] const Ground& ground() const { return run_->ground(); }
-    [[nodiscard]] const State& state() const { return run_->state(); }
-    [[nodiscard]] const Observer& observer() const { return run_->observer(); }
+    [[nodiscard]] const sim::Model& model() const { return run_->model(); }
+    [[nodiscard]] const sim::Ground& ground() const { return run_->ground(); }
+    [[nodiscard]] const sim::State& state() const { return run_->state(); }
+    [[nodiscard]] const observe::Observer& observer() const { return run_->observer(); }
     [[nodiscard]] const Recording& recording() const { return recording_; }
     [[nodiscard]] bool too_compressed() const;
     [[nodiscard]] std::string instruction_set() const {
@@ -53,22 +53,23 @@ class LiveRun {
     [[nodiscard]] FramePtr frame(unsigned stride, unsigned flags) const;
 
     /// Impact on an obstacle of the setup, until now or until a time of the recording.
-    [[nodiscard]] BuildingImpact impact_on(const std::string& obstacle_id, std::optional<double> time = {}) const;
+    [[nodiscard]] observe::BuildingImpact impact_on(const std::string& obstacle_id,
+                                                    std::optional<double> time = {}) const;
     /// m by cell of the terrain, as Bed::eroded, now or at a time of the recording; empty: no erosion.
     [[nodiscard]] std::vector<float> eroded(std::optional<double> time = {}) const;
 
     /// An obstacle that existed for at least one step and was removed.
     struct Removed {
         std::string id;
-        std::shared_ptr<const Building> body;
+        std::shared_ptr<const terrain::Building> body;
         bool barrier = false;
-        BuildingImpact impact;  ///< until then, its removed_time set
+        observe::BuildingImpact impact;  ///< until then, its removed_time set
     };
     [[nodiscard]] std::vector<Removed> removed() const;
 
     /// As Run::result() if the run ended now; buildings are the existing ones, in the setup's order, then barriers,
     /// then removed().
-    [[nodiscard]] RunResult result() const;
+    [[nodiscard]] run::RunResult result() const;
 
   private:
     struct Group {  ///< parallel to Model::releases
@@ -77,30 +78,30 @@ class LiveRun {
     };
     struct Obstacle {  ///< parallel to Ground::buildings, which only grows
         std::string id;
-        std::shared_ptr<const Building> body;  ///< also of a removed one
+        std::shared_ptr<const terrain::Building> body;  ///< also of a removed one
         bool barrier = false;
         std::uint64_t since_step = 0;  ///< when it was added or last moved
         bool stands = true;
-        bool failed = false;           ///< destroyed by debris; not restored by a setup that contains it unchanged
-        std::uint64_t until_step = 0;  ///< of a removed one, like the next
-        BuildingImpact last{};         ///< at its removal
+        bool failed = false;             ///< destroyed by debris; not restored by a setup that contains it unchanged
+        std::uint64_t until_step = 0;    ///< of a removed one, like the next
+        observe::BuildingImpact last{};  ///< at its removal
     };
     struct Change;
 
-    LiveRun(std::unique_ptr<Run> run, Setup setup, const ScenarioOptions& options);
+    LiveRun(std::unique_ptr<run::Run> run, Setup setup, const ScenarioOptions& options);
 
     [[nodiscard]] Result<Change> plan(const Setup& next) const;
     void plan_obstacles(const Setup& next, Change& change) const;
     [[nodiscard]] Status plan_releases(const Setup& next, Change& change) const;
     void carry_out(Change& change, const Setup& next);
-    void replace_releases(Model& model, State& state, Change& change);
-    void set_start_times(Model& model, const State& state, const Setup& next);
+    void replace_releases(sim::Model& model, sim::State& state, Change& change);
+    void set_start_times(sim::Model& model, const sim::State& state, const Setup& next);
     void note_failed();
     void record();
     void record_impacts();
-    [[nodiscard]] BuildingImpact impact_now(std::size_t obstacle) const;
+    [[nodiscard]] observe::BuildingImpact impact_now(std::size_t obstacle) const;
 
-    std::unique_ptr<Run> run_;
+    std::unique_ptr<run::Run> run_;
     Setup begun_with_, setup_;
     std::vector<Group> groups_;
     std::vector<Obstacle> obstacles_;

@@ -33,7 +33,7 @@ bool same_bodies(const Entries& a, const Entries& b) {
 }
 
 /// Resistances: if any of them changes, debris at rest may move again.
-std::array<double, 6> holding_back(const Model& model) {
+std::array<double, 6> holding_back(const sim::Model& model) {
     return {model.friction_coefficient,
             model.building_friction_coefficient,
             model.internal_friction_coefficient,
@@ -47,16 +47,16 @@ std::array<double, 6> holding_back(const Model& model) {
 /// The effects of a change of setup.
 struct LiveRun::Change {
     std::vector<Obstacle> obstacles;
-    std::optional<std::vector<Building>> buildings;  ///< of the ground, if any changes
-    std::optional<BuildingSolids> solids;            ///< likewise
-    std::vector<Extent> touched;                     ///< world, of obstacles that were added, removed or moved
-    std::vector<std::size_t> renewed;                ///< obstacles whose record is reset
+    std::optional<std::vector<terrain::Building>> buildings;  ///< of the ground, if any changes
+    std::optional<terrain::BuildingSolids> solids;            ///< likewise
+    std::vector<Extent> touched;                              ///< world, of obstacles that were added, removed or moved
+    std::vector<std::size_t> renewed;                         ///< obstacles whose record is reset
 
-    std::optional<GroundCover> cover;  ///< of zones that were added, removed or changed
+    std::optional<terrain::GroundCover> cover;  ///< of zones that were added, removed or changed
 
     struct Seed {
         const ReleaseSetup* release;
-        State state;
+        sim::State state;
     };
     std::vector<Seed> seeds;
     std::vector<bool> gone;  ///< by group: its debris is removed
@@ -65,7 +65,7 @@ struct LiveRun::Change {
 void LiveRun::plan_obstacles(const Setup& next, Change& change) const {
     change.obstacles = obstacles_;
     if (same_bodies(setup_.buildings, next.buildings) && same_bodies(setup_.barriers, next.barriers)) return;
-    std::vector<Building>& buildings = change.buildings.emplace(ground().buildings);
+    std::vector<terrain::Building>& buildings = change.buildings.emplace(ground().buildings);
     for (std::size_t k = 0; k < obstacles_.size(); ++k) {
         Obstacle& obstacle = change.obstacles[k];
         const bool wanted =
@@ -122,14 +122,14 @@ Status LiveRun::plan_releases(const Setup& next, Change& change) const {
     }
     if (to_seed.empty()) return {};
 
-    Model alone = model();
+    sim::Model alone = model();
     set_material(alone, next.material);
-    Ground around = ground();
+    sim::Ground around = ground();
     if (change.solids) around.solids = *change.solids;
     double particles = state().count;
     for (std::uint32_t i = 0; i < state().count; ++i) {
         for (std::size_t g = 0; g < groups_.size(); ++g) {
-            const ReleaseGroup& group = model().releases[g];
+            const sim::ReleaseGroup& group = model().releases[g];
             const bool own = state().id[i] >= group.first_particle && state().id[i] < group.last_particle;
             if (change.gone[g] && own) particles -= 1;
         }
@@ -142,7 +142,7 @@ Status LiveRun::plan_releases(const Setup& next, Change& change) const {
                 "that, and is {}",
                 release->body->name, release->body->volume, particles, model().solver.particle_limit)};
         }
-        TALUS_ASSIGN(State seeded, seed_releases(alone, around, {*release->body}));
+        TALUS_ASSIGN(sim::State seeded, seed_releases(alone, around, {*release->body}));
         change.seeds.push_back({release, std::move(seeded)});
     }
     return {};
@@ -159,7 +159,7 @@ Result<LiveRun::Change> LiveRun::plan(const Setup& next) const {
 }
 
 /// Removes the debris of deleted releases and adds that of new ones, held.
-void LiveRun::replace_releases(Model& model, State& state, Change& change) {
+void LiveRun::replace_releases(sim::Model& model, sim::State& state, Change& change) {
     // Ids at the end, of debris that never moved, are reused: otherwise dragging the outline of a release would use up
     // ids without limit.
     bool given_back = true;
@@ -167,7 +167,7 @@ void LiveRun::replace_releases(Model& model, State& state, Change& change) {
     while (given_back) {
         given_back = false;
         for (std::size_t g = 0; g < groups_.size(); ++g) {
-            const ReleaseGroup group = model.releases[g];
+            const sim::ReleaseGroup group = model.releases[g];
             if (done[g] || !change.gone[g] || groups_[g].begun || group.last_particle != state.seeded) continue;
             const std::uint32_t taken = state.removed;
             remove_particles(state, group.first_particle, group.last_particle);
@@ -178,7 +178,7 @@ void LiveRun::replace_releases(Model& model, State& state, Change& change) {
     }
     for (std::size_t g = 0; g < groups_.size(); ++g) {
         if (!change.gone[g] || done[g]) continue;
-        const ReleaseGroup& group = model.releases[g];
+        const sim::ReleaseGroup& group = model.releases[g];
         Extent lay{infinity, infinity, -infinity, -infinity};
         for (std::uint32_t i = 0; i < state.count; ++i) {
             if (state.id[i] < group.first_particle || state.id[i] >= group.last_particle) continue;
@@ -188,7 +188,7 @@ void LiveRun::replace_releases(Model& model, State& state, Change& change) {
         wake(state, lay.grown(2 * model.support_radius));
     }
     std::vector<Group> groups;
-    std::vector<ReleaseGroup> ranges;
+    std::vector<sim::ReleaseGroup> ranges;
     for (std::size_t g = 0; g < groups_.size(); ++g) {
         if (change.gone[g]) continue;
         groups.push_back(groups_[g]);
@@ -205,7 +205,7 @@ void LiveRun::replace_releases(Model& model, State& state, Change& change) {
     model.releases = std::move(ranges);
 }
 
-void LiveRun::set_start_times(Model& model, const State& state, const Setup& next) {
+void LiveRun::set_start_times(sim::Model& model, const sim::State& state, const Setup& next) {
     for (std::size_t g = 0; g < groups_.size(); ++g) {
         if (groups_[g].begun) continue;
         const ReleaseSetup& release = *find_id(next.releases, groups_[g].id);
@@ -217,7 +217,7 @@ void LiveRun::set_start_times(Model& model, const State& state, const Setup& nex
 void LiveRun::carry_out(Change& change, const Setup& next) {
     const auto held_back = holding_back(model());
     const WorldPoint origin = ground().terrain.frame().origin;
-    run_->change([&](Model& model, Ground& ground, State& state) {
+    run_->change([&](sim::Model& model, sim::Ground& ground, sim::State& state) {
         set_material(model, next.material);
         if (change.buildings) ground.buildings = std::move(*change.buildings);
         if (change.solids) ground.solids = std::move(*change.solids);

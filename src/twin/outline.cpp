@@ -10,12 +10,12 @@
 
 namespace talus::twin {
 
-Status check_overlaps(const Release& release, const Setup& setup, const std::string& own_id) {
+Status check_overlaps(const terrain::Release& release, const Setup& setup, const std::string& own_id) {
     for (const ReleaseSetup& other : setup.releases) {
         if (other.id == own_id) continue;
-        for (const ReleasePatch& theirs : other.body->patches) {
-            for (const ReleasePatch& ours : release.patches) {
-                const std::string shared = shared_ground(ours.polygon, theirs.polygon);
+        for (const terrain::ReleasePatch& theirs : other.body->patches) {
+            for (const terrain::ReleasePatch& ours : release.patches) {
+                const std::string shared = scene::shared_ground(ours.polygon, theirs.polygon);
                 if (shared.empty()) continue;
                 return Error{fmt::format("polygon: overlaps release \"{}\" {}", other.body->name, shared)};
             }

@@ -38,7 +38,8 @@ struct Redrawn {
 /// Applies the new position to the parts: a new outline replaces them by one, with the other values of the first. A
 /// drawn outline must have an area; `whole`: all of it must lie on known ground, otherwise some of it.
 template <class Part>
-[[nodiscard]] Status redraw(const Redrawn& drawn, const Terrain& terrain, bool whole, std::vector<Part>& parts) {
+[[nodiscard]] Status redraw(const Redrawn& drawn, const terrain::Terrain& terrain, bool whole,
+                            std::vector<Part>& parts) {
     const auto polygon_of = [](Part& part) -> Polygon& {
         if constexpr (std::is_same_v<Part, Polygon>) {
             return part;
@@ -48,20 +49,20 @@ template <class Part>
     };
     if (drawn.ring) {
         Polygon polygon{*drawn.ring, {}};
-        TALUS_TRY(check_area(terrain, polygon, drawn.key, whole));
+        TALUS_TRY(scene::check_area(terrain, polygon, drawn.key, whole));
         parts.resize(1);
         polygon_of(parts.front()) = std::move(polygon);
     }
     if (!drawn.by) return {};
     for (Part& part : parts) {
         polygon_of(part) = moved(std::move(polygon_of(part)), *drawn.by);
-        TALUS_TRY(check_ground(terrain, polygon_of(part), drawn.key, whole));
+        TALUS_TRY(scene::check_ground(terrain, polygon_of(part), drawn.key, whole));
     }
     return {};
 }
 
 /// Checks that it covers no ground of the setup's other releases. `own_id`: its id in the setup; may be empty.
-[[nodiscard]] Status check_overlaps(const Release& release, const Setup& setup, const std::string& own_id);
+[[nodiscard]] Status check_overlaps(const terrain::Release& release, const Setup& setup, const std::string& own_id);
 
 /// Maximum number of points of a drawn outline or line.
 inline constexpr std::size_t most_points = 500;

@@ -18,23 +18,25 @@
 namespace talus::twin {
 
 /// `setup`: with the other releases.
-[[nodiscard]] Result<Release> read_release(const nlohmann::json& action, const ActionContext& context,
-                                           const Setup& setup, const ReleaseSetup* existing, const std::string& name);
+[[nodiscard]] Result<terrain::Release> read_release(const nlohmann::json& action, const ActionContext& context,
+                                                    const Setup& setup, const ReleaseSetup* existing,
+                                                    const std::string& name);
 
-[[nodiscard]] Result<Building> read_barrier(const nlohmann::json& action, const ActionContext& context,
-                                            const Building* existing, const std::string& name);
+[[nodiscard]] Result<terrain::Building> read_barrier(const nlohmann::json& action, const ActionContext& context,
+                                                     const terrain::Building* existing, const std::string& name);
 
-[[nodiscard]] Result<Building> read_building(const nlohmann::json& action, const ActionContext& context,
-                                             const Building* existing, const std::string& name);
+[[nodiscard]] Result<terrain::Building> read_building(const nlohmann::json& action, const ActionContext& context,
+                                                      const terrain::Building* existing, const std::string& name);
 
-[[nodiscard]] Result<Zone> read_zone(const nlohmann::json& action, const ActionContext& context, const Zone* existing,
-                                     const std::string& name);
+[[nodiscard]] Result<scene::Zone> read_zone(const nlohmann::json& action, const ActionContext& context,
+                                            const scene::Zone* existing, const std::string& name);
 
-[[nodiscard]] Result<BedLayer> read_bed(const nlohmann::json& action, const ActionContext& context,
-                                        const BedLayer* existing, const std::string& name);
+[[nodiscard]] Result<scene::BedLayer> read_bed(const nlohmann::json& action, const ActionContext& context,
+                                               const scene::BedLayer* existing, const std::string& name);
 
 /// `setup`: with all sources of debris, whose particles must not exceed the limit.
-[[nodiscard]] Result<Inflow> read_inflow(const nlohmann::json& action, const ActionContext& context, const Setup& setup,
-                                         const InflowSetup* existing, const std::string& name);
+[[nodiscard]] Result<terrain::Inflow> read_inflow(const nlohmann::json& action, const ActionContext& context,
+                                                  const Setup& setup, const InflowSetup* existing,
+                                                  const std::string& name);
 
 }  // namespace talus::twin

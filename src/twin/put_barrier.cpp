@@ -17,26 +17,27 @@ using nlohmann::json;
 constexpr std::size_t most_openings = 100;
 
 /// Unchanged where the action has none.
-Status read_openings(const json& action, const ActionContext& context, BarrierSpec& barrier) {
+Status read_openings(const json& action, const ActionContext& context, params::BarrierSpec& barrier) {
     if (!gives(action, "openings")) return {};
     const json& list = action["openings"];
     if (!list.is_array() || list.size() > most_openings) {
         return Error{fmt::format("openings = {}: must be a list of at most {}", shown(list), most_openings)};
     }
-    SceneSpec read;
-    TALUS_TRY(read_live_list(list, "openings", live_section("barrier_opening"), read, context.particle_spacing));
+    params::SceneSpec read;
+    TALUS_TRY(
+        read_live_list(list, "openings", params::live_section("barrier_opening"), read, context.particle_spacing));
     barrier.openings = std::move(read.barrier_openings);
     return {};
 }
 
 }  // namespace
 
-Result<Building> read_barrier(const json& action, const ActionContext& context, const Building* existing,
-                              const std::string& name) {
+Result<terrain::Building> read_barrier(const json& action, const ActionContext& context,
+                                       const terrain::Building* existing, const std::string& name) {
     TALUS_TRY(check_keys(action, live_keys("barrier"), {"action", "id", "name", "line", "openings"}));
     TALUS_ASSIGN(auto line, read_points(action, "line", false, 2, most_points));
     if (existing == nullptr && !line) return missing("line", "barrier");
-    BarrierSpec barrier;
+    params::BarrierSpec barrier;
     if (existing != nullptr) barrier = *existing->barrier;
     if (line) barrier.line = std::move(*line);
     TALUS_TRY(read_values(action, barrier));

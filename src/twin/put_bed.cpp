@@ -8,18 +8,18 @@
 
 namespace talus::twin {
 
-Result<BedLayer> read_bed(const nlohmann::json& action, const ActionContext& context, const BedLayer* existing,
-                          const std::string& name) {
+Result<scene::BedLayer> read_bed(const nlohmann::json& action, const ActionContext& context,
+                                 const scene::BedLayer* existing, const std::string& name) {
     TALUS_TRY(check_keys(action, live_keys("bed"), {"action", "id", "name", "polygon", "move_m"}));
     TALUS_ASSIGN(const Redrawn drawn, read_outline(action, "polygon", "bed", existing != nullptr));
     if (existing == nullptr && !drawn.ring) return missing("polygon", "bed");
     if (existing == nullptr) TALUS_TRY(check_complete(action, "bed", "bed"));
-    BedLayer layer;
+    scene::BedLayer layer;
     if (existing != nullptr) layer = *existing;
     layer.spec.name = name;
     TALUS_TRY(read_values(action, layer.spec));
     TALUS_TRY(check_rules(layer.spec, context.scene.spec.solver, context.particle_spacing));
-    const Terrain& terrain = context.scene.terrain;
+    const terrain::Terrain& terrain = context.scene.terrain;
     const bool uniform = gives(action, "depth_m");
     if (drawn && !uniform && (layer.depth_raster != nullptr || !layer.spec.depth)) {
         return Error{"depth_m: missing; the bed's depth differs from place to place, a new outline needs one value"};
@@ -34,10 +34,10 @@ Result<BedLayer> read_bed(const nlohmann::json& action, const ActionContext& con
             return Error{"depth_m: the bed lies where its raster has depths; one depth needs a polygon, too"};
         }
         layer.depth_raster = nullptr;
-        for (BedLayer::Part& part : layer.parts) part.depth = *layer.spec.depth;
+        for (scene::BedLayer::Part& part : layer.parts) part.depth = *layer.spec.depth;
     }
     if (!(amount_of(layer, terrain).volume > 0)) {
-        return Error{fmt::format("{}: {}", drawn.key, covers_no_cell(terrain))};
+        return Error{fmt::format("{}: {}", drawn.key, scene::covers_no_cell(terrain))};
     }
     return layer;
 }

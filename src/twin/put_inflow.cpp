@@ -21,7 +21,7 @@ PlanPoint shifted(const PlanPoint& p, const PlanPoint& by) {
 }
 
 /// Location of the inflow: across a line or over an area.
-Status read_place(const json& action, const Terrain& terrain, bool exists, Inflow& inflow) {
+Status read_place(const json& action, const terrain::Terrain& terrain, bool exists, terrain::Inflow& inflow) {
     TALUS_ASSIGN(const auto line, read_points(action, "line", false, 2, 2));
     TALUS_ASSIGN(const Redrawn drawn, read_outline(action, "polygon", "inflow", exists));
     if (line && drawn) return Error{fmt::format("{}: cannot go with line; send one of them", drawn.key)};
@@ -44,11 +44,12 @@ Status read_place(const json& action, const Terrain& terrain, bool exists, Inflo
     inflow.spec.polygon_file.clear();
     inflow.spec.polygon = over_area ? inflow.area.front().outer : Ring();
     inflow.spec.line = over_area ? std::vector<PlanPoint>() : std::vector{inflow.from, inflow.to};
-    return over_area ? Status() : check_line(inflow, terrain, drawn.by ? "move_m" : "line");
+    return over_area ? Status() : scene::check_line(inflow, terrain, drawn.by ? "move_m" : "line");
 }
 
 /// Particles of all sources of debris, with this inflow in place of `existing`.
-double particles_in_all(const Setup& setup, const InflowSetup* existing, const Inflow& inflow, double spacing) {
+double particles_in_all(const Setup& setup, const InflowSetup* existing, const terrain::Inflow& inflow,
+                        double spacing) {
     double volume = inflow.volume();
     for (const InflowSetup& other : setup.inflows) {
         if (&other != existing) volume += other.body->volume();
@@ -59,14 +60,14 @@ double particles_in_all(const Setup& setup, const InflowSetup* existing, const I
 
 }  // namespace
 
-Result<Inflow> read_inflow(const json& action, const ActionContext& context, const Setup& setup,
-                           const InflowSetup* existing, const std::string& name) {
+Result<terrain::Inflow> read_inflow(const json& action, const ActionContext& context, const Setup& setup,
+                                    const InflowSetup* existing, const std::string& name) {
     TALUS_TRY(
         check_keys(action, live_keys("inflow"), {"action", "id", "name", "line", "polygon", "move_m", "hydrograph"}));
-    Inflow inflow;
+    terrain::Inflow inflow;
     if (existing != nullptr) inflow = *existing->body;
     inflow.name = name;
-    const SolverSpec& solver = context.scene.spec.solver;
+    const params::SolverSpec& solver = context.scene.spec.solver;
     TALUS_TRY(read_place(action, context.scene.terrain, existing != nullptr, inflow));
     TALUS_TRY(read_values(action, inflow.spec));
     TALUS_TRY(check_rules(inflow.spec, solver, context.particle_spacing));
@@ -74,7 +75,7 @@ Result<Inflow> read_inflow(const json& action, const ActionContext& context, con
     // Also checked if unchanged: an inflow over an area may be too slow for a line.
     const json rows = action.contains("hydrograph") ? action["hydrograph"] : list_json(inflow.hydrograph);
     TALUS_ASSIGN(inflow.hydrograph, read_hydrograph_rows(rows, inflow.spec));
-    TALUS_TRY(check_hydrograph(inflow, solver, "hydrograph"));
+    TALUS_TRY(scene::check_hydrograph(inflow, solver, "hydrograph"));
     const double particles = particles_in_all(setup, existing, inflow, context.particle_spacing);
     if (particles > solver.particle_limit) {
         return Error{

@@ -11,14 +11,14 @@
 
 namespace talus::twin {
 
-Result<Release> read_release(const nlohmann::json& action, const ActionContext& context, const Setup& setup,
-                             const ReleaseSetup* existing, const std::string& name) {
+Result<terrain::Release> read_release(const nlohmann::json& action, const ActionContext& context, const Setup& setup,
+                                      const ReleaseSetup* existing, const std::string& name) {
     TALUS_TRY(check_keys(action, live_keys("release"), {"action", "id", "name", "polygon", "move_m"}));
     TALUS_ASSIGN(const Redrawn drawn, read_outline(action, "polygon", "release", existing != nullptr));
     if (existing == nullptr && !drawn.ring) return missing("polygon", "release");
     if (existing == nullptr) TALUS_TRY(check_complete(action, "release", "release"));
 
-    Release release;
+    terrain::Release release;
     release.spec.start_time = std::numeric_limits<double>::infinity();
     if (existing != nullptr) release = *existing->body;
     release.name = name;
@@ -33,7 +33,7 @@ Result<Release> read_release(const nlohmann::json& action, const ActionContext& 
     TALUS_TRY(redraw(drawn, context.scene.terrain, true, release.patches));
     if (uniform) {
         release.thickness_raster.reset();
-        for (ReleasePatch& patch : release.patches) patch.thickness = *release.spec.thickness;
+        for (terrain::ReleasePatch& patch : release.patches) patch.thickness = *release.spec.thickness;
     }
     TALUS_TRY(check_overlaps(release, setup, existing != nullptr ? existing->id : ""));
     release.volume = release_volume(context.scene.terrain, release);

@@ -8,12 +8,12 @@
 
 namespace talus::twin {
 
-Result<Zone> read_zone(const nlohmann::json& action, const ActionContext& context, const Zone* existing,
-                       const std::string& name) {
+Result<scene::Zone> read_zone(const nlohmann::json& action, const ActionContext& context, const scene::Zone* existing,
+                              const std::string& name) {
     TALUS_TRY(check_keys(action, live_keys("zone"), {"action", "id", "name", "polygon", "move_m"}));
     TALUS_ASSIGN(const Redrawn drawn, read_outline(action, "polygon", "zone", existing != nullptr));
     if (existing == nullptr && !drawn.ring) return missing("polygon", "zone");
-    Zone zone;
+    scene::Zone zone;
     if (existing != nullptr) zone = *existing;
     zone.spec.name = name;
     TALUS_TRY(read_values(action, zone.spec));
@@ -21,11 +21,11 @@ Result<Zone> read_zone(const nlohmann::json& action, const ActionContext& contex
         return Error{
             fmt::format("{}: the zone comes from a raster and stays where that is; draw a new one", drawn.key)};
     }
-    const Terrain& terrain = context.scene.terrain;
+    const terrain::Terrain& terrain = context.scene.terrain;
     TALUS_TRY(redraw(drawn, terrain, false, zone.outline));
     TALUS_TRY(check_rules(zone.spec, context.scene.spec.solver, context.particle_spacing));
     if (!(area_of(zone, terrain.elevation().geometry) > 0)) {
-        return Error{fmt::format("{}: {}", drawn.key, covers_no_cell(terrain))};
+        return Error{fmt::format("{}: {}", drawn.key, scene::covers_no_cell(terrain))};
     }
     return zone;
 }

@@ -45,15 +45,15 @@ Setup held_again(Setup setup) {
 
 }  // namespace
 
-std::string_view phase_name(RunPhase phase) {
+std::string_view phase_name(run::RunPhase phase) {
     switch (phase) {
-        case RunPhase::ready:
+        case run::RunPhase::ready:
             return "ready";
-        case RunPhase::at_rest:
+        case run::RunPhase::at_rest:
             return "at_rest";
-        case RunPhase::ended:
+        case run::RunPhase::ended:
             return "ended";
-        case RunPhase::fault:
+        case run::RunPhase::fault:
             return "fault";
     }
     return "";
@@ -81,19 +81,19 @@ Status Scenario::Parts::bring_to(const Setup& next_setup) {
 Scenario::Scenario(std::unique_ptr<Parts> parts) : parts_(std::move(parts)) {}
 Scenario::~Scenario() = default;
 
-Scenario::Parts::Parts(std::shared_ptr<const Scene> its_scene, ScenarioOptions its_options)
+Scenario::Parts::Parts(std::shared_ptr<const scene::Scene> its_scene, ScenarioOptions its_options)
     : scene(std::move(its_scene)), options(std::move(its_options)) {
-    particle_spacing = choose_particle_spacing(scene->spec.solver, total_volume(*scene));
+    particle_spacing = sim::choose_particle_spacing(scene->spec.solver, total_volume(*scene));
 }
 
-Result<std::unique_ptr<Scenario>> Scenario::open(std::shared_ptr<const Scene> scene, ScenarioOptions options) {
+Result<std::unique_ptr<Scenario>> Scenario::open(std::shared_ptr<const scene::Scene> scene, ScenarioOptions options) {
     auto parts = std::make_unique<Parts>(std::move(scene), std::move(options));
     const Setup setup = setup_of(*parts->scene, parts->next);
     TALUS_TRY(parts->start(setup));
     return std::unique_ptr<Scenario>(new Scenario(std::move(parts)));
 }
 
-Result<std::unique_ptr<Scenario>> Scenario::open_at(const Journal& journal, std::shared_ptr<const Scene> scene,
+Result<std::unique_ptr<Scenario>> Scenario::open_at(const Journal& journal, std::shared_ptr<const scene::Scene> scene,
                                                     ScenarioOptions options) {
     auto setup = read_setup(journal.first_setup, *scene);
     if (!setup) return Error{"first_setup: " + setup.error().message};
@@ -179,7 +179,7 @@ Status Scenario::follow(const JournalEntry& entry) {
     return {};
 }
 
-RunPhase Scenario::phase() const {
+run::RunPhase Scenario::phase() const {
     return parts_->run->phase();
 }
 std::string Scenario::message() const {
@@ -197,7 +197,7 @@ std::uint64_t Scenario::hash() const {
 std::uint64_t Scenario::revision() const {
     return parts_->revision;
 }
-const Scene& Scenario::scene() const {
+const scene::Scene& Scenario::scene() const {
     return *parts_->scene;
 }
 
@@ -214,7 +214,7 @@ namespace {
 constexpr std::array layer_names{"depth",        "peak_depth",    "peak_speed",   "peak_pressure",
                                  "arrival_time", "deposit_depth", "erosion_depth"};
 
-Grid<float> present_layer(const MapAccumulator& maps, const std::string& name) {
+Grid<float> present_layer(const observe::MapAccumulator& maps, const std::string& name) {
     if (name == "depth") {
         Grid<float> depth = maps.present().depth;
         for (float& value : depth.values) {
@@ -222,7 +222,7 @@ Grid<float> present_layer(const MapAccumulator& maps, const std::string& name) {
         }
         return depth;
     }
-    HazardMaps peaks = maps.maps();
+    observe::HazardMaps peaks = maps.maps();
     if (name == "peak_depth") return std::move(peaks.peak_depth);
     if (name == "peak_speed") return std::move(peaks.peak_speed);
     if (name == "peak_pressure") return std::move(peaks.peak_pressure);
@@ -231,7 +231,7 @@ Grid<float> present_layer(const MapAccumulator& maps, const std::string& name) {
 }
 
 Grid<float> erosion_layer(const GridGeometry& terrain, const std::vector<float>& eroded) {
-    Grid<float> depth = erosion_depth(terrain, eroded);
+    Grid<float> depth = observe::erosion_depth(terrain, eroded);
     if (!depth.values.empty()) return depth;
     return Grid<float>({terrain.x_min, terrain.y_min, terrain.cell, 1, 1}, std::numeric_limits<float>::quiet_NaN());
 }
@@ -243,7 +243,7 @@ Result<std::function<Grid<float>()>> Scenario::layer(const std::string& name, st
         return Error{fmt::format("layer = {}: must be one of {}", shown(json(name)), fmt::join(layer_names, ", "))};
     }
     const LiveRun& run = *parts_->run;
-    const MapAccumulator& maps = run.observer().maps();
+    const observe::MapAccumulator& maps = run.observer().maps();
     std::vector<FramePtr> frames;
     if (time) frames = run.recording().until(*time);
     if (time && frames.empty()) return Error{fmt::format("nothing is recorded at or before time_s = {}", *time)};
@@ -269,7 +269,7 @@ std::function<Status(const std::filesystem::path&)> Scenario::products() const {
     Setup setup = p.setup();
     setup.beds = p.run->begun_with().beds;
     setup.inflows = p.run->begun_with().inflows;
-    Scene scene = scene_of(*p.scene, setup);
+    scene::Scene scene = scene_of(*p.scene, setup);
     for (std::size_t k = 0; k < setup.releases.size(); ++k) {
         scene.releases[k].spec.start_time = p.run->start_time_of(setup.releases[k].id);
     }
@@ -279,7 +279,7 @@ std::function<Status(const std::filesystem::path&)> Scenario::products() const {
         scene.notes.push_back(fmt::format("before step {}, by {}: {}", entry.step, entry.by, entry.action.dump()));
     }
     return [scene = std::move(scene), result = p.run->result()](const std::filesystem::path& folder) {
-        return write_products(scene, result, folder);
+        return products::write_products(scene, result, folder);
     };
 }
 

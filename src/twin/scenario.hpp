@@ -24,7 +24,7 @@ struct Journal;
 struct JournalEntry;
 
 /// "ready", "at_rest", "ended", "fault".
-[[nodiscard]] std::string_view phase_name(RunPhase phase);
+[[nodiscard]] std::string_view phase_name(run::RunPhase phase);
 
 struct ScenarioOptions {
     std::vector<std::string> overrides;         ///< that the scene was loaded with, for the journal
@@ -46,11 +46,11 @@ inline constexpr unsigned frame_running = 1, frame_too_compressed = 2, frame_rec
 class Scenario {
   public:
     /// Errors: as of Run::start().
-    [[nodiscard]] static Result<std::unique_ptr<Scenario>> open(std::shared_ptr<const Scene> scene,
+    [[nodiscard]] static Result<std::unique_ptr<Scenario>> open(std::shared_ptr<const scene::Scene> scene,
                                                                 ScenarioOptions options = {});
     /// At the start of the session of a journal.
     [[nodiscard]] static Result<std::unique_ptr<Scenario>> open_at(const Journal& journal,
-                                                                   std::shared_ptr<const Scene> scene,
+                                                                   std::shared_ptr<const scene::Scene> scene,
                                                                    ScenarioOptions options);
     /// The same scene and the setup of this one as it is now, at time 0.
     [[nodiscard]] Result<std::unique_ptr<Scenario>> copy() const;
@@ -67,13 +67,13 @@ class Scenario {
     /// Repeats an entry of a journal. Errors: as apply().
     [[nodiscard]] Status follow(const JournalEntry& entry);
 
-    [[nodiscard]] RunPhase phase() const;
+    [[nodiscard]] run::RunPhase phase() const;
     [[nodiscard]] std::string message() const;  ///< why it is at rest, ended or at fault; empty while ready
     [[nodiscard]] double time() const;          ///< s
     [[nodiscard]] std::uint64_t step() const;
     [[nodiscard]] std::uint64_t hash() const;
     [[nodiscard]] std::uint64_t revision() const;  ///< grows with every change of the setup
-    [[nodiscard]] const Scene& scene() const;
+    [[nodiscard]] const scene::Scene& scene() const;
 
     // Answers, as docs/protocol.md has them. They lack `scenario`, which only the loop knows; state_json() also lacks
     // speed_factor, real_time_factor, steps_per_second, and its "status" is phase_name(phase()).

@@ -16,7 +16,7 @@ namespace {
 
 using nlohmann::json;
 
-json range_json(const Range& range) {
+json range_json(const params::Range& range) {
     return {{"low", number_or_null<json>(range.low)},
             {"high", number_or_null<json>(range.high)},
             {"low_included", range.low_included},
@@ -24,9 +24,9 @@ json range_json(const Range& range) {
 }
 
 /// The range of a value in this scene, regardless of the other values.
-Range range_in(const Scene& scene, const Parameter& parameter) {
-    Range range = parameter.range;
-    const double highest = std::floor(1e4 * highest_viscosity(scene.spec.solver)) / 1e4;
+params::Range range_in(const scene::Scene& scene, const params::Parameter& parameter) {
+    params::Range range = parameter.range;
+    const double highest = std::floor(1e4 * scene::highest_viscosity(scene.spec.solver)) / 1e4;
     if (parameter.key == "viscosity" && highest < range.high) {
         range.high = highest;
         range.high_included = true;
@@ -35,22 +35,23 @@ Range range_in(const Scene& scene, const Parameter& parameter) {
 }
 
 /// Keys of the scene that others need, with their values.
-json settings_json(const Scene& scene) {
+json settings_json(const scene::Scene& scene) {
     json settings = json::object();
-    for (const Section& section : live_sections()) {
-        for (const Parameter& parameter : section.parameters) {
+    for (const params::Section& section : params::live_sections()) {
+        for (const params::Parameter& parameter : section.parameters) {
             if (parameter.live.empty() || !parameter.need) continue;
             const std::string& path = parameter.need->key;
             const std::size_t dot = path.find('.');
-            settings[path] = plain_text(parameter_of(path.substr(0, dot), path.substr(dot + 1)).get(scene.spec, 0));
+            settings[path] =
+                params::plain_text(params::parameter_of(path.substr(0, dot), path.substr(dot + 1)).get(scene.spec, 0));
         }
     }
     return settings;
 }
 
-json live_parameters_json(const Scene& scene, const Model& model, const MaterialSpec& now) {
+json live_parameters_json(const scene::Scene& scene, const sim::Model& model, const params::MaterialSpec& now) {
     json list = json::array();
-    for (const Parameter* parameter : live_parameters()) {
+    for (const params::Parameter* parameter : live_parameters()) {
         // A scene that gives the kinematic viscosity also determines this one, at its spacing.
         const double scene_viscosity =
             scene.spec.material.kinematic_viscosity && now.kinematic_viscosity ? model.viscosity : 0;
@@ -66,8 +67,8 @@ json live_parameters_json(const Scene& scene, const Model& model, const Material
     return list;
 }
 
-json flow_path_json(const Scene& scene) {
-    const FlowPath& path = scene.flow_path;
+json flow_path_json(const scene::Scene& scene) {
+    const terrain::FlowPath& path = scene.flow_path;
     if (path.empty()) return nullptr;
     json points = json::array(), chainages = json::array();
     double chainage = 0;
@@ -84,7 +85,7 @@ json flow_path_json(const Scene& scene) {
             {"traced", scene.flow_path_traced}};
 }
 
-std::pair<float, float> elevation_range(const Terrain& terrain) {
+std::pair<float, float> elevation_range(const terrain::Terrain& terrain) {
     float lowest = INFINITY, highest = -INFINITY;
     for (const float z : terrain.elevation().values) {
         if (z < lowest) lowest = z;
@@ -93,7 +94,7 @@ std::pair<float, float> elevation_range(const Terrain& terrain) {
     return {lowest, highest};
 }
 
-json impact_json(const std::string& id, const BuildingImpact& impact, bool barrier) {
+json impact_json(const std::string& id, const observe::BuildingImpact& impact, bool barrier) {
     const char* intensity = intensity_class(impact);
     json row = {{"id", id},
                 {"name", impact.name},
@@ -120,15 +121,15 @@ json impact_json(const std::string& id, const BuildingImpact& impact, bool barri
 }  // namespace
 
 json Scenario::scene_json() const {
-    const Scene& scene = this->scene();
+    const scene::Scene& scene = this->scene();
     const LiveRun& run = *parts_->run;
-    const Model& model = run.model();
+    const sim::Model& model = run.model();
     const WorldPoint origin = run.ground().terrain.frame().origin;
     const Extent e = scene.terrain.elevation().geometry.extent();
     const auto [lowest, highest] = elevation_range(scene.terrain);
     const GridGeometry& map = run.observer().maps().geometry();
     json observations = json::array();
-    for (const ObservationSpec& o : scene.spec.observations) {
+    for (const params::ObservationSpec& o : scene.spec.observations) {
         observations.push_back({{"name", o.name},
                                 {"chainage_m", o.chainage},
                                 {"front_velocity_mps", o.front_velocity},
@@ -164,9 +165,9 @@ json Scenario::scene_json() const {
 
 json Scenario::state_json(bool with_hash) const {
     const LiveRun& run = *parts_->run;
-    const State& state = run.state();
-    const TimeSample now = run.observer().sample(run.model(), state);
-    const std::vector<FrontSample> front = run.observer().front();
+    const sim::State& state = run.state();
+    const observe::TimeSample now = run.observer().sample(run.model(), state);
+    const std::vector<observe::FrontSample> front = run.observer().front();
     // The front is moving while it reaches new chainages.
     constexpr double lately = 1;  // s
     const bool advances = !front.empty() && state.time - front.back().arrival_time <= lately;
@@ -200,37 +201,38 @@ json Scenario::state_json(bool with_hash) const {
 }
 
 json Scenario::series_json() const {
-    const Observer& observer = parts_->run->observer();
+    const observe::Observer& observer = parts_->run->observer();
     json time = json::object();
-    const auto column = [&](const char* name, double TimeSample::*member) {
+    const auto column = [&](const char* name, double observe::TimeSample::*member) {
         json& values = time[name] = json::array();
-        for (const TimeSample& row : observer.timeseries()) values.push_back(number_or_null<json>(row.*member));
+        for (const observe::TimeSample& row : observer.timeseries())
+            values.push_back(number_or_null<json>(row.*member));
     };
-    column("time_s", &TimeSample::time);
-    column("front_chainage_m", &TimeSample::front_chainage);
-    column("volume_released_m3", &TimeSample::volume_released);
-    column("volume_entrained_m3", &TimeSample::volume_entrained);
-    column("volume_held_m3", &TimeSample::volume_held);
-    column("volume_moving_m3", &TimeSample::volume_moving);
-    column("volume_deposited_m3", &TimeSample::volume_deposited);
-    column("volume_left_m3", &TimeSample::volume_left);
-    column("kinetic_energy_J", &TimeSample::kinetic_energy);
-    column("potential_energy_J", &TimeSample::potential_energy);
-    column("largest_speed_mps", &TimeSample::largest_speed);
-    column("mean_compression", &TimeSample::mean_compression);
-    column("max_compression", &TimeSample::max_compression);
-    column("squeezed_share", &TimeSample::squeezed_share);
-    column("time_step_s", &TimeSample::time_step);
-    const std::vector<FrontSample> samples = observer.front();
+    column("time_s", &observe::TimeSample::time);
+    column("front_chainage_m", &observe::TimeSample::front_chainage);
+    column("volume_released_m3", &observe::TimeSample::volume_released);
+    column("volume_entrained_m3", &observe::TimeSample::volume_entrained);
+    column("volume_held_m3", &observe::TimeSample::volume_held);
+    column("volume_moving_m3", &observe::TimeSample::volume_moving);
+    column("volume_deposited_m3", &observe::TimeSample::volume_deposited);
+    column("volume_left_m3", &observe::TimeSample::volume_left);
+    column("kinetic_energy_J", &observe::TimeSample::kinetic_energy);
+    column("potential_energy_J", &observe::TimeSample::potential_energy);
+    column("largest_speed_mps", &observe::TimeSample::largest_speed);
+    column("mean_compression", &observe::TimeSample::mean_compression);
+    column("max_compression", &observe::TimeSample::max_compression);
+    column("squeezed_share", &observe::TimeSample::squeezed_share);
+    column("time_step_s", &observe::TimeSample::time_step);
+    const std::vector<observe::FrontSample> samples = observer.front();
     json front = json::object();
-    const auto front_column = [&](const char* name, double FrontSample::*member) {
+    const auto front_column = [&](const char* name, double observe::FrontSample::*member) {
         json& values = front[name] = json::array();
-        for (const FrontSample& row : samples) values.push_back(number_or_null<json>(row.*member));
+        for (const observe::FrontSample& row : samples) values.push_back(number_or_null<json>(row.*member));
     };
-    front_column("chainage_m", &FrontSample::chainage);
-    front_column("arrival_time_s", &FrontSample::arrival_time);
-    front_column("front_velocity_mps", &FrontSample::front_velocity);
-    front_column("particle_speed_mps", &FrontSample::particle_speed);
+    front_column("chainage_m", &observe::FrontSample::chainage);
+    front_column("arrival_time_s", &observe::FrontSample::arrival_time);
+    front_column("front_velocity_mps", &observe::FrontSample::front_velocity);
+    front_column("particle_speed_mps", &observe::FrontSample::particle_speed);
     return {{"time", time}, {"front", front}};
 }
 

@@ -19,9 +19,9 @@ struct Scenario::Parts {
         bool by_trigger = false;
     };
 
-    Parts(std::shared_ptr<const Scene> its_scene, ScenarioOptions its_options);
+    Parts(std::shared_ptr<const scene::Scene> its_scene, ScenarioOptions its_options);
 
-    std::shared_ptr<const Scene> scene;
+    std::shared_ptr<const scene::Scene> scene;
     ScenarioOptions options;
     double particle_spacing = 0;
     std::unique_ptr<LiveRun> run;

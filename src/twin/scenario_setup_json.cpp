@@ -26,11 +26,11 @@ json zone_json(const ZoneSetup& zone) {
 }
 
 /// NaN where it differs from place to place.
-double depth_of(const BedLayer& layer) {
-    double depth = layer.depth_raster != nullptr ? never : layer.spec.depth.value_or(never);
+double depth_of(const scene::BedLayer& layer) {
+    double depth = layer.depth_raster != nullptr ? observe::never : layer.spec.depth.value_or(observe::never);
     if (layer.depth_raster == nullptr && !layer.parts.empty()) depth = layer.parts.front().depth;
-    for (const BedLayer::Part& part : layer.parts) {
-        if (part.depth != depth) depth = never;
+    for (const scene::BedLayer::Part& part : layer.parts) {
+        if (part.depth != depth) depth = observe::never;
     }
     return depth;
 }
@@ -40,7 +40,7 @@ json bed_json(const BedSetup& bed) {
     entry["id"] = bed.id;
     entry["name"] = bed.body->spec.name;
     entry["polygons"] = json::array();
-    for (const BedLayer::Part& part : bed.body->parts) entry["polygons"].push_back(to_json(part.polygon));
+    for (const scene::BedLayer::Part& part : bed.body->parts) entry["polygons"].push_back(to_json(part.polygon));
     entry["depth_m"] = number_or_null<json>(depth_of(*bed.body));
     entry["area_m2"] = bed.amount.area;
     entry["volume_m3"] = bed.amount.volume;
@@ -49,7 +49,7 @@ json bed_json(const BedSetup& bed) {
 }
 
 json inflow_json(const InflowSetup& inflow) {
-    const Inflow& body = *inflow.body;
+    const terrain::Inflow& body = *inflow.body;
     json entry = values_json(body.spec);
     entry["id"] = inflow.id;
     entry["name"] = body.name;
@@ -62,18 +62,18 @@ json inflow_json(const InflowSetup& inflow) {
 }
 
 /// NaN where it differs from place to place.
-double thickness_of(const Release& release) {
-    if (release.patches.empty() || release.thickness_raster) return never;
+double thickness_of(const terrain::Release& release) {
+    if (release.patches.empty() || release.thickness_raster) return observe::never;
     const double thickness = release.patches.front().thickness;
     const bool same = std::all_of(release.patches.begin(), release.patches.end(),
-                                  [&](const ReleasePatch& patch) { return patch.thickness == thickness; });
-    return same ? thickness : never;
+                                  [&](const terrain::ReleasePatch& patch) { return patch.thickness == thickness; });
+    return same ? thickness : observe::never;
 }
 
 json release_json(const ReleaseSetup& release, const LiveRun& run) {
-    const Release& body = *release.body;
+    const terrain::Release& body = *release.body;
     json entry = values_json(body.spec), polygons = json::array();
-    for (const ReleasePatch& patch : body.patches) polygons.push_back(to_json(patch.polygon.outer));
+    for (const terrain::ReleasePatch& patch : body.patches) polygons.push_back(to_json(patch.polygon.outer));
     entry["id"] = release.id;
     entry["name"] = body.name;
     entry["polygons"] = std::move(polygons);
@@ -92,14 +92,14 @@ json barrier_json(const BarrierSetup& barrier) {
     entry["line"] = to_json(barrier.shape().line);
     entry["height_m"] = barrier.body->height;
     entry["openings"] = list_json(barrier.shape().openings);
-    entry["crest_length_m"] = length_of(barrier.shape().line);
+    entry["crest_length_m"] = terrain::length_of(barrier.shape().line);
     entry["from_scene"] = barrier.from_scene;
     return entry;
 }
 
 json building_json(const BuildingSetup& building) {
-    const Building& body = *building.body;
-    json entry = values_json<BuildingSpec>(body);
+    const terrain::Building& body = *building.body;
+    json entry = values_json<params::BuildingSpec>(body);
     entry["id"] = building.id;
     entry["name"] = body.name;
     entry["footprint"] = polygons_json(body.footprint);
@@ -121,7 +121,7 @@ json Scenario::setup_json() const {
     const Parts& p = *parts_;
     const Setup& setup = p.setup();
     json parameters = json::object(), releases = json::array(), barriers = json::array(), buildings = json::array();
-    for (const Parameter* parameter : live_parameters()) {
+    for (const params::Parameter* parameter : live_parameters()) {
         parameters["material." + parameter->key] =
             number_or_null<json>(value_in_force(setup.material, *parameter, p.run->model().viscosity));
     }

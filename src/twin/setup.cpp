@@ -11,7 +11,7 @@ namespace talus::twin {
 namespace {
 
 /// The specification of a release without its thickness, which is in its patches.
-ReleaseSpec beside_thickness(ReleaseSpec spec) {
+params::ReleaseSpec beside_thickness(params::ReleaseSpec spec) {
     spec.name.clear();
     spec.thickness.reset();
     spec.volume.reset();
@@ -22,17 +22,17 @@ ReleaseSpec beside_thickness(ReleaseSpec spec) {
 
 }  // namespace
 
-Setup setup_of(const Scene& scene, NextNumbers& next) {
+Setup setup_of(const scene::Scene& scene, NextNumbers& next) {
     Setup setup;
     setup.material = scene.spec.material;
     int index = 0;
-    for (const Release& release : scene.releases) {
-        setup.releases.push_back({fmt::format("release-{}", next.release++), std::make_shared<const Release>(release),
-                                  index++, true, false});
+    for (const terrain::Release& release : scene.releases) {
+        setup.releases.push_back({fmt::format("release-{}", next.release++),
+                                  std::make_shared<const terrain::Release>(release), index++, true, false});
     }
     index = 0;
-    for (const Building& building : scene.buildings) {
-        auto body = std::make_shared<const Building>(building);
+    for (const terrain::Building& building : scene.buildings) {
+        auto body = std::make_shared<const terrain::Building>(building);
         if (building.barrier) {
             setup.barriers.push_back({fmt::format("barrier-{}", next.barrier++), std::move(body), true});
         } else {
@@ -41,45 +41,45 @@ Setup setup_of(const Scene& scene, NextNumbers& next) {
         ++index;
     }
     index = 0;
-    for (const Zone& zone : scene.zones) {
+    for (const scene::Zone& zone : scene.zones) {
         const double area = area_of(zone, scene.terrain.elevation().geometry);
         setup.zones.push_back(
-            {fmt::format("zone-{}", next.zone++), std::make_shared<const Zone>(zone), area, index++, true});
+            {fmt::format("zone-{}", next.zone++), std::make_shared<const scene::Zone>(zone), area, index++, true});
     }
     index = 0;
-    for (const BedLayer& layer : scene.bed_layers) {
-        setup.beds.push_back({fmt::format("bed-{}", next.bed++), std::make_shared<const BedLayer>(layer),
+    for (const scene::BedLayer& layer : scene.bed_layers) {
+        setup.beds.push_back({fmt::format("bed-{}", next.bed++), std::make_shared<const scene::BedLayer>(layer),
                               amount_of(layer, scene.terrain), index++, true});
     }
     index = 0;
-    for (const Inflow& inflow : scene.inflows) {
+    for (const terrain::Inflow& inflow : scene.inflows) {
         setup.inflows.push_back(
-            {fmt::format("inflow-{}", next.inflow++), std::make_shared<const Inflow>(inflow), index++, true});
+            {fmt::format("inflow-{}", next.inflow++), std::make_shared<const terrain::Inflow>(inflow), index++, true});
     }
     return setup;
 }
 
-Scene scene_of(const Scene& scene, const Setup& setup) {
-    Scene changed = scene;
+scene::Scene scene_of(const scene::Scene& scene, const Setup& setup) {
+    scene::Scene changed = scene;
     changed.spec.material = setup.material;
     changed.releases = bodies_of(setup.releases);
     changed.buildings = bodies_of(setup.buildings);
     for (const BarrierSetup& barrier : setup.barriers) changed.buildings.push_back(*barrier.body);
     changed.inflows = bodies_of(setup.inflows);
     changed.zones = bodies_of(setup.zones);
-    LaidZones laid = lay_zones(changed.zones, changed.terrain);
+    scene::LaidZones laid = lay_zones(changed.zones, changed.terrain);
     changed.cover = std::move(laid.cover);
     changed.zone_at = std::move(laid.zone_at);
     changed.spec.zones.clear();
-    for (const Zone& zone : changed.zones) changed.spec.zones.push_back(zone.spec);
+    for (const scene::Zone& zone : changed.zones) changed.spec.zones.push_back(zone.spec);
     changed.bed_layers = bodies_of(setup.beds);
     changed.bed = lay_bed(changed.bed_layers, changed.terrain);
     changed.spec.beds.clear();
-    for (const BedLayer& layer : changed.bed_layers) changed.spec.beds.push_back(layer.spec);
+    for (const scene::BedLayer& layer : changed.bed_layers) changed.spec.beds.push_back(layer.spec);
     return changed;
 }
 
-bool same_shape(const std::shared_ptr<const Release>& a, const std::shared_ptr<const Release>& b) {
+bool same_shape(const std::shared_ptr<const terrain::Release>& a, const std::shared_ptr<const terrain::Release>& b) {
     if (a == b) return true;
     const auto& r = a->thickness_raster;
     const auto& s = b->thickness_raster;
@@ -91,23 +91,23 @@ bool same_shape(const std::shared_ptr<const Release>& a, const std::shared_ptr<c
     return beside_thickness(a->spec) == beside_thickness(b->spec) && same_raster && a->patches == b->patches;
 }
 
-bool same_shape(const std::shared_ptr<const Building>& a, const std::shared_ptr<const Building>& b) {
-    const auto values = [](const Building& building) -> const BuildingSpec& { return building; };
+bool same_shape(const std::shared_ptr<const terrain::Building>& a, const std::shared_ptr<const terrain::Building>& b) {
+    const auto values = [](const terrain::Building& building) -> const params::BuildingSpec& { return building; };
     return a == b || (a->barrier == b->barrier && a->resistance == b->resistance && values(*a) == values(*b) &&
                       a->roof_elevation == b->roof_elevation && a->part_roof_elevations == b->part_roof_elevations &&
                       a->footprint == b->footprint);
 }
 
-bool same_shape(const std::shared_ptr<const Zone>& a, const std::shared_ptr<const Zone>& b) {
+bool same_shape(const std::shared_ptr<const scene::Zone>& a, const std::shared_ptr<const scene::Zone>& b) {
     return a == b || (values_json(a->spec) == values_json(b->spec) && a->cells == b->cells && a->outline == b->outline);
 }
 
-bool same_shape(const std::shared_ptr<const BedLayer>& a, const std::shared_ptr<const BedLayer>& b) {
+bool same_shape(const std::shared_ptr<const scene::BedLayer>& a, const std::shared_ptr<const scene::BedLayer>& b) {
     return a == b ||
            (values_json(a->spec) == values_json(b->spec) && a->depth_raster == b->depth_raster && a->parts == b->parts);
 }
 
-bool same_shape(const std::shared_ptr<const Inflow>& a, const std::shared_ptr<const Inflow>& b) {
+bool same_shape(const std::shared_ptr<const terrain::Inflow>& a, const std::shared_ptr<const terrain::Inflow>& b) {
     return a == b || (values_json(a->spec) == values_json(b->spec) && a->from == b->from && a->to == b->to &&
                       a->area == b->area && a->hydrograph == b->hydrograph);
 }
@@ -116,10 +116,10 @@ bool begin_alike(const Setup& a, const Setup& b) {
     return same_shapes(a.beds, b.beds) && same_shapes(a.inflows, b.inflows);
 }
 
-const std::vector<const Parameter*>& live_parameters() {
-    static const std::vector<const Parameter*> found = [] {
-        std::vector<const Parameter*> list;
-        for (const Parameter& parameter : find_section("material")->parameters) {
+const std::vector<const params::Parameter*>& live_parameters() {
+    static const std::vector<const params::Parameter*> found = [] {
+        std::vector<const params::Parameter*> list;
+        for (const params::Parameter& parameter : params::find_section("material")->parameters) {
             if (!parameter.live.empty()) list.push_back(&parameter);
         }
         return list;
@@ -127,7 +127,7 @@ const std::vector<const Parameter*>& live_parameters() {
     return found;
 }
 
-std::string label_of(const Parameter& parameter) {
+std::string label_of(const params::Parameter& parameter) {
     std::string label = parameter.key;
     if (!parameter.unit.empty()) label.erase(label.rfind('_'));
     for (char& c : label) {
@@ -136,11 +136,11 @@ std::string label_of(const Parameter& parameter) {
     return label;
 }
 
-double value_in_force(const MaterialSpec& material, const Parameter& parameter, double viscosity) {
-    SceneSpec spec;
+double value_in_force(const params::MaterialSpec& material, const params::Parameter& parameter, double viscosity) {
+    params::SceneSpec spec;
     spec.material = material;
     if (parameter.key == "viscosity" && material.kinematic_viscosity) return viscosity;
-    const ParameterValue value = parameter.get(spec, 0);
+    const params::ParameterValue value = parameter.get(spec, 0);
     if (const double* number = std::get_if<double>(&value)) return *number;
     if (parameter.key == "turbulent_friction_mps2") return std::numeric_limits<double>::quiet_NaN();
     return material.friction_coefficient;  // both other optional ones follow it

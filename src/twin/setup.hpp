@@ -22,23 +22,23 @@ namespace talus::twin {
 
 struct ReleaseSetup {
     std::string id;
-    std::shared_ptr<const Release> body;  ///< a drawn one has no start time (infinity)
-    int scene_index = -1;                 ///< in the scene; -1: created in the page
-    bool as_in_scene = false;             ///< of the scene, and its body not changed
-    bool triggered = false;               ///< in the page, regardless of its start time
+    std::shared_ptr<const terrain::Release> body;  ///< a drawn one has no start time (infinity)
+    int scene_index = -1;                          ///< in the scene; -1: created in the page
+    bool as_in_scene = false;                      ///< of the scene, and its body not changed
+    bool triggered = false;                        ///< in the page, regardless of its start time
 };
 
 struct BarrierSetup {
     std::string id;
-    std::shared_ptr<const Building> body;  ///< with its Building::barrier
+    std::shared_ptr<const terrain::Building> body;  ///< with its Building::barrier
     bool from_scene = false;
 
-    [[nodiscard]] const BarrierSpec& shape() const { return *body->barrier; }
+    [[nodiscard]] const params::BarrierSpec& shape() const { return *body->barrier; }
 };
 
 struct BuildingSetup {
     std::string id;
-    std::shared_ptr<const Building> body;
+    std::shared_ptr<const terrain::Building> body;
     int scene_index = -1;  ///< in the scene; -1: created in the page
     bool as_in_scene = false;
 };
@@ -46,7 +46,7 @@ struct BuildingSetup {
 /// `area`, `amount`: of the body, on the terrain.
 struct ZoneSetup {
     std::string id;
-    std::shared_ptr<const Zone> body;
+    std::shared_ptr<const scene::Zone> body;
     double area = 0;       ///< m2 in plan
     int scene_index = -1;  ///< in the scene; -1: created in the page
     bool as_in_scene = false;
@@ -54,21 +54,21 @@ struct ZoneSetup {
 
 struct BedSetup {
     std::string id;
-    std::shared_ptr<const BedLayer> body;
-    BedAmount amount;
+    std::shared_ptr<const scene::BedLayer> body;
+    scene::BedAmount amount;
     int scene_index = -1;
     bool as_in_scene = false;
 };
 
 struct InflowSetup {
     std::string id;
-    std::shared_ptr<const Inflow> body;
+    std::shared_ptr<const terrain::Inflow> body;
     int scene_index = -1;
     bool as_in_scene = false;
 };
 
 struct Setup {
-    MaterialSpec material;
+    params::MaterialSpec material;
     std::vector<ReleaseSetup> releases;
     std::vector<BarrierSetup> barriers;
     std::vector<BuildingSetup> buildings;
@@ -83,10 +83,10 @@ struct NextNumbers {
 };
 
 /// The scene as it was loaded; `next` is set to follow it.
-[[nodiscard]] Setup setup_of(const Scene& scene, NextNumbers& next);
+[[nodiscard]] Setup setup_of(const scene::Scene& scene, NextNumbers& next);
 
 /// The scene with the parts of a setup instead of its own.
-[[nodiscard]] Scene scene_of(const Scene& scene, const Setup& setup);
+[[nodiscard]] scene::Scene scene_of(const scene::Scene& scene, const Setup& setup);
 
 /// The entry of that id; nullptr: none.
 template <class Entry>
@@ -107,11 +107,15 @@ template <class Entry>
 }
 
 /// Whether two bodies are the same except for their names.
-[[nodiscard]] bool same_shape(const std::shared_ptr<const Release>& a, const std::shared_ptr<const Release>& b);
-[[nodiscard]] bool same_shape(const std::shared_ptr<const Building>& a, const std::shared_ptr<const Building>& b);
-[[nodiscard]] bool same_shape(const std::shared_ptr<const Zone>& a, const std::shared_ptr<const Zone>& b);
-[[nodiscard]] bool same_shape(const std::shared_ptr<const BedLayer>& a, const std::shared_ptr<const BedLayer>& b);
-[[nodiscard]] bool same_shape(const std::shared_ptr<const Inflow>& a, const std::shared_ptr<const Inflow>& b);
+[[nodiscard]] bool same_shape(const std::shared_ptr<const terrain::Release>& a,
+                              const std::shared_ptr<const terrain::Release>& b);
+[[nodiscard]] bool same_shape(const std::shared_ptr<const terrain::Building>& a,
+                              const std::shared_ptr<const terrain::Building>& b);
+[[nodiscard]] bool same_shape(const std::shared_ptr<const scene::Zone>& a, const std::shared_ptr<const scene::Zone>& b);
+[[nodiscard]] bool same_shape(const std::shared_ptr<const scene::BedLayer>& a,
+                              const std::shared_ptr<const scene::BedLayer>& b);
+[[nodiscard]] bool same_shape(const std::shared_ptr<const terrain::Inflow>& a,
+                              const std::shared_ptr<const terrain::Inflow>& b);
 
 /// Whether this holds for two lists, pair by pair.
 template <class Entry>
@@ -124,13 +128,14 @@ template <class Entry>
 [[nodiscard]] bool begin_alike(const Setup& a, const Setup& b);
 
 /// The keys of the material section that can change while debris moves, as declared for the scene file.
-[[nodiscard]] const std::vector<const Parameter*>& live_parameters();
+[[nodiscard]] const std::vector<const params::Parameter*>& live_parameters();
 
 /// "friction coefficient", from "friction_coefficient"; without the unit that the key ends with.
-[[nodiscard]] std::string label_of(const Parameter& parameter);
+[[nodiscard]] std::string label_of(const params::Parameter& parameter);
 
 /// The effective value, in the unit of the key: one that is not set separately is that of the key it follows; NaN where
 /// it follows nothing. `viscosity`: as make_model takes it, where the scene gives it as kinematic viscosity.
-[[nodiscard]] double value_in_force(const MaterialSpec& material, const Parameter& parameter, double viscosity);
+[[nodiscard]] double value_in_force(const params::MaterialSpec& material, const params::Parameter& parameter,
+                                    double viscosity);
 
 }  // namespace talus::twin

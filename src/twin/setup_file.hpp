@@ -13,6 +13,6 @@ namespace talus::twin {
 [[nodiscard]] nlohmann::json write_setup(const Setup& setup);
 
 /// Errors name key and value.
-[[nodiscard]] Result<Setup> read_setup(const nlohmann::json& file, const Scene& scene);
+[[nodiscard]] Result<Setup> read_setup(const nlohmann::json& file, const scene::Scene& scene);
 
 }  // namespace talus::twin

@@ -34,9 +34,9 @@ double degrees_of(double radians) {
 /// Reads the output of write_setup; any mismatch is an Error.
 class SetupReader {
   public:
-    explicit SetupReader(const Scene& scene) : scene_(scene) {}
+    explicit SetupReader(const scene::Scene& scene) : scene_(scene) {}
 
-    Status read_material(const json& file, MaterialSpec& material) const;
+    Status read_material(const json& file, params::MaterialSpec& material) const;
     Result<ReleaseSetup> read_release(const json& file) const;
     Result<BarrierSetup> read_barrier(const json& file) const;
     Result<BuildingSetup> read_building(const json& file) const;
@@ -62,7 +62,7 @@ class SetupReader {
     static Status read_origin(const json& file, const char* key, std::size_t count, Entry& setup);
     static Result<int> read_index(const json& object, std::size_t count);
 
-    const Scene& scene_;
+    const scene::Scene& scene_;
 };
 
 Result<Polygon> SetupReader::read_polygon(const json& rings) {
@@ -91,18 +91,18 @@ Result<int> SetupReader::read_index(const json& object, std::size_t count) {
     return index.get<int>();
 }
 
-Status SetupReader::read_material(const json& file, MaterialSpec& material) const {
+Status SetupReader::read_material(const json& file, params::MaterialSpec& material) const {
     if (!file.is_object()) return Error{fmt::format("material = {}: must be an object", shown(file))};
-    SceneSpec spec;
+    params::SceneSpec spec;
     spec.material = scene_.spec.material;
     for (const auto& [key, value] : file.items()) {
-        const Parameter* parameter = find_section("material")->find(key);
-        if (parameter == nullptr || parameter->kind != ParameterKind::number) {
+        const params::Parameter* parameter = params::find_section("material")->find(key);
+        if (parameter == nullptr || parameter->kind != params::ParameterKind::number) {
             return Error{fmt::format("material.{}: no such key", key)};
         }
         TALUS_ASSIGN(auto number, read_number(file, key, parameter->range, parameter->unit));
         if (!number && parameter->absent.empty()) return Error{fmt::format("material.{}: must be a number", key)};
-        parameter->set(spec, 0, number ? ParameterValue(*number) : ParameterValue());
+        parameter->set(spec, 0, number ? params::ParameterValue(*number) : params::ParameterValue());
     }
     material = spec.material;
     return {};
@@ -153,17 +153,17 @@ Result<ReleaseSetup> SetupReader::read_release(const json& file) const {
     ReleaseSetup setup;
     TALUS_TRY(read_origin(file, "patches", scene_.releases.size(), setup));
     setup.triggered = file.contains("triggered") && file["triggered"] == true;
-    Release release;
+    terrain::Release release;
     release.spec.start_time = std::numeric_limits<double>::infinity();
     if (setup.scene_index >= 0) release = scene_.releases[static_cast<std::size_t>(setup.scene_index)];
     if (!setup.as_in_scene) {
         TALUS_ASSIGN(release.name, read_name(file));
         TALUS_TRY(read_values(file, release.spec));
         if (!file.contains("raster")) release.thickness_raster.reset();
-        TALUS_TRY(read_parts(file, "patches", "thickness_m", &ReleasePatch::thickness, release.patches));
+        TALUS_TRY(read_parts(file, "patches", "thickness_m", &terrain::ReleasePatch::thickness, release.patches));
         release.volume = release_volume(scene_.terrain, release);
     }
-    setup.body = std::make_shared<const Release>(std::move(release));
+    setup.body = std::make_shared<const terrain::Release>(std::move(release));
     return setup;
 }
 
@@ -172,11 +172,11 @@ Result<BarrierSetup> SetupReader::read_barrier(const json& file) const {
     TALUS_ASSIGN(auto line, read_points(file, "line", false, 2, 1'000'000));
     if (!line) return bad("line", file);
     TALUS_ASSIGN(const std::string name, read_name(file));
-    SceneSpec read;
+    params::SceneSpec read;
     if (file.contains("openings")) {  // not in journals older than openings
-        TALUS_TRY(read_live_list(file["openings"], "openings", live_section("barrier_opening"), read, 0));
+        TALUS_TRY(read_live_list(file["openings"], "openings", params::live_section("barrier_opening"), read, 0));
     }
-    BarrierSpec barrier;
+    params::BarrierSpec barrier;
     barrier.line = std::move(*line);
     barrier.openings = std::move(read.barrier_openings);
     json values = file;  // an older journal gives a level crest a height of 0, too
@@ -184,32 +184,34 @@ Result<BarrierSetup> SetupReader::read_barrier(const json& file) const {
     TALUS_TRY(read_values(values, barrier));
     TALUS_TRY(check_rules(barrier, scene_.spec.solver, 0));
     TALUS_ASSIGN(auto body, make_barrier(scene_.terrain, name, barrier));
-    return BarrierSetup{file["id"], std::make_shared<const Building>(std::move(body)), file.value("from_scene", false)};
+    return BarrierSetup{file["id"], std::make_shared<const terrain::Building>(std::move(body)),
+                        file.value("from_scene", false)};
 }
 
 Result<BuildingSetup> SetupReader::read_building(const json& file) const {
     BuildingSetup setup;
     TALUS_TRY(read_origin(file, "footprint", scene_.buildings.size(), setup));
     if (setup.as_in_scene) {
-        setup.body = std::make_shared<const Building>(scene_.buildings[static_cast<std::size_t>(setup.scene_index)]);
+        setup.body =
+            std::make_shared<const terrain::Building>(scene_.buildings[static_cast<std::size_t>(setup.scene_index)]);
         return setup;
     }
     if (!gives(file, "height_m")) return bad("height_m", file);
-    Building building;
-    BuildingSpec& values = building;
+    terrain::Building building;
+    params::BuildingSpec& values = building;
     TALUS_ASSIGN(building.name, read_name(file));
     TALUS_TRY(read_values(file, values));
     TALUS_ASSIGN(building.footprint, read_polygons(file, "footprint"));
-    std::vector<Building> placed{std::move(building)};
+    std::vector<terrain::Building> placed{std::move(building)};
     place_buildings(scene_.terrain, placed);
-    setup.body = std::make_shared<const Building>(std::move(placed.front()));
+    setup.body = std::make_shared<const terrain::Building>(std::move(placed.front()));
     return setup;
 }
 
 Result<ZoneSetup> SetupReader::read_zone(const json& file) const {
     ZoneSetup setup;
     TALUS_TRY(read_origin(file, "polygons", scene_.zones.size(), setup));
-    Zone zone;
+    scene::Zone zone;
     if (setup.scene_index >= 0) zone = scene_.zones[static_cast<std::size_t>(setup.scene_index)];
     if (!setup.as_in_scene) {
         TALUS_ASSIGN(zone.spec.name, read_name(file));
@@ -217,23 +219,23 @@ Result<ZoneSetup> SetupReader::read_zone(const json& file) const {
         TALUS_ASSIGN(zone.outline, read_polygons(file, "polygons"));
     }
     setup.area = area_of(zone, scene_.terrain.elevation().geometry);
-    setup.body = std::make_shared<const Zone>(std::move(zone));
+    setup.body = std::make_shared<const scene::Zone>(std::move(zone));
     return setup;
 }
 
 Result<BedSetup> SetupReader::read_bed(const json& file) const {
     BedSetup setup;
     TALUS_TRY(read_origin(file, "parts", scene_.bed_layers.size(), setup));
-    BedLayer layer;
+    scene::BedLayer layer;
     if (setup.scene_index >= 0) layer = scene_.bed_layers[static_cast<std::size_t>(setup.scene_index)];
     if (!setup.as_in_scene) {
         TALUS_ASSIGN(layer.spec.name, read_name(file));
         TALUS_TRY(read_values(file, layer.spec));
         if (!file.contains("raster")) layer.depth_raster = nullptr;
-        TALUS_TRY(read_parts(file, "parts", "depth_m", &BedLayer::Part::depth, layer.parts));
+        TALUS_TRY(read_parts(file, "parts", "depth_m", &scene::BedLayer::Part::depth, layer.parts));
     }
     setup.amount = amount_of(layer, scene_.terrain);
-    setup.body = std::make_shared<const BedLayer>(std::move(layer));
+    setup.body = std::make_shared<const scene::BedLayer>(std::move(layer));
     return setup;
 }
 
@@ -241,10 +243,11 @@ Result<InflowSetup> SetupReader::read_inflow(const json& file) const {
     InflowSetup setup;
     TALUS_TRY(read_origin(file, "polygons", scene_.inflows.size(), setup));
     if (setup.as_in_scene) {
-        setup.body = std::make_shared<const Inflow>(scene_.inflows[static_cast<std::size_t>(setup.scene_index)]);
+        setup.body =
+            std::make_shared<const terrain::Inflow>(scene_.inflows[static_cast<std::size_t>(setup.scene_index)]);
         return setup;
     }
-    Inflow inflow;
+    terrain::Inflow inflow;
     const auto line = read_points(file, "line", false, 2, 2);
     TALUS_ASSIGN(const auto radians, read_number(file, "direction", {}, "rad"));
     TALUS_ASSIGN(inflow.name, read_name(file));
@@ -260,13 +263,13 @@ Result<InflowSetup> SetupReader::read_inflow(const json& file) const {
     TALUS_TRY(read_values(file, inflow.spec));
     if (radians) inflow.spec.direction = degrees_of(*radians);
     TALUS_ASSIGN(inflow.hydrograph, read_hydrograph_rows(file.value("hydrograph", json()), inflow.spec));
-    setup.body = std::make_shared<const Inflow>(std::move(inflow));
+    setup.body = std::make_shared<const terrain::Inflow>(std::move(inflow));
     return setup;
 }
 
 }  // namespace
 
-Result<Setup> read_setup(const json& file, const Scene& scene) {
+Result<Setup> read_setup(const json& file, const scene::Scene& scene) {
     if (!file.is_object()) return Error{fmt::format("setup = {}: must be an object", shown(file))};
     for (const char* key : {"material", "releases", "barriers", "buildings", "zones", "beds", "inflows"}) {
         if (!file.contains(key)) return Error{fmt::format("setup.{}: missing", key)};

@@ -10,17 +10,17 @@ using nlohmann::json;
 
 constexpr const char* kinematic = "kinematic_viscosity_m2ps";
 
-json material_json(const MaterialSpec& material) {
-    SceneSpec spec;
+json material_json(const params::MaterialSpec& material) {
+    params::SceneSpec spec;
     spec.material = material;
     json values = json::object();
-    const auto add = [&](const Parameter& parameter) {
-        const ParameterValue value = parameter.get(spec, 0);
+    const auto add = [&](const params::Parameter& parameter) {
+        const params::ParameterValue value = parameter.get(spec, 0);
         const double* number = std::get_if<double>(&value);
         values[parameter.key] = number != nullptr ? json(*number) : json();
     };
-    for (const Parameter* parameter : live_parameters()) add(*parameter);
-    add(*find_section("material")->find(kinematic));
+    for (const params::Parameter* parameter : live_parameters()) add(*parameter);
+    add(*params::find_section("material")->find(kinematic));
     return values;
 }
 
@@ -32,37 +32,37 @@ json parts_json(const std::vector<Part>& parts, const char* key, double Part::*v
     return list;
 }
 
-json body_json(const Release& release) {
+json body_json(const terrain::Release& release) {
     json body = values_json(release.spec);
     body["name"] = release.name;
-    body["patches"] = parts_json(release.patches, "thickness_m", &ReleasePatch::thickness);
+    body["patches"] = parts_json(release.patches, "thickness_m", &terrain::ReleasePatch::thickness);
     if (release.thickness_raster) body["raster"] = true;
     return body;
 }
 
-json body_json(const Building& building) {
-    json body = values_json<BuildingSpec>(building);
+json body_json(const terrain::Building& building) {
+    json body = values_json<params::BuildingSpec>(building);
     body["name"] = building.name;
     body["footprint"] = polygons_json(building.footprint);
     return body;
 }
 
-json body_json(const Zone& zone) {
+json body_json(const scene::Zone& zone) {
     json body = values_json(zone.spec);
     body["name"] = zone.spec.name;
     body["polygons"] = polygons_json(zone.outline);
     return body;
 }
 
-json body_json(const BedLayer& layer) {
+json body_json(const scene::BedLayer& layer) {
     json body = values_json(layer.spec);
     body["name"] = layer.spec.name;
-    body["parts"] = parts_json(layer.parts, "depth_m", &BedLayer::Part::depth);
+    body["parts"] = parts_json(layer.parts, "depth_m", &scene::BedLayer::Part::depth);
     if (layer.depth_raster != nullptr) body["raster"] = true;
     return body;
 }
 
-json body_json(const Inflow& inflow) {
+json body_json(const terrain::Inflow& inflow) {
     json body = values_json(inflow.spec);
     body["name"] = inflow.name;
     if (!inflow.over_area()) body["line"] = to_json(std::vector<PlanPoint>{inflow.from, inflow.to});

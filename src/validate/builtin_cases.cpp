@@ -33,7 +33,7 @@ Result<std::filesystem::path> unpack_builtin_cases(const std::filesystem::path& 
         stream.close();
         if (!stream) return Error{fmt::format("{}: cannot write this file; is the disk full?", path.string())};
     }
-    TALUS_TRY(unpack_builtin_scene(folder / "scenes" / builtin_scene_name));
+    TALUS_TRY(scene::unpack_builtin_scene(folder / "scenes" / scene::builtin_scene_name));
     return folder / "validation";
 }
 

@@ -50,12 +50,12 @@ class TableReader {
         return values;
     }
 
-    std::optional<double> number(const std::string& key, const Range& range) {
+    std::optional<double> number(const std::string& key, const params::Range& range) {
         const toml::node* node = find(key, false, "");
         if (node == nullptr) return std::nullopt;
         const auto value = node->is_number() ? node->value<double>() : std::nullopt;
         if (value && std::isfinite(*value) && range.contains(*value)) return value;
-        Parameter parameter;
+        params::Parameter parameter;
         parameter.range = range;
         refuse(key, *node, allowed_text(parameter));
         return std::nullopt;
@@ -82,7 +82,8 @@ class TableReader {
             const std::string name(key.str());
             if (std::find(asked_.begin(), asked_.end(), name) != asked_.end()) continue;
             return Error{fmt::format("{}:{}: unknown key \"{}\" in {}; nearest known key: {}", file_,
-                                     key.source().begin.line, one_line(name, 80), header_, nearest_word(name, asked_))};
+                                     key.source().begin.line, scene::one_line(name, 80), header_,
+                                     params::nearest_word(name, asked_))};
         }
         return {};
     }
@@ -99,7 +100,8 @@ class TableReader {
     }
     void refuse(const std::string& key, const toml::node& node, const std::string& allowed) {
         if (!problem_.empty()) return;
-        problem_ = fmt::format("{}: {} = {} is refused; it must be {}", place(node), key, toml_text_of(node), allowed);
+        problem_ =
+            fmt::format("{}: {} = {} is refused; it must be {}", place(node), key, scene::toml_text_of(node), allowed);
     }
 
     std::string file_, header_;
@@ -145,7 +147,7 @@ class CaseReader {
     }
 
     Result<Case> read() {
-        TALUS_ASSIGN(const toml::table root, read_toml_file(file_, "case"));
+        TALUS_ASSIGN(const toml::table root, scene::read_toml_file(file_, "case"));
         TALUS_TRY(check_sections(root));
         TALUS_TRY(read_case(root));
         spec_.solver.rest_duration = 0;  // many cases test whether heaps stand
@@ -172,7 +174,7 @@ class CaseReader {
             const std::string name(key.str());
             if (std::find(sections.begin(), sections.end(), name) == sections.end()) {
                 return Error{fmt::format("{}: unknown section \"{}\"; nearest known section: {}", at(key.source()),
-                                         one_line(name, 80), nearest_word(name, sections))};
+                                         scene::one_line(name, 80), params::nearest_word(name, sections))};
             }
             const bool right = name == "expect" ? node.is_array_of_tables() : node.is_table();
             if (!right) {
@@ -206,22 +208,22 @@ class CaseReader {
     Status read_scene_section(const toml::table& root, const std::string& name) {
         const toml::table* table = root.get_as<toml::table>(name);
         if (table == nullptr) return {};
-        const Section& section = *find_section(name);
+        const params::Section& section = *params::find_section(name);
         for (const auto& [key, node] : *table) {
-            const Parameter* parameter = section.find(key.str());
+            const params::Parameter* parameter = section.find(key.str());
             if (parameter == nullptr) {
-                const auto keys = names_of(section.parameters, [](const Parameter& p) { return p.key; });
+                const auto keys = names_of(section.parameters, [](const params::Parameter& p) { return p.key; });
                 return Error{fmt::format("{}: unknown key \"{}\" in [{}]; nearest known key: {}", at(key.source()),
-                                         one_line(key.str(), 80), name, nearest_word(key.str(), keys))};
+                                         scene::one_line(key.str(), 80), name, params::nearest_word(key.str(), keys))};
             }
-            const auto value = to_parameter_value(node, parameter->kind);
+            const auto value = scene::to_parameter_value(node, parameter->kind);
             const std::string problem = value ? problem_with(*parameter, *value) : allowed_text(*parameter);
             if (!problem.empty()) {
                 return Error{fmt::format("{}: {}.{} = {} is refused; it must be {}", at(key.source()), name,
-                                         parameter->key, toml_text_of(node), problem)};
+                                         parameter->key, scene::toml_text_of(node), problem)};
             }
             parameter->set(spec_, 0, *value);
-            setting_.overrides.push_back(fmt::format("{}.{}={}", name, parameter->key, toml_text(*value)));
+            setting_.overrides.push_back(fmt::format("{}.{}={}", name, parameter->key, params::toml_text(*value)));
         }
         return {};
     }
@@ -234,7 +236,7 @@ class CaseReader {
     }
 
     Status read_expectation(const toml::table& table) {
-        constexpr Range not_negative{.low = 0};
+        constexpr params::Range not_negative{.low = 0};
         TableReader reader(file_.string(), "[[expect]]", table);
         Expectation e;
         e.quantity = reader.choice(
@@ -284,14 +286,14 @@ class CaseReader {
         const toml::table* table = root.get_as<toml::table>("parameters");
         if (table == nullptr) return entries;
         for (const auto& [key, node] : *table) {
-            entries[one_line(key.str(), 80)] = {to_value(node), toml_text_of(node), at(key.source())};
+            entries[scene::one_line(key.str(), 80)] = {to_value(node), scene::toml_text_of(node), at(key.source())};
         }
         return entries;
     }
 
     std::filesystem::path file_;
     Case case_;
-    SceneSpec spec_;
+    params::SceneSpec spec_;
     Setting setting_;
     const Kind* kind_ = nullptr;
 };

@@ -13,8 +13,8 @@ namespace talus::validate {
 
 /// Settings of a case file in addition to the parameters of its kind.
 struct Setting {
-    MaterialSpec material;
-    SolverSpec solver;
+    params::MaterialSpec material;
+    params::SolverSpec solver;
     std::vector<std::string> overrides;  ///< what of both was given, as "section.key=value"
     std::vector<Expectation> expectations;
 };

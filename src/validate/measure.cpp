@@ -18,7 +18,7 @@ double percentile(std::vector<double> values, double share) {
     return values[below] + (at - static_cast<double>(below)) * (values[above] - values[below]);
 }
 
-double top_of(const Model& model, const State& state) {
+double top_of(const sim::Model& model, const sim::State& state) {
     constexpr std::size_t highest = 5;
     if (state.count == 0) return std::numeric_limits<double>::quiet_NaN();
     std::vector<float> elevations(state.position.z.begin(), state.position.z.begin() + state.count);

@@ -13,13 +13,13 @@ namespace talus::validate {
 
 /// Elevation of the top of the debris, local m: the mean of its five highest particles, plus half a spacing. A single
 /// particle can lie on top of a heap.
-[[nodiscard]] double top_of(const Model& model, const State& state);
+[[nodiscard]] double top_of(const sim::Model& model, const sim::State& state);
 
 /// Thickness, m, in `cells` cells of size `cell` from `first` on: volume over area. `place(i)` is where particle i lies
 /// along the row of cells, `width` m wide; particles outside do not count.
 template <class Place>
-[[nodiscard]] std::vector<double> thickness_profile(const Model& model, const State& state, double first, double cell,
-                                                    int cells, double width, const Place& place) {
+[[nodiscard]] std::vector<double> thickness_profile(const sim::Model& model, const sim::State& state, double first,
+                                                    double cell, int cells, double width, const Place& place) {
     std::vector<double> thickness(static_cast<std::size_t>(cells), 0.0);
     const double share = model.particle_volume() / (cell * width);
     for (std::uint32_t i = 0; i < state.count; ++i) {

@@ -170,11 +170,11 @@ Status write_markdown(const std::vector<CaseResult>& results, const std::filesys
         if (!list.empty()) text += "\n" + list;
         for (const Chart& chart : result.charts) {
             const std::string name = fmt::format("{}_{}.svg", c.name, chart.name);
-            TALUS_TRY(write_text_file(folder / name, report::chart_file(drawing_of(chart))));
+            TALUS_TRY(products::write_text_file(folder / name, report::chart_file(drawing_of(chart))));
             text += fmt::format("\n![{}]({}/{})\n", markdown_text(chart.title), folder.filename().string(), name);
         }
     }
-    return write_text_file(file, text);
+    return products::write_text_file(file, text);
 }
 
 }  // namespace talus::validate

@@ -10,14 +10,14 @@ namespace talus::validate {
 namespace {
 
 /// "a number from 0 to 89", in the wording of scene files.
-std::string allowed_number(const Range& range, ParameterKind kind = ParameterKind::number) {
-    Parameter parameter;
+std::string allowed_number(const params::Range& range, params::ParameterKind kind = params::ParameterKind::number) {
+    params::Parameter parameter;
     parameter.kind = kind;
     parameter.range = range;
     return allowed_text(parameter);
 }
 
-bool all_within(const std::vector<double>& values, const Range& range) {
+bool all_within(const std::vector<double>& values, const params::Range& range) {
     return std::all_of(values.begin(), values.end(), [&](double v) { return std::isfinite(v) && range.contains(v); });
 }
 
@@ -39,7 +39,7 @@ void Parameters::miss(const std::string& key, const std::string& allowed) {
     problem_ = fmt::format("{}: parameters.{} is missing; it must be {}", file_.string(), key, allowed);
 }
 
-double Parameters::number(const std::string& key, const Range& range, double fallback) {
+double Parameters::number(const std::string& key, const params::Range& range, double fallback) {
     const Entry* entry = find(key);
     if (entry == nullptr) return fallback;
     const auto* value = std::get_if<double>(&entry->value);
@@ -48,18 +48,18 @@ double Parameters::number(const std::string& key, const Range& range, double fal
     return fallback;
 }
 
-int Parameters::whole_number(const std::string& key, const Range& range, int fallback) {
+int Parameters::whole_number(const std::string& key, const params::Range& range, int fallback) {
     const Entry* entry = find(key);
     if (entry == nullptr) return fallback;
     const auto* value = std::get_if<double>(&entry->value);
     if (value != nullptr && range.contains(*value) && *value == std::floor(*value) && std::abs(*value) < 1e9) {
         return static_cast<int>(*value);
     }
-    refuse(key, *entry, allowed_number(range, ParameterKind::integer));
+    refuse(key, *entry, allowed_number(range, params::ParameterKind::integer));
     return fallback;
 }
 
-std::vector<double> Parameters::numbers(const std::string& key, const Range& range,
+std::vector<double> Parameters::numbers(const std::string& key, const params::Range& range,
                                         const std::vector<double>& fallback) {
     const Entry* entry = find(key);
     if (entry == nullptr) return fallback;
@@ -69,7 +69,7 @@ std::vector<double> Parameters::numbers(const std::string& key, const Range& ran
     return fallback;
 }
 
-std::vector<NumberPair> Parameters::pairs(const std::string& key, const Range& range, bool required) {
+std::vector<NumberPair> Parameters::pairs(const std::string& key, const params::Range& range, bool required) {
     const std::string allowed = "a list of pairs, each of the two " + allowed_number(range);
     const Entry* entry = find(key);
     if (entry == nullptr) {
@@ -126,7 +126,7 @@ Status Parameters::check() const {
         if (asked_.empty())
             return Error{fmt::format("{}: this kind of case has no parameter \"{}\"", entry.place, key)};
         return Error{fmt::format("{}: unknown key \"{}\" in [parameters]; nearest known key: {}", entry.place, key,
-                                 nearest_word(key, asked_))};
+                                 params::nearest_word(key, asked_))};
     }
     return {};
 }

@@ -30,12 +30,13 @@ class Parameters {
     Parameters(std::filesystem::path file, std::map<std::string, Entry> entries)
         : file_(std::move(file)), entries_(std::move(entries)) {}
 
-    double number(const std::string& key, const Range& range, double fallback);
-    int whole_number(const std::string& key, const Range& range, int fallback);
+    double number(const std::string& key, const params::Range& range, double fallback);
+    int whole_number(const std::string& key, const params::Range& range, int fallback);
     /// At least one number.
-    std::vector<double> numbers(const std::string& key, const Range& range, const std::vector<double>& fallback);
+    std::vector<double> numbers(const std::string& key, const params::Range& range,
+                                const std::vector<double>& fallback);
     /// Pairs of numbers, `[[1, 2], [3, 4]]`; none where the key is absent and not required.
-    std::vector<NumberPair> pairs(const std::string& key, const Range& range, bool required);
+    std::vector<NumberPair> pairs(const std::string& key, const params::Range& range, bool required);
     std::string choice(const std::string& key, const std::vector<std::string>& choices, const std::string& fallback);
     std::string text(const std::string& key, const std::string& fallback);
     /// A file, relative to the case's folder; required.

@@ -8,7 +8,8 @@
 
 namespace talus::validate {
 
-Terrain make_terrain(double length, double width, double cell, const std::function<double(double, double)>& elevation) {
+terrain::Terrain make_terrain(double length, double width, double cell,
+                              const std::function<double(double, double)>& elevation) {
     // One more cell on each side: ground is known between cell centres only.
     const int columns = static_cast<int>(std::ceil(length / cell)) + 2;
     const int rows = static_cast<int>(std::ceil(width / cell)) + 2;
@@ -19,7 +20,7 @@ Terrain make_terrain(double length, double width, double cell, const std::functi
             grid.at(column, row) = static_cast<float>(elevation(p.x, p.y));
         }
     }
-    return Terrain(std::move(grid));
+    return terrain::Terrain(std::move(grid));
 }
 
 Incline::Incline(double slope, double length, double width)
@@ -45,15 +46,16 @@ double Incline::normal(const LocalPoint& p) const {
     return p.x * sine_ + (p.z - origin_.z) * cosine_;
 }
 
-Building make_wall(const Terrain& terrain, double x_min, double y_min, double x_max, double y_max, double height) {
-    Building wall;
+terrain::Building make_wall(const terrain::Terrain& terrain, double x_min, double y_min, double x_max, double y_max,
+                            double height) {
+    terrain::Building wall;
     wall.footprint = {{{{x_min, y_min}, {x_max, y_min}, {x_max, y_max}, {x_min, y_max}}, {}}};
     const auto& elevations = terrain.elevation().values;
     wall.roof_elevation = *std::max_element(elevations.begin(), elevations.end()) + height;
     return wall;
 }
 
-std::vector<Building> make_slice(const Terrain& terrain, double width, double height) {
+std::vector<terrain::Building> make_slice(const terrain::Terrain& terrain, double width, double height) {
     const Extent extent = terrain.elevation().geometry.extent();
     return {make_wall(terrain, extent.x_min, width / 2, extent.x_max, extent.y_max, height),
             make_wall(terrain, extent.x_min, extent.y_min, extent.x_max, -width / 2, height)};
@@ -79,8 +81,8 @@ std::vector<LocalPoint> fill_lattice(const Incline& incline, double spacing, dou
     return points;
 }
 
-State state_at_rest(const std::vector<LocalPoint>& points) {
-    State state;
+sim::State state_at_rest(const std::vector<LocalPoint>& points) {
+    sim::State state;
     state.resize(points.size());
     state.count = state.seeded = static_cast<std::uint32_t>(points.size());
     for (std::uint32_t i = 0; i < state.count; ++i) {
@@ -90,9 +92,9 @@ State state_at_rest(const std::vector<LocalPoint>& points) {
     return state;
 }
 
-State state_under_weight(const Model& model, const Ground& ground, const std::vector<LocalPoint>& points,
-                         const Incline& incline, const std::function<double(double, double)>& thickness) {
-    State state = state_at_rest(points);
+sim::State state_under_weight(const sim::Model& model, const sim::Ground& ground, const std::vector<LocalPoint>& points,
+                              const Incline& incline, const std::function<double(double, double)>& thickness) {
+    sim::State state = state_at_rest(points);
     const double gravity = model.gravity * incline.cosine();
     state.previous_time_step = 1;  // s: multipliers are pressure over density, times its square
     for (std::uint32_t i = 0; i < state.count; ++i) {
@@ -106,7 +108,7 @@ State state_under_weight(const Model& model, const Ground& ground, const std::ve
 
 namespace {
 
-RunStart endless(RunStart start, const Watch& watch) {
+run::RunStart endless(run::RunStart start, const Watch& watch) {
     start.model.solver.thread_count = watch.thread_count;
     start.endless = true;
     return start;
@@ -114,7 +116,7 @@ RunStart endless(RunStart start, const Watch& watch) {
 
 }  // namespace
 
-Trial::Trial(RunStart start, const Watch& watch, OnFault on_fault)
+Trial::Trial(run::RunStart start, const Watch& watch, OnFault on_fault)
     : run_(endless(std::move(start), watch)), watch_(watch), on_fault_(on_fault) {}
 
 bool Trial::advance_to(double time, const std::function<void()>& after_step) {

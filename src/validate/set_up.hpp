@@ -18,8 +18,8 @@ namespace talus::validate {
 
 /// Ground over a rectangle around the world's origin, `length` along x and `width` along y, with elevations in m from a
 /// function of world x and y.
-[[nodiscard]] Terrain make_terrain(double length, double width, double cell,
-                                   const std::function<double(double x, double y)>& elevation);
+[[nodiscard]] terrain::Terrain make_terrain(double length, double width, double cell,
+                                            const std::function<double(double x, double y)>& elevation);
 
 /// A plane that falls towards +x, and coordinates along it, across it and normal to it, m. Their origin is the ground
 /// in the middle.
@@ -28,7 +28,7 @@ class Incline {
     /// `slope` in radians; `length` and `width` of the plane in plan.
     Incline(double slope, double length, double width);
 
-    [[nodiscard]] const Terrain& terrain() const { return terrain_; }
+    [[nodiscard]] const terrain::Terrain& terrain() const { return terrain_; }
     [[nodiscard]] LocalPoint point(double along, double across, double normal) const;
     /// A vector down the slope.
     [[nodiscard]] LocalPoint down(double speed) const;
@@ -37,17 +37,17 @@ class Incline {
     [[nodiscard]] double cosine() const { return cosine_; }
 
   private:
-    Terrain terrain_;
+    terrain::Terrain terrain_;
     double sine_, cosine_;
     LocalPoint origin_;
 };
 
 /// A wall over a rectangle of world coordinates whose top is at least `height` above the highest ground beside it.
-[[nodiscard]] Building make_wall(const Terrain& terrain, double x_min, double y_min, double x_max, double y_max,
-                                 double height);
+[[nodiscard]] terrain::Building make_wall(const terrain::Terrain& terrain, double x_min, double y_min, double x_max,
+                                          double y_max, double height);
 
 /// Two walls along x over the whole ground, `width` apart: the space between is a slice.
-[[nodiscard]] std::vector<Building> make_slice(const Terrain& terrain, double width, double height);
+[[nodiscard]] std::vector<terrain::Building> make_slice(const terrain::Terrain& terrain, double width, double height);
 
 /// Particles on the lattice of an incline, its first layer half a spacing above the ground: in every column of [0, n)
 /// spacings along and across from (`along`, `across`) as many as the thickness there requires. Remaining particles are
@@ -57,12 +57,13 @@ class Incline {
                                                    const std::function<double(double, double)>& thickness);
 
 /// A state at rest of particles at these places, without any release, without pressure.
-[[nodiscard]] State state_at_rest(const std::vector<LocalPoint>& points);
+[[nodiscard]] sim::State state_at_rest(const std::vector<LocalPoint>& points);
 
 /// The same under the weight of the debris above, as after standing behind a gate for long: `thickness` as in
 /// fill_lattice. Without it a tall column collapses before its pressure has built up.
-[[nodiscard]] State state_under_weight(const Model& model, const Ground& ground, const std::vector<LocalPoint>& points,
-                                       const Incline& incline, const std::function<double(double, double)>& thickness);
+[[nodiscard]] sim::State state_under_weight(const sim::Model& model, const sim::Ground& ground,
+                                            const std::vector<LocalPoint>& points, const Incline& incline,
+                                            const std::function<double(double, double)>& thickness);
 
 enum class OnFault {
     stop,
@@ -72,7 +73,7 @@ enum class OnFault {
 /// A run under test: until a time, or the first step that cannot be trusted.
 class Trial {
   public:
-    Trial(RunStart start, const Watch& watch, OnFault on_fault = OnFault::stop);
+    Trial(run::RunStart start, const Watch& watch, OnFault on_fault = OnFault::stop);
 
     /// As Run::inject_inflow().
     void inject_inflow() { run_.inject_inflow(); }
@@ -80,15 +81,15 @@ class Trial {
     /// Steps until `time`, calling `after_step` after each. False when it stopped before: `problem` says why.
     bool advance_to(double time, const std::function<void()>& after_step = {});
 
-    [[nodiscard]] const Model& model() const { return run_.model(); }
-    [[nodiscard]] const Ground& ground() const { return run_.ground(); }
-    [[nodiscard]] const State& state() const { return run_.state(); }
-    [[nodiscard]] const Observer& observer() const { return run_.observer(); }
+    [[nodiscard]] const sim::Model& model() const { return run_.model(); }
+    [[nodiscard]] const sim::Ground& ground() const { return run_.ground(); }
+    [[nodiscard]] const sim::State& state() const { return run_.state(); }
+    [[nodiscard]] const observe::Observer& observer() const { return run_.observer(); }
     /// The first fault, or the user's request to stop; empty: none.
     [[nodiscard]] const std::string& problem() const { return problem_; }
 
   private:
-    Run run_;
+    run::Run run_;
     const Watch& watch_;
     OnFault on_fault_;
     bool stopped_ = false;

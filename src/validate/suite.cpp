@@ -116,7 +116,7 @@ CaseResult run_case(const Case& validation_case, const Watch& watch) {
             result.rows.push_back(skipped_row(validation_case, e));
         return result;
     }
-    const Threads threads(watch.thread_count);
+    const run::Threads threads(watch.thread_count);
     const auto start = std::chrono::steady_clock::now();
     Result<Outcome> outcome = threads.execute([&] { return validation_case.compute(watch); });
     result.wall_time = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();

@@ -22,7 +22,7 @@ Start small_slab() {
     return *make_start("slab", 500, "");
 }
 
-Task short_task(InternalFriction method = InternalFriction::stress, int threads = 1) {
+Task short_task(params::InternalFriction method = params::InternalFriction::stress, int threads = 1) {
     Task task;
     task.method = method;
     task.threads = threads;
@@ -49,7 +49,7 @@ TEST(Measure, FillsARow) {
     EXPECT_GT(row->time_step, 0);
     EXPECT_LE(row->time_step, start.model.solver.largest_time_step * 1.0001);
     EXPECT_GT(row->relative_rate, 0);
-    EXPECT_GT(row->stage_seconds[static_cast<std::size_t>(Stage::solve_density)], 0);
+    EXPECT_GT(row->stage_seconds[static_cast<std::size_t>(sim::Stage::solve_density)], 0);
 }
 
 TEST(Measure, ObservingIsPartOfTheStep) {
@@ -59,7 +59,7 @@ TEST(Measure, ObservingIsPartOfTheStep) {
     const Result<Row> row = measure(start, short_task(), calibration);
     ASSERT_TRUE(row) << row.error().message;
     // A timer around nothing takes less than a ten-thousandth, and a busy machine makes steps some times longer.
-    EXPECT_GT(row->stage_seconds[static_cast<std::size_t>(Stage::observe)], 2e-3 * row->step_seconds);
+    EXPECT_GT(row->stage_seconds[static_cast<std::size_t>(sim::Stage::observe)], 2e-3 * row->step_seconds);
 }
 
 TEST(Measure, RelatesTheRateToTheCalibrationBesideIt) {
@@ -86,7 +86,7 @@ TEST(Measure, HashHangsOnTheWorkAndNotOnTheThreads) {
     Calibration calibration;
     const Start start = small_slab();
     const auto hash_of = [&](const Task& task) { return measure(start, task, calibration)->hash; };
-    for (const InternalFriction method : {InternalFriction::stress, InternalFriction::pair}) {
+    for (const params::InternalFriction method : {params::InternalFriction::stress, params::InternalFriction::pair}) {
         const std::uint64_t hash = hash_of(short_task(method));
         EXPECT_EQ(hash, hash_of(short_task(method, 2)));
         EXPECT_EQ(hash, hash_of(short_task(method, 3)));
@@ -94,7 +94,8 @@ TEST(Measure, HashHangsOnTheWorkAndNotOnTheThreads) {
         more.iterations = 5;
         EXPECT_NE(hash, hash_of(more));
     }
-    EXPECT_NE(hash_of(short_task(InternalFriction::stress)), hash_of(short_task(InternalFriction::pair)));
+    EXPECT_NE(hash_of(short_task(params::InternalFriction::stress)),
+              hash_of(short_task(params::InternalFriction::pair)));
 }
 
 TEST(Measure, AStepThatCannotBeTrustedIsAnError) {
@@ -144,7 +145,7 @@ Row sample_row() {
     row.repeats = 7;
     row.step_seconds = 0.002;
     row.time_step = 0.01;
-    row.stage_seconds[static_cast<std::size_t>(Stage::solve_density)] = 0.001;
+    row.stage_seconds[static_cast<std::size_t>(sim::Stage::solve_density)] = 0.001;
     row.relative_rate = 0.125;
     row.hash = 0xabc;
     return row;
@@ -189,7 +190,7 @@ TEST(Table, JsonHasWhatScriptsRead) {
     EXPECT_DOUBLE_EQ(row["particle_iterations_per_second"], 2e6);
     EXPECT_DOUBLE_EQ(row["ns_per_particle_iteration"], 500);
     EXPECT_DOUBLE_EQ(row["real_time_factor"], 5);
-    EXPECT_EQ(row["stages_ms"].size(), stage_count);
+    EXPECT_EQ(row["stages_ms"].size(), sim::stage_count);
     EXPECT_DOUBLE_EQ(row["stages_ms"]["solve_density"], 1);
     EXPECT_EQ(row["hash"], "0000000000000abc");
     EXPECT_EQ(row["relative_rate"], 0.125);

@@ -17,7 +17,7 @@ namespace {
 class Scenes : public testing::TestWithParam<std::string> {
   protected:
     [[nodiscard]] Result<Start> make(int particles) const {
-        return make_start(GetParam(), particles, *unpack_builtin_scene(folder_.path()));
+        return make_start(GetParam(), particles, *scene::unpack_builtin_scene(folder_.path()));
     }
     test::TemporaryFolder folder_;
 };
@@ -46,7 +46,7 @@ TEST_P(Scenes, HasAllThatARunHas) {
 TEST_P(Scenes, DebrisLiesFreelyOnKnownGroundUnderItsOwnWeight) {
     const Result<Start> start = make(5000);
     ASSERT_TRUE(start) << start.error().message;
-    const State& state = start->state;
+    const sim::State& state = start->state;
     for (std::uint32_t i = 0; i < state.count; ++i) {
         const LocalPoint p = state.position.at(i);
         ASSERT_TRUE(start->ground.terrain.covers(p.x, p.y));

@@ -9,8 +9,8 @@ int main(int argc, char** argv) {
         std::fprintf(stderr, "usage: write_sample_report FILE\n");
         return 2;
     }
-    const talus::Scene scene = talus::test::sample_scene();
-    const talus::RunResult result = talus::test::sample_result(scene);
+    const talus::scene::Scene scene = talus::test::sample_scene();
+    const talus::run::RunResult result = talus::test::sample_result(scene);
     std::ofstream file(argv[1], std::ios::binary);
     file << talus::test::report_page(scene, result, talus::test::sample_comparisons(scene, result));
     return file.flush() ? 0 : 1;

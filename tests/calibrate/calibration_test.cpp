@@ -10,7 +10,7 @@
 #include "calibrate/calibration_products.hpp"
 #include "scene/scene_folder.hpp"
 
-namespace talus {
+namespace talus::calibrate {
 namespace {
 
 using testing::Contains;
@@ -18,7 +18,7 @@ using testing::HasSubstr;
 
 TEST(Calibration, ASharesValueHasThatShareBelowIt) {
     for (const char* text : {"0.1:0.6", "log:0.01:1", "normal:3:0.5", "triangular:0:0.2:1"}) {
-        const auto distribution = parse_distribution(text);
+        const auto distribution = stats::parse_distribution(text);
         ASSERT_TRUE(distribution);
         for (const double share : {0.02, 0.5, 0.9})
             EXPECT_NEAR(share_below(*distribution, distribution->quantile(share)), share, 1e-6) << text;
@@ -26,22 +26,23 @@ TEST(Calibration, ASharesValueHasThatShareBelowIt) {
 }
 
 /// Runs of the valley that are made up instead of simulated.
-class CalibrationTest : public SceneFolder {
+class CalibrationTest : public scene::SceneFolder {
   protected:
     CalibrationTest() {
         write_valley(
             "[solver]\nparticle_spacing_m = 3\nend_time_s = 30\n[[observation]]\nchainage_m = 50\n"
             "front_velocity_mps = 8\nuncertainty_mps = 1\n[[arrival]]\nchainage_m = 60\ntime_s = 12\n");
-        scene.emplace(*load_scene(folder / "scene.toml"));
+        scene.emplace(*scene::load_scene(folder / "scene.toml"));
         made.scene = &*scene;
-        made.factors = {{"material.friction_coefficient", *parse_distribution("0.1:0.5")},
-                        {"material.viscosity", *parse_distribution("0:0.4")}};
-        made.observed = observed_values(*scene);
+        made.factors = {{"material.friction_coefficient", *stats::parse_distribution("0.1:0.5")},
+                        {"material.viscosity", *stats::parse_distribution("0:0.4")}};
+        made.observed = ensemble::observed_values(*scene);
     }
 
     void search_with(const std::function<std::vector<double>(const std::vector<double>&)>& run) {
-        const ForwardModel model = [&](const Points& points, SearchPhase) -> Result<std::optional<Points>> {
-            Points all;
+        const ForwardModel model = [&](const stats::Points& points,
+                                       SearchPhase) -> Result<std::optional<stats::Points>> {
+            stats::Points all;
             for (const auto& p : points) all.push_back(run(p));
             return std::optional(all);
         };
@@ -52,7 +53,7 @@ class CalibrationTest : public SceneFolder {
         made.records.resize(made.result.runs.size());
     }
 
-    std::optional<Scene> scene;
+    std::optional<scene::Scene> scene;
     Calibration made;
 };
 
@@ -111,14 +112,14 @@ TEST_F(CalibrationTest, TheMapIsLowWhereTheRunsFit) {
 }
 
 TEST_F(CalibrationTest, SaysAfterEachRoundWhatItKnows) {
-    made.factors.push_back({"material.rest_density_kgpm3", *parse_distribution("1500:2500")});
-    const ForwardModel model = [](const Points& points, SearchPhase) -> Result<std::optional<Points>> {
-        Points all;
+    made.factors.push_back({"material.rest_density_kgpm3", *stats::parse_distribution("1500:2500")});
+    const ForwardModel model = [](const stats::Points& points, SearchPhase) -> Result<std::optional<stats::Points>> {
+        stats::Points all;
         for (const auto& p : points) all.push_back({16 - 16 * p[0], 12});
         return std::optional(all);
     };
-    std::vector<Distribution> priors;
-    for (const Factor& f : made.factors) priors.push_back(f.distribution);
+    std::vector<stats::Distribution> priors;
+    for (const ensemble::Factor& f : made.factors) priors.push_back(f.distribution);
     std::vector<std::size_t> runs;
     const auto found = search(priors, made.observed, model, {.runs = 40}, [&](const SearchResult& so_far) {
         runs.push_back(so_far.runs.size());
@@ -135,4 +136,4 @@ TEST_F(CalibrationTest, SaysAfterEachRoundWhatItKnows) {
 }
 
 }  // namespace
-}  // namespace talus
+}  // namespace talus::calibrate

@@ -7,19 +7,19 @@
 
 #include "observe/observation.hpp"
 
-namespace talus {
+namespace talus::calibrate {
 namespace {
 
-using Kind = ObservedValue::Kind;
+using Kind = ensemble::ObservedValue::Kind;
 
-Distribution range(double low, double high) {
-    Distribution d;
+stats::Distribution range(double low, double high) {
+    stats::Distribution d;
     d.low = low;
     d.high = high;
     return d;
 }
 
-const std::vector<Distribution> priors = {range(0.1, 0.5), range(0, 0.4)};
+const std::vector<stats::Distribution> priors = {range(0.1, 0.5), range(0, 0.4)};
 
 /// A block that slides down a slope with friction f and a drag that grows with mu: its velocity at two places, none
 /// where it does not get there. `wobble`: what falls out differently from run to run.
@@ -27,7 +27,8 @@ std::vector<double> slide(const std::vector<double>& point, double wobble = 0) {
     const double f = priors[0].quantile(point[0]), mu = priors[1].quantile(point[1]);
     const auto velocity = [&](double drop, double way) {
         const double square = 2 * 9.81 * (drop - f * way) / (1 + 4 * mu * way / 100);
-        return square > 0 ? std::sqrt(square) + wobble * std::sin(1e4 * (point[0] + 3 * point[1]) + way) : never;
+        return square > 0 ? std::sqrt(square) + wobble * std::sin(1e4 * (point[0] + 3 * point[1]) + way)
+                          : observe::never;
     };
     return {velocity(30, 60), velocity(55, 200)};
 }
@@ -36,28 +37,29 @@ double filled(double value) {
     return std::isfinite(value) ? value : 0;
 }
 
-std::vector<ObservedValue> observed_as(const std::vector<double>& values) {
+std::vector<ensemble::ObservedValue> observed_as(const std::vector<double>& values) {
     return {{"a", "Front velocity at 60 m", "m/s", filled(values[0]), 1.0, Kind::equal, 0},
             {"b", "Front velocity at 200 m", "m/s", filled(values[1]), 1.0, Kind::equal, 0}};
 }
 
 ForwardModel model_of(double wobble = 0) {
-    return [wobble](const Points& points, SearchPhase) -> Result<std::optional<Points>> {
-        Points predicted;
+    return [wobble](const stats::Points& points, SearchPhase) -> Result<std::optional<stats::Points>> {
+        stats::Points predicted;
         for (const auto& p : points) predicted.push_back(slide(p, wobble));
         return std::optional(predicted);
     };
 }
 
 TEST(Misfit, IsTheSquareOfTheDeviation) {
-    const ObservedValue velocity{"", "", "", 10, 2, Kind::equal, 0};
+    const ensemble::ObservedValue velocity{"", "", "", 10, 2, Kind::equal, 0};
     EXPECT_DOUBLE_EQ(misfit_of(velocity, 10), 0);
     EXPECT_DOUBLE_EQ(misfit_of(velocity, 14), 4);
     EXPECT_DOUBLE_EQ(misfit_of(velocity, 14, 12), 1);  // what is uncertain weighs less
 }
 
 TEST(Misfit, OfDamageCountsTheWrongSideOnly) {
-    const ObservedValue damaged{"", "", "", 30, 5, Kind::at_least, 0}, whole{"", "", "", 30, 5, Kind::below, 0};
+    const ensemble::ObservedValue damaged{"", "", "", 30, 5, Kind::at_least, 0},
+        whole{"", "", "", 30, 5, Kind::below, 0};
     EXPECT_NEAR(misfit_of(damaged, 60), 0, 1e-6);
     EXPECT_NEAR(misfit_of(damaged, 30), 2 * std::log(2), 1e-12);
     EXPECT_GT(misfit_of(damaged, 10), 16);
@@ -68,33 +70,33 @@ TEST(Misfit, OfDamageCountsTheWrongSideOnly) {
 }
 
 TEST(Misfit, OfPriorsIsMinusTwiceTheLogDensity) {
-    Distribution normal;
-    normal.kind = DistributionKind::normal;
+    stats::Distribution normal;
+    normal.kind = stats::DistributionKind::normal;
     normal.middle = 3;
     normal.deviation = 0.5;
     EXPECT_NEAR(prior_misfit(normal, 0.5), 0, 1e-9);
     EXPECT_NEAR(prior_misfit(normal, 0.975), 1.96 * 1.96, 1e-2);
     EXPECT_EQ(prior_misfit(priors[0], 0.9), 0);
-    const Distribution triangular{DistributionKind::triangular, 0, 2, 1, 0, {}};
+    const stats::Distribution triangular{stats::DistributionKind::triangular, 0, 2, 1, 0, {}};
     EXPECT_NEAR(prior_misfit(triangular, 0.125), -2 * std::log(0.5), 1e-9);  // half way up
 }
 
 /// A front that passes a bend at 12 m/s or more, or stops in it.
-std::vector<double> bend_values(const Points& points) {
+std::vector<double> bend_values(const stats::Points& points) {
     std::vector<double> values;
-    for (const auto& p : points) values.push_back(p[0] + 0.2 * p[1] < 0.6 ? 12 + 3 * p[1] : never);
+    for (const auto& p : points) values.push_back(p[0] + 0.2 * p[1] < 0.6 ? 12 + 3 * p[1] : observe::never);
     return values;
 }
 
 TEST(PredictionEmulator, TellsNothingFromLittle) {
-    const Points points = sample_points(DesignKind::latin_hypercube, 40, 2, 1);
-    const PredictionEmulator emulator = PredictionEmulator::fit(points, bend_values(points), 0);
+    const stats::Points points = sample_points(stats::DesignKind::latin_hypercube, 40, 2, 1);
+    const stats::PredictionEmulator emulator = stats::PredictionEmulator::fit(points, bend_values(points), 0);
     EXPECT_GT(emulator.reached_at({0.2, 0.5}), 0.95);
     EXPECT_LT(emulator.reached_at({0.8, 0.5}), 0.05);
     EXPECT_NEAR(emulator.reached_at({0.5, 0.5}), 0.5, 0.45);
     EXPECT_NEAR(emulator.at({0.45, 0.5}).value.mean, 13.5, 0.3);  // beside the edge, not half way to nothing
     EXPECT_GT(emulator.reach_told(), 0.85);
-    const ObservedValue slow{"", "", "m/s", 6, 1.5, Kind::equal, 0};
+    const ensemble::ObservedValue slow{"", "", "m/s", 6, 1.5, Kind::equal, 0};
     const Fit fit{priors, {slow}, {emulator}};
     EXPECT_GT(fit.misfit_at({0.5, 0.5}), 10);  // no run is half as fast on the edge
     EXPECT_GT(fit.emulator_share({0.5, 0.5}), 1.5);
@@ -102,37 +104,39 @@ TEST(PredictionEmulator, TellsNothingFromLittle) {
 }
 
 TEST(PredictionEmulator, DoesWithoutValuesOrWithoutGaps) {
-    const Points points = sample_points(DesignKind::latin_hypercube, 10, 2, 1);
-    const PredictionEmulator none = PredictionEmulator::fit(points, std::vector<double>(10, never), -15);
+    const stats::Points points = sample_points(stats::DesignKind::latin_hypercube, 10, 2, 1);
+    const stats::PredictionEmulator none =
+        stats::PredictionEmulator::fit(points, std::vector<double>(10, observe::never), -15);
     EXPECT_EQ(none.reached_at({0.5, 0.5}), 0);
     EXPECT_EQ(none.mean_at({0.5, 0.5}), -15);
     EXPECT_FALSE(none.value());
-    const PredictionEmulator all = PredictionEmulator::fit(points, std::vector<double>(10, 4.0), 0);
+    const stats::PredictionEmulator all = stats::PredictionEmulator::fit(points, std::vector<double>(10, 4.0), 0);
     EXPECT_EQ(all.reached_at({0.5, 0.5}), 1);
     const Fit fit{priors, {{"", "", "", 5, 1, Kind::equal, 0}}, {none}};
     EXPECT_TRUE(std::isfinite(fit.log_likelihood({0.5, 0.5})));
 }
 
 TEST(Fit, ExpectsTheImprovementThatDrawsOfTheEmulatorsHave) {
-    const Points points = sample_points(DesignKind::latin_hypercube, 8, 2, 1);
+    const stats::Points points = sample_points(stats::DesignKind::latin_hypercube, 8, 2, 1);
     std::vector<double> first, second;
     for (const auto& p : points) {
         first.push_back(slide(p)[0]);
         second.push_back(slide(p)[1]);
     }
-    const Fit fit{priors,
-                  observed_as({12, 9}),
-                  {PredictionEmulator::fit(points, first, 0), PredictionEmulator::fit(points, second, 0)}};
+    const Fit fit{
+        priors,
+        observed_as({12, 9}),
+        {stats::PredictionEmulator::fit(points, first, 0), stats::PredictionEmulator::fit(points, second, 0)}};
     const std::vector<double> place = {0.4, 0.6};
-    const Emulator::Estimate a = fit.emulators[0].at(place).value, b = fit.emulators[1].at(place).value;
+    const stats::Emulator::Estimate a = fit.emulators[0].at(place).value, b = fit.emulators[1].at(place).value;
     const double reached = fit.emulators[1].reached_at(place);
     constexpr double least = 80;  // most draws improve on it, so that 128 of them tell the mean
     double expected = 0;
     constexpr std::size_t draws = 20000;
     for (std::size_t i = 0; i < draws; ++i) {
-        const double x = a.mean + std::sqrt(a.variance) * normal_draw(77, i, 0) - 12;
-        const double y = b.mean + std::sqrt(b.variance) * normal_draw(77, i, 1) - 9;
-        const double missed = draw(78, i, 0) < reached ? y : -9;
+        const double x = a.mean + std::sqrt(a.variance) * stats::normal_draw(77, i, 0) - 12;
+        const double y = b.mean + std::sqrt(b.variance) * stats::normal_draw(77, i, 1) - 9;
+        const double missed = stats::draw(78, i, 0) < reached ? y : -9;
         expected += std::max(0.0, least - x * x - missed * missed) / draws;
     }
     ASSERT_GT(expected, 1);
@@ -195,9 +199,10 @@ TEST(Search, ReturnsTheTruthWithinItsIntervalInNineOfTenSeeds) {
     std::size_t returned = 0;
     double width = 0;
     for (std::size_t seed = 1; seed <= seeds; ++seed) {
-        const std::vector<double> truth = {draw(seed, 0, 0), draw(seed, 0, 1)};
+        const std::vector<double> truth = {stats::draw(seed, 0, 0), stats::draw(seed, 0, 1)};
         std::vector<double> values = slide(truth, 0.1);
-        for (std::size_t j = 0; j < 2; ++j) values[j] = std::max(0.0, filled(values[j]) + normal_draw(seed, 1, j));
+        for (std::size_t j = 0; j < 2; ++j)
+            values[j] = std::max(0.0, filled(values[j]) + stats::normal_draw(seed, 1, j));
         const auto found = search(priors, observed_as(values), model_of(0.1), {.runs = 30, .seed = seed});
         ASSERT_TRUE(found);
         bool all = true;
@@ -213,8 +218,8 @@ TEST(Search, ReturnsTheTruthWithinItsIntervalInNineOfTenSeeds) {
 }
 
 TEST(Search, GoesOnAroundRunsThatFail) {
-    const ForwardModel fails = [](const Points& points, SearchPhase) -> Result<std::optional<Points>> {
-        Points predicted;
+    const ForwardModel fails = [](const stats::Points& points, SearchPhase) -> Result<std::optional<stats::Points>> {
+        stats::Points predicted;
         for (const auto& p : points) predicted.push_back(p[0] < 0.2 ? std::vector<double>{} : slide(p));
         return std::optional(predicted);
     };
@@ -222,16 +227,16 @@ TEST(Search, GoesOnAroundRunsThatFail) {
     ASSERT_TRUE(found);
     EXPECT_LT(found->runs[*found->best].misfit, 0.1);
     EXPECT_TRUE(std::isnan(found->runs[0].misfit) == found->runs[0].predicted.empty());
-    const ForwardModel broken = [](const Points& points, SearchPhase) -> Result<std::optional<Points>> {
-        return std::optional(Points(points.size()));
+    const ForwardModel broken = [](const stats::Points& points, SearchPhase) -> Result<std::optional<stats::Points>> {
+        return std::optional(stats::Points(points.size()));
     };
     EXPECT_FALSE(search(priors, observed_as({1, 1}), broken, {}));
 }
 
 TEST(Search, EndsWhereItIsInterrupted) {
     std::size_t calls = 0;
-    const ForwardModel model = [&](const Points& points, SearchPhase) -> Result<std::optional<Points>> {
-        if (++calls == 3) return std::optional<Points>();
+    const ForwardModel model = [&](const stats::Points& points, SearchPhase) -> Result<std::optional<stats::Points>> {
+        if (++calls == 3) return std::optional<stats::Points>();
         return model_of()(points, SearchPhase::design);
     };
     const auto found = search(priors, observed_as(slide({0.4, 0.3})), model, {});
@@ -250,4 +255,4 @@ TEST(Search, NeverTakesMoreRunsThanAllowed) {
 }
 
 }  // namespace
-}  // namespace talus
+}  // namespace talus::calibrate

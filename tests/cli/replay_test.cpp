@@ -18,9 +18,10 @@ using testing::HasSubstr;
 /// A session on the small scene: its journal.
 json play(const SmallScene& inputs) {
     const std::vector<std::string> overrides{"material.friction_coefficient=0.2"};
-    auto scene = load_scene(inputs.scene_file(), overrides);
+    auto scene = scene::load_scene(inputs.scene_file(), overrides);
     EXPECT_TRUE(scene) << scene.error().message;
-    auto scenario = twin::Scenario::open(std::make_shared<const Scene>(*std::move(scene)), {.overrides = overrides});
+    auto scenario =
+        twin::Scenario::open(std::make_shared<const scene::Scene>(*std::move(scene)), {.overrides = overrides});
     EXPECT_TRUE(scenario) << scenario.error().message;
     for (int k = 0; k < 10; ++k) (*scenario)->advance();
     const auto done = (*scenario)->apply({{"action", "put_barrier"},

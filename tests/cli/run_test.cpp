@@ -248,8 +248,8 @@ TEST(Help, TeachesCommandsExitCodesAndEveryTunable) {
     }
     const auto run = run_program({"run", "--help"});
     EXPECT_EQ(run.exit_code, 0);
-    for (const Section& section : scene_sections()) {
-        for (const Parameter& parameter : section.parameters) {
+    for (const params::Section& section : params::scene_sections()) {
+        for (const params::Parameter& parameter : section.parameters) {
             EXPECT_THAT(run.out, HasSubstr("\n  " + parameter.key + "\n")) << section.name;
         }
     }

@@ -74,8 +74,8 @@ TEST(SceneExportBuiltin, WritesASceneThatChecks) {
 }
 
 TEST(SceneReference, IsTheFieldTable) {
-    EXPECT_EQ(run_program({"scene", "reference", "--markdown"}).out, scene_reference_markdown());
-    EXPECT_EQ(run_program({"scene", "reference"}).out, scene_reference_text());
+    EXPECT_EQ(run_program({"scene", "reference", "--markdown"}).out, params::scene_reference_markdown());
+    EXPECT_EQ(run_program({"scene", "reference"}).out, params::scene_reference_text());
 }
 
 }  // namespace

@@ -12,12 +12,12 @@
 #include "scene/scene_folder.hpp"
 #include "support/fixtures.hpp"
 
-namespace talus {
+namespace talus::ensemble {
 namespace {
 
 using testing::HasSubstr;
 
-class EnsembleTest : public SceneFolder {
+class EnsembleTest : public scene::SceneFolder {
   protected:
     EnsembleTest() {
         write_valley(
@@ -28,7 +28,7 @@ class EnsembleTest : public SceneFolder {
         plan.factors.clear();
         EXPECT_TRUE(add_factor(plan, "material.friction_coefficient=0.1:0.4"));
         EXPECT_TRUE(add_factor(plan, "release.volume_m3=600:1200"));
-        scene.emplace(*load_scene(source.file));
+        scene.emplace(*scene::load_scene(source.file));
     }
 
     [[nodiscard]] PlannedRuns planned() const {
@@ -56,9 +56,9 @@ class EnsembleTest : public SceneFolder {
         return list;
     }
 
-    SceneSource source;
+    run::SceneSource source;
     EnsemblePlan plan;
-    std::optional<Scene> scene;
+    std::optional<scene::Scene> scene;
 };
 
 TEST_F(EnsembleTest, IsTheSameSideBySideOneAfterTheOtherAndInShards) {
@@ -131,7 +131,7 @@ TEST_F(EnsembleTest, AFolderBelongsToOneEnsembleAndOneProcess) {
 
 TEST_F(EnsembleTest, AllRunsHaveTheSpacingAndTheMapOfTheScene) {
     const PlannedRun planned_run = planned().at(0);
-    const auto loaded = load_scene(source.file, planned_run.overrides);
+    const auto loaded = scene::load_scene(source.file, planned_run.overrides);
     ASSERT_TRUE(loaded) << loaded.error().message;
     EXPECT_DOUBLE_EQ(*loaded->spec.solver.particle_spacing, 3);
     EXPECT_TRUE(loaded->spec.outputs.map_cell);
@@ -204,7 +204,7 @@ TEST_F(EnsembleTest, WeightsOfScenariosAreThoseOfTheRuns) {
     const auto restored = plan_of(ensemble_definition(planned(), source, *scene, "valley"));
     ASSERT_TRUE(restored);
     EXPECT_EQ(restored->factors[0].distribution.weights, (std::vector<double>{0.7, 0.3}));
-    plan.design = DesignKind::grid;
+    plan.design = stats::DesignKind::grid;
     EXPECT_FALSE(PlannedRuns::make(plan, source, *scene));
     write("plan.toml", "[[factor]]\nkey = \"release.volume_m3\"\nvalues = [400, 900]\nweights = [1]\n");
     read = read_plan(path("plan.toml"));
@@ -272,7 +272,7 @@ TEST_F(EnsembleTest, APlanFileSaysTheSame) {
           "values = [\"spiky\", \"cubic_spline\"]\n");
     const auto read = read_plan(folder / "plan.toml");
     ASSERT_TRUE(read) << read.error().message;
-    EXPECT_EQ(read->design, DesignKind::saltelli);
+    EXPECT_EQ(read->design, stats::DesignKind::saltelli);
     EXPECT_EQ(read->seed, 9u);
     EXPECT_EQ(read->thresholds.depth, (std::vector<double>{0.2, 2}));
     ASSERT_EQ(read->factors.size(), 3u);
@@ -295,4 +295,4 @@ TEST_F(EnsembleTest, APlanFileSaysTheSame) {
 }
 
 }  // namespace
-}  // namespace talus
+}  // namespace talus::ensemble

@@ -4,13 +4,13 @@
 
 #include <gtest/gtest.h>
 
-namespace talus {
+namespace talus::ensemble {
 namespace {
 
 constexpr int residual = 1, low = 2, medium = 3, high = 4;
 
 TEST(HazardMatrix, IsTheSwissOneForDebrisFlows) {
-    const HazardMatrix* matrix = hazard_matrix(GuidelineChoice::swiss_debris_flow);
+    const HazardMatrix* matrix = hazard_matrix(params::GuidelineChoice::swiss_debris_flow);
     ASSERT_NE(matrix, nullptr);
     for (const double years : {1.0, 30.0, 100.0, 300.0}) EXPECT_EQ(matrix->zone_of(1, years), high) << years;
     EXPECT_EQ(matrix->zone_of(1, 301), residual);
@@ -21,17 +21,17 @@ TEST(HazardMatrix, IsTheSwissOneForDebrisFlows) {
 }
 
 TEST(HazardMatrix, HasLowIntensityForFloodsAndNoneWhereNoMatrixIsKnown) {
-    const HazardMatrix* matrix = hazard_matrix(GuidelineChoice::swiss_flood);
+    const HazardMatrix* matrix = hazard_matrix(params::GuidelineChoice::swiss_flood);
     ASSERT_NE(matrix, nullptr);
     EXPECT_EQ(matrix->zone_of(0, 30), medium);
     EXPECT_EQ(matrix->zone_of(0, 300), low);
     EXPECT_EQ(matrix->zone_of(2, 300), high);
-    EXPECT_EQ(hazard_matrix(GuidelineChoice::garcia_2003), nullptr);
+    EXPECT_EQ(hazard_matrix(params::GuidelineChoice::garcia_2003), nullptr);
 }
 
 TEST(HazardZones, TakeTheMostDangerousOfAllIntensities) {
     const float none = std::nanf("");
-    const HazardMatrix& matrix = *hazard_matrix(GuidelineChoice::swiss_debris_flow);
+    const HazardMatrix& matrix = *hazard_matrix(params::GuidelineChoice::swiss_debris_flow);
     const GridGeometry cells{0, 0, 1, 4, 1};
     std::vector<Grid<float>> at_least(2, Grid<float>(cells, none));
     // Of an event every 50 years: always medium; medium in half, high in a fifth of the runs; medium in a tenth.
@@ -46,4 +46,4 @@ TEST(HazardZones, TakeTheMostDangerousOfAllIntensities) {
 }
 
 }  // namespace
-}  // namespace talus
+}  // namespace talus::ensemble

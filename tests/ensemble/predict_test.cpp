@@ -8,7 +8,7 @@
 
 #include "scene/scene_folder.hpp"
 
-namespace talus {
+namespace talus::ensemble {
 namespace {
 
 using testing::HasSubstr;
@@ -24,16 +24,16 @@ class PredictTest : public testing::Test {
                 ground.at(column, row) = static_cast<float>(0.5 * ground.geometry.centre(column, row).x);
             }
         }
-        terrain = Terrain(ground);
+        terrain = terrain::Terrain(ground);
         run.maps = {dry, dry, dry, dry, dry};
     }
 
-    Terrain terrain;
-    Observation run;
+    terrain::Terrain terrain;
+    observe::Observation run;
 };
 
 TEST_F(PredictTest, FrontAndArrivalAreThoseOfTheFront) {
-    run.front = {{10, 2, 5, never}, {12, 3, 7, never}};
+    run.front = {{10, 2, 5, observe::never}, {12, 3, 7, observe::never}};
     EXPECT_DOUBLE_EQ(predict_front_velocity(run, 11), 6);
     EXPECT_DOUBLE_EQ(predict_arrival_time(run, 11), 2.5);
     EXPECT_TRUE(std::isnan(predict_front_velocity(run, 30)));
@@ -58,7 +58,7 @@ TEST_F(PredictTest, DepositDepthIsThatOfTheCell) {
 }
 
 TEST_F(PredictTest, PressureIsThatOfTheNamedBuilding) {
-    run.buildings = {{"shed", true, 3, 1, 20e3, 1, 0}, {"house", false, never, 0, 0, 0, 0}};
+    run.buildings = {{"shed", true, 3, 1, 20e3, 1, 0}, {"house", false, observe::never, 0, 0, 0, 0}};
     EXPECT_DOUBLE_EQ(predict_building_pressure(run, "shed"), 20e3);
     EXPECT_DOUBLE_EQ(predict_building_pressure(run, "house"), 0);
     EXPECT_TRUE(std::isnan(predict_building_pressure(run, "barn")));
@@ -89,7 +89,7 @@ TEST_F(PredictTest, ElevationAgreementComparesDepositMinusErosionOutsideReleases
     observed.at(6, 6) = -4;                                       // where it failed
     const GridGeometry& g = observed.geometry;
     const PlanPoint scar = g.centre(6, 6);
-    Release release;
+    terrain::Release release;
     release.patches.push_back({{{{scar.x - 0.5, scar.y - 0.5},
                                  {scar.x + 0.5, scar.y - 0.5},
                                  {scar.x + 0.5, scar.y + 0.5},
@@ -109,7 +109,7 @@ TEST_F(PredictTest, ElevationAgreementComparesDepositMinusErosionOutsideReleases
 }
 
 TEST(Predict, SuperelevationGivesTheVelocityOfAForcedVortex) {
-    SuperelevationSpec marks;
+    params::SuperelevationSpec marks;
     marks.bend_radius = 20;
     marks.width = 10;
     marks.level_difference = 2;
@@ -129,7 +129,7 @@ TEST(Predict, DamageCountsOnlyOnTheWrongSide) {
     EXPECT_DOUBLE_EQ(deviation_of(damaged, 10e3), -1);
 }
 
-class ObservedScene : public SceneFolder {};
+class ObservedScene : public scene::SceneFolder {};
 
 TEST_F(ObservedScene, HasAValueAndAPredictionForEveryObservation) {
     write_features("outline.geojson", {rectangle(100, 80, 140, 120)});
@@ -146,7 +146,7 @@ TEST_F(ObservedScene, HasAValueAndAPredictionForEveryObservation) {
         "[[deposit_outline]]\nfile = \"outline.geojson\"\n"
         "[[affected_area]]\nfile = \"outline.geojson\"\n"
         "[[elevation_change]]\nfile = \"dem.tif\"\n");
-    const auto scene = load_scene(folder / "scene.toml");
+    const auto scene = scene::load_scene(folder / "scene.toml");
     ASSERT_TRUE(scene) << scene.error().message;
     const auto observed = observed_values(*scene);
     ASSERT_EQ(observed.size(), 10u);
@@ -157,7 +157,7 @@ TEST_F(ObservedScene, HasAValueAndAPredictionForEveryObservation) {
     EXPECT_EQ(observed[7].key, "deposit_outline[0].overlap");
     EXPECT_EQ(observed[8].key, "affected_area[0].overlap");
     EXPECT_EQ(observed[9].key, "elevation_change[0].agreement");
-    EXPECT_EQ(predicted_values(*scene, Observation()).size(), observed.size());
+    EXPECT_EQ(predicted_values(*scene, observe::Observation()).size(), observed.size());
 }
 
 TEST_F(ObservedScene, ObservationsThatCannotBeAreRefused) {
@@ -180,4 +180,4 @@ TEST_F(ObservedScene, ObservationsThatCannotBeAreRefused) {
 }
 
 }  // namespace
-}  // namespace talus
+}  // namespace talus::ensemble

@@ -8,14 +8,14 @@
 
 #include "scene/scene_folder.hpp"
 
-namespace talus {
+namespace talus::ensemble {
 namespace {
 
 using testing::HasSubstr;
 
 constexpr float nan_value = std::numeric_limits<float>::quiet_NaN();
 
-class ReductionTest : public SceneFolder {
+class ReductionTest : public scene::SceneFolder {
   protected:
     ReductionTest() { std::filesystem::create_directories(folder / "runs"); }
 
@@ -23,7 +23,7 @@ class ReductionTest : public SceneFolder {
     /// arrivals 10 times as much; deposits half.
     void write_run(std::size_t run, int first_column, const std::vector<float>& depths, double pressure = 0) const {
         const GridGeometry g{100 + 2.0 * first_column, 50, 2, static_cast<int>(depths.size()), 1};
-        HazardMaps maps;
+        observe::HazardMaps maps;
         for (const auto map : recorded_maps) maps.*map = Grid<float>(g, nan_value);
         for (std::size_t i = 0; i < depths.size(); ++i) {
             maps.peak_depth.values[i] = depths[i];
@@ -35,8 +35,8 @@ class ReductionTest : public SceneFolder {
         RunRecord record;
         record.run = run;
         record.values = {"0.3"};
-        record.results = {10.0 * static_cast<double>(run), never};
-        record.buildings = {{"shed", pressure > 0, pressure > 0 ? 4.0 : never, 1, pressure, 0.5, 0}};
+        record.results = {10.0 * static_cast<double>(run), observe::never};
+        record.buildings = {{"shed", pressure > 0, pressure > 0 ? 4.0 : observe::never, 1, pressure, 0.5, 0}};
         record.geometry = g;
         ASSERT_TRUE(write_run_record(file(run), record, maps));
     }
@@ -95,7 +95,7 @@ TEST_F(ReductionTest, CountsRunsOfAnIntensityOrAHigherOne) {
     EXPECT_EQ(r->intensity[1].values[0], 0);
     EXPECT_EQ(r->intensity[1].values[1], third) << "high in run 2 alone";
     EXPECT_EQ(r->intensity[1].values[2], third);
-    const auto flood = reduce({folder}, 4, {}, intensity_guideline(GuidelineChoice::swiss_flood));
+    const auto flood = reduce({folder}, 4, {}, report::intensity_guideline(params::GuidelineChoice::swiss_flood));
     ASSERT_TRUE(flood);
     ASSERT_EQ(flood->intensity.size(), 3u);
     EXPECT_EQ(flood->intensity[2].values[2], third) << "2 m at 4 m/s, and 0.3 m at 0.6 m/s";
@@ -132,7 +132,7 @@ TEST_F(ReductionTest, HangsNeitherOnTheMemoryNorOnTheFoldersOfTheRuns) {
     std::filesystem::create_directories(other / "runs");
     for (std::size_t run = 1; run < 20; run += 2)
         std::filesystem::rename(file(run), other / "runs" / file(run).filename());
-    const auto two = reduce({folder, other}, 20, {}, intensity_guideline({}), 1);  // a byte: one row at a time
+    const auto two = reduce({folder, other}, 20, {}, report::intensity_guideline({}), 1);  // a byte: one row at a time
     ASSERT_TRUE(one && two);
     ASSERT_EQ(one->maps.size(), two->maps.size());
     for (std::size_t m = 0; m < one->maps.size(); ++m) {
@@ -190,4 +190,4 @@ TEST_F(ReductionTest, PercentilesAreNearestRanks) {
 }
 
 }  // namespace
-}  // namespace talus
+}  // namespace talus::ensemble

@@ -7,7 +7,7 @@
 #include "geo/rasters.hpp"
 #include "support/fixtures.hpp"
 
-namespace talus {
+namespace talus::geo {
 namespace {
 
 using test::RasterOptions;
@@ -197,4 +197,4 @@ TEST_F(BadRaster, FileNamesWithBlanksAreQuotedInCommands) {
 }
 
 }  // namespace
-}  // namespace talus
+}  // namespace talus::geo

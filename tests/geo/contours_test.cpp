@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-namespace talus {
+namespace talus::geo {
 namespace {
 
 TEST(Contours, ContoursOfAPlaneAreStraightEvenlySpacedAndWhole) {
@@ -61,4 +61,4 @@ TEST(Contours, EndWhereThereIsNoElevation) {
 }
 
 }  // namespace
-}  // namespace talus
+}  // namespace talus::geo

@@ -10,7 +10,7 @@
 
 #include "geo/mesh.hpp"
 
-namespace talus {
+namespace talus::geo {
 namespace {
 
 using testing::AnyOf;
@@ -251,4 +251,4 @@ TEST_F(Gltf, HostileFilesAreRefusedAndNothingElse) {
 }
 
 }  // namespace
-}  // namespace talus
+}  // namespace talus::geo

@@ -9,7 +9,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-namespace talus {
+namespace talus::geo {
 namespace {
 
 using testing::AnyOf;
@@ -137,4 +137,4 @@ TEST_F(Mesh, HostileFilesAreRefusedAndNothingElse) {
 }
 
 }  // namespace
-}  // namespace talus
+}  // namespace talus::geo

@@ -37,13 +37,13 @@ void expect_quarters(const ReadPhoto& photo) {
 TEST(Orthophoto, lies_on_the_ground_north_up_and_is_thinned_to_what_is_asked) {
     const TemporaryFolder folder;
     const std::string file = write_photo(folder.file("photo.tif"), whole());
-    const auto fine = read_orthophoto(file, hong_kong(), ground, 4096);
+    const auto fine = read_orthophoto(file, geo::hong_kong(), ground, 4096);
     ASSERT_TRUE(fine) << fine.error().message;
     const ReadPhoto read(fine->bytes);
     EXPECT_EQ(read.columns(), 100) << "no more pixels than the file has";
     EXPECT_EQ(read.rows(), 80);
     expect_quarters(read);
-    const auto coarse = read_orthophoto(file, hong_kong(), ground, 50);
+    const auto coarse = read_orthophoto(file, geo::hong_kong(), ground, 50);
     ASSERT_TRUE(coarse);
     EXPECT_EQ(ReadPhoto(coarse->bytes).columns(), 50);
     expect_quarters(ReadPhoto(coarse->bytes));
@@ -53,7 +53,7 @@ TEST(Orthophoto, is_cut_to_the_terrain_and_transparent_beside_it) {
     const TemporaryFolder folder;
     PhotoOptions options = whole();
     options.x_min += 50;
-    const auto photo = read_orthophoto(write_photo(folder.file("photo.tif"), options), hong_kong(), ground, 4096);
+    const auto photo = read_orthophoto(write_photo(folder.file("photo.tif"), options), geo::hong_kong(), ground, 4096);
     ASSERT_TRUE(photo);
     const ReadPhoto read(photo->bytes);
     EXPECT_EQ(read.at(0.25, 0.25)[3], 0);
@@ -71,20 +71,20 @@ TEST(Orthophoto, comes_in_another_system_with_a_world_file_and_in_grey) {
     to.SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);
     const std::unique_ptr<OGRCoordinateTransformation> transform(OGRCreateCoordinateTransformation(&from, &to));
     ASSERT_TRUE(transform->Transform(1, &other.x_min, &other.y_max));
-    const auto moved = read_orthophoto(write_photo(folder.file("utm.tif"), other), hong_kong(), ground, 4096);
+    const auto moved = read_orthophoto(write_photo(folder.file("utm.tif"), other), geo::hong_kong(), ground, 4096);
     ASSERT_TRUE(moved) << moved.error().message;
     expect_quarters(ReadPhoto(moved->bytes));
 
     PhotoOptions plain = whole();
     plain.epsg = 0;
     plain.driver = "PNG";
-    const auto world = read_orthophoto(write_photo(folder.file("photo.png"), plain), hong_kong(), ground, 4096);
+    const auto world = read_orthophoto(write_photo(folder.file("photo.png"), plain), geo::hong_kong(), ground, 4096);
     ASSERT_TRUE(world) << world.error().message;
     expect_quarters(ReadPhoto(world->bytes));
 
     PhotoOptions grey = whole();
     grey.bands = 1;
-    const auto single = read_orthophoto(write_photo(folder.file("grey.tif"), grey), hong_kong(), ground, 4096);
+    const auto single = read_orthophoto(write_photo(folder.file("grey.tif"), grey), geo::hong_kong(), ground, 4096);
     ASSERT_TRUE(single) << single.error().message;
     expect_colour(ReadPhoto(single->bytes).at(0.25, 0.25), {200, 200, 200, 255});
 }
@@ -93,11 +93,11 @@ TEST(Orthophoto, that_cannot_be_laid_over_the_terrain_is_refused_with_the_file_s
     const TemporaryFolder folder;
     const auto problem = [&](const std::string& name, const PhotoOptions& options) {
         const std::string file = write_photo(folder.file(name), options);
-        const Status status = check_orthophoto(file, hong_kong(), ground);
+        const Status status = check_orthophoto(file, geo::hong_kong(), ground);
         EXPECT_FALSE(status);
         if (status) return std::string();
         EXPECT_THAT(status.error().message, HasSubstr(name));
-        EXPECT_EQ(read_orthophoto(file, hong_kong(), ground, 100).error().message, status.error().message);
+        EXPECT_EQ(read_orthophoto(file, geo::hong_kong(), ground, 100).error().message, status.error().message);
         return status.error().message;
     };
     PhotoOptions options = whole();
@@ -109,7 +109,7 @@ TEST(Orthophoto, that_cannot_be_laid_over_the_terrain_is_refused_with_the_file_s
     options = whole();
     options.x_min += 1000;
     EXPECT_THAT(problem("beside.tif", options), HasSubstr("beside the terrain"));
-    EXPECT_THAT(check_orthophoto(folder.file("missing.tif"), hong_kong(), ground).error().message,
+    EXPECT_THAT(check_orthophoto(folder.file("missing.tif"), geo::hong_kong(), ground).error().message,
                 HasSubstr("missing.tif"));
 }
 

@@ -5,7 +5,7 @@
 #include "geo/raster.hpp"
 #include "support/fixtures.hpp"
 
-namespace talus {
+namespace talus::geo {
 
 /// Values that tell a cell's column and row.
 inline double pattern(int column, int row) {
@@ -18,4 +18,4 @@ inline Crs hong_kong() {
     return read_terrain_raster(test::write_plane(folder.file("dem.tif")), 1, std::nullopt)->crs;
 }
 
-}  // namespace talus
+}  // namespace talus::geo

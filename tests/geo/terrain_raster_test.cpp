@@ -7,7 +7,7 @@
 #include "geo/rasters.hpp"
 #include "support/fixtures.hpp"
 
-namespace talus {
+namespace talus::geo {
 namespace {
 
 using test::RasterOptions;
@@ -221,4 +221,4 @@ TEST(ValueRaster, MustBeInTheCrsOfTheTerrainAndMayHoldAnything) {
 }
 
 }  // namespace
-}  // namespace talus
+}  // namespace talus::geo

@@ -9,7 +9,7 @@
 #include "geo/raster.hpp"
 #include "support/fixtures.hpp"
 
-namespace talus {
+namespace talus::geo {
 namespace {
 
 using test::TemporaryFolder;
@@ -235,4 +235,4 @@ TEST_F(Vectors, LineIsReprojected) {
 }
 
 }  // namespace
-}  // namespace talus
+}  // namespace talus::geo

@@ -14,7 +14,7 @@
 #include "geo/versions.hpp"
 #include "support/fixtures.hpp"
 
-namespace talus {
+namespace talus::geo {
 namespace {
 
 using test::TemporaryFolder;
@@ -180,4 +180,4 @@ TEST(Versions, AreKnown) {
 }
 
 }  // namespace
-}  // namespace talus
+}  // namespace talus::geo

@@ -1,4 +1,4 @@
-"""Rejects includes that point the wrong way through the layers of src/ and apps/.
+"""Rejects includes that point the wrong way through the layers of src/ and apps/, and namespaces that are not their folder.
 
     check_includes.py ROOT        checks the sources, prints every offence
     check_includes.py --self-test checks that the rules below reject what they should
@@ -34,6 +34,8 @@ BELOW = {
              "calibrate", "validate", "bench", "twin", "serve"],
 }
 INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]')
+NAMESPACE = re.compile(r"^namespace (talus\b[\w:]*) \{")
+OWN_NAMESPACE = {"sim/cpu", "sim/reference"}  # folders within a module
 GDAL = re.compile(r"^(gdal|ogr|cpl_|proj\b|proj\.h)")
 TESTING = re.compile(r"^(tests|support|gtest|gmock)/")
 BOOST = re.compile(r"^boost/")
@@ -66,6 +68,18 @@ def layer_of(path):
     return parts[1] if parts[0] == "src" and parts[1] in BELOW else None
 
 
+def misplaced(path, name):
+    """Whether a file, given relative to the root, may not open the namespace `name`."""
+    folder = "/".join(path.parent.parts[1:])
+    if path.parts[0] == "src":
+        folder = folder if folder in OWN_NAMESPACE else path.parts[1]
+    if folder == "core":
+        return name != "talus"
+    if name == "talus" and path.as_posix() == "src/simd/lanes.hpp":
+        return False  # adds to a formula of core
+    return not (name + "::").startswith("talus::" + folder.replace("/", "::") + "::")
+
+
 def check(root):
     offences = []
     files = [f for top in ("src", "apps") for f in (root / top).rglob("*") if f.suffix in (".hpp", ".cpp", ".cu")]
@@ -80,6 +94,9 @@ def check(root):
             reason = match and offence(layer, match[2])
             if reason:
                 offences.append(f"{path}:{number}: includes {match[2]}: {reason}")
+            match = NAMESPACE.match(line)
+            if match and misplaced(path, match[1]):
+                offences.append(f"{path}:{number}: {match[1]} is not the namespace of this folder")
     if not files:
         offences.append(f"{root}: no sources found")
     return offences
@@ -104,6 +121,13 @@ def self_test():
                 ("twin", "products/products.hpp"), ("twin", "zlib.h"), ("stats", "boost/random/sobol.hpp")]
     wrong = [f"{layer} <- {name} passes" for layer, name in rejected if offence(layer, name) is None]
     wrong += [f"{layer} <- {name} is rejected" for layer, name in accepted if offence(layer, name) is not None]
+    for file, name, is_wrong in [("src/geo/raster.hpp", "talus", True), ("src/geo/raster.hpp", "talus::geometry", True),
+                                 ("src/geo/raster.hpp", "talus::geo", False), ("src/core/grid.hpp", "talus", False),
+                                 ("src/core/grid.hpp", "talus::core", True), ("src/sim/cpu/work.hpp", "talus::sim", True),
+                                 ("src/sim/cpu/work.hpp", "talus::sim::cpu", False), ("apps/cli/run.cpp", "talus", True),
+                                 ("src/sim/physics/net.hpp", "talus::sim", False), ("apps/cli/run.cpp", "talus::cli", False)]:
+        if misplaced(pathlib.Path(file), name) != is_wrong:
+            wrong.append(f"{file}: {name} {'passes' if is_wrong else 'is rejected'}")
     return wrong
 
 

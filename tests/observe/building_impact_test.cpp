@@ -6,14 +6,14 @@
 
 #include "observe/particles.hpp"
 
-namespace talus {
+namespace talus::observe {
 namespace {
 
 using test::block;
 
 /// On level ground: a building that nothing touches and a house of 10 x 10 m whose western wall is at x = 4.
-Ground ground_with_buildings() {
-    Ground ground = test::make_ground();
+sim::Ground ground_with_buildings() {
+    sim::Ground ground = test::make_ground();
     ground.buildings.resize(2);
     ground.buildings[0].name = "untouched";
     ground.buildings[1].name = "house";
@@ -27,9 +27,9 @@ constexpr LocalPoint patch_middle{4, 0.5F, 0.5F};
 
 /// Debris moving at `speed` against building 1: `count` particles touch it in every step and give it `force` together.
 struct Collision {
-    Model model;
-    Ground ground = ground_with_buildings();
-    State state;
+    sim::Model model;
+    sim::Ground ground = ground_with_buildings();
+    sim::State state;
     ImpactRecorder recorder;
     LocalPoint place = patch_middle;
 
@@ -37,7 +37,7 @@ struct Collision {
         : model(test::make_model(spacing)),
           state(block(0.4, 0, -8, 10, 40, 3, {})),
           recorder(model, ground, state, [&] {
-              OutputSpec outputs;
+              params::OutputSpec outputs;
               outputs.impact_filter_window = window;
               outputs.impact_patch_edge = patch_edge;
               return outputs;
@@ -200,4 +200,4 @@ TEST(ImpactRecorder, buildings_come_behind_and_records_begin_anew) {
 }
 
 }  // namespace
-}  // namespace talus
+}  // namespace talus::observe

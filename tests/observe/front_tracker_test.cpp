@@ -10,7 +10,7 @@
 #include "observe/run_out.hpp"
 #include "observe/trail.hpp"
 
-namespace talus {
+namespace talus::observe {
 namespace {
 
 using test::advance;
@@ -18,9 +18,9 @@ using test::block;
 
 /// Eastward through the middle of the ground; local x = chainage - 90.
 TEST(FrontTracker, a_front_at_constant_speed_has_that_speed_everywhere) {
-    const Model model = test::make_model(0.4);
-    const Ground ground = test::make_ground();
-    State state = block(0.4, -90, -4, 25, 20, 3, {7, 0, 0});  // front at chainage 10
+    const sim::Model model = test::make_model(0.4);
+    const sim::Ground ground = test::make_ground();
+    sim::State state = block(0.4, -90, -4, 25, 20, 3, {7, 0, 0});  // front at chainage 10
     FrontTracker front(model, ground, state, test::straight_path(), 1, 10);
     EXPECT_NEAR(front.current(), 9.8, 1e-4);
     for (int step = 0; step < 700; ++step) {
@@ -38,9 +38,9 @@ TEST(FrontTracker, a_front_at_constant_speed_has_that_speed_everywhere) {
 }
 
 TEST(FrontTracker, velocity_follows_a_front_that_slows_down) {
-    const Model model = test::make_model(0.4);
-    const Ground ground = test::make_ground();
-    State state = block(0.4, -90, -4, 25, 20, 3);
+    const sim::Model model = test::make_model(0.4);
+    const sim::Ground ground = test::make_ground();
+    sim::State state = block(0.4, -90, -4, 25, 20, 3);
     FrontTracker front(model, ground, state, test::straight_path(), 0.5, 6);
     const double time_step = 0.01;
     for (int step = 0; step < 900; ++step) {
@@ -57,9 +57,9 @@ TEST(FrontTracker, velocity_follows_a_front_that_slows_down) {
 }
 
 TEST(FrontTracker, one_stray_makes_no_front) {
-    const Model model = test::make_model(0.4);
-    const Ground ground = test::make_ground();
-    State state = block(0.4, -90, -4, 25, 20, 3);
+    const sim::Model model = test::make_model(0.4);
+    const sim::Ground ground = test::make_ground();
+    sim::State state = block(0.4, -90, -4, 25, 20, 3);
     for (int i = 0; i < 4; ++i) test::add_particle(state, {50, 0, 0});
     FrontTracker front(model, ground, state, test::straight_path(), 1, 10);
     EXPECT_NEAR(front.current(), 9.8, 1e-4);
@@ -71,19 +71,19 @@ TEST(FrontTracker, one_stray_makes_no_front) {
 }
 
 TEST(FrontTracker, debris_outside_the_corridor_is_no_front) {
-    const Model model = test::make_model(0.4);
-    const Ground ground = test::make_ground();
-    const State state = block(0.4, -90, 30, 25, 20, 3);
+    const sim::Model model = test::make_model(0.4);
+    const sim::Ground ground = test::make_ground();
+    const sim::State state = block(0.4, -90, 30, 25, 20, 3);
     const FrontTracker front(model, ground, state, test::straight_path(), 1, 10);
     EXPECT_TRUE(std::isnan(front.current()));
     EXPECT_TRUE(std::isnan(front.farthest()));
 }
 
 TEST(FrontTracker, a_release_that_starts_ahead_of_the_front_is_no_arrival) {
-    const Model model = test::make_model(0.4);
-    const Ground ground = test::make_ground();
-    State state = block(0.4, -90, -4, 25, 20, 3, {5, 0, 0});
-    const State second = block(0.4, -40, -4, 10, 20, 3);  // to chainage 54
+    const sim::Model model = test::make_model(0.4);
+    const sim::Ground ground = test::make_ground();
+    sim::State state = block(0.4, -90, -4, 25, 20, 3, {5, 0, 0});
+    const sim::State second = block(0.4, -40, -4, 10, 20, 3);  // to chainage 54
     for (std::uint32_t i = 0; i < second.count; ++i) test::add_particle(state, second.position.at(i), {5, 0, 0}, true);
     FrontTracker front(model, ground, state, test::straight_path(), 1, 10);
     for (int step = 0; step < 200; ++step) {
@@ -99,9 +99,9 @@ TEST(FrontTracker, a_release_that_starts_ahead_of_the_front_is_no_arrival) {
 }
 
 TEST(FrontTracker, the_farthest_chainage_stays_when_the_front_draws_back_or_leaves) {
-    const Model model = test::make_model(0.4);
-    const Ground ground = test::make_ground();
-    State state = block(0.4, -90, -4, 25, 20, 3, {5, 0, 0});
+    const sim::Model model = test::make_model(0.4);
+    const sim::Ground ground = test::make_ground();
+    sim::State state = block(0.4, -90, -4, 25, 20, 3, {5, 0, 0});
     FrontTracker front(model, ground, state, test::straight_path(), 1, 10);
     for (int step = 0; step < 100; ++step) {
         advance(state, 0.02);
@@ -120,17 +120,17 @@ TEST(FrontTracker, the_farthest_chainage_stays_when_the_front_draws_back_or_leav
 }
 
 TEST(FrontTracker, nothing_without_a_path) {
-    const Model model = test::make_model(0.4);
-    const Ground ground = test::make_ground();
-    State state = block(0.4, -90, -4, 5, 5, 1);
-    FrontTracker front(model, ground, state, FlowPath{}, 1, 10);
+    const sim::Model model = test::make_model(0.4);
+    const sim::Ground ground = test::make_ground();
+    sim::State state = block(0.4, -90, -4, 5, 5, 1);
+    FrontTracker front(model, ground, state, terrain::FlowPath{}, 1, 10);
     front.after_step(ground, state);
     EXPECT_TRUE(std::isnan(front.farthest()));
     EXPECT_TRUE(front.samples().empty());
 }
 
 /// A channel that falls eastward and turns north by a right angle at (1000, 1950), as an elevation model has it.
-FlowPath path_through_a_sharp_corner() {
+terrain::FlowPath path_through_a_sharp_corner() {
     Grid<float> elevation(GridGeometry{900, 1900, 5, 40, 40});
     for (int r = 0; r < 40; ++r) {
         for (int c = 0; c < 40; ++c) {
@@ -141,14 +141,14 @@ FlowPath path_through_a_sharp_corner() {
             elevation.at(c, r) = static_cast<float>(100 + z);
         }
     }
-    return {trace_flow_path(elevation, {910, 1950}, 1000).value(), 50};
+    return {terrain::trace_flow_path(elevation, {910, 1950}, 1000).value(), 50};
 }
 
 /// What the front of a block does that goes straight on, east, at 7.5 m/s, 4 to 20 m north of the first reach.
-std::vector<FrontSample> straight_past_a_corner(const FlowPath& path, double interval) {
-    const Model model = test::make_model(0.8);
-    const Ground ground = test::make_ground();
-    State state = block(0.8, -80, -46, 20, 20, 2, {7.5F, 0, 0});
+std::vector<FrontSample> straight_past_a_corner(const terrain::FlowPath& path, double interval) {
+    const sim::Model model = test::make_model(0.8);
+    const sim::Ground ground = test::make_ground();
+    sim::State state = block(0.8, -80, -46, 20, 20, 2, {7.5F, 0, 0});
     FrontTracker front(model, ground, state, path, interval, 10);
     for (int step = 0; step < 1400; ++step) {
         advance(state, 0.01);
@@ -158,7 +158,7 @@ std::vector<FrontSample> straight_past_a_corner(const FlowPath& path, double int
 }
 
 TEST(FrontTracker, no_velocity_where_the_front_jumps_along_a_corner_of_a_traced_path) {
-    const FlowPath path = path_through_a_sharp_corner();
+    const terrain::FlowPath path = path_through_a_sharp_corner();
     ASSERT_NEAR(path.point_at(45).y, 1950, 4);
     ASSERT_NEAR(path.point_at(140).x, 1000, 4);
     for (const double interval : {0.25, 1.0, 5.0}) {
@@ -217,8 +217,8 @@ TEST(TrailWays, join_what_debris_reached_through_the_air) {
 }
 
 TEST(RunOut, along_the_flow_and_straight_of_a_block_that_moved_round_a_bend) {
-    const Ground ground = test::make_ground(0.5);
-    State state = block(0.4, -70, -54, 20, 20, 5);  // (930, 1946) to (938, 1954), crown at z = 1.8
+    const sim::Ground ground = test::make_ground(0.5);
+    sim::State state = block(0.4, -70, -54, 20, 20, 5);  // (930, 1946) to (938, 1954), crown at z = 1.8
     for (float& z : state.position.z) z += 30;
     const ReleasedMass released = measure_release(ground, state);
     EXPECT_NEAR(released.crown.z - ground.terrain.frame().origin.z, 31.8, 1e-4);
@@ -240,8 +240,8 @@ TEST(RunOut, along_the_flow_and_straight_of_a_block_that_moved_round_a_bend) {
 }
 
 TEST(RunOut, is_there_without_a_path_and_nothing_while_all_is_held) {
-    const Ground ground = test::make_ground();
-    State state = block(0.4, -50, 0, 10, 10, 3);
+    const sim::Ground ground = test::make_ground();
+    sim::State state = block(0.4, -50, 0, 10, 10, 3);
     const ReleasedMass released = measure_release(ground, state);
     for (float& x : state.position.x) x += 30;
     for (float& y : state.position.y) y += 40;
@@ -256,8 +256,8 @@ TEST(RunOut, is_there_without_a_path_and_nothing_while_all_is_held) {
 }
 
 TEST(RunOut, goes_to_the_edge_at_least_where_debris_left_the_terrain) {
-    const Ground ground = test::make_ground(0.5);
-    State state = block(0.4, -50, 0, 10, 10, 3);
+    const sim::Ground ground = test::make_ground(0.5);
+    sim::State state = block(0.4, -50, 0, 10, 10, 3);
     const ReleasedMass released = measure_release(ground, state);
     const Grid<float> eastward = trail([](const PlanPoint& p) { return p.y > 1990 && p.y < 2010 && p.x > 945; });
     for (const std::uint32_t stays : {200U, 0U}) {
@@ -273,4 +273,4 @@ TEST(RunOut, goes_to_the_edge_at_least_where_debris_left_the_terrain) {
 }
 
 }  // namespace
-}  // namespace talus
+}  // namespace talus::observe

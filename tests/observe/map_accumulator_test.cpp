@@ -12,7 +12,7 @@
 
 #include "observe/particles.hpp"
 
-namespace talus {
+namespace talus::observe {
 namespace {
 
 using test::advance;
@@ -32,10 +32,10 @@ double speed_now(const MapAccumulator& maps, double x, double y) {
 }
 
 TEST(MapAccumulator, depth_of_a_slab_is_its_layers_thick_wherever_it_lies_on_the_map) {
-    const Model model = test::make_model(0.4);
-    const Ground ground = test::make_ground();
+    const sim::Model model = test::make_model(0.4);
+    const sim::Ground ground = test::make_ground();
     for (const double shift : {0.0, 0.13, 0.27, 0.5, 0.71}) {
-        const State state = block(0.4, -12 + shift, -12 + shift, 60, 60, 5);
+        const sim::State state = block(0.4, -12 + shift, -12 + shift, 60, 60, 5);
         MapAccumulator maps(model, ground, state, 1, 0.1);
         maps.add(state);
         const HazardMaps result = maps.maps();
@@ -47,9 +47,9 @@ TEST(MapAccumulator, depth_of_a_slab_is_its_layers_thick_wherever_it_lies_on_the
 }
 
 TEST(MapAccumulator, the_map_holds_exactly_the_volume_of_the_particles) {
-    const Model model = test::make_model(0.4);
-    const Ground ground = test::make_ground();
-    State state = block(0.4, -3.17, -3.03, 17, 13, 3, {1.3F, 0.2F, 0});
+    const sim::Model model = test::make_model(0.4);
+    const sim::Ground ground = test::make_ground();
+    sim::State state = block(0.4, -3.17, -3.03, 17, 13, 3, {1.3F, 0.2F, 0});
     test::add_particle(state, {99.9F, -99.9F, 0});  // in the map's corner
     MapAccumulator maps(model, ground, state, 1, 0.1);
     for (int step = 0; step < 30; ++step) {
@@ -60,9 +60,9 @@ TEST(MapAccumulator, the_map_holds_exactly_the_volume_of_the_particles) {
 }
 
 TEST(MapAccumulator, debris_in_any_order_makes_the_same_maps) {
-    const Model model = test::make_model(0.4);
-    const Ground ground = test::make_ground();
-    State state;
+    const sim::Model model = test::make_model(0.4);
+    const sim::Ground ground = test::make_ground();
+    sim::State state;
     std::mt19937 random(5);
     std::uniform_real_distribution<float> place(-100, 100), speed(0, 30);
     for (int i = 0; i < 60000; ++i) {  // over all of the ground and its rim: 4 x 4 times as many tiles as a task holds
@@ -81,7 +81,7 @@ TEST(MapAccumulator, debris_in_any_order_makes_the_same_maps) {
         return std::pair(std::floor(state.position.y[a] / 3), state.position.x[a]) <
                std::pair(std::floor(state.position.y[b] / 3), state.position.x[b]);
     });
-    const State before = state;
+    const sim::State before = state;
     for (std::uint32_t i = 0; i < state.count; ++i) {
         state.position.set(i, before.position.at(order[i]));
         state.velocity.set(i, before.velocity.at(order[i]));
@@ -104,9 +104,9 @@ TEST(MapAccumulator, debris_in_any_order_makes_the_same_maps) {
 }
 
 TEST(MapAccumulator, deposit_is_where_debris_lies_at_the_end_and_keeps_its_volume) {
-    const Model model = test::make_model(0.4);
-    const Ground ground = test::make_ground();
-    State state = block(0.4, -20, -4, 20, 20, 4, {10, 0, 0});
+    const sim::Model model = test::make_model(0.4);
+    const sim::Ground ground = test::make_ground();
+    sim::State state = block(0.4, -20, -4, 20, 20, 4, {10, 0, 0});
     MapAccumulator maps(model, ground, state, 1, 0.1);
     for (int step = 0; step <= 20; ++step) {
         if (step > 0) advance(state, 0.1);
@@ -122,9 +122,9 @@ TEST(MapAccumulator, deposit_is_where_debris_lies_at_the_end_and_keeps_its_volum
 }
 
 TEST(MapAccumulator, speed_is_averaged_over_depth_and_pressure_follows_from_it) {
-    const Model model = test::make_model(0.4);
-    const Ground ground = test::make_ground();
-    State state = block(0.4, -8, -8, 40, 40, 4);
+    const sim::Model model = test::make_model(0.4);
+    const sim::Ground ground = test::make_ground();
+    sim::State state = block(0.4, -8, -8, 40, 40, 4);
     for (std::uint32_t i = 0; i < state.count; ++i) {  // 2 m/s in the lowest layer, 8 in the highest
         state.velocity.x[i] = 2 + 2 * std::floor(state.position.z[i] / 0.4F);
     }
@@ -138,9 +138,9 @@ TEST(MapAccumulator, speed_is_averaged_over_depth_and_pressure_follows_from_it) 
 }
 
 TEST(MapAccumulator, peaks_are_over_all_steps_and_speed_and_volume_of_the_last_step_alone) {
-    const Model model = test::make_model(0.4);
-    const Ground ground = test::make_ground();
-    State state = block(0.4, -8, -8, 40, 40, 2, {3, 0, 0});
+    const sim::Model model = test::make_model(0.4);
+    const sim::Ground ground = test::make_ground();
+    sim::State state = block(0.4, -8, -8, 40, 40, 2, {3, 0, 0});
     MapAccumulator maps(model, ground, state, 1, 0.1);
     maps.add(state);
     for (float& v : state.velocity.x) v = 1;
@@ -154,9 +154,9 @@ TEST(MapAccumulator, peaks_are_over_all_steps_and_speed_and_volume_of_the_last_s
 }
 
 TEST(MapAccumulator, debris_arrives_when_it_is_deeper_than_the_arrival_depth) {
-    const Model model = test::make_model(0.4);
-    const Ground ground = test::make_ground();
-    State state = block(0.4, -30, -8, 50, 40, 4, {5, 0, 0});  // front edge at x = -10, 1.6 m deep
+    const sim::Model model = test::make_model(0.4);
+    const sim::Ground ground = test::make_ground();
+    sim::State state = block(0.4, -30, -8, 50, 40, 4, {5, 0, 0});  // front edge at x = -10, 1.6 m deep
     MapAccumulator maps(model, ground, state, 1, 0.8);
     maps.add(state);
     for (int step = 0; step < 400; ++step) {
@@ -170,9 +170,9 @@ TEST(MapAccumulator, debris_arrives_when_it_is_deeper_than_the_arrival_depth) {
 }
 
 TEST(MapAccumulator, a_lone_particle_makes_no_peak) {
-    const Model model = test::make_model(0.4);
-    const Ground ground = test::make_ground();
-    State state = block(0.4, -8, -8, 40, 40, 2);
+    const sim::Model model = test::make_model(0.4);
+    const sim::Ground ground = test::make_ground();
+    sim::State state = block(0.4, -8, -8, 40, 40, 2);
     test::add_particle(state, {40.1F, 0.1F, 0}, {50, 0, 0});
     MapAccumulator maps(model, ground, state, 1, 0.1);
     for (int step = 0; step < 50; ++step) {
@@ -183,9 +183,9 @@ TEST(MapAccumulator, a_lone_particle_makes_no_peak) {
 }
 
 TEST(MapAccumulator, held_and_broken_particles_do_not_count) {
-    const Model model = test::make_model(0.4);
-    const Ground ground = test::make_ground();
-    State state = block(0.4, -8, -8, 10, 10, 2);
+    const sim::Model model = test::make_model(0.4);
+    const sim::Ground ground = test::make_ground();
+    sim::State state = block(0.4, -8, -8, 10, 10, 2);
     state.held.assign(state.count, 1);
     state.held[0] = 0;
     state.held[1] = 0;
@@ -197,9 +197,9 @@ TEST(MapAccumulator, held_and_broken_particles_do_not_count) {
 }
 
 TEST(MapAccumulator, maps_share_a_frame_on_the_terrains_raster_around_the_debris) {
-    const Model model = test::make_model(0.4);
-    const Ground ground = test::make_ground();
-    const State state = block(0.4, 0, 0, 25, 25, 2);  // 10 m square
+    const sim::Model model = test::make_model(0.4);
+    const sim::Ground ground = test::make_ground();
+    const sim::State state = block(0.4, 0, 0, 25, 25, 2);  // 10 m square
     MapAccumulator maps(model, ground, state, 0.5, 0.1);
     maps.add(state);
     const HazardMaps result = maps.maps();
@@ -217,9 +217,9 @@ TEST(MapAccumulator, maps_share_a_frame_on_the_terrains_raster_around_the_debris
 }
 
 TEST(MapAccumulator, maps_end_at_the_terrain_and_exist_even_without_debris) {
-    const Model model = test::make_model(0.4);
-    const Ground ground = test::make_ground();
-    State state = block(0.4, -99, -99, 10, 10, 2);
+    const sim::Model model = test::make_model(0.4);
+    const sim::Ground ground = test::make_ground();
+    sim::State state = block(0.4, -99, -99, 10, 10, 2);
     MapAccumulator near_corner(model, ground, state, 1, 0.1);
     near_corner.add(state);
     EXPECT_EQ(near_corner.maps().peak_depth.geometry.x_min, 900);
@@ -233,9 +233,9 @@ TEST(MapAccumulator, maps_end_at_the_terrain_and_exist_even_without_debris) {
 }
 
 TEST(MapAccumulator, shows_debris_as_it_lies_now) {
-    const Model model = test::make_model(0.4);
-    const Ground ground = test::make_ground();
-    State state = block(0.4, 0, 0, 40, 40, 5, {3, 0, 0});
+    const sim::Model model = test::make_model(0.4);
+    const sim::Ground ground = test::make_ground();
+    sim::State state = block(0.4, 0, 0, 40, 40, 5, {3, 0, 0});
     MapAccumulator maps(model, ground, state, 1, 0.1);
     maps.add(state);
     test::advance(state, 10);
@@ -256,9 +256,9 @@ TEST(MapAccumulator, shows_debris_as_it_lies_now) {
 }
 
 TEST(MapAccumulator, peak_pressures_are_of_the_density_at_their_time) {
-    Model model = test::make_model(0.4);
-    const Ground ground = test::make_ground();
-    State state = block(0.4, 0, 0, 40, 40, 5, {4, 0, 0});
+    sim::Model model = test::make_model(0.4);
+    const sim::Ground ground = test::make_ground();
+    sim::State state = block(0.4, 0, 0, 40, 40, 5, {4, 0, 0});
     MapAccumulator maps(model, ground, state, 1, 0.1);
     maps.add(state);
     model.rest_density = 3000;
@@ -279,4 +279,4 @@ TEST(MapAccumulator, peak_pressures_are_of_the_density_at_their_time) {
 }
 
 }  // namespace
-}  // namespace talus
+}  // namespace talus::observe

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace talus {
+namespace talus::observe {
 namespace {
 
 TEST(MovingSums, what_is_older_than_the_window_goes) {
@@ -62,4 +62,4 @@ TEST(MovingSums, a_cleared_slot_starts_anew_and_the_others_stay) {
 }
 
 }  // namespace
-}  // namespace talus
+}  // namespace talus::observe

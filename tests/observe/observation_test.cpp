@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-namespace talus {
+namespace talus::observe {
 namespace {
 
 TEST(FrontAt, lies_between_the_samples_and_is_not_known_beyond_them) {
@@ -36,7 +36,7 @@ TEST(FlowThickness, is_normal_to_the_slope_and_where_debris_came) {
     for (int row = 0; row < 3; ++row) {
         for (int column = 0; column < 12; ++column) rising.at(column, row) = 1.5f * static_cast<float>(column);
     }
-    const Terrain terrain(std::move(rising));
+    const terrain::Terrain terrain(std::move(rising));
     Grid<float> depth({2, 2, 2, 10, 1}, std::numeric_limits<float>::quiet_NaN());
     for (int column = 0; column < 9; ++column) depth.at(column, 0) = static_cast<float>(column + 1);
     const FlowThickness all = measure_thickness(depth, terrain, 0.1);
@@ -58,4 +58,4 @@ TEST(Deposit, is_area_and_depth_where_it_is_thick_enough) {
 }
 
 }  // namespace
-}  // namespace talus
+}  // namespace talus::observe

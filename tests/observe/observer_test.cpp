@@ -11,7 +11,7 @@
 #include "observe/particles.hpp"
 #include "support/allocations.hpp"
 
-namespace talus {
+namespace talus::observe {
 namespace {
 
 using test::advance;
@@ -19,9 +19,9 @@ using test::block;
 
 /// A cloud that disperses eastward, some of it against a house.
 struct Cloud {
-    Model model = test::make_model(0.4);
-    Ground ground = test::make_ground();
-    State state;
+    sim::Model model = test::make_model(0.4);
+    sim::Ground ground = test::make_ground();
+    sim::State state;
     std::mt19937 random{11};
 
     Cloud() {
@@ -47,7 +47,7 @@ void add(StateHash& hash, const Grid<float>& map) {
 std::uint64_t hash_of_run(int threads) {
     const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads));
     Cloud cloud;
-    Observer observer(cloud.model, cloud.ground, cloud.state, test::straight_path(), OutputSpec{}, 1);
+    Observer observer(cloud.model, cloud.ground, cloud.state, test::straight_path(), params::OutputSpec{}, 1);
     for (int step = 0; step < 60; ++step) {
         cloud.step();
         observer.after_step(cloud.model, cloud.ground, cloud.state, 0);
@@ -77,7 +77,7 @@ TEST(Observer, same_result_on_1_2_and_4_threads) {
 TEST(Observer, watching_a_step_allocates_nothing_once_debris_moves_where_it_was) {
     const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, 2);
     Cloud cloud;
-    OutputSpec outputs;
+    params::OutputSpec outputs;
     outputs.sample_interval = 1000;
     Observer observer(cloud.model, cloud.ground, cloud.state, test::straight_path(), outputs, 1);
     for (int step = 0; step < 40; ++step) {
@@ -99,7 +99,7 @@ TEST(Observer, watching_a_step_allocates_nothing_once_debris_moves_where_it_was)
 
 TEST(Observer, rows_come_at_the_interval_with_the_first_and_the_last) {
     Cloud cloud;
-    OutputSpec outputs;
+    params::OutputSpec outputs;
     outputs.sample_interval = 0.1;
     Observer observer(cloud.model, cloud.ground, cloud.state, test::straight_path(), outputs, 1);
     EXPECT_EQ(observer.latest().time, 0);
@@ -119,7 +119,7 @@ TEST(Observer, rows_come_at_the_interval_with_the_first_and_the_last) {
 
 TEST(Observer, steps_longer_than_the_interval_make_a_row_each) {
     Cloud cloud;
-    OutputSpec outputs;
+    params::OutputSpec outputs;
     outputs.sample_interval = 0.004;
     Observer observer(cloud.model, cloud.ground, cloud.state, {}, outputs, 1);
     for (int step = 0; step < 10; ++step) {
@@ -130,9 +130,9 @@ TEST(Observer, steps_longer_than_the_interval_make_a_row_each) {
 }
 
 TEST(Observer, volumes_and_energies_are_those_of_the_particles) {
-    const Model model = test::make_model(0.5);
-    const Ground ground = test::make_ground();
-    State state;
+    const sim::Model model = test::make_model(0.5);
+    const sim::Ground ground = test::make_ground();
+    sim::State state;
     const double volume = 0.125, mass = 250;
     test::add_particle(state, {0, 0, 3}, {3, 4, 0});
     test::add_particle(state, {1, 0, 2}, {0, 0.05F, 0});
@@ -141,7 +141,7 @@ TEST(Observer, volumes_and_energies_are_those_of_the_particles) {
     state.seeded = 9;
     state.outflow = 5;
     state.mean_compression = 0.01;
-    Observer observer(model, ground, state, {}, OutputSpec{}, 1);
+    Observer observer(model, ground, state, {}, params::OutputSpec{}, 1);
     const TimeSample& row = observer.latest();
     EXPECT_EQ(row.volume_moving, 1 * volume);
     EXPECT_EQ(row.volume_deposited, 2 * volume);
@@ -154,12 +154,12 @@ TEST(Observer, volumes_and_energies_are_those_of_the_particles) {
 }
 
 TEST(Observer, says_how_far_debris_was_compressed_and_when) {
-    const Model model = test::make_model(0.5);
-    const Ground ground = test::make_ground();
-    State state;
+    const sim::Model model = test::make_model(0.5);
+    const sim::Ground ground = test::make_ground();
+    sim::State state;
     test::add_particle(state, {0, 0, 3}, {3, 4, 0});
     state.seeded = 1;
-    Observer observer(model, ground, state, {}, OutputSpec{}, 1);
+    Observer observer(model, ground, state, {}, params::OutputSpec{}, 1);
     const auto step = [&](double time_step, double mean, double squeezed, double max, int iterations) {
         state.time += time_step;
         state.time_step = time_step;
@@ -189,7 +189,7 @@ TEST(Observer, says_how_far_debris_was_compressed_and_when) {
 
 TEST(Observer, reports_the_front_as_it_goes) {
     Cloud cloud;
-    Observer observer(cloud.model, cloud.ground, cloud.state, test::straight_path(), OutputSpec{}, 1);
+    Observer observer(cloud.model, cloud.ground, cloud.state, test::straight_path(), params::OutputSpec{}, 1);
     const double start = observer.front_chainage();
     EXPECT_NEAR(start, 26, 0.5);
     for (int step = 0; step < 100; ++step) {
@@ -203,4 +203,4 @@ TEST(Observer, reports_the_front_as_it_goes) {
 }
 
 }  // namespace
-}  // namespace talus
+}  // namespace talus::observe

@@ -7,25 +7,25 @@
 #include "observe/particles.hpp"
 #include "sim/physics/net.hpp"
 
-namespace talus {
+namespace talus::observe {
 namespace {
 
 using test::add_particle;
 using test::advance;
 
 /// From south to north through the middle of the test ground: what runs east crosses it from left to right.
-BarrierSpec dam(std::vector<BarrierOpeningSpec> openings = {}) {
+params::BarrierSpec dam(std::vector<params::BarrierOpeningSpec> openings = {}) {
     return {{{1000, 1990}, {1000, 2010}}, 2, {}, 1, std::move(openings)};
 }
 
 /// A particle of 0.4 m runs east at `y` and `z`.
-State runner(float y, float z, float speed = 5) {
-    State state;
+sim::State runner(float y, float z, float speed = 5) {
+    sim::State state;
     add_particle(state, {-3, y, z}, {speed, 0, 0});
     return state;
 }
 
-void run(Overtopping& watch, State& state, int steps) {
+void run(Overtopping& watch, sim::State& state, int steps) {
     for (int k = 0; k < steps; ++k) {
         advance(state, 0.05);
         watch.after_step(state);
@@ -33,7 +33,7 @@ void run(Overtopping& watch, State& state, int steps) {
 }
 
 TEST(Overtopping, tells_what_goes_over_the_crest_from_what_goes_through_a_slot) {
-    const Model model = test::make_model(0.4);
+    const sim::Model model = test::make_model(0.4);
     const double volume = model.particle_volume();
     struct Case {
         float y, z;
@@ -42,7 +42,7 @@ TEST(Overtopping, tells_what_goes_over_the_crest_from_what_goes_through_a_slot) 
     // The slot is 2 m wide around the middle of the line, y = 0; the crest is 2 m above the ground.
     for (const Case& c : {Case{5, 3, 1, 0}, Case{0, 0.2F, 0, 1}, Case{0, 2.5F, 1, 0}, Case{0.9F, 1, 0, 1}}) {
         Overtopping watch(model, test::make_ground().terrain, dam({{10, 2, 0}}));
-        State state = runner(c.y, c.z);
+        sim::State state = runner(c.y, c.z);
         run(watch, state, 30);
         EXPECT_NEAR(watch.volume(), c.over * volume, 1e-12) << c.y << " " << c.z;
         EXPECT_NEAR(watch.passed_volume(), c.through * volume, 1e-12) << c.y << " " << c.z;
@@ -51,18 +51,18 @@ TEST(Overtopping, tells_what_goes_over_the_crest_from_what_goes_through_a_slot) 
 }
 
 TEST(Overtopping, what_a_net_lets_through_below_its_crest_has_passed) {
-    const Model model = test::make_model(0.4);
-    BarrierSpec net = dam();
+    const sim::Model model = test::make_model(0.4);
+    params::BarrierSpec net = dam();
     net.passing_share = 0.5;
     for (std::uint32_t id = 0; id < 20; ++id) {
         for (const float z : {0.2F, 1.9F, 2.1F}) {
             Overtopping watch(model, test::make_ground().terrain, net);
-            State state = runner(5, z);
+            sim::State state = runner(5, z);
             state.id[0] = id;
             state.seeded = 20;
             run(watch, state, 30);
             // What is too coarse for the meshes can only have gone over it, where the ground is not level.
-            const bool through = z < 2 && grain_rank(id) < 0.5F;
+            const bool through = z < 2 && sim::grain_rank(id) < 0.5F;
             EXPECT_EQ(watch.passed_volume() > 0, through) << id << " " << z;
             EXPECT_EQ(watch.volume() > 0, !through) << id << " " << z;
         }
@@ -70,9 +70,9 @@ TEST(Overtopping, what_a_net_lets_through_below_its_crest_has_passed) {
 }
 
 TEST(Overtopping, what_comes_back_does_not_count) {
-    const Model model = test::make_model(0.4);
+    const sim::Model model = test::make_model(0.4);
     Overtopping watch(model, test::make_ground().terrain, dam({{10, 2, 0}}));
-    State state = runner(0, 0.2F);
+    sim::State state = runner(0, 0.2F);
     run(watch, state, 30);
     EXPECT_GT(watch.passed_volume(), 0);
     state.velocity.x[0] = -5;
@@ -82,10 +82,10 @@ TEST(Overtopping, what_comes_back_does_not_count) {
 }
 
 TEST(Overtopping, filling_is_the_depth_at_the_upstream_face) {
-    const Model model = test::make_model(0.4);
+    const sim::Model model = test::make_model(0.4);
     Overtopping watch(model, test::make_ground().terrain, dam());
     // 4 m long, 8 m wide and 1.2 m deep behind the face, which is half a metre west of the line.
-    State state = test::block(0.4, -4.5, -4, 10, 20, 3);
+    sim::State state = test::block(0.4, -4.5, -4, 10, 20, 3);
     watch.follow(state);
     watch.after_step(state);
     const Overtopping::Filling filling = watch.filling(state);
@@ -94,4 +94,4 @@ TEST(Overtopping, filling_is_the_depth_at_the_upstream_face) {
 }
 
 }  // namespace
-}  // namespace talus
+}  // namespace talus::observe

@@ -4,12 +4,12 @@
 
 #include "observe/particles.hpp"
 
-namespace talus {
+namespace talus::observe {
 namespace {
 
 /// Around the local origin, on level ground at local z = 0.
-Building house(double width, double depth, double height) {
-    Building building;
+terrain::Building house(double width, double depth, double height) {
+    terrain::Building building;
     building.footprint = {
         {{{1000, 2000}, {1000 + width, 2000}, {1000 + width, 2000 + depth}, {1000, 2000 + depth}}, {}}};
     building.roof_elevation = 50 + height;
@@ -66,8 +66,8 @@ TEST(WallPatches, a_touch_belongs_to_the_wall_it_is_on) {
 }
 
 TEST(WallPatches, every_column_starts_at_the_ground) {
-    const Terrain slope = test::make_ground(0.5).terrain;
-    Building building = house(10, 4, 0);
+    const terrain::Terrain slope = test::make_ground(0.5).terrain;
+    terrain::Building building = house(10, 4, 0);
     building.roof_elevation = 110;
     const WallPatches patches(slope, {building}, 1, 2);
     for (const WallPatches::Column& c : patches.columns()) {
@@ -78,4 +78,4 @@ TEST(WallPatches, every_column_starts_at_the_ground) {
 }
 
 }  // namespace
-}  // namespace talus
+}  // namespace talus::observe

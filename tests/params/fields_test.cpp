@@ -7,7 +7,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-namespace talus {
+namespace talus::params {
 namespace {
 
 const Parameter& parameter(const std::string& section, const std::string& key) {
@@ -259,4 +259,4 @@ TEST(NearestWord, TakesTheSmallestEditDistance) {
 }
 
 }  // namespace
-}  // namespace talus
+}  // namespace talus::params

@@ -6,7 +6,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-namespace talus {
+namespace talus::params {
 namespace {
 
 using testing::HasSubstr;
@@ -82,4 +82,4 @@ TEST(TomlText, WritesNumbersExactlyAndEscapesText) {
 }
 
 }  // namespace
-}  // namespace talus
+}  // namespace talus::params

@@ -10,7 +10,7 @@
 #include "report/report_fixture.hpp"
 #include "support/fixtures.hpp"
 
-namespace talus {
+namespace talus::products {
 namespace {
 
 using nlohmann::json;
@@ -22,9 +22,9 @@ using testing::StartsWith;
 
 class ComparisonProducts : public testing::Test {
   protected:
-    Scene scene = test::sample_scene();
-    RunResult result = test::sample_result(scene);
-    std::vector<Comparison> comparisons = test::sample_comparisons(scene, result);
+    scene::Scene scene = test::sample_scene();
+    run::RunResult result = test::sample_result(scene);
+    std::vector<run::Comparison> comparisons = test::sample_comparisons(scene, result);
     test::TemporaryFolder folder;
 
     [[nodiscard]] std::vector<std::vector<std::string>> rows(const std::string& name) const {
@@ -106,9 +106,9 @@ TEST_F(ComparisonProducts, ConvergenceUnknownIsNotCalledConverged) {
 TEST_F(ComparisonProducts, ReportSaysWhatIsMissingAndWhatWasNotMeasured) {
     scene.spec.observations.clear();
     result.observation.front.clear();
-    result.observation.run_out.front_chainage = never;
-    for (BuildingImpact& building : result.observation.buildings) building.hit = false;
-    comparisons = {compare(ComparisonKind::convergence, scene, result,
+    result.observation.run_out.front_chainage = observe::never;
+    for (observe::BuildingImpact& building : result.observation.buildings) building.hit = false;
+    comparisons = {compare(run::ComparisonKind::convergence, scene, result,
                            {test::sample_variant(result, "double the iterations", "solver.iteration_count=8", 1),
                             {{.name = "gone", .overrides = {}}, std::nullopt, "interrupted before it began"}})};
     const std::string html = sections();
@@ -121,11 +121,11 @@ TEST_F(ComparisonProducts, ReportSaysWhatIsMissingAndWhatWasNotMeasured) {
 TEST_F(ComparisonProducts, TextsOfUsersAreEscaped) {
     const std::string evil = "<script>alert(1)</script>";
     comparisons = {
-        compare(ComparisonKind::sensitivity, scene, result,
+        compare(run::ComparisonKind::sensitivity, scene, result,
                 {test::sample_variant(result, evil, evil, 1), {{.name = evil, .overrides = {}}, std::nullopt, evil}})};
     EXPECT_THAT(sections(), Not(HasSubstr("<script>")));
     EXPECT_THAT(sections(), HasSubstr("&lt;script&gt;"));
 }
 
 }  // namespace
-}  // namespace talus
+}  // namespace talus::products

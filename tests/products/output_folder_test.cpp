@@ -4,7 +4,7 @@
 #include "products/products.hpp"
 #include "support/fixtures.hpp"
 
-namespace talus {
+namespace talus::products {
 namespace {
 
 namespace fs = std::filesystem;
@@ -140,4 +140,4 @@ TEST_F(OutputFolders, MissingParentAndUnwritablePlace) {
 }
 
 }  // namespace
-}  // namespace talus
+}  // namespace talus::products

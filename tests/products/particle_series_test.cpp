@@ -10,20 +10,20 @@
 #include "support/fixtures.hpp"
 #include "terrain/terrain.hpp"
 
-namespace talus {
+namespace talus::products {
 namespace {
 
 using test::TemporaryFolder;
 
 LocalFrame far_frame() {
-    return Terrain(Grid<float>({824000, 825000, 2, 50, 40}, 100)).frame();
+    return terrain::Terrain(Grid<float>({824000, 825000, 2, 50, 40}, 100)).frame();
 }
 
-State three_particles() {
-    State state;
+sim::State three_particles() {
+    sim::State state;
     state.time = 2.5;
     state.count = 3;
-    for (VectorArray* array : {&state.position, &state.velocity}) array->resize(4);  // one more than count
+    for (sim::VectorArray* array : {&state.position, &state.velocity}) array->resize(4);  // one more than count
     state.id = {7, 4, 9, 1};
     state.held = {0, 1, 0, 0};
     for (std::size_t i = 0; i < 4; ++i) {
@@ -88,7 +88,7 @@ TEST(ParticleSeries, FramesHoldEveryParticleAtTheDeclaredOffsets) {
 TEST(ParticleSeries, CollectionListsTheFramesWithTheirTimes) {
     const TemporaryFolder folder;
     ParticleSeries series(folder.path());
-    State state = three_particles();
+    sim::State state = three_particles();
     ASSERT_TRUE(series.write_frame(far_frame(), state).ok());
     state.time = 3;
     state.count = 0;
@@ -108,4 +108,4 @@ TEST(ParticleSeries, FailureNamesTheFile) {
 }
 
 }  // namespace
-}  // namespace talus
+}  // namespace talus::products

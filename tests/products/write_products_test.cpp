@@ -19,7 +19,7 @@
 #include "report/report_fixture.hpp"
 #include "support/fixtures.hpp"
 
-namespace talus {
+namespace talus::products {
 namespace {
 
 using nlohmann::json;
@@ -52,11 +52,11 @@ std::vector<std::vector<std::string>> rows_of(const std::string& text) {
 class Products : public testing::Test {
   protected:
     static void SetUpTestSuite() {
-        scene_ = new Scene(test::sample_scene());
-        result_ = new RunResult(test::sample_result(*scene_));
+        scene_ = new scene::Scene(test::sample_scene());
+        result_ = new run::RunResult(test::sample_result(*scene_));
         result_->simulated_time = 41.2;
         result_->wall_time = 1;  // beside the stages
-        for (std::size_t i = 0; i < stage_count; ++i) {
+        for (std::size_t i = 0; i < sim::stage_count; ++i) {
             result_->stage_times.seconds[i] = 0.5 * static_cast<double>(i + 1);
             result_->wall_time += result_->stage_times.seconds[i];
         }
@@ -71,8 +71,8 @@ class Products : public testing::Test {
     }
     static json manifest() { return json::parse(test::read_text(folder_->path() / "manifest.json")); }
 
-    static inline Scene* scene_ = nullptr;
-    static inline RunResult* result_ = nullptr;
+    static inline scene::Scene* scene_ = nullptr;
+    static inline run::RunResult* result_ = nullptr;
     static inline TemporaryFolder* folder_ = nullptr;
 };
 
@@ -90,7 +90,7 @@ TEST_F(Products, FolderHoldsWhatItShouldAndNothingElse) {
 }
 
 TEST_F(Products, MapsReadBackInTheirUnits) {
-    const HazardMaps& maps = result_->observation.maps;
+    const observe::HazardMaps& maps = result_->observation.maps;
     const std::tuple<const char*, const Grid<float>*, const char*, double> expected[] = {
         {"peak_depth", &maps.peak_depth, "m", 1},
         {"peak_speed", &maps.peak_speed, "m/s", 1},
@@ -124,7 +124,7 @@ TEST_F(Products, MapsReadBackInTheirUnits) {
 }
 
 TEST_F(Products, EveryMapHasAStyleThatParsesWithAscendingLimitsAndUnits) {
-    for (const HazardMap& map : hazard_maps()) {
+    for (const report::HazardMap& map : report::hazard_maps()) {
         const std::string text = test::read_text(folder_->path() / (std::string(map.file) + ".qml"));
         CPLXMLNode* tree = CPLParseXMLString(text.c_str());
         ASSERT_NE(tree, nullptr) << map.file;
@@ -154,7 +154,7 @@ TEST_F(Products, EveryMapHasAStyleThatParsesWithAscendingLimitsAndUnits) {
 }
 
 TEST_F(Products, StylesOrderClassesByLightness) {
-    for (const HazardMap& map : hazard_maps()) {
+    for (const report::HazardMap& map : report::hazard_maps()) {
         const auto classes =
             map.breaks.empty() ? report::even_classes(40, map.ramp) : report::fixed_classes(map.breaks, 1e6, map.ramp);
         const bool darkens = map.ramp.high_lightness < map.ramp.low_lightness;
@@ -173,7 +173,7 @@ TEST_F(Products, StyleLeavesZeroDepthAndThinDepositsTransparent) {
 
 TEST_F(Products, IntensityIsARasterOfClassesWithAStyleAndPolygonsOfTheSameArea) {
     const Grid<float> map =
-        intensity_map(intensity_guideline(scene_->spec.outputs.intensity_guideline), result_->observation.maps);
+        intensity_map(report::intensity_guideline(scene_->spec.outputs.intensity_guideline), result_->observation.maps);
     const GDALDatasetUniquePtr data(GDALDataset::Open(folder_->file("intensity.tif").c_str()));
     ASSERT_TRUE(data);
     EXPECT_THAT(data->GetRasterBand(1)->GetDescription(),
@@ -203,7 +203,7 @@ TEST_F(Products, IntensityIsARasterOfClassesWithAStyleAndPolygonsOfTheSameArea) 
 
 TEST_F(Products, ManifestCountsBarriersApart) {
     const TemporaryFolder folder;
-    RunResult result = *result_;
+    run::RunResult result = *result_;
     result.observation.buildings[0].is_barrier = true;
     ASSERT_TRUE(write_manifest(*scene_, result, {}, folder.path()).ok());
     const json m = json::parse(test::read_text(folder.path() / "manifest.json"));
@@ -220,7 +220,7 @@ TEST_F(Products, FrontTableLeavesUnknownVelocitiesEmpty) {
     EXPECT_THAT(rows[0],
                 ElementsAre("chainage_m", "first_arrival_time_s", "front_velocity_mps", "front_particle_speed_mps"));
     EXPECT_EQ(rows[1][2], "") << "no window there yet";
-    const FrontSample& sample = front[50];
+    const observe::FrontSample& sample = front[50];
     EXPECT_DOUBLE_EQ(std::stod(rows[51][0]), sample.chainage);
     EXPECT_NEAR(std::stod(rows[51][1]), sample.arrival_time, 1e-6);
     EXPECT_NEAR(std::stod(rows[51][2]), sample.front_velocity, 1e-6);
@@ -259,8 +259,8 @@ TEST_F(Products, BuildingTableUsesKilonewtonAndKilopascal) {
 
 TEST_F(Products, BarriersHaveTheirVolumesAndTheirHistory) {
     const TemporaryFolder folder;
-    RunResult result = *result_;
-    BuildingImpact& dam = result.observation.buildings[0];
+    run::RunResult result = *result_;
+    observe::BuildingImpact& dam = result.observation.buildings[0];
     dam.is_barrier = true;
     dam.impulse = 81000;
     dam.failure_time = 12.5;
@@ -300,7 +300,7 @@ TEST_F(Products, BarriersHaveTheirVolumesAndTheirHistory) {
 
 TEST_F(Products, NamesWithCommasAndQuotesAreQuoted) {
     const TemporaryFolder folder;
-    RunResult result = *result_;
+    run::RunResult result = *result_;
     result.observation.buildings[0].name = "Block \"A\", 沙田";
     ASSERT_TRUE(write_tables(*scene_, result, folder.path()).ok());
     EXPECT_THAT(test::read_text(folder.path() / "buildings.csv"), HasSubstr("\n\"Block \"\"A\"\", 沙田\",yes,"));
@@ -323,14 +323,14 @@ TEST_F(Products, GeoPackageHoldsBuildingsReleasesPathAndMarks) {
     const auto buildings = read_polygons(file, "buildings", scene_->crs);
     ASSERT_TRUE(buildings.ok()) << buildings.error().message;
     ASSERT_EQ(buildings->features.size(), 5U);
-    EXPECT_EQ(buildings->features[0].attributes.at("peak_force_kN"), Attribute(412.0));
-    EXPECT_EQ(buildings->features[0].attributes.at("name"), Attribute("House 38"));
-    EXPECT_EQ(buildings->features[4].attributes.at("first_hit_time_s"), Attribute());
+    EXPECT_EQ(buildings->features[0].attributes.at("peak_force_kN"), geo::Attribute(412.0));
+    EXPECT_EQ(buildings->features[0].attributes.at("name"), geo::Attribute("House 38"));
+    EXPECT_EQ(buildings->features[4].attributes.at("first_hit_time_s"), geo::Attribute());
     EXPECT_NEAR(plan_area(buildings->features[0].parts[0]), 12 * 9, 1e-6);
 
     const auto releases = read_polygons(file, "release", scene_->crs);
     ASSERT_TRUE(releases.ok()) << releases.error().message;
-    EXPECT_EQ(releases->features[0].attributes.at("thickness_m"), Attribute(1.4));
+    EXPECT_EQ(releases->features[0].attributes.at("thickness_m"), geo::Attribute(1.4));
 
     const auto path = read_line(file, "flow_path", scene_->crs);
     ASSERT_TRUE(path.ok()) << path.error().message;
@@ -349,8 +349,8 @@ TEST_F(Products, GeoPackageHoldsBuildingsReleasesPathAndMarks) {
 TEST_F(Products, ManifestHoldsEveryParameterOfTheFieldTable) {
     const json parameters = manifest()["parameters"];
     int count = 0;
-    for_each_value(scene_->spec, [&](const Section& section, std::size_t index, const Parameter& parameter,
-                                     const ParameterValue& value) {
+    for_each_value(scene_->spec, [&](const params::Section& section, std::size_t index,
+                                     const params::Parameter& parameter, const params::ParameterValue& value) {
         const json& table = section.repeats ? parameters[section.name][index] : parameters[section.name];
         ASSERT_TRUE(table.contains(parameter.key)) << key_path(section, index, parameter);
         EXPECT_EQ(table[parameter.key].is_null(), std::holds_alternative<std::monostate>(value))
@@ -386,7 +386,7 @@ TEST_F(Products, ManifestSaysWhatRanWhereAndHowFast) {
     }
     EXPECT_NEAR(share, 1, 1e-9) << "with what is not in a stage";
     EXPECT_NEAR(step, m["performance"]["step_ms"], 1e-9);
-    EXPECT_EQ(m["performance"]["stages"][2]["stage"], step_stages[2].name);
+    EXPECT_EQ(m["performance"]["stages"][2]["stage"], sim::step_stages[2].name);
     EXPECT_NEAR(m["performance"]["stages"][2]["total_s"], 1.5, 1e-9);
     EXPECT_NEAR(m["performance"]["stages"][2]["share"], 1.5 / result_->wall_time, 1e-9);
     EXPECT_EQ(m["resolved"]["particle_spacing_m"], 0.42);
@@ -400,7 +400,7 @@ TEST_F(Products, ManifestSaysWhatRanWhereAndHowFast) {
 
 TEST_F(Products, ManifestWritesNullForWhatDoesNotExist) {
     const TemporaryFolder folder;
-    RunResult result = *result_;
+    run::RunResult result = *result_;
     result.observation.run_out = {};
     ASSERT_TRUE(write_manifest(*scene_, result, {}, folder.path()).ok());
     const json m = json::parse(test::read_text(folder.path() / "manifest.json"));
@@ -409,7 +409,7 @@ TEST_F(Products, ManifestWritesNullForWhatDoesNotExist) {
 
 TEST_F(Products, ManifestSurvivesNamesThatAreNotUtf8) {
     const TemporaryFolder folder;
-    Scene scene = *scene_;
+    scene::Scene scene = *scene_;
     scene.releases[0].name = "Gr\xfcn";
     ASSERT_TRUE(write_manifest(scene, *result_, {}, folder.path()).ok());
     EXPECT_TRUE(json::accept(test::read_text(folder.path() / "manifest.json")));
@@ -417,8 +417,8 @@ TEST_F(Products, ManifestSurvivesNamesThatAreNotUtf8) {
 
 TEST_F(Products, PartialResultSaysSoEverywhere) {
     const TemporaryFolder folder;
-    RunResult result = *result_;
-    result.status = RunStatus::fault;
+    run::RunResult result = *result_;
+    result.status = run::RunStatus::fault;
     result.stop_reason = "at 12.5 s the mean compression is 0.61, above compression_limit 0.5";
     ASSERT_TRUE(write_products(*scene_, result, folder.path()).ok());
     EXPECT_THAT(test::read_text(folder.path() / "PARTIAL.txt"), HasSubstr(result.stop_reason));
@@ -432,11 +432,11 @@ TEST_F(Products, PartialResultSaysSoEverywhere) {
 
 TEST_F(Products, RunWithoutDebrisPathOrBuildingsIsWrittenToo) {
     const TemporaryFolder folder;
-    Scene scene = *scene_;
+    scene::Scene scene = *scene_;
     scene.buildings.clear();
-    scene.flow_path = FlowPath();
-    RunResult result = *result_;
-    result.status = RunStatus::interrupted;
+    scene.flow_path = terrain::FlowPath();
+    run::RunResult result = *result_;
+    result.status = run::RunStatus::interrupted;
     const Grid<float> blank(GridGeometry{824100, 825500, 1, 4, 3}, std::nanf(""));
     result.observation = {};
     result.observation.maps = {blank, blank, blank, blank, blank};
@@ -475,4 +475,4 @@ TEST_F(Products, FullDiskIsAnErrorThatNamesTheFile) {
 }
 
 }  // namespace
-}  // namespace talus
+}  // namespace talus::products

@@ -9,11 +9,11 @@
 #include "params/fields.hpp"
 #include "report/report_fixture.hpp"
 
-namespace talus {
+namespace talus::report {
 namespace {
 
 TEST(Intensity, SwissDebrisFlowsAreHighWhereDeepAndFastAndElseMedium) {
-    const IntensityGuideline& g = intensity_guideline(GuidelineChoice::swiss_debris_flow);
+    const IntensityGuideline& g = intensity_guideline(params::GuidelineChoice::swiss_debris_flow);
     EXPECT_EQ(g.class_of(1.01, 1.01), 2);
     EXPECT_EQ(g.class_of(1, 9), 1) << "not deep enough";
     EXPECT_EQ(g.class_of(9, 1), 1) << "not fast enough";
@@ -24,7 +24,7 @@ TEST(Intensity, SwissDebrisFlowsAreHighWhereDeepAndFastAndElseMedium) {
 }
 
 TEST(Intensity, SwissFloodsGoByDepthOrItsProductWithSpeed) {
-    const IntensityGuideline& g = intensity_guideline(GuidelineChoice::swiss_flood);
+    const IntensityGuideline& g = intensity_guideline(params::GuidelineChoice::swiss_flood);
     EXPECT_EQ(g.class_of(0.5, 1), 1);
     EXPECT_EQ(g.class_of(0.51, 0), 2);
     EXPECT_EQ(g.class_of(0.4, 1.3), 2);
@@ -33,7 +33,7 @@ TEST(Intensity, SwissFloodsGoByDepthOrItsProductWithSpeed) {
 }
 
 TEST(Intensity, TheVenezuelanClassesLeaveThinDebrisOut) {
-    const IntensityGuideline& g = intensity_guideline(GuidelineChoice::garcia_2003);
+    const IntensityGuideline& g = intensity_guideline(params::GuidelineChoice::garcia_2003);
     EXPECT_EQ(g.class_of(0.2, 3), 0);
     EXPECT_EQ(g.class_of(0.3, 0.6), 1);
     EXPECT_EQ(g.class_of(0.3, 0.7), 2);
@@ -42,9 +42,9 @@ TEST(Intensity, TheVenezuelanClassesLeaveThinDebrisOut) {
 }
 
 TEST(Intensity, EveryGuidelineSaysWhereItIsFromAndGetsDarkerWithSeverity) {
-    const Parameter& key = parameter_of("outputs", "intensity_guideline");
+    const params::Parameter& key = params::parameter_of("outputs", "intensity_guideline");
     for (std::size_t k = 0; k < key.choices.size(); ++k) {
-        const IntensityGuideline& g = intensity_guideline(static_cast<GuidelineChoice>(k));
+        const IntensityGuideline& g = intensity_guideline(static_cast<params::GuidelineChoice>(k));
         EXPECT_THAT(g.citation, testing::ContainsRegex("(19|20)[0-9][0-9]")) << key.choices[k];
         EXPECT_FALSE(g.remark.empty());
         for (std::size_t c = 1; c < g.classes.size(); ++c) {
@@ -56,12 +56,12 @@ TEST(Intensity, EveryGuidelineSaysWhereItIsFromAndGetsDarkerWithSeverity) {
 TEST(Intensity, IsMappedWhereDebrisArrivedAndOnlyThere) {
     const float none = std::nanf("");
     const GridGeometry cells{0, 0, 2, 4, 1};
-    HazardMaps maps;
+    observe::HazardMaps maps;
     maps.peak_depth = maps.peak_speed = maps.arrival_time = Grid<float>(cells, none);
     maps.peak_depth.values = {1.5F, 0.5F, 0.05F, none};
     maps.peak_speed.values = {4, 4, 4, none};
     maps.arrival_time.values = {3, 4, none, none};
-    const Grid<float> map = intensity_map(intensity_guideline(GuidelineChoice::swiss_debris_flow), maps);
+    const Grid<float> map = intensity_map(intensity_guideline(params::GuidelineChoice::swiss_debris_flow), maps);
     EXPECT_EQ(map.values[0], 2);
     EXPECT_EQ(map.values[1], 1);
     EXPECT_TRUE(std::isnan(map.values[2])) << "a film that is no arrival";
@@ -69,8 +69,8 @@ TEST(Intensity, IsMappedWhereDebrisArrivedAndOnlyThere) {
 }
 
 TEST(Intensity, IsALayerOfTheReportWithItsClassesInWords) {
-    Scene scene = test::sample_scene();
-    const RunResult result = test::sample_result(scene);
+    scene::Scene scene = test::sample_scene();
+    const run::RunResult result = test::sample_result(scene);
     const report::Json data = report::intensity(scene, result);
     double area = 0, reached = 0;
     for (const auto& row : data["table"]["rows"]) area += row["area_m2"].get<double>();
@@ -84,9 +84,9 @@ TEST(Intensity, IsALayerOfTheReportWithItsClassesInWords) {
     EXPECT_TRUE(test::has(page, ">medium</text>"));
     EXPECT_TRUE(test::has(page, "\"classes\":[\"medium\",\"high\"]"));
     EXPECT_TRUE(test::has(page, "BWW, BRP &amp; BUWAL (1997)"));
-    scene.spec.outputs.intensity_guideline = GuidelineChoice::swiss_flood;
+    scene.spec.outputs.intensity_guideline = params::GuidelineChoice::swiss_flood;
     EXPECT_EQ(report::intensity(scene, result)["guideline"], "Swiss flood classes");
 }
 
 }  // namespace
-}  // namespace talus
+}  // namespace talus::report

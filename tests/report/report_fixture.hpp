@@ -109,9 +109,9 @@ inline Polygon rectangle(double x, double y, double width, double height, double
     return p;
 }
 
-inline Scene sample_scene() {
+inline scene::Scene sample_scene() {
     using V = SampleValley;
-    Scene scene;
+    scene::Scene scene;
     scene.file = "scenes/sample_valley/scene.toml";
     const auto path = V::path();
     Grid<float> elevation(GridGeometry{V::east, V::north, V::cell, static_cast<int>(V::width / V::cell),
@@ -126,13 +126,13 @@ inline Scene sample_scene() {
     for (int r = 0; r < 9; ++r) {
         for (int c = 0; c < 16 - r; ++c) elevation.at(c, r) = std::numeric_limits<float>::quiet_NaN();
     }
-    scene.terrain = Terrain(elevation);
+    scene.terrain = terrain::Terrain(elevation);
     scene.crs.name = "Hong Kong 1980 Grid System";
     scene.crs.epsg = 2326;
     scene.vertical_unit = "m";
     scene.nodata_share = 0.007;
 
-    SceneInfo& info = scene.spec.scene;
+    params::SceneInfo& info = scene.spec.scene;
     info.title = "Sample valley: debris flow above five houses";
     info.description =
         "A made-up valley with a bend and a waterfall, in which 600 m³ of debris run down to a hamlet. "
@@ -147,20 +147,20 @@ inline Scene sample_scene() {
     scene.spec.observations = {{"Superelevation at the bend", 121, 11, "GEO Report 169, superelevation marks"},
                                {"Superelevation above the houses", 217, 7, "GEO Report 169, superelevation marks"}};
 
-    ReleaseSpec release_spec;
+    params::ReleaseSpec release_spec;
     release_spec.name = "head scarp";
     release_spec.file = "release.geojson";
     release_spec.volume = 600;
     scene.spec.releases = {release_spec};
-    Release release;
+    terrain::Release release;
     release.name = "head scarp";
     release.patches.push_back({rectangle(38, 167, 30, 17, -0.3), 1.4});
     release.volume = 600;
     scene.releases.push_back(release);
 
-    scene.flow_path = FlowPath(path, 60);
+    scene.flow_path = terrain::FlowPath(path, 60);
     const auto building = [&](const char* name, Polygon footprint, double height, bool assumed) {
-        Building b;
+        terrain::Building b;
         b.name = name;
         b.footprint = {std::move(footprint)};
         b.height = height;
@@ -181,11 +181,11 @@ inline Scene sample_scene() {
     return scene;
 }
 
-inline RunResult sample_result(const Scene& scene) {
+inline run::RunResult sample_result(const scene::Scene& scene) {
     using V = SampleValley;
-    RunResult result;
+    run::RunResult result;
     result.stop_reason = "debris came to rest (less than 0.1 % of it moving for 3 s)";
-    Observation& o = result.observation;
+    observe::Observation& o = result.observation;
     const auto path = V::path();
     constexpr double map_cell = 1;
     const float none = std::numeric_limits<float>::quiet_NaN();
@@ -195,8 +195,8 @@ inline RunResult sample_result(const Scene& scene) {
     for (int c = 1; c <= static_cast<int>(V::toe); ++c) arrival.push_back(arrival.back() + 1 / V::velocity_at(c - 0.5));
     for (int c = 20; c <= static_cast<int>(V::toe); ++c) {
         const double front = V::velocity_at(c), particle = 0.93 * V::velocity_at(c - 2) + 0.3 * std::sin(c / 4.0);
-        o.front.push_back(
-            {double(c), arrival[static_cast<std::size_t>(c)], c < 25 ? never : front, std::max(0.2, particle)});
+        o.front.push_back({double(c), arrival[static_cast<std::size_t>(c)], c < 25 ? observe::never : front,
+                           std::max(0.2, particle)});
     }
 
     const Grid<float> blank(GridGeometry{V::east + 8, V::north + 8, map_cell, 270, 188}, none);
@@ -235,8 +235,8 @@ inline RunResult sample_result(const Scene& scene) {
     o.run_out.runout_angle = std::atan(o.run_out.drop / o.run_out.along_flow);
     o.run_out.travel_angle = o.run_out.runout_angle + 0.02;
 
-    for (const Building& b : scene.buildings) {
-        BuildingImpact impact;
+    for (const terrain::Building& b : scene.buildings) {
+        observe::BuildingImpact impact;
         impact.name = b.name;
         o.buildings.push_back(impact);
     }
@@ -247,7 +247,7 @@ inline RunResult sample_result(const Scene& scene) {
     o.volume_released = 600;
     const double stop = arrival.back(), end = stop + 9;
     for (double t = 0; t <= end; t += 0.1) {
-        TimeSample s;
+        observe::TimeSample s;
         s.time = t;
         const double share = std::min(1.0, t / stop);
         const auto c = static_cast<double>(std::upper_bound(arrival.begin(), arrival.end(), t) - arrival.begin() - 1);
@@ -290,50 +290,50 @@ inline RunResult sample_result(const Scene& scene) {
 }
 
 /// Made-up variants of the sample: `pace` times as fast as it everywhere.
-inline VariantRun sample_variant(const RunResult& base, const std::string& name, const std::string& override_text,
-                                 double pace) {
-    VariantRun run{{.name = name, .overrides = {override_text}}, base, ""};
-    Observation& o = run.result->observation;
+inline run::VariantRun sample_variant(const run::RunResult& base, const std::string& name,
+                                      const std::string& override_text, double pace) {
+    run::VariantRun run{{.name = name, .overrides = {override_text}}, base, ""};
+    observe::Observation& o = run.result->observation;
     o.maps = {};
     o.timeseries = {};
-    for (FrontSample& f : o.front) {
+    for (observe::FrontSample& f : o.front) {
         f.front_velocity *= pace;
         f.arrival_time /= pace;
     }
-    for (BuildingImpact& b : o.buildings) b.first_hit_time /= pace;
+    for (observe::BuildingImpact& b : o.buildings) b.first_hit_time /= pace;
     run.result->wall_time *= 2;
     return run;
 }
 
 /// Refinements of which one fails and one is missing, and a sensitivity to more inputs than there are colours.
-inline std::vector<Comparison> sample_comparisons(const Scene& scene, const RunResult& result) {
-    std::vector<VariantRun> refined = {
+inline std::vector<run::Comparison> sample_comparisons(const scene::Scene& scene, const run::RunResult& result) {
+    std::vector<run::VariantRun> refined = {
         sample_variant(result, "half the time step", "solver.displacement_limit=0.25", 1.02),
         sample_variant(result, "double the iterations", "solver.iteration_count=8", 0.93),
         {{.name = "three times the particles", .overrides = {"solver.particle_spacing_m=0.29"}},
          std::nullopt,
          "interrupted at t = 12.3 s"}};
-    std::vector<VariantRun> varied;
+    std::vector<run::VariantRun> varied;
     for (int i = 0; i < 10; ++i) {
         const double friction = 0.3 + 0.02 * i;
         const std::string value = std::to_string(friction).substr(0, 4);
         varied.push_back(sample_variant(result, "material.friction_coefficient = " + value,
                                         "material.friction_coefficient=" + value, 1.8 - 2 * friction));
     }
-    return {compare(ComparisonKind::convergence, scene, result, refined),
-            compare(ComparisonKind::sensitivity, scene, result, varied)};
+    return {compare(run::ComparisonKind::convergence, scene, result, refined),
+            compare(run::ComparisonKind::sensitivity, scene, result, varied)};
 }
 
 /// The report's page; empty where it could not be made.
-inline std::string report_page(const Scene& scene, const RunResult& result,
-                               const std::vector<Comparison>& comparisons = {}) {
+inline std::string report_page(const scene::Scene& scene, const run::RunResult& result,
+                               const std::vector<run::Comparison>& comparisons = {}) {
     const auto page = report::run_report(scene, result, report::run_results(scene, result, comparisons));
     return page ? *page : "";
 }
 
 struct Sample {
-    Scene scene = sample_scene();
-    RunResult result = sample_result(scene);
+    scene::Scene scene = sample_scene();
+    run::RunResult result = sample_result(scene);
 
     [[nodiscard]] std::string html() const { return report_page(scene, result); }
 };

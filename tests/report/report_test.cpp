@@ -16,7 +16,7 @@
 #include "report/report_fixture.hpp"
 #include "report/results.hpp"
 
-namespace talus {
+namespace talus::report {
 namespace {
 
 using ::testing::ElementsAre;
@@ -55,7 +55,7 @@ TEST(Report, EscapesEveryTextOfTheScene) {
     s.scene.inputs[0] = {evil, evil, 1, evil};
     s.scene.crs.name = evil;
     s.scene.vertical_unit = evil;
-    s.result.status = RunStatus::fault;
+    s.result.status = run::RunStatus::fault;
     s.result.stop_reason = evil;
     for (std::size_t i = 0; i < s.scene.buildings.size(); ++i) {
         s.scene.buildings[i].name = s.result.observation.buildings[i].name = evil;
@@ -90,12 +90,12 @@ TEST(Report, SaysReconstructionOnThePageAndOnEveryMap) {
 TEST(Report, SaysPartialWithItsReason) {
     Sample s;
     EXPECT_FALSE(has(s.html(), "class=\"banner partial\""));
-    s.result.status = RunStatus::fault;
+    s.result.status = run::RunStatus::fault;
     s.result.stop_reason = "compression 0.6 above compression_limit 0.5 at 12.3 s";
     const std::string html = s.html();
     EXPECT_TRUE(has(html, "class=\"banner partial\""));
     EXPECT_TRUE(has(html, "compression 0.6 above compression_limit 0.5 at 12.3 s"));
-    s.result.status = RunStatus::interrupted;
+    s.result.status = run::RunStatus::interrupted;
     EXPECT_TRUE(has(s.html(), "was interrupted"));
 }
 
@@ -104,7 +104,7 @@ TEST(Report, HasOneVerdictOnTheNumerics) {
     const std::string good = s.html();
     EXPECT_FALSE(has(good, "class=\"banner unconverged\""));
     EXPECT_FALSE(has(good, "NOT CONVERGED"));
-    Compression& c = s.result.observation.compression;
+    observe::Compression& c = s.result.observation.compression;
     c.worst_squeezed_share = 0.031;
     c.worst_squeezed_time = 12.3;
     c.time_share_above = 0.25;
@@ -151,7 +151,7 @@ TEST(Report, ListsBuildingsByPressureAndMarksAssumedHeights) {
 
 TEST(Report, SaysWhenNoBuildingWasHit) {
     Sample s;
-    for (BuildingImpact& b : s.result.observation.buildings) b.hit = false;
+    for (observe::BuildingImpact& b : s.result.observation.buildings) b.hit = false;
     EXPECT_TRUE(has(s.html(), "No building was hit."));
 }
 
@@ -160,7 +160,7 @@ TEST(Report, ShowsThirtyOfManyBuildingsAndCountsTheRest) {
     s.scene.buildings.clear();
     s.result.observation.buildings.clear();
     for (int i = 0; i < 45; ++i) {
-        BuildingImpact b;
+        observe::BuildingImpact b;
         b.name = "house number " + std::to_string(i);
         b.hit = true;
         b.peak_impact_pressure = 1000.0 * i;
@@ -177,12 +177,12 @@ TEST(Report, ShowsThirtyOfManyBuildingsAndCountsTheRest) {
 TEST(Report, PrintsEveryParameterWithItsUnit) {
     Sample s;
     const std::string html = s.html();
-    for (const Section& section : scene_sections()) {
+    for (const params::Section& section : params::scene_sections()) {
         // Observations have a table of their own; of kinds that the scene lacks there is nothing to print.
         if (section.name == "scene" || section.name == "report" || section.name == "observation" ||
             section.count(s.scene.spec) == 0)
             continue;
-        for (const Parameter& parameter : section.parameters) {
+        for (const params::Parameter& parameter : section.parameters) {
             EXPECT_TRUE(has(html, "<code>" + parameter.key + "</code>"));
         }
     }
@@ -204,7 +204,7 @@ TEST(Report, DrawsZonesAndBedWithTheirValuesWhereThereAreSome) {
     const std::string without = sample.html();
     EXPECT_FALSE(has(without, "id=\"zones\""));
     expect_numbered_figures(without);
-    ZoneSpec rough, forest;
+    params::ZoneSpec rough, forest;
     rough.name = "rough <gully>";
     rough.friction_coefficient = 0.37;
     rough.turbulent_friction = 450;
@@ -212,7 +212,7 @@ TEST(Report, DrawsZonesAndBedWithTheirValuesWhereThereAreSome) {
     forest.stem_density = 0.08;
     forest.stem_diameter = 0.35;
     sample.scene.spec.zones = {rough, forest};
-    BedSpec bed;
+    params::BedSpec bed;
     bed.name = "colluvium";
     bed.depth = 1.5;
     bed.growth_rate = 0.006;
@@ -238,7 +238,7 @@ TEST(Report, DrawsTheDensityOfAnInflowWhereItHasOne) {
     EXPECT_TRUE(has(html, "torrent, across a line: 50.0 m³"));
     EXPECT_FALSE(has(html, "density, kg/m³"));
     expect_numbered_figures(html);
-    Inflow rain{"scarp", {}, {}, {{0, 5, 2, 1500}, {10, 5, 2, 1700}}};
+    terrain::Inflow rain{"scarp", {}, {}, {{0, 5, 2, 1500}, {10, 5, 2, 1700}}};
     rain.area.push_back({{{0, 0}, {20, 0}, {20, 10}, {0, 10}}, {}});
     sample.scene.inflows.push_back(rain);
     html = sample.html();
@@ -271,9 +271,9 @@ TEST(Report, RendersARunInWhichNothingMoved) {
     Sample s;
     s.scene.buildings.clear();
     s.scene.spec.observations.clear();
-    s.scene.flow_path = FlowPath();
-    s.result.observation = Observation();
-    s.result.status = RunStatus::interrupted;
+    s.scene.flow_path = terrain::FlowPath();
+    s.result.observation = observe::Observation();
+    s.result.status = run::RunStatus::interrupted;
     const std::string html = s.html();
     EXPECT_TRUE(has(html, "No debris reached the flow path"));
     EXPECT_TRUE(has(html, "no debris mapped"));
@@ -298,14 +298,14 @@ TEST(ReportMap, AWideTerrainIsCroppedToTheEvent) {
     Grid<float> wide(GridGeometry{test::SampleValley::east - 2000, test::SampleValley::north - 2000, 20, 220, 220},
                      50.0F);
     for (std::size_t i = 0; i < wide.values.size(); ++i) wide.values[i] += static_cast<float>(i % 220);
-    s.scene.terrain = Terrain(wide);
+    s.scene.terrain = terrain::Terrain(wide);
     const report::MapFrame frame = report::map_frame(s.scene, report::map_content(s.scene, s.result));
     EXPECT_LT(frame.area.width(), 600);
     EXPECT_LT(frame.area.height(), 400);
 }
 
 TEST(ReportMap, CallsImpactsByTheirPressure) {
-    BuildingImpact b;
+    observe::BuildingImpact b;
     b.peak_impact_pressure = 50e3;
     EXPECT_EQ(report::impact_class(b), 0);  // not hit
     b.hit = true;
@@ -357,7 +357,7 @@ TEST(ReportText, NumbersReadAsAnEngineerPrintsThem) {
     EXPECT_EQ(report::fixed(1999, 0), "1999");
     EXPECT_EQ(report::fixed(-0.26, 1), "−0.3");
     EXPECT_EQ(report::fixed(-0.001, 1), "0.0");
-    EXPECT_EQ(report::fixed(never, 1), "–");
+    EXPECT_EQ(report::fixed(observe::never, 1), "–");
     EXPECT_EQ(report::significant(38.44, 3), "38.4");
     EXPECT_EQ(report::significant(0.0123, 2), "0.012");
     EXPECT_EQ(report::coordinate(12.50), "12.5");
@@ -370,7 +370,7 @@ TEST(ReportText, ShortenedNamesKeepWholeCharacters) {
 
 TEST(ReportPlot, LinesLeaveGapsWhereThereIsNoValue) {
     report::Plot plot(0, 0, 100, 100, {0, 4}, {0, 1});
-    const std::vector<double> x = {0, 1, 2, 3, 4}, y = {0, 1, never, 1, 0};
+    const std::vector<double> x = {0, 1, 2, 3, 4}, y = {0, 1, observe::never, 1, 0};
     plot.line(x, y, "series");
     report::Svg svg;
     plot.draw(svg);
@@ -380,7 +380,7 @@ TEST(ReportPlot, LinesLeaveGapsWhereThereIsNoValue) {
 TEST(ReportChart, IsTheSameAfterItWasWrittenAndRead) {
     report::Plot plot(66, 20, 400, 200, {0, 4}, {-1, 1});
     plot.axes("time, s", "height <m>");
-    const std::vector<double> x = {0, 1, 2, 3, 4}, y = {0, 1, never, 1, 0}, zero(5, 0);
+    const std::vector<double> x = {0, 1, 2, 3, 4}, y = {0, 1, observe::never, 1, 0}, zero(5, 0);
     plot.band(x, zero, y, "area", "a & b");
     plot.dots(x, y, 2.5, "run-dot", "runs");
     plot.mark(1, 0.5, "observation");
@@ -434,8 +434,8 @@ TEST(Results, HoldAllThatTheReportShows) {
 }
 
 TEST(Page, FillsTemplatesWithTextNumbersAndFigures) {
-    const report::Json data = {{"name", "<a & b>"},  {"width", 1234.5678}, {"none", nullptr}, {"empty", ""},
-                               {"list", {"x", "y"}}, {"large", 12345.6},   {"nan", never}};
+    const report::Json data = {{"name", "<a & b>"},  {"width", 1234.5678}, {"none", nullptr},      {"empty", ""},
+                               {"list", {"x", "y"}}, {"large", 12345.6},   {"nan", observe::never}};
     EXPECT_EQ(report::render("{{name}}|{{{name}}}", data), "&lt;a &amp; b&gt;|<a & b>");
     EXPECT_EQ(report::render("{{width|f1}} {{width|s2}} {{width|p}} {{none|f1}} {{nan|f1}}{{nan}} {{large|d0}}", data),
               "1234.6 1235 1234.57 – – +12\u202f346");
@@ -467,4 +467,4 @@ TEST(ReportPlot, TicksAreRound) {
 }
 
 }  // namespace
-}  // namespace talus
+}  // namespace talus::report

@@ -11,7 +11,7 @@
 #include "report/report_fixture.hpp"
 
 // What a report says to whoever signs it: title block, assumptions, counts, scale.
-namespace talus {
+namespace talus::report {
 namespace {
 
 using test::has;
@@ -85,7 +85,7 @@ TEST(NotSet, ListsTheThicknessThatFollowsFromAVolume) {
 
 TEST(NotSet, LeavesBuildingsOutWhereNoneWasHit) {
     Sample s;
-    for (BuildingImpact& b : s.result.observation.buildings) b.hit = false;
+    for (observe::BuildingImpact& b : s.result.observation.buildings) b.hit = false;
     const auto listed = keys_of(report::not_set(s.scene, s.result)["table"]);
     EXPECT_THAT(listed, Not(Contains("buildings.resistance_Pa")));
     EXPECT_THAT(listed, Not(Contains("outputs.impact_patch_edge_m")));
@@ -106,7 +106,7 @@ TEST(Defaults, AreFoldedAwayAndCounted) {
 
 TEST(Barriers, AreNoBuildingsInTheCounts) {
     Sample s;
-    BuildingImpact wall;
+    observe::BuildingImpact wall;
     wall.name = "check dam";
     wall.hit = wall.is_barrier = true;
     wall.peak_impact_pressure = 500e3;
@@ -149,7 +149,7 @@ TEST(LocationMap, ShowsTheAreaOfTheMapsInAWiderTerrain) {
     using V = test::SampleValley;
     Grid<float> wide(GridGeometry{V::east - 2000, V::north - 2000, 20, 220, 220}, 50.0F);
     for (std::size_t i = 0; i < wide.values.size(); ++i) wide.values[i] += static_cast<float>(i % 220);
-    s.scene.terrain = Terrain(wide);
+    s.scene.terrain = terrain::Terrain(wide);
     const std::string html = s.html();
     EXPECT_TRUE(has(html, ">Location</h3>"));
     EXPECT_TRUE(has(html, "class=\"location\""));
@@ -157,4 +157,4 @@ TEST(LocationMap, ShowsTheAreaOfTheMapsInAWiderTerrain) {
 }
 
 }  // namespace
-}  // namespace talus
+}  // namespace talus::report

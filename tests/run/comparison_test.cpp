@@ -3,7 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-namespace talus {
+namespace talus::run {
 namespace {
 
 using testing::HasSubstr;
@@ -13,12 +13,12 @@ class Compare : public testing::Test {
   protected:
     Compare() {
         scene.spec.observations = {{"bend", 100, 9, ""}};
-        scene.flow_path = FlowPath({{0, 0}, {300, 0}}, 40);
+        scene.flow_path = terrain::FlowPath({{0, 0}, {300, 0}}, 40);
         base.observation = observed(10, 12, 200);
     }
 
-    static Observation observed(double velocity, double hit, double run_out) {
-        Observation o;
+    static observe::Observation observed(double velocity, double hit, double run_out) {
+        observe::Observation o;
         o.front = {{99, 8, velocity, velocity}, {101, 8.2, velocity, velocity}, {190, 20, 3, 3}};
         o.run_out.front_chainage = 210;
         o.run_out.along_flow = run_out;
@@ -33,7 +33,7 @@ class Compare : public testing::Test {
         o.deposit = {500, 1.5};
         return o;
     }
-    void add(const std::string& name, const Observation& o) {
+    void add(const std::string& name, const observe::Observation& o) {
         VariantRun run{{.name = name, .overrides = {}}, RunResult{}, ""};
         run.result->observation = o;
         runs.push_back(run);
@@ -41,7 +41,7 @@ class Compare : public testing::Test {
     void add_missing() { runs.push_back({{.name = "gone", .overrides = {}}, std::nullopt, "interrupted"}); }
     Comparison compared(ComparisonKind kind = ComparisonKind::convergence) { return compare(kind, scene, base, runs); }
 
-    Scene scene;
+    scene::Scene scene;
     RunResult base;
     std::vector<VariantRun> runs;
 };
@@ -80,7 +80,7 @@ TEST_F(Compare, AChangeAboveTheLimitEitherWayFails) {
 }
 
 TEST_F(Compare, WhatOnlyOneOfTheTwoReachesFails) {
-    Observation stopped = observed(10, never, 200);
+    observe::Observation stopped = observed(10, observe::never, 200);
     stopped.front.clear();
     add("stops before", stopped);
     const Comparison c = compared();
@@ -105,8 +105,8 @@ TEST_F(Compare, WhatNeitherReachesIsNotJudged) {
 }
 
 TEST_F(Compare, WithoutABuildingHitTheFrontsArrivalLateOnItsWayCounts) {
-    base.observation = observed(10, never, 200);
-    Observation late = observed(10, never, 200);
+    base.observation = observed(10, observe::never, 200);
+    observe::Observation late = observed(10, observe::never, 200);
     late.front.back().arrival_time = 22;
     add("late", late);
     const Comparison c = compared();
@@ -117,9 +117,9 @@ TEST_F(Compare, WithoutABuildingHitTheFrontsArrivalLateOnItsWayCounts) {
 TEST_F(Compare, WithoutFlowPathObservationAndHitOnlyRunOutIsMeasured) {
     scene.flow_path = {};
     scene.spec.observations.clear();
-    Observation bare = observed(10, never, 200);
+    observe::Observation bare = observed(10, observe::never, 200);
     bare.front.clear();
-    bare.run_out.front_chainage = never;
+    bare.run_out.front_chainage = observe::never;
     bare.deposit = {};
     base.observation = bare;
     add("finer", bare);
@@ -127,9 +127,9 @@ TEST_F(Compare, WithoutFlowPathObservationAndHitOnlyRunOutIsMeasured) {
     ASSERT_EQ(c.quantities.size(), 5U);
     EXPECT_THAT(c.quantities[0].not_measured, HasSubstr("no building was hit"));
     EXPECT_EQ(c.converged(), Answer::yes);
-    base.observation.run_out.along_flow = never;
+    base.observation.run_out.along_flow = observe::never;
     runs.clear();
-    bare.run_out.along_flow = never;
+    bare.run_out.along_flow = observe::never;
     add("finer", bare);
     EXPECT_EQ(compared().converged(), Answer::unknown);
     EXPECT_THAT(compared().verdict_text(), HasSubstr("nothing could be measured"));
@@ -147,27 +147,27 @@ TEST_F(Compare, AMissingRunLeavesConvergenceOpenUnlessAChangeIsTooLarge) {
 }
 
 TEST_F(Compare, EachResultHasItsOwnLimit) {
-    Observation finer = observed(10, 12, 200);
+    observe::Observation finer = observed(10, 12, 200);
     finer.deposit = {549, 1.36};
     finer.buildings[1].peak_force *= 1.14;
     finer.buildings[1].peak_impact_pressure *= 0.86;
     add("finer", finer);
     EXPECT_EQ(compared().converged(), Answer::yes);
     const auto fails = [&](const auto& change) {
-        Observation off = finer;
+        observe::Observation off = finer;
         change(off);
         runs.clear();
         add("off", off);
         return compared().converged() == Answer::no;
     };
-    EXPECT_TRUE(fails([](Observation& o) { o.deposit.area = 551; }));
-    EXPECT_TRUE(fails([](Observation& o) { o.deposit.depth = 1.34; }));
-    EXPECT_TRUE(fails([](Observation& o) { o.buildings[1].peak_force = 4.61e5; }));
-    EXPECT_TRUE(fails([](Observation& o) { o.buildings[1].peak_impact_pressure = 2.54e4; }));
+    EXPECT_TRUE(fails([](observe::Observation& o) { o.deposit.area = 551; }));
+    EXPECT_TRUE(fails([](observe::Observation& o) { o.deposit.depth = 1.34; }));
+    EXPECT_TRUE(fails([](observe::Observation& o) { o.buildings[1].peak_force = 4.61e5; }));
+    EXPECT_TRUE(fails([](observe::Observation& o) { o.buildings[1].peak_impact_pressure = 2.54e4; }));
 }
 
 TEST_F(Compare, BuildingsHitMustBeTheSameButForATouch) {
-    Observation other = observed(10, 12, 200);
+    observe::Observation other = observed(10, 12, 200);
     other.buildings[0].hit = true;
     other.buildings[0].first_hit_time = 13;
     other.buildings[0].peak_force = 1.9e4;  // under a twentieth of the largest
@@ -197,4 +197,4 @@ TEST_F(Compare, TwoObservationsAtOnePlaceAreOneQuantity) {
 }
 
 }  // namespace
-}  // namespace talus
+}  // namespace talus::run

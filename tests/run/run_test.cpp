@@ -11,28 +11,28 @@
 #include "scene/scene_folder.hpp"
 #include "sim/sources/seed.hpp"
 
-namespace talus {
+namespace talus::run {
 namespace {
 
 using testing::HasSubstr;
 using testing::MatchesRegex;
 using testing::StartsWith;
 
-class RunOfAScene : public SceneFolder {
+class RunOfAScene : public scene::SceneFolder {
   protected:
-    [[nodiscard]] Scene loaded(const std::string& more, const std::vector<std::string>& overrides = {}) const {
+    [[nodiscard]] scene::Scene loaded(const std::string& more, const std::vector<std::string>& overrides = {}) const {
         write_valley(more);
         std::vector<std::string> all{"solver.target_particle_count=400", "solver.end_time_s=3"};
         all.insert(all.end(), overrides.begin(), overrides.end());
-        auto scene = load_scene(folder / "scene.toml", all);
+        auto scene = scene::load_scene(folder / "scene.toml", all);
         if (!scene) throw std::runtime_error(scene.error().message);
         return std::move(*scene);
     }
 };
 
 TEST_F(RunOfAScene, StepByStepIsTheWholeOne) {
-    const Scene scene = loaded("");
-    auto run = talus::Run::start(scene);
+    const scene::Scene scene = loaded("");
+    auto run = run::Run::start(scene);
     ASSERT_TRUE(run) << run.error().message;
     EXPECT_EQ((*run)->phase(), RunPhase::ready);
     std::uint64_t steps = 0;
@@ -53,10 +53,10 @@ TEST_F(RunOfAScene, StepByStepIsTheWholeOne) {
 }
 
 TEST_F(RunOfAScene, TakesWhatTheSceneHas) {
-    const Scene scene = loaded(
+    const scene::Scene scene = loaded(
         "[[bed]]\ndepth_m = 0.4\ngrowth_rate_per_m = 0.01\n[[zone]]\nname = \"fan\"\n"
         "polygon = \"824100 825050, 824150 825050, 824150 825100, 824100 825100\"\nfriction_coefficient = 0.9\n");
-    const auto run = talus::Run::start(scene);
+    const auto run = run::Run::start(scene);
     ASSERT_TRUE(run) << run.error().message;
     EXPECT_FALSE((*run)->ground().bed.empty());
     EXPECT_FALSE((*run)->model().cover.empty());
@@ -83,14 +83,14 @@ TEST_F(RunOfAScene, StopsWhenAsked) {
 }
 
 TEST_F(RunOfAScene, AChangeBringsItBackFromRest) {
-    auto started = talus::Run::start(
+    auto started = run::Run::start(
         loaded("", {"material.friction_coefficient=3", "solver.stop_duration_s=0.2", "solver.end_time_s=60"}));
     ASSERT_TRUE(started);
     auto& run = **started;
     while (run.advance()) continue;
     ASSERT_EQ(run.phase(), RunPhase::at_rest) << run.stop_reason();
     EXPECT_THAT(run.stop_reason(), StartsWith("debris came to rest (less than "));
-    run.change([](Model&, Ground&, State& state) { return state.seeded; });
+    run.change([](sim::Model&, sim::Ground&, sim::State& state) { return state.seeded; });
     EXPECT_EQ(run.phase(), RunPhase::ready);
     EXPECT_EQ(run.stop_reason(), "");
     EXPECT_EQ(run.result().status, RunStatus::interrupted);
@@ -105,25 +105,25 @@ TEST_F(RunOfAScene, TooManyParticlesAreRefused) {
 }
 
 TEST(EndlessRun, GoesOnBeyondItsEndAndAfterAFault) {
-    SolverSpec solver;
+    params::SolverSpec solver;
     solver.end_time = 0.01;
     const Grid<float> level(GridGeometry{0, 0, 1, 20, 20}, 0.0F);
-    RunStart start{make_model({}, solver, 0.5), Ground(Terrain(level)), State{}};
+    RunStart start{sim::make_model({}, solver, 0.5), sim::Ground(terrain::Terrain(level)), sim::State{}};
     start.state.resize(1);
     start.state.count = start.state.seeded = 1;
     start.state.position.set(0, start.ground.terrain.frame().to_local({10, 10, 3}));
-    talus::Run ends(start);
+    run::Run ends(start);
     for (int step = 0; step < 20; ++step) (void)ends.advance();
     EXPECT_EQ(ends.phase(), RunPhase::ended);
     EXPECT_LT(ends.state().step, 20U);
 
     start.endless = true;
-    talus::Run goes_on(start);
+    run::Run goes_on(start);
     for (int step = 0; step < 20; ++step) EXPECT_TRUE(goes_on.advance());
     EXPECT_EQ(goes_on.phase(), RunPhase::ready);
 
     start.model.solver.compression_limit = -1;
-    talus::Run faulty(start);
+    run::Run faulty(start);
     for (const std::uint64_t step : {1U, 2U}) {
         EXPECT_FALSE(faulty.advance());
         EXPECT_EQ(faulty.phase(), RunPhase::fault);
@@ -133,4 +133,4 @@ TEST(EndlessRun, GoesOnBeyondItsEndAndAfterAFault) {
 }
 
 }  // namespace
-}  // namespace talus
+}  // namespace talus::run

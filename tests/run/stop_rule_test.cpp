@@ -3,27 +3,27 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-namespace talus {
+namespace talus::run {
 namespace {
 
 /// So many particles; the first `moving` of them at a speed.
-State debris(std::uint32_t count, std::uint32_t moving, float speed) {
-    State state;
+sim::State debris(std::uint32_t count, std::uint32_t moving, float speed) {
+    sim::State state;
     state.resize(count);
     state.count = state.seeded = count;
     for (std::uint32_t i = 0; i < moving; ++i) state.velocity.set(i, {0, 0, -speed});
     return state;
 }
 
-void set_speeds(State& state, std::uint32_t first, std::uint32_t last, float speed) {
+void set_speeds(sim::State& state, std::uint32_t first, std::uint32_t last, float speed) {
     for (std::uint32_t i = first; i < last; ++i) state.velocity.set(i, {0, speed, 0});
 }
 
 /// Whether ten seconds of this are a run's end, with the default limits.
-bool ends(State state, const SolverSpec& solver = {}) {
-    RestDetector rest(solver, OutputSpec{}.deposited_speed);
+bool ends(sim::State state, const params::SolverSpec& solver = {}) {
+    RestDetector rest(solver, params::OutputSpec{}.deposited_speed);
     // Before, all of it ran at 15 m/s: next to that momentum, little is left in what follows.
-    const State before = debris(state.count, state.count, 15);
+    const sim::State before = debris(state.count, state.count, 15);
     if (rest.at_rest(before, false)) return true;
     for (int k = 1; k <= 100; ++k) {
         state.time = 0.1 * k;
@@ -56,10 +56,10 @@ TEST(RestDetector, it_is_over_when_hardly_anything_moves_and_nothing_fast) {
 }
 
 TEST(RestDetector, it_must_last) {
-    SolverSpec solver;
+    params::SolverSpec solver;
     solver.stop_duration = 3;
     RestDetector rest(solver, 0.1);
-    State state = debris(100, 0, 0);
+    sim::State state = debris(100, 0, 0);
     for (const double time : {0.0, 1.5, 2.9}) {
         state.time = time;
         EXPECT_FALSE(rest.at_rest(state, false));
@@ -79,13 +79,13 @@ TEST(RestDetector, it_must_last) {
 }
 
 TEST(RestDetector, a_share_of_zero_never_ends_a_run) {
-    SolverSpec solver;
+    params::SolverSpec solver;
     solver.stop_moving_share = 0;
     EXPECT_FALSE(ends(debris(100, 0, 0), solver));
 }
 
 TEST(EndTime, says_what_still_moved) {
-    Model model;
+    sim::Model model;
     model.particle_spacing = 0.5;
     model.solver.end_time = 90;
     EXPECT_EQ(end_time_reason(model, debris(100, 0, 0), 0.1), "reached solver.end_time_s = 90");
@@ -94,4 +94,4 @@ TEST(EndTime, says_what_still_moved) {
 }
 
 }  // namespace
-}  // namespace talus
+}  // namespace talus::run

@@ -6,7 +6,7 @@
 #include <tbb/global_control.h>
 #include <tbb/task_arena.h>
 
-namespace talus {
+namespace talus::run {
 namespace {
 
 std::size_t allowed_in_all() {
@@ -43,4 +43,4 @@ TEST(Threads, CanBeMoreThanTheProcessorHas) {
 }
 
 }  // namespace
-}  // namespace talus
+}  // namespace talus::run

@@ -8,7 +8,7 @@
 #include "scene/scene_folder.hpp"
 #include "sim/sources/seed.hpp"
 
-namespace talus {
+namespace talus::run {
 namespace {
 
 using testing::ElementsAre;
@@ -42,17 +42,17 @@ TEST(Variations, WithoutKeyOrValueAreRefused) {
     }
 }
 
-class Variants : public SceneFolder {
+class Variants : public scene::SceneFolder {
   protected:
     void SetUp() override {
         write_valley("[solver]\nparticle_spacing_m = 2\nend_time_s = 0.5\n");
         source.file = folder / "scene.toml";
     }
-    [[nodiscard]] Scene base() const { return *load_scene(source.file, source.overrides); }
-    [[nodiscard]] Scene with(const Variant& variant) const {
+    [[nodiscard]] scene::Scene base() const { return *scene::load_scene(source.file, source.overrides); }
+    [[nodiscard]] scene::Scene with(const Variant& variant) const {
         std::vector<std::string> overrides = source.overrides;
         overrides.insert(overrides.end(), variant.overrides.begin(), variant.overrides.end());
-        auto scene = load_scene(source.file, overrides);
+        auto scene = scene::load_scene(source.file, overrides);
         if (!scene) throw std::runtime_error(scene.error().message);
         return *std::move(scene);
     }
@@ -60,12 +60,12 @@ class Variants : public SceneFolder {
 };
 
 TEST_F(Variants, RefinementsHalveTheStepDoubleTheIterationsAndTripleTheParticles) {
-    const Scene scene = base();
+    const scene::Scene scene = base();
     const auto refined = refinements(scene);
     ASSERT_THAT(names(refined),
                 ElementsAre("half the time step", "double the iterations", "three times the particles"));
-    const SolverSpec& given = scene.spec.solver;
-    const SolverSpec half = with(refined[0]).spec.solver;
+    const params::SolverSpec& given = scene.spec.solver;
+    const params::SolverSpec half = with(refined[0]).spec.solver;
     EXPECT_EQ(half.largest_time_step, given.largest_time_step / 2);
     EXPECT_EQ(half.smallest_time_step, given.smallest_time_step / 2);
     EXPECT_EQ(half.displacement_limit, given.displacement_limit / 2);
@@ -85,8 +85,8 @@ TEST_F(Variants, AFixedTimeStepIsHalvedItself) {
 
 TEST_F(Variants, ThreeTimesTheParticlesAlsoWhereTheirNumberIsGiven) {
     source.overrides = {"solver.particle_spacing_m=none", "solver.target_particle_count=100"};
-    const Scene scene = base(), finer = with(refinements(scene)[2]);
-    EXPECT_NEAR(std::pow(choose_particle_spacing(scene.spec.solver, scene.releases[0].volume) /
+    const scene::Scene scene = base(), finer = with(refinements(scene)[2]);
+    EXPECT_NEAR(std::pow(sim::choose_particle_spacing(scene.spec.solver, scene.releases[0].volume) /
                              *finer.spec.solver.particle_spacing,
                          3),
                 3, 1e-9);
@@ -177,4 +177,4 @@ TEST(SeriesClock, AddsUpAllRuns) {
 }
 
 }  // namespace
-}  // namespace talus
+}  // namespace talus::run

@@ -9,7 +9,7 @@
 #include "scene/scene.hpp"
 #include "scene_folder.hpp"
 
-namespace talus {
+namespace talus::scene {
 namespace {
 
 using testing::AllOf;
@@ -23,7 +23,7 @@ class LoadBed : public SceneFolder {
         EXPECT_TRUE(scene) << scene.error().message;
         return scene ? std::move(*scene) : Scene{};
     }
-    static double volume_of(const Bed& bed) {
+    static double volume_of(const terrain::Bed& bed) {
         return cell * cell * std::accumulate(bed.depth.begin(), bed.depth.end(), 0.0);
     }
     void write_channel() const {
@@ -58,7 +58,7 @@ TEST_F(LoadBed, TakesDepthsFromARasterWithinItsPolygons) {
         "critical_shear_stress_Pa = 500\n");
     const Scene scene = loaded();
     EXPECT_NEAR(volume_of(scene.bed), 2 * 150 * 40, 1);
-    EXPECT_EQ(scene.bed.materials[0].law, EntrainmentLaw::shear);
+    EXPECT_EQ(scene.bed.materials[0].law, params::EntrainmentLaw::shear);
     EXPECT_EQ(scene.bed.materials[0].critical_shear_stress, 500);
 }
 
@@ -110,11 +110,11 @@ TEST_F(LoadBed, RunsAndBalancesItsVolume) {
     write_valley(
         "[[bed]]\ndepth_m = 0.5\ngrowth_rate_per_m = 0.01\n[solver]\ntarget_particle_count = 400\nend_time_s = 8\n");
     const Scene scene = loaded();
-    const Result<RunResult> run = run_scene(scene, {});
+    const Result<run::RunResult> run = run::run_scene(scene, {});
     ASSERT_TRUE(run);
-    const Observation& seen = run->observation;
+    const observe::Observation& seen = run->observation;
     EXPECT_GT(seen.erosion.volume, 0.05 * seen.volume_released);
-    const TimeSample& end = seen.timeseries.back();
+    const observe::TimeSample& end = seen.timeseries.back();
     const double present = end.volume_held + end.volume_moving + end.volume_deposited + end.volume_left;
     EXPECT_NEAR(end.volume_released + end.volume_entrained, present, 1e-6 * present);
     EXPECT_NEAR(seen.erosion.volume, end.volume_entrained, 1e-3 * end.volume_entrained);
@@ -152,4 +152,4 @@ TEST_F(LoadBed, AnEarlierSurgeChangesTheGround) {
 }
 
 }  // namespace
-}  // namespace talus
+}  // namespace talus::scene

@@ -10,7 +10,7 @@
 
 #include "scene/scene.hpp"
 
-namespace talus {
+namespace talus::scene {
 namespace {
 
 namespace fs = std::filesystem;
@@ -57,4 +57,4 @@ TEST_F(BuiltinScene, NamesTheFolderItCannotMake) {
 }
 
 }  // namespace
-}  // namespace talus
+}  // namespace talus::scene

@@ -9,7 +9,7 @@
 #include "scene/scene.hpp"
 #include "scene_folder.hpp"
 
-namespace talus {
+namespace talus::scene {
 namespace {
 
 using testing::AllOf;
@@ -329,4 +329,4 @@ TEST_F(LoadScene, ReprojectedVectorsAreNoted) {
 }
 
 }  // namespace
-}  // namespace talus
+}  // namespace talus::scene

@@ -12,7 +12,7 @@
 #include "scene/reach.hpp"
 #include "scene_folder.hpp"
 
-namespace talus {
+namespace talus::scene {
 namespace {
 
 using testing::AllOf;
@@ -148,9 +148,9 @@ TEST(ReachableExtent, FollowsTheEnergyLineOverALevelPlain) {
     for (int row = 0; row < 21; ++row) {
         for (int column = 0; column < 100; ++column) elevation.at(column, row) = column < 10 ? 20.0F : 0.0F;
     }
-    Release release;
+    terrain::Release release;
     release.patches.push_back({{{{5, 5}, {10, 5}, {10, 16}, {5, 16}}, {}}, 1});
-    const Extent reach = reachable_extent(Terrain(elevation), {release}, std::numbers::pi / 4);
+    const Extent reach = reachable_extent(terrain::Terrain(elevation), {release}, std::numbers::pi / 4);
     EXPECT_NEAR(reach.x_max, 10 + 20 + 1, 1.01);
     EXPECT_NEAR(reach.x_min, 5 - 1, 1.01);
 }
@@ -161,9 +161,9 @@ TEST(ReachableExtent, NodataIsNotCrossed) {
         for (int column = 0; column < 100; ++column) elevation.at(column, row) = static_cast<float>(100 - column);
         elevation.at(50, row) = std::numeric_limits<float>::quiet_NaN();
     }
-    Release release;
+    terrain::Release release;
     release.patches.push_back({{{{5, 1}, {10, 1}, {10, 4}, {5, 4}}, {}}, 1});
-    EXPECT_EQ(reachable_extent(Terrain(elevation), {release}, 0.2).x_max, 50);
+    EXPECT_EQ(reachable_extent(terrain::Terrain(elevation), {release}, 0.2).x_max, 50);
 }
 
 class DescribeScene : public SceneFolder {};
@@ -192,4 +192,4 @@ TEST_F(DescribeScene, TooManyParticlesNameTheSpacingThatFits) {
 }
 
 }  // namespace
-}  // namespace talus
+}  // namespace talus::scene

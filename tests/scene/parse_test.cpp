@@ -10,7 +10,7 @@
 #include "scene/scene.hpp"
 #include "scene_folder.hpp"
 
-namespace talus {
+namespace talus::scene {
 namespace {
 
 using testing::AnyOf;
@@ -32,11 +32,11 @@ class ParseScene : public SceneFolder {
         EXPECT_EQ(spec.error().message.find('\n'), std::string::npos) << spec.error().message;
         return spec.error().message;
     }
-    SceneSpec parsed(const std::string& text, const std::vector<std::string>& overrides = {}) const {
+    params::SceneSpec parsed(const std::string& text, const std::vector<std::string>& overrides = {}) const {
         write("scene.toml", text);
         auto spec = parse_scene(file(), overrides);
         EXPECT_TRUE(spec) << spec.error().message;
-        return spec ? *spec : SceneSpec{};
+        return spec ? *spec : params::SceneSpec{};
     }
     [[nodiscard]] std::string file() const { return path("scene.toml"); }
     [[nodiscard]] std::string line(int number) const { return file() + ":" + std::to_string(number) + ": "; }
@@ -46,7 +46,7 @@ class ParseScene : public SceneFolder {
 };
 
 TEST_F(ParseScene, ReadsEverySectionAndKeepsDefaults) {
-    const SceneSpec spec = parsed(minimal + R"([scene]
+    const params::SceneSpec spec = parsed(minimal + R"([scene]
 title = "Häng"
 assumptions = ["one", "two"]
 [buildings]
@@ -65,9 +65,9 @@ front_velocity_mps = 11
     EXPECT_EQ(spec.buildings.file, "/data/houses.gpkg");
     EXPECT_EQ(spec.releases.at(0).thickness, 2.0);
     EXPECT_EQ(spec.solver.target_particle_count, 100000);
-    EXPECT_EQ(spec.solver.kernel, KernelChoice::spiky);
+    EXPECT_EQ(spec.solver.kernel, params::KernelChoice::spiky);
     EXPECT_EQ(spec.solver.end_time, 30);
-    EXPECT_EQ(spec.material.viscosity, MaterialSpec{}.viscosity);
+    EXPECT_EQ(spec.material.viscosity, params::MaterialSpec{}.viscosity);
     EXPECT_EQ(spec.observations.at(0).chainage, 121);
 }
 
@@ -190,7 +190,7 @@ TEST_F(ParseScene, UnreadableFilesAreNamed) {
 }
 
 TEST_F(ParseScene, AByteOrderMarkAndWindowsLineEndsAreFine) {
-    const SceneSpec spec =
+    const params::SceneSpec spec =
         parsed("\xef\xbb\xbf[terrain]\r\nfile = \"dem.tif\"\r\n[[release]]\r\nfile = \"r\"\r\nthickness_m = 2\r\n");
     EXPECT_EQ(spec.releases.size(), 1U);
 }
@@ -208,7 +208,7 @@ TEST_F(ParseScene, PathsAreTakenFromTheScenesFolderAndTheEnvironment) {
     setenv("TALUS_TEST_DATA", "/somewhere", 1);
     unsetenv("TALUS_TEST_ABSENT");
     const std::string rest = "[[release]]\nfile = \"sub/../r.gpkg\"\nvolume_m3 = 600\n";
-    const SceneSpec spec = parsed("[terrain]\nfile = \"${TALUS_TEST_DATA}/dem.tif\"\n" + rest);
+    const params::SceneSpec spec = parsed("[terrain]\nfile = \"${TALUS_TEST_DATA}/dem.tif\"\n" + rest);
     EXPECT_EQ(spec.terrain.file, "/somewhere/dem.tif");
     EXPECT_EQ(spec.releases.at(0).file, path("r.gpkg"));
     EXPECT_EQ(error_of("[terrain]\nfile = \"${TALUS_TEST_ABSENT}/dem.tif\"\nobtain = \"ask the survey\"\n" + rest),
@@ -223,13 +223,13 @@ TEST_F(ParseScene, PathsAreTakenFromTheScenesFolderAndTheEnvironment) {
 }
 
 TEST_F(ParseScene, OverridesReplaceValues) {
-    const SceneSpec spec = parsed(
+    const params::SceneSpec spec = parsed(
         minimal + "[[release]]\nfile = \"b\"\nvolume_m3 = 5\n",
         {"solver.particle_spacing_m=0.25", "solver.kernel=spiky", "release[1].volume_m3=7", "terrain.file=other.tif",
          "scene.title=A = B", "scene.sources=[\"x\"]", "scene.reconstruction=true", "terrain.extent_m=[0,0,10,20]",
          "release[0].thickness_m=none", "release[0].volume_m3=600", "material.viscosity=5e-2"});
     EXPECT_EQ(spec.solver.particle_spacing, 0.25);
-    EXPECT_EQ(spec.solver.kernel, KernelChoice::spiky);
+    EXPECT_EQ(spec.solver.kernel, params::KernelChoice::spiky);
     EXPECT_EQ(spec.releases.at(1).volume, 7.0);
     EXPECT_EQ(spec.terrain.file, path("other.tif"));
     EXPECT_EQ(spec.scene.title, "A = B");
@@ -266,7 +266,7 @@ TEST_F(ParseScene, OverridesAreCheckedLikeTheFile) {
 }
 
 TEST_F(ParseScene, AWrittenSceneParsesToTheSameValues) {
-    SceneSpec spec;
+    params::SceneSpec spec;
     spec.scene.title = "A \"title\"\nof two lines \xc3\xa4";
     spec.scene.assumptions = {"first, with comma", "second"};
     spec.terrain.file = path("dem.tif");
@@ -278,15 +278,16 @@ TEST_F(ParseScene, AWrittenSceneParsesToTheSameValues) {
     spec.releases[1].volume = 600;
     spec.releases[1].start_time = 12.5;
     spec.solver.time_step = 0.1 + 0.2;
-    spec.solver.kernel = KernelChoice::poly6_spiky;
+    spec.solver.kernel = params::KernelChoice::poly6_spiky;
     spec.observations.resize(1);
     spec.observations[0].chainage = 121;
     spec.observations[0].front_velocity = 11;
-    const SceneSpec again = parsed(write_scene(spec, "A header\nof two lines."));
+    const params::SceneSpec again = parsed(write_scene(spec, "A header\nof two lines."));
     std::vector<std::string> before, after;
     const auto collect = [](std::vector<std::string>& into) {
-        return [&into](const Section& s, std::size_t index, const Parameter& p, const ParameterValue& value) {
-            into.push_back(key_path(s, index, p) + " = " + toml_text(value));
+        return [&into](const params::Section& s, std::size_t index, const params::Parameter& p,
+                       const params::ParameterValue& value) {
+            into.push_back(key_path(s, index, p) + " = " + params::toml_text(value));
         };
     };
     for_each_value(spec, collect(before));
@@ -295,7 +296,7 @@ TEST_F(ParseScene, AWrittenSceneParsesToTheSameValues) {
 }
 
 TEST_F(ParseScene, EveryCommentedDefaultOfAWrittenSceneIsValid) {
-    SceneSpec spec;
+    params::SceneSpec spec;
     spec.terrain.file = "dem.tif";
     spec.releases.resize(1);
     spec.releases[0].file = "release.gpkg";
@@ -322,4 +323,4 @@ TEST_F(ParseScene, EveryCommentedDefaultOfAWrittenSceneIsValid) {
 }
 
 }  // namespace
-}  // namespace talus
+}  // namespace talus::scene

@@ -5,7 +5,7 @@
 #include "scene/scene.hpp"
 #include "scene_folder.hpp"
 
-namespace talus {
+namespace talus::scene {
 namespace {
 
 using testing::HasSubstr;
@@ -13,7 +13,8 @@ using testing::HasSubstr;
 class ParseVariants : public SceneFolder {
   protected:
     /// Of a scene with `text` from its line 6 on.
-    [[nodiscard]] Result<SceneSpec> parsed(const std::string& text, const std::vector<std::string>& overrides = {}) {
+    [[nodiscard]] Result<params::SceneSpec> parsed(const std::string& text,
+                                                   const std::vector<std::string>& overrides = {}) {
         write("scene.toml",
               "[terrain]\nfile = \"dem.tif\"\n[[release]]\nfile = \"release.geojson\"\nthickness_m = 2\n" + text);
         return parse_scene(path("scene.toml"), overrides);
@@ -35,7 +36,7 @@ TEST_F(ParseVariants, ChangeNothingUntilTheyAreTaken) {
     const auto given = parsed(two);
     ASSERT_TRUE(given) << given.error().message;
     EXPECT_EQ(given->variants.size(), 2U);
-    EXPECT_EQ(given->material.friction_coefficient, MaterialSpec{}.friction_coefficient);
+    EXPECT_EQ(given->material.friction_coefficient, params::MaterialSpec{}.friction_coefficient);
     const auto wet = parsed(two, {"variant=wet"});
     ASSERT_TRUE(wet) << wet.error().message;
     EXPECT_EQ(wet->material.friction_coefficient, 0.1);
@@ -73,4 +74,4 @@ TEST_F(ParseVariants, AreWrittenWithTheScene) {
 }
 
 }  // namespace
-}  // namespace talus
+}  // namespace talus::scene

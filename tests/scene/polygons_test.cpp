@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-namespace talus {
+namespace talus::scene {
 namespace {
 
 Polygon rectangle(double x_min, double y_min, double x_max, double y_max) {
@@ -71,4 +71,4 @@ TEST(PointsOnRings, AreAtMostAStepApart) {
 }
 
 }  // namespace
-}  // namespace talus
+}  // namespace talus::scene

@@ -7,7 +7,7 @@
 #include "scene/scene.hpp"
 #include "scene_folder.hpp"
 
-namespace talus {
+namespace talus::scene {
 namespace {
 
 using testing::AllOf;
@@ -58,7 +58,7 @@ TEST_F(ReleaseShift, TakesTheRasterOfThicknessAlong) {
     const std::vector<std::string> raster{"release.thickness_m=none", "release.thickness_raster=thickness.tif"};
     std::vector<std::string> shifted = raster;
     shifted.emplace_back("release.shift_along_m=10");
-    const Release given = loaded(raster).releases[0], there = loaded(shifted).releases[0];
+    const terrain::Release given = loaded(raster).releases[0], there = loaded(shifted).releases[0];
     EXPECT_NEAR(there.volume, given.volume, 0.02 * given.volume);
     for (const double x : {102.0, 118.0}) {
         EXPECT_EQ(there.thickness_at({west + x + 8, south + 106}), given.thickness_at({west + x, south + 100}));
@@ -75,4 +75,4 @@ TEST_F(ReleaseShift, BeyondTheTerrainOrOnLevelGroundIsRefused) {
 }
 
 }  // namespace
-}  // namespace talus
+}  // namespace talus::scene

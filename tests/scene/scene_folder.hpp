@@ -12,7 +12,7 @@
 #include "geo/raster.hpp"
 #include "scene/scene.hpp"
 
-namespace talus {
+namespace talus::scene {
 
 /// A folder of its own for a test, with a small valley: 60 x 40 cells of 5 m in EPSG:2326, falling towards the east,
 /// and a release of 20 m x 20 m near its top.
@@ -47,7 +47,7 @@ class SceneFolder : public testing::Test {
                 grid.at(column, row) = static_cast<float>(elevation(p.x, p.y));
             }
         }
-        const Status written = write_cog(path(name), {&grid, "elevation", "m"}, {"", "", 2326});
+        const Status written = geo::write_cog(path(name), {&grid, "elevation", "m"}, {"", "", 2326});
         ASSERT_TRUE(written) << written.error().message;
     }
 
@@ -91,4 +91,4 @@ class SceneFolder : public testing::Test {
     }
 };
 
-}  // namespace talus
+}  // namespace talus::scene

@@ -9,7 +9,7 @@
 #include "scene/scene.hpp"
 #include "scene_folder.hpp"
 
-namespace talus {
+namespace talus::scene {
 namespace {
 
 using testing::AllOf;
@@ -32,11 +32,11 @@ class Structures : public SceneFolder {
         if (!scene) throw std::runtime_error(scene.error().message);
         return std::move(*scene);
     }
-    [[nodiscard]] RunResult run(const std::vector<std::string>& overrides = {}) const {
+    [[nodiscard]] run::RunResult run(const std::vector<std::string>& overrides = {}) const {
         std::vector<std::string> all{"solver.target_particle_count=1500", "solver.end_time_s=12",
                                      "material.friction_coefficient=0.25"};
         all.insert(all.end(), overrides.begin(), overrides.end());
-        auto result = run_scene(loaded(all), {});
+        auto result = run::run_scene(loaded(all), {});
         if (!result) throw std::runtime_error(result.error().message);
         return std::move(*result);
     }
@@ -74,11 +74,11 @@ TEST_F(Structures, ABarrierWithAPassingShareIsANet) {
 
 TEST_F(Structures, ANetHoldsMoreThanASlotLetsThroughAndEverythingIsAccountedFor) {
     write_valley(dam("height_m = 8"));
-    const RunResult wall = run();
+    const run::RunResult wall = run();
     write_valley(dam("height_m = 8\npassing_share = 0.5"));
-    const RunResult net = run();
-    const BuildingImpact& at_wall = wall.observation.buildings[0];
-    const BuildingImpact& at_net = net.observation.buildings[0];
+    const run::RunResult net = run();
+    const observe::BuildingImpact& at_wall = wall.observation.buildings[0];
+    const observe::BuildingImpact& at_net = net.observation.buildings[0];
     EXPECT_TRUE(std::isnan(at_wall.passing_share));
     EXPECT_EQ(at_net.passing_share, 0.5);
     EXPECT_EQ(at_wall.passed_volume, 0);
@@ -118,7 +118,7 @@ TEST_F(Structures, BuildingsMayBeAMesh) {
     EXPECT_NEAR(scene.buildings[0].height, 106 - (200 - 0.5 * 203 + 0.4), 0.2) << "above the mean ground";
     EXPECT_EQ(scene.buildings[0].resistance.pressure, 3e4);
     EXPECT_THAT(scene.notes, Contains(HasSubstr("1 of 3 lie outside the terrain")));
-    const BuildingSolids solids(scene.terrain, scene.buildings, 1);
+    const terrain::BuildingSolids solids(scene.terrain, scene.buildings, 1);
     const LocalPoint p = scene.terrain.frame().to_local({west + 203, south + 100, 105});
     EXPECT_TRUE(solids.inside(p));
     EXPECT_FALSE(solids.inside(LocalPoint{p.x, p.y, p.z + 2}));
@@ -170,8 +170,8 @@ TEST_F(Structures, BadBarriersAreRefusedByKey) {
 
 TEST_F(Structures, ADamHoldsDebrisAndItsSlotLetsSomeThrough) {
     write_valley(dam());
-    const RunResult held = run();
-    const BuildingImpact& dam_alone = held.observation.buildings.at(0);
+    const run::RunResult held = run();
+    const observe::BuildingImpact& dam_alone = held.observation.buildings.at(0);
     EXPECT_TRUE(dam_alone.is_barrier);
     EXPECT_TRUE(dam_alone.hit);
     EXPECT_EQ(dam_alone.passed_volume, 0);
@@ -179,26 +179,26 @@ TEST_F(Structures, ADamHoldsDebrisAndItsSlotLetsSomeThrough) {
     EXPECT_GT(dam_alone.peak_filling_height, 0.5);
     EXPECT_GT(dam_alone.history.size(), 20U);
     write_valley(dam() + "[[barrier_opening]]\nbarrier = \"dam\"\nposition_m = 30\nwidth_m = 8\n");
-    const RunResult open = run();
+    const run::RunResult open = run();
     EXPECT_GT(open.observation.buildings.at(0).passed_volume, 20);
     EXPECT_LT(open.observation.buildings.at(0).held_volume, dam_alone.held_volume);
 }
 
 TEST_F(Structures, AResistanceThatIsExceededBringsItDownTheSameOnAnyNumberOfThreads) {
     write_valley(dam());
-    const RunResult stood = run();
+    const run::RunResult stood = run();
     const double peak = stood.observation.buildings.at(0).peak_force / 60;  // N/m
     EXPECT_TRUE(std::isnan(stood.observation.buildings.at(0).failure_time));
     const std::string weak = fmt::format("barrier[0].resistance_Npm={}", peak / 2);
-    const RunResult one = run({weak, "solver.thread_count=1"}), two = run({weak, "solver.thread_count=2"});
-    const BuildingImpact& fallen = one.observation.buildings.at(0);
+    const run::RunResult one = run({weak, "solver.thread_count=1"}), two = run({weak, "solver.thread_count=2"});
+    const observe::BuildingImpact& fallen = one.observation.buildings.at(0);
     EXPECT_GT(fallen.failure_time, fallen.first_hit_time);
     EXPECT_EQ(one.hash, two.hash);
     EXPECT_EQ(fallen.failure_time, two.observation.buildings.at(0).failure_time);
     EXPECT_NE(one.hash, stood.hash);
     EXPECT_GT(one.observation.run_out.front_chainage, stood.observation.run_out.front_chainage + 10);
     EXPECT_GT(one.observation.run_out.along_flow, stood.observation.run_out.along_flow + 5);
-    const RunResult strong = run({fmt::format("barrier[0].resistance_Npm={}", 2 * peak)});
+    const run::RunResult strong = run({fmt::format("barrier[0].resistance_Npm={}", 2 * peak)});
     EXPECT_EQ(strong.hash, stood.hash) << "a resistance that is not exceeded changes nothing";
 }
 
@@ -212,11 +212,11 @@ TEST_F(Structures, InflowBringsItsVolumeToTheParticle) {
     EXPECT_NEAR(total_volume(scene), 110, 1e-9);
     EXPECT_THAT(scene.notes, Contains(HasSubstr("flow path: traced downhill from inflow \"gully\"")));
     EXPECT_THAT(scene.notes, Contains(HasSubstr("where the ground falls by 0.5 in its direction")));
-    const RunResult result = run();
-    EXPECT_EQ(result.status, RunStatus::complete) << result.stop_reason;
+    const run::RunResult result = run();
+    EXPECT_EQ(result.status, run::RunStatus::complete) << result.stop_reason;
     EXPECT_EQ(result.particles, 1500U);
     EXPECT_NEAR(result.observation.volume_released, 110, 1e-6);
-    const TimeSample& last = result.observation.timeseries.back();
+    const observe::TimeSample& last = result.observation.timeseries.back();
     EXPECT_NEAR(last.volume_held + last.volume_moving + last.volume_deposited + last.volume_left, 110, 1e-6);
     EXPECT_EQ(run({"solver.thread_count=1"}).hash, result.hash);
     EXPECT_GT(result.observation.run_out.along_flow, 5);
@@ -225,8 +225,8 @@ TEST_F(Structures, InflowBringsItsVolumeToTheParticle) {
 TEST_F(Structures, InflowAndReleaseRunTogether) {
     write("surge.csv", "time_s,discharge_m3ps,velocity_mps\n1,20,6\n4,20,6\n");
     write_valley(inflow());
-    const RunResult result = run();
-    EXPECT_EQ(result.status, RunStatus::complete) << result.stop_reason;
+    const run::RunResult result = run();
+    EXPECT_EQ(result.status, run::RunStatus::complete) << result.stop_reason;
     EXPECT_NEAR(result.observation.volume_released, total_volume(loaded()),
                 0.5 * std::pow(result.particle_spacing, 3) * 2);
 }
@@ -244,21 +244,22 @@ TEST_F(Structures, InflowOverAnAreaBringsItsVolumeAndItsDensity) {
     write("scene.toml", "[terrain]\nfile = \"dem.tif\"\n" + houses + source);
     const Scene scene = loaded();
     EXPECT_THAT(scene.notes, Contains(HasSubstr("inflow \"scarp\": 80 m3 over 400 m2, down the slope")));
-    const RunResult result = run();
-    EXPECT_EQ(result.status, RunStatus::complete) << result.stop_reason;
+    const run::RunResult result = run();
+    EXPECT_EQ(result.status, run::RunStatus::complete) << result.stop_reason;
     EXPECT_NEAR(result.observation.volume_released, 80, 1e-6);
     EXPECT_EQ(run({"solver.thread_count=1"}).hash, result.hash);
     ASSERT_TRUE(result.observation.buildings[0].hit);
 
     // Half as dense: the same motion, half the force and half the pressure.
     write("rain.csv", "time_s,discharge_m3ps,velocity_mps,density_kgpm3\n0,0,1,1000\n2,40,2,1000\n4,0,1,1000\n");
-    const RunResult light = run();
+    const run::RunResult light = run();
     EXPECT_EQ(light.hash, result.hash);
-    const BuildingImpact &heavy_impact = result.observation.buildings[0], &impact = light.observation.buildings[0];
+    const observe::BuildingImpact &heavy_impact = result.observation.buildings[0],
+                                  &impact = light.observation.buildings[0];
     EXPECT_NEAR(impact.peak_force, heavy_impact.peak_force / 2, 1e-5 * heavy_impact.peak_force);
     EXPECT_NEAR(impact.peak_dynamic_pressure, heavy_impact.peak_dynamic_pressure / 2,
                 1e-5 * heavy_impact.peak_dynamic_pressure);
-    const TimeSample &heavy_row = result.observation.timeseries[30], &row = light.observation.timeseries[30];
+    const observe::TimeSample &heavy_row = result.observation.timeseries[30], &row = light.observation.timeseries[30];
     EXPECT_GT(row.kinetic_energy, 0);
     EXPECT_NEAR(row.kinetic_energy, heavy_row.kinetic_energy / 2, 1e-5 * heavy_row.kinetic_energy);
     const std::vector<float>&heavy_map = result.observation.maps.peak_pressure.values,
@@ -270,7 +271,7 @@ TEST_F(Structures, InflowOverAnAreaBringsItsVolumeAndItsDensity) {
     }
     // Densities that differ: between those of the ends.
     write("rain.csv", "time_s,discharge_m3ps,velocity_mps,density_kgpm3\n0,0,1,1000\n2,40,2,1500\n4,0,1,2000\n");
-    const RunResult mixed = run();
+    const run::RunResult mixed = run();
     EXPECT_EQ(mixed.hash, result.hash);
     EXPECT_GT(mixed.observation.buildings[0].peak_force, 1.02 * impact.peak_force);
     EXPECT_LT(mixed.observation.buildings[0].peak_force, 0.98 * heavy_impact.peak_force);
@@ -333,4 +334,4 @@ TEST_F(Structures, BadHydrographsAreRefusedByLine) {
 }
 
 }  // namespace
-}  // namespace talus
+}  // namespace talus::scene

@@ -4,7 +4,7 @@
 
 #include "scene_folder.hpp"
 
-namespace talus {
+namespace talus::scene {
 namespace {
 
 using testing::AllOf;
@@ -100,4 +100,4 @@ TEST_F(Zones, AMaterialThatFrictionByPairsCannotFollowIsRefused) {
 }
 
 }  // namespace
-}  // namespace talus
+}  // namespace talus::scene

@@ -15,7 +15,7 @@
 #include "terrain/flow_path.hpp"
 #include "terrain/terrain.hpp"
 
-namespace talus {
+namespace talus::test {
 namespace {
 
 const std::filesystem::path scenes = std::filesystem::path(TALUS_SOURCE_DIR) / "scenes";
@@ -24,21 +24,21 @@ const std::filesystem::path scenes = std::filesystem::path(TALUS_SOURCE_DIR) / "
 class Reconstruction : public testing::Test {
   protected:
     void SetUp() override {
-        auto raster = read_terrain_raster((scenes / "sham_tseng/terrain.tif").string(), 1, std::nullopt);
+        auto raster = geo::read_terrain_raster((scenes / "sham_tseng/terrain.tif").string(), 1, std::nullopt);
         ASSERT_TRUE(raster.ok()) << raster.error().message;
         crs = raster->crs;
-        terrain = Terrain(raster->grid);
+        terrain = terrain::Terrain(raster->grid);
         auto line = read_line((scenes / "sham_tseng/flow_path.geojson").string(), "", crs);
         ASSERT_TRUE(line.ok()) << line.error().message;
         EXPECT_EQ(line->reprojection, "");
-        path = FlowPath(line->points, 50);
+        path = terrain::FlowPath(line->points, 50);
     }
 
     [[nodiscard]] double bed(double chainage) const { return terrain.elevation_at(path.point_at(chainage)); }
 
-    Crs crs;
-    Terrain terrain;
-    FlowPath path;
+    geo::Crs crs;
+    terrain::Terrain terrain;
+    terrain::FlowPath path;
 };
 
 TEST_F(Reconstruction, IsInHongKongGridAndHasNoGaps) {
@@ -149,8 +149,8 @@ TEST(SceneScripts, MakeExactlyTheCommittedFiles) {
             EXPECT_EQ(test::read_text(made / file), test::read_text(scenes / scene / file)) << scene << "/" << file;
         }
         if (scene == "sham_tseng") {
-            auto again = read_terrain_raster((made / "terrain.tif").string(), 1, std::nullopt);
-            auto committed = read_terrain_raster((scenes / scene / "terrain.tif").string(), 1, std::nullopt);
+            auto again = geo::read_terrain_raster((made / "terrain.tif").string(), 1, std::nullopt);
+            auto committed = geo::read_terrain_raster((scenes / scene / "terrain.tif").string(), 1, std::nullopt);
             ASSERT_TRUE(again.ok() && committed.ok());
             EXPECT_EQ(again->grid.geometry, committed->grid.geometry);
             EXPECT_EQ(again->grid.values, committed->grid.values);
@@ -159,7 +159,7 @@ TEST(SceneScripts, MakeExactlyTheCommittedFiles) {
     }
 }
 
-void expect_the_landslide(const Scene& scene) {
+void expect_the_landslide(const scene::Scene& scene) {
     EXPECT_TRUE(scene.spec.scene.reconstruction);
     EXPECT_GE(scene.spec.scene.assumptions.size(), 8U);
     EXPECT_FALSE(scene.spec.scene.sources.empty());
@@ -168,7 +168,7 @@ void expect_the_landslide(const Scene& scene) {
     EXPECT_NEAR(scene.releases[0].volume, 600, 6);
     EXPECT_EQ(scene.spec.material.rest_density, 2000);
     std::vector<std::string> variants;
-    for (const VariantSpec& variant : scene.spec.variants) variants.push_back(variant.name);
+    for (const params::VariantSpec& variant : scene.spec.variants) variants.push_back(variant.name);
     EXPECT_EQ(variants, (std::vector<std::string>{"paper", "ls-dyna", "guidance", "reconstruction"}));
     ASSERT_EQ(scene.spec.observations.size(), 2U);
     EXPECT_EQ(scene.spec.observations[0].chainage, 121);
@@ -176,13 +176,13 @@ void expect_the_landslide(const Scene& scene) {
     EXPECT_EQ(scene.spec.observations[1].chainage, 217);
     EXPECT_EQ(scene.spec.observations[1].front_velocity, 7);
     bool kitchen = false;
-    for (const Building& building : scene.buildings) kitchen |= building.name == "House 38, kitchen";
+    for (const terrain::Building& building : scene.buildings) kitchen |= building.name == "House 38, kitchen";
     EXPECT_TRUE(kitchen);
     EXPECT_FALSE(scene.flow_path_traced);
 }
 
 TEST(Scenes, ReconstructionLoads) {
-    const auto scene = load_scene(scenes / "sham_tseng/scene.toml");
+    const auto scene = scene::load_scene(scenes / "sham_tseng/scene.toml");
     ASSERT_TRUE(scene.ok()) << scene.error().message;
     expect_the_landslide(*scene);
 }
@@ -192,13 +192,13 @@ TEST(Scenes, BothHaveTheSameMaterial) {
     const std::filesystem::path files[] = {scenes / "sham_tseng/scene.toml", scenes / "sham_tseng_real/scene.toml"};
     const bool given = std::getenv("TALUS_DATA") != nullptr;
     if (!given) setenv("TALUS_DATA", "/nowhere", 1);  // the terrain is not read
-    const auto reconstruction = parse_scene(files[0]), official = parse_scene(files[1]);
+    const auto reconstruction = scene::parse_scene(files[0]), official = scene::parse_scene(files[1]);
     ASSERT_TRUE(reconstruction.ok() && official.ok());
     EXPECT_EQ(reconstruction->material.friction_coefficient, official->material.friction_coefficient);
     EXPECT_EQ(reconstruction->material.turbulent_friction, official->material.turbulent_friction);
     EXPECT_EQ(reconstruction->material.viscosity, official->material.viscosity);
     for (const auto& file : files) {
-        const auto published = parse_scene(file, {"variant=paper"});
+        const auto published = scene::parse_scene(file, {"variant=paper"});
         ASSERT_TRUE(published.ok()) << published.error().message;
         EXPECT_EQ(published->material.friction_coefficient, 0.4);
         EXPECT_EQ(published->material.viscosity, 0.1);
@@ -213,7 +213,7 @@ TEST(Scenes, OfficialTerrainLoads) {
     if (folder == nullptr || *folder == 0) {
         GTEST_SKIP() << "sham_tseng_real not checked: TALUS_DATA does not say where hk_sham_tseng/ lies";
     }
-    const auto scene = load_scene(scenes / "sham_tseng_real/scene.toml");
+    const auto scene = scene::load_scene(scenes / "sham_tseng_real/scene.toml");
     ASSERT_TRUE(scene.ok()) << scene.error().message;
     expect_the_landslide(*scene);
     // The trail is drawn along the thalweg: on average downhill over every 20 m.
@@ -228,7 +228,7 @@ TEST(Scenes, WithoutTheOfficialTerrainItSaysWhereToGetIt) {
     const char* folder = std::getenv("TALUS_DATA");
     const std::string before = folder != nullptr ? folder : "";
     unsetenv("TALUS_DATA");
-    const auto scene = load_scene(scenes / "sham_tseng_real/scene.toml");
+    const auto scene = scene::load_scene(scenes / "sham_tseng_real/scene.toml");
     if (folder != nullptr) setenv("TALUS_DATA", before.c_str(), 1);
     ASSERT_FALSE(scene.ok());
     EXPECT_NE(scene.error().message.find("TALUS_DATA"), std::string::npos) << scene.error().message;
@@ -236,4 +236,4 @@ TEST(Scenes, WithoutTheOfficialTerrainItSaysWhereToGetIt) {
 }
 
 }  // namespace
-}  // namespace talus
+}  // namespace talus::test

@@ -28,7 +28,7 @@ class EnsemblesTest : public Serve {
     }
     [[nodiscard]] fs::path ensemble() const { return scene_.folder() / "ens"; }
     [[nodiscard]] std::string refusal(const fs::path& folder) const {
-        const auto scene = load_scene(scene_.scene_file(), {});
+        const auto scene = scene::load_scene(scene_.scene_file(), {});
         EXPECT_TRUE(scene);
         const auto read = Ensembles::read({folder}, *scene);
         return read ? "" : read.error().message;

@@ -27,7 +27,7 @@ class Serve : public ::testing::Test {
         server_.reset();
         std::vector<std::string> all{"solver.end_time_s=1000"};
         all.insert(all.end(), overrides.begin(), overrides.end());
-        auto scene = load_scene(scene_.scene_file(), all);
+        auto scene = scene::load_scene(scene_.scene_file(), all);
         ASSERT_TRUE(scene) << scene.error().message;
         serve::ServerOptions options;
         options.port = 0;
@@ -41,7 +41,7 @@ class Serve : public ::testing::Test {
         options.calibration.keep = keep_;
         auto server = serve::Server::listen(std::move(options));
         ASSERT_TRUE(server) << server.error().message;
-        const Status serving = (*server)->serve(std::make_shared<const Scene>(std::move(*scene)));
+        const Status serving = (*server)->serve(std::make_shared<const scene::Scene>(std::move(*scene)));
         ASSERT_TRUE(serving) << serving.error().message;
         server_ = std::move(*server);
     }

@@ -4,7 +4,7 @@
 #include "sim_fixtures.hpp"
 #include "support/allocations.hpp"
 
-namespace talus {
+namespace talus::sim {
 namespace {
 
 using testing::block;
@@ -21,14 +21,14 @@ long allocations_of(Simulation& simulation, int warm_up, int steps) {
 }
 
 TEST(Step, allocates_nothing_once_it_runs) {
-    const Terrain terrain = inclined_plane(30, 60, 40);
+    const terrain::Terrain terrain = inclined_plane(30, 60, 40);
     Simulation simulation = simulate({}, {}, terrain, {block(terrain, rectangle(6, 12, 16, 24), 1)}, 0.4);
     EXPECT_EQ(allocations_of(simulation, 30, 10), 0);
 }
 
 TEST(Step, allocates_nothing_while_debris_presses_on_a_wall) {
-    const Terrain terrain = inclined_plane(30, 60, 40);
-    Building house;
+    const terrain::Terrain terrain = inclined_plane(30, 60, 40);
+    terrain::Building house;
     house.footprint = {rectangle(16.5, 14, 20, 22)};
     house.height = 3;
     Simulation simulation = simulate({}, {}, terrain, {block(terrain, rectangle(6, 12, 16, 24), 1)}, 0.4, {house});
@@ -37,8 +37,8 @@ TEST(Step, allocates_nothing_while_debris_presses_on_a_wall) {
 }
 
 TEST(Step, allocates_nothing_while_debris_flows_in) {
-    const Inflow gully{"gully", {20, 17}, {20, 23}, {{0, 30, 4}, {60, 30, 4}}};
-    const Inflow spring{"spring", {}, {}, {{0, 10, 1}, {60, 10, 1}}, {rectangle(30, 17, 36, 23)}};
+    const terrain::Inflow gully{"gully", {20, 17}, {20, 23}, {{0, 30, 4}, {60, 30, 4}}};
+    const terrain::Inflow spring{"spring", {}, {}, {{0, 10, 1}, {60, 10, 1}}, {rectangle(30, 17, 36, 23)}};
     const Model model = make_model({}, {}, testing::fine_spacing);
     const Ground ground(inclined_plane(25));
     Simulation simulation(model, ground, State{}, InflowFeeder(model, ground.terrain.frame(), {gully, spring}));
@@ -49,15 +49,15 @@ TEST(Step, allocates_nothing_while_debris_flows_in) {
 }
 
 TEST(Step, allocates_nothing_while_debris_picks_up_its_bed) {
-    const Terrain terrain = inclined_plane(25);
-    MaterialSpec moving;
+    const terrain::Terrain terrain = inclined_plane(25);
+    params::MaterialSpec moving;
     moving.friction_coefficient = 0.2;
     Model model = make_model(moving, {}, testing::coarse_spacing);
     Ground ground(terrain);
     Result<State> state = seed_releases(model, ground, {block(terrain, rectangle(8, 15, 14, 25), 1.5)});
-    BedMaterial growing, sheared;
+    terrain::BedMaterial growing, sheared;
     growing.growth_rate = 0.02;
-    sheared.law = EntrainmentLaw::shear;
+    sheared.law = params::EntrainmentLaw::shear;
     sheared.critical_shear_stress = 1000;
     sheared.erosion_rate = 0.1;
     sheared.depth_per_shear = 1e-5;
@@ -76,4 +76,4 @@ TEST(Step, allocates_nothing_while_debris_picks_up_its_bed) {
 }
 
 }  // namespace
-}  // namespace talus
+}  // namespace talus::sim

@@ -8,22 +8,22 @@
 #include "sim/physics/contact.hpp"
 #include "sim_fixtures.hpp"
 
-namespace talus {
+namespace talus::sim {
 namespace {
 
 using testing::state_of;
 using testing::terrain_of;
 
 Model wall_model() {
-    MaterialSpec material;
+    params::MaterialSpec material;
     material.friction_coefficient = 0.2;
     return make_model(material, {}, 0.5);
 }
 
 /// Level ground with a thin wall across it at x = 20, its slot 2 m wide around y = 20.
 Ground walled(bool slot) {
-    const Terrain terrain = terrain_of(60, 40, 1, [](double, double) { return 10; });
-    BarrierSpec shape{{{20, 2}, {21, 20}, {20, 38}}, 6, {}, 0.3, {}};
+    const terrain::Terrain terrain = terrain_of(60, 40, 1, [](double, double) { return 10; });
+    params::BarrierSpec shape{{{20, 2}, {21, 20}, {20, 38}}, 6, {}, 0.3, {}};
     if (slot) shape.openings = {{std::hypot(1, 18), 2, 0}};
     const auto wall = make_barrier(terrain, "wall", shape);
     EXPECT_TRUE(wall);
@@ -107,4 +107,4 @@ TEST(TakeDown, frees_what_lay_against_a_wall) {
 }
 
 }  // namespace
-}  // namespace talus
+}  // namespace talus::sim

@@ -15,11 +15,11 @@ namespace {
 /// A block on a plane steeper than its friction angle.
 struct Slide {
     Slide() {
-        MaterialSpec material;
+        params::MaterialSpec material;
         material.friction_coefficient = 0.2;
-        Model model = make_model(material, {}, coarse_spacing);
-        Ground ground(terrain);
-        Result<State> state = seed_releases(model, ground, {block(terrain, rectangle(8, 15, 14, 25), 1.5)});
+        sim::Model model = sim::make_model(material, {}, coarse_spacing);
+        sim::Ground ground(terrain);
+        Result<sim::State> state = seed_releases(model, ground, {block(terrain, rectangle(8, 15, 14, 25), 1.5)});
         simulation.emplace(std::move(model), std::move(ground), *std::move(state));
     }
     void run(int steps) {
@@ -28,16 +28,16 @@ struct Slide {
             ASSERT_TRUE(stepped) << stepped.error().message;
         }
     }
-    [[nodiscard]] State more(double x_min) const {
-        Model model = simulation->model();
+    [[nodiscard]] sim::State more(double x_min) const {
+        sim::Model model = simulation->model();
         return *seed_releases(model, simulation->ground(), {block(terrain, rectangle(x_min, 15, x_min + 3, 25), 1)});
     }
 
-    Terrain terrain = inclined_plane(25);
-    std::optional<Simulation> simulation;
+    terrain::Terrain terrain = inclined_plane(25);
+    std::optional<sim::Simulation> simulation;
 };
 
-std::uint32_t with_ids_from(const State& state, std::uint32_t first) {
+std::uint32_t with_ids_from(const sim::State& state, std::uint32_t first) {
     return static_cast<std::uint32_t>(
         std::count_if(state.id.begin(), state.id.begin() + state.count, [&](std::uint32_t id) { return id >= first; }));
 }
@@ -46,25 +46,26 @@ TEST(Change, adds_more_particles_than_there_was_room_for) {
     Slide slide;
     slide.run(20);
     const std::uint32_t before = slide.simulation->state().count;
-    const State more = slide.more(40);
-    slide.simulation->change([&](Model&, Ground&, State& state) {
+    const sim::State more = slide.more(40);
+    slide.simulation->change([&](sim::Model&, sim::Ground&, sim::State& state) {
         append_particles(state, more, before);
         std::fill(state.held.begin() + before, state.held.begin() + state.count, 1);
     });
     EXPECT_EQ(slide.simulation->state().seeded, before + more.count);
     std::vector<LocalPoint> start(more.count);
     for (std::uint32_t k = 0; k < more.count; ++k) start[more.id[k]] = more.position.at(k);
-    slide.simulation->change([&](Model& model, Ground&, State&) {
+    slide.simulation->change([&](sim::Model& model, sim::Ground&, sim::State&) {
         model.releases.push_back({"held", std::numeric_limits<double>::infinity(), before, before + more.count});
     });
     slide.run(20);
-    const State& state = slide.simulation->state();
+    const sim::State& state = slide.simulation->state();
     ASSERT_EQ(with_ids_from(state, before), more.count);
     for (std::uint32_t i = 0; i < state.count; ++i) {
         if (state.id[i] < before) continue;
         EXPECT_EQ(state.position.x[i], start[state.id[i] - before].x) << "held debris stays";
     }
-    slide.simulation->change([&](Model& model, Ground&, State& s) { model.releases.back().start_time = s.time; });
+    slide.simulation->change(
+        [&](sim::Model& model, sim::Ground&, sim::State& s) { model.releases.back().start_time = s.time; });
     slide.run(40);
     EXPECT_GT(slide.simulation->state().max_speed, 1);
     EXPECT_EQ(std::count(slide.simulation->state().held.begin(),
@@ -76,17 +77,17 @@ TEST(Change, takes_particles_away_and_keeps_the_balance) {
     Slide slide;
     slide.run(20);
     const std::uint32_t before = slide.simulation->state().count;
-    slide.simulation->change([&](Model&, Ground&, State& state) { remove_particles(state, 100, 500); });
-    const State& state = slide.simulation->state();
+    slide.simulation->change([&](sim::Model&, sim::Ground&, sim::State& state) { remove_particles(state, 100, 500); });
+    const sim::State& state = slide.simulation->state();
     EXPECT_EQ(state.count, before - 400);
     EXPECT_EQ(state.removed, 400U);
     EXPECT_EQ(state.seeded, state.count + state.outflow + state.removed);
     EXPECT_EQ(with_ids_from(state, 100), before - 500);
     slide.run(20);
     // What was taken makes room for others, up to what there was.
-    const State more = slide.more(40);
+    const sim::State more = slide.more(40);
     ASSERT_LE(more.count, 400U);
-    slide.simulation->change([&](Model&, Ground&, State& s) { append_particles(s, more, s.seeded); });
+    slide.simulation->change([&](sim::Model&, sim::Ground&, sim::State& s) { append_particles(s, more, s.seeded); });
     slide.run(20);
     EXPECT_EQ(slide.simulation->state().count, before - 400 + more.count);
 }
@@ -96,13 +97,13 @@ TEST(Change, without_any_leaves_the_run_as_it_is) {
     for (int k = 0; k < 30; ++k) {
         changed.run(1);
         unchanged.run(1);
-        changed.simulation->change([](Model&, Ground&, State&) {});
+        changed.simulation->change([](sim::Model&, sim::Ground&, sim::State&) {});
     }
     EXPECT_EQ(hash_state(changed.simulation->state()), hash_state(unchanged.simulation->state()));
 }
 
 TEST(Change, wakes_what_lies_within) {
-    State state = state_of({{0, 0, 0}, {5, 0, 0}, {10, 0, 0}});
+    sim::State state = state_of({{0, 0, 0}, {5, 0, 0}, {10, 0, 0}});
     std::fill(state.asleep.begin(), state.asleep.end(), 1);
     wake(state, {4, -1, 6, 1});
     EXPECT_EQ(state.asleep[0], 1);
@@ -115,20 +116,21 @@ TEST(Change, clears_solids_without_giving_speed_or_packing_debris) {
     slide.run(60);
     const double energy = kinetic_energy(slide.simulation->model(), slide.simulation->state());
     const LocalFrame& frame = slide.terrain.frame();
-    std::vector<Building> buildings(1);
+    std::vector<terrain::Building> buildings(1);
     buildings[0].footprint = {rectangle(16, 17, 18, 23)};
     buildings[0].height = 4;
     place_buildings(slide.terrain, buildings);
     const auto inside = [&] {
-        const Simulation& s = *slide.simulation;
+        const sim::Simulation& s = *slide.simulation;
         std::uint32_t count = 0;
         for (std::uint32_t i = 0; i < s.state().count; ++i) count += s.ground().solids.inside(s.state().position.at(i));
         return count;
     };
-    slide.simulation->change(
-        [&](Model& model, Ground& ground, State&) { ground = Ground(slide.terrain, buildings, model.support_radius); });
+    slide.simulation->change([&](sim::Model& model, sim::Ground& ground, sim::State&) {
+        ground = sim::Ground(slide.terrain, buildings, model.support_radius);
+    });
     ASSERT_GT(inside(), 20U) << "the test is about debris that is in the way";
-    slide.simulation->change([&](Model& model, Ground& ground, State& state) {
+    slide.simulation->change([&](sim::Model& model, sim::Ground& ground, sim::State& state) {
         clear_solids(model, ground, state,
                      {16 - frame.origin.x, 17 - frame.origin.y, 18 - frame.origin.x, 23 - frame.origin.y});
     });

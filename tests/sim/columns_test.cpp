@@ -4,7 +4,7 @@
 
 #include "sim_fixtures.hpp"
 
-namespace talus::cpu {
+namespace talus::sim::cpu {
 namespace {
 
 VectorArray array_of(const std::vector<LocalPoint>& points) {
@@ -44,4 +44,4 @@ TEST(Columns, have_room_for_particles_that_are_all_alone) {
 }
 
 }  // namespace
-}  // namespace talus::cpu
+}  // namespace talus::sim::cpu

@@ -14,16 +14,16 @@
 #include "simd/dispatch.hpp"
 #include "terrain/barrier.hpp"
 
-namespace talus {
+namespace talus::sim {
 namespace {
 
 using reference::Vector;
 using testing::random_points;
 using testing::state_of;
 
-Model free_space(KernelChoice kernel = KernelChoice::wendland_c2,
-                 InternalFriction friction = InternalFriction::stress) {
-    SolverSpec solver;
+Model free_space(params::KernelChoice kernel = params::KernelChoice::wendland_c2,
+                 params::InternalFriction friction = params::InternalFriction::stress) {
+    params::SolverSpec solver;
     solver.kernel = kernel;
     solver.internal_friction = friction;
     Model model = make_model({}, solver, 0.4);
@@ -36,7 +36,8 @@ Ground level_ground() {
 }
 
 TEST(DensityConstraint, gradient_agrees_with_finite_differences) {
-    for (const KernelChoice kernel : {KernelChoice::wendland_c2, KernelChoice::cubic_spline, KernelChoice::spiky}) {
+    for (const params::KernelChoice kernel :
+         {params::KernelChoice::wendland_c2, params::KernelChoice::cubic_spline, params::KernelChoice::spiky}) {
         const Model model = free_space(kernel);
         const Ground ground = level_ground();
         std::vector<Vector> points;
@@ -62,8 +63,8 @@ TEST(DensityConstraint, gradient_agrees_with_finite_differences) {
 }
 
 /// Momentum of compressed, shearing debris in free space before and after some steps, per particle.
-void expect_momentum_kept(InternalFriction friction) {
-    Model model = free_space(KernelChoice::wendland_c2, friction);
+void expect_momentum_kept(params::InternalFriction friction) {
+    Model model = free_space(params::KernelChoice::wendland_c2, friction);
     const Ground ground = level_ground();
     const auto points = random_points(800, {-1.7F, -1.7F, 8}, {1.7F, 1.7F, 11.4F}, 6);
     const auto velocities = random_points(800, {-1, -1, -1}, {3, 1, 1}, 7);
@@ -91,26 +92,26 @@ void expect_momentum_kept(InternalFriction friction) {
 }
 
 TEST(ParticleCorrections, conserve_momentum_with_stresses) {
-    expect_momentum_kept(InternalFriction::stress);
+    expect_momentum_kept(params::InternalFriction::stress);
 }
 
 TEST(ParticleCorrections, conserve_momentum_with_pair_friction) {
-    expect_momentum_kept(InternalFriction::pair);
+    expect_momentum_kept(params::InternalFriction::pair);
 }
 
 /// Forest on rough ground in the south, as elsewhere in the north.
-GroundCover half_and_half(const Terrain& terrain) {
+terrain::GroundCover half_and_half(const terrain::Terrain& terrain) {
     constexpr float none = std::numeric_limits<float>::quiet_NaN();
-    Grid<CoverCell> cells(terrain.elevation().geometry, {none, none, none, 0});
+    Grid<terrain::CoverCell> cells(terrain.elevation().geometry, {none, none, none, 0});
     for (int row = 0; row < cells.geometry.rows / 2; ++row) {
         for (int column = 0; column < cells.geometry.columns; ++column)
             cells.at(column, row) = {0.6F, 0.01F, 500, 0.05F};
     }
-    return GroundCover(cells);
+    return terrain::GroundCover(cells);
 }
 
-MaterialSpec everything() {
-    MaterialSpec material;
+params::MaterialSpec everything() {
+    params::MaterialSpec material;
     material.turbulent_friction = 300;
     material.turbulent_friction_thickness = 0.7;
     material.cohesion = 200;
@@ -122,23 +123,23 @@ MaterialSpec everything() {
 }
 
 /// Across the debris's way, just before the building.
-Building net_on(const Terrain& terrain) {
+terrain::Building net_on(const terrain::Terrain& terrain) {
     const auto net = make_barrier(terrain, "net", {{{20.4, 16}, {20.4, 24}}, 2, {}, 0.3, {}, 0.5});
     EXPECT_TRUE(net);
     return *net;
 }
 
 /// Runs the fast backend and the reference side by side over debris that falls onto a slope beside a building.
-void expect_agreement(InternalFriction friction, KernelChoice kernel, int steps, double tolerance,
-                      const MaterialSpec& material = {}, bool zones = false, bool net = false) {
-    SolverSpec solver;
+void expect_agreement(params::InternalFriction friction, params::KernelChoice kernel, int steps, double tolerance,
+                      const params::MaterialSpec& material = {}, bool zones = false, bool net = false) {
+    params::SolverSpec solver;
     solver.internal_friction = friction;
     solver.kernel = kernel;
-    Building house;
+    terrain::Building house;
     house.footprint = {testing::rectangle(20.6, 18, 24, 22)};
     house.height = 3;
-    const Terrain terrain = testing::inclined_plane(25, 40, 40);
-    std::vector<Building> buildings{house};
+    const terrain::Terrain terrain = testing::inclined_plane(25, 40, 40);
+    std::vector<terrain::Building> buildings{house};
     place_buildings(terrain, buildings);
     if (net) buildings.push_back(net_on(terrain));
     Model model = make_model(material, solver, 0.4);
@@ -183,25 +184,25 @@ class InstructionSet : public ::testing::TestWithParam<const char*> {
 };
 
 TEST_P(InstructionSet, agrees_with_the_double_precision_reference) {
-    expect_agreement(InternalFriction::stress, KernelChoice::wendland_c2, 12, 2e-4);
+    expect_agreement(params::InternalFriction::stress, params::KernelChoice::wendland_c2, 12, 2e-4);
 }
 
 TEST_P(InstructionSet, agrees_with_the_reference_for_the_published_model) {
-    expect_agreement(InternalFriction::pair, KernelChoice::poly6_spiky, 4, 2e-4);
+    expect_agreement(params::InternalFriction::pair, params::KernelChoice::poly6_spiky, 4, 2e-4);
 }
 
 TEST_P(InstructionSet, agrees_with_the_reference_for_the_other_kernels) {
-    expect_agreement(InternalFriction::stress, KernelChoice::cubic_spline, 4, 2e-4);
-    expect_agreement(InternalFriction::stress, KernelChoice::spiky, 4, 2e-4);
+    expect_agreement(params::InternalFriction::stress, params::KernelChoice::cubic_spline, 4, 2e-4);
+    expect_agreement(params::InternalFriction::stress, params::KernelChoice::spiky, 4, 2e-4);
 }
 
 TEST_P(InstructionSet, agrees_with_the_reference_for_every_resistance) {
-    expect_agreement(InternalFriction::stress, KernelChoice::wendland_c2, 12, 2e-4, everything(), true);
+    expect_agreement(params::InternalFriction::stress, params::KernelChoice::wendland_c2, 12, 2e-4, everything(), true);
 }
 
 TEST_P(InstructionSet, agrees_with_the_reference_for_a_net) {
-    expect_agreement(InternalFriction::stress, KernelChoice::wendland_c2, 12, 2e-4, {}, false, true);
-    expect_agreement(InternalFriction::pair, KernelChoice::poly6_spiky, 4, 2e-4, {}, false, true);
+    expect_agreement(params::InternalFriction::stress, params::KernelChoice::wendland_c2, 12, 2e-4, {}, false, true);
+    expect_agreement(params::InternalFriction::pair, params::KernelChoice::poly6_spiky, 4, 2e-4, {}, false, true);
 }
 
 /// Beyond that which every build has and every processor can.
@@ -209,17 +210,17 @@ using FasterInstructionSet = InstructionSet;
 
 TEST_P(FasterInstructionSet, gives_the_same_bits_as_the_baseline) {
     const std::string baseline = simd::instruction_sets().back();
-    const auto hash_after = [](const std::string& set, InternalFriction friction, const MaterialSpec& material = {},
-                               bool net = false) {
+    const auto hash_after = [](const std::string& set, params::InternalFriction friction,
+                               const params::MaterialSpec& material = {}, bool net = false) {
         EXPECT_TRUE(simd::choose_instruction_set(set));
-        SolverSpec solver;
+        params::SolverSpec solver;
         solver.internal_friction = friction;
-        const Terrain terrain = testing::terrain_of(
+        const terrain::Terrain terrain = testing::terrain_of(
             40, 40, 1, [](double x, double y) { return 20 - 0.5 * x + 0.3 * std::sin(x) * std::cos(0.7 * y); });
-        Building house;
+        terrain::Building house;
         house.footprint = {testing::rectangle(20.6, 18, 24, 22)};
         house.height = 3;
-        std::vector<Building> buildings{house};
+        std::vector<terrain::Building> buildings{house};
         place_buildings(terrain, buildings);
         if (net) buildings.push_back(net_on(terrain));
         Model model = make_model(material, solver, 0.3);
@@ -231,14 +232,14 @@ TEST_P(FasterInstructionSet, gives_the_same_bits_as_the_baseline) {
         for (int i = 0; i < 30; ++i) EXPECT_TRUE(simulation.advance());
         return hash_state(simulation.state());
     };
-    for (const InternalFriction friction : {InternalFriction::stress, InternalFriction::pair}) {
+    for (const params::InternalFriction friction : {params::InternalFriction::stress, params::InternalFriction::pair}) {
         EXPECT_EQ(hash_after(GetParam(), friction), hash_after(baseline, friction));
         EXPECT_EQ(hash_after(GetParam(), friction, {}, true), hash_after(baseline, friction, {}, true));
     }
-    EXPECT_EQ(hash_after(GetParam(), InternalFriction::stress, everything()),
-              hash_after(baseline, InternalFriction::stress, everything()));
-    EXPECT_NE(hash_after(GetParam(), InternalFriction::stress, everything()),
-              hash_after(GetParam(), InternalFriction::stress));
+    EXPECT_EQ(hash_after(GetParam(), params::InternalFriction::stress, everything()),
+              hash_after(baseline, params::InternalFriction::stress, everything()));
+    EXPECT_NE(hash_after(GetParam(), params::InternalFriction::stress, everything()),
+              hash_after(GetParam(), params::InternalFriction::stress));
 }
 
 const auto name_of_set = [](const auto& set) { return std::string(set.param); };
@@ -264,4 +265,4 @@ TEST(InstructionSets, that_are_not_there_are_refused_by_name) {
 }
 
 }  // namespace
-}  // namespace talus
+}  // namespace talus::sim

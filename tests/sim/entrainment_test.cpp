@@ -12,16 +12,16 @@
 namespace talus::testing {
 namespace {
 
-BedMaterial growing(double rate) {
-    BedMaterial material;
+terrain::BedMaterial growing(double rate) {
+    terrain::BedMaterial material;
     material.name = "gravel";
     material.growth_rate = rate;
     return material;
 }
 
-BedMaterial sheared(double critical) {
-    BedMaterial material;
-    material.law = EntrainmentLaw::shear;
+terrain::BedMaterial sheared(double critical) {
+    terrain::BedMaterial material;
+    material.law = params::EntrainmentLaw::shear;
     material.critical_shear_stress = critical;
     material.erosion_rate = 0.1;
     material.depth_per_shear = 1e-5;
@@ -29,7 +29,7 @@ BedMaterial sheared(double critical) {
 }
 
 /// Lays material on the whole ground.
-void lay(Ground& ground, const BedMaterial& material, float depth) {
+void lay(sim::Ground& ground, const terrain::BedMaterial& material, float depth) {
     const std::size_t cells = ground.terrain.elevation().values.size();
     ground.bed = {{material},
                   std::vector<std::uint8_t>(cells, 1),
@@ -38,33 +38,33 @@ void lay(Ground& ground, const BedMaterial& material, float depth) {
 }
 
 /// A block on a plane of 25 degrees, steeper than its friction angle.
-Simulation slide(const BedMaterial& material, float depth) {
-    const Terrain terrain = inclined_plane(25);
-    MaterialSpec moving;
+sim::Simulation slide(const terrain::BedMaterial& material, float depth) {
+    const terrain::Terrain terrain = inclined_plane(25);
+    params::MaterialSpec moving;
     moving.friction_coefficient = 0.2;
-    Model model = make_model(moving, {}, coarse_spacing);
-    Ground ground(terrain);
-    Result<State> state = seed_releases(model, ground, {block(terrain, rectangle(8, 15, 14, 25), 1.5)});
+    sim::Model model = sim::make_model(moving, {}, coarse_spacing);
+    sim::Ground ground(terrain);
+    Result<sim::State> state = seed_releases(model, ground, {block(terrain, rectangle(8, 15, 14, 25), 1.5)});
     lay(ground, material, depth);
     return {std::move(model), std::move(ground), *std::move(state)};
 }
 
-double eroded_volume(const Ground& ground) {
+double eroded_volume(const sim::Ground& ground) {
     const double area = ground.terrain.cell() * ground.terrain.cell();
     return area * std::accumulate(ground.bed.eroded.begin(), ground.bed.eroded.end(), 0.0);
 }
 
-LocalPoint momentum(const State& state) {
+LocalPoint momentum(const sim::State& state) {
     LocalPoint sum;
     for (std::uint32_t i = 0; i < state.count; ++i) sum += state.velocity.at(i);
     return sum;
 }
 
 TEST(Entrainment, grows_by_the_law_and_takes_it_from_the_ground) {
-    Simulation simulation = slide(growing(0.02), 1);
-    const State& state = simulation.state();
-    const Model& model = simulation.model();
-    const Ground& ground = simulation.ground();
+    sim::Simulation simulation = slide(growing(0.02), 1);
+    const sim::State& state = simulation.state();
+    const sim::Model& model = simulation.model();
+    const sim::Ground& ground = simulation.ground();
     const std::uint32_t released = state.count;
     double expected = 0;
     for (int k = 0; k < 120; ++k) {
@@ -79,7 +79,7 @@ TEST(Entrainment, grows_by_the_law_and_takes_it_from_the_ground) {
     EXPECT_NEAR(state.entrained, expected, 0.1 * expected) << "but for what has come loose and is no particle yet";
     const double gained = state.entrained * model.particle_volume();
     EXPECT_NEAR(eroded_volume(ground), gained, 1e-4 * gained);
-    const Terrain untouched = inclined_plane(25);
+    const terrain::Terrain untouched = inclined_plane(25);
     double sunk = 0;
     for (std::size_t cell = 0; cell < ground.bed.eroded.size(); ++cell) {
         sunk += untouched.elevation().values[cell] - ground.terrain.elevation().values[cell];
@@ -88,13 +88,13 @@ TEST(Entrainment, grows_by_the_law_and_takes_it_from_the_ground) {
 }
 
 TEST(Entrainment, keeps_momentum_and_everybody_elses_speed) {
-    Simulation simulation = slide(growing(0.05), 1);
+    sim::Simulation simulation = slide(growing(0.05), 1);
     for (int k = 0; k < 60; ++k) ASSERT_TRUE(simulation.advance());
-    const Model& model = simulation.model();
-    Ground ground = simulation.ground();
-    State state = simulation.state();
+    const sim::Model& model = simulation.model();
+    sim::Ground ground = simulation.ground();
+    sim::State state = simulation.state();
     state.resize(2 * state.count);
-    Entrainment entrainment;
+    sim::Entrainment entrainment;
     std::size_t found = 0;
     for (int k = 0; k < 200 && found == 0; ++k) found = entrainment.find(model, ground, state);
     ASSERT_GT(found, 0U);
@@ -114,18 +114,18 @@ TEST(Entrainment, keeps_momentum_and_everybody_elses_speed) {
 }
 
 TEST(Entrainment, makes_room_without_a_pop) {
-    const Terrain level = terrain_of(30, 30, 1, [](double, double) { return 10; });
-    Model model = make_model({}, {}, coarse_spacing);
-    Ground ground(level);
-    Result<State> seeded = seed_releases(model, ground, {block(level, rectangle(5, 5, 25, 25), 2)});
+    const terrain::Terrain level = terrain_of(30, 30, 1, [](double, double) { return 10; });
+    sim::Model model = sim::make_model({}, {}, coarse_spacing);
+    sim::Ground ground(level);
+    Result<sim::State> seeded = seed_releases(model, ground, {block(level, rectangle(5, 5, 25, 25), 2)});
     // Debris that seems to move picks up its bed for a moment, and lies still again.
     lay(ground, growing(0.02), 1);
-    State state = *seeded;
+    sim::State state = *seeded;
     state.resize(2 * state.count);
     state.awake = state.count;
     state.time_step = 1.0 / 60;
     std::fill(state.velocity.x.begin(), state.velocity.x.end(), 3.0F);
-    Entrainment entrainment;
+    sim::Entrainment entrainment;
     for (int k = 0; k < 8; ++k) {
         if (entrainment.find(model, ground, state) > 0) entrainment.apply(model, ground, state);
     }
@@ -133,12 +133,12 @@ TEST(Entrainment, makes_room_without_a_pop) {
     std::fill(state.velocity.x.begin(), state.velocity.x.end(), 0.0F);
     state.resize(state.count);
     ground.bed = {};
-    Simulation simulation(model, std::move(ground), std::move(state));
+    sim::Simulation simulation(model, std::move(ground), std::move(state));
     // The block falls apart at its sides; in its middle nothing may happen.
     double fastest = 0, worst = 0;
     for (int k = 0; k < 15; ++k) {
         ASSERT_TRUE(simulation.advance());
-        const State& now = simulation.state();
+        const sim::State& now = simulation.state();
         worst = std::max(worst, now.max_compression);
         for (std::uint32_t i = 0; i < now.count; ++i) {
             const LocalPoint p = now.position.at(i), v = now.velocity.at(i);
@@ -151,9 +151,9 @@ TEST(Entrainment, makes_room_without_a_pop) {
 
 TEST(Entrainment, ends_where_the_bed_does) {
     constexpr float depth = 0.2F;
-    Simulation simulation = slide(growing(0.5), depth);
+    sim::Simulation simulation = slide(growing(0.5), depth);
     for (int k = 0; k < 150; ++k) ASSERT_TRUE(simulation.advance());
-    const Bed& bed = simulation.ground().bed;
+    const terrain::Bed& bed = simulation.ground().bed;
     const double particle_depth = simulation.model().particle_volume();  // over a cell of 1 m2
     float deepest = 0;
     for (const float eroded : bed.eroded) deepest = std::max(deepest, eroded);
@@ -170,7 +170,7 @@ TEST(Entrainment, ends_where_the_bed_does) {
 
 TEST(Entrainment, by_shear_needs_the_critical_stress) {
     // 1.5 m of debris at 25 degrees: 2000 x 9.8 x 1.5 x sin 25 = 12.4 kPa, and more where it piles up.
-    Simulation strong = slide(sheared(50e3), 1), weak = slide(sheared(5e3), 1);
+    sim::Simulation strong = slide(sheared(50e3), 1), weak = slide(sheared(5e3), 1);
     for (int k = 0; k < 60; ++k) {
         ASSERT_TRUE(strong.advance());
         ASSERT_TRUE(weak.advance());
@@ -185,7 +185,7 @@ TEST(Entrainment, by_shear_needs_the_critical_stress) {
 TEST(Entrainment, does_not_depend_on_the_number_of_threads) {
     const auto run = [](std::size_t threads) {
         const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
-        Simulation simulation = slide(growing(0.03), 1);
+        sim::Simulation simulation = slide(growing(0.03), 1);
         for (int k = 0; k < 80; ++k) EXPECT_TRUE(simulation.advance());
         EXPECT_GT(simulation.state().entrained, 20U);
         return hash_state(simulation.state());
@@ -194,9 +194,10 @@ TEST(Entrainment, does_not_depend_on_the_number_of_threads) {
 }
 
 TEST(Entrainment, stops_the_run_at_the_particle_limit) {
-    Simulation simulation = slide(growing(0.2), 1);
-    simulation.change(
-        [](Model& model, Ground&, State& state) { model.solver.particle_limit = static_cast<int>(state.count) + 10; });
+    sim::Simulation simulation = slide(growing(0.2), 1);
+    simulation.change([](sim::Model& model, sim::Ground&, sim::State& state) {
+        model.solver.particle_limit = static_cast<int>(state.count) + 10;
+    });
     Status stepped;
     for (int k = 0; k < 150 && stepped; ++k) stepped = simulation.advance();
     ASSERT_FALSE(stepped);
@@ -204,8 +205,8 @@ TEST(Entrainment, stops_the_run_at_the_particle_limit) {
 }
 
 TEST(Entrainment, without_a_bed_finds_nothing) {
-    Simulation simulation = slide(growing(0.2), 1);
-    simulation.change([](Model&, Ground& ground, State&) { ground.bed = {}; });
+    sim::Simulation simulation = slide(growing(0.2), 1);
+    simulation.change([](sim::Model&, sim::Ground& ground, sim::State&) { ground.bed = {}; });
     for (int k = 0; k < 60; ++k) ASSERT_TRUE(simulation.advance());
     EXPECT_EQ(simulation.state().entrained, 0U);
 }

@@ -9,13 +9,13 @@
 #include "sim_fixtures.hpp"
 #include "support/allocations.hpp"
 
-namespace talus {
+namespace talus::sim {
 namespace {
 
 using testing::inclined_plane;
 
 /// 6 m wide at x = 20, towards +x: down the plane of sim_fixtures.
-Inflow inflow(std::vector<InflowSample> hydrograph) {
+terrain::Inflow inflow(std::vector<params::InflowSample> hydrograph) {
     return {"gully", {20, 17}, {20, 23}, std::move(hydrograph)};
 }
 
@@ -24,7 +24,7 @@ Ground plane() {
 }
 
 TEST(Inflow, integrates_the_hydrograph_exactly) {
-    const Inflow surges = inflow({{1, 0, 2}, {3, 8, 4}, {4, 0, 4}, {6, 0, 1}, {7, 6, 1}});
+    const terrain::Inflow surges = inflow({{1, 0, 2}, {3, 8, 4}, {4, 0, 4}, {6, 0, 1}, {7, 6, 1}});
     EXPECT_EQ(surges.volume_until(0.5), 0);
     EXPECT_NEAR(surges.volume_until(2), 2, 1e-12);
     EXPECT_NEAR(surges.volume_until(3), 8, 1e-12);
@@ -35,7 +35,7 @@ TEST(Inflow, integrates_the_hydrograph_exactly) {
 }
 
 TEST(Inflow, integrates_mass_exactly) {
-    const Inflow surge = inflow({{0, 0, 2, 1500}, {2, 6, 2, 2100}, {4, 6, 2, 1200}});
+    const terrain::Inflow surge = inflow({{0, 0, 2, 1500}, {2, 6, 2, 2100}, {4, 6, 2, 1200}});
     // The integral of 3 t (1500 + 300 t), then of 6 (2100 - 450 t).
     EXPECT_NEAR(surge.mass_until(1), 1.5 * 1500 + 300, 1e-9);
     EXPECT_NEAR(surge.mass_until(2), 6 * 1500 + 2400, 1e-9);
@@ -45,8 +45,8 @@ TEST(Inflow, integrates_mass_exactly) {
 }
 
 /// 8 x 5 m of the plane, some 35 m2 of it beside a hole.
-Inflow rain(std::vector<InflowSample> hydrograph, std::optional<double> direction = {}) {
-    Inflow over{"slope", {}, {}, std::move(hydrograph), {testing::rectangle(20.03, 17.53, 28.05, 22.56)}};
+terrain::Inflow rain(std::vector<params::InflowSample> hydrograph, std::optional<double> direction = {}) {
+    terrain::Inflow over{"slope", {}, {}, std::move(hydrograph), {testing::rectangle(20.03, 17.53, 28.05, 22.56)}};
     over.spec.direction = direction;
     over.area.front().holes.push_back({{22, 19}, {24.5, 19}, {24.5, 21}, {22, 21}});
     return over;
@@ -56,7 +56,7 @@ TEST(AreaSource, brings_the_volume_to_the_particle_evenly_over_the_area) {
     for (const double step : {0.001, 0.0137, 0.4}) {
         const Model model = make_model({}, {}, testing::fine_spacing);
         const Ground ground = plane();
-        const Inflow source = rain({{0.5, 0, 0}, {1, 8, 1}, {2, 0, 1}, {3, 4, 2}, {3.3, 0, 2}});
+        const terrain::Inflow source = rain({{0.5, 0, 0}, {1, 8, 1}, {2, 0, 1}, {3, 4, 2}, {3.3, 0, 2}});
         InflowFeeder feeder(model, ground.terrain.frame(), {source});
         const std::uint32_t all = feeder.to_come();
         EXPECT_EQ(all, std::lround(source.volume() / model.particle_volume()));
@@ -103,7 +103,7 @@ TEST(AreaSource, debris_moves_down_the_slope_or_where_it_is_told) {
 
 TEST(AreaSource, does_not_pop_apart_even_where_debris_piles_up) {
     // 60 m3 onto 35 m2 in 4 s, with friction enough for it to stay: it lies in layers on top of each other.
-    MaterialSpec rough;
+    params::MaterialSpec rough;
     rough.friction_coefficient = 0.9;
     const Model model = make_model(rough, {}, testing::fine_spacing);
     const Ground ground = plane();
@@ -121,7 +121,7 @@ TEST(AreaSource, does_not_pop_apart_even_where_debris_piles_up) {
 }
 
 TEST(AreaSource, an_area_smaller_than_a_particle_still_brings_its_volume) {
-    Inflow spring = rain({{0, 2, 1}, {2, 2, 1}});
+    terrain::Inflow spring = rain({{0, 2, 1}, {2, 2, 1}});
     spring.area = {testing::rectangle(20.01, 20.01, 20.06, 20.05)};
     const Model model = make_model({}, {}, testing::fine_spacing);
     const Ground ground = plane();
@@ -135,8 +135,8 @@ TEST(AreaSource, an_area_smaller_than_a_particle_still_brings_its_volume) {
 
 TEST(InflowFeeder, gives_particles_the_density_of_the_hydrograph) {
     for (const bool over_area : {false, true}) {
-        const std::vector<InflowSample> rows{{0, 20, 4, 1400}, {1, 20, 4, 2200}, {2, 20, 4, 1800}};
-        const Inflow surge = over_area ? rain(rows) : inflow(rows);
+        const std::vector<params::InflowSample> rows{{0, 20, 4, 1400}, {1, 20, 4, 2200}, {2, 20, 4, 1800}};
+        const terrain::Inflow surge = over_area ? rain(rows) : inflow(rows);
         const Model model = make_model({}, {}, testing::fine_spacing);
         const Ground ground = plane();
         InflowFeeder feeder(model, ground.terrain.frame(), {surge});
@@ -159,7 +159,8 @@ TEST(InflowFeeder, brings_the_volume_to_the_particle_whatever_the_steps) {
     for (const double step : {0.001, 0.0137, 0.4}) {
         const Model model = make_model({}, {}, testing::fine_spacing);
         const Ground ground = plane();
-        const Inflow surges = inflow({{0.5, 0, 3}, {1, 20, 5}, {2, 0, 4}, {2.5, 0, 0}, {3, 10, 2}, {3.3, 0, 2}});
+        const terrain::Inflow surges =
+            inflow({{0.5, 0, 3}, {1, 20, 5}, {2, 0, 4}, {2.5, 0, 0}, {3, 10, 2}, {3.3, 0, 2}});
         InflowFeeder feeder(model, ground.terrain.frame(), {surges});
         const std::uint32_t all = feeder.to_come();
         EXPECT_EQ(all, std::lround(surges.volume() / model.particle_volume()));
@@ -218,4 +219,4 @@ TEST(InflowFeeder, allocates_nothing_while_it_runs) {
 }
 
 }  // namespace
-}  // namespace talus
+}  // namespace talus::sim

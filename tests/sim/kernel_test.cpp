@@ -6,14 +6,14 @@
 #include "sim/physics/viscosity.hpp"
 #include "sim/sources/seed.hpp"
 
-namespace talus {
+namespace talus::sim {
 namespace {
 
-const KernelChoice all_kernels[] = {KernelChoice::wendland_c2, KernelChoice::cubic_spline, KernelChoice::spiky,
-                                    KernelChoice::poly6_spiky};
+const params::KernelChoice all_kernels[] = {params::KernelChoice::wendland_c2, params::KernelChoice::cubic_spline,
+                                            params::KernelChoice::spiky, params::KernelChoice::poly6_spiky};
 
 TEST(Kernel, integrates_to_one_over_its_support) {
-    for (const KernelChoice choice : all_kernels) {
+    for (const params::KernelChoice choice : all_kernels) {
         with_kernel(choice, [](auto kernel) {
             double sum = 0;
             const int steps = 4000;
@@ -27,7 +27,8 @@ TEST(Kernel, integrates_to_one_over_its_support) {
 }
 
 TEST(Kernel, slope_is_the_derivative_of_its_value) {
-    for (const KernelChoice choice : {KernelChoice::wendland_c2, KernelChoice::cubic_spline, KernelChoice::spiky}) {
+    for (const params::KernelChoice choice :
+         {params::KernelChoice::wendland_c2, params::KernelChoice::cubic_spline, params::KernelChoice::spiky}) {
         with_kernel(choice, [](auto kernel) {
             for (double q = 0.05; q < 0.99; q += 0.045) {
                 const double difference = (kernel.value(q + 1e-6) - kernel.value(q - 1e-6)) / 2e-6;
@@ -43,7 +44,7 @@ TEST(Kernel, published_pair_takes_its_gradient_from_spiky) {
 }
 
 TEST(Kernel, calibrated_volume_gives_the_rest_lattice_rest_density) {
-    for (const KernelChoice choice : all_kernels) {
+    for (const params::KernelChoice choice : all_kernels) {
         const double spacing = 0.4, r = 2.2 * spacing;
         const Kernel kernel = make_kernel(choice, spacing, r);
         double sum = 0;
@@ -63,7 +64,7 @@ TEST(Kernel, calibrated_volume_gives_the_rest_lattice_rest_density) {
 
 TEST(BoundaryTable, gives_the_first_layer_of_a_rest_lattice_rest_density) {
     const double spacing = 0.5, r = 2.2 * spacing;
-    const Kernel kernel = make_kernel(KernelChoice::wendland_c2, spacing, r);
+    const Kernel kernel = make_kernel(params::KernelChoice::wendland_c2, spacing, r);
     const BoundaryTable table(kernel, spacing);
     double sum = table.at(spacing / 2).density;
     for (int x = -3; x <= 3; ++x) {
@@ -78,7 +79,7 @@ TEST(BoundaryTable, gives_the_first_layer_of_a_rest_lattice_rest_density) {
 }
 
 TEST(BoundaryTable, slope_is_the_derivative_of_the_density_share) {
-    const Kernel kernel = make_kernel(KernelChoice::wendland_c2, 0.5, 1.1);
+    const Kernel kernel = make_kernel(params::KernelChoice::wendland_c2, 0.5, 1.1);
     const BoundaryTable table(kernel, 0.5);
     for (double d = -1.0; d < 1.05; d += 0.07) {
         const double difference = (table.at(d + 0.01).density - table.at(d - 0.01).density) / 0.02;
@@ -87,7 +88,7 @@ TEST(BoundaryTable, slope_is_the_derivative_of_the_density_share) {
 }
 
 TEST(BoundaryTable, is_half_its_full_share_on_the_plane_and_nothing_beyond_the_support) {
-    const Kernel kernel = make_kernel(KernelChoice::wendland_c2, 0.5, 1.1);
+    const Kernel kernel = make_kernel(params::KernelChoice::wendland_c2, 0.5, 1.1);
     const BoundaryTable table(kernel, 0.5);
     EXPECT_NEAR(table.at(0.0).density / table.at(-2.0).density, 0.5, 1e-3);
     EXPECT_EQ(table.at(1.1).density, 0);
@@ -101,7 +102,7 @@ TEST(Viscosity, smoothing_is_proportional_to_the_step_and_never_overshoots) {
 }
 
 TEST(Viscosity, may_be_given_as_kinematic_and_is_then_the_same_at_every_spacing) {
-    MaterialSpec material;
+    params::MaterialSpec material;
     material.kinematic_viscosity = 0.05;
     const Model coarse = make_model(material, {}, 0.4), fine = make_model(material, {}, 0.2);
     EXPECT_NEAR(coarse.kinematic_viscosity, 0.05, 1e-12);
@@ -110,9 +111,9 @@ TEST(Viscosity, may_be_given_as_kinematic_and_is_then_the_same_at_every_spacing)
 }
 
 TEST(Viscosity, converts_to_a_kinematic_viscosity_and_back) {
-    const double moment = make_kernel(KernelChoice::wendland_c2, 0.4, 0.88).second_moment;
+    const double moment = make_kernel(params::KernelChoice::wendland_c2, 0.4, 0.88).second_moment;
     EXPECT_NEAR(smoothing_viscosity(kinematic_viscosity(0.1, moment), moment), 0.1, 1e-12);
 }
 
 }  // namespace
-}  // namespace talus
+}  // namespace talus::sim

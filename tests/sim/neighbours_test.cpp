@@ -8,7 +8,7 @@
 #include "sim/cpu/cell_sort.hpp"
 #include "sim_fixtures.hpp"
 
-namespace talus {
+namespace talus::sim {
 namespace {
 
 /// Finds the neighbours of every point and checks them against all pairs.
@@ -104,4 +104,4 @@ TEST(NeighbourLists, of_one_particle_are_empty) {
 }
 
 }  // namespace
-}  // namespace talus
+}  // namespace talus::sim

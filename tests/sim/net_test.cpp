@@ -11,7 +11,7 @@
 #include "sim_fixtures.hpp"
 #include "terrain/barrier.hpp"
 
-namespace talus {
+namespace talus::sim {
 namespace {
 
 using testing::state_of;
@@ -35,16 +35,16 @@ TEST(GrainRank, is_spread_evenly_over_any_run_of_ids) {
     EXPECT_LT(grain_rank(0xffffffffU), 1);
 }
 
-Model net_model(const SolverSpec& solver = {}) {
-    MaterialSpec material;
+Model net_model(const params::SolverSpec& solver = {}) {
+    params::MaterialSpec material;
     material.friction_coefficient = 0.2;
     return make_model(material, solver, 0.5);
 }
 
 /// Level ground with a net of 6 m across it at x = 20.
 Ground netted(std::optional<double> passing_share, bool stands = true) {
-    const Terrain terrain = terrain_of(60, 40, 1, [](double, double) { return 10; });
-    std::vector<Building> buildings;
+    const terrain::Terrain terrain = terrain_of(60, 40, 1, [](double, double) { return 10; });
+    std::vector<terrain::Building> buildings;
     if (stands) {
         const auto net = make_barrier(terrain, "net", {{{20, 2}, {21, 20}, {20, 38}}, 6, {}, 0.5, {}, passing_share});
         EXPECT_TRUE(net);
@@ -60,7 +60,7 @@ double net_x(const Ground& ground, float y) {
 }
 
 /// Debris thrown at the net.
-Simulation thrown(Ground ground, const SolverSpec& solver = {}, float speed = 15) {
+Simulation thrown(Ground ground, const params::SolverSpec& solver = {}, float speed = 15) {
     std::vector<LocalPoint> points;
     for (int k = 0; k < 3; ++k) {
         for (int j = 0; j < 24; ++j) {
@@ -93,7 +93,7 @@ TEST(Net, stops_coarse_grains_at_any_speed_and_fine_ones_at_none) {
 }
 
 TEST(Net, holds_coarse_grains_that_a_step_would_carry_past_it) {
-    SolverSpec solver;
+    params::SolverSpec solver;
     solver.time_step = 0.02;
     Simulation simulation = thrown(netted(0.4), solver, 150);  // 3 m in a step
     std::uint32_t fine_beyond = 0;
@@ -111,8 +111,8 @@ TEST(Net, holds_coarse_grains_that_a_step_would_carry_past_it) {
 }
 
 TEST(Net, holds_its_share_of_a_run_and_lets_some_of_the_rest_through) {
-    for (const InternalFriction friction : {InternalFriction::stress, InternalFriction::pair}) {
-        SolverSpec solver;
+    for (const params::InternalFriction friction : {params::InternalFriction::stress, params::InternalFriction::pair}) {
+        params::SolverSpec solver;
         solver.internal_friction = friction;
         Simulation simulation = thrown(netted(0.5), solver);
         std::uint32_t through = 0;
@@ -195,4 +195,4 @@ TEST(Net, put_up_in_debris_pushes_only_what_it_holds_aside) {
 }
 
 }  // namespace
-}  // namespace talus
+}  // namespace talus::sim

@@ -6,7 +6,7 @@
 #include "sim/physics/contact.hpp"
 #include "sim_fixtures.hpp"
 
-namespace talus {
+namespace talus::sim {
 namespace {
 
 using testing::block;
@@ -15,10 +15,10 @@ using testing::rectangle;
 using testing::simulate;
 
 TEST(MechanicalEnergy, never_grows_on_rough_ground) {
-    const Terrain terrain = testing::terrain_of(80, 40, 1, [](double x, double y) {
+    const terrain::Terrain terrain = testing::terrain_of(80, 40, 1, [](double x, double y) {
         return 60 - 0.6 * x + 0.5 * std::sin(0.9 * x) * std::cos(0.7 * y) + 0.02 * (y - 20) * (y - 20);
     });
-    Building house;
+    terrain::Building house;
     house.footprint = {rectangle(40, 17, 46, 23)};
     house.height = 4;
     Simulation simulation = simulate({}, {}, terrain, {block(terrain, rectangle(6, 14, 16, 26), 1.2)}, 0.5, {house});
@@ -40,18 +40,18 @@ TEST(MechanicalEnergy, never_grows_on_rough_ground) {
 }
 
 TEST(Boundaries, particles_thrown_at_100_mps_never_get_through) {
-    const Terrain terrain = testing::terrain_of(60, 60, 2, [](double x, double y) {
+    const terrain::Terrain terrain = testing::terrain_of(60, 60, 2, [](double x, double y) {
         return 20 + 12 * std::sin(0.15 * x) * std::sin(0.13 * y) + (x > 70 && x < 74 ? 15 : 0);
     });
-    Building wall, house;
+    terrain::Building wall, house;
     wall.footprint = {rectangle(50, 30, 50.4, 90)};
     wall.height = 40;
     house.footprint = {rectangle(80, 50, 90, 60)};
     house.height = 12;
-    std::vector<Building> buildings{wall, house};
+    std::vector<terrain::Building> buildings{wall, house};
     place_buildings(terrain, buildings);
     for (const double time_step : {1.0 / 20, 1.0 / 60, 1.0 / 240}) {
-        SolverSpec solver;
+        params::SolverSpec solver;
         solver.time_step = time_step;
         Model model = make_model({}, solver, 0.5);
         Ground ground(terrain, buildings, model.support_radius);
@@ -73,13 +73,13 @@ TEST(Boundaries, particles_thrown_at_100_mps_never_get_through) {
 }
 
 TEST(Boundaries, a_thin_wall_holds_what_is_thrown_at_it) {
-    const Terrain terrain = testing::terrain_of(40, 40, 1, [](double, double) { return 0; });
-    Building wall;
+    const terrain::Terrain terrain = testing::terrain_of(40, 40, 1, [](double, double) { return 0; });
+    terrain::Building wall;
     wall.footprint = {rectangle(20, 0, 20.2, 40)};
     wall.height = 30;
-    std::vector<Building> buildings{wall};
+    std::vector<terrain::Building> buildings{wall};
     place_buildings(terrain, buildings);
-    SolverSpec solver;
+    params::SolverSpec solver;
     solver.time_step = 1.0 / 30;
     Model model = make_model({}, solver, 0.4);
     Ground ground(terrain, buildings, model.support_radius);
@@ -96,9 +96,9 @@ TEST(Boundaries, a_thin_wall_holds_what_is_thrown_at_it) {
 }
 
 /// Four buildings around a square pit in the middle of level ground, `width` m wide.
-std::vector<Building> pit(const Terrain& terrain, double width) {
+std::vector<terrain::Building> pit(const terrain::Terrain& terrain, double width) {
     const double a = 10 - width / 2, b = 10 + width / 2;
-    std::vector<Building> buildings(4);
+    std::vector<terrain::Building> buildings(4);
     const Polygon walls[] = {rectangle(0, 0, a, 20), rectangle(b, 0, 20, 20), rectangle(0, 0, 20, a),
                              rectangle(0, b, 20, 20)};
     for (std::size_t k = 0; k < buildings.size(); ++k) {
@@ -126,9 +126,9 @@ std::vector<LocalPoint> lattice(int n, int layers, float spacing) {
 
 TEST(Boundaries, both_walls_of_a_corner_bear_what_stands_in_it) {
     // Water in a pit: where the nearest wall only is seen, particles in the corners pack 15 % closer.
-    const Terrain terrain = testing::terrain_of(20, 20, 1, [](double, double) { return 0; });
-    const std::vector<Building> buildings = pit(terrain, 4);
-    MaterialSpec water;
+    const terrain::Terrain terrain = testing::terrain_of(20, 20, 1, [](double, double) { return 0; });
+    const std::vector<terrain::Building> buildings = pit(terrain, 4);
+    params::MaterialSpec water;
     water.friction_coefficient = 0;
     const Model model = make_model(water, {}, 0.5);
     Simulation simulation(model, Ground(terrain, buildings, model.support_radius),
@@ -150,15 +150,15 @@ TEST(Boundaries, both_walls_of_a_corner_bear_what_stands_in_it) {
 }
 
 TEST(Boundaries, walls_rub_with_their_own_friction_where_it_is_set_apart) {
-    const Terrain terrain = testing::terrain_of(20, 20, 1, [](double, double) { return 0; });
-    Building wall;
+    const terrain::Terrain terrain = testing::terrain_of(20, 20, 1, [](double, double) { return 0; });
+    terrain::Building wall;
     wall.footprint = {rectangle(12, 0, 14, 20)};  // its face at local x = 2
     wall.height = 10;
-    std::vector<Building> buildings{wall};
+    std::vector<terrain::Building> buildings{wall};
     place_buildings(terrain, buildings);
     // A particle 0.01 m clear of touching the wall wants 0.03 m towards it and 0.05 m along it: a push of 0.02 m.
     const auto moved_along = [&](std::optional<double> building_friction) {
-        MaterialSpec material;
+        params::MaterialSpec material;
         material.friction_coefficient = 0.6;
         material.building_friction_coefficient = building_friction;
         const Model model = make_model(material, {}, 0.4);
@@ -178,8 +178,8 @@ TEST(Boundaries, walls_rub_with_their_own_friction_where_it_is_set_apart) {
 
 TEST(Step, is_shortened_while_debris_is_deeper_than_pressure_can_follow) {
     // 60 layers in a pit that begin without any pressure fall into themselves, particle on particle, if let.
-    const Terrain terrain = testing::terrain_of(20, 20, 1, [](double, double) { return 0; });
-    MaterialSpec water;
+    const terrain::Terrain terrain = testing::terrain_of(20, 20, 1, [](double, double) { return 0; });
+    params::MaterialSpec water;
     water.friction_coefficient = 0;
     const Model model = make_model(water, {}, 0.25);
     Simulation simulation(model, Ground(terrain, pit(terrain, 1), model.support_radius),
@@ -196,8 +196,8 @@ TEST(Step, is_shortened_while_debris_is_deeper_than_pressure_can_follow) {
 }
 
 TEST(MassBalance, counts_what_leaves_the_terrain) {
-    const Terrain terrain = inclined_plane(40, 24, 24);
-    MaterialSpec material;
+    const terrain::Terrain terrain = inclined_plane(40, 24, 24);
+    params::MaterialSpec material;
     material.friction_coefficient = 0.1;
     Simulation simulation = simulate(material, {}, terrain, {block(terrain, rectangle(12, 9, 18, 15), 1)}, 0.5);
     const std::uint32_t seeded = simulation.state().seeded;
@@ -213,7 +213,7 @@ std::uint64_t hash_on_threads(int threads) {
     const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads));
     tbb::task_arena arena(threads);
     return arena.execute([] {
-        const Terrain terrain = testing::terrain_of(
+        const terrain::Terrain terrain = testing::terrain_of(
             60, 40, 1, [](double x, double y) { return 40 - 0.5 * x + 0.01 * (y - 20) * (y - 20); });
         Simulation simulation = simulate({}, {}, terrain, {block(terrain, rectangle(6, 12, 20, 28), 1.2)}, 0.45);
         for (int i = 0; i < 60; ++i) EXPECT_TRUE(simulation.advance());
@@ -228,10 +228,10 @@ TEST(Determinism, the_result_hash_is_the_same_on_1_2_and_4_threads) {
 }
 
 TEST(TimeStep, keeps_a_particle_from_moving_more_than_the_displacement_limit) {
-    const Terrain terrain = inclined_plane(45, 80, 40);
-    MaterialSpec material;
+    const terrain::Terrain terrain = inclined_plane(45, 80, 40);
+    params::MaterialSpec material;
     material.friction_coefficient = 0.05;
-    SolverSpec solver;
+    params::SolverSpec solver;
     for (const double limit : {0.5, 0.2}) {
         solver.displacement_limit = limit;
         Simulation simulation =
@@ -260,4 +260,4 @@ TEST(Fault, names_the_time_and_the_parameter_to_change) {
 }
 
 }  // namespace
-}  // namespace talus
+}  // namespace talus::sim

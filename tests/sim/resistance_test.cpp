@@ -9,7 +9,7 @@
 #include "sim/physics/viscosity.hpp"
 #include "sim_fixtures.hpp"
 
-namespace talus {
+namespace talus::sim {
 namespace {
 
 using testing::block;
@@ -19,16 +19,16 @@ using testing::simulate;
 
 constexpr float none = std::numeric_limits<float>::quiet_NaN();
 
-Model model_of(const MaterialSpec& material, double spacing = 0.1) {
+Model model_of(const params::MaterialSpec& material, double spacing = 0.1) {
     return make_model(material, {}, spacing);
 }
 
-GroundSample<double> level() {
+terrain::GroundSample<double> level() {
     return {0, {0, 0, 1}};
 }
 
 TEST(VoellmyDrag, is_that_of_the_thickness_of_the_flow) {
-    MaterialSpec material;
+    params::MaterialSpec material;
     material.turbulent_friction = 200;
     const Model model = model_of(material);
     const auto ground = ground_resistance(model, Vec3<double>{});
@@ -41,7 +41,7 @@ TEST(VoellmyDrag, is_that_of_the_thickness_of_the_flow) {
 }
 
 TEST(VoellmyDrag, falls_with_the_cube_root_of_the_thickness_where_it_is_given_for_one) {
-    MaterialSpec material;
+    params::MaterialSpec material;
     material.turbulent_friction = 200;
     const Model same = model_of(material);
     material.turbulent_friction_thickness = 0.15;
@@ -60,7 +60,7 @@ TEST(CubeRoot, is_that_of_the_library_to_a_ten_thousandth) {
 }
 
 TEST(VoellmyDrag, never_reverses_the_motion_and_leaves_what_flies_alone) {
-    MaterialSpec material;
+    params::MaterialSpec material;
     material.turbulent_friction = 1;
     const Model model = model_of(material);
     const auto ground = ground_resistance(model, Vec3<double>{});
@@ -76,7 +76,7 @@ TEST(VoellmyDrag, never_reverses_the_motion_and_leaves_what_flies_alone) {
 TEST(VoellmyDrag, thickness_is_volume_over_area_at_right_angles_to_the_ground) {
     const Model model = model_of({});
     const double slope = 0.5;
-    const GroundSample<double> steep{0, {std::sin(slope), 0, std::cos(slope)}};
+    const terrain::GroundSample<double> steep{0, {std::sin(slope), 0, std::cos(slope)}};
     // Three layers of a lattice of 0.1 m: four particles each in a column twice as wide.
     EXPECT_NEAR(flow_thickness(model, level(), 12.0), 0.3, 1e-9);
     EXPECT_NEAR(flow_thickness(model, steep, 12.0), 0.3 * std::cos(slope), 1e-9);
@@ -84,10 +84,10 @@ TEST(VoellmyDrag, thickness_is_volume_over_area_at_right_angles_to_the_ground) {
 }
 
 /// Speed after three seconds of the middle of a single layer, spread so far apart that no particle presses on another.
-double speed_of_thin_layer(double start, double apart, const MaterialSpec& material, double slope) {
+double speed_of_thin_layer(double start, double apart, const params::MaterialSpec& material, double slope) {
     constexpr double spacing = 0.1;
     constexpr int side = 24;
-    const Terrain terrain = inclined_plane(slope * 180 / M_PI, 60, 8);
+    const terrain::Terrain terrain = inclined_plane(slope * 180 / M_PI, 60, 8);
     Model model = make_model(material, {}, spacing);
     Ground ground(terrain);
     std::vector<LocalPoint> points, velocities;
@@ -116,7 +116,7 @@ double speed_of_thin_layer(double start, double apart, const MaterialSpec& mater
 
 TEST(VoellmyDrag, holds_for_debris_that_is_thinner_than_a_particle) {
     constexpr double apart = 0.14, slope = M_PI / 6;
-    MaterialSpec material;
+    params::MaterialSpec material;
     material.friction_coefficient = 0.2;
     material.turbulent_friction = 150;
     material.viscosity = 0;
@@ -127,8 +127,8 @@ TEST(VoellmyDrag, holds_for_debris_that_is_thinner_than_a_particle) {
 }
 
 TEST(VoellmyDrag, leaves_what_walls_take_out_of_the_area_of_a_column) {
-    const Terrain terrain = inclined_plane(0, 20, 20);
-    std::vector<Building> walls(1);
+    const terrain::Terrain terrain = inclined_plane(0, 20, 20);
+    std::vector<terrain::Building> walls(1);
     walls[0].footprint = {rectangle(10, 2, 18, 18)};
     walls[0].height = 5;
     place_buildings(terrain, walls);
@@ -136,7 +136,7 @@ TEST(VoellmyDrag, leaves_what_walls_take_out_of_the_area_of_a_column) {
     const Ground ground(terrain, walls, model.support_radius);
     const auto open_at = [&](double x) {
         const LocalPoint p = terrain.frame().to_local({x, 10, 200.25});
-        return open_share(model, ground, Vec3<double>{p.x, p.y, p.z}, largest_grain);
+        return open_share(model, ground, Vec3<double>{p.x, p.y, p.z}, terrain::largest_grain);
     };
     EXPECT_NEAR(open_at(10), 0.5, 1e-4) << "on the wall half of a column is beyond it";
     EXPECT_NEAR(open_at(9), 1 - 1.0 / 24, 1e-4) << "a column's width, two spacings, away";
@@ -145,7 +145,7 @@ TEST(VoellmyDrag, leaves_what_walls_take_out_of_the_area_of_a_column) {
 }
 
 TEST(InertialFriction, limits_what_rough_ground_holds) {
-    MaterialSpec material;
+    params::MaterialSpec material;
     material.internal_friction_coefficient = 0.4;
     material.inertial_friction_coefficient = 0.7;
     material.inertial_number = 0.3;
@@ -181,9 +181,9 @@ TEST(InertialFriction, limits_what_rough_ground_holds) {
 
 TEST(ForestDrag, is_that_of_cylinders_across_the_flow) {
     Model model = model_of({});
-    Grid<CoverCell> cells(inclined_plane(0, 10, 10).elevation().geometry, {none, none, none, 0});
+    Grid<terrain::CoverCell> cells(inclined_plane(0, 10, 10).elevation().geometry, {none, none, none, 0});
     cells.at(5, 5).stem_drag = 0.5F * 1.2F * 0.08F * 0.3F;  // C_D n D / 2
-    model.cover = GroundCover(cells);
+    model.cover = terrain::GroundCover(cells);
     ASSERT_TRUE(slows_by_speed(model));
     const double dt = 1e-4;
     const auto among =
@@ -195,7 +195,7 @@ TEST(ForestDrag, is_that_of_cylinders_across_the_flow) {
 }
 
 TEST(PorePressure, is_that_of_the_release_and_decays_from_its_start) {
-    MaterialSpec material;
+    params::MaterialSpec material;
     material.pore_pressure_ratio = 0.5;
     material.pore_pressure_decay_time = 4;
     Model model = model_of(material);
@@ -213,8 +213,8 @@ TEST(PorePressure, is_that_of_the_release_and_decays_from_its_start) {
 }
 
 /// How far the middle of a block 1 m thick has slid after a second.
-double slid(const MaterialSpec& material, double degrees) {
-    const Terrain terrain = inclined_plane(degrees, 60, 30);
+double slid(const params::MaterialSpec& material, double degrees) {
+    const terrain::Terrain terrain = inclined_plane(degrees, 60, 30);
     Simulation simulation = simulate(material, {}, terrain, {block(terrain, rectangle(10, 10, 20, 20), 1)}, 0.25);
     const auto middle = [&] {
         double sum = 0;
@@ -227,7 +227,7 @@ double slid(const MaterialSpec& material, double degrees) {
 }
 
 TEST(PorePressure, sets_debris_going_that_dry_friction_would_hold) {
-    MaterialSpec material;
+    params::MaterialSpec material;
     material.friction_coefficient = 0.6;
     EXPECT_LT(slid(material, 20), 0.1) << "its edges fall over";
     material.pore_pressure_ratio = 0.7;  // 0.18 of friction is left; tan 20 is 0.36
@@ -237,7 +237,7 @@ TEST(PorePressure, sets_debris_going_that_dry_friction_would_hold) {
 
 TEST(Cohesion, holds_a_slab_up_to_its_strength) {
     // A sheet 1 m thick pulls with rho g h sin(20) = 6.7 kPa.
-    MaterialSpec material;
+    params::MaterialSpec material;
     material.friction_coefficient = 0;
     material.cohesion = 9000;
     EXPECT_LT(slid(material, 20), 0.1);
@@ -258,7 +258,7 @@ TEST(InertialFriction, rises_from_slow_to_fast_shear) {
 }
 
 TEST(ViscosityOnGround, stops_a_linear_profile_on_the_surface) {
-    MaterialSpec material;
+    params::MaterialSpec material;
     material.viscosity_on_ground = true;
     const Model model = model_of(material);
     // Far from the ground there is none of it; at the ground the whole half-space takes part.
@@ -287,7 +287,7 @@ double lattice_sum(const Model& model, const Term& term) {
 }
 
 TEST(ViscosityOnGround, takes_from_even_shear_what_viscosity_passes_on_inside) {
-    MaterialSpec material;
+    params::MaterialSpec material;
     material.viscosity_on_ground = true;
     const Model model = model_of(material);
     const double spacing = model.particle_spacing;
@@ -301,7 +301,7 @@ TEST(ViscosityOnGround, takes_from_even_shear_what_viscosity_passes_on_inside) {
 }
 
 TEST(Cohesion, inside_makes_up_for_what_sums_over_neighbours_do_not_pass_on) {
-    MaterialSpec material;
+    params::MaterialSpec material;
     material.cohesion = 800;
     const Model model = model_of(material);
     const double ratio = model.support_radius / model.particle_spacing;
@@ -315,17 +315,17 @@ TEST(Cohesion, inside_makes_up_for_what_sums_over_neighbours_do_not_pass_on) {
 }
 
 TEST(RoughZone, stops_debris_that_runs_elsewhere) {
-    const Terrain terrain = inclined_plane(20, 60, 40);
-    MaterialSpec material;
+    const terrain::Terrain terrain = inclined_plane(20, 60, 40);
+    params::MaterialSpec material;
     material.friction_coefficient = 0.1;
     material.internal_friction_coefficient = 0.6;
     Model model = make_model(material, {}, 0.25);
     Ground ground(terrain);
-    Grid<CoverCell> cells(terrain.elevation().geometry, {none, none, none, 0});
+    Grid<terrain::CoverCell> cells(terrain.elevation().geometry, {none, none, none, 0});
     for (int row = 0; row < 20; ++row) {
         for (int column = 0; column < 60; ++column) cells.at(column, row).friction_coefficient = 0.8F;
     }
-    model.cover = GroundCover(cells);
+    model.cover = terrain::GroundCover(cells);
     auto seeded = seed_releases(
         model, ground,
         {block(terrain, rectangle(10, 6, 16, 14), 0.75), block(terrain, rectangle(10, 26, 16, 34), 0.75)});
@@ -349,4 +349,4 @@ TEST(RoughZone, stops_debris_that_runs_elsewhere) {
 }
 
 }  // namespace
-}  // namespace talus
+}  // namespace talus::sim

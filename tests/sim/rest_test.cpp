@@ -5,17 +5,17 @@
 
 #include "sim_fixtures.hpp"
 
-namespace talus {
+namespace talus::sim {
 namespace {
 
 using testing::rectangle;
 
 /// A heap on level ground, 3 m to a side and 1.2 m high.
 Simulation heap(double rest_duration) {
-    const Terrain terrain = testing::terrain_of(60, 60, 1, [](double, double) { return 0; });
-    SolverSpec solver;
+    const terrain::Terrain terrain = testing::terrain_of(60, 60, 1, [](double, double) { return 0; });
+    params::SolverSpec solver;
     solver.rest_duration = rest_duration;
-    MaterialSpec material;
+    params::MaterialSpec material;
     material.friction_coefficient = 0.6;
     return testing::simulate(material, solver, terrain, {testing::block(terrain, rectangle(27, 27, 30, 30), 1.2)},
                              testing::fine_spacing);
@@ -23,9 +23,9 @@ Simulation heap(double rest_duration) {
 
 /// 2.4 m of debris in a pit.
 Simulation filled_pit(double rest_duration) {
-    const Terrain terrain = testing::terrain_of(
+    const terrain::Terrain terrain = testing::terrain_of(
         20, 20, 1, [](double x, double y) { return std::max(std::abs(x - 10), std::abs(y - 10)) < 2.6 ? 0 : 4; });
-    SolverSpec solver;
+    params::SolverSpec solver;
     solver.rest_duration = rest_duration;
     return testing::simulate({}, solver, terrain, {testing::block(terrain, rectangle(8, 8, 12, 12), 2.4)},
                              testing::fine_spacing);
@@ -110,8 +110,9 @@ TEST(DebrisAtRest, wakes_when_something_moves_beside_it_and_ends_where_it_would_
     double shift[2], top[2];
     for (const bool sleeps : {false, true}) {
         // A slope that debris runs down onto a level where a heap lies since long.
-        const Terrain terrain = testing::terrain_of(80, 30, 1, [](double x, double) { return x < 30 ? 30 - x : 0; });
-        SolverSpec solver;
+        const terrain::Terrain terrain =
+            testing::terrain_of(80, 30, 1, [](double x, double) { return x < 30 ? 30 - x : 0; });
+        params::SolverSpec solver;
         solver.rest_duration = sleeps ? 0.5 : 0;
         Simulation simulation = testing::simulate({}, solver, terrain,
                                                   {testing::block(terrain, rectangle(33, 12, 36, 18), 0.8),
@@ -138,4 +139,4 @@ TEST(DebrisAtRest, wakes_when_something_moves_beside_it_and_ends_where_it_would_
 }
 
 }  // namespace
-}  // namespace talus
+}  // namespace talus::sim

@@ -5,7 +5,7 @@
 #include "sim/physics/contact.hpp"
 #include "sim_fixtures.hpp"
 
-namespace talus {
+namespace talus::sim {
 namespace {
 
 using testing::block;
@@ -14,8 +14,8 @@ using testing::rectangle;
 
 TEST(Seeding, matches_the_requested_volume_within_one_per_cent) {
     for (const double degrees : {0.0, 20.0, 40.0}) {
-        const Terrain terrain = inclined_plane(degrees, 40, 30);
-        const Release release = block(terrain, rectangle(5.3, 5.1, 12.9, 11.7), 1.1);
+        const terrain::Terrain terrain = inclined_plane(degrees, 40, 30);
+        const terrain::Release release = block(terrain, rectangle(5.3, 5.1, 12.9, 11.7), 1.1);
         Model model = make_model({}, {}, 0.33);
         const Ground ground(terrain);
         const Result<State> state = seed_releases(model, ground, {release});
@@ -25,8 +25,8 @@ TEST(Seeding, matches_the_requested_volume_within_one_per_cent) {
 }
 
 TEST(Seeding, starts_at_rest_without_jumping_apart) {
-    const Terrain terrain = inclined_plane(0, 30, 30);
-    SolverSpec solver;
+    const terrain::Terrain terrain = inclined_plane(0, 30, 30);
+    params::SolverSpec solver;
     Simulation simulation =
         testing::simulate({}, solver, terrain, {block(terrain, rectangle(10, 10, 18, 18), 1.2)}, 0.4);
     const double before = potential_energy(simulation.model(), simulation.state());
@@ -41,8 +41,8 @@ TEST(Seeding, starts_at_rest_without_jumping_apart) {
 }
 
 TEST(Seeding, puts_no_particle_into_a_building_at_the_rim) {
-    const Terrain terrain = inclined_plane(20, 30, 30);
-    Building house;
+    const terrain::Terrain terrain = inclined_plane(20, 30, 30);
+    terrain::Building house;
     house.footprint = {rectangle(11.6, 6, 15, 12)};  // over the middles of the last column
     house.height = 8;
     Simulation simulation =
@@ -56,7 +56,7 @@ TEST(Seeding, puts_no_particle_into_a_building_at_the_rim) {
 }
 
 TEST(Seeding, spacing_follows_the_target_particle_count) {
-    SolverSpec solver;
+    params::SolverSpec solver;
     solver.target_particle_count = 8000;
     EXPECT_NEAR(choose_particle_spacing(solver, 1000), 0.5, 1e-12);
     solver.particle_spacing = 0.7;
@@ -64,8 +64,8 @@ TEST(Seeding, spacing_follows_the_target_particle_count) {
 }
 
 TEST(Seeding, too_many_particles_say_how_many_and_which_spacing_fits) {
-    const Terrain terrain = inclined_plane(0, 30, 30);
-    SolverSpec solver;
+    const terrain::Terrain terrain = inclined_plane(0, 30, 30);
+    params::SolverSpec solver;
     solver.particle_limit = 1000;
     Model model = make_model({}, solver, 0.1);
     const Ground ground(terrain);
@@ -76,16 +76,16 @@ TEST(Seeding, too_many_particles_say_how_many_and_which_spacing_fits) {
 }
 
 TEST(Seeding, a_release_smaller_than_a_particle_is_an_error) {
-    const Terrain terrain = inclined_plane(0, 30, 30);
+    const terrain::Terrain terrain = inclined_plane(0, 30, 30);
     Model model = make_model({}, {}, 5);
     const Ground ground(terrain);
     EXPECT_FALSE(seed_releases(model, ground, {block(terrain, rectangle(5, 5, 6, 6), 1)}).ok());
 }
 
 TEST(Seeding, a_release_waits_for_its_start_time) {
-    const Terrain terrain = inclined_plane(35, 60, 30);
-    const Release first = block(terrain, rectangle(5, 5, 9, 9), 0.8);
-    const Release second = block(terrain, rectangle(5, 18, 9, 22), 0.8, 0.5);
+    const terrain::Terrain terrain = inclined_plane(35, 60, 30);
+    const terrain::Release first = block(terrain, rectangle(5, 5, 9, 9), 0.8);
+    const terrain::Release second = block(terrain, rectangle(5, 18, 9, 22), 0.8, 0.5);
     Simulation simulation = testing::simulate({}, {}, terrain, {first, second}, 0.4);
     const std::uint32_t first_of_second = simulation.model().releases[1].first_particle;
     const auto fastest_of_second = [&] {
@@ -105,4 +105,4 @@ TEST(Seeding, a_release_waits_for_its_start_time) {
 }
 
 }  // namespace
-}  // namespace talus
+}  // namespace talus::sim

@@ -17,7 +17,8 @@ namespace talus::testing {
 inline constexpr double coarse_spacing = 0.5, fine_spacing = 0.4;  ///< m
 
 /// A terrain of `columns` x `rows` cells with elevations from a function of world x, y.
-inline Terrain terrain_of(int columns, int rows, double cell, const std::function<double(double, double)>& elevation) {
+inline terrain::Terrain terrain_of(int columns, int rows, double cell,
+                                   const std::function<double(double, double)>& elevation) {
     Grid<float> grid(GridGeometry{0, 0, cell, columns, rows});
     for (int row = 0; row < rows; ++row) {
         for (int column = 0; column < columns; ++column) {
@@ -25,11 +26,11 @@ inline Terrain terrain_of(int columns, int rows, double cell, const std::functio
             grid.at(column, row) = static_cast<float>(elevation(p.x, p.y));
         }
     }
-    return Terrain(std::move(grid));
+    return terrain::Terrain(std::move(grid));
 }
 
 /// A plane that falls towards +x at an angle in degrees.
-inline Terrain inclined_plane(double degrees, int columns = 80, int rows = 40) {
+inline terrain::Terrain inclined_plane(double degrees, int columns = 80, int rows = 40) {
     const double slope = std::tan(degrees * M_PI / 180);
     return terrain_of(columns, rows, 1, [=](double x, double) { return 200 - slope * x; });
 }
@@ -38,8 +39,9 @@ inline Polygon rectangle(double x_min, double y_min, double x_max, double y_max)
     return {{{x_min, y_min}, {x_max, y_min}, {x_max, y_max}, {x_min, y_max}}, {}};
 }
 
-inline Release block(const Terrain& terrain, const Polygon& polygon, double thickness, double start_time = 0) {
-    Release release;
+inline terrain::Release block(const terrain::Terrain& terrain, const Polygon& polygon, double thickness,
+                              double start_time = 0) {
+    terrain::Release release;
     release.name = "block";
     release.spec.start_time = start_time;
     release.patches.push_back({polygon, thickness});
@@ -48,18 +50,19 @@ inline Release block(const Terrain& terrain, const Polygon& polygon, double thic
 }
 
 /// A simulation of releases on a terrain.
-inline Simulation simulate(const MaterialSpec& material, const SolverSpec& solver, const Terrain& terrain,
-                           const std::vector<Release>& releases, double spacing, std::vector<Building> buildings = {}) {
+inline sim::Simulation simulate(const params::MaterialSpec& material, const params::SolverSpec& solver,
+                                const terrain::Terrain& terrain, const std::vector<terrain::Release>& releases,
+                                double spacing, std::vector<terrain::Building> buildings = {}) {
     place_buildings(terrain, buildings);
-    Model model = make_model(material, solver, spacing);
-    Ground ground(terrain, std::move(buildings), model.support_radius);
-    Result<State> state = seed_releases(model, ground, releases);
+    sim::Model model = sim::make_model(material, solver, spacing);
+    sim::Ground ground(terrain, std::move(buildings), model.support_radius);
+    Result<sim::State> state = seed_releases(model, ground, releases);
     return {std::move(model), std::move(ground), *std::move(state)};
 }
 
 /// A state of given particles, without any release.
-inline State state_of(const std::vector<LocalPoint>& points, const std::vector<LocalPoint>& velocities = {}) {
-    State state;
+inline sim::State state_of(const std::vector<LocalPoint>& points, const std::vector<LocalPoint>& velocities = {}) {
+    sim::State state;
     state.resize(points.size());
     state.count = state.seeded = static_cast<std::uint32_t>(points.size());
     for (std::uint32_t i = 0; i < state.count; ++i) {

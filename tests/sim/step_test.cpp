@@ -13,7 +13,7 @@
 #include "sim/compression.hpp"
 #include "sim_fixtures.hpp"
 
-namespace talus {
+namespace talus::sim {
 namespace {
 
 TEST(Step, docs_tour_has_the_table_of_its_stages) {
@@ -49,15 +49,15 @@ class Notebook : public StepWatcher {
 };
 
 TEST(Step, brings_inflow_in_tells_its_watcher_and_removes_what_failed) {
-    Building house;
+    terrain::Building house;
     house.footprint = {testing::rectangle(50, 10, 54, 16)};
     house.height = 3;
-    const Terrain terrain = testing::inclined_plane(25);
-    std::vector<Building> buildings{house};
+    const terrain::Terrain terrain = testing::inclined_plane(25);
+    std::vector<terrain::Building> buildings{house};
     place_buildings(terrain, buildings);
     const Model model = make_model({}, {}, testing::fine_spacing);
     const Ground ground(terrain, buildings, model.support_radius);
-    const Inflow inflow{"gully", {20, 17}, {20, 23}, {{0, 30, 5}, {5, 30, 5}}};
+    const terrain::Inflow inflow{"gully", {20, 17}, {20, 23}, {{0, 30, 5}, {5, 30, 5}}};
     Simulation simulation(model, ground, State{}, InflowFeeder(model, ground.terrain.frame(), {inflow}));
     const std::uint32_t all = simulation.inflow().to_come();
     Notebook notebook;
@@ -74,7 +74,7 @@ TEST(Step, brings_inflow_in_tells_its_watcher_and_removes_what_failed) {
 
 /// A cube of debris in the air whose upper half falls onto the lower one at `speed`, m/s.
 Simulation cube(float speed, int extra_iterations) {
-    SolverSpec solver;
+    params::SolverSpec solver;
     solver.extra_iteration_count = extra_iterations;
     Model model = make_model({}, solver, testing::fine_spacing);
     std::vector<LocalPoint> points, velocities;
@@ -126,4 +126,4 @@ TEST(Step, takes_the_same_extra_iterations_on_any_number_of_threads) {
 }
 
 }  // namespace
-}  // namespace talus
+}  // namespace talus::sim

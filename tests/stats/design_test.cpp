@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-namespace talus {
+namespace talus::stats {
 namespace {
 
 TEST(Design, PointsHangOnTheSeedAndTheRunAlone) {
@@ -110,4 +110,4 @@ TEST(Design, AMorrisTrajectoryChangesEveryFactorOnceByHalfTheRange) {
 }
 
 }  // namespace
-}  // namespace talus
+}  // namespace talus::stats

@@ -5,7 +5,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-namespace talus {
+namespace talus::stats {
 namespace {
 
 using testing::HasSubstr;
@@ -83,4 +83,4 @@ TEST(Distribution, BadOnesAreRefusedWithTheReason) {
 }
 
 }  // namespace
-}  // namespace talus
+}  // namespace talus::stats

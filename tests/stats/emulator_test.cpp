@@ -9,7 +9,7 @@
 #include "stats/optimise.hpp"
 #include "stats/sampler.hpp"
 
-namespace talus {
+namespace talus::stats {
 namespace {
 
 double wave(const std::vector<double>& p) {
@@ -117,4 +117,4 @@ TEST(Emulator, TakesValuesThatAreAllTheSame) {
 }
 
 }  // namespace
-}  // namespace talus
+}  // namespace talus::stats

@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-namespace talus {
+namespace talus::stats {
 namespace {
 
 constexpr double deviation_x = 0.06, deviation_y = 0.03, correlation = 0.8;
@@ -113,4 +113,4 @@ TEST(Convergence, SeesChainsThatDisagree) {
 }
 
 }  // namespace
-}  // namespace talus
+}  // namespace talus::stats

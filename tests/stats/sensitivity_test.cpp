@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-namespace talus {
+namespace talus::stats {
 namespace {
 
 /// Ishigami & Homma's (1990) function, whose indices are known in closed form.
@@ -72,4 +72,4 @@ TEST(Sensitivity, AResultThatNeverChangesHasNone) {
 }
 
 }  // namespace
-}  // namespace talus
+}  // namespace talus::stats

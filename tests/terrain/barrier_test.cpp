@@ -7,7 +7,7 @@
 
 #include "terrain/grids.hpp"
 
-namespace talus {
+namespace talus::terrain {
 namespace {
 
 using testing::HasSubstr;
@@ -18,7 +18,7 @@ Terrain slope() {
 }
 
 /// Across the slope at x = 1030, 30 m long.
-BarrierSpec dam(std::vector<BarrierOpeningSpec> openings = {}) {
+params::BarrierSpec dam(std::vector<params::BarrierOpeningSpec> openings = {}) {
     return {{{1030, 2005}, {1030, 2035}}, 4, {}, 1, std::move(openings)};
 }
 
@@ -45,7 +45,7 @@ TEST(Barrier, is_open_to_the_ground_in_a_slot_and_to_its_sill_in_a_spillway) {
 
 TEST(Barrier, with_a_crest_elevation_is_level) {
     const Terrain terrain = slope();
-    BarrierSpec shape = dam();
+    params::BarrierSpec shape = dam();
     shape.line = {{1020, 2020}, {1040, 2020}};  // down the slope: ground from 90 to 80 m
     shape.crest_elevation = 92;
     const auto made = make_barrier(terrain, "dam", shape);
@@ -60,7 +60,7 @@ TEST(Barrier, with_a_crest_elevation_is_level) {
 
 TEST(Barrier, refuses_openings_that_do_not_fit) {
     const Terrain terrain = slope();
-    const auto refusal = [&](std::vector<BarrierOpeningSpec> openings) {
+    const auto refusal = [&](std::vector<params::BarrierOpeningSpec> openings) {
         const auto made = make_barrier(terrain, "dam", dam(std::move(openings)));
         return made ? std::string("(made)") : made.error().message;
     };
@@ -81,4 +81,4 @@ TEST(Building, without_its_solid_keeps_its_place_and_stops_nothing) {
 }
 
 }  // namespace
-}  // namespace talus
+}  // namespace talus::terrain

@@ -9,7 +9,7 @@
 
 #include "terrain/grids.hpp"
 
-namespace talus {
+namespace talus::terrain {
 namespace {
 
 using Vec = Vec3<double>;
@@ -253,7 +253,7 @@ TEST(BuildingSolids, a_net_is_a_wall_for_coarse_grains_only) {
     // A house with a net along its eastern wall, both 6 m high.
     std::vector<Building> buildings{building({{rectangle(0, 0, 10, 6), {}}}, 6),
                                     building({{rectangle(10, 0, 11, 6), {}}}, 6)};
-    buildings[1].barrier = BarrierSpec{{}, 6, {}, 1, {}, 0.4};
+    buildings[1].barrier = params::BarrierSpec{{}, 6, {}, 1, {}, 0.4};
     BuildingSolids solids(level_ground(), buildings, 4);
     const Vec in_net{10.4, 3, 1}, in_house{9.8, 3, 1}, before{12, 3, 1};
     EXPECT_TRUE(solids.inside(in_net, 0.4F));
@@ -294,4 +294,4 @@ TEST(PlaceBuildings, roof_is_the_height_above_the_mean_ground_of_all_parts) {
 }
 
 }  // namespace
-}  // namespace talus
+}  // namespace talus::terrain

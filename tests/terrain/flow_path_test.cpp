@@ -12,7 +12,7 @@
 
 #include "terrain/grids.hpp"
 
-namespace talus {
+namespace talus::terrain {
 namespace {
 
 TEST(FlowPath, chainage_and_offset_along_a_bend) {
@@ -188,4 +188,4 @@ TEST(TraceFlowPath, from_the_lowest_cell_still_gives_a_line) {
 }
 
 }  // namespace
-}  // namespace talus
+}  // namespace talus::terrain

@@ -5,7 +5,7 @@
 
 #include "core/grid.hpp"
 
-namespace talus {
+namespace talus::terrain {
 
 inline constexpr float nodata = std::numeric_limits<float>::quiet_NaN();
 
@@ -21,4 +21,4 @@ inline Grid<float> make(const GridGeometry& g, const std::function<double(double
     return grid;
 }
 
-}  // namespace talus
+}  // namespace talus::terrain

@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-namespace talus {
+namespace talus::terrain {
 namespace {
 
 constexpr float none = std::numeric_limits<float>::quiet_NaN();
@@ -41,4 +41,4 @@ TEST(GroundCover, drags_where_a_cell_has_stems_or_turbulent_friction) {
 }
 
 }  // namespace
-}  // namespace talus
+}  // namespace talus::terrain

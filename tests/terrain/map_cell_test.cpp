@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace talus {
+namespace talus::terrain {
 namespace {
 
 TEST(DefaultMapCell, fits_the_terrains_cells_and_the_particles) {
@@ -15,4 +15,4 @@ TEST(DefaultMapCell, fits_the_terrains_cells_and_the_particles) {
 }
 
 }  // namespace
-}  // namespace talus
+}  // namespace talus::terrain

@@ -8,7 +8,7 @@
 
 #include "terrain/grids.hpp"
 
-namespace talus {
+namespace talus::terrain {
 namespace {
 
 /// A plane that rises eastward.
@@ -101,4 +101,4 @@ TEST(ReleaseVolume, on_curved_ground_agrees_with_a_fine_sum) {
 }
 
 }  // namespace
-}  // namespace talus
+}  // namespace talus::terrain

@@ -9,7 +9,7 @@
 
 #include "terrain/grids.hpp"
 
-namespace talus {
+namespace talus::terrain {
 namespace {
 
 Grid<float> rough_ground(const GridGeometry& geometry, float highest, unsigned seed) {
@@ -173,4 +173,4 @@ TEST(Terrain, beyond_the_grid_the_edge_cell_goes_on) {
 }
 
 }  // namespace
-}  // namespace talus
+}  // namespace talus::terrain

@@ -9,12 +9,13 @@
 #include "sim/sources/inflow.hpp"
 
 /// Everything that runs in parallel, small and on more threads than cores: what the thread sanitizer looks at.
-namespace talus {
+namespace talus::test {
 namespace {
 
 struct Setting {
     const char* name;
-    std::function<void(MaterialSpec&, SolverSpec&)> spec = [](MaterialSpec&, SolverSpec&) {};
+    std::function<void(params::MaterialSpec&, params::SolverSpec&)> spec = [](params::MaterialSpec&,
+                                                                              params::SolverSpec&) {};
     bool bed = false, inflow = false;
 };
 
@@ -27,18 +28,18 @@ std::pair<std::uint64_t, std::vector<float>> run_on(int threads, const Setting& 
     const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads));
     tbb::task_arena arena(threads);
     return arena.execute([&] {
-        const Terrain terrain = testing::inclined_plane(30, 60, 40);
-        std::vector<Building> houses(1);
+        const terrain::Terrain terrain = testing::inclined_plane(30, 60, 40);
+        std::vector<terrain::Building> houses(1);
         houses[0].footprint = {testing::rectangle(17, 12, 22, 20)};
         houses[0].height = 3;
         place_buildings(terrain, houses);
-        MaterialSpec material;
-        SolverSpec solver;
+        params::MaterialSpec material;
+        params::SolverSpec solver;
         setting.spec(material, solver);
-        Model model = make_model(material, solver, 0.5);
-        Ground ground(terrain, houses, model.support_radius);
+        sim::Model model = sim::make_model(material, solver, 0.5);
+        sim::Ground ground(terrain, houses, model.support_radius);
         if (setting.bed) {
-            BedMaterial gravel;
+            terrain::BedMaterial gravel;
             gravel.growth_rate = 0.1;
             const std::size_t cells = terrain.elevation().values.size();
             ground.bed = {{gravel},
@@ -46,14 +47,14 @@ std::pair<std::uint64_t, std::vector<float>> run_on(int threads, const Setting& 
                           std::vector<float>(cells, 1),
                           std::vector<float>(cells, 0)};
         }
-        std::vector<Inflow> inflows;
+        std::vector<terrain::Inflow> inflows;
         if (setting.inflow) inflows = {{"gully", {5, 8}, {5, 12}, {{0, 20, 4}, {9, 20, 4}}}};
-        Result<State> state =
+        Result<sim::State> state =
             seed_releases(model, ground, {testing::block(terrain, testing::rectangle(6, 10, 16, 22), 1)});
-        InflowFeeder feeder(model, terrain.frame(), inflows);
-        Simulation simulation(std::move(model), std::move(ground), *std::move(state), std::move(feeder));
-        const FlowPath path({{8, 16}, {55, 16}}, 30);
-        Observer observer(simulation.model(), simulation.ground(), simulation.state(), path, {}, 1);
+        sim::InflowFeeder feeder(model, terrain.frame(), inflows);
+        sim::Simulation simulation(std::move(model), std::move(ground), *std::move(state), std::move(feeder));
+        const terrain::FlowPath path({{8, 16}, {55, 16}}, 30);
+        observe::Observer observer(simulation.model(), simulation.ground(), simulation.state(), path, {}, 1);
         for (int i = 0; i < 20; ++i) EXPECT_TRUE(simulation.advance(&observer));
         EXPECT_EQ(simulation.state().entrained > 0, setting.bed);
         return std::pair(
@@ -79,19 +80,20 @@ TEST_P(ParallelStages, step_and_observe_alike_on_one_thread_and_on_four) {
 
 const std::vector<Setting> settings = {
     {"stress"},
-    {"pair", [](MaterialSpec&, SolverSpec& solver) { solver.internal_friction = InternalFriction::pair; }},
+    {"pair", [](params::MaterialSpec&,
+                params::SolverSpec& solver) { solver.internal_friction = params::InternalFriction::pair; }},
     {"drag_and_rest",
-     [](MaterialSpec& material, SolverSpec& solver) {
+     [](params::MaterialSpec& material, params::SolverSpec& solver) {
          material.turbulent_friction = 300;
          material.viscosity = 0.2;
          material.cohesion = 200;
          solver.rest_duration = 0.05;
      }},
-    {"bed", [](MaterialSpec&, SolverSpec&) {}, true},
-    {"inflow", [](MaterialSpec&, SolverSpec&) {}, false, true},
+    {"bed", [](params::MaterialSpec&, params::SolverSpec&) {}, true},
+    {"inflow", [](params::MaterialSpec&, params::SolverSpec&) {}, false, true},
 };
 INSTANTIATE_TEST_SUITE_P(Solver, ParallelStages, ::testing::ValuesIn(settings),
                          [](const auto& setting) { return std::string(setting.param.name); });
 
 }  // namespace
-}  // namespace talus
+}  // namespace talus::test

@@ -17,9 +17,9 @@ using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
 /// The channel with half a metre of gravel on its floor, from 20 m on.
-Scene gravel_scene() {
-    Scene scene = channel_scene();
-    BedLayer gravel;
+scene::Scene gravel_scene() {
+    scene::Scene scene = channel_scene();
+    scene::BedLayer gravel;
     gravel.spec.growth_rate = 0.05;
     gravel.parts = {{rectangle(west + 20, south + 24, west + 120, south + 36), 0.5}};
     scene.bed_layers = {gravel};
@@ -31,7 +31,7 @@ bool holds_nothing(const Grid<float>& grid) {
 }
 
 TEST(ErosionLayer, is_what_the_bed_has_lost_in_every_cell_of_the_terrain) {
-    const Scene scene = gravel_scene();
+    const scene::Scene scene = gravel_scene();
     NextNumbers next;
     const twin::Setup setup = setup_of(scene, next);
     auto run = LiveRun::start(scene, setup, *scene.spec.solver.particle_spacing, {});
@@ -43,7 +43,7 @@ TEST(ErosionLayer, is_what_the_bed_has_lost_in_every_cell_of_the_terrain) {
     ASSERT_TRUE(scenario->has_erosion());
 
     const Grid<float> eroded = layer(*scenario, "erosion_depth");
-    const Bed& bed = (*run)->ground().bed;
+    const terrain::Bed& bed = (*run)->ground().bed;
     const GridGeometry& g = scene.terrain.elevation().geometry;
     int cells = 0;
     double volume = 0;
@@ -107,16 +107,16 @@ TEST(ErosionLayer, is_one_empty_cell_where_nothing_was_picked_up) {
 }
 
 TEST(Export, of_a_run_on_a_bed_is_counted_as_the_run_of_the_scene) {
-    Scene scene = gravel_scene();
+    scene::Scene scene = gravel_scene();
     scene.bed = lay_bed(scene.bed_layers, scene.terrain);
     scene.spec.solver.end_time = 4;
-    const auto run = run_scene(scene, {});
+    const auto run = run::run_scene(scene, {});
     ASSERT_TRUE(run);
     const auto scenario = open(scene);
     run_until(*scenario, 100);
     ASSERT_TRUE(scenario->has_erosion());
     const talus::test::TemporaryFolder folder, exported;
-    ASSERT_TRUE(write_products(scene, *run, folder.path()));
+    ASSERT_TRUE(products::write_products(scene, *run, folder.path()));
     ASSERT_TRUE(scenario->products()(exported.path()));
     const auto manifest_in = [](const talus::test::TemporaryFolder& written) {
         return json::parse(talus::test::read_text(written.file("manifest.json")));

@@ -83,8 +83,8 @@ Decoded decode(const std::string& bytes) {
 }
 
 /// 500 particles in two thirds of the ids, anyhow.
-State scattered() {
-    State state;
+sim::State scattered() {
+    sim::State state;
     state.resize(500);
     state.count = 500;
     state.time = 12.5;
@@ -100,7 +100,7 @@ State scattered() {
 }
 
 TEST(Frame, says_where_every_particle_is_to_half_a_unit) {
-    const State state = scattered();
+    const sim::State state = scattered();
     const std::string bytes = encode(make_frame(state, {}, 750, 1, frame_running), 1, frame_recorded);
     const Decoded d = decode(bytes);
     EXPECT_EQ(d.magic, "TLSF");
@@ -127,7 +127,7 @@ TEST(Frame, says_where_every_particle_is_to_half_a_unit) {
 }
 
 TEST(Frame, with_a_stride_has_every_so_many_ids) {
-    const State state = scattered();
+    const sim::State state = scattered();
     const Decoded all = decode(encode(make_frame(state, {}, 750, 1, 0), 0)),
                   some = decode(encode(make_frame(state, {}, 750, 4, 0), 0));
     ASSERT_EQ(some.speed.size(), 188U);
@@ -135,7 +135,7 @@ TEST(Frame, with_a_stride_has_every_so_many_ids) {
 }
 
 TEST(Frame, without_particles_is_one_too) {
-    const Decoded d = decode(encode(make_frame(State{}, {}, 0, 1, 0), 0));
+    const Decoded d = decode(encode(make_frame(sim::State{}, {}, 0, 1, 0), 0));
     EXPECT_EQ(d.slots, 0U);
     EXPECT_EQ(d.window[2], 0U);
 }

@@ -39,27 +39,27 @@ json gully(double discharge) {
 
 double front_after(Scenario& scenario, double time) {
     run_until(scenario, time);
-    EXPECT_NE(scenario.phase(), RunPhase::fault) << scenario.message();
+    EXPECT_NE(scenario.phase(), run::RunPhase::fault) << scenario.message();
     return number(scenario, "front_chainage_m");
 }
 
-void expect_same_when_replayed(const Scenario& scenario, Scene scene) {
+void expect_same_when_replayed(const Scenario& scenario, scene::Scene scene) {
     const auto journal = read_journal(scenario.journal_json().dump());
     ASSERT_TRUE(journal) << journal.error().message;
-    const auto again = replay(*journal, std::make_shared<const Scene>(std::move(scene)));
+    const auto again = replay(*journal, std::make_shared<const scene::Scene>(std::move(scene)));
     ASSERT_TRUE(again) << again.error().message;
     EXPECT_EQ(again->hash, journal->hash);
 }
 
 /// The channel with one of each.
-Scene furnished_scene() {
-    Scene scene = channel_scene();
-    Zone zone;
+scene::Scene furnished_scene() {
+    scene::Scene scene = channel_scene();
+    scene::Zone zone;
     zone.spec.name = "wood";
     zone.spec.stem_density = 0.1;
     zone.outline = {rectangle(west + 60, south + 20, west + 70, south + 40)};
     scene.zones.push_back(zone);
-    BedLayer layer;
+    scene::BedLayer layer;
     layer.spec.name = "fan";
     layer.spec.growth_rate = 0.02;
     layer.parts = {{rectangle(west + 30, south + 25, west + 40, south + 35), 0.4},
@@ -147,7 +147,7 @@ TEST(Bed, drawn_at_time_0_is_picked_up) {
     EXPECT_EQ(bed["in_force"], true);
     EXPECT_EQ(scenario->setup_json()["pending_restart"], false);
     run_until(*scenario, 5);
-    ASSERT_NE(scenario->phase(), RunPhase::fault) << scenario->message();
+    ASSERT_NE(scenario->phase(), run::RunPhase::fault) << scenario->message();
     EXPECT_GT(number(*scenario, "volume_entrained_m3"), 3);
     expect_balance(*scenario);
     expect_same_when_replayed(*scenario, channel_scene());
@@ -207,7 +207,7 @@ TEST(Inflow, drawn_brings_debris_across_its_line) {
     EXPECT_EQ(done.sentence, "inflow \"inflow 1\" drawn: 20 m3");
     EXPECT_EQ(scenario->setup_json()["inflows"][0]["in_force"], true);
     run_until(*scenario, 4);
-    ASSERT_NE(scenario->phase(), RunPhase::fault) << scenario->message();
+    ASSERT_NE(scenario->phase(), run::RunPhase::fault) << scenario->message();
     EXPECT_NEAR(number(*scenario, "volume_released_m3"), released + 20, 0.3);
     act(*scenario, {{"action", "put_inflow"}, {"id", done.created}, {"hydrograph", rows(5)}});
     const json inflow = scenario->setup_json()["inflows"][0];
@@ -234,7 +234,7 @@ TEST(Inflow, moves_between_a_line_and_an_area) {
     act(*scenario, {{"action", "put_inflow"}, {"id", id}, {"move_m", {2, 1}}});
     EXPECT_EQ(scenario->setup_json()["inflows"][0]["polygons"][0][0][0], json({west + 22, south + 27}));
     run_until(*scenario, 3);
-    EXPECT_NE(scenario->phase(), RunPhase::fault) << scenario->message();
+    EXPECT_NE(scenario->phase(), run::RunPhase::fault) << scenario->message();
     expect_same_when_replayed(*scenario, furnished_scene());
     act(*scenario,
         {{"action", "put_inflow"}, {"id", id}, {"line", {{west + 30, south + 27}, {west + 30, south + 33}}}});

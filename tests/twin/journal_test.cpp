@@ -10,8 +10,8 @@ namespace {
 
 using ::testing::HasSubstr;
 
-Scene scene_with_threads(int threads) {
-    Scene scene = channel_scene();
+scene::Scene scene_with_threads(int threads) {
+    scene::Scene scene = channel_scene();
     add_building(scene, "house", rectangle(west + 70, south + 27, west + 76, south + 33), 6);
     scene.inputs.push_back({"terrain", "dem.tif", 10, "00000000000000aa"});
     scene.spec.solver.thread_count = threads;
@@ -58,7 +58,7 @@ TEST(Journal, replays_to_the_same_hash_on_any_number_of_threads) {
     EXPECT_EQ(journal->hash, to_hex(scenario->hash()));
     for (const int threads : {1, 2}) {
         std::uint64_t last = 0;
-        const auto again = replay(*journal, std::make_shared<const Scene>(scene_with_threads(threads)),
+        const auto again = replay(*journal, std::make_shared<const scene::Scene>(scene_with_threads(threads)),
                                   [&](std::uint64_t step) { return (last = step, true); });
         ASSERT_TRUE(again) << again.error().message;
         EXPECT_EQ(again->hash, journal->hash) << threads;
@@ -68,7 +68,7 @@ TEST(Journal, replays_to_the_same_hash_on_any_number_of_threads) {
     // It does depend on what people did.
     Journal other = *journal;
     other.entries[0].action["value"] = 0.31;
-    EXPECT_NE(replay(other, std::make_shared<const Scene>(scene_with_threads(2)))->hash, journal->hash);
+    EXPECT_NE(replay(other, std::make_shared<const scene::Scene>(scene_with_threads(2)))->hash, journal->hash);
 }
 
 TEST(Journal, begins_anew_at_restart_with_all_that_was_set_up) {
@@ -88,7 +88,7 @@ TEST(Journal, begins_anew_at_restart_with_all_that_was_set_up) {
     const auto journal = read_journal(scenario->journal_json().dump());
     ASSERT_TRUE(journal) << journal.error().message;
     EXPECT_EQ(journal->entries.size(), 2U);
-    const auto again = replay(*journal, std::make_shared<const Scene>(scene_with_threads(2)));
+    const auto again = replay(*journal, std::make_shared<const scene::Scene>(scene_with_threads(2)));
     ASSERT_TRUE(again) << again.error().message;
     EXPECT_EQ(again->hash, to_hex(scenario->hash()));
 }
@@ -96,7 +96,7 @@ TEST(Journal, begins_anew_at_restart_with_all_that_was_set_up) {
 TEST(Journal, says_which_inputs_have_changed) {
     const auto scenario = open(scene_with_threads(2));
     const auto journal = read_journal(scenario->journal_json().dump());
-    Scene scene = scene_with_threads(2);
+    scene::Scene scene = scene_with_threads(2);
     EXPECT_EQ(changed_inputs(*journal, scene).size(), 0U);
     scene.inputs[0].hash = "00000000000000bb";
     ASSERT_EQ(changed_inputs(*journal, scene).size(), 1U);
@@ -118,7 +118,7 @@ TEST(Journal, refuses_what_is_none_naming_key_and_value) {
         bad[json::json_pointer(pointer)] = value;
         const auto journal = read_journal(bad.dump());
         if (!journal) return journal.error().message;
-        const auto again = replay(*journal, std::make_shared<const Scene>(scene_with_threads(2)));
+        const auto again = replay(*journal, std::make_shared<const scene::Scene>(scene_with_threads(2)));
         return again ? "" : again.error().message;
     };
     EXPECT_EQ(error_of("/last/step", 0), "");

@@ -8,8 +8,8 @@ namespace talus::twin::test {
 namespace {
 
 /// An allowed value that no new shape begins with.
-json value_of(const Parameter& parameter) {
-    if (parameter.kind == ParameterKind::choice) return parameter.choices.back();
+json value_of(const params::Parameter& parameter) {
+    if (parameter.kind == params::ParameterKind::choice) return parameter.choices.back();
     if (parameter.range.text().empty()) return 20;  // an elevation
     return parameter.range.contains(0.75) ? 0.75 : 0.01;
 }
@@ -25,7 +25,7 @@ struct Shape {
 
 /// Whatever key the field table declares to change live can be set by an action and is in setups and journals.
 TEST(LiveKeys, are_set_shown_written_and_read_back) {
-    const Scene scene = channel_scene();
+    const scene::Scene scene = channel_scene();
     const json floor = ring(west + 60, south + 20, west + 70, south + 40);
     const Shape shapes[] = {
         {"barrier",
@@ -38,7 +38,7 @@ TEST(LiveKeys, are_set_shown_written_and_read_back) {
         {"bed", "beds", {{"action", "put_bed"}, {"polygon", floor}, {"depth_m", 0.5}, {"growth_rate_per_m", 0.02}}}};
     const ActionContext context{scene, 0.6, 0.1, [](const std::string&) { return false; }};
     for (const Shape& shape : shapes) {
-        for (const Parameter& parameter : find_section(shape.section)->parameters) {
+        for (const params::Parameter& parameter : params::find_section(shape.section)->parameters) {
             if (parameter.live.empty()) continue;
             SCOPED_TRACE(parameter.key);
             NextNumbers next;
@@ -65,8 +65,8 @@ TEST(LiveKeys, are_set_shown_written_and_read_back) {
 
 /// The same for the rows of a hydrograph, which have a table of their own.
 TEST(LiveKeys, of_hydrographs_are_set_shown_written_and_read_back) {
-    const Scene scene = channel_scene();
-    for (const Parameter& parameter : live_section("hydrograph").parameters) {
+    const scene::Scene scene = channel_scene();
+    for (const params::Parameter& parameter : params::live_section("hydrograph").parameters) {
         SCOPED_TRACE(parameter.key);
         json rows = {row(0), row(2), row(4)};
         for (json& each : rows) {
@@ -92,7 +92,7 @@ TEST(LiveKeys, of_hydrographs_are_set_shown_written_and_read_back) {
 }
 
 TEST(LiveKeys, of_older_journals_are_read_to_the_same_setup) {
-    const Scene scene = channel_scene();
+    const scene::Scene scene = channel_scene();
     const auto scenario = open(scene);
     act(*scenario, {{"action", "put_barrier"},
                     {"line", {{west + 52, south + 8}, {west + 52, south + 52}}},
@@ -111,7 +111,7 @@ TEST(LiveKeys, of_older_journals_are_read_to_the_same_setup) {
     const auto read = read_setup(old, scene);
     ASSERT_TRUE(read) << read.error().message;
     EXPECT_EQ(json::parse(write_setup(*read).dump()), now);
-    const BarrierSpec& barrier = read->barriers[0].shape();
+    const params::BarrierSpec& barrier = read->barriers[0].shape();
     EXPECT_FALSE(barrier.height.has_value());
     EXPECT_EQ(barrier.crest_elevation, 15);
     for (double degrees = 0.05; degrees < 360; degrees += 7.3) {  // to the last bit, or a replay would be another run
@@ -122,9 +122,9 @@ TEST(LiveKeys, of_older_journals_are_read_to_the_same_setup) {
 }
 
 TEST(LiveKeys, keep_the_rules_of_the_scene_file) {
-    Scene scene = channel_scene();
+    scene::Scene scene = channel_scene();
     scene.spec.solver.time_step = 0.02;
-    scene.spec.solver.internal_friction = InternalFriction::pair;
+    scene.spec.solver.internal_friction = params::InternalFriction::pair;
     const auto scenario = open(scene);
     const auto set = [](const char* key, double value) {
         return json{{"action", "set_parameter"}, {"key", key}, {"value", value}};
@@ -145,7 +145,7 @@ TEST(LiveKeys, keep_the_rules_of_the_scene_file) {
 }
 
 TEST(LiveKeys, take_the_place_of_their_alternatives) {
-    const Scene scene = channel_scene();
+    const scene::Scene scene = channel_scene();
     const auto scenario = open(scene);
     act(*scenario,
         {{"action", "put_barrier"}, {"line", {{west + 52, south + 8}, {west + 52, south + 52}}}, {"height_m", 5}});

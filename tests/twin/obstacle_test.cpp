@@ -23,7 +23,7 @@ json barrier_impact(const Scenario& scenario) {
 }
 
 TEST(Barrier, follows_the_ground_with_joints_that_leave_no_gap) {
-    const Scene scene = channel_scene();
+    const scene::Scene scene = channel_scene();
     const std::vector<PlanPoint> line{{west + 30, south + 10}, {west + 40, south + 30}, {west + 28, south + 50}};
     const auto made = make_barrier(scene.terrain, "dam", {line, 3, {}, 1.5});
     ASSERT_TRUE(made);
@@ -31,8 +31,8 @@ TEST(Barrier, follows_the_ground_with_joints_that_leave_no_gap) {
     EXPECT_GE(made->footprint.size(), 22U);
     double area = 0;
     for (const Polygon& part : made->footprint) area += plan_area(part);
-    EXPECT_NEAR(area, 1.5 * length_of(line), 0.01 * area);
-    const BuildingSolids solids(scene.terrain, {*made}, 1);
+    EXPECT_NEAR(area, 1.5 * terrain::length_of(line), 0.01 * area);
+    const terrain::BuildingSolids solids(scene.terrain, {*made}, 1);
     const WorldPoint origin = scene.terrain.frame().origin;
     for (std::size_t k = 0; k + 1 < line.size(); ++k) {
         for (double share = 0.005; share < 1; share += 0.01) {
@@ -52,7 +52,7 @@ TEST(Barrier, higher_than_the_flow_keeps_all_of_it) {
     const auto scenario = open(channel_scene());
     act(*scenario, barrier(55, 6));
     run_until(*scenario, 14);
-    ASSERT_NE(scenario->phase(), RunPhase::fault) << scenario->message();
+    ASSERT_NE(scenario->phase(), run::RunPhase::fault) << scenario->message();
     const json impact = barrier_impact(*scenario);
     EXPECT_EQ(impact["hit"], true);
     EXPECT_GT(impact["peak_force_kN"], 10);
@@ -69,7 +69,7 @@ TEST(Barrier, lower_than_the_flow_is_overtopped_by_what_lies_beyond_it) {
     const auto scenario = open(channel_scene());
     act(*scenario, barrier(52, 0.7));
     run_until(*scenario, 14);
-    ASSERT_NE(scenario->phase(), RunPhase::fault) << scenario->message();
+    ASSERT_NE(scenario->phase(), run::RunPhase::fault) << scenario->message();
     const json impact = barrier_impact(*scenario);
     const double over = impact["overtopped_m3"];
     EXPECT_GT(over, 2);
@@ -106,7 +106,7 @@ TEST(Barrier, put_into_moving_debris_gives_it_no_energy) {
         for (int k = 0; k < 60; ++k) {
             scenario->advance();
             free->advance();
-            ASSERT_EQ(scenario->phase(), RunPhase::ready) << scenario->message();
+            ASSERT_EQ(scenario->phase(), run::RunPhase::ready) << scenario->message();
             run_until(*free, scenario->time());
             ASSERT_LT(kinetic_energy(*scenario), 1.01 * kinetic_energy(*free)) << "step " << k;
             ASSERT_LT(number(*scenario, "largest_speed_mps"), 1.1 * number(*free, "largest_speed_mps")) << "step " << k;
@@ -138,7 +138,7 @@ TEST(Barrier, moved_begins_its_record_anew_and_removed_lets_go_what_it_held) {
 }
 
 TEST(Obstacle, taken_away_stays_in_tables_and_report_with_the_time_of_it) {
-    Scene scene = channel_scene();
+    scene::Scene scene = channel_scene();
     scene.crs.epsg = 2326;
     add_building(scene, "house", rectangle(west + 20, south + 27, west + 24, south + 33), 6);
     const auto scenario = open(scene);
@@ -179,7 +179,7 @@ TEST(Obstacle, taken_away_stays_in_tables_and_report_with_the_time_of_it) {
 }
 
 TEST(Obstacle, impacts_of_an_earlier_time_are_those_that_were_told_then) {
-    Scene scene = channel_scene();
+    scene::Scene scene = channel_scene();
     add_building(scene, "house", rectangle(west + 60, south + 27, west + 66, south + 33), 6);
     const auto scenario = open(scene);
     act(*scenario, barrier(45, 0.8));
@@ -222,7 +222,7 @@ TEST(Barrier, refuses_lines_that_make_no_wall) {
 }
 
 TEST(Building, is_put_moved_and_removed_also_one_of_the_scene) {
-    Scene scene = channel_scene();
+    scene::Scene scene = channel_scene();
     add_building(scene, "house", rectangle(west + 60, south + 27, west + 66, south + 33), 6);
     const auto scenario = open(scene);
     EXPECT_EQ(scenario->setup_json()["buildings"][0]["id"], "building-1");
@@ -248,7 +248,7 @@ TEST(Building, is_put_moved_and_removed_also_one_of_the_scene) {
     impacts = scenario->impacts_json()["buildings"];
     ASSERT_EQ(impacts.size(), 1U);
     EXPECT_EQ(impacts[0]["hit"], true);
-    ASSERT_EQ(scenario->phase(), RunPhase::ready) << scenario->message();
+    ASSERT_EQ(scenario->phase(), run::RunPhase::ready) << scenario->message();
     // Back again, with what had hit it.
     act(*scenario, {{"action", "undo"}});
     act(*scenario, {{"action", "undo"}});
@@ -262,9 +262,9 @@ TEST(Building, is_put_moved_and_removed_also_one_of_the_scene) {
 }
 
 TEST(Building, of_several_parts_with_a_courtyard_moves_as_a_whole) {
-    Scene scene = channel_scene();
+    scene::Scene scene = channel_scene();
     add_building(scene, "farm", rectangle(west + 60, south + 24, west + 70, south + 36), 6);
-    Building& farm = scene.buildings.front();
+    terrain::Building& farm = scene.buildings.front();
     farm.footprint[0].holes.push_back(rectangle(west + 63, south + 28, west + 67, south + 32).outer);
     farm.footprint.push_back(rectangle(west + 72, south + 27, west + 75, south + 33));
     const auto scenario = open(scene);

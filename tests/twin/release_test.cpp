@@ -25,7 +25,7 @@ json release_of(const Scenario& scenario, const std::string& id) {
 }
 
 TEST(DrawnRelease, waits_until_it_is_triggered) {
-    Scene scene = channel_scene();
+    scene::Scene scene = channel_scene();
     scene.releases[0].spec.start_time = 20;  // nothing else moves
     const auto scenario = open(scene);
     const double held = number(*scenario, "volume_held_m3");
@@ -54,7 +54,7 @@ TEST(DrawnRelease, waits_until_it_is_triggered) {
 }
 
 TEST(DrawnRelease, is_moved_as_a_whole_while_held) {
-    Scene scene = channel_scene();
+    scene::Scene scene = channel_scene();
     const auto scenario = open(scene);
     const std::string id = act(*scenario, drawn(25, 1)).created;
     const json before = release_of(*scenario, id);
@@ -123,7 +123,7 @@ TEST(Release, removed_while_it_moves_is_taken_away_and_the_rest_goes_on) {
     EXPECT_LT(number(*scenario, "volume_released_m3"), 0.5 * all);
     run_until(*scenario, 2);
     expect_balance(*scenario);
-    EXPECT_NE(scenario->phase(), RunPhase::fault) << scenario->message();
+    EXPECT_NE(scenario->phase(), run::RunPhase::fault) << scenario->message();
     const json series = scenario->series_json();
     for (const json& row : series["time"]["volume_released_m3"]) EXPECT_GT(row.get<double>(), 0);
     // Undone, it is back where it was and starts again.
@@ -131,7 +131,7 @@ TEST(Release, removed_while_it_moves_is_taken_away_and_the_rest_goes_on) {
     EXPECT_NEAR(number(*scenario, "volume_released_m3"), all, 1e-6 * all);
     expect_balance(*scenario);
     run_until(*scenario, 3);
-    EXPECT_NE(scenario->phase(), RunPhase::fault) << scenario->message();
+    EXPECT_NE(scenario->phase(), run::RunPhase::fault) << scenario->message();
 }
 
 TEST(Release, its_trigger_can_be_taken_back) {
@@ -166,7 +166,7 @@ TEST(DrawnRelease, can_lie_on_debris_that_came_before) {
     EXPECT_LT(number(*scenario, "largest_speed_mps"), 8) << "it must not be thrown apart";
     act(*scenario, {{"action", "trigger_release"}, {"id", id}});
     run_until(*scenario, scenario->time() + 2);
-    EXPECT_NE(scenario->phase(), RunPhase::fault) << scenario->message();
+    EXPECT_NE(scenario->phase(), run::RunPhase::fault) << scenario->message();
     EXPECT_LT(number(*scenario, "largest_speed_mps"), 8);
     expect_balance(*scenario);
 }
@@ -183,12 +183,12 @@ TEST(DrawnRelease, makes_room_for_an_obstacle_while_it_is_held) {
     EXPECT_LT(number(*scenario, "max_compression"), 0.05);
     act(*scenario, {{"action", "trigger_release"}, {"id", id}});
     run_until(*scenario, 0.5);
-    EXPECT_NE(scenario->phase(), RunPhase::fault) << scenario->message();
+    EXPECT_NE(scenario->phase(), run::RunPhase::fault) << scenario->message();
     EXPECT_LT(number(*scenario, "largest_speed_mps"), 5);
 }
 
 TEST(Release, refuses_what_cannot_fail) {
-    Scene scene = channel_scene();
+    scene::Scene scene = channel_scene();
     scene.spec.solver.particle_limit = 600;
     const auto scenario = open(scene);
     run_until(*scenario, 0.2);

@@ -12,13 +12,13 @@ namespace {
 using ::testing::HasSubstr;
 
 TEST(Scenario, without_actions_is_the_run_of_the_scene) {
-    Scene scene = channel_scene();
+    scene::Scene scene = channel_scene();
     scene.spec.solver.end_time = 3;
-    const auto run = run_scene(scene, {});
+    const auto run = run::run_scene(scene, {});
     ASSERT_TRUE(run);
     const auto scenario = open(scene);
     run_until(*scenario, 100);
-    EXPECT_EQ(scenario->phase(), RunPhase::ended);
+    EXPECT_EQ(scenario->phase(), run::RunPhase::ended);
     EXPECT_EQ(scenario->message(), run->stop_reason);
     EXPECT_EQ(scenario->step(), run->steps);
     EXPECT_EQ(scenario->hash(), run->hash);
@@ -26,20 +26,20 @@ TEST(Scenario, without_actions_is_the_run_of_the_scene) {
 }
 
 TEST(Scenario, comes_to_rest_as_the_run_does_and_goes_on_when_something_changes) {
-    Scene scene = channel_scene();
+    scene::Scene scene = channel_scene();
     scene.spec.material.friction_coefficient = 0.7;  // steeper than the slope: it hardly moves
     scene.spec.solver.stop_duration = 1;
-    const auto run = run_scene(scene, {});
+    const auto run = run::run_scene(scene, {});
     const auto scenario = open(scene);
     run_until(*scenario, 100);
-    ASSERT_EQ(scenario->phase(), RunPhase::at_rest) << scenario->message();
+    ASSERT_EQ(scenario->phase(), run::RunPhase::at_rest) << scenario->message();
     EXPECT_EQ(scenario->hash(), run->hash);
     const std::uint64_t step = scenario->step();
     scenario->advance();
     EXPECT_EQ(scenario->step(), step);
 
     act(*scenario, {{"action", "set_parameter"}, {"key", "material.friction_coefficient"}, {"value", 0.2}});
-    EXPECT_EQ(scenario->phase(), RunPhase::ready);
+    EXPECT_EQ(scenario->phase(), run::RunPhase::ready);
     EXPECT_EQ(scenario->message(), "");
     EXPECT_LT(number(*scenario, "largest_speed_mps"), 0.1);
     run_until(*scenario, scenario->time() + 1);
@@ -90,7 +90,7 @@ TEST(Scenario, several_parameters_at_once_are_one_change) {
 }
 
 TEST(Scenario, density_changes_pressures_from_then_on_and_not_those_before) {
-    Scene scene = channel_scene();
+    scene::Scene scene = channel_scene();
     const auto light = open(scene), heavy = open(scene), late = open(scene);
     const json denser = {{"action", "set_parameter"}, {"key", "material.rest_density_kgpm3"}, {"value", 4000}};
     EXPECT_EQ(act(*heavy, denser).sentence, "rest density 2000 -> 4000 kg/m3");
@@ -169,7 +169,7 @@ TEST(Scenario, restart_and_copy_begin_with_the_setup_as_it_is_now) {
         EXPECT_EQ(s->journal_json()["actions"].size(), 0U);
         EXPECT_EQ(s->setup_json()["parameters"]["material.friction_coefficient"], 0.1);
     }
-    Scene direct = channel_scene();
+    scene::Scene direct = channel_scene();
     direct.spec.material.friction_coefficient = 0.1;
     const auto wanted = open(direct);
     run_until(*scenario, 1);
@@ -180,7 +180,7 @@ TEST(Scenario, restart_and_copy_begin_with_the_setup_as_it_is_now) {
 }
 
 TEST(Scenario, writes_the_products_of_the_run_so_far) {
-    Scene scene = channel_scene();
+    scene::Scene scene = channel_scene();
     scene.crs.epsg = 2326;
     add_building(scene, "shed", rectangle(west + 40, south + 28, west + 44, south + 32), 4);
     const auto scenario = open(scene);
@@ -207,7 +207,7 @@ TEST(Scenario, writes_the_products_of_the_run_so_far) {
 }
 
 TEST(Scenario, classifies_buildings_by_depth_and_speed_at_their_walls) {
-    Scene scene = channel_scene();
+    scene::Scene scene = channel_scene();
     add_building(scene, "in the way", rectangle(west + 30, south + 27, west + 34, south + 33), 6);
     add_building(scene, "beside", rectangle(west + 30, south + 50, west + 34, south + 54), 6);
     const auto scenario = open(scene);

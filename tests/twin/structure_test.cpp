@@ -8,10 +8,10 @@ namespace talus::twin::test {
 namespace {
 
 /// The channel with a house and a dam across it; both from the scene.
-Scene dammed_scene(std::optional<double> resistance = {}) {
-    Scene scene = channel_scene();
+scene::Scene dammed_scene(std::optional<double> resistance = {}) {
+    scene::Scene scene = channel_scene();
     add_building(scene, "hut", rectangle(west + 100, south + 26, west + 104, south + 30), 3);
-    BarrierSpec shape{{{west + 52, south + 8}, {west + 52, south + 52}}, 5, {}, 1.2, {{22, 2, 0}}};
+    params::BarrierSpec shape{{{west + 52, south + 8}, {west + 52, south + 52}}, 5, {}, 1.2, {{22, 2, 0}}};
     shape.resistance_force = resistance;
     const auto dam = make_barrier(scene.terrain, "dam", shape);
     EXPECT_TRUE(dam);
@@ -44,7 +44,7 @@ TEST(SceneBarrier, is_shown_edited_and_removed_like_a_drawn_one) {
 TEST(SceneBarrier, lets_through_its_slot_what_is_counted_as_passed) {
     const auto scenario = open(dammed_scene());
     run_until(*scenario, 10);
-    ASSERT_NE(scenario->phase(), RunPhase::fault) << scenario->message();
+    ASSERT_NE(scenario->phase(), run::RunPhase::fault) << scenario->message();
     const json dam = scenario->impacts_json()["barriers"][0];
     EXPECT_EQ(dam["hit"], true);
     EXPECT_GT(dam["impulse_kNs"], 0);
@@ -57,7 +57,7 @@ TEST(Resistance, exceeded_takes_the_dam_away_once_and_replays_to_the_same_hash) 
     const double weak = 500;  // N/m
     const auto scenario = open(dammed_scene(weak));
     run_until(*scenario, 6);
-    ASSERT_NE(scenario->phase(), RunPhase::fault) << scenario->message();
+    ASSERT_NE(scenario->phase(), run::RunPhase::fault) << scenario->message();
     const json dam = scenario->impacts_json()["barriers"][0];
     ASSERT_NE(dam["failed_s"], nullptr);
     EXPECT_GE(dam["failed_s"], dam["first_hit_s"]);
@@ -69,7 +69,7 @@ TEST(Resistance, exceeded_takes_the_dam_away_once_and_replays_to_the_same_hash) 
 
     const auto journal = read_journal(scenario->journal_json().dump());
     ASSERT_TRUE(journal) << journal.error().message;
-    const auto again = replay(*journal, std::make_shared<const Scene>(dammed_scene(weak)));
+    const auto again = replay(*journal, std::make_shared<const scene::Scene>(dammed_scene(weak)));
     ASSERT_TRUE(again) << again.error().message;
     EXPECT_EQ(again->hash, journal->hash);
 
@@ -119,7 +119,7 @@ TEST(Net, lets_through_and_holds_in_the_live_twin_and_replays_to_the_same_hash) 
                     {"thickness_m", 1},
                     {"passing_share", 0.2}});
     run_until(*scenario, 10);
-    ASSERT_NE(scenario->phase(), RunPhase::fault) << scenario->message();
+    ASSERT_NE(scenario->phase(), run::RunPhase::fault) << scenario->message();
     expect_balance(*scenario);
     const json net = scenario->impacts_json()["barriers"][0];
     EXPECT_EQ(net["hit"], true);
@@ -128,23 +128,23 @@ TEST(Net, lets_through_and_holds_in_the_live_twin_and_replays_to_the_same_hash) 
     EXPECT_GT(net["peak_force_kN"], 0);
     const auto journal = read_journal(scenario->journal_json().dump());
     ASSERT_TRUE(journal) << journal.error().message;
-    const auto again = replay(*journal, std::make_shared<const Scene>(dammed_scene()));
+    const auto again = replay(*journal, std::make_shared<const scene::Scene>(dammed_scene()));
     ASSERT_TRUE(again) << again.error().message;
     EXPECT_EQ(again->hash, journal->hash);
 }
 
 /// The channel with a net across it, which reaches 4 m above the ground and none of whose debris passes the meshes.
-Scene netted_scene(std::optional<double> clearance) {
-    Scene scene = channel_scene();
-    BarrierSpec net{{{west + 62, south + 8}, {west + 62, south + 52}}, 4, {}, 1.2, {}, 0.0};
+scene::Scene netted_scene(std::optional<double> clearance) {
+    scene::Scene scene = channel_scene();
+    params::BarrierSpec net{{{west + 62, south + 8}, {west + 62, south + 52}}, 4, {}, 1.2, {}, 0.0};
     net.clearance = clearance;
     scene.buildings.push_back(*make_barrier(scene.terrain, "net", net));
     return scene;
 }
 
 TEST(Clearance, is_a_gap_with_an_edge_above_it) {
-    const Scene scene = netted_scene(1);
-    const BuildingSolids solids(scene.terrain, scene.buildings, 2);
+    const scene::Scene scene = netted_scene(1);
+    const terrain::BuildingSolids solids(scene.terrain, scene.buildings, 2);
     const WorldPoint origin = scene.terrain.frame().origin;
     const auto at = [&](double east, double height) {  // on the flat floor of the channel, at an elevation of 0
         return Vec3<double>{west + 62 + east - origin.x, south + 30 - origin.y, height - origin.z};
@@ -169,7 +169,7 @@ TEST(Clearance, lets_debris_pass_below_the_net_as_if_it_were_not_there) {
     const auto held = open(netted_scene({})), open_below = open(netted_scene(1.5));
     for (Scenario* scenario : {held.get(), open_below.get()}) {
         run_until(*scenario, 10);
-        ASSERT_NE(scenario->phase(), RunPhase::fault) << scenario->message();
+        ASSERT_NE(scenario->phase(), run::RunPhase::fault) << scenario->message();
         expect_balance(*scenario);
     }
     const json closed = held->impacts_json()["barriers"][0], gap = open_below->impacts_json()["barriers"][0];
@@ -182,7 +182,7 @@ TEST(Clearance, lets_debris_pass_below_the_net_as_if_it_were_not_there) {
     // Hung lower while debris is below it: what is in its way is moved out of it.
     act(*open_below, {{"action", "put_barrier"}, {"id", "barrier-1"}, {"clearance_m", 0.8}});
     run_until(*open_below, 12);
-    ASSERT_NE(open_below->phase(), RunPhase::fault) << open_below->message();
+    ASSERT_NE(open_below->phase(), run::RunPhase::fault) << open_below->message();
     expect_balance(*open_below);
     const json low = {{"action", "put_barrier"}, {"id", "barrier-1"}, {"clearance_m", 0.4}},
                high = {{"action", "put_barrier"}, {"id", "barrier-1"}, {"clearance_m", 4}};
@@ -191,14 +191,14 @@ TEST(Clearance, lets_debris_pass_below_the_net_as_if_it_were_not_there) {
 }
 
 TEST(Inflow, over_an_area_with_a_density_runs_live_and_again_after_a_restart) {
-    Scene scene = channel_scene();
+    scene::Scene scene = channel_scene();
     scene.releases.clear();
-    Inflow rain{"slope", {}, {}, {{0, 12, 1, 1200}, {5, 12, 1, 1200}}};
+    terrain::Inflow rain{"slope", {}, {}, {{0, 12, 1, 1200}, {5, 12, 1, 1200}}};
     rain.area.push_back({{{west + 20, south + 27}, {west + 30, south + 27}, {west + 30, south + 33}}, {}});
     scene.inflows.push_back(rain);
     const auto scenario = open(std::move(scene));
     run_until(*scenario, 3);
-    ASSERT_NE(scenario->phase(), RunPhase::fault) << scenario->message();
+    ASSERT_NE(scenario->phase(), run::RunPhase::fault) << scenario->message();
     EXPECT_NEAR(number(*scenario, "volume_released_m3"), 36, 3);
     expect_balance(*scenario);
     bool any = false;
@@ -217,12 +217,12 @@ TEST(Inflow, over_an_area_with_a_density_runs_live_and_again_after_a_restart) {
 }
 
 TEST(Inflow, runs_live_and_again_after_a_restart) {
-    Scene scene = channel_scene();
+    scene::Scene scene = channel_scene();
     scene.releases.clear();
     scene.inflows.push_back({"gully", {west + 20, south + 27}, {west + 20, south + 33}, {{0, 12, 4}, {5, 12, 4}}});
     const auto scenario = open(std::move(scene));
     run_until(*scenario, 3);
-    ASSERT_NE(scenario->phase(), RunPhase::fault) << scenario->message();
+    ASSERT_NE(scenario->phase(), run::RunPhase::fault) << scenario->message();
     const double volume = number(*scenario, "volume_released_m3");
     EXPECT_NEAR(volume, 36, 3);
     expect_balance(*scenario);

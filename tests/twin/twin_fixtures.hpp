@@ -29,8 +29,8 @@ inline constexpr double west = 824000, south = 825000;
 
 /// A channel that falls to the east, 120 m x 60 m: 30 degrees for 50 m, then flat; banks of 1 : 2 on both sides of its
 /// floor of 12 m. 4 m x 8 m of its upper end are released, 1.2 m thick.
-inline Scene channel_scene() {
-    Scene scene;
+inline scene::Scene channel_scene() {
+    scene::Scene scene;
     scene.file = "channel.toml";
     scene.spec.scene.title = "Channel";
     Grid<float> grid(GridGeometry{west, south, 1, 120, 60});
@@ -41,13 +41,13 @@ inline Scene channel_scene() {
             grid.at(column, row) = static_cast<float>(std::max(0.0, 50 - along) * std::tan(M_PI / 6) + across / 2);
         }
     }
-    scene.terrain = Terrain(std::move(grid));
-    Release release;
+    scene.terrain = terrain::Terrain(std::move(grid));
+    terrain::Release release;
     release.name = "scar";
     release.patches.push_back({rectangle(west + 8, south + 26, west + 16, south + 34), 1.2});
     release.volume = release_volume(scene.terrain, release);
     scene.releases.push_back(release);
-    scene.flow_path = FlowPath({{west + 5, south + 30}, {west + 115, south + 30}}, 40);
+    scene.flow_path = terrain::FlowPath({{west + 5, south + 30}, {west + 115, south + 30}}, 40);
     scene.spec.solver.particle_spacing = 0.6;
     scene.spec.solver.thread_count = 2;
     scene.spec.solver.end_time = 30;
@@ -55,8 +55,8 @@ inline Scene channel_scene() {
     return scene;
 }
 
-inline void add_building(Scene& scene, const std::string& name, const Polygon& footprint, double height) {
-    std::vector<Building> placed(1);
+inline void add_building(scene::Scene& scene, const std::string& name, const Polygon& footprint, double height) {
+    std::vector<terrain::Building> placed(1);
     placed[0].name = name;
     placed[0].footprint = {footprint};
     placed[0].height = height;
@@ -64,15 +64,15 @@ inline void add_building(Scene& scene, const std::string& name, const Polygon& f
     scene.buildings.push_back(placed[0]);
 }
 
-inline std::unique_ptr<Scenario> open(Scene scene, ScenarioOptions options = {}) {
-    auto opened = Scenario::open(std::make_shared<const Scene>(std::move(scene)), std::move(options));
+inline std::unique_ptr<Scenario> open(scene::Scene scene, ScenarioOptions options = {}) {
+    auto opened = Scenario::open(std::make_shared<const scene::Scene>(std::move(scene)), std::move(options));
     EXPECT_TRUE(opened) << opened.error().message;
     return std::move(*opened);
 }
 
 /// Until a time, or until it is not ready.
 inline void run_until(Scenario& scenario, double time) {
-    while (scenario.phase() == RunPhase::ready && scenario.time() < time) scenario.advance();
+    while (scenario.phase() == run::RunPhase::ready && scenario.time() < time) scenario.advance();
 }
 
 inline Done act(Scenario& scenario, const json& action) {

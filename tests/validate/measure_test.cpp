@@ -38,14 +38,14 @@ class Box : public testing::Test {
   protected:
     Incline incline_{0.4, 40, 10};
     std::vector<LocalPoint> points_ = fill_lattice(incline_, 0.5, -3, 12, -1, 4, [](double, double) { return 2.0; });
-    Model model_ = make_model({}, {}, 0.5);
-    State state_ = state_at_rest(points_);
+    sim::Model model_ = sim::make_model({}, {}, 0.5);
+    sim::State state_ = state_at_rest(points_);
 };
 
 TEST_F(Box, HasTheVolumeThatWasAskedFor) {
     EXPECT_EQ(points_.size(), 12U * 4 * 4);
     for (const LocalPoint& p : points_) {
-        const GroundSample<float> ground = incline_.terrain().sample(p.x, p.y);
+        const terrain::GroundSample<float> ground = incline_.terrain().sample(p.x, p.y);
         EXPECT_NEAR(incline_.normal(p), (p.z - ground.height) * ground.normal.z, 1e-4);
         EXPECT_GT(incline_.normal(p), 0.249);
         EXPECT_LT(incline_.normal(p), 1.751);
@@ -62,12 +62,12 @@ TEST_F(Box, HasItsThicknessInEveryCell) {
 }
 
 TEST_F(Box, UnderItsWeightPressesAsDeepAsItLies) {
-    MaterialSpec smooth;
+    params::MaterialSpec smooth;
     smooth.building_friction_coefficient = 0;
     const auto walls = make_slice(incline_.terrain(), 2, 3);
-    const Model slice = make_model(smooth, {}, 0.5);
-    const Ground ground(incline_.terrain(), walls, slice.support_radius);
-    const State loaded = state_under_weight(slice, ground, points_, incline_, [](double, double) { return 2.0; });
+    const sim::Model slice = sim::make_model(smooth, {}, 0.5);
+    const sim::Ground ground(incline_.terrain(), walls, slice.support_radius);
+    const sim::State loaded = state_under_weight(slice, ground, points_, incline_, [](double, double) { return 2.0; });
     ASSERT_EQ(loaded.count, state_.count);
     std::vector<double> by_layer(4, 0.0);
     for (std::uint32_t i = 0; i < loaded.count; ++i) {
@@ -92,7 +92,7 @@ TEST(FillLattice, RoundsSoThatTheVolumeIsRight) {
 
 TEST(TopOf, DoesNotFollowOneParticleThatLiesOnTop) {
     const Incline flat(0, 20, 20);
-    const Model model = make_model({}, {}, 0.5);
+    const sim::Model model = sim::make_model({}, {}, 0.5);
     std::vector<LocalPoint> points = fill_lattice(flat, 0.5, -2, 8, -2, 8, [](double, double) { return 2.0; });
     EXPECT_NEAR(top_of(model, state_at_rest(points)), 2, 1e-6);
     points.push_back(flat.point(0, 0, 2.25));
@@ -101,8 +101,8 @@ TEST(TopOf, DoesNotFollowOneParticleThatLiesOnTop) {
 
 TEST(Slice, IsOpenBetweenItsWallsOnly) {
     const Incline incline(0.3, 20, 6);
-    const Model model = make_model({}, {}, 0.5);
-    const Ground ground(incline.terrain(), make_slice(incline.terrain(), 2, 1), model.support_radius);
+    const sim::Model model = sim::make_model({}, {}, 0.5);
+    const sim::Ground ground(incline.terrain(), make_slice(incline.terrain(), 2, 1), model.support_radius);
     EXPECT_FALSE(ground.solids.inside(incline.point(-8, 0.9, 0.5)));
     EXPECT_TRUE(ground.solids.inside(incline.point(-8, 1.1, 0.5)));
     EXPECT_TRUE(ground.solids.inside(incline.point(8, -1.1, 0.5)));

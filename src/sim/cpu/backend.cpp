@@ -8,7 +8,7 @@
 #include "sim/physics/contact.hpp"
 #include "simd/parallel.hpp"
 
-namespace talus::cpu {
+namespace talus::sim::cpu {
 namespace {
 
 /// Start time of the release that a particle belongs to.
@@ -124,7 +124,7 @@ void Backend::reorder(State& state, std::span<const std::uint32_t> order) {
 }
 
 bool Backend::keeps_stress(const Model& model) {
-    return model.solver.internal_friction == InternalFriction::stress;
+    return model.solver.internal_friction == params::InternalFriction::stress;
 }
 
 void Backend::warm_start(const Model& model, const Ground& ground, State& state) {
@@ -267,4 +267,4 @@ double choose_time_step(const Model& model, const State& state) {
     return dt;
 }
 
-}  // namespace talus::cpu
+}  // namespace talus::sim::cpu

@@ -14,7 +14,7 @@
 #include "sim/model.hpp"
 #include "sim/state.hpp"
 
-namespace talus::cpu {
+namespace talus::sim::cpu {
 
 /// Minimum number of particles per task.
 inline constexpr std::size_t particle_grain = 256, block_grain = particle_grain / block_size;
@@ -83,4 +83,4 @@ class Backend {
 /// freely, moves at most `displacement_limit` of a spacing; shorter while the debris is compressed, down to an eighth.
 [[nodiscard]] double choose_time_step(const Model& model, const State& state);
 
-}  // namespace talus::cpu
+}  // namespace talus::sim::cpu

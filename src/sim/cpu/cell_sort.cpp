@@ -5,7 +5,7 @@
 
 #include "simd/parallel.hpp"
 
-namespace talus::cpu {
+namespace talus::sim::cpu {
 namespace {
 
 constexpr int digit_bits = 11;
@@ -128,4 +128,4 @@ void CellSort::radix_sort(std::size_t count, std::uint64_t max_key) {
     }
 }
 
-}  // namespace talus::cpu
+}  // namespace talus::sim::cpu

@@ -6,7 +6,7 @@
 
 #include "sim/state.hpp"
 
-namespace talus::cpu {
+namespace talus::sim::cpu {
 
 /// The occupied cells of a sparse grid over the particles, in the order of their keys. Empty cells cost neither memory
 /// nor time: a dense grid over the bounding box of a valley would cost more than the solver.
@@ -35,4 +35,4 @@ class CellSort {
     std::vector<std::uint32_t> histogram_;
 };
 
-}  // namespace talus::cpu
+}  // namespace talus::sim::cpu

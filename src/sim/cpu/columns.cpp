@@ -5,7 +5,7 @@
 
 #include "simd/parallel.hpp"
 
-namespace talus::cpu {
+namespace talus::sim::cpu {
 namespace {
 
 constexpr float one = 65536;  // a whole particle
@@ -81,4 +81,4 @@ std::uint32_t Columns::sum_of(std::uint64_t key) const {
     }
 }
 
-}  // namespace talus::cpu
+}  // namespace talus::sim::cpu

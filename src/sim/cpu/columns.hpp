@@ -6,7 +6,7 @@
 
 #include "sim/state.hpp"
 
-namespace talus::cpu {
+namespace talus::sim::cpu {
 
 /// The number of particles above each place in plan: a sparse grid of columns, rebuilt in each step. Shares of
 /// particles are whole numbers, so that sums do not depend on the number of threads.
@@ -37,4 +37,4 @@ class Columns {
     std::vector<Slot> slots_;  // their number is a power of two; a single particle takes four
 };
 
-}  // namespace talus::cpu
+}  // namespace talus::sim::cpu

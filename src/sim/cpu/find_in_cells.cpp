@@ -13,7 +13,7 @@
 
 #ifndef TALUS_ROW_SWEEP
 #define TALUS_ROW_SWEEP
-namespace talus::cpu {
+namespace talus::sim::cpu {
 namespace {
 
 constexpr int row_count = 9;  // a cell's 27 neighbours are 9 rows of 3 cells with consecutive keys
@@ -73,11 +73,11 @@ struct Candidates {
 };
 
 }  // namespace
-}  // namespace talus::cpu
+}  // namespace talus::sim::cpu
 #endif
 
 HWY_BEFORE_NAMESPACE();
-namespace talus::cpu::HWY_NAMESPACE {
+namespace talus::sim::cpu::HWY_NAMESPACE {
 namespace {
 
 namespace hn = hwy::HWY_NAMESPACE;
@@ -183,11 +183,11 @@ NeighbourSearch::FindInCells make_find_in_cells() {
 }
 
 }  // namespace
-}  // namespace talus::cpu::HWY_NAMESPACE
+}  // namespace talus::sim::cpu::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
-namespace talus::cpu {
+namespace talus::sim::cpu {
 
 HWY_EXPORT(make_find_in_cells);
 
@@ -195,5 +195,5 @@ NeighbourSearch::FindInCells find_in_cells_function() {
     return HWY_DYNAMIC_DISPATCH(make_find_in_cells)();
 }
 
-}  // namespace talus::cpu
+}  // namespace talus::sim::cpu
 #endif

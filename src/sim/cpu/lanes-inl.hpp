@@ -16,7 +16,7 @@
 #define TALUS_STAGE [[gnu::flatten]]
 
 HWY_BEFORE_NAMESPACE();
-namespace talus::cpu::HWY_NAMESPACE {
+namespace talus::sim::cpu::HWY_NAMESPACE {
 
 constexpr int lane_count = HWY_MAX_BYTES >= 64 ? 16 : HWY_MAX_BYTES >= 32 ? 8 : 4;
 static_assert(block_size % lane_count == 0);
@@ -208,7 +208,7 @@ HWY_INLINE BoundaryShare sample_boundary_at(const Model& model, const Ground& gr
     return share;
 }
 
-}  // namespace talus::cpu::HWY_NAMESPACE
+}  // namespace talus::sim::cpu::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #endif

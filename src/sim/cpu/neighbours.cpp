@@ -8,7 +8,7 @@
 
 #include "simd/parallel.hpp"
 
-namespace talus::cpu {
+namespace talus::sim::cpu {
 namespace {
 
 constexpr std::size_t cells_per_task = 64;
@@ -172,4 +172,4 @@ void NeighbourSearch::write_block(std::size_t block, NeighbourLists& lists) cons
     }
 }
 
-}  // namespace talus::cpu
+}  // namespace talus::sim::cpu

@@ -8,7 +8,7 @@
 #include "sim/cpu/cell_sort.hpp"
 #include "sim/state.hpp"
 
-namespace talus::cpu {
+namespace talus::sim::cpu {
 
 /// For every particle the other particles within the support radius. The lists of a block lie side by side, entry after
 /// entry, so that its particles are processed together; a list that is shorter than the block's longest is filled with
@@ -84,4 +84,4 @@ class NeighbourSearch {
 /// For the chosen instruction set (dispatch.hpp).
 [[nodiscard]] NeighbourSearch::FindInCells find_in_cells_function();
 
-}  // namespace talus::cpu
+}  // namespace talus::sim::cpu

@@ -10,7 +10,7 @@
 #include "sim/physics/friction.hpp"
 
 HWY_BEFORE_NAMESPACE();
-namespace talus::cpu::HWY_NAMESPACE {
+namespace talus::sim::cpu::HWY_NAMESPACE {
 namespace {
 
 /// Compression present at the step's start may be undone only slowly, since a correction becomes velocity: the density
@@ -111,7 +111,7 @@ TALUS_STAGE void apply(const StageData& data, std::size_t first, std::size_t las
     });
 }
 
-PairStages make_stages(KernelChoice kernel) {
+PairStages make_stages(params::KernelChoice kernel) {
     return with_kernel(kernel, [&](auto k) {
         using Kernel = decltype(k);
         return PairStages{find_tolerated<Kernel>, update_multipliers<Kernel>, apply<Kernel>};
@@ -119,17 +119,17 @@ PairStages make_stages(KernelChoice kernel) {
 }
 
 }  // namespace
-}  // namespace talus::cpu::HWY_NAMESPACE
+}  // namespace talus::sim::cpu::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
-namespace talus::cpu {
+namespace talus::sim::cpu {
 
 HWY_EXPORT(make_stages);
 
-PairStages pair_stages_for(KernelChoice kernel) {
+PairStages pair_stages_for(params::KernelChoice kernel) {
     return HWY_DYNAMIC_DISPATCH(make_stages)(kernel);
 }
 
-}  // namespace talus::cpu
+}  // namespace talus::sim::cpu
 #endif

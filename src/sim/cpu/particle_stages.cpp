@@ -14,7 +14,7 @@
 #include "sim/physics/viscosity.hpp"
 
 HWY_BEFORE_NAMESPACE();
-namespace talus::cpu::HWY_NAMESPACE {
+namespace talus::sim::cpu::HWY_NAMESPACE {
 namespace {
 
 /// 1 for particles that may move, 0 for those that are held or asleep.
@@ -29,7 +29,7 @@ TALUS_STAGE void drag(const StageData& data, std::size_t first, std::size_t last
     const L dt(state.time_step);
     for_each_lanes(first, last, [&](std::size_t i) {
         const V3 velocity = load(state.velocity, i), p = load(state.position, i);
-        const GroundSample<L> below = data.ground.terrain.sample(p.x, p.y);
+        const terrain::GroundSample<L> below = data.ground.terrain.sample(p.x, p.y);
         const L distance = (p.z - below.height) * below.normal.z;
         const L thickness = flow_thickness(model, below, load(data.work.column_particles, i));
         const V3 slower = slowed_by_drag(model, ground_resistance(model, p), below, distance, thickness, velocity, dt);
@@ -94,7 +94,7 @@ TALUS_STAGE void resist(const StageData& data, std::size_t first, std::size_t la
         const GroundResistance<L> ground = ground_resistance(model, p);
         L friction = ground.friction_coefficient;
         if (model.inertial_friction.on) {
-            const GroundSample<L> below = data.ground.terrain.sample(p.x, p.y);
+            const terrain::GroundSample<L> below = data.ground.terrain.sample(p.x, p.y);
             const L speed = length(velocity - below.normal * dot(velocity, below.normal));
             friction = friction_beside_ground(model, friction, speed, (p.z - below.height) * below.normal.z,
                                               load(state.multiplier, i) * pressure_scale * share);
@@ -148,11 +148,11 @@ TALUS_STAGE void contacts(const StageData& data, std::size_t first, std::size_t 
 TALUS_STAGE void undo_overlaps(const StageData& data, std::size_t first, std::size_t last) {
     const Model& model = data.model;
     Work& work = data.work;
-    const bool spread = model.solver.internal_friction == InternalFriction::stress;
+    const bool spread = model.solver.internal_friction == params::InternalFriction::stress;
     const L max_shift(model.particle_spacing / 4), touching(model.contact_distance());
     for_each_lanes(first, last, [&](std::size_t i) {
         const V3 p = vector_of(load_low(work.displaced, i));
-        const GroundSample<L> ground = data.ground.terrain.sample(p.x, p.y);
+        const terrain::GroundSample<L> ground = data.ground.terrain.sample(p.x, p.y);
         const L overlap = touching - (p.z - ground.height) * ground.normal.z;
         // False for the NaN of unknown ground.
         V3 shift = ground.normal * select(overlap > L(0), smaller(overlap, max_shift), L(0));
@@ -258,7 +258,7 @@ TALUS_STAGE void apply_viscosity(const StageData& data, std::size_t first, std::
         const L mobile = load(work.mobile, i);
         V3 after = own + change * (smoothing * mobile);
         if (model.viscosity_on_ground) {
-            const GroundSample<L> below = data.ground.terrain.sample(p.x, p.y);
+            const terrain::GroundSample<L> below = data.ground.terrain.sample(p.x, p.y);
             after = slowed_by_ground(model, below, (p.z - below.height) * below.normal.z, after, smoothing * mobile);
         }
         store(after, state.velocity, i);
@@ -310,7 +310,7 @@ TALUS_STAGE void update_sleep(const StageData& data, std::size_t first, std::siz
     });
 }
 
-ParticleStages make_stages(KernelChoice kernel) {
+ParticleStages make_stages(params::KernelChoice kernel) {
     ParticleStages stages{drag,
                           predict,
                           begin,
@@ -328,17 +328,17 @@ ParticleStages make_stages(KernelChoice kernel) {
 }
 
 }  // namespace
-}  // namespace talus::cpu::HWY_NAMESPACE
+}  // namespace talus::sim::cpu::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
-namespace talus::cpu {
+namespace talus::sim::cpu {
 
 HWY_EXPORT(make_stages);
 
-ParticleStages particle_stages_for(KernelChoice kernel) {
+ParticleStages particle_stages_for(params::KernelChoice kernel) {
     return HWY_DYNAMIC_DISPATCH(make_stages)(kernel);
 }
 
-}  // namespace talus::cpu
+}  // namespace talus::sim::cpu
 #endif

@@ -6,7 +6,7 @@
 
 #include "sim/cpu/work.hpp"
 
-namespace talus::cpu {
+namespace talus::sim::cpu {
 
 /// Works on the particles of the blocks [first, last); of other particles it reads only what the stage does not write.
 using StageFunction = void (*)(const StageData& data, std::size_t first, std::size_t last);
@@ -47,8 +47,8 @@ struct PairStages {
 };
 
 /// The stages for a kernel and the chosen instruction set (dispatch.hpp).
-[[nodiscard]] ParticleStages particle_stages_for(KernelChoice kernel);
-[[nodiscard]] StressStages stress_stages_for(KernelChoice kernel);
-[[nodiscard]] PairStages pair_stages_for(KernelChoice kernel);
+[[nodiscard]] ParticleStages particle_stages_for(params::KernelChoice kernel);
+[[nodiscard]] StressStages stress_stages_for(params::KernelChoice kernel);
+[[nodiscard]] PairStages pair_stages_for(params::KernelChoice kernel);
 
-}  // namespace talus::cpu
+}  // namespace talus::sim::cpu

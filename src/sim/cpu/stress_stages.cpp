@@ -10,7 +10,7 @@
 #include "sim/physics/stress.hpp"
 
 HWY_BEFORE_NAMESPACE();
-namespace talus::cpu::HWY_NAMESPACE {
+namespace talus::sim::cpu::HWY_NAMESPACE {
 namespace {
 
 /// Packs the data of a particle that apply() reads; `pressing` is 1 or 0.
@@ -197,24 +197,24 @@ TALUS_STAGE void spread(const StageData& data, std::size_t first, std::size_t la
     });
 }
 
-StressStages make_stages(KernelChoice kernel) {
+StressStages make_stages(params::KernelChoice kernel) {
     StressStages stages{nullptr, press_asleep, clear_asleep, solve, apply, find_spread, spread};
     with_kernel(kernel, [&](auto k) { stages.linearise = linearise<decltype(k)>; });
     return stages;
 }
 
 }  // namespace
-}  // namespace talus::cpu::HWY_NAMESPACE
+}  // namespace talus::sim::cpu::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
-namespace talus::cpu {
+namespace talus::sim::cpu {
 
 HWY_EXPORT(make_stages);
 
-StressStages stress_stages_for(KernelChoice kernel) {
+StressStages stress_stages_for(params::KernelChoice kernel) {
     return HWY_DYNAMIC_DISPATCH(make_stages)(kernel);
 }
 
-}  // namespace talus::cpu
+}  // namespace talus::sim::cpu
 #endif

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-namespace talus::cpu {
+namespace talus::sim::cpu {
 
 Work::Work(std::size_t capacity) {
 #define TALUS_RESIZE(array, name) resize(name, capacity);
@@ -65,4 +65,4 @@ void enforce_particle(const Model& model, const Ground& ground, const State& sta
     displaced[6] = slowed.z;
 }
 
-}  // namespace talus::cpu
+}  // namespace talus::sim::cpu

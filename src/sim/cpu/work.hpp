@@ -12,7 +12,7 @@
 #include "sim/state.hpp"
 #include "simd/lanes.hpp"
 
-namespace talus::cpu {
+namespace talus::sim::cpu {
 
 /// Rows of eight numbers in a cache line, which neighbours read at once. A type for each meaning.
 struct DisplacedRow : simd::Oct {};  ///< predicted position x, y, z, 0; displacement x, y, z, change of lambda to apply
@@ -94,4 +94,4 @@ Vec3<float> undo_overlap_near_walls(const Model& model, const Ground& ground, co
 /// The particle's position at the end of the step, found by a sweep; lifting it back above ground must not speed it up.
 void enforce_particle(const Model& model, const Ground& ground, const State& state, Work& work, std::size_t i);
 
-}  // namespace talus::cpu
+}  // namespace talus::sim::cpu

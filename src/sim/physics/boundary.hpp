@@ -7,7 +7,7 @@
 #include "sim/model.hpp"
 #include "sim/physics/net.hpp"
 
-namespace talus {
+namespace talus::sim {
 
 /// A face of the boundary, taken to be plane near a particle.
 template <class Real>
@@ -37,8 +37,8 @@ struct GroundFace {
 };
 
 template <class Real>
-GroundFace<Real> sample_ground(const Model& model, const Terrain& terrain, const Vec3<Real>& p) {
-    const GroundSample<Real> below = terrain.sample(p.x, p.y);
+GroundFace<Real> sample_ground(const Model& model, const terrain::Terrain& terrain, const Vec3<Real>& p) {
+    const terrain::GroundSample<Real> below = terrain.sample(p.x, p.y);
     const Real distance = (p.z - below.height) * below.normal.z;  // exact for a plane
     const auto share = model.boundary.at(distance);
     return {distance, below.normal, share.density, share.slope};
@@ -48,7 +48,7 @@ GroundFace<Real> sample_ground(const Model& model, const Terrain& terrain, const
 /// is the product of the shares. `grain_rank` decides which nets are walls (see net.hpp).
 template <class Real>
 Boundary<Real> sample_boundary(const Model& model, const Ground& ground, const Vec3<Real>& p,
-                               float grain_rank = largest_grain) {
+                               float grain_rank = terrain::largest_grain) {
     Boundary<Real> result;
     auto& [base, wall, second_wall] = result.faces;
     const GroundFace<Real> ground_share = sample_ground(model, ground.terrain, p);
@@ -56,9 +56,9 @@ Boundary<Real> sample_boundary(const Model& model, const Ground& ground, const V
     result.density = ground_share.density;
     result.gradient = base.normal * base.slope;
     if (ground.solids.empty()) return result;
-    const SolidSample<Real> nearest = ground.solids.nearest(p, grain_rank);
+    const terrain::SolidSample<Real> nearest = ground.solids.nearest(p, grain_rank);
     if (nearest.building < 0) return result;
-    const SolidSample<Real> second = ground.solids.second_nearest(p, nearest, grain_rank);
+    const terrain::SolidSample<Real> second = ground.solids.second_nearest(p, nearest, grain_rank);
     const auto share = model.boundary.at(nearest.distance);
     const auto second_share = second.building < 0 ? decltype(share){} : model.boundary.at(second.distance);
     const Real free = 1 - ground_share.density, wall_free = 1 - share.density, second_free = 1 - second_share.density;
@@ -94,4 +94,4 @@ Real boundary_push(Real slope, Real multiplier) {
     return Real(boundary_mirror_share) * multiplier * slope;
 }
 
-}  // namespace talus
+}  // namespace talus::sim

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace talus {
+namespace talus::sim {
 namespace {
 
 constexpr int node_count = 257;  // over distances from -r to r
@@ -33,7 +33,7 @@ BoundaryTable::BoundaryTable(const Kernel& kernel, double particle_spacing)
         const auto density_kernel = [&](double q) { return k.value(q); };
         // The pair poly6_spiky takes its gradient and its density from different kernels; so does the ground.
         const auto gradient_kernel = [&](double q) {
-            if (kernel.choice == KernelChoice::poly6_spiky) return kernels::Spiky::value(q);
+            if (kernel.choice == params::KernelChoice::poly6_spiky) return kernels::Spiky::value(q);
             return k.value(q);
         };
         // Share at distance d: the part beyond the plane. Integrated downwards from d = r with plane integrals.
@@ -127,4 +127,4 @@ void BoundaryTable::tabulate_by_slope() {
     }
 }
 
-}  // namespace talus
+}  // namespace talus::sim

@@ -5,7 +5,7 @@
 #include "core/number.hpp"
 #include "sim/physics/kernel.hpp"
 
-namespace talus {
+namespace talus::sim {
 
 /// Share of density that a half-space of rest-density ground adds to a particle, as a function of its signed distance
 /// to the plane: an analytic integral tabulated once (Koschier & Bender 2017, density maps, for a plane bed).
@@ -66,4 +66,4 @@ class BoundaryTable {
     std::vector<Quad> sticking_;  // at distances from 0 to r, twice as many nodes as in that range; its rise
 };
 
-}  // namespace talus
+}  // namespace talus::sim

@@ -7,7 +7,7 @@
 #include "sim/physics/friction.hpp"
 #include "sim/physics/resistance.hpp"
 
-namespace talus {
+namespace talus::sim {
 
 /// Corrections so far in this step from a particle's contact with ground or a wall.
 template <class Real>
@@ -90,7 +90,7 @@ Vec3<Real> resolve_contacts(const Model& model, const Boundary<Real>& boundary, 
 /// The shift that brings a particle overlapping ground or a wall back to touching it, at most `max_shift` metres.
 template <class Real>
 Vec3<Real> undo_overlap(const Model& model, const Ground& ground, const Vec3<Real>& p, Real max_shift,
-                        float grain_rank = largest_grain) {
+                        float grain_rank = terrain::largest_grain) {
     const Real touching = Real(model.contact_distance());
     const Boundary<Real> now = sample_boundary(model, ground, p, grain_rank);
     Vec3<Real> shift{};
@@ -106,7 +106,7 @@ Vec3<Real> undo_overlap(const Model& model, const Ground& ground, const Vec3<Rea
 
 /// Whether a position is free: not below ground that is known, not inside a building, or a net that stops the grain.
 template <class Real>
-bool is_free(const Ground& ground, const Vec3<Real>& p, float grain_rank = largest_grain) {
+bool is_free(const Ground& ground, const Vec3<Real>& p, float grain_rank = terrain::largest_grain) {
     if (p.z < ground.terrain.sample(p.x, p.y).height) return false;
     return ground.solids.empty() || !ground.solids.inside(p, grain_rank);
 }
@@ -116,7 +116,7 @@ bool is_free(const Ground& ground, const Vec3<Real>& p, float grain_rank = large
 /// `start` must be free; so is the result.
 template <class Real>
 Vec3<Real> free_end(const Model& model, const Ground& ground, const Vec3<Real>& start, const Vec3<Real>& displacement,
-                    float grain_rank = largest_grain) {
+                    float grain_rank = terrain::largest_grain) {
     const Vec3<Real> end = start + displacement;
     const Real max_part = Real(model.particle_spacing / 4);
     const Real distance = length(displacement);
@@ -134,7 +134,7 @@ Vec3<Real> free_end(const Model& model, const Ground& ground, const Vec3<Real>& 
     if (blocked < 0) return end;
     if (parts == 1) {
         // A small step that ends below ground: lifted along the normal, so that it loses no tangential motion.
-        const GroundSample<Real> below = ground.terrain.sample(end.x, end.y);
+        const terrain::GroundSample<Real> below = ground.terrain.sample(end.x, end.y);
         const Real depth = (below.height - end.z) * below.normal.z;
         Vec3<Real> lifted = end + below.normal * (depth > 0 ? depth : Real(0));
         const Real height = ground.terrain.sample(lifted.x, lifted.y).height;
@@ -155,4 +155,4 @@ Vec3<Real> free_end(const Model& model, const Ground& ground, const Vec3<Real>& 
     return clear > 0 ? reached : start;
 }
 
-}  // namespace talus
+}  // namespace talus::sim

@@ -6,7 +6,7 @@
 #include "sim/physics/boundary.hpp"
 #include "sim/physics/kernel.hpp"
 
-namespace talus {
+namespace talus::sim {
 
 /// The density constraint G of a particle, eq. (1), linearised at the positions that the step predicts: G(u) = start -
 /// divergence(u) + boundary_change(u) for displacements u since the step's start.
@@ -75,4 +75,4 @@ inline double jacobi_factor(double relaxation, const Kernel& kernel) {
     return relaxation / kernel.max_eigenvalue;
 }
 
-}  // namespace talus
+}  // namespace talus::sim

@@ -4,7 +4,7 @@
 
 #include "core/geometry.hpp"
 
-namespace talus {
+namespace talus::sim {
 
 /// Coulomb friction on ground and walls as a position correction (Mueller et al. 2007; the accumulated form follows the
 /// sequential impulses of Catto 2005). The correction that would undo the tangential displacement of this step is
@@ -41,4 +41,4 @@ Vec3<Real> pair_friction(const Vec3<Real>& separation, Real square_distance, con
     return tangential * select(wanted <= limit, Real(-0.5) * weight, -limit / size);
 }
 
-}  // namespace talus
+}  // namespace talus::sim

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <vector>
 
-namespace talus {
+namespace talus::sim {
 namespace {
 
 /// A multiplier that varies as cos(k x) over the lattice moves particles by the lattice sum of 2 grad W sin(k x), which
@@ -30,7 +30,7 @@ double max_lattice_eigenvalue(const std::vector<Vec3<double>>& offsets, const st
 
 }  // namespace
 
-Kernel make_kernel(KernelChoice choice, double particle_spacing, double support_radius) {
+Kernel make_kernel(params::KernelChoice choice, double particle_spacing, double support_radius) {
     return with_kernel(choice, [&](auto kernel) {
         const double r = support_radius, r3 = r * r * r, r5 = r3 * r * r;
         const int reach = static_cast<int>(std::ceil(r / particle_spacing));
@@ -65,4 +65,4 @@ Kernel make_kernel(KernelChoice choice, double particle_spacing, double support_
     });
 }
 
-}  // namespace talus
+}  // namespace talus::sim

@@ -6,7 +6,7 @@
 #include "core/geometry.hpp"
 #include "params/spec.hpp"
 
-namespace talus {
+namespace talus::sim {
 
 /// Radial smoothing kernels with support radius r, normalised in 3-D; q = distance / r.
 /// value: W r^3; slope_over_q: -(dW/dq) r^3 / q >= 0, so that grad W = -slope_over_q x / r^5 needs no direction vector.
@@ -85,15 +85,15 @@ struct Poly6Spiky {
 
 /// Calls `f` with the kernel type of the choice: one branch per stage instead of one per pair.
 template <class F>
-decltype(auto) with_kernel(KernelChoice choice, F&& f) {
+decltype(auto) with_kernel(params::KernelChoice choice, F&& f) {
     switch (choice) {
-        case KernelChoice::cubic_spline:
+        case params::KernelChoice::cubic_spline:
             return f(kernels::CubicSpline{});
-        case KernelChoice::spiky:
+        case params::KernelChoice::spiky:
             return f(kernels::Spiky{});
-        case KernelChoice::poly6_spiky:
+        case params::KernelChoice::poly6_spiky:
             return f(kernels::Poly6Spiky{});
-        case KernelChoice::wendland_c2:
+        case params::KernelChoice::wendland_c2:
             break;
     }
     return f(kernels::WendlandC2{});
@@ -101,7 +101,7 @@ decltype(auto) with_kernel(KernelChoice choice, F&& f) {
 
 /// A kernel at its support radius, with the particle volume calibrated so that the cubic rest lattice has G = 0.
 struct Kernel {
-    KernelChoice choice = KernelChoice::wendland_c2;
+    params::KernelChoice choice = params::KernelChoice::wendland_c2;
     double support_radius = 0;     ///< m
     double particle_volume = 0;    ///< m3, V with sum over the lattice of V W = 1
     double rest_gradient_sum = 0;  ///< sum |V grad W|^2 of a particle in the rest lattice, 1/m2
@@ -115,6 +115,6 @@ struct Kernel {
 };
 
 /// Calibrates on the cubic lattice of the spacing.
-[[nodiscard]] Kernel make_kernel(KernelChoice choice, double particle_spacing, double support_radius);
+[[nodiscard]] Kernel make_kernel(params::KernelChoice choice, double particle_spacing, double support_radius);
 
-}  // namespace talus
+}  // namespace talus::sim

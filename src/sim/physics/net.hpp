@@ -2,7 +2,7 @@
 
 #include <cstdint>
 
-namespace talus {
+namespace talus::sim {
 
 /// The rank of a particle by grain size: 0 for the finest, just below 1 for the coarsest. A net with passing share p
 /// lets particles of rank below p through and is a wall for the others: debris that passes one net passes every wider
@@ -16,4 +16,4 @@ inline float grain_rank(std::uint32_t id) {
     return static_cast<float>(hash >> 8U) * 0x1p-24F;
 }
 
-}  // namespace talus
+}  // namespace talus::sim

@@ -8,7 +8,7 @@
 #include "sim/physics/stress.hpp"
 
 /// Resistance other than Coulomb friction and viscosity: speed-dependent drag, cohesion, pore pressure, zones.
-namespace talus {
+namespace talus::sim {
 
 /// Whether there is speed-dependent drag.
 inline bool slows_by_speed(const Model& model) {
@@ -126,13 +126,13 @@ inline double column_width(const Model& model) {
 template <class Real>
 Real open_share(const Model& model, const Ground& ground, const Vec3<Real>& p, float grain_rank) {
     if (ground.solids.empty()) return 1;
-    const auto beyond = [&](const SolidSample<Real>& wall) {
+    const auto beyond = [&](const terrain::SolidSample<Real>& wall) {
         if (wall.building < 0 || wall.normal.z > Real(0.5)) return Real(0);
         const Real s = std::clamp(wall.distance / Real(column_width(model)), Real(0), Real(2)), rest = Real(2) - s;
         return s < Real(1) ? Real(0.5) - s * (Real(2.0 / 3) - s * s * (Real(1.0 / 3) - s / 8))
                            : rest * rest * rest * rest / 24;
     };
-    const SolidSample<Real> nearest = ground.solids.nearest(p, grain_rank);
+    const terrain::SolidSample<Real> nearest = ground.solids.nearest(p, grain_rank);
     if (nearest.building < 0) return 1;
     return (1 - beyond(nearest)) * (1 - beyond(ground.solids.second_nearest(p, nearest, grain_rank)));
 }
@@ -141,7 +141,7 @@ Real open_share(const Model& model, const Ground& ground, const Vec3<Real>& p, f
 /// depth-averaged laws, volume over area. Pressure would also give it, but debris only a few particles thick bears none
 /// most of the time. A single particle counts as a quarter of its width.
 template <class Real>
-Real flow_thickness(const Model& model, const GroundSample<Real>& below, Real particles) {
+Real flow_thickness(const Model& model, const terrain::GroundSample<Real>& below, Real particles) {
     const double width = column_width(model);
     return larger(Real(model.particle_spacing / 4),
                   particles * Real(model.particle_volume() / (width * width)) * below.normal.z);
@@ -177,8 +177,9 @@ Real turbulence_at(const Model& model, Real thickness) {
 /// Uses the exact solution of dv/dt = -k v^2 over a step, which never reverses the motion. `thickness`: of the flow, at
 /// right angles to the ground (see flow_thickness).
 template <class Real>
-Vec3<Real> slowed_by_drag(const Model& model, const GroundResistance<Real>& ground, const GroundSample<Real>& below,
-                          Real distance, Real thickness, const Vec3<Real>& velocity, Real time_step) {
+Vec3<Real> slowed_by_drag(const Model& model, const GroundResistance<Real>& ground,
+                          const terrain::GroundSample<Real>& below, Real distance, Real thickness,
+                          const Vec3<Real>& velocity, Real time_step) {
     const Real turbulence = ground.inverse_turbulent_friction * turbulence_at(model, thickness);
     const Real turbulent = select(distance <= thickness + Real(model.particle_spacing),
                                   turbulence * Real(model.gravity) / thickness, Real(0));
@@ -188,4 +189,4 @@ Vec3<Real> slowed_by_drag(const Model& model, const GroundResistance<Real>& grou
     return select(distance == distance, slower, velocity);
 }
 
-}  // namespace talus
+}  // namespace talus::sim

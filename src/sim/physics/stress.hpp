@@ -4,7 +4,7 @@
 
 #include "core/geometry.hpp"
 
-namespace talus {
+namespace talus::sim {
 
 /// A symmetric tensor without trace; zz = -xx - yy.
 template <class Real>
@@ -93,4 +93,4 @@ Deviator<Real> next_stress(const Deviator<Real>& before, const Deviator<Real>& s
     return limited(before + shear * share, limit_square);
 }
 
-}  // namespace talus
+}  // namespace talus::sim

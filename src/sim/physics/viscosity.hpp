@@ -5,7 +5,7 @@
 #include "core/geometry.hpp"
 #include "sim/model.hpp"
 
-namespace talus {
+namespace talus::sim {
 
 /// XSPH smoothing (Schechter & Bridson 2012): v_i += a sum_j V W_ij (v_j - v_i). The source of the method prints a
 /// scalar product with grad W here, which is not a vector and has the sign that drives neighbours apart.
@@ -25,7 +25,7 @@ inline double step_smoothing(double viscosity, double time_step) {
 /// number incompressible flows using SPH", section 3.4). Implicit: it never reverses the motion. Tangential only:
 /// contact handles motion into the ground.
 template <class Real>
-Vec3<Real> slowed_by_ground(const Model& model, const GroundSample<Real>& below, Real distance,
+Vec3<Real> slowed_by_ground(const Model& model, const terrain::GroundSample<Real>& below, Real distance,
                             const Vec3<Real>& velocity, Real smoothing) {
     const Real loss = smoothing * model.boundary.sticking_at(distance);
     const Vec3<Real> along = velocity - below.normal * dot(velocity, below.normal);
@@ -43,4 +43,4 @@ inline double smoothing_viscosity(double kinematic, double kernel_second_moment)
     return 2 * kinematic * viscosity_reference_step / kernel_second_moment;
 }
 
-}  // namespace talus
+}  // namespace talus::sim

@@ -6,7 +6,7 @@
 #include "sim/compression.hpp"
 #include "sim/physics/viscosity.hpp"
 
-namespace talus::reference {
+namespace talus::sim::reference {
 namespace {
 
 /// V W and V grad_i W of a pair.
@@ -63,7 +63,7 @@ double particles_in_column(const Model& model, const State& state, const Vector&
 
 }  // namespace
 
-State::State(const talus::State& state)
+State::State(const sim::State& state)
     : time(state.time), time_step(state.time_step), previous_time_step(state.previous_time_step), step(state.step) {
     particles.resize(state.count);
     for (std::uint32_t i = 0; i < state.count; ++i) {
@@ -110,7 +110,7 @@ void Backend::apply_drag(const Model& model, const Ground& ground, State& state)
     for (std::size_t id = 0; id < state.particles.size(); ++id) {
         Particle& p = state.particles[id];
         if (p.held) continue;
-        const GroundSample<double> below = ground.terrain.sample(p.position.x, p.position.y);
+        const terrain::GroundSample<double> below = ground.terrain.sample(p.position.x, p.position.y);
         const double distance = (p.position.z - below.height) * below.normal.z;
         const double particles =
             particles_in_column(model, state, p.position) / open_share(model, ground, p.position, rank_of(id));
@@ -134,7 +134,7 @@ void Backend::prepare_particles(const Model& model, const Ground& ground, State&
         Particle& p = state.particles[id];
         p.effective_share = effective_share(model, id, state.time);
         const GroundResistance<double> resistance = ground_resistance(model, p.position);
-        const GroundSample<double> below = ground.terrain.sample(p.position.x, p.position.y);
+        const terrain::GroundSample<double> below = ground.terrain.sample(p.position.x, p.position.y);
         const double speed = length(p.velocity - below.normal * dot(p.velocity, below.normal));
         const double before = state.previous_time_step;
         const double pressure = before > 0 ? -p.multiplier / (before * before) * p.effective_share : 0;
@@ -171,7 +171,7 @@ Sums sums_at(const Model& model, const State& state, const Points& point, std::s
 }
 
 bool keeps_stress(const Model& model) {
-    return model.solver.internal_friction == InternalFriction::stress;
+    return model.solver.internal_friction == params::InternalFriction::stress;
 }
 
 /// u_i += sum_j [(d lambda_i + d lambda_j) I + ds_i + ds_j] V grad W at the linearised positions.
@@ -387,10 +387,10 @@ void Backend::apply_viscosity(const Model& model, const Ground& ground, State& s
         Particle& p = state.particles[i];
         p.velocity += changes[i];
         if (p.held || !model.viscosity_on_ground) continue;
-        const GroundSample<double> below = ground.terrain.sample(p.position.x, p.position.y);
+        const terrain::GroundSample<double> below = ground.terrain.sample(p.position.x, p.position.y);
         p.velocity =
             slowed_by_ground(model, below, (p.position.z - below.height) * below.normal.z, p.velocity, smoothing);
     }
 }
 
-}  // namespace talus::reference
+}  // namespace talus::sim::reference

@@ -11,7 +11,7 @@
 #include "sim/physics/stress.hpp"
 #include "sim/state.hpp"
 
-namespace talus::reference {
+namespace talus::sim::reference {
 
 using Vector = Vec3<double>;
 
@@ -40,7 +40,7 @@ struct State {
     int iterations = 0;                               ///< that the step took
 
     State() = default;
-    explicit State(const talus::State& state);
+    explicit State(const sim::State& state);
 };
 
 /// The density constraint G of a particle (eq. 1), summed over every other particle.
@@ -74,4 +74,4 @@ class Backend {
     void remove_outflow(const Model&, const Ground&, State&) {}
 };
 
-}  // namespace talus::reference
+}  // namespace talus::sim::reference

@@ -9,7 +9,7 @@
 #include "sim/change.hpp"
 #include "sim/relax.hpp"
 
-namespace talus {
+namespace talus::sim {
 namespace {
 
 constexpr double most_sites = 1e6, most_bins = 250e3;
@@ -17,7 +17,7 @@ constexpr double most_tries = 2e7;  ///< places examined to find sites
 
 }  // namespace
 
-AreaSource::AreaSource(const Model& model, const LocalFrame& frame, Inflow inflow)
+AreaSource::AreaSource(const Model& model, const LocalFrame& frame, terrain::Inflow inflow)
     : inflow_(std::move(inflow)),
       spacing_(model.particle_spacing),
       particle_volume_(model.particle_volume()),
@@ -98,7 +98,8 @@ void AreaSource::find_tops(const State& state) {
 }
 
 LocalPoint AreaSource::place_at(const Model& model, const Ground& ground, const LocalPoint& site) const {
-    const GroundSample<double> below = ground.terrain.sample(static_cast<double>(site.x), static_cast<double>(site.y));
+    const terrain::GroundSample<double> below =
+        ground.terrain.sample(static_cast<double>(site.x), static_cast<double>(site.y));
     double z = below.height + model.contact_distance() / below.normal.z;
     const auto spacing = static_cast<float>(spacing_);
     for (const float y : {site.y - bin_, site.y, site.y + bin_}) {
@@ -121,7 +122,7 @@ LocalPoint AreaSource::take_site(const Model& model, const Ground& ground) {
         site_ = (site_ + stride_) % sites_.size();
         if (ground.solids.empty() || !ground.solids.inside(place)) return place;
     }
-    put_out_of_solids(model, ground, place, largest_grain, [](const LocalPoint&) {});
+    put_out_of_solids(model, ground, place, terrain::largest_grain, [](const LocalPoint&) {});
     return place;
 }
 
@@ -153,4 +154,4 @@ void AreaSource::inject(const Model& model, const Ground& ground, State& state) 
     last_time_ = state.time;
 }
 
-}  // namespace talus
+}  // namespace talus::sim

@@ -8,7 +8,7 @@
 #include "sim/state.hpp"
 #include "terrain/inflow.hpp"
 
-namespace talus {
+namespace talus::sim {
 
 /// Injects debris over an area: a particle for every particle volume of inflow, each at the next of many sites a
 /// spacing apart, visited in an order that spreads them evenly over the area. A particle appears on the ground, or on
@@ -16,7 +16,7 @@ namespace talus {
 /// thrown apart.
 class AreaSource {
   public:
-    AreaSource(const Model& model, const LocalFrame& frame, Inflow inflow);
+    AreaSource(const Model& model, const LocalFrame& frame, terrain::Inflow inflow);
 
     /// Particles still to be injected.
     [[nodiscard]] std::uint32_t to_come() const { return total_ - injected_; }
@@ -40,7 +40,7 @@ class AreaSource {
     [[nodiscard]] LocalPoint place_at(const Model& model, const Ground& ground, const LocalPoint& site) const;
     [[nodiscard]] LocalPoint velocity_at(const Ground& ground, const LocalPoint& p, double time) const;
 
-    Inflow inflow_;
+    terrain::Inflow inflow_;
     double spacing_ = 0, particle_volume_ = 0;
     std::uint32_t total_ = 0, injected_ = 0;
     double last_time_ = 0;  ///< s, of the last injection
@@ -54,4 +54,4 @@ class AreaSource {
     std::vector<Top> tops_;
 };
 
-}  // namespace talus
+}  // namespace talus::sim

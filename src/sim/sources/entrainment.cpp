@@ -10,7 +10,7 @@
 #include "sim/physics/net.hpp"
 #include "sim/relax.hpp"
 
-namespace talus {
+namespace talus::sim {
 namespace {
 
 constexpr float reach_in_spacings = 4;  ///< distance within which a new particle moves others; there by a hundredth of
@@ -60,17 +60,17 @@ class BinSet {
 }  // namespace
 
 void Entrainment::find_shear_rates(const Model& model, const Ground& ground, const State& state) {
-    const Bed& bed = ground.bed;
+    const terrain::Bed& bed = ground.bed;
     for (std::uint32_t i = 0; i < state.count; ++i) {
         if (state.held[i] != 0) continue;
         const std::size_t cell = ground.terrain.cell_at(state.position.x[i], state.position.y[i]);
         if (bed.material_at[cell] == 0) continue;
-        if (bed.materials[bed.material_at[cell] - 1].law != EntrainmentLaw::shear) continue;
+        if (bed.materials[bed.material_at[cell] - 1].law != params::EntrainmentLaw::shear) continue;
         if (count_[cell]++ == 0) touched_.push_back(cell);
     }
     const double area = ground.terrain.cell() * ground.terrain.cell();
     for (const std::size_t cell : touched_) {
-        const BedMaterial& material = bed.materials[bed.material_at[cell] - 1];
+        const terrain::BedMaterial& material = bed.materials[bed.material_at[cell] - 1];
         const double depth = count_[cell] * model.particle_volume() / area;
         const double cosine = ground.terrain.slope_cosine_of(cell);
         const double sine = std::sqrt(std::max(0.0, 1 - cosine * cosine));
@@ -85,7 +85,7 @@ void Entrainment::find_shear_rates(const Model& model, const Ground& ground, con
 }
 
 std::size_t Entrainment::find(const Model& model, const Ground& ground, const State& state) {
-    const Bed& bed = ground.bed;
+    const terrain::Bed& bed = ground.bed;
     sites_.clear();
     if (bed.empty()) return 0;
     if (loose_.empty()) {
@@ -108,8 +108,8 @@ std::size_t Entrainment::find(const Model& model, const Ground& ground, const St
         if (bed.material_at[cell] == 0) continue;
         const double ahead = head_start(g, cell);
         if ((bed.eroded[cell] - bed.depth[cell]) * area + volume > ahead * volume) continue;  // nothing remains
-        const BedMaterial& material = bed.materials[bed.material_at[cell] - 1];
-        loose_[cell] += material.law == EntrainmentLaw::growth
+        const terrain::BedMaterial& material = bed.materials[bed.material_at[cell] - 1];
+        loose_[cell] += material.law == params::EntrainmentLaw::growth
                             ? material.growth_rate * volume * std::sqrt(square) * state.time_step
                             : rate_[cell];
         if (loose_[cell] + ahead * volume < volume || !is_clear(model, ground, p)) continue;
@@ -126,7 +126,7 @@ bool Entrainment::is_clear(const Model& model, const Ground& ground, const Local
         if (x * x + y * y < apart * apart) return false;
     }
     if (!ground.solids.near(p.x, p.y)) return true;
-    const SolidSample<float> wall = ground.solids.nearest(p);
+    const terrain::SolidSample<float> wall = ground.solids.nearest(p);
     return wall.building < 0 || wall.distance > static_cast<float>(model.particle_spacing);
 }
 
@@ -174,7 +174,7 @@ void Entrainment::choose_foot(const Model& model, const Ground& ground, const St
         const float offset = foot_offset * spacing * static_cast<float>(ring) / rings;
         const float x = above.x + offset * std::cos(angle), y = above.y + offset * std::sin(angle);
         if (!ground.terrain.covers(x, y)) continue;
-        const GroundSample<float> below = ground.terrain.sample(x, y);
+        const terrain::GroundSample<float> below = ground.terrain.sample(x, y);
         const LocalPoint foot{x, y, below.height}, place = foot + below.normal * touching;
         float nearest = std::numeric_limits<float>::max();
         for (const Neighbour& neighbour : neighbours_of(index)) {
@@ -231,4 +231,4 @@ void Entrainment::apply(const Model& model, Ground& ground, State& state) {
     }
 }
 
-}  // namespace talus
+}  // namespace talus::sim

@@ -11,7 +11,7 @@
 #include "sim/model.hpp"
 #include "sim/state.hpp"
 
-namespace talus {
+namespace talus::sim {
 
 /// Entrainment of the bed: ground becomes particles, one at a time, wherever the bed's law has loosened a particle's
 /// volume. The terrain sinks by exactly that volume in the cell; the particle starts at rest, so that debris keeps its
@@ -58,4 +58,4 @@ class Entrainment {
     std::vector<Neighbour> neighbours_;                            // by site
 };
 
-}  // namespace talus
+}  // namespace talus::sim

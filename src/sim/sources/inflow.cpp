@@ -7,10 +7,10 @@
 #include "sim/physics/net.hpp"
 #include "sim/relax.hpp"
 
-namespace talus {
+namespace talus::sim {
 
-InflowFeeder::InflowFeeder(const Model& model, const LocalFrame& frame, const std::vector<Inflow>& inflows) {
-    for (const Inflow& inflow : inflows) {
+InflowFeeder::InflowFeeder(const Model& model, const LocalFrame& frame, const std::vector<terrain::Inflow>& inflows) {
+    for (const terrain::Inflow& inflow : inflows) {
         if (inflow.over_area()) {
             areas_.emplace_back(model, frame, inflow);
             continue;
@@ -104,12 +104,12 @@ void InflowFeeder::Source::lead(const Ground& ground, State& state) {
             const Vec3<double> place{p.x, p.y, p.z};
             const double beyond = dot(place - from, level);
             const Vec3<double> at_line = place - level * beyond;
-            const GroundSample<double> below = ground.terrain.sample(at_line.x, at_line.y);
+            const terrain::GroundSample<double> below = ground.terrain.sample(at_line.x, at_line.y);
             Vec3<double> along = level - below.normal * dot(level, below.normal);
             along = along * (1 / length(along));
             const Vec3<double> plan = at_line + along * way;
-            const GroundSample<double> here = ground.terrain.sample(place.x, place.y);
-            const GroundSample<double> there = ground.terrain.sample(plan.x, plan.y);
+            const terrain::GroundSample<double> here = ground.terrain.sample(place.x, place.y);
+            const terrain::GroundSample<double> there = ground.terrain.sample(plan.x, plan.y);
             // At the height above the ground, normal to it, at which the solver left it.
             const Vec3<double> target =
                 Vec3<double>{plan.x, plan.y, there.height} + there.normal * ((place.z - here.height) * here.normal.z);
@@ -150,12 +150,12 @@ void InflowFeeder::Source::add_row(const Model& model, const Ground& ground, Sta
         const std::uint32_t layers = full + (extra ? 1 : 0);
         const double across = (c + 0.5) / columns;
         const Vec3<double> at_line{inflow.from.x + across * dx - origin.x, inflow.from.y + across * dy - origin.y, 0};
-        const GroundSample<double> below = ground.terrain.sample(at_line.x, at_line.y);
+        const terrain::GroundSample<double> below = ground.terrain.sample(at_line.x, at_line.y);
         const Vec3<double> level{dy / width, -dx / width, 0};
         Vec3<double> along = level - below.normal * dot(level, below.normal);
         along = along * (1 / length(along));
         const Vec3<double> plan = at_line + along * (velocity * since);
-        const GroundSample<double> base = ground.terrain.sample(plan.x, plan.y);
+        const terrain::GroundSample<double> base = ground.terrain.sample(plan.x, plan.y);
         for (std::uint32_t k = 0; k < layers; ++k) {
             const Vec3<double> place = Vec3<double>{plan.x, plan.y, base.height} + base.normal * ((k + 0.5) * layer);
             LocalPoint p{static_cast<float>(place.x), static_cast<float>(place.y), static_cast<float>(place.z)};
@@ -172,4 +172,4 @@ void InflowFeeder::Source::add_row(const Model& model, const Ground& ground, Sta
     }
 }
 
-}  // namespace talus
+}  // namespace talus::sim

@@ -10,7 +10,7 @@
 #include "sim/state.hpp"
 #include "terrain/inflow.hpp"
 
-namespace talus {
+namespace talus::sim {
 
 /// Injects debris during a run. Whenever the inflow has advanced by a particle spacing, a row of particles appears at
 /// its line: as many as match the total volume so far to the nearest whole particle, stacked in columns on a lattice of
@@ -26,7 +26,7 @@ class InflowFeeder {
   public:
     /// Without any inflow.
     InflowFeeder() = default;
-    InflowFeeder(const Model& model, const LocalFrame& frame, const std::vector<Inflow>& inflows);
+    InflowFeeder(const Model& model, const LocalFrame& frame, const std::vector<terrain::Inflow>& inflows);
 
     /// Particles that all inflows together still have to inject.
     [[nodiscard]] std::uint32_t to_come() const;
@@ -42,7 +42,7 @@ class InflowFeeder {
         std::uint32_t first = 0, last = 0;  ///< ids
     };
     struct Source {
-        Inflow inflow;
+        terrain::Inflow inflow;
         double spacing = 0, particle_volume = 0;
         std::uint32_t total = 0, injected = 0;
         std::uint64_t rows = 0;           ///< injected so far
@@ -65,4 +65,4 @@ class InflowFeeder {
     std::vector<AreaSource> areas_;
 };
 
-}  // namespace talus
+}  // namespace talus::sim

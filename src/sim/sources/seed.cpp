@@ -11,7 +11,7 @@
 #include "sim/relax.hpp"
 #include "sim/step.hpp"
 
-namespace talus {
+namespace talus::sim {
 namespace {
 
 /// A column of the seeding lattice.
@@ -22,7 +22,8 @@ struct Column {
 };
 
 /// Columns with their particle counts, adding up to `target`.
-std::vector<Column> fill_columns(const Terrain& terrain, const Release& release, double spacing, long target) {
+std::vector<Column> fill_columns(const terrain::Terrain& terrain, const terrain::Release& release, double spacing,
+                                 long target) {
     std::vector<Column> columns;
     const Extent extent = release.extent();
     const int across = static_cast<int>(std::ceil(extent.width() / spacing)) + 1;
@@ -79,7 +80,7 @@ void put_out_of_buildings(const Model& model, const Ground& ground, State& state
     if (ground.solids.empty()) return;
     for (std::uint32_t i = 0; i < state.count; ++i) {
         LocalPoint p = state.position.at(i);
-        put_out_of_solids(model, ground, p, largest_grain, [](const LocalPoint&) {});
+        put_out_of_solids(model, ground, p, terrain::largest_grain, [](const LocalPoint&) {});
         state.position.set(i, p);
     }
 }
@@ -105,12 +106,12 @@ void find_pressures(const Model& model, const Ground& ground, State& state) {
     state.step = start.step;
 }
 
-double choose_particle_spacing(const SolverSpec& solver, double released_volume) {
+double choose_particle_spacing(const params::SolverSpec& solver, double released_volume) {
     if (solver.particle_spacing) return *solver.particle_spacing;
     return std::cbrt(released_volume / solver.target_particle_count);
 }
 
-void set_material(Model& model, const MaterialSpec& material) {
+void set_material(Model& model, const params::MaterialSpec& material) {
     model.rest_density = material.rest_density;
     model.friction_coefficient = material.friction_coefficient;
     model.building_friction_coefficient =
@@ -136,7 +137,8 @@ void set_material(Model& model, const MaterialSpec& material) {
     }
 }
 
-Model make_model(const MaterialSpec& material, const SolverSpec& solver, double particle_spacing, GroundCover cover) {
+Model make_model(const params::MaterialSpec& material, const params::SolverSpec& solver, double particle_spacing,
+                 terrain::GroundCover cover) {
     Model model;
     model.particle_spacing = particle_spacing;
     model.support_radius = solver.support_ratio * particle_spacing;
@@ -148,11 +150,11 @@ Model make_model(const MaterialSpec& material, const SolverSpec& solver, double 
     return model;
 }
 
-Result<State> seed_releases(Model& model, const Ground& ground, const std::vector<Release>& releases) {
+Result<State> seed_releases(Model& model, const Ground& ground, const std::vector<terrain::Release>& releases) {
     const double spacing = model.particle_spacing;
     std::vector<long> targets;
     double volume = 0, particles = 0;
-    for (const Release& release : releases) {
+    for (const terrain::Release& release : releases) {
         const double count = std::round(release.volume / model.particle_volume());
         if (count < 1) {
             return Error{
@@ -182,7 +184,7 @@ Result<State> seed_releases(Model& model, const Ground& ground, const std::vecto
         const std::uint32_t first = next;
         for (const Column& column : fill_columns(ground.terrain, releases[r], spacing, targets[r])) {
             const LocalPoint plan = ground.terrain.frame().to_local({column.centre.x, column.centre.y, 0});
-            const GroundSample<float> below = ground.terrain.sample(plan.x, plan.y);
+            const terrain::GroundSample<float> below = ground.terrain.sample(plan.x, plan.y);
             // The first particle touches the ground: half a spacing along the normal.
             const double bottom = below.height + spacing / 2 / below.normal.z;
             for (int layer = 0; layer < column.particles && next < count; ++layer, ++next) {
@@ -207,4 +209,4 @@ Result<State> seed_releases(Model& model, const Ground& ground, const std::vecto
     return state;
 }
 
-}  // namespace talus
+}  // namespace talus::sim

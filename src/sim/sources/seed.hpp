@@ -9,17 +9,17 @@
 #include "sim/state.hpp"
 #include "terrain/release.hpp"
 
-namespace talus {
+namespace talus::sim {
 
 /// The scene's spacing, or the one that makes `target_particle_count` particles of the volume, m.
-[[nodiscard]] double choose_particle_spacing(const SolverSpec& solver, double released_volume);
+[[nodiscard]] double choose_particle_spacing(const params::SolverSpec& solver, double released_volume);
 
 /// Sets the model's values from the scene's material section. The model must have its kernel.
-void set_material(Model& model, const MaterialSpec& material);
+void set_material(Model& model, const params::MaterialSpec& material);
 
 /// All constants of a run, from the scene's material and solver sections.
-[[nodiscard]] Model make_model(const MaterialSpec& material, const SolverSpec& solver, double particle_spacing,
-                               GroundCover cover = {});
+[[nodiscard]] Model make_model(const params::MaterialSpec& material, const params::SolverSpec& solver,
+                               double particle_spacing, terrain::GroundCover cover = {});
 
 /// Fills the releases with particles at rest, and the model's release groups.
 ///
@@ -27,10 +27,11 @@ void set_material(Model& model, const MaterialSpec& material);
 /// release gets volume / spacing^3 particles, to the nearest whole one. The mass is then relaxed without gravity until
 /// it is nowhere denser than rest: started over-dense, it would fly apart within a step. Errors: more particles than
 /// the solver's limit (gives the number and a spacing that would fit); a release that is smaller than one particle.
-[[nodiscard]] Result<State> seed_releases(Model& model, const Ground& ground, const std::vector<Release>& releases);
+[[nodiscard]] Result<State> seed_releases(Model& model, const Ground& ground,
+                                          const std::vector<terrain::Release>& releases);
 
 /// The multipliers and stresses with which a state, in the order of its ids, would start to move; it is not moved. The
 /// search starts from the state's own.
 void find_pressures(const Model& model, const Ground& ground, State& state);
 
-}  // namespace talus
+}  // namespace talus::sim

@@ -33,23 +33,23 @@ struct Measured {
 };
 
 Measured measure(const DamSpec& spec, double spacing, const Setting& setting, const Watch& watch) {
-    const DamBreak law(spec.slope, spec.friction_angle, spec.depth, Model{}.gravity);
+    const DamBreak law(spec.slope, spec.friction_angle, spec.depth, sim::Model{}.gravity);
     // Long enough that its other end does not affect the compared thickness.
     const double margin = 3 * spec.depth;
     const double reservoir = 2 * law.wave_speed() * spec.time + 2 * margin;
     const double width = spec.width * spacing;
     const Incline incline(spec.slope, 2 * (reservoir + law.front(spec.time)), width + 4);
-    MaterialSpec material = setting.material;
+    params::MaterialSpec material = setting.material;
     material.friction_coefficient = std::tan(spec.friction_angle);
     material.building_friction_coefficient = 0;
-    Model model = make_model(material, setting.solver, spacing);
-    Ground ground(incline.terrain(), make_slice(incline.terrain(), width, 3 * spec.depth), model.support_radius);
+    sim::Model model = sim::make_model(material, setting.solver, spacing);
+    sim::Ground ground(incline.terrain(), make_slice(incline.terrain(), width, 3 * spec.depth), model.support_radius);
     const auto columns = static_cast<int>(std::lround(reservoir / spacing));
     const auto thickness = [&](double, double) { return spec.depth; };
     const auto points = fill_lattice(incline, spacing, -columns * spacing, columns, -width / 2, spec.width, thickness);
-    State start = state_under_weight(model, ground, points, incline, thickness);
+    sim::State start = state_under_weight(model, ground, points, incline, thickness);
     Trial trial({std::move(model), std::move(ground), std::move(start)}, watch);
-    const State& state = trial.state();
+    const sim::State& state = trial.state();
     Measured measured;
     measured.particles = state.count;
     if (!trial.advance_to(spec.time)) {
@@ -102,8 +102,8 @@ Result<Outcome> compute(const DamSpec& spec, const Setting& setting, const Watch
 }
 
 Computation prepare(Parameters& parameters, const Setting& setting) {
-    constexpr Range angles{.low = 0, .high = 80};
-    constexpr Range positive{.low = 0, .low_included = false};
+    constexpr params::Range angles{.low = 0, .high = 80};
+    constexpr params::Range positive{.low = 0, .low_included = false};
     DamSpec spec;
     spec.slope = parameters.number("slope_deg", angles, 0) * radians_per_degree;
     spec.friction_angle = parameters.number("friction_angle_deg", angles, 0) * radians_per_degree;

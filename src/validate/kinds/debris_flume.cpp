@@ -86,8 +86,8 @@ struct Measured {
 };
 
 /// Debris with a level surface behind a gate at right angles to the bed, which is removed instantly.
-std::vector<LocalPoint> fill_behind_gate(const FlumeSpec& spec, const Bed& bed, const Terrain& terrain, double spacing,
-                                         std::vector<double>& above) {
+std::vector<LocalPoint> fill_behind_gate(const FlumeSpec& spec, const Bed& bed, const terrain::Terrain& terrain,
+                                         double spacing, std::vector<double>& above) {
     const double deepest = std::sqrt(2 * spec.volume / spec.width * std::tan(spec.slope));
     const double sine = std::sin(spec.slope), cosine = std::cos(spec.slope);
     const auto across = static_cast<int>(std::lround(spec.width / spacing));
@@ -110,18 +110,18 @@ std::vector<LocalPoint> fill_behind_gate(const FlumeSpec& spec, const Bed& bed, 
 
 Measured measure(const FlumeSpec& spec, Obstacle obstacle, double spacing, const Setting& setting, const Watch& watch) {
     const Bed bed(spec, obstacle);
-    const Terrain terrain =
+    const terrain::Terrain terrain =
         make_terrain(bed.length() - 1, spec.width + 4, 0.25, [&](double x, double) { return bed.at(bed.along(x)).y; });
-    std::vector<Building> walls = make_slice(terrain, spec.width, 5);
+    std::vector<terrain::Building> walls = make_slice(terrain, spec.width, 5);
     const Extent e = terrain.elevation().geometry.extent();
     if (obstacle == Obstacle::wall) {
         walls.push_back(make_wall(terrain, bed.at(spec.obstacle).x, e.y_min, e.x_max, e.y_max, 5));
     }
-    Model model = make_model(setting.material, setting.solver, spacing);
-    Ground ground(terrain, walls, model.support_radius);
+    sim::Model model = sim::make_model(setting.material, setting.solver, spacing);
+    sim::Ground ground(terrain, walls, model.support_radius);
     std::vector<double> above;
     const auto points = fill_behind_gate(spec, bed, terrain, spacing, above);
-    State start = state_at_rest(points);
+    sim::State start = state_at_rest(points);
     start.previous_time_step = 1;  // s: multipliers are pressure over density, times its square
     for (std::uint32_t i = 0; i < start.count; ++i) {
         start.multiplier[i] = static_cast<float>(-model.gravity * std::cos(spec.slope) * above[i]);
@@ -137,7 +137,7 @@ Measured measure(const FlumeSpec& spec, Obstacle obstacle, double spacing, const
     measured.time.resize(spec.stations.size());
     measured.depth.resize(spec.stations.size());
     Trial trial({std::move(model), std::move(ground), std::move(start)}, watch, OnFault::note);
-    const State& state = trial.state();
+    const sim::State& state = trial.state();
     constexpr double window = 0.5, arrived = 0.02;
     const double delay = spec.gate_time / 2;
     const auto thickness_at = [&](double s) {
@@ -215,7 +215,7 @@ Result<Outcome> compute(const FlumeSpec& spec, const Setting& setting, const Wat
 }
 
 Computation prepare(Parameters& parameters, const Setting& setting) {
-    constexpr Range positive{.low = 0, .low_included = false};
+    constexpr params::Range positive{.low = 0, .low_included = false};
     FlumeSpec spec;
     spec.slope = parameters.number("slope_deg", {.low = 1, .high = 60}, 31) * radians_per_degree;
     spec.pad_slope = parameters.number("pad_slope_deg", {.low = 0, .high = 60}, 2.4) * radians_per_degree;

@@ -33,12 +33,12 @@ struct EnergySpec {
 };
 
 struct World {
-    Terrain terrain;
-    std::vector<Release> releases;
+    terrain::Terrain terrain;
+    std::vector<terrain::Release> releases;
 };
 
-Release block_at(const Terrain& terrain, double x, double side, double thickness) {
-    Release release;
+terrain::Release block_at(const terrain::Terrain& terrain, double x, double side, double thickness) {
+    terrain::Release release;
     release.name = "block";
     const double a = x - side / 2, b = x + side / 2, half = side / 2;
     release.patches.push_back({{{{a, -half}, {b, -half}, {b, half}, {a, half}}, {}}, thickness});
@@ -48,12 +48,12 @@ Release block_at(const Terrain& terrain, double x, double side, double thickness
 
 Result<World> make_world(const EnergySpec& spec) {
     if (spec.surface == Surface::scene) {
-        TALUS_ASSIGN(Scene scene, load_scene(spec.scene));
+        TALUS_ASSIGN(scene::Scene scene, scene::load_scene(spec.scene));
         return World{scene.terrain, scene.releases};
     }
     World world;
     if (spec.surface == Surface::plane) {
-        const double length = Model{}.gravity * std::sin(spec.slope) * spec.time * spec.time + 40;
+        const double length = sim::Model{}.gravity * std::sin(spec.slope) * spec.time * spec.time + 40;
         world.terrain = make_terrain(length, 60, 1, [&](double x, double) { return -std::tan(spec.slope) * x; });
         world.releases.push_back(block_at(world.terrain, -length / 2 + 20, spec.side, spec.thickness));
     } else {
@@ -83,7 +83,7 @@ class Ways {
         double elevation = 0, head = 0, way = 0, loaded_way = 0;
     };
     [[nodiscard]] Means means() const {
-        const State& state = trial_.state();
+        const sim::State& state = trial_.state();
         Means m;
         for (std::uint32_t i = 0; i < state.count; ++i) {
             const LocalPoint v = state.velocity.at(i);
@@ -102,7 +102,7 @@ class Ways {
     };
 
     void look(const double* time_step) {
-        const State& state = trial_.state();
+        const sim::State& state = trial_.state();
         const double gravity = trial_.model().gravity;
         for (std::uint32_t i = 0; i < state.count; ++i) {
             Way& way = ways_[state.id[i]];
@@ -127,11 +127,11 @@ class Ways {
 
 Result<Outcome> compute(const EnergySpec& spec, const Setting& setting, const Watch& watch) {
     TALUS_ASSIGN(World world, make_world(spec));
-    Model model = make_model(setting.material, setting.solver, spec.spacing);
-    Ground ground(world.terrain);
-    TALUS_ASSIGN(State seeded, seed_releases(model, ground, world.releases));
+    sim::Model model = sim::make_model(setting.material, setting.solver, spec.spacing);
+    sim::Ground ground(world.terrain);
+    TALUS_ASSIGN(sim::State seeded, seed_releases(model, ground, world.releases));
     Trial trial({std::move(model), std::move(ground), std::move(seeded)}, watch);
-    const State& state = trial.state();
+    const sim::State& state = trial.state();
     const double friction = setting.material.friction_coefficient;
 
     Ways ways(trial);
@@ -170,8 +170,8 @@ Result<Outcome> compute(const EnergySpec& spec, const Setting& setting, const Wa
 }
 
 Computation prepare(Parameters& parameters, const Setting& setting) {
-    constexpr Range positive{.low = 0, .low_included = false};
-    constexpr Range angles{.low = 1, .high = 70};
+    constexpr params::Range positive{.low = 0, .low_included = false};
+    constexpr params::Range angles{.low = 1, .high = 70};
     EnergySpec spec;
     const std::string ground = parameters.choice("ground", {"plane", "bowl", "scene"}, "plane");
     if (ground == "bowl") spec.surface = Surface::bowl;

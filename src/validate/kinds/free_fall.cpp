@@ -36,16 +36,16 @@ struct Flight {
 };
 
 Result<Outcome> compute(const FallSpec& spec, const Setting& setting, const Watch& watch) {
-    const double width = spec.width * spec.spacing, gravity = Model{}.gravity;
+    const double width = spec.width * spec.spacing, gravity = sim::Model{}.gravity;
     const double flight_time = std::sqrt(2 * spec.height / gravity);
     const double run = spec.speed * flight_time * 3 + spec.length * spec.spacing + 10;
     // The edge lies between the last cell centre above and the first below: a face as steep as the raster can make it.
-    const Terrain terrain =
+    const terrain::Terrain terrain =
         make_terrain(2 * run, width + 4, spec.cell, [&](double x, double) { return x < 0 ? spec.height : 0; });
-    MaterialSpec material = setting.material;
+    params::MaterialSpec material = setting.material;
     material.building_friction_coefficient = 0;
-    Model model = make_model(material, setting.solver, spec.spacing);
-    Ground ground(terrain, make_slice(terrain, width, spec.height), model.support_radius);
+    sim::Model model = sim::make_model(material, setting.solver, spec.spacing);
+    sim::Ground ground(terrain, make_slice(terrain, width, spec.height), model.support_radius);
     std::vector<LocalPoint> points;
     for (int k = 0; k < spec.layers; ++k) {
         for (int j = 0; j < spec.width; ++j) {
@@ -56,10 +56,10 @@ Result<Outcome> compute(const FallSpec& spec, const Setting& setting, const Watc
             }
         }
     }
-    State start = state_at_rest(points);
+    sim::State start = state_at_rest(points);
     for (std::uint32_t i = 0; i < start.count; ++i) start.velocity.x[i] = static_cast<float>(spec.speed);
     Trial trial({std::move(model), std::move(ground), std::move(start)}, watch);
-    const State& state = trial.state();
+    const sim::State& state = trial.state();
 
     std::vector<Flight> flights(state.count);
     const double clear_of_the_edge = spec.cell, landing_height = 2 * spec.spacing;
@@ -137,7 +137,7 @@ Result<Outcome> compute(const FallSpec& spec, const Setting& setting, const Watc
 }
 
 Computation prepare(Parameters& parameters, const Setting& setting) {
-    constexpr Range positive{.low = 0, .low_included = false};
+    constexpr params::Range positive{.low = 0, .low_included = false};
     FallSpec spec;
     spec.height = parameters.number("height_m", positive, 10);
     spec.speed = parameters.number("speed_mps", positive, 8);

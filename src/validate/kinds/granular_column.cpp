@@ -72,16 +72,16 @@ Measured measure(const ColumnSpec& spec, double aspect, double resolution, const
     const Incline flat(0, 2 * reach, width + 4);
 
     // A planar column is one half of a slice, behind a frictionless wall in its plane of symmetry.
-    MaterialSpec material = setting.material;
-    std::vector<Building> walls;
+    params::MaterialSpec material = setting.material;
+    std::vector<terrain::Building> walls;
     if (spec.planar) {
         material.building_friction_coefficient = 0;
         walls = make_slice(flat.terrain(), width, 2 * height);
         const Extent extent = flat.terrain().elevation().geometry.extent();
         walls.push_back(make_wall(flat.terrain(), extent.x_min, extent.y_min, 0, extent.y_max, 2 * height));
     }
-    Model model = make_model(material, setting.solver, spacing);
-    Ground ground(flat.terrain(), walls, model.support_radius);
+    sim::Model model = sim::make_model(material, setting.solver, spacing);
+    sim::Ground ground(flat.terrain(), walls, model.support_radius);
     const auto half = static_cast<int>(std::ceil(resolution));
     const auto thickness = [&](double x, double y) {
         return spec.planar || std::hypot(x, y) < spec.extent ? height : 0;
@@ -89,10 +89,10 @@ Measured measure(const ColumnSpec& spec, double aspect, double resolution, const
     const auto points =
         spec.planar ? fill_lattice(flat, spacing, 0, half, -width / 2, spec.width, thickness)
                     : fill_lattice(flat, spacing, -half * spacing, 2 * half, -half * spacing, 2 * half, thickness);
-    State start = state_under_weight(model, ground, points, flat, thickness);
+    sim::State start = state_under_weight(model, ground, points, flat, thickness);
     Trial trial({std::move(model), std::move(ground), std::move(start)}, watch);
 
-    const State& state = trial.state();
+    const sim::State& state = trial.state();
     const auto distance = [&](std::uint32_t i) {
         return spec.planar ? double{state.position.x[i]} : std::hypot(state.position.x[i], state.position.y[i]);
     };
@@ -205,7 +205,7 @@ Result<Outcome> compute(const ColumnSpec& spec, const Setting& setting, const Wa
 }
 
 Computation prepare(Parameters& parameters, const Setting& setting) {
-    constexpr Range positive{.low = 0, .low_included = false};
+    constexpr params::Range positive{.low = 0, .low_included = false};
     ColumnSpec spec;
     spec.planar = parameters.choice("geometry", {"axisymmetric", "planar"}, "axisymmetric") == "planar";
     spec.aspects = parameters.numbers("aspect_ratios", positive, {1});

@@ -37,9 +37,9 @@ struct GrowthLaw {
     }
 };
 
-void lay_bed(Ground& ground, const GrowthSpec& spec) {
+void lay_bed(sim::Ground& ground, const GrowthSpec& spec) {
     const std::size_t cells = ground.terrain.elevation().values.size();
-    BedMaterial material;
+    terrain::BedMaterial material;
     material.growth_rate = spec.growth_rate;
     ground.bed.materials = {material};
     ground.bed.material_at.assign(cells, 1);
@@ -50,23 +50,23 @@ void lay_bed(Ground& ground, const GrowthSpec& spec) {
 void compute_one(const GrowthSpec& spec, double spacing, const Setting& setting, const Watch& watch, Outcome& outcome) {
     const std::string name = fmt::format("spacing {:.3g} m", spacing);
     watch.say(name);
-    MaterialSpec material = setting.material;
+    params::MaterialSpec material = setting.material;
     material.friction_coefficient = spec.friction;
     material.building_friction_coefficient = 0;
-    const double acceleration = Model{}.gravity * (std::sin(spec.slope) - spec.friction * std::cos(spec.slope));
+    const double acceleration = sim::Model{}.gravity * (std::sin(spec.slope) - spec.friction * std::cos(spec.slope));
     const GrowthLaw law{acceleration, spec.growth_rate};
     const double furthest = 0.5 * acceleration * spec.end * spec.end;
     const Incline incline(spec.slope, 2 * (spec.length + furthest) + 10, spec.width + 4);
-    Model model = make_model(material, setting.solver, spacing);
-    Ground ground(incline.terrain(), make_slice(incline.terrain(), spec.width, 3 * spec.thickness),
-                  model.support_radius);
+    sim::Model model = sim::make_model(material, setting.solver, spacing);
+    sim::Ground ground(incline.terrain(), make_slice(incline.terrain(), spec.width, 3 * spec.thickness),
+                       model.support_radius);
     lay_bed(ground, spec);
     const auto columns = static_cast<int>(std::lround(spec.length / spacing));
     const auto across = static_cast<int>(std::lround(spec.width / spacing));
     const auto points = fill_lattice(incline, spacing, -columns * spacing / 2, columns, -spec.width / 2, across,
                                      [&](double, double) { return spec.thickness; });
     Trial trial({std::move(model), std::move(ground), state_at_rest(points)}, watch);
-    const State& state = trial.state();
+    const sim::State& state = trial.state();
     const LocalPoint down = incline.down(1);
     const auto speed = [&] {
         double sum = 0;
@@ -101,7 +101,7 @@ Result<Outcome> compute(const GrowthSpec& spec, const Setting& setting, const Wa
     Outcome outcome;
     outcome.charts.push_back({"speed", "Mean speed of a slab that picks up its bed", "time, s", "m/s", {}});
     outcome.charts.push_back({"volume", "Its volume over that at the start", "time, s", "1", {}});
-    const double acceleration = Model{}.gravity * (std::sin(spec.slope) - spec.friction * std::cos(spec.slope));
+    const double acceleration = sim::Model{}.gravity * (std::sin(spec.slope) - spec.friction * std::cos(spec.slope));
     const GrowthLaw law{acceleration, spec.growth_rate};
     Series speed{"law", Series::Style::dashed, {}, {}}, volume = speed;
     for (int k = 0; k <= 100; ++k) {
@@ -118,7 +118,7 @@ Result<Outcome> compute(const GrowthSpec& spec, const Setting& setting, const Wa
 }
 
 Computation prepare(Parameters& parameters, const Setting& setting) {
-    constexpr Range positive{.low = 0, .low_included = false};
+    constexpr params::Range positive{.low = 0, .low_included = false};
     GrowthSpec spec;
     spec.slope = parameters.number("slope_deg", {.low = 1, .high = 89}, 30) * std::numbers::pi / 180;
     spec.friction = parameters.number("friction_coefficient", {.low = 0, .high = 10}, 0.4);

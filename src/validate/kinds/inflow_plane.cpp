@@ -29,22 +29,23 @@ struct PlaneSpec {
 Result<Outcome> compute(const PlaneSpec& spec, const Setting& setting, const Watch& watch) {
     const double width = spec.width * spec.spacing, reach = 1.6 * spec.velocity * spec.time;
     const Incline incline(spec.slope, 2 * reach + 10, width + 4);
-    MaterialSpec material = setting.material;
+    params::MaterialSpec material = setting.material;
     material.building_friction_coefficient = 0;
     material.friction_coefficient = std::tan(spec.slope);  // driving force and resistance are equal
-    Model model = make_model(material, setting.solver, spec.spacing);
-    Ground ground(incline.terrain(), make_slice(incline.terrain(), width, 20 * spec.thickness), model.support_radius);
-    Inflow inflow;
+    sim::Model model = sim::make_model(material, setting.solver, spec.spacing);
+    sim::Ground ground(incline.terrain(), make_slice(incline.terrain(), width, 20 * spec.thickness),
+                       model.support_radius);
+    terrain::Inflow inflow;
     const LocalPoint line = incline.point(-reach / 2, 0, 0);
     const WorldPoint at = incline.terrain().frame().to_world(line);
     inflow.from = {at.x, at.y - width / 2};
     inflow.to = {at.x, at.y + width / 2};
     const double discharge = spec.thickness * spec.velocity * width;
     inflow.hydrograph = {{0, discharge, spec.velocity}, {spec.time, discharge, spec.velocity}};
-    InflowFeeder feeder(model, incline.terrain().frame(), {inflow});
+    sim::InflowFeeder feeder(model, incline.terrain().frame(), {inflow});
     watch.say(fmt::format("{} particles", feeder.to_come()));
-    Trial trial({std::move(model), std::move(ground), State{}, std::move(feeder)}, watch);
-    const State& state = trial.state();
+    Trial trial({std::move(model), std::move(ground), sim::State{}, std::move(feeder)}, watch);
+    const sim::State& state = trial.state();
     double fastest = 0;
     Outcome outcome;
     while (trial.problem().empty() && state.time < spec.time - 1e-9) {
@@ -95,7 +96,7 @@ Result<Outcome> compute(const PlaneSpec& spec, const Setting& setting, const Wat
 }
 
 Computation prepare(Parameters& parameters, const Setting& setting) {
-    constexpr Range positive{.low = 0, .low_included = false};
+    constexpr params::Range positive{.low = 0, .low_included = false};
     PlaneSpec spec;
     spec.slope = parameters.number("slope_deg", {.low = 0, .high = 60}, 25) * std::numbers::pi / 180;
     spec.thickness = parameters.number("thickness_m", positive, 0.6);

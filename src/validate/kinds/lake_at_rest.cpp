@@ -53,14 +53,14 @@ Measured measure(const LakeSpec& spec, const Shape& shape, const Setting& settin
     const double half = spec.length / 2, width = spec.width * spec.spacing;
     const double riser = spec.relief / 2 / std::tan(std::numbers::pi / 6) / half;
     const auto bed = [&](double x) { return spec.relief * shape.height(x / half, riser); };
-    const Terrain terrain =
+    const terrain::Terrain terrain =
         make_terrain(spec.length + 4, width + 4, spec.spacing, [&](double x, double) { return bed(x); });
-    std::vector<Building> walls = make_slice(terrain, width, 2 * spec.depth);
+    std::vector<terrain::Building> walls = make_slice(terrain, width, 2 * spec.depth);
     const Extent e = terrain.elevation().geometry.extent();
     walls.push_back(make_wall(terrain, e.x_min, e.y_min, -half, e.y_max, 2 * spec.depth));
     walls.push_back(make_wall(terrain, half, e.y_min, e.x_max, e.y_max, 2 * spec.depth));
-    Model model = make_model(setting.material, setting.solver, spec.spacing);
-    Ground ground(terrain, walls, model.support_radius);
+    sim::Model model = sim::make_model(setting.material, setting.solver, spec.spacing);
+    sim::Ground ground(terrain, walls, model.support_radius);
 
     const auto columns = static_cast<int>(std::lround(spec.length / spec.spacing));
     std::vector<LocalPoint> points;
@@ -68,7 +68,7 @@ Measured measure(const LakeSpec& spec, const Shape& shape, const Setting& settin
         for (int i = 0; i < columns; ++i) {
             const auto x = static_cast<float>(-half + (i + 0.5) * spec.spacing);
             const auto y = static_cast<float>(-width / 2 + (j + 0.5) * spec.spacing);
-            const GroundSample<float> below = terrain.sample(x, y);
+            const terrain::GroundSample<float> below = terrain.sample(x, y);
             const double bottom = below.height + spec.spacing / 2 / below.normal.z;
             for (double z = bottom; z + spec.spacing / 2 < spec.depth + 1e-6; z += spec.spacing) {
                 points.push_back({x, y, static_cast<float>(z)});
@@ -77,9 +77,9 @@ Measured measure(const LakeSpec& spec, const Shape& shape, const Setting& settin
     }
     const Incline flat(0, spec.length, width);
     const auto surface = [&](double, double) { return spec.depth; };
-    State start = state_under_weight(model, ground, points, flat, surface);
+    sim::State start = state_under_weight(model, ground, points, flat, surface);
     Trial trial({std::move(model), std::move(ground), std::move(start)}, watch);
-    const State& state = trial.state();
+    const sim::State& state = trial.state();
     Measured measured;
     if (!trial.advance_to(spec.time)) {
         measured.problem = trial.problem();
@@ -143,7 +143,7 @@ Result<Outcome> compute(const LakeSpec& spec, const Setting& setting, const Watc
 }
 
 Computation prepare(Parameters& parameters, const Setting& setting) {
-    constexpr Range positive{.low = 0, .low_included = false};
+    constexpr params::Range positive{.low = 0, .low_included = false};
     LakeSpec spec;
     spec.length = parameters.number("length_m", positive, 12);
     spec.depth = parameters.number("depth_m", positive, 3.6);

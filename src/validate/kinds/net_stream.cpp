@@ -31,7 +31,7 @@ struct Measured {
     Series history;
 };
 
-double momentum_along(const Model& model, const State& state) {
+double momentum_along(const sim::Model& model, const sim::State& state) {
     double sum = 0;
     for (std::uint32_t i = 0; i < state.count; ++i) sum += state.velocity.x[i];
     return sum * model.particle_mass();
@@ -42,11 +42,12 @@ Measured measure(const NetSpec& spec, double passing, double spacing, const Sett
     const auto across = static_cast<int>(std::lround(spec.width * spec.depth / spacing));
     const auto layers = static_cast<int>(std::lround(spec.depth / spacing));
     const auto columns = static_cast<int>(std::lround(spec.length * spec.depth / spacing));
-    const double width = across * spacing, wave = std::sqrt(Model{}.gravity * spec.depth);
+    const double width = across * spacing, wave = std::sqrt(sim::Model{}.gravity * spec.depth);
     const double speed = spec.froude * wave, stream = columns * spacing;
     const double top = 4 * momentum_jump(spec.froude) * spec.depth;
-    const Terrain terrain = make_terrain(2 * (stream + 8 * spec.depth), width + 4, 1, [](double, double) { return 0; });
-    std::vector<Building> solids = make_slice(terrain, width, top);
+    const terrain::Terrain terrain =
+        make_terrain(2 * (stream + 8 * spec.depth), width + 4, 1, [](double, double) { return 0; });
+    std::vector<terrain::Building> solids = make_slice(terrain, width, top);
     const double thickness = 2 * spacing, x = thickness / 2;
     const auto net =
         make_barrier(terrain, "net", {{{x, -width / 2 - 0.5}, {x, width / 2 + 0.5}}, top, {}, thickness, {}, passing});
@@ -56,10 +57,10 @@ Measured measure(const NetSpec& spec, double passing, double spacing, const Sett
         return none;
     }
     solids.push_back(*net);
-    MaterialSpec material = setting.material;
+    params::MaterialSpec material = setting.material;
     material.building_friction_coefficient = 0;
-    Model model = make_model(material, setting.solver, spacing);
-    Ground ground(terrain, solids, model.support_radius);
+    sim::Model model = sim::make_model(material, setting.solver, spacing);
+    sim::Ground ground(terrain, solids, model.support_radius);
     std::vector<LocalPoint> points;
     points.reserve(static_cast<std::size_t>(columns) * static_cast<std::size_t>(layers) *
                    static_cast<std::size_t>(across));
@@ -72,32 +73,32 @@ Measured measure(const NetSpec& spec, double passing, double spacing, const Sett
             }
         }
     }
-    State start = state_at_rest(points);
+    sim::State start = state_at_rest(points);
     for (std::uint32_t i = 0; i < start.count; ++i) start.velocity.x[i] = static_cast<float>(speed);
     const double before = momentum_along(model, start);
-    OutputSpec outputs;
+    params::OutputSpec outputs;
     outputs.sample_interval = 0.05 * stream / (speed + wave);
     outputs.map_cell = spec.depth;
     Trial trial({std::move(model), std::move(ground), std::move(start), {}, {}, outputs}, watch, OnFault::note);
-    const Observer& observer = trial.observer();
+    const observe::Observer& observer = trial.observer();
     const bool done = trial.advance_to(stream / (speed + wave));
     Measured measured;
     measured.problem = trial.problem();
     if (!done) return measured;
-    const BuildingImpact& impact = observer.impacts()[2];
-    const State& state = trial.state();
+    const observe::BuildingImpact& impact = observer.impacts()[2];
+    const sim::State& state = trial.state();
     const double volume = trial.model().particle_volume();
     measured.impulse = impact.impulse / width;
     measured.lost = (before - momentum_along(trial.model(), state)) / width;
     measured.coarse = 0;
     for (std::uint32_t i = 0; i < state.count; ++i) {
-        if (state.position.x[i] > thickness && grain_rank(state.id[i]) >= static_cast<float>(passing)) {
+        if (state.position.x[i] > thickness && sim::grain_rank(state.id[i]) >= static_cast<float>(passing)) {
             measured.coarse += volume;
         }
     }
     const double layer = impact.peak_filling_height * width * spacing;
     measured.layers = impact.passed_volume / layer;
-    for (const StructureSample& s : impact.history) {
+    for (const observe::StructureSample& s : impact.history) {
         measured.history.x.push_back(s.time);
         measured.history.y.push_back(s.passed_volume / layer);
     }
@@ -133,7 +134,7 @@ Result<Outcome> compute(const NetSpec& spec, const Setting& setting, const Watch
 }
 
 Computation prepare(Parameters& parameters, const Setting& setting) {
-    constexpr Range positive{.low = 0, .low_included = false};
+    constexpr params::Range positive{.low = 0, .low_included = false};
     NetSpec spec;
     spec.passing = parameters.numbers("passing_shares", {.low = 0, .high = 1, .high_included = false}, {0.3, 0.6});
     spec.spacings = parameters.numbers("particle_spacings_m", positive, {0.25, 0.125});

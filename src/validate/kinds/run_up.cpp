@@ -32,21 +32,21 @@ struct Measured {
 
 /// A stream of finite length hits a wall, or a ramp, at x = 0, where its head starts.
 Measured measure(const RunUpSpec& spec, bool ramp, double froude, const Setting& setting, const Watch& watch) {
-    const double width = spec.width * spec.spacing, gravity = Model{}.gravity;
+    const double width = spec.width * spec.spacing, gravity = sim::Model{}.gravity;
     const double wave = std::sqrt(gravity * spec.depth), speed = froude * wave;
     const double stream = spec.length * spec.depth;
     const double reach = stream + 5 * spec.depth + 2 * momentum_jump(froude) * spec.depth / std::tan(spec.ramp_angle);
     const double slope = std::tan(spec.ramp_angle);
-    const Terrain terrain = make_terrain(2 * reach, width + 4, spec.depth / 4,
-                                         [&](double x, double) { return ramp && x > 0 ? slope * x : 0; });
+    const terrain::Terrain terrain = make_terrain(2 * reach, width + 4, spec.depth / 4,
+                                                  [&](double x, double) { return ramp && x > 0 ? slope * x : 0; });
     const double top = 4 * momentum_jump(froude) * spec.depth;
-    std::vector<Building> walls = make_slice(terrain, width, top);
+    std::vector<terrain::Building> walls = make_slice(terrain, width, top);
     const Extent e = terrain.elevation().geometry.extent();
     if (!ramp) walls.push_back(make_wall(terrain, 0, e.y_min, e.x_max, e.y_max, top));
-    MaterialSpec material = setting.material;
+    params::MaterialSpec material = setting.material;
     material.building_friction_coefficient = 0;
-    Model model = make_model(material, setting.solver, spec.spacing);
-    Ground ground(terrain, walls, model.support_radius);
+    sim::Model model = sim::make_model(material, setting.solver, spec.spacing);
+    sim::Ground ground(terrain, walls, model.support_radius);
     const auto columns = static_cast<int>(std::lround(stream / spec.spacing));
     const auto layers = static_cast<int>(std::lround(spec.depth / spec.spacing));
     std::vector<LocalPoint> points;
@@ -59,11 +59,11 @@ Measured measure(const RunUpSpec& spec, bool ramp, double froude, const Setting&
             }
         }
     }
-    State start = state_at_rest(points);
+    sim::State start = state_at_rest(points);
     for (std::uint32_t i = 0; i < start.count; ++i) start.velocity.x[i] = static_cast<float>(speed);
     // Jets at the obstacle are faster than a fall explains. The run-up is the required result, so the run continues.
     Trial trial({std::move(model), std::move(ground), std::move(start)}, watch, OnFault::note);
-    const State& state = trial.state();
+    const sim::State& state = trial.state();
     const double cell = spec.depth / 2;
     const int cells = ramp ? static_cast<int>(reach / cell) : 1;
     double highest = 0;
@@ -116,7 +116,7 @@ Result<Outcome> compute(const RunUpSpec& spec, const Setting& setting, const Wat
 }
 
 Computation prepare(Parameters& parameters, const Setting& setting) {
-    constexpr Range positive{.low = 0, .low_included = false};
+    constexpr params::Range positive{.low = 0, .low_included = false};
     RunUpSpec spec;
     spec.froudes = parameters.numbers("froude_numbers", {.low = 0, .high = 20, .low_included = false}, {2});
     spec.depth = parameters.number("depth_m", positive, 1);

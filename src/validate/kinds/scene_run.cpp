@@ -38,7 +38,7 @@ struct Surroundings {
     double peak_depth = 0, height_reached = 0;  // m
 };
 
-Surroundings look_around(const Expectation& e, const Scene& scene, const Observation& observation) {
+Surroundings look_around(const Expectation& e, const scene::Scene& scene, const observe::Observation& observation) {
     Surroundings found;
     const Grid<float>& depth = observation.maps.peak_depth;
     for (int row = 0; row < depth.geometry.rows; ++row) {
@@ -56,8 +56,8 @@ Surroundings look_around(const Expectation& e, const Scene& scene, const Observa
     return found;
 }
 
-double measure_building(const Expectation& e, const Observation& observation) {
-    for (const BuildingImpact& building : observation.buildings) {
+double measure_building(const Expectation& e, const observe::Observation& observation) {
+    for (const observe::BuildingImpact& building : observation.buildings) {
         if (building.name != e.building) continue;
         if (e.quantity == "building_hit") return building.hit ? 1 : 0;
         if (e.quantity == "first_hit_time") return building.first_hit_time;
@@ -66,9 +66,9 @@ double measure_building(const Expectation& e, const Observation& observation) {
     return not_computed;
 }
 
-double measure(const Expectation& e, const Scene& scene, const Observation& observation) {
+double measure(const Expectation& e, const scene::Scene& scene, const observe::Observation& observation) {
     if (e.chainage) {
-        const FrontSample front = front_at(observation, *e.chainage);
+        const observe::FrontSample front = front_at(observation, *e.chainage);
         return e.quantity == "front_velocity"   ? front.front_velocity
                : e.quantity == "particle_speed" ? front.particle_speed
                                                 : front.arrival_time;
@@ -92,24 +92,24 @@ Result<Outcome> compute(const std::filesystem::path& file, const std::string& va
     if (!variant.empty()) overrides.push_back("variant=" + variant);
     overrides.insert(overrides.end(), setting.overrides.begin(), setting.overrides.end());
     if (watch.thread_count > 0) overrides.push_back(fmt::format("solver.thread_count={}", watch.thread_count));
-    TALUS_ASSIGN(const Scene scene, load_scene(file, overrides));
-    RunOptions options;
+    TALUS_ASSIGN(const scene::Scene scene, scene::load_scene(file, overrides));
+    run::RunOptions options;
     options.stop_requested = watch.stop_requested;
-    options.on_progress = [&](const Progress& progress) {
+    options.on_progress = [&](const run::Progress& progress) {
         if (progress.step % 50 == 0) watch.say(fmt::format("t {:.1f} s", progress.time));
     };
-    TALUS_ASSIGN(const RunResult run, run_scene(scene, options));
-    const Observation& observation = run.observation;
+    TALUS_ASSIGN(const run::RunResult run, run_scene(scene, options));
+    const observe::Observation& observation = run.observation;
 
     Outcome outcome;
     outcome.notes.push_back(fmt::format("{} particles of {:.3g} m, {:.1f} s: {}", run.particles, run.particle_spacing,
                                         run.simulated_time, run.stop_reason));
     Series front{"computed", Series::Style::line, {}, {}}, observed{"observed", Series::Style::marks, {}, {}};
-    for (const FrontSample& sample : observation.front) {
+    for (const observe::FrontSample& sample : observation.front) {
         front.x.push_back(sample.chainage);
         front.y.push_back(sample.front_velocity);
     }
-    const bool trusted = run.status != RunStatus::fault;
+    const bool trusted = run.status != run::RunStatus::fault;
     for (const Expectation& e : setting.expectations) {
         outcome.measurements.push_back(
             {e.quantity, place_text(e), trusted ? measure(e, scene, observation) : not_computed, {}});

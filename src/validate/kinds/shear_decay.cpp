@@ -37,18 +37,18 @@ Measured measure(const ShearSpec& spec, double viscosity, double time_step, doub
     constexpr double fastest = 1e-3;  // m/s
     const double height = spec.height * spacing, width = spec.width * spacing, above = 10 * spacing;
     const Incline flat(0, 4 * width + 4, 4 * width + 4);
-    MaterialSpec material = setting.material;
+    params::MaterialSpec material = setting.material;
     material.viscosity = viscosity;
     material.friction_coefficient = 0;
     material.internal_friction_coefficient = 0;
-    SolverSpec solver = setting.solver;
+    params::SolverSpec solver = setting.solver;
     solver.time_step = time_step;
-    Model model = make_model(material, solver, spacing);
-    Ground ground(flat.terrain());
+    sim::Model model = sim::make_model(material, solver, spacing);
+    sim::Ground ground(flat.terrain());
     model.gravity = 0;
     std::vector<LocalPoint> points = fill_lattice(flat, spacing, -width / 2, spec.width, -width / 2, spec.width,
                                                   [&](double, double) { return height; });
-    State start = state_at_rest(points);
+    sim::State start = state_at_rest(points);
     const double wave_number = std::numbers::pi / height;
     std::vector<std::uint8_t> middle(points.size());
     for (std::uint32_t i = 0; i < start.count; ++i) {
@@ -57,7 +57,7 @@ Measured measure(const ShearSpec& spec, double viscosity, double time_step, doub
         start.position.z[i] += static_cast<float>(above);
     }
     Trial trial({std::move(model), std::move(ground), std::move(start)}, watch);
-    const State& state = trial.state();
+    const sim::State& state = trial.state();
     const auto amplitude = [&] {
         double sum = 0;
         int count = 0;
@@ -113,8 +113,8 @@ Result<Outcome> compute(const ShearSpec& spec, const Setting& setting, const Wat
 }
 
 Computation prepare(Parameters& parameters, const Setting& setting) {
-    constexpr Range positive{.low = 0, .low_included = false};
-    constexpr Range time_steps{.low = 0, .high = 1, .low_included = false};
+    constexpr params::Range positive{.low = 0, .low_included = false};
+    constexpr params::Range time_steps{.low = 0, .high = 1, .low_included = false};
     ShearSpec spec;
     spec.viscosities =
         parameters.numbers("viscosities", {.low = 0, .high = 1, .low_included = false, .high_included = false}, {0.1});

@@ -35,8 +35,8 @@ struct Measured {
 };
 
 /// The law's velocity at a height above the ground.
-double law_velocity(const SheetSpec& spec, const SheetFlow& sheet, const Model& model, const MaterialSpec& material,
-                    double height) {
+double law_velocity(const SheetSpec& spec, const SheetFlow& sheet, const sim::Model& model,
+                    const params::MaterialSpec& material, double height) {
     if (spec.law == "voellmy") {
         const double share = sheet.thickness / material.turbulent_friction_thickness.value_or(sheet.thickness);
         return sheet.voellmy(model.friction_coefficient, material.turbulent_friction.value_or(0) * std::cbrt(share));
@@ -57,7 +57,7 @@ struct Layers {
         : velocity(static_cast<std::size_t>(layers)), count(velocity.size()), height(velocity.size()) {}
 
     /// For the middle quarter of the sheet at its current position: its ends spread.
-    void add(const State& state, const Incline& incline, const LocalPoint& down, double length, double spacing) {
+    void add(const sim::State& state, const Incline& incline, const LocalPoint& down, double length, double spacing) {
         double middle = 0;
         for (std::uint32_t i = 0; i < state.count; ++i) middle += incline.along(state.position.at(i));
         middle /= state.count;
@@ -76,10 +76,10 @@ struct Layers {
 
 Measured measure(const SheetSpec& spec, double slope, double start_share, const Setting& setting, const Watch& watch) {
     const double thickness = spec.layers * spec.spacing, width = spec.width * spec.spacing;
-    const SheetFlow sheet{slope, thickness, Model{}.gravity};
-    MaterialSpec material = setting.material;
+    const SheetFlow sheet{slope, thickness, sim::Model{}.gravity};
+    params::MaterialSpec material = setting.material;
     material.building_friction_coefficient = 0;
-    Model model = make_model(material, setting.solver, spec.spacing);
+    sim::Model model = sim::make_model(material, setting.solver, spec.spacing);
     const auto law = [&](double height) { return law_velocity(spec, sheet, model, setting.material, height); };
     Measured measured;
     if (!(law(thickness) > 0)) {
@@ -92,8 +92,8 @@ Measured measure(const SheetSpec& spec, double slope, double start_share, const 
     const auto even = [&](double, double) { return thickness; };
     const auto points =
         fill_lattice(incline, spec.spacing, -columns * spec.spacing / 2, columns, -width / 2, spec.width, even);
-    Ground ground(incline.terrain(), make_slice(incline.terrain(), width, 2 * thickness), model.support_radius);
-    State start = state_under_weight(model, ground, points, incline, [&](double along, double) {
+    sim::Ground ground(incline.terrain(), make_slice(incline.terrain(), width, 2 * thickness), model.support_radius);
+    sim::State start = state_under_weight(model, ground, points, incline, [&](double along, double) {
         return std::abs(along) < spec.length / 2 ? thickness : 0;
     });
     const LocalPoint down = incline.down(1);
@@ -151,7 +151,7 @@ Result<Outcome> compute(const SheetSpec& spec, const Setting& setting, const Wat
 }
 
 Computation prepare(Parameters& parameters, const Setting& setting) {
-    constexpr Range positive{.low = 0, .low_included = false};
+    constexpr params::Range positive{.low = 0, .low_included = false};
     SheetSpec spec;
     spec.law = parameters.choice("law", {"voellmy", "bingham", "bagnold"}, "voellmy");
     spec.slopes = parameters.numbers("slopes_deg", {.low = 0, .high = 60, .low_included = false}, {20});

@@ -31,12 +31,12 @@ struct SlabSpec {
 /// One slab: its slope and friction, and the numerics.
 struct Variant {
     double slope, friction, spacing;
-    SolverSpec solver;
+    params::SolverSpec solver;
     std::string name;
 };
 
 double coulomb_acceleration(const Variant& variant) {
-    return Model{}.gravity * (std::sin(variant.slope) - variant.friction * std::cos(variant.slope));
+    return sim::Model{}.gravity * (std::sin(variant.slope) - variant.friction * std::cos(variant.slope));
 }
 
 struct Measured {
@@ -55,11 +55,11 @@ Measured measure(const SlabSpec& spec, const Variant& variant, const Setting& se
     const auto columns = static_cast<int>(std::lround(spec.length / variant.spacing));
     const double thickness = spec.layers * variant.spacing;
 
-    MaterialSpec material = setting.material;
+    params::MaterialSpec material = setting.material;
     material.friction_coefficient = variant.friction;
     material.building_friction_coefficient = 0;
-    Model model = make_model(material, variant.solver, variant.spacing);
-    Ground ground(incline.terrain(), make_slice(incline.terrain(), width, thickness), model.support_radius);
+    sim::Model model = sim::make_model(material, variant.solver, variant.spacing);
+    sim::Ground ground(incline.terrain(), make_slice(incline.terrain(), width, thickness), model.support_radius);
     const auto points = fill_lattice(incline, variant.spacing, -columns * variant.spacing / 2, columns, -width / 2,
                                      spec.width, [&](double, double) { return thickness; });
     Trial trial({std::move(model), std::move(ground), state_at_rest(points)}, watch);
@@ -70,7 +70,7 @@ Measured measure(const SlabSpec& spec, const Variant& variant, const Setting& se
         middle[i] = std::abs(incline.along(points[i])) < spec.length / 6;
         lowest[i] = incline.normal(points[i]) < variant.spacing;
     }
-    const State& state = trial.state();
+    const sim::State& state = trial.state();
     const auto mean = [&](const std::vector<std::uint8_t>& chosen, const auto& value) {
         double sum = 0;
         int count = 0;
@@ -108,7 +108,7 @@ Measured measure(const SlabSpec& spec, const Variant& variant, const Setting& se
     return measured;
 }
 
-std::vector<Variant> variants_of(const SlabSpec& spec, const SolverSpec& solver) {
+std::vector<Variant> variants_of(const SlabSpec& spec, const params::SolverSpec& solver) {
     std::vector<Variant> variants;
     const auto add = [&](double slope, double friction, const std::string& more) -> Variant& {
         variants.push_back(
@@ -163,8 +163,8 @@ Result<Outcome> compute(const SlabSpec& spec, const Setting& setting, const Watc
 }
 
 Computation prepare(Parameters& parameters, const Setting& setting) {
-    constexpr Range slopes{.low = 0, .high = 89};
-    constexpr Range positive{.low = 0, .low_included = false};
+    constexpr params::Range slopes{.low = 0, .high = 89};
+    constexpr params::Range positive{.low = 0, .low_included = false};
     SlabSpec spec;
     spec.slopes = parameters.numbers("slopes_deg", slopes, {30});
     spec.frictions = parameters.numbers("friction_coefficients", {.low = 0, .high = 10}, {0.4});

@@ -35,7 +35,7 @@ struct Measured {
 /// Thickness on square cells along and across the slope, computed and exact.
 void compare(const CapSpec& spec, const SpreadingCap& law, const Incline& incline, const Trial& trial,
              Measured& measured) {
-    const State& state = trial.state();
+    const sim::State& state = trial.state();
     const double margin = 4 * spec.cell;
     const double half_length = law.half_length(state.time) + margin, half_width = law.half_width(state.time) + margin;
     const double first = law.travelled(state.time) - half_length;
@@ -75,17 +75,18 @@ void compare(const CapSpec& spec, const SpreadingCap& law, const Incline& inclin
 }
 
 Measured measure(const CapSpec& spec, double spacing, const Setting& setting, const Watch& watch) {
-    const SpreadingCap law(spec.slope, spec.friction_angle, spec.length, spec.height, Model{}.gravity, spec.time + 1);
+    const SpreadingCap law(spec.slope, spec.friction_angle, spec.length, spec.height, sim::Model{}.gravity,
+                           spec.time + 1);
     const double furthest = law.travelled(spec.time) + law.half_length(spec.time);
     const Incline incline(spec.slope, 2.2 * furthest, 2.4 * law.half_width(spec.time));
-    MaterialSpec material = setting.material;
+    params::MaterialSpec material = setting.material;
     material.friction_coefficient = std::tan(spec.friction_angle);
-    Model model = make_model(material, setting.solver, spacing);
-    Ground ground(incline.terrain());
+    sim::Model model = sim::make_model(material, setting.solver, spacing);
+    sim::Ground ground(incline.terrain());
     const auto half = static_cast<int>(std::ceil(spec.length / spacing));
     const auto thickness = [&](double s, double y) { return law.thickness(s, y, 0); };
     const auto points = fill_lattice(incline, spacing, -half * spacing, 2 * half, -half * spacing, 2 * half, thickness);
-    State start = state_under_weight(model, ground, points, incline, thickness);
+    sim::State start = state_under_weight(model, ground, points, incline, thickness);
     Trial trial({std::move(model), std::move(ground), std::move(start)}, watch);
     Measured measured;
     measured.particles = trial.state().count;
@@ -131,8 +132,8 @@ Result<Outcome> compute(const CapSpec& spec, const Setting& setting, const Watch
 }
 
 Computation prepare(Parameters& parameters, const Setting& setting) {
-    constexpr Range angles{.low = 0, .high = 80};
-    constexpr Range positive{.low = 0, .low_included = false};
+    constexpr params::Range angles{.low = 0, .high = 80};
+    constexpr params::Range positive{.low = 0, .low_included = false};
     CapSpec spec;
     spec.slope = parameters.number("slope_deg", angles, 35) * radians_per_degree;
     spec.friction_angle = parameters.number("friction_angle_deg", angles, 25) * radians_per_degree;

@@ -40,8 +40,8 @@ struct Measured {
 };
 
 /// A cone on level ground as a release, so that it is seeded and loaded like that of a scene.
-Release make_cone(const Terrain& terrain, double radius, double height) {
-    Release cone;
+terrain::Release make_cone(const terrain::Terrain& terrain, double radius, double height) {
+    terrain::Release cone;
     cone.name = "cone";
     cone.patches.push_back(
         {{{{-radius, -radius}, {radius, -radius}, {radius, radius}, {-radius, radius}}, {}}, height});
@@ -65,18 +65,18 @@ Measured measure(const HeapSpec& spec, double share, double time_step, const Set
         std::atan(setting.material.internal_friction_coefficient.value_or(setting.material.friction_coefficient));
     const double height = spec.height * spec.spacing, radius = height / std::tan(angle);
     const Incline flat(0, 6 * radius, 6 * radius);
-    SolverSpec solver = setting.solver;
+    params::SolverSpec solver = setting.solver;
     solver.time_step = time_step;
-    Model model = make_model(setting.material, solver, spec.spacing);
-    Ground ground(flat.terrain());
-    Result<State> seeded = seed_releases(model, ground, {make_cone(flat.terrain(), radius, height)});
+    sim::Model model = sim::make_model(setting.material, solver, spec.spacing);
+    sim::Ground ground(flat.terrain());
+    Result<sim::State> seeded = seed_releases(model, ground, {make_cone(flat.terrain(), radius, height)});
     if (!seeded) {
         measured.problem = seeded.error().message;
         return measured;
     }
     measured.particles = seeded->count;
     Trial trial({std::move(model), std::move(ground), *std::move(seeded)}, watch);
-    const State& state = trial.state();
+    const sim::State& state = trial.state();
     // A heap that should flow does so from the first step; one that should stand is measured once its lattice has
     // settled.
     const double begin = share < 1 ? spec.settling_time : 0;
@@ -139,7 +139,7 @@ Result<Outcome> compute(const HeapSpec& spec, const Setting& setting, const Watc
 }
 
 Computation prepare(Parameters& parameters, const Setting& setting) {
-    constexpr Range positive{.low = 0, .low_included = false};
+    constexpr params::Range positive{.low = 0, .low_included = false};
     HeapSpec spec;
     spec.angle_shares = parameters.numbers("angle_shares", {.low = 0.1, .high = 2}, {0.9, 1.1});
     spec.time_steps = parameters.numbers("time_steps_s", {.low = 0, .high = 1, .low_included = false}, {1.0 / 60});

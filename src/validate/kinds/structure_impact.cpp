@@ -24,15 +24,15 @@ struct ImpactSpec {
 };
 
 /// A block rotated by `turn` about its centre (x, y), world.
-Building make_block(const Terrain& terrain, const char* name, const PlanPoint& middle, double length, double width,
-                    double turn, double height) {
+terrain::Building make_block(const terrain::Terrain& terrain, const char* name, const PlanPoint& middle, double length,
+                             double width, double turn, double height) {
     const double c = std::cos(turn), s = std::sin(turn);
     Ring ring;
     for (const auto& [u, v] : {std::pair{-1, -1}, {1, -1}, {1, 1}, {-1, 1}}) {
         const double along = u * length / 2, across = v * width / 2;
         ring.push_back({middle.x + along * c - across * s, middle.y + along * s + across * c});
     }
-    std::vector<Building> one(1);
+    std::vector<terrain::Building> one(1);
     one[0].name = name;
     one[0].footprint = {{std::move(ring), {}}};
     one[0].height = height;
@@ -41,15 +41,15 @@ Building make_block(const Terrain& terrain, const char* name, const PlanPoint& m
 }
 
 /// Debris of 34 x 10 x 3 m comes down a channel with banks of 45 degrees onto a house and three walls.
-Result<std::vector<BuildingImpact>> measure(const ImpactSpec& spec, double count, const Setting& setting,
-                                            const Watch& watch) {
+Result<std::vector<observe::BuildingImpact>> measure(const ImpactSpec& spec, double count, const Setting& setting,
+                                                     const Watch& watch) {
     constexpr double length = 34, width = 10, thickness = 3, head = -8;  // m
-    const Terrain terrain = make_terrain(
+    const terrain::Terrain terrain = make_terrain(
         160, 40, 1, [&](double x, double y) { return -std::tan(spec.slope) * x + std::max(0.0, std::abs(y) - 6); });
-    const std::vector<Building> structures = {make_block(terrain, "house", {12, 0}, 4, 4, 0, 8),
-                                              make_block(terrain, "wall to the left", {6, 6}, 1, 5, 0, 5),
-                                              make_block(terrain, "oblique wall", {14, -6}, 1, 5, -M_PI / 4, 5),
-                                              make_block(terrain, "wall across", {30, 0}, 1.5, 14, 0, 8)};
+    const std::vector<terrain::Building> structures = {
+        make_block(terrain, "house", {12, 0}, 4, 4, 0, 8), make_block(terrain, "wall to the left", {6, 6}, 1, 5, 0, 5),
+        make_block(terrain, "oblique wall", {14, -6}, 1, 5, -M_PI / 4, 5),
+        make_block(terrain, "wall across", {30, 0}, 1.5, 14, 0, 8)};
     // The number of particles that fit on a lattice, whose cells have the volume of a particle.
     const double wanted = std::cbrt(length * width * thickness / count);
     const std::array<double, 3> size = {length, width, thickness};
@@ -73,8 +73,8 @@ Result<std::vector<BuildingImpact>> measure(const ImpactSpec& spec, double count
             }
         }
     }
-    Model model = make_model(setting.material, setting.solver, std::cbrt(spacing));
-    Ground ground(terrain, structures, model.support_radius);
+    sim::Model model = sim::make_model(setting.material, setting.solver, std::cbrt(spacing));
+    sim::Ground ground(terrain, structures, model.support_radius);
     Trial trial({std::move(model), std::move(ground), state_at_rest(points), {}, {}, {}}, watch);
     if (!trial.advance_to(spec.end)) return Error{trial.problem()};
     return trial.observer().impacts();
@@ -82,21 +82,21 @@ Result<std::vector<BuildingImpact>> measure(const ImpactSpec& spec, double count
 
 Result<Outcome> compute(const ImpactSpec& spec, const Setting& setting, const Watch& watch) {
     Outcome outcome;
-    std::vector<std::vector<BuildingImpact>> runs;
+    std::vector<std::vector<observe::BuildingImpact>> runs;
     for (const double count : spec.counts) {
         watch.say(fmt::format("{:g} particles", count));
-        Result<std::vector<BuildingImpact>> run = measure(spec, count, setting, watch);
+        Result<std::vector<observe::BuildingImpact>> run = measure(spec, count, setting, watch);
         if (!run) return Error{run.error()};
         runs.push_back(std::move(*run));
     }
     Chart pressures{"pressure", "Impact pressure by spacing", "particles", "kPa", {}};
-    const std::vector<BuildingImpact>& finest = runs.back();
+    const std::vector<observe::BuildingImpact>& finest = runs.back();
     double largest = 0;
-    for (const BuildingImpact& impact : finest) largest = std::max(largest, impact.peak_force);
+    for (const observe::BuildingImpact& impact : finest) largest = std::max(largest, impact.peak_force);
     for (std::size_t b = 0; b < finest.size(); ++b) {
         Series series{finest[b].name, Series::Style::line, {}, {}};
         for (std::size_t r = 0; r < runs.size(); ++r) {
-            const BuildingImpact& impact = runs[r][b];
+            const observe::BuildingImpact& impact = runs[r][b];
             series.x.push_back(spec.counts[r]);
             series.y.push_back(impact.peak_impact_pressure / 1e3);
             if (r + 1 == runs.size() || finest[b].peak_force < 0.05 * largest) continue;

@@ -31,7 +31,7 @@ struct Measured {
     Series history;
 };
 
-double momentum_along(const Model& model, const State& state) {
+double momentum_along(const sim::Model& model, const sim::State& state) {
     double sum = 0;
     for (std::uint32_t i = 0; i < state.count; ++i) sum += state.velocity.x[i];
     return sum * model.particle_mass();
@@ -39,17 +39,18 @@ double momentum_along(const Model& model, const State& state) {
 
 /// A stream on level ground, between frictionless walls, whose head is at a wall across it when it is released.
 Measured measure(const ImpactSpec& spec, double froude, const Setting& setting, const Watch& watch) {
-    const double width = spec.width * spec.spacing, wave = std::sqrt(Model{}.gravity * spec.depth);
+    const double width = spec.width * spec.spacing, wave = std::sqrt(sim::Model{}.gravity * spec.depth);
     const double speed = froude * wave, stream = spec.length * spec.depth;
-    const Terrain terrain = make_terrain(2 * (stream + 8 * spec.depth), width + 4, 1, [](double, double) { return 0; });
+    const terrain::Terrain terrain =
+        make_terrain(2 * (stream + 8 * spec.depth), width + 4, 1, [](double, double) { return 0; });
     const double top = 4 * momentum_jump(froude) * spec.depth;
-    std::vector<Building> walls = make_slice(terrain, width, top);
+    std::vector<terrain::Building> walls = make_slice(terrain, width, top);
     const Extent e = terrain.elevation().geometry.extent();
     walls.push_back(make_wall(terrain, 0, e.y_min, e.x_max, e.y_max, top));
-    MaterialSpec material = setting.material;
+    params::MaterialSpec material = setting.material;
     material.building_friction_coefficient = 0;
-    Model model = make_model(material, setting.solver, spec.spacing);
-    Ground ground(terrain, walls, model.support_radius);
+    sim::Model model = sim::make_model(material, setting.solver, spec.spacing);
+    sim::Ground ground(terrain, walls, model.support_radius);
     std::vector<LocalPoint> points;
     const auto columns = static_cast<int>(std::lround(stream / spec.spacing));
     const auto layers = static_cast<int>(std::lround(spec.depth / spec.spacing));
@@ -64,15 +65,15 @@ Measured measure(const ImpactSpec& spec, double froude, const Setting& setting, 
             }
         }
     }
-    State start = state_at_rest(points);
+    sim::State start = state_at_rest(points);
     for (std::uint32_t i = 0; i < start.count; ++i) start.velocity.x[i] = static_cast<float>(speed);
     const double before = momentum_along(model, start);
-    OutputSpec outputs;
+    params::OutputSpec outputs;
     outputs.impact_filter_window = 0.2 * spec.depth / wave;
     outputs.sample_interval = 0.05 * stream / (speed + wave);
     outputs.map_cell = spec.depth;
     Trial trial({std::move(model), std::move(ground), std::move(start), {}, {}, outputs}, watch, OnFault::note);
-    const Observer& observer = trial.observer();
+    const observe::Observer& observer = trial.observer();
     // Until the stream's other end affects the wall, without the splash of the first fifth.
     const double end = stream / (speed + wave);
     double early = 0;
@@ -85,12 +86,12 @@ Measured measure(const ImpactSpec& spec, double froude, const Setting& setting, 
         return measured;
     }
     measured.problem = trial.problem();
-    const BuildingImpact& wall = observer.impacts()[2];
+    const observe::BuildingImpact& wall = observer.impacts()[2];
     measured.impulse = wall.impulse / width;
     measured.lost = (before - momentum_along(trial.model(), trial.state())) / width;
     measured.force = (wall.impulse - early) / (0.8 * end) / width;
     measured.peak = wall.peak_force / width;
-    for (const StructureSample& s : wall.history) {
+    for (const observe::StructureSample& s : wall.history) {
         measured.history.x.push_back(s.time);
         measured.history.y.push_back(s.force / width / 1e3);
     }
@@ -100,7 +101,7 @@ Measured measure(const ImpactSpec& spec, double froude, const Setting& setting, 
 Result<Outcome> compute(const ImpactSpec& spec, const Setting& setting, const Watch& watch) {
     Outcome outcome;
     Chart chart{"force", "Force on the wall", "time, s", "force, kN/m", {}};
-    const double gravity = Model{}.gravity, density = setting.material.rest_density;
+    const double gravity = sim::Model{}.gravity, density = setting.material.rest_density;
     for (const double froude : spec.froudes) {
         const std::string name = fmt::format("Fr = {:g}", froude);
         watch.say(name);
@@ -122,7 +123,7 @@ Result<Outcome> compute(const ImpactSpec& spec, const Setting& setting, const Wa
 }
 
 Computation prepare(Parameters& parameters, const Setting& setting) {
-    constexpr Range positive{.low = 0, .low_included = false};
+    constexpr params::Range positive{.low = 0, .low_included = false};
     ImpactSpec spec;
     spec.froudes = parameters.numbers("froude_numbers", {.low = 0, .high = 20, .low_included = false}, {2});
     spec.depth = parameters.number("depth_m", positive, 1);

@@ -45,17 +45,17 @@ Result<Outcome> compute(const ColumnSpec& spec, const Setting& setting, const Wa
         const std::string by_resolution = fmt::format("{:g} spacings", resolution);
         watch.say(by_resolution);
         const Incline flat(0, 2 * furthest, width + 4);
-        std::vector<Building> walls = make_slice(flat.terrain(), width, 2 * height);
+        std::vector<terrain::Building> walls = make_slice(flat.terrain(), width, 2 * height);
         const Extent extent = flat.terrain().elevation().geometry.extent();
         walls.push_back(make_wall(flat.terrain(), extent.x_min, extent.y_min, 0, extent.y_max, 2 * height));
-        Model model = make_model(setting.material, setting.solver, spacing);
-        Ground ground(flat.terrain(), walls, model.support_radius);
+        sim::Model model = sim::make_model(setting.material, setting.solver, spacing);
+        sim::Ground ground(flat.terrain(), walls, model.support_radius);
         const auto depth = [&](double, double) { return height; };
         const auto points =
             fill_lattice(flat, spacing, 0, static_cast<int>(std::lround(resolution)), -width / 2, spec.width, depth);
-        State start = state_under_weight(model, ground, points, flat, depth);
+        sim::State start = state_under_weight(model, ground, points, flat, depth);
         Trial trial({std::move(model), std::move(ground), std::move(start)}, watch);
-        const State& state = trial.state();
+        const sim::State& state = trial.state();
         // Where the water still covers the bed; drops ahead of it are not the front.
         const auto front = [&] {
             const int cells = static_cast<int>(2 * furthest / spacing);
@@ -89,7 +89,7 @@ Result<Outcome> compute(const ColumnSpec& spec, const Setting& setting, const Wa
 }
 
 Computation prepare(Parameters& parameters, const Setting& setting) {
-    constexpr Range positive{.low = 0, .low_included = false};
+    constexpr params::Range positive{.low = 0, .low_included = false};
     ColumnSpec spec;
     spec.base = parameters.number("base_m", positive, 0.05715);
     spec.height_ratio = parameters.number("height_ratio", positive, 2);

@@ -36,13 +36,13 @@ constexpr int skipped = 77;
 struct Guarded {
     const char* scene;
     int particles;
-    InternalFriction method;
+    params::InternalFriction method;
     int threads;
 };
-const std::vector<Guarded> guarded = {{"slab", 20000, InternalFriction::stress, 1},
-                                      {"slab", 20000, InternalFriction::pair, 1},
-                                      {"sham_tseng", 5000, InternalFriction::stress, 1},
-                                      {"slab", 20000, InternalFriction::stress, 2}};
+const std::vector<Guarded> guarded = {{"slab", 20000, params::InternalFriction::stress, 1},
+                                      {"slab", 20000, params::InternalFriction::pair, 1},
+                                      {"sham_tseng", 5000, params::InternalFriction::stress, 1},
+                                      {"slab", 20000, params::InternalFriction::stress, 2}};
 
 int fail(const std::string& message) {
     (void)std::fputs(fmt::format("performance_guard: error: {}\n", message).c_str(), stderr);
@@ -127,7 +127,7 @@ int run(const std::vector<std::string>& arguments) {
         return skipped;
     }
     const test::TemporaryFolder folder;
-    const auto builtin_scene = unpack_builtin_scene(folder.path());
+    const auto builtin_scene = scene::unpack_builtin_scene(folder.path());
     if (!builtin_scene) return fail(builtin_scene.error().message);
     if (!remake) return check(baseline->at(instruction_set), calibration, builtin_scene->string());
 
