@@ -154,7 +154,7 @@ std::string capital(std::string text) {
 Json intensity_of(const EnsembleResult& result) {
     const IntensityGuideline& guideline = *result.guideline;
     Json rows = table({{"name", "Intensity", ""},
-                       {"criterion", "Peak depth h, peak speed v", ""},
+                       {"criterion", "Its lowest class: peak depth h, peak speed v", ""},
                        {"in_half_m2", "In over half of the runs", "m²", "f0"},
                        {"in_any_m2", "In any run", "m²", "f0"}});
     for (std::size_t k = guideline.classes.size(); k-- > 0 && !result.reduction.intensity.empty();) {
@@ -235,9 +235,9 @@ MapContent content_of(const EnsembleResult& result) {
         const bool top = k + 1 == classes.size();
         content.layers.push_back({intensity_odds_style(classes[k], top), &result.reduction.intensity[k],
                                   fmt::format("{} intensity{}", capital(classes[k].name), top ? "" : "+"),
-                                  fmt::format("Share of the complete runs with {} intensity{}: {}. Below 1 % nothing "
-                                              "is drawn.",
-                                              classes[k].name, top ? "" : " or higher", classes[k].criterion),
+                                  fmt::format("Share of the complete runs with {} intensity{}. Below 1 % nothing is "
+                                              "drawn.",
+                                              classes[k].name, top ? "" : " or higher"),
                                   0});
     }
     if (!result.zones.values.empty()) {
