@@ -1,6 +1,7 @@
 // Effect of debris on barriers, and the force on structures over time.
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <vector>
 
 #include <fmt/format.h>
@@ -45,6 +46,15 @@ Json events(const std::vector<observe::BuildingImpact>& impacts, double observe:
         list.push_back({{"name", name_of(impact)}, {"time_s", impact.*time}, {"another", !list.empty()}});
     }
     return list;
+}
+
+/// Buildings or barriers that were removed during the run; null if none was.
+Json removed(const std::vector<observe::BuildingImpact>& impacts, bool barriers) {
+    std::vector<observe::BuildingImpact> those;
+    std::copy_if(impacts.begin(), impacts.end(), std::back_inserter(those),
+                 [&](const auto& impact) { return impact.is_barrier == barriers; });
+    const Json list = events(those, &observe::BuildingImpact::removed_time);
+    return list.empty() ? Json() : Json{{"list", list}};
 }
 
 /// Balance of the debris that reached a net, for each net that was reached.
@@ -140,21 +150,17 @@ Json buildings(const scene::Scene& scene, const run::RunResult& result) {
     const std::size_t count = hits_among(impacts, false).all;
     if (count == 0) return {};
     std::vector<std::size_t> hit;
-    std::vector<observe::BuildingImpact> all;
     for (std::size_t i = 0; i < impacts.size(); ++i) {
-        if (impacts[i].is_barrier) continue;
-        all.push_back(impacts[i]);
-        if (impacts[i].hit) hit.push_back(i);
+        if (impacts[i].hit && !impacts[i].is_barrier) hit.push_back(i);
     }
     const auto assumed = static_cast<std::size_t>(std::count_if(
         scene.buildings.begin(), scene.buildings.end(), [](const terrain::Building& b) { return b.height_assumed; }));
-    const Json removed = events(all, &observe::BuildingImpact::removed_time);
     return {{"count", plural(count, "building")},
             {"hit", hit.size()},
             {"none_hit", hit.empty()},
             {"table", hit.empty() ? Json() : building_rows(scene, impacts, hit)},
             {"shown", hit.size() > most_rows ? Json(most_rows) : Json()},
-            {"removed", removed.empty() ? Json() : Json{{"list", removed}}},
+            {"removed", removed(impacts, false)},
             {"assumed_heights", assumed > 0 ? Json(assumed) : Json()}};
 }
 
@@ -190,6 +196,7 @@ Json barriers(const run::RunResult& result) {
     }
     return {{"failures", events(impacts, &observe::BuildingImpact::failure_time)},
             {"table", std::move(rows)},
+            {"removed", removed(impacts, true)},
             {"nets", net_balances(impacts)},
             {"net_volumes", net_chart(result)}};
 }

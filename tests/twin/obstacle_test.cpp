@@ -168,7 +168,8 @@ TEST(Obstacle, taken_away_stays_in_tables_and_report_with_the_time_of_it) {
     EXPECT_THAT(table, HasSubstr("\nbarrier 2,yes,"));
     EXPECT_THAT(table, HasSubstr(fmt::format(",{:.4g}", time).substr(0, 4)));
     const std::string report = talus::test::read_text(folder.file("report.html"));
-    EXPECT_THAT(report, HasSubstr("Removed during the run: house at 6.0 s, barrier 2 at 6.0 s"));
+    EXPECT_THAT(report, HasSubstr("Removed during the run: house at 6.0 s."));
+    EXPECT_THAT(report, HasSubstr("Removed during the run: barrier 2 at 6.0 s."));
     EXPECT_THAT(report, HasSubstr("<h3>Barriers</h3>"));
 
     // Back again it stands, and is told as what stands.
