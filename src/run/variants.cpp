@@ -10,6 +10,7 @@
 #include "observe/observer.hpp"
 #include "sim/physics/viscosity.hpp"
 #include "sim/sources/seed.hpp"
+#include "terrain/map_cell.hpp"
 
 namespace talus::run {
 namespace {

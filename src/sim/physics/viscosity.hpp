@@ -4,6 +4,7 @@
 
 #include "core/geometry.hpp"
 #include "sim/model.hpp"
+#include "terrain/terrain.hpp"
 
 namespace talus::sim {
 
