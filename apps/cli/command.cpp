@@ -39,7 +39,7 @@ void add_overrides(CLI::App& command, std::vector<std::string>& overrides) {
         .add_option_function<std::string>(
             "--variant",
             [&overrides](const std::string& name) { overrides.insert(overrides.begin(), "variant=" + name); },
-            "take the values of the scene's [[variant]] of that name; --set goes before them")
+            "take the values of the scene's [[variant]] of that name; --set overrides them")
         ->type_name("NAME");
 }
 

@@ -50,7 +50,7 @@ Section declare_report() {
     s.text("reference", &ReportSpec::reference, "not stated", "Reference number of the project or the report.");
     s.text("revision", &ReportSpec::revision, "not stated", "Revision of the report.");
     s.text("date", &ReportSpec::date, "not stated",
-           "Day of issue as YYYY-MM-DD (ISO 8601), in quotes. When the run was made is printed beside it.");
+           "Day of issue as YYYY-MM-DD (ISO 8601), in quotes. The time of the run is printed next to it.");
     s.text("limits_of_use", &ReportSpec::limits_of_use, "not stated",
            "What the results may be used for and what not, in a few sentences.");
     s.rule([](const ReportSpec& report, const SceneSpec&, double) -> std::optional<Violation> {
@@ -137,7 +137,7 @@ Section declare_solver() {
     s.key(
         "rest_duration_s", "s", &SolverSpec::rest_duration, at_least(0),
         "Debris that has hardly moved (a hundredth of a particle's free-fall speed) for so long is at rest: it presses "
-        "as before and costs little until something moves beside it. 0 keeps everything moving.");
+        "as before and costs little until something moves next to it. 0: nothing sleeps.");
     s.key("compression_limit", "", &SolverSpec::compression_limit, above(0),
           "Mean over-density (density over rest density, less 1) above which the run stops as a fault.");
     s.key("thread_count", "", &SolverSpec::thread_count, between(0, 4096),
@@ -171,7 +171,7 @@ Section declare_outputs() {
         .assumes("Averaging time of force and impact pressure");
     s.key("impact_patch_edge_m", "m", &OutputSpec::impact_patch_edge, between(0.1, 100),
           "Edge of the square patches of walls and roofs, the reference area of impact pressure: a patch's filtered "
-          "force over its area, whatever the particles.")
+          "force over its area, independent of the particle spacing.")
         .assumes("Reference area of impact pressure, edge of the square");
     s.key("deposited_speed_mps", "m/s", &OutputSpec::deposited_speed, above(0), "Slower debris counts as deposited.");
     s.key("particle_series_interval_s", "s", &OutputSpec::particle_series_interval, at_least(0),

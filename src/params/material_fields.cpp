@@ -9,8 +9,8 @@ namespace {
 void declare_resistance(Declaration<MaterialSpec>& s) {
     s.key("viscosity_on_ground", "", &MaterialSpec::viscosity_on_ground, anything(),
           "Whether viscosity acts between debris and ground as well, which a viscous fluid sticks to.");
-    s.optional_key("turbulent_friction_mps2", "m/s2", &MaterialSpec::turbulent_friction, above(0), "no such drag",
-                   "Voellmy's xi: flow of thickness h is slowed by g v2 / (xi h) beside Coulomb friction.")
+    s.optional_key("turbulent_friction_mps2", "m/s2", &MaterialSpec::turbulent_friction, above(0), "none",
+                   "Voellmy's xi: flow of thickness h is slowed by g v2 / (xi h) in addition to Coulomb friction.")
         .assumes("Turbulent friction, Voellmy's ξ")
         .live_as();
     s.optional_key(
@@ -67,10 +67,9 @@ Section declare_material() {
                    "equal to friction_coefficient", "Coulomb friction of debris on debris.")
         .assumes("Internal friction")
         .live_as();
-    s.key(
-         "viscosity", "", &MaterialSpec::viscosity, from_to_below(0, 1),
-         "Share of the velocity difference to its neighbours that debris loses per 1/60 s, whatever the time step. The "
-         "same share is another material at another particle spacing; kinematic_viscosity_m2ps is not.")
+    s.key("viscosity", "", &MaterialSpec::viscosity, from_to_below(0, 1),
+          "Share of the velocity difference to its neighbours that debris loses per 1/60 s, at any time step. The "
+          "same share is another material at another particle spacing; kinematic_viscosity_m2ps is not.")
         .assumes("Viscosity, as smoothing per 1/60 s")
         .live_as();
     s.optional_key("kinematic_viscosity_m2ps", "m2/s", &MaterialSpec::kinematic_viscosity, at_least(0),
@@ -88,10 +87,11 @@ Section declare_material() {
 }
 
 Section declare_zone() {
-    Declaration<ZoneSpec> s("zone",
-                            "Ground that resists in its own way. A cell of the terrain belongs to it when its centre "
-                            "does. What a zone does not say is as elsewhere; later zones go before earlier ones.",
-                            &SceneSpec::zones);
+    Declaration<ZoneSpec> s(
+        "zone",
+        "Ground with its own resistance. A cell of the terrain belongs to it if its centre does. "
+        "Values that a zone does not set are those of [material]; later zones override earlier ones.",
+        &SceneSpec::zones);
     s.text("name", &ZoneSpec::name, "\"zone N\"", "Name in reports and messages.");
     s.path("file", &ZoneSpec::file, "one of the other two is given",
            "Polygons of the zone: GeoJSON, GeoPackage, Shapefile.");
@@ -105,30 +105,30 @@ Section declare_zone() {
         "What the raster's cells hold: a number by which the zone is told from others, or that coefficient itself.");
     s.optional_key("raster_value", "", &ZoneSpec::raster_value, anything(), "every cell that has data",
                    "The zone_number of the zone.");
-    s.optional_key("friction_coefficient", "", &ZoneSpec::friction_coefficient, between(0, 10), "as elsewhere",
+    s.optional_key("friction_coefficient", "", &ZoneSpec::friction_coefficient, between(0, 10), "as in [material]",
                    "Coulomb friction on this ground.")
         .live_in({.label = "Coefficient",
                   .slider_low = 0.05,
                   .slider_high = 1.05,
                   .first = 0.4,
                   .tick = "Friction",
-                  .tick_help = "Coulomb friction of its own; unticked: as elsewhere"});
-    s.optional_key("turbulent_friction_mps2", "m/s2", &ZoneSpec::turbulent_friction, above(0), "as elsewhere",
+                  .tick_help = "A separate Coulomb friction; unticked: as in [material]"});
+    s.optional_key("turbulent_friction_mps2", "m/s2", &ZoneSpec::turbulent_friction, above(0), "as in [material]",
                    "Voellmy's xi on this ground; lower is rougher.")
         .live_in({.label = "Voellmy's \u03be",
                   .slider_low = 100,
                   .slider_high = 2100,
                   .first = 500,
                   .tick = "Turbulent friction",
-                  .tick_help = "Voellmy's turbulent friction of its own; unticked: as elsewhere"});
-    s.optional_key("cohesion_Pa", "Pa", &ZoneSpec::cohesion, at_least(0), "as elsewhere",
+                  .tick_help = "A separate Voellmy turbulent friction; unticked: as in [material]"});
+    s.optional_key("cohesion_Pa", "Pa", &ZoneSpec::cohesion, at_least(0), "as in [material]",
                    "Shear strength without pressure between debris and this ground.")
         .live_in({.label = "Shear strength",
                   .slider_low = 0,
                   .slider_high = 10,
                   .first = 1,
                   .tick = "Cohesion",
-                  .tick_help = "Cohesion of its own; unticked: as elsewhere"})
+                  .tick_help = "A separate cohesion; unticked: as in [material]"})
         .needs(stress(true));
     s.key("stem_density_pm2", "1/m2", &ZoneSpec::stem_density, at_least(0),
           "Stems of a forest per square metre that stand the flow; each drags on it as a cylinder.")

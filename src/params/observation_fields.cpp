@@ -25,9 +25,9 @@ void add_place(Declaration<Struct>& s) {
 }
 
 Section declare_observation() {
-    Declaration<ObservationSpec> s("observation",
-                                   "A front velocity measured in the field, drawn beside the computed one; any number.",
-                                   &SceneSpec::observations);
+    Declaration<ObservationSpec> s(
+        "observation", "A front velocity measured in the field, drawn next to the computed one; any number.",
+        &SceneSpec::observations);
     add_name(s);
     add_chainage(s);
     s.key("front_velocity_mps", "m/s", &ObservationSpec::front_velocity, above(0),

@@ -49,13 +49,13 @@ Section declare_release() {
 }
 
 Section declare_bed() {
-    Declaration<BedSpec> s("bed", "Loose material on the ground that debris picks up where it moves over it.",
+    Declaration<BedSpec> s("bed", "Loose material on the ground that debris entrains where it moves over it.",
                            &SceneSpec::beds);
     s.text("name", &BedSpec::name, "\"bed N\"", "Name in reports and messages.");
     s.path("file", &BedSpec::file, "it lies everywhere", "Polygons of the bed: GeoJSON, GeoPackage, Shapefile.");
     s.text("layer", &BedSpec::layer, "the only layer", "Layer of the file.");
     s.optional_key("depth_m", "m", &BedSpec::depth, above_to(0, 100), "one of the other two is given",
-                   "Uniform depth of the bed, vertical; debris picks up no more.")
+                   "Uniform depth of the bed, vertical; debris entrains no more.")
         .live_in({.label = "Depth", .slider_low = 0.1, .slider_high = 5.1, .first = 1});
     s.text("depth_attribute", &BedSpec::depth_attribute, "one of the other two is given",
            "Attribute of the polygons that holds their depth in metres.");
@@ -68,11 +68,11 @@ Section declare_bed() {
         .live_as();
     s.optional_key("growth_rate_per_m", "1/m", &BedSpec::growth_rate, above_to(0, 1),
                    "law = \"growth\" needs it, and law = \"shear\" does not have it",
-                   "Share of its volume that debris picks up per metre: ln(volume after / volume before) over the "
+                   "Share of its volume that debris entrains per metre: ln(volume after / volume before) over the "
                    "length of the bed.")
         .live_in({.label = "Growth rate", .slider_low = 0.0005, .slider_high = 0.0505, .first = 0.005});
     s.key("critical_shear_stress_Pa", "Pa", &BedSpec::critical_shear_stress, at_least(0),
-          "With law = \"shear\": less shear stress, rest density x gravity x depth x sine of the slope, picks up "
+          "With law = \"shear\": less shear stress, rest density x gravity x depth x sine of the slope, entrains "
           "nothing.")
         .assumes("Critical shear stress of the bed")
         .live_in({.label = "Critical shear stress", .slider_low = 0, .slider_high = 5, .first = 1});
@@ -101,7 +101,7 @@ Section declare_bed() {
 
 Section declare_inflow() {
     Declaration<InflowSpec> s("inflow",
-                              "Debris that comes in while the run goes on, any number of them: across a straight line, "
+                              "Inflow of debris during the run, any number of them: across a straight line, "
                               "at right angles to it and towards its right, or all over an area, such as a slope "
                               "that rain wears down.",
                               &SceneSpec::inflows);
@@ -117,12 +117,12 @@ Section declare_inflow() {
     s.path("polygon_file", &InflowSpec::polygon_file, "another one is given",
            "The area in a file, one polygon or more: GeoJSON, GeoPackage, Shapefile.");
     s.optional_key("direction_deg", "deg", &InflowSpec::direction, from_to_below(0, 360), "down the slope",
-                   "Over an area: where the debris moves as it comes in, clockwise from north.")
+                   "Over an area: direction in which the debris flows in, clockwise from north.")
         .live_in({.label = "Clockwise from north",
                   .slider_low = 0,
                   .slider_high = 359,
                   .tick = "Set direction",
-                  .tick_help = "Where debris moves as it comes in; unticked: downhill"});
+                  .tick_help = "Direction in which debris flows in; unticked: downhill"});
     s.path("hydrograph", &InflowSpec::hydrograph, "",
            "CSV with the columns time_s, discharge_m3ps (bulk debris), velocity_mps and, if its density changes, "
            "density_kgpm3; linear between rows, nothing before the first and after the last. Several surges are rows "
@@ -143,15 +143,16 @@ Section declare_hydrograph() {
     s.key("time_s", "s", &InflowSample::time, at_least(0), "Simulated time; above that of the row before.")
         .live_in({.label = "Time", .slider_low = 0, .slider_high = 60})
         .required = true;
-    s.key("discharge_m3ps", "m3/s", &InflowSample::discharge, at_least(0), "Bulk debris that comes in per second.")
+    s.key("discharge_m3ps", "m3/s", &InflowSample::discharge, at_least(0),
+          "Bulk volume of debris that flows in per second.")
         .live_in({.label = "Discharge", .slider_low = 0, .slider_high = 50})
         .required = true;
     s.key("velocity_mps", "m/s", &InflowSample::velocity, at_least(0),
-          "Along the ground; above 0 where debris comes in across a line.")
+          "Along the ground; above 0 where debris flows in across a line.")
         .live_in({.label = "Velocity", .slider_low = 0, .slider_high = 20})
         .required = true;
     Parameter& density = s.key("density_kgpm3", "kg/m3", &InflowSample::density, above_to(0, 30000),
-                               "Bulk density of what comes in; in every row or in none.")
+                               "Bulk density of the inflow; in every row or in none.")
                              .live_in({.label = "Density", .slider_low = 1000, .slider_high = 2500, .first = 2000});
     density.absent = "the material's rest density";
     density.get = [get = density.get](const SceneSpec& spec, std::size_t row) {

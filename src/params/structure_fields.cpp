@@ -23,7 +23,7 @@ Section declare_buildings() {
     s.text("resistance_attribute", &BuildingsSpec::resistance_attribute, "every building has resistance_Pa",
            "Attribute that holds the pressure in Pa that a building stands.");
     s.optional_key(
-         "resistance_Pa", "Pa", &BuildingsSpec::resistance, above(0), "buildings stand whatever happens",
+         "resistance_Pa", "Pa", &BuildingsSpec::resistance, above(0), "buildings never fail",
          "Impact pressure (outputs.impact_patch_edge_m) above which a building is destroyed: it is gone from then on.")
         .assumes("Resistance of buildings");
     return s.take();
@@ -68,7 +68,7 @@ Section declare_barrier() {
                   .tick_help = "It hangs above the ground: debris passes below it"})
         .at_least_spacings(1, "nothing would get through a lower gap; smaller particles allow less")
         .below_key("height_m");
-    s.optional_key("resistance_Npm", "N/m", &BarrierSpec::resistance_force, above(0), "it stands whatever happens",
+    s.optional_key("resistance_Npm", "N/m", &BarrierSpec::resistance_force, above(0), "it never fails",
                    "Filtered force per metre of the line above which it is destroyed: it is gone from then on.")
         .live_in({.label = "Resistance",
                   .slider_low = 10,
@@ -76,7 +76,7 @@ Section declare_barrier() {
                   .first = 200,
                   .tick = "Fails under load",
                   .tick_help = "Beyond this mean force on its line it is gone"});
-    s.optional_key("resistance_Pa", "Pa", &BarrierSpec::resistance_pressure, above(0), "it stands whatever happens",
+    s.optional_key("resistance_Pa", "Pa", &BarrierSpec::resistance_pressure, above(0), "it never fails",
                    "Impact pressure (outputs.impact_patch_edge_m) above which it is destroyed.")
         .live_as();
     s.exactly_one_of({"line_m", "file"});

@@ -211,8 +211,7 @@ Json not_set(const scene::Scene& scene, const run::RunResult& result) {
         add(fmt::format("Thickness of {}, the same everywhere, from its volume", release.name),
             significant(release.patches.front().thickness, 3), "m", fmt::format("release[{}].thickness_m", i));
     }
-    if (scene.spec.beds.empty())
-        add("Erosion", {{"value", "debris picks up no ground"}, {"tone", "absent"}}, "", "bed");
+    if (scene.spec.beds.empty()) add("Erosion", {{"value", "no erosion of the ground"}, {"tone", "absent"}}, "", "bed");
     const std::size_t count = rows["rows"].size();
     return count == 0 ? Json() : Json{{"count", count}, {"table", std::move(rows)}};
 }

@@ -35,7 +35,7 @@ namespace talus::sim {
       "puts to sleep particles that have hardly moved for the rest duration, wakes those with moving neighbours")      \
     X(remove_outflow, "outflow", "counts and removes particles beyond the edge of the terrain")                        \
     X(check_faults, "check", "ends the run if the step cannot be trusted")                                             \
-    X(entrain_bed, "entrain", "debris picks up its bed: ground becomes particles")                                     \
+    X(entrain_bed, "entrain", "entrainment of the bed: ground becomes particles")                                     \
     X(observe, "observe", "the observers read the state: peaks see every step")                                        \
     X(remove_failed, "failed", "removes structures whose resistance was exceeded, wakes the debris they held")
 // clang-format on
