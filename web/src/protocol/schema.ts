@@ -6,9 +6,9 @@ export interface ReleaseValues {
   thickness_m: number | null;
 }
 
-/** Debris that comes in while the run goes on, any number of them: across a straight line, at right angles to it and towards its right, or all over an area, such as a slope that rain wears down. */
+/** Inflow of debris during the run, any number of them: across a straight line, at right angles to it and towards its right, or all over an area, such as a slope that rain wears down. */
 export interface InflowValues {
-  /** Over an area: where the debris moves as it comes in, clockwise from north. null: down the slope. */
+  /** Over an area: direction in which the debris flows in, clockwise from north. null: down the slope. */
   direction_deg: number | null;
 }
 
@@ -16,23 +16,23 @@ export interface InflowValues {
 export interface HydrographValues {
   /** Simulated time; above that of the row before. */
   time_s: number;
-  /** Bulk debris that comes in per second. */
+  /** Bulk volume of debris that flows in per second. */
   discharge_m3ps: number;
-  /** Along the ground; above 0 where debris comes in across a line. */
+  /** Along the ground; above 0 where debris flows in across a line. */
   velocity_mps: number;
-  /** Bulk density of what comes in; in every row or in none. null: the material's rest density. */
+  /** Bulk density of the inflow; in every row or in none. null: the material's rest density. */
   density_kgpm3: number | null;
 }
 
-/** Loose material on the ground that debris picks up where it moves over it. */
+/** Loose material on the ground that debris entrains where it moves over it. */
 export interface BedValues {
-  /** Uniform depth of the bed, vertical; debris picks up no more. null: one of the other two is given. */
+  /** Uniform depth of the bed, vertical; debris entrains no more. null: one of the other two is given. */
   depth_m: number | null;
   /** How debris picks it up: growth adds a share of its volume per metre that it moves (McDougall & Hungr 2005); shear goes by the shear stress on the bed (Frank et al. 2015). */
   law: "growth" | "shear";
-  /** Share of its volume that debris picks up per metre: ln(volume after / volume before) over the length of the bed. null: law = "growth" needs it, and law = "shear" does not have it. */
+  /** Share of its volume that debris entrains per metre: ln(volume after / volume before) over the length of the bed. null: law = "growth" needs it, and law = "shear" does not have it. */
   growth_rate_per_m: number | null;
-  /** With law = "shear": less shear stress, rest density x gravity x depth x sine of the slope, picks up nothing. */
+  /** With law = "shear": less shear stress, rest density x gravity x depth x sine of the slope, entrains nothing. */
   critical_shear_stress_Pa: number;
   /** With law = "shear": how fast the bed is lowered. */
   erosion_rate_mps: number;
@@ -58,9 +58,9 @@ export interface BarrierValues {
   passing_share: number | null;
   /** Height above the ground of the gap below it, as nets hang across a torrent: debris passes freely there; at least one particle spacing, or nothing gets through. null: it reaches the ground. */
   clearance_m: number | null;
-  /** Filtered force per metre of the line above which it is destroyed: it is gone from then on. null: it stands whatever happens. */
+  /** Filtered force per metre of the line above which it is destroyed: it is gone from then on. null: it never fails. */
   resistance_Npm: number | null;
-  /** Impact pressure (outputs.impact_patch_edge_m) above which it is destroyed. null: it stands whatever happens. */
+  /** Impact pressure (outputs.impact_patch_edge_m) above which it is destroyed. null: it never fails. */
   resistance_Pa: number | null;
 }
 
@@ -82,9 +82,9 @@ export interface MaterialValues {
   building_friction_coefficient: number | null;
   /** Coulomb friction of debris on debris. null: equal to friction_coefficient. */
   internal_friction_coefficient: number | null;
-  /** Share of the velocity difference to its neighbours that debris loses per 1/60 s, whatever the time step. The same share is another material at another particle spacing; kinematic_viscosity_m2ps is not. */
+  /** Share of the velocity difference to its neighbours that debris loses per 1/60 s, at any time step. The same share is another material at another particle spacing; kinematic_viscosity_m2ps is not. */
   viscosity: number;
-  /** Voellmy's xi: flow of thickness h is slowed by g v2 / (xi h) beside Coulomb friction. null: no such drag. */
+  /** Voellmy's xi: flow of thickness h is slowed by g v2 / (xi h) in addition to Coulomb friction. null: none. */
   turbulent_friction_mps2: number | null;
   /** Shear strength that needs no pressure, on the ground and inside: the yield stress of a mud where friction is 0. */
   cohesion_Pa: number;
@@ -94,13 +94,13 @@ export interface MaterialValues {
   rest_density_kgpm3: number;
 }
 
-/** Ground that resists in its own way. A cell of the terrain belongs to it when its centre does. What a zone does not say is as elsewhere; later zones go before earlier ones. */
+/** Ground with its own resistance. A cell of the terrain belongs to it if its centre does. Values that a zone does not set are those of [material]; later zones override earlier ones. */
 export interface ZoneValues {
-  /** Coulomb friction on this ground. null: as elsewhere. */
+  /** Coulomb friction on this ground. null: as in [material]. */
   friction_coefficient: number | null;
-  /** Voellmy's xi on this ground; lower is rougher. null: as elsewhere. */
+  /** Voellmy's xi on this ground; lower is rougher. null: as in [material]. */
   turbulent_friction_mps2: number | null;
-  /** Shear strength without pressure between debris and this ground. null: as elsewhere. */
+  /** Shear strength without pressure between debris and this ground. null: as in [material]. */
   cohesion_Pa: number | null;
   /** Stems of a forest per square metre that stand the flow; each drags on it as a cylinder. */
   stem_density_pm2: number;
@@ -127,7 +127,7 @@ export const fields = {
   inflow: {
     direction_deg: {
       label: "Clockwise from north", unit: "deg", factor: 1, low: 0, high: 359.99, sliderLow: 0, sliderHigh: 359, first: 0,
-      tick: "Set direction", tickHelp: "Where debris moves as it comes in; unticked: downhill", help: "Over an area: where the debris moves as it comes in, clockwise from north.",
+      tick: "Set direction", tickHelp: "Direction in which debris flows in; unticked: downhill", help: "Over an area: direction in which the debris flows in, clockwise from north.",
     },
   },
   hydrograph: {
@@ -137,29 +137,29 @@ export const fields = {
     },
     discharge_m3ps: {
       label: "Discharge", unit: "m3/s", factor: 1, low: 0, high: Infinity, sliderLow: 0, sliderHigh: 50, first: 0,
-      tick: null, tickHelp: "", help: "Bulk debris that comes in per second.",
+      tick: null, tickHelp: "", help: "Bulk volume of debris that flows in per second.",
     },
     velocity_mps: {
       label: "Velocity", unit: "m/s", factor: 1, low: 0, high: Infinity, sliderLow: 0, sliderHigh: 20, first: 0,
-      tick: null, tickHelp: "", help: "Along the ground; above 0 where debris comes in across a line.",
+      tick: null, tickHelp: "", help: "Along the ground; above 0 where debris flows in across a line.",
     },
     density_kgpm3: {
       label: "Density", unit: "kg/m3", factor: 1, low: 0.1, high: 30000, sliderLow: 1000, sliderHigh: 2500, first: 2000,
-      tick: null, tickHelp: "", help: "Bulk density of what comes in; in every row or in none.",
+      tick: null, tickHelp: "", help: "Bulk density of the inflow; in every row or in none.",
     },
   },
   bed: {
     depth_m: {
       label: "Depth", unit: "m", factor: 1, low: 0.0001, high: 100, sliderLow: 0.1, sliderHigh: 5.1, first: 1,
-      tick: null, tickHelp: "", help: "Uniform depth of the bed, vertical; debris picks up no more.",
+      tick: null, tickHelp: "", help: "Uniform depth of the bed, vertical; debris entrains no more.",
     },
     growth_rate_per_m: {
       label: "Growth rate", unit: "1/m", factor: 1, low: 1e-06, high: 1, sliderLow: 0.0005, sliderHigh: 0.0505, first: 0.005,
-      tick: null, tickHelp: "", help: "Share of its volume that debris picks up per metre: ln(volume after / volume before) over the length of the bed.",
+      tick: null, tickHelp: "", help: "Share of its volume that debris entrains per metre: ln(volume after / volume before) over the length of the bed.",
     },
     critical_shear_stress_Pa: {
       label: "Critical shear stress", unit: "kPa", factor: 0.001, low: 0, high: Infinity, sliderLow: 0, sliderHigh: 5, first: 1,
-      tick: null, tickHelp: "", help: "With law = \"shear\": less shear stress, rest density x gravity x depth x sine of the slope, picks up nothing.",
+      tick: null, tickHelp: "", help: "With law = \"shear\": less shear stress, rest density x gravity x depth x sine of the slope, entrains nothing.",
     },
     erosion_rate_mps: {
       label: "Erosion rate", unit: "m/s", factor: 1, low: 1e-05, high: 10, sliderLow: 0.001, sliderHigh: 0.101, first: 0.013,
@@ -201,15 +201,15 @@ export const fields = {
   zone: {
     friction_coefficient: {
       label: "Coefficient", unit: "", factor: 1, low: 0, high: 10, sliderLow: 0.05, sliderHigh: 1.05, first: 0.4,
-      tick: "Friction", tickHelp: "Coulomb friction of its own; unticked: as elsewhere", help: "Coulomb friction on this ground.",
+      tick: "Friction", tickHelp: "A separate Coulomb friction; unticked: as in [material]", help: "Coulomb friction on this ground.",
     },
     turbulent_friction_mps2: {
       label: "Voellmy's ξ", unit: "m/s2", factor: 1, low: 0.1, high: Infinity, sliderLow: 100, sliderHigh: 2100, first: 500,
-      tick: "Turbulent friction", tickHelp: "Voellmy's turbulent friction of its own; unticked: as elsewhere", help: "Voellmy's xi on this ground; lower is rougher.",
+      tick: "Turbulent friction", tickHelp: "A separate Voellmy turbulent friction; unticked: as in [material]", help: "Voellmy's xi on this ground; lower is rougher.",
     },
     cohesion_Pa: {
       label: "Shear strength", unit: "kPa", factor: 0.001, low: 0, high: Infinity, sliderLow: 0, sliderHigh: 10, first: 1,
-      tick: "Cohesion", tickHelp: "Cohesion of its own; unticked: as elsewhere", help: "Shear strength without pressure between debris and this ground.",
+      tick: "Cohesion", tickHelp: "A separate cohesion; unticked: as in [material]", help: "Shear strength without pressure between debris and this ground.",
     },
     stem_density_pm2: {
       label: "Stems", unit: "1/ha", factor: 10000, low: 0, high: Infinity, sliderLow: 50, sliderHigh: 1550, first: 400,
