@@ -413,6 +413,7 @@ Result<std::string> ensemble_report(const EnsembleResult& result, const Json& re
     page["report_name"] = "ensemble report";
     page["masthead"] = "Ensemble of landslide run-out simulations";
     page["maps"] = std::move(maps);
+    page["verdict"] = {{"not_converged", false}};  // judged of a single run only
     if (Json& sensitivity = page["sensitivity"]; !sensitivity.is_null()) {
         sensitivity["svg"] = sensitivity_svg(sensitivity);
     }
