@@ -173,7 +173,7 @@ void add_bench(CLI::App& program, std::vector<Command>& commands) {
         ->check(CLI::IsMember(bench::scene_names()));
     CLI::Option* particles = add_list("--particles", bench->particles, "particles; default: 5000,20000,75000")
                                  ->type_name("N,N")
-                                 ->check(CLI::Range(bench::fewest_particles, bench::most_particles));
+                                 ->check(CLI::Range(bench::min_particles, bench::max_particles));
     app->add_flag("--full", bench->full, "300000 and 1000000 particles too")->excludes(particles);
     add_list("--method", bench->methods, "how internal friction is solved; default: both")
         ->type_name("NAME,NAME")

@@ -65,7 +65,7 @@ std::string layers_text(const observe::FlowThickness& flow, double spacing) {
     const double median = flow.median / spacing;
     return fmt::format("the flow was {:.1f} particles thick in the median of the trail, {:.1f} in its thinnest tenth{}",
                        median, flow.thin / spacing,
-                       median < observe::FlowThickness::fewest_layers
+                       median < observe::FlowThickness::min_layers
                            ? "; WARNING: fewer than 2, depths, speeds and forces mean little"
                            : "");
 }

@@ -17,7 +17,7 @@ namespace talus::bench {
 [[nodiscard]] const std::vector<std::string>& scene_names();
 
 /// The minimum and maximum number of particles of a scene.
-inline constexpr int fewest_particles = 500, most_particles = 4000000;
+inline constexpr int min_particles = 500, max_particles = 4000000;
 
 /// Initial data of a measurement: the same for every method and number of threads.
 struct Start : run::RunStart {

@@ -150,9 +150,9 @@ Result<ensemble::PlannedRuns> plan_calibration(const CalibrationPlan& plan, cons
     Result<ensemble::PlannedRuns> made = ensemble::PlannedRuns::make(ensemble, source, base);
     if (!made) return made;
     const std::size_t factors = plan.factors.size(), runs = plan.search.runs;
-    if (runs < fewest_runs(factors) || runs > 2000) {
+    if (runs < min_runs(factors) || runs > 2000) {
         return Error{fmt::format("runs = {} is refused; it must be {} to 2000 with {} factor{}", runs,
-                                 fewest_runs(factors), factors, factors == 1 ? "" : "s")};
+                                 min_runs(factors), factors, factors == 1 ? "" : "s")};
     }
     return made;
 }

@@ -13,7 +13,7 @@ constexpr std::size_t map_cells = 40, other_places = 48;
 constexpr double end_share = 0.05;  // a posterior whose median is this close to an end of the range counts as at the
                                     // end
 constexpr double largest_r_hat = 1.05;
-constexpr double fewest_draws = 400;
+constexpr double min_draws = 400;
 
 FactorResult summarise_factor(const Calibration& c, std::size_t k) {
     const stats::Distribution& prior = c.factors[k].distribution;
@@ -103,7 +103,7 @@ void warn_of_factors(const Calibration& c, CalibrationSummary& s) {
                 "{} and {} are correlated by {:.2f}: the observations know a combination of them better than either.",
                 c.factors[other].key, key, correlation));
         }
-        if (!(f.r_hat < largest_r_hat) || f.effective < fewest_draws) {
+        if (!(f.r_hat < largest_r_hat) || f.effective < min_draws) {
             s.warnings.push_back(
                 fmt::format("The chains of {} have not converged (R-hat {:.3f}, {:.0f} effective draws).", key, f.r_hat,
                             f.effective));

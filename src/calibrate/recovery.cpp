@@ -13,7 +13,7 @@
 namespace talus::calibrate {
 namespace {
 
-constexpr std::size_t most_draws_per_seed = 5;
+constexpr std::size_t max_draws_per_seed = 5;
 
 /// Whether a run predicts every observation itself.
 bool sees_everything(const ensemble::RunRecord& record, std::size_t observations) {
@@ -60,12 +60,11 @@ Result<Recovery> recover(const CalibrationPlan& plan, const ensemble::PlannedRun
                                      folder / "truths", calibration_definition("set of known runs", plan, runs, source,
                                                                                base, observed, scene_name)));
     std::vector<ensemble::RunRecord> records;
-    const ForwardModel model =
-        scene_model(truths, source, observed, all, most_draws_per_seed * seeds, options, records);
+    const ForwardModel model = scene_model(truths, source, observed, all, max_draws_per_seed * seeds, options, records);
     std::vector<std::size_t> usable;
     stats::Points points;
     while (usable.size() < seeds) {
-        if (points.size() >= most_draws_per_seed * seeds) {
+        if (points.size() >= max_draws_per_seed * seeds) {
             return Error{
                 fmt::format("of {} runs with values from these ranges only {} brought debris to every observation; "
                             "narrow the ranges",

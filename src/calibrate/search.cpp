@@ -257,7 +257,7 @@ const char* search_phase_name(SearchPhase phase) {
     return phase == SearchPhase::design ? "design" : phase == SearchPhase::search ? "search" : "check";
 }
 
-std::size_t fewest_runs(std::size_t factors) {
+std::size_t min_runs(std::size_t factors) {
     return 2 * (factors + 2);
 }
 

@@ -24,7 +24,7 @@ struct SearchOptions {
 };
 
 /// Minimum number of runs of a search over this number of factors.
-[[nodiscard]] std::size_t fewest_runs(std::size_t factors);
+[[nodiscard]] std::size_t min_runs(std::size_t factors);
 
 /// One run of a search.
 struct SearchRun {

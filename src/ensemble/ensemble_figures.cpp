@@ -190,12 +190,12 @@ report::Json sensitivity_data(const EnsembleResult& result) {
 
 std::string sensitivity_svg(const report::Json& sensitivity) {
     constexpr double left = 270, row = 30, head = 30;
-    constexpr std::size_t most_columns = 4;  // factors per row
+    constexpr std::size_t max_columns = 4;  // factors per row
     const report::Json& factors = sensitivity["factors"];
     report::Svg svg;
     double y = 0;
-    for (std::size_t first = 0; first < factors.size(); first += most_columns) {
-        const std::size_t columns = std::min(most_columns, factors.size() - first);
+    for (std::size_t first = 0; first < factors.size(); first += max_columns) {
+        const std::size_t columns = std::min(max_columns, factors.size() - first);
         const double width = (1000 - left) / static_cast<double>(columns);
         for (std::size_t c = 0; c < columns; ++c) {
             svg.text("column-name", left + width * (static_cast<double>(c) + 0.5), y + 16,

@@ -25,7 +25,7 @@ using namespace report;
 
 namespace {
 
-constexpr std::size_t most_buildings = 60;  // rows of the table
+constexpr std::size_t max_buildings = 60;  // rows of the table
 
 std::string percent(double share) {
     return std::isfinite(share) ? fixed(100 * share, share > 0 && share < 0.01 ? 1 : 0) + " %" : "–";
@@ -292,7 +292,7 @@ Json buildings_of(const EnsembleResult& result) {
                                    {"median_first_hit_s", "First hit, median", "s", "f1"}});
     Json rows = table(columns, "odds");
     const auto odds = [](double share) -> Json { return {{"value", percent(share)}, {"share", share}}; };
-    for (std::size_t i = 0; i < std::min(hit.size(), most_buildings); ++i) {
+    for (std::size_t i = 0; i < std::min(hit.size(), max_buildings); ++i) {
         const BuildingOdds& b = *hit[i];
         const int mark = b.hit <= 0.1 ? 1 : b.hit <= 0.5 ? 2 : 3;
         Json row = {{"name", {{"value", b.name.empty() ? "unnamed" : b.name}, {"mark", fmt::format("hit-{}", mark)}}},
@@ -307,7 +307,7 @@ Json buildings_of(const EnsembleResult& result) {
     return {{"table", std::move(rows)},
             {"never_hit", count - hit.size()},
             {"count", count},
-            {"more", hit.size() > most_buildings ? Json(hit.size() - most_buildings) : Json()}};
+            {"more", hit.size() > max_buildings ? Json(hit.size() - max_buildings) : Json()}};
 }
 
 /// Field observations of the results for which there are any.
@@ -356,14 +356,14 @@ Json results_of(const EnsembleResult& result) {
 
 Json failed_runs(const EnsembleResult& result) {
     if (result.reduction.failed == 0) return {};
-    constexpr std::size_t most_rows = 40;
+    constexpr std::size_t max_rows = 40;
     const auto& factors = result.runs->plan().factors;
     std::vector<Column> columns = {{"run", "Run", "", "f0"}};
     for (const Factor& f : factors) columns.push_back({f.key, f.key, "", "", "n"});
     columns.push_back({"fault", "Fault", "", "", "fault"});
     Json rows = table(columns);
     for (const RunRecord& run : result.reduction.runs) {
-        if (run.complete() || rows["rows"].size() >= most_rows) continue;
+        if (run.complete() || rows["rows"].size() >= max_rows) continue;
         Json row = {{"run", run.run}, {"fault", run.fault}};
         for (std::size_t k = 0; k < factors.size(); ++k) row[factors[k].key] = run.values[k];
         rows["rows"].push_back(std::move(row));

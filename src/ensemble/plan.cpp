@@ -15,7 +15,7 @@
 namespace talus::ensemble {
 namespace {
 
-constexpr std::size_t most_runs = 1000000;
+constexpr std::size_t max_runs = 1000000;
 
 /// The section and the key of "section.key" or "section[0].key", where both exist.
 const params::Parameter* find_parameter(std::string_view key_path) {
@@ -93,9 +93,8 @@ Result<stats::Points> make_points(const EnsemblePlan& plan, const std::vector<st
         case stats::DesignKind::grid: {
             double count = 1;
             for (const std::size_t n : levels) count *= static_cast<double>(n);
-            if (count > static_cast<double>(most_runs)) {
-                return Error{
-                    fmt::format("a grid of {:.3g} runs is refused; it must have at most {}", count, most_runs)};
+            if (count > static_cast<double>(max_runs)) {
+                return Error{fmt::format("a grid of {:.3g} runs is refused; it must have at most {}", count, max_runs)};
             }
             return stats::grid_points(levels);
         }
@@ -168,8 +167,8 @@ Result<PlannedRuns> PlannedRuns::make(const EnsemblePlan& plan, const run::Scene
     if (plan.factors.empty()) {
         return Error{"there is nothing to vary; give a plan file with [[factor]] or --vary section.key=low:high"};
     }
-    if (plan.runs < 1 || plan.runs > most_runs) {
-        return Error{fmt::format("runs = {} is refused; it must be 1 to {}", plan.runs, most_runs)};
+    if (plan.runs < 1 || plan.runs > max_runs) {
+        return Error{fmt::format("runs = {} is refused; it must be 1 to {}", plan.runs, max_runs)};
     }
     bool own_spacing = false;
     for (Factor& factor : runs.plan_.factors) {

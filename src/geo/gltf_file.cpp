@@ -269,8 +269,8 @@ Status GltfFile::read_external(const std::string& uri, Buffer& buffer, const std
     const std::string path = (std::filesystem::path(file_).parent_path() / relative).string();
     std::error_code code;
     const std::uintmax_t size = std::filesystem::file_size(path, code);
-    if (!code && external_bytes_ + size > most_mesh_bytes) {  // the same one may be named repeatedly
-        return Error{fmt::format("{}: with it the buffers are larger than {} MB", at, most_mesh_bytes >> 20U)};
+    if (!code && external_bytes_ + size > max_mesh_bytes) {  // the same one may be named repeatedly
+        return Error{fmt::format("{}: with it the buffers are larger than {} MB", at, max_mesh_bytes >> 20U)};
     }
     Result<std::string> bytes = read_mesh_text(path);
     if (!bytes) return Error{at + ": " + bytes.error().message};

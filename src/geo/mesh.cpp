@@ -59,9 +59,9 @@ Result<std::string> read_mesh_text(const std::string& file) {
     std::error_code code;
     if (!std::filesystem::is_regular_file(file, code)) return Error{file + ": no such file"};
     const auto size = std::filesystem::file_size(file, code);
-    if (code || size > most_mesh_bytes) {
+    if (code || size > max_mesh_bytes) {
         return Error{fmt::format("{}: is larger than {} MB; cut out the part that the terrain covers", file,
-                                 most_mesh_bytes >> 20U)};
+                                 max_mesh_bytes >> 20U)};
     }
     std::ifstream in(file, std::ios::binary);
     std::string text(size, '\0');

@@ -147,14 +147,14 @@ class CityReader {
     Status read_face(const std::string& id, const json& rings, std::vector<MeshFace>& faces) {
         const auto bad = [&](const std::string& what) { return Error{fmt::format("{}: \"{}\": {}", file_, id, what)}; };
         if (!rings.is_array() || rings.empty()) return bad("a face has no rings");
-        if (++face_count_ > most_mesh_faces) {
+        if (++face_count_ > max_mesh_faces) {
             return bad(fmt::format("with it there are more than {} faces; cut out what the terrain covers or use LoD1",
-                                   most_mesh_faces));
+                                   max_mesh_faces));
         }
         MeshFace face;
         for (const json& indices : rings) {
-            if (!indices.is_array() || indices.size() < 3 || indices.size() > most_face_corners) {
-                return bad(fmt::format("a ring must have 3 to {} corners", most_face_corners));
+            if (!indices.is_array() || indices.size() < 3 || indices.size() > max_face_corners) {
+                return bad(fmt::format("a ring must have 3 to {} corners", max_face_corners));
             }
             std::vector<WorldPoint>& ring = face.emplace_back();
             for (const json& index : indices) {

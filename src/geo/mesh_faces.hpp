@@ -10,14 +10,14 @@
 /// Shared by the readers of meshes.
 namespace talus::geo {
 
-inline constexpr std::size_t most_mesh_faces = 30'000;  ///< of a file; walls are compared with each other
-inline constexpr std::size_t most_face_corners = 1'000;
-inline constexpr std::size_t most_mesh_bytes = 256U << 20U;
+inline constexpr std::size_t max_mesh_faces = 30'000;  ///< of a file; walls are compared with each other
+inline constexpr std::size_t max_face_corners = 1'000;
+inline constexpr std::size_t max_mesh_bytes = 256U << 20U;
 
 /// A face by its rings, the outer one first, world.
 using MeshFace = std::vector<std::vector<WorldPoint>>;
 
-/// The whole file. Errors: not there, larger than most_mesh_bytes.
+/// The whole file. Errors: not there, larger than max_mesh_bytes.
 [[nodiscard]] Result<std::string> read_mesh_text(const std::string& file);
 
 /// Turns the faces that are neither upright nor at the foot into roofs. Errors: there is none; an outline that crosses

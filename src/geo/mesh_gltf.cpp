@@ -187,11 +187,11 @@ class GltfReader {
         }
         const std::size_t corners = indices ? indices->count : positions.count;
         const std::size_t count = mode == 4 ? corners / 3 : corners < 3 ? 0 : corners - 2;
-        if (count > most_mesh_faces - face_count_) {
+        if (count > max_mesh_faces - face_count_) {
             return Error{
                 fmt::format("{}: with it there are more than {} faces; simplify the mesh or cut out what the "
                             "terrain covers",
-                            at, most_mesh_faces)};
+                            at, max_mesh_faces)};
         }
         face_count_ += count;
         for (std::size_t face = 0; face < count; ++face) {

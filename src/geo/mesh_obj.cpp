@@ -60,14 +60,14 @@ class ObjReader {
                 return at_line(fmt::format("a face names vertex {}; there are {} so far", corner.substr(0, 40), count));
             }
             ring.push_back(vertices_[static_cast<std::size_t>(index > 0 ? index - 1 : count + index)]);
-            if (ring.size() > most_face_corners) {
-                return at_line(fmt::format("a face has more than {} corners", most_face_corners));
+            if (ring.size() > max_face_corners) {
+                return at_line(fmt::format("a face has more than {} corners", max_face_corners));
             }
         }
         if (ring.size() < 3) return at_line("a face needs three vertices or more");
-        if (++face_count_ > most_mesh_faces) {
+        if (++face_count_ > max_mesh_faces) {
             return at_line(fmt::format(
-                "there are more than {} faces; simplify the mesh or cut out what the terrain covers", most_mesh_faces));
+                "there are more than {} faces; simplify the mesh or cut out what the terrain covers", max_mesh_faces));
         }
         faces_.push_back({std::move(ring)});
         return {};

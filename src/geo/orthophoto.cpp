@@ -171,14 +171,14 @@ Status check_orthophoto(const std::string& file, const Crs& crs, const Extent& e
     return {};
 }
 
-Result<Orthophoto> read_orthophoto(const std::string& file, const Crs& crs, const Extent& extent, int most_pixels) {
+Result<Orthophoto> read_orthophoto(const std::string& file, const Crs& crs, const Extent& extent, int max_pixels) {
     TALUS_ASSIGN(auto picture, open_picture(file, crs, extent));
     const GdalMessages messages;
     const double width = extent.x_max - extent.x_min, height = extent.y_max - extent.y_min;
-    const double pixel = std::max(picture.pixel, std::max(width, height) / most_pixels);
+    const double pixel = std::max(picture.pixel, std::max(width, height) / max_pixels);
     Orthophoto photo;
-    photo.columns = std::clamp(static_cast<int>(std::lround(width / pixel)), 1, most_pixels);
-    photo.rows = std::clamp(static_cast<int>(std::lround(height / pixel)), 1, most_pixels);
+    photo.columns = std::clamp(static_cast<int>(std::lround(width / pixel)), 1, max_pixels);
+    photo.rows = std::clamp(static_cast<int>(std::lround(height / pixel)), 1, max_pixels);
     const auto number = [](double value) { return fmt::format("{:.12g}", value); };
     std::vector<std::string> words{"-of",
                                    "MEM",

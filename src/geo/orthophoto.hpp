@@ -20,8 +20,8 @@ struct Orthophoto {
 [[nodiscard]] Status check_orthophoto(const std::string& file, const Crs& crs, const Extent& extent);
 
 /// Warps a picture to `crs`, cut to `extent`, transparent where it has no data; the longer edge has at most
-/// `most_pixels`, and no more than the file. Errors: as check_orthophoto, and pixels that cannot be read.
+/// `max_pixels`, and no more than the file. Errors: as check_orthophoto, and pixels that cannot be read.
 [[nodiscard]] Result<Orthophoto> read_orthophoto(const std::string& file, const Crs& crs, const Extent& extent,
-                                                 int most_pixels);
+                                                 int max_pixels);
 
 }  // namespace talus::geo

@@ -156,7 +156,7 @@ struct FlowThickness {
     double median = never;
     double thin = never;  ///< a tenth of the cells stay below
     [[nodiscard]] bool known() const { return median > 0; }
-    static constexpr double fewest_layers = 2;  ///< in the median: depths, speeds and forces mean little below
+    static constexpr double min_layers = 2;  ///< in the median: depths, speeds and forces mean little below
 };
 
 struct Observation {

@@ -76,8 +76,8 @@ Result<OutputFolder> OutputFolder::create(const fs::path& final_path, bool force
         return Error{fmt::format("{}: the folder to put it in does not exist: {}", folder.final_.string(),
                                  failed ? failed.message() : parent.string())};
     }
-    constexpr int most_attempts = 1000;
-    for (int attempt = 0; attempt < most_attempts; ++attempt) {
+    constexpr int max_attempts = 1000;
+    for (int attempt = 0; attempt < max_attempts; ++attempt) {
         const fs::path candidate = hidden_sibling(folder.final_, "unfinished", attempt);
         if (fs::create_directory(candidate, failed)) {
             folder.temporary_ = candidate;

@@ -13,8 +13,8 @@ namespace talus::report {
 
 Result<Json> location_figure(const scene::Scene& scene, const MapContent& content) {
     const Extent area = map_frame(scene, content).area, terrain = scene.terrain.elevation().geometry.extent();
-    constexpr double most_shown = 0.5;  // of the terrain: maps of so much of it say by themselves where they are
-    if (area.width() * area.height() > most_shown * terrain.width() * terrain.height()) return Json();
+    constexpr double max_shown = 0.5;  // of the terrain: maps of so much of it say by themselves where they are
+    if (area.width() * area.height() > max_shown * terrain.width() * terrain.height()) return Json();
     MapFrame frame;
     frame.area = terrain;
     frame.scale = std::min(620 / terrain.width(), 420 / terrain.height());

@@ -329,12 +329,12 @@ Result<Json> map_figures(const scene::Scene& scene, const MapContent& content) {
     TALUS_ASSIGN(auto relief, png_uri(hillshade(ground, frame.area, pixels_per_metre)));
 
     const double width = frame.right() + 20 + MapFrame::key_width;
-    std::size_t most_classes = 0;
+    std::size_t max_classes = 0;
     for (const MapLayer& layer : content.layers) {
         const double most = largest(*layer.grid) * layer.style.factor;
-        most_classes = std::max(most_classes, classes_of(layer.style, most).breaks.size());
+        max_classes = std::max(max_classes, classes_of(layer.style, most).breaks.size());
     }
-    const double key_top = frame.top + 44 + 18.0 * static_cast<double>(most_classes) + 14;
+    const double key_top = frame.top + 44 + 18.0 * static_cast<double>(max_classes) + 14;
     const double height = std::max(frame.bottom() + 30, key_top + key_height(scene));
 
     double contour_interval = 0;

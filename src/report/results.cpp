@@ -185,9 +185,9 @@ Json layers(const run::RunResult& result) {
     const observe::FlowThickness& flow = result.observation.thickness;
     if (!flow.known()) return fact("Layers of particles", "debris reached no map cell");
     const double median = flow.median / result.particle_spacing;
-    const bool enough = median >= observe::FlowThickness::fewest_layers;
+    const bool enough = median >= observe::FlowThickness::min_layers;
     const std::string warning = fmt::format("fewer than {}: depths, speeds and forces mean little",
-                                            fixed(observe::FlowThickness::fewest_layers, 0));
+                                            fixed(observe::FlowThickness::min_layers, 0));
     return fact("Layers of particles",
                 fmt::format("median {} ({} m), thinnest tenth of the trail {} ({} m), when the flow was thickest at "
                             "each place{}",

@@ -207,11 +207,11 @@ Json time_chart(const run::RunResult& result) {
     const std::size_t stride = std::max<std::size_t>(1, rows.size() / 800);
     std::vector<double> t, kinetic, potential, total, speed, mean_compression, squeezed, zero, deposited, moving, held,
         left;
-    double lowest = std::numeric_limits<double>::infinity(), most_energy = 0;
+    double lowest = std::numeric_limits<double>::infinity(), max_energy = 0;
     for (const observe::TimeSample& s : rows) lowest = std::min(lowest, s.potential_energy);
     for (const observe::TimeSample& s : rows)
-        most_energy = std::max(most_energy, s.kinetic_energy + s.potential_energy - lowest);
-    const bool mega = most_energy >= 2e6;
+        max_energy = std::max(max_energy, s.kinetic_energy + s.potential_energy - lowest);
+    const bool mega = max_energy >= 2e6;
     const double unit = mega ? 1e-6 : 1e-3;
     ValueRange energies{0, 0}, speeds{0, 1}, compressions{0, 100 * sim::squeezed_share_limit * 1.1};
     for (std::size_t i = 0; i < rows.size(); i += stride) {
@@ -245,8 +245,8 @@ Json time_chart(const run::RunResult& result) {
     energy.line(t, potential, "series green", "potential");
     energy.line(t, kinetic, "series orange", "kinetic");
 
-    const double most_volume = result.observation.volume_released + result.observation.erosion.volume;
-    Plot volume(second, 34, width, height, time, {0, 1.05 * std::max(1e-9, most_volume)});
+    const double max_volume = result.observation.volume_released + result.observation.erosion.volume;
+    Plot volume(second, 34, width, height, time, {0, 1.05 * std::max(1e-9, max_volume)});
     volume.axes("time, s", "volume, m³");
     volume.band(t, zero, deposited, "area deposited", "deposited");
     volume.band(t, deposited, moving, "area moving", "moving");

@@ -14,9 +14,9 @@
 namespace talus::report {
 namespace {
 
-constexpr std::size_t most_lines = 8;  // of the figure: the number of colours in report.css
-constexpr std::size_t most_nets = 4;   // a plot each
-constexpr std::size_t most_rows = 30;  // of the table of buildings
+constexpr std::size_t max_lines = 8;  // of the figure: the number of colours in report.css
+constexpr std::size_t max_nets = 4;   // a plot each
+constexpr std::size_t max_rows = 30;  // of the table of buildings
 
 /// Structures with a history to draw, those under the greatest force first.
 std::vector<const observe::BuildingImpact*> drawn(const run::RunResult& result) {
@@ -26,7 +26,7 @@ std::vector<const observe::BuildingImpact*> drawn(const run::RunResult& result) 
     }
     std::stable_sort(all.begin(), all.end(),
                      [](const auto* a, const auto* b) { return a->peak_force > b->peak_force; });
-    if (all.size() > most_lines) all.resize(most_lines);
+    if (all.size() > max_lines) all.resize(max_lines);
     return all;
 }
 
@@ -83,7 +83,7 @@ Json net_chart(const run::RunResult& result) {
     }
     std::stable_sort(nets.begin(), nets.end(),
                      [](const auto* a, const auto* b) { return a->peak_force > b->peak_force; });
-    if (nets.size() > most_nets) nets.resize(most_nets);
+    if (nets.size() > max_nets) nets.resize(max_nets);
     if (nets.empty()) return {};
     constexpr double step = 270;
     Chart chart{"What nets held and let through", 1000, step * static_cast<double>(nets.size()) + 20, {}};
@@ -123,7 +123,7 @@ Json building_rows(const scene::Scene& scene, const std::vector<observe::Buildin
                        {"peak_dynamic_pressure_kPa", "Dynamic pressure", "kPa, ρv² to the wall", "s3"},
                        {"peak_depth_m", "Depth at walls", "m", "f2"},
                        {"height_m", "Height", "m", "f1"}});
-    for (std::size_t k = 0; k < std::min(most_rows, hit.size()); ++k) {
+    for (std::size_t k = 0; k < std::min(max_rows, hit.size()); ++k) {
         const observe::BuildingImpact& b = impacts[hit[k]];
         Json name = {{"value", name_of(b)}, {"mark", fmt::format("hit-{}", impact_class(b))}};
         if (!std::isnan(b.removed_time)) name["note"] = fmt::format("until {} s", fixed(b.removed_time, 1));
@@ -159,7 +159,7 @@ Json buildings(const scene::Scene& scene, const run::RunResult& result) {
             {"hit", hit.size()},
             {"none_hit", hit.empty()},
             {"table", hit.empty() ? Json() : building_rows(scene, impacts, hit)},
-            {"shown", hit.size() > most_rows ? Json(most_rows) : Json()},
+            {"shown", hit.size() > max_rows ? Json(max_rows) : Json()},
             {"removed", removed(impacts, false)},
             {"assumed_heights", assumed > 0 ? Json(assumed) : Json()}};
 }

@@ -35,7 +35,7 @@ struct BedAmount {
 [[nodiscard]] BedAmount amount_of(const BedLayer& layer, const terrain::Terrain& terrain);
 
 /// Layers on the cells of the terrain; where several overlap the last one applies. There may be at most
-/// Bed::most_materials. Empty, and free of cost, without layers.
+/// Bed::max_materials. Empty, and free of cost, without layers.
 [[nodiscard]] terrain::Bed lay_bed(const std::vector<BedLayer>& layers, const terrain::Terrain& terrain);
 
 }  // namespace talus::scene

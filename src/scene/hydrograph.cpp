@@ -65,7 +65,7 @@ Result<std::vector<params::InflowSample>> read_hydrograph(const params::InflowSp
     for (std::size_t number = 2; std::getline(in, line); ++number) {
         if (trimmed(line).empty()) continue;
         const std::size_t row = read.hydrograph.size();
-        if (row >= most_rows) return Error{fmt::format("{}: has more than {} rows", file, most_rows)};
+        if (row >= max_rows) return Error{fmt::format("{}: has more than {} rows", file, max_rows)};
         const std::vector<std::string> fields = fields_of(line.substr(0, 1000));
         read.hydrograph.emplace_back();
         for (const auto& [column, place] : columns) {
@@ -81,9 +81,9 @@ Result<std::vector<params::InflowSample>> read_hydrograph(const params::InflowSp
             return Error{fmt::format("{}:{}: {}{}", file, number, broken->key, broken->text)};
         }
     }
-    if (read.hydrograph.size() < fewest_rows) {
-        return Error{fmt::format("{}: has {} rows of values; it must have at least {}", file, read.hydrograph.size(),
-                                 fewest_rows)};
+    if (read.hydrograph.size() < min_rows) {
+        return Error{
+            fmt::format("{}: has {} rows of values; it must have at least {}", file, read.hydrograph.size(), min_rows)};
     }
     return std::move(read.hydrograph);
 }

@@ -12,7 +12,7 @@
 namespace talus::scene {
 
 /// Minimum and maximum number of rows of a hydrograph.
-inline constexpr std::size_t fewest_rows = 2, most_rows = 1'000'000;
+inline constexpr std::size_t min_rows = 2, max_rows = 1'000'000;
 
 /// Reads a CSV file given as inflow.hydrograph: its columns are the keys of the hydrograph table. Errors name file,
 /// line, column and what is allowed.

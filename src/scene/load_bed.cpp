@@ -64,9 +64,9 @@ Status load_one(const ParsedScene& parsed, std::size_t index, Scene& scene) {
 
 Status load_bed(const ParsedScene& parsed, Scene& scene) {
     if (scene.spec.beds.empty()) return {};
-    if (scene.spec.beds.size() > terrain::Bed::most_materials) {
+    if (scene.spec.beds.size() > terrain::Bed::max_materials) {
         return Error{fmt::format("{}: {} beds are too many; there can be {}", parsed.at("bed[0].name"),
-                                 scene.spec.beds.size(), terrain::Bed::most_materials)};
+                                 scene.spec.beds.size(), terrain::Bed::max_materials)};
     }
     for (std::size_t i = 0; i < scene.spec.beds.size(); ++i) {
         TALUS_TRY(load_one(parsed, i, scene));

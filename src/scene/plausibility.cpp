@@ -14,7 +14,7 @@
 namespace talus::scene {
 namespace {
 
-constexpr std::size_t most_samples = 250'000;
+constexpr std::size_t max_samples = 250'000;
 
 // Soil-covered hillsides stand at 25 to 40 degrees, and only cliffs at more than 55.
 constexpr double steepest_median = 42, steepest_tenth = 58, steepest_release = 50;  // degrees
@@ -30,7 +30,7 @@ struct Relief {
 Relief relief_of(const Grid<float>& elevation) {
     Relief relief;
     const GridGeometry& g = elevation.geometry;
-    const auto stride = static_cast<int>(std::ceil(std::sqrt(static_cast<double>(g.size()) / most_samples)));
+    const auto stride = static_cast<int>(std::ceil(std::sqrt(static_cast<double>(g.size()) / max_samples)));
     for (int r = 1; r + 1 < g.rows; r += stride) {
         for (int c = 1; c + 1 < g.columns; c += stride) {
             const double here = elevation.at(c, r);

@@ -7,7 +7,7 @@
 namespace talus::scene {
 namespace {
 
-constexpr int most_lines = 2000;
+constexpr int max_lines = 2000;
 
 /// Where the line at `y` crosses the rings, sorted: inside from the first to the second, the third to the fourth, ...
 void find_crossings(const Polygon& polygon, double y, std::vector<double>& crossings) {
@@ -32,10 +32,10 @@ Overlap overlap_of(const Polygon& a, const Polygon& b) {
     const double bottom = std::max(ea.y_min, eb.y_min), top = std::min(ea.y_max, eb.y_max);
     Overlap overlap;
     if (!(top > bottom) || ea.x_max <= eb.x_min || eb.x_max <= ea.x_min) return overlap;
-    const double strip = (top - bottom) / most_lines;
+    const double strip = (top - bottom) / max_lines;
     std::vector<double> in_a, in_b;
     double widest = 0;
-    for (int line = 0; line < most_lines; ++line) {
+    for (int line = 0; line < max_lines; ++line) {
         const double y = bottom + (line + 0.5) * strip;
         find_crossings(a, y, in_a);
         find_crossings(b, y, in_b);
@@ -61,7 +61,7 @@ bool is_true_overlap(const Overlap& overlap, const Polygon& a, const Polygon& b)
 void for_each_inside(const Polygon& polygon, double step, const std::function<void(const PlanPoint&)>& visit) {
     const Extent extent = extent_of(polygon);
     if (!(extent.height() > 0) || !(extent.width() > 0)) return;
-    step = std::max(step, std::max(extent.width(), extent.height()) / most_lines);
+    step = std::max(step, std::max(extent.width(), extent.height()) / max_lines);
     const int lines = std::max(1, static_cast<int>(std::ceil(extent.height() / step)));
     std::vector<double> crossings;
     for (int line = 0; line < lines; ++line) {

@@ -16,7 +16,7 @@ namespace {
 
 using nlohmann::json;
 
-constexpr double fewest_cells = 100, most_cells = 16e6, usual_cells = 1e6;
+constexpr double min_cells = 100, most_cells = 16e6, usual_cells = 1e6;
 constexpr int photo_pixels = 4096;  // along the longer edge: what graphics cards take
 
 int reduced(int count, int factor) {
@@ -57,7 +57,7 @@ void add_terrain(Router& router, Session& session) {
     const auto encoded = std::make_shared<std::map<int, Bytes>>();
     router.add(
         {"GET", "/api/terrain", Role::viewer, [&session, encoded](const Request& request, const Respond& respond) {
-             const auto wanted = number_of(request, "max_cells", fewest_cells, most_cells);
+             const auto wanted = number_of(request, "max_cells", min_cells, most_cells);
              if (!wanted) {
                  respond(error_response(400, wanted.error().message));
                  return;

@@ -25,7 +25,7 @@ namespace fs = std::filesystem;
 
 constexpr int niceness = 10;  // a tenth of the live run's share where cores are short
 constexpr std::chrono::milliseconds tell_every{1000};
-constexpr std::size_t most_parameters = 6;
+constexpr std::size_t max_parameters = 6;
 
 /// Four digits are more than a colour can show, and reduce the message to a third.
 double rounded(double value) {
@@ -67,9 +67,8 @@ Result<ensemble::Factor> read_factor(const json& entry) {
 Result<calibrate::CalibrationPlan> read_plan(const json& wanted) {
     calibrate::CalibrationPlan plan;
     const auto list = wanted.is_object() ? wanted.find("parameters") : wanted.end();
-    if (list == wanted.end() || !list->is_array() || list->empty() || list->size() > most_parameters) {
-        return Error{
-            fmt::format("parameters: must be a list of 1 to {}, each with key, low and high", most_parameters)};
+    if (list == wanted.end() || !list->is_array() || list->empty() || list->size() > max_parameters) {
+        return Error{fmt::format("parameters: must be a list of 1 to {}, each with key, low and high", max_parameters)};
     }
     for (const json& entry : *list) {
         TALUS_ASSIGN(auto factor, read_factor(entry));

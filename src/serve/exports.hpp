@@ -34,8 +34,8 @@ class Exports {
 
     Session& session_;
     std::filesystem::path folder_;
-    std::array<SnapshotPtr, Scenarios::most> taken_;  // the latest; used by the loop's thread only
-    std::uint64_t count_ = 0;                         // of folders, for their names; likewise
+    std::array<SnapshotPtr, Scenarios::max_count> taken_;  // the latest; used by the loop's thread only
+    std::uint64_t count_ = 0;                              // of folders, for their names; likewise
     std::unique_ptr<Worker> writer_ = std::make_unique<Worker>("exports");
 };
 

@@ -40,7 +40,7 @@ Scenarios::Scenarios(std::unique_ptr<twin::Scenario> first, Watcher& watcher) : 
 }
 
 std::optional<int> Scenarios::find(const std::string& name) const {
-    for (int i = 0; i < most; ++i) {
+    for (int i = 0; i < max_count; ++i) {
         if (slots_[i].scenario && name == name_of(i)) return i;
     }
     return {};
@@ -48,7 +48,7 @@ std::optional<int> Scenarios::find(const std::string& name) const {
 
 std::vector<std::string> Scenarios::names() const {
     std::vector<std::string> all;
-    for (int i = 0; i < most; ++i) {
+    for (int i = 0; i < max_count; ++i) {
         if (slots_[i].scenario) all.emplace_back(name_of(i));
     }
     return all;
@@ -156,7 +156,7 @@ Result<twin::Done> Scenarios::act(int index, const json& action, const std::stri
 }
 
 Result<std::string> Scenarios::copy(int from) {
-    for (int i = 0; i < most; ++i) {
+    for (int i = 0; i < max_count; ++i) {
         Slot& slot = slots_[i];
         if (slot.scenario) continue;
         TALUS_ASSIGN(auto made, slots_[static_cast<std::size_t>(from)].scenario->copy());
@@ -166,7 +166,7 @@ Result<std::string> Scenarios::copy(int from) {
         tell_names();
         return std::string(name_of(i));
     }
-    return Error{fmt::format("there are {} scenarios already, the most there can be; end scenario B first", most)};
+    return Error{fmt::format("there are {} scenarios already, the most there can be; end scenario B first", max_count)};
 }
 
 Status Scenarios::remove(int index) {
@@ -201,7 +201,7 @@ twin::FramePtr Scenarios::frame(int index, unsigned stride) const {
 }
 
 void Scenarios::set_audience(const std::vector<Audience>& audience) {
-    for (int i = 0; i < most; ++i) {
+    for (int i = 0; i < max_count; ++i) {
         Slot& slot = slots_[i];
         slot.audience = static_cast<std::size_t>(i) < audience.size() ? audience[i] : Audience();
         if (slot.audience.caps.empty()) continue;
@@ -270,7 +270,7 @@ std::optional<Clock::time_point> Scenarios::work(Clock::time_point now) {
             wait_for(due);
         }
     }
-    for (int i = 0; i < most; ++i) {
+    for (int i = 0; i < max_count; ++i) {
         Slot& slot = slots_[i];
         if (!slot.scenario) continue;
         if (slot.state_wanted || (stepped && now >= slot.next_state)) tell_state(i, now);

@@ -45,7 +45,7 @@ class Watcher {
 /// and after any other call.
 class Scenarios {
   public:
-    static constexpr int most = 2;
+    static constexpr int max_count = 2;
     /// The highest rate of frames, Hz, and the fewest particles that a viewer can limit frames to.
     static constexpr double highest_rate = 60;
     static constexpr unsigned lowest_cap = 1000;
@@ -103,7 +103,7 @@ class Scenarios {
     [[nodiscard]] Result<twin::Done> steer(const std::string& name, const nlohmann::json& action);
 
     Watcher& watcher_;
-    std::array<Slot, most> slots_;
+    std::array<Slot, max_count> slots_;
     Pace pace_;
     bool running_ = false;
 };

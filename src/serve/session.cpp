@@ -130,7 +130,8 @@ bool Session::set_view(Viewer& viewer, View& view, const json& message) {
     if (!scenarios.is_array()) return false;
     for (const json& name : scenarios) {
         const std::string text = name.get<std::string>();
-        for (int i = 0; i < Scenarios::most; ++i) wanted.looks[i] = wanted.looks[i] || text == Scenarios::name_of(i);
+        for (int i = 0; i < Scenarios::max_count; ++i)
+            wanted.looks[i] = wanted.looks[i] || text == Scenarios::name_of(i);
     }
     wanted.rate_hz = std::clamp(message.at("rate_hz").get<double>(), 0.1, Scenarios::highest_rate);
     const double cap = message.at("particle_cap").get<double>();
@@ -138,7 +139,7 @@ bool Session::set_view(Viewer& viewer, View& view, const json& message) {
     view = wanted;
     viewer.set_rate(view.rate_hz);
     update_audience();
-    for (int i = 0; i < Scenarios::most; ++i) {
+    for (int i = 0; i < Scenarios::max_count; ++i) {
         if (view.looks[i]) offer_newest(viewer, view, i);
     }
     return true;
@@ -146,15 +147,15 @@ bool Session::set_view(Viewer& viewer, View& view, const json& message) {
 
 /// If this changes which frames are needed, the loop makes one immediately.
 void Session::update_audience() {
-    std::vector<Audience> audience(Scenarios::most);
+    std::vector<Audience> audience(Scenarios::max_count);
     for (const auto& [viewer, view] : viewers_) {
-        for (int i = 0; i < Scenarios::most; ++i) {
+        for (int i = 0; i < Scenarios::max_count; ++i) {
             if (!view.looks[i]) continue;
             audience[i].rate_hz = std::max(audience[i].rate_hz, view.rate_hz);
             audience[i].caps.push_back(view.cap);
         }
     }
-    for (int i = 0; i < Scenarios::most; ++i) {
+    for (int i = 0; i < Scenarios::max_count; ++i) {
         auto& caps = audience[i].caps;
         std::sort(caps.begin(), caps.end());
         caps.erase(std::unique(caps.begin(), caps.end()), caps.end());
@@ -180,14 +181,14 @@ void Session::frames(FrameSet set) {
 }
 
 void Session::pack_frames() {
-    std::array<std::optional<FrameSet>, Scenarios::most> arrived;
+    std::array<std::optional<FrameSet>, Scenarios::max_count> arrived;
     {
         const std::lock_guard lock(frames_mutex_);
         arrived.swap(arrived_);
         packing_posted_ = false;
     }
-    std::array<std::optional<Packed>, Scenarios::most> packed;
-    for (int i = 0; i < Scenarios::most; ++i) {
+    std::array<std::optional<Packed>, Scenarios::max_count> packed;
+    for (int i = 0; i < Scenarios::max_count; ++i) {
         if (!arrived[i]) continue;
         packed[i].emplace();
         std::map<twin::FramePtr, Bytes> once;
@@ -198,7 +199,7 @@ void Session::pack_frames() {
         }
     }
     const std::lock_guard lock(frames_mutex_);
-    for (int i = 0; i < Scenarios::most; ++i) {
+    for (int i = 0; i < Scenarios::max_count; ++i) {
         if (packed[i]) packed_[i] = std::move(packed[i]);
     }
     if (std::exchange(delivery_posted_, true)) return;
@@ -206,13 +207,13 @@ void Session::pack_frames() {
 }
 
 void Session::deliver_frames() {
-    std::array<std::optional<Packed>, Scenarios::most> packed;
+    std::array<std::optional<Packed>, Scenarios::max_count> packed;
     {
         const std::lock_guard lock(frames_mutex_);
         packed.swap(packed_);
         delivery_posted_ = false;
     }
-    for (int i = 0; i < Scenarios::most; ++i) {
+    for (int i = 0; i < Scenarios::max_count; ++i) {
         if (!packed[i]) continue;
         newest_[i] = std::move(*packed[i]);
         for (const auto& [viewer, view] : viewers_) {
@@ -256,7 +257,7 @@ void Session::done(int scenario, const std::string& by, const std::string& sente
 void Session::scenarios(std::vector<std::string> names) {
     thread_.post([this, names = std::move(names)] {
         names_ = names;
-        for (std::size_t i = names.size(); i < Scenarios::most; ++i) {
+        for (std::size_t i = names.size(); i < Scenarios::max_count; ++i) {
             states_[i] = setups_[i] = nullptr;
             newest_[i] = {};
         }

@@ -78,7 +78,7 @@ class Session final : public Watcher {
     /// What a viewer wants to see.
     struct View {
         std::string person;
-        std::array<bool, Scenarios::most> looks{};
+        std::array<bool, Scenarios::max_count> looks{};
         double rate_hz = 0;
         unsigned cap = 0;
     };
@@ -98,19 +98,19 @@ class Session final : public Watcher {
     People people_;
     std::map<Viewer*, View> viewers_;
     std::vector<std::string> names_{"A"};
-    std::array<Bytes, Scenarios::most> states_, setups_;  // as messages; for those who join
-    Bytes calibration_;                                   // likewise
+    std::array<Bytes, Scenarios::max_count> states_, setups_;  // as messages; for those who join
+    Bytes calibration_;                                        // likewise
     std::vector<Audience> audience_;
     /// Encoded frames, by cap.
     using Packed = std::vector<std::pair<unsigned, Bytes>>;
-    std::array<Packed, Scenarios::most> newest_;
+    std::array<Packed, Scenarios::max_count> newest_;
     bool people_untold_ = false, ticking_ = false;
     Clock::time_point people_told_{};
 
     // In transit from the loop to the viewers; at either stage a newer one replaces an older one.
     std::mutex frames_mutex_;
-    std::array<std::optional<FrameSet>, Scenarios::most> arrived_;  // guarded by the mutex, as the next three
-    std::array<std::optional<Packed>, Scenarios::most> packed_;
+    std::array<std::optional<FrameSet>, Scenarios::max_count> arrived_;  // guarded by the mutex, as the next three
+    std::array<std::optional<Packed>, Scenarios::max_count> packed_;
     bool packing_posted_ = false, delivery_posted_ = false;
 
     std::unique_ptr<Worker> worker_ = std::make_unique<Worker>("worker");

@@ -21,7 +21,7 @@ using std::chrono::seconds;
 
 constexpr std::size_t longest_queue = 256;               // texts
 constexpr std::size_t heaviest_queue = 8 * 1024 * 1024;  // bytes
-constexpr int most_messages = 200;                       // per second, from a viewer
+constexpr int max_messages = 200;                        // per second, from a viewer
 // Limit of unsent data in the system's buffer: with more, a slow viewer would see old frames.
 constexpr int unsent_bytes = 256 * 1024;
 
@@ -66,7 +66,7 @@ class WebSocketViewer final : public Viewer, public std::enable_shared_from_this
     beast::flat_buffer buffer_;
     std::deque<Bytes> texts_;
     std::size_t text_bytes_ = 0;
-    std::array<Slot, Scenarios::most> slots_;
+    std::array<Slot, Scenarios::max_count> slots_;
     Clock::duration interval_{};
     Bytes writing_;
     bool joined_ = false, ended_ = false, waiting_ = false, closing_ = false;
@@ -112,7 +112,7 @@ void WebSocketViewer::on_message() {
         messages_ = 0;
     }
     const auto data = buffer_.cdata();
-    const bool welcome = ++messages_ <= most_messages && socket_.got_text() &&
+    const bool welcome = ++messages_ <= max_messages && socket_.got_text() &&
                          context_.session.receive(*this, {static_cast<const char*>(data.data()), data.size()});
     buffer_.consume(buffer_.size());
     if (!welcome) {

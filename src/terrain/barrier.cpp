@@ -10,9 +10,9 @@
 namespace talus::terrain {
 namespace {
 
-constexpr double usual_part = 2;         ///< m of line
-constexpr std::size_t most_parts = 500;  ///< a longer line gets longer parts
-constexpr double sharpest_turn = 150;    ///< degrees; a mitre is then four times as long as the wall is thick
+constexpr double usual_part = 2;        ///< m of line
+constexpr std::size_t max_parts = 500;  ///< a longer line gets longer parts
+constexpr double sharpest_turn = 150;   ///< degrees; a mitre is then four times as long as the wall is thick
 
 PlanPoint operator-(const PlanPoint& a, const PlanPoint& b) {
     return {a.x - b.x, a.y - b.y};
@@ -135,7 +135,7 @@ Result<Building> make_barrier(const Terrain& terrain, const std::string& name, c
     barrier.barrier->name.clear();
     if (shape.resistance_force) barrier.resistance.force_per_metre = *shape.resistance_force;
     if (shape.resistance_pressure) barrier.resistance.pressure = *shape.resistance_pressure;
-    const double part_length = std::max(usual_part, length_of(line) / most_parts);
+    const double part_length = std::max(usual_part, length_of(line) / max_parts);
     double roofs = 0, heights = 0, chainage = 0, highest = 0;
     for (std::size_t k = 0; k + 1 < line.size(); ++k) {
         const PlanPoint &a = line[k], &b = line[k + 1], &ma = mitres[k], &mb = mitres[k + 1];

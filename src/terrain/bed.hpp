@@ -28,7 +28,7 @@ struct Bed {
 
     [[nodiscard]] bool empty() const { return materials.empty(); }
     /// Maximum number of materials.
-    static constexpr std::size_t most_materials = 255;
+    static constexpr std::size_t max_materials = 255;
 };
 
 }  // namespace talus::terrain

@@ -13,9 +13,8 @@ namespace talus::twin {
 
 Result<std::vector<params::InflowSample>> read_hydrograph_rows(const nlohmann::json& list,
                                                                const params::InflowSpec& inflow) {
-    if (!list.is_array() || list.size() < scene::fewest_rows || list.size() > scene::most_rows) {
-        return Error{
-            fmt::format("hydrograph = {}: must be a list of {} rows or more", shown(list), scene::fewest_rows)};
+    if (!list.is_array() || list.size() < scene::min_rows || list.size() > scene::max_rows) {
+        return Error{fmt::format("hydrograph = {}: must be a list of {} rows or more", shown(list), scene::min_rows)};
     }
     params::SceneSpec read = scene_with(inflow);
     TALUS_TRY(read_live_list(list, "hydrograph", params::live_section("hydrograph"), read, 0));

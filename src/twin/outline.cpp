@@ -31,7 +31,7 @@ Error missing(const char* key, const char* what) {
 Result<Redrawn> read_outline(const nlohmann::json& action, const char* outline, const char* what, bool exists) {
     Redrawn drawn;
     drawn.key = outline;
-    TALUS_ASSIGN(drawn.ring, read_points(action, outline, true, 3, most_points));
+    TALUS_ASSIGN(drawn.ring, read_points(action, outline, true, 3, max_points));
     TALUS_ASSIGN(drawn.by, read_shift(action, "move_m"));
     if (drawn.by && !exists) return Error{fmt::format("move_m: needs the id of a {}", what)};
     if (drawn.by && drawn.ring) return Error{fmt::format("move_m: cannot go with {}; send one of them", outline)};

@@ -65,7 +65,7 @@ template <class Part>
 [[nodiscard]] Status check_overlaps(const terrain::Release& release, const Setup& setup, const std::string& own_id);
 
 /// Maximum number of points of a drawn outline or line.
-inline constexpr std::size_t most_points = 500;
+inline constexpr std::size_t max_points = 500;
 
 /// "line: missing; a new barrier needs it".
 [[nodiscard]] Error missing(const char* key, const char* what);

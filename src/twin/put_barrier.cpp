@@ -14,14 +14,14 @@ namespace {
 
 using nlohmann::json;
 
-constexpr std::size_t most_openings = 100;
+constexpr std::size_t max_openings = 100;
 
 /// Unchanged where the action has none.
 Status read_openings(const json& action, const ActionContext& context, params::BarrierSpec& barrier) {
     if (!gives(action, "openings")) return {};
     const json& list = action["openings"];
-    if (!list.is_array() || list.size() > most_openings) {
-        return Error{fmt::format("openings = {}: must be a list of at most {}", shown(list), most_openings)};
+    if (!list.is_array() || list.size() > max_openings) {
+        return Error{fmt::format("openings = {}: must be a list of at most {}", shown(list), max_openings)};
     }
     params::SceneSpec read;
     TALUS_TRY(
@@ -35,7 +35,7 @@ Status read_openings(const json& action, const ActionContext& context, params::B
 Result<terrain::Building> read_barrier(const json& action, const ActionContext& context,
                                        const terrain::Building* existing, const std::string& name) {
     TALUS_TRY(check_keys(action, live_keys("barrier"), {"action", "id", "name", "line", "openings"}));
-    TALUS_ASSIGN(auto line, read_points(action, "line", false, 2, most_points));
+    TALUS_ASSIGN(auto line, read_points(action, "line", false, 2, max_points));
     if (existing == nullptr && !line) return missing("line", "barrier");
     params::BarrierSpec barrier;
     if (existing != nullptr) barrier = *existing->barrier;

@@ -25,7 +25,7 @@ namespace {
 
 using nlohmann::json;
 
-constexpr std::size_t most_undo = 200;
+constexpr std::size_t max_undo = 200;
 
 /// Notes that the tables of a plain run do not contain: removed obstacles.
 std::vector<std::string> obstacle_notes(const LiveRun& run) {
@@ -123,7 +123,7 @@ Result<Done> Scenario::Parts::edit(const json& action) {
     TALUS_TRY(bring_to(made.setup));
     next = numbers;
     undo.push_back({std::move(before), made.sentence, action["action"] == "trigger_release"});
-    if (undo.size() > most_undo) undo.erase(undo.begin());
+    if (undo.size() > max_undo) undo.erase(undo.begin());
     redo.clear();
     return Done{made.sentence, made.created};
 }

@@ -23,7 +23,7 @@ class Scenes : public testing::TestWithParam<std::string> {
 };
 
 TEST_P(Scenes, HasAboutAsManyParticlesAsAskedFor) {
-    for (const int particles : {fewest_particles, 5000, 20000, 75000}) {
+    for (const int particles : {min_particles, 5000, 20000, 75000}) {
         const Result<Start> start = make(particles);
         ASSERT_TRUE(start) << start.error().message;
         EXPECT_NEAR(start->state.count, particles, 0.02 * particles);

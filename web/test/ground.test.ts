@@ -4,7 +4,7 @@ import { Relief } from "../src/scene/relief";
 import { fields } from "../src/protocol/schema";
 import { shownAs, toldAs } from "../src/state/format";
 import { bedNote, lawChange, zoneNote } from "../src/state/ground";
-import { arrowAlong, arrowsOf, downhill_deg, hasDensity, inflowNote, peakOf, rowsAndOne, rowsOfDensity, rowsWith, rowsWithout, told, usualHydrograph, volumeOf } from "../src/state/inflows";
+import { arrowAlong, arrowsOf, downhill_deg, hasDensity, inflowNote, peakOf, rowsAndOne, rowsOfDensity, rowsWith, rowsWithout, rowsForServer, usualHydrograph, volumeOf } from "../src/state/inflows";
 import { groundUnder } from "../src/state/picking";
 import { canReshape, fewestPoints, hasOutline, itemOf, mostPoints, pointsOf, type Item } from "../src/state/shapes";
 
@@ -64,8 +64,8 @@ describe("hydrographs", () => {
     const dense = rowsOfDensity(rows, 1900);
     expect(hasDensity(rows)).toBe(false);
     expect(hasDensity(dense)).toBe(true);
-    expect(told(dense)[2]).toEqual({ time_s: 20, discharge_m3ps: 10, velocity_mps: 5, density_kgpm3: 1900 });
-    expect(told(rowsOfDensity(dense, null))).toEqual(rows);
+    expect(rowsForServer(dense)[2]).toEqual({ time_s: 20, discharge_m3ps: 10, velocity_mps: 5, density_kgpm3: 1900 });
+    expect(rowsForServer(rowsOfDensity(dense, null))).toEqual(rows);
   });
 });
 

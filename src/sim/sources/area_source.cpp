@@ -12,8 +12,8 @@
 namespace talus::sim {
 namespace {
 
-constexpr double most_sites = 1e6, most_bins = 250e3;
-constexpr double most_tries = 2e7;  ///< places examined to find sites
+constexpr double max_sites = 1e6, max_bins = 250e3;
+constexpr double max_tries = 2e7;  ///< places examined to find sites
 
 }  // namespace
 
@@ -37,8 +37,8 @@ void AreaSource::place_sites(const LocalFrame& frame) {
         area += plan_area(part);
     }
     const double around = extent.width() * extent.height();
-    double pitch = std::max({spacing_, std::sqrt(area / most_sites), std::sqrt(around / most_tries)});
-    for (; sites_.empty() && around / (pitch * pitch) <= 1.01 * most_tries; pitch /= 2) {
+    double pitch = std::max({spacing_, std::sqrt(area / max_sites), std::sqrt(around / max_tries)});
+    for (; sites_.empty() && around / (pitch * pitch) <= 1.01 * max_tries; pitch /= 2) {
         for (double y = extent.y_min + pitch / 2; y < extent.y_max; y += pitch) {
             for (double x = extent.x_min + pitch / 2; x < extent.x_max; x += pitch) {
                 const PlanPoint p{x, y};
@@ -56,8 +56,8 @@ void AreaSource::place_sites(const LocalFrame& frame) {
     stride_ = static_cast<std::size_t>(static_cast<double>(sites_.size()) * 0.6180339887498949);
     while (std::gcd(stride_, sites_.size()) != 1) ++stride_;
 
-    const double wider = std::sqrt(around / most_bins);
-    bin_ = static_cast<float>(std::max({spacing_, wider, std::max(extent.width(), extent.height()) / most_bins}));
+    const double wider = std::sqrt(around / max_bins);
+    bin_ = static_cast<float>(std::max({spacing_, wider, std::max(extent.width(), extent.height()) / max_bins}));
     const LocalPoint corner = frame.to_local({extent.x_min, extent.y_min, 0});
     x_min_ = corner.x - bin_;
     y_min_ = corner.y - bin_;

@@ -2,7 +2,7 @@
 import { Chart } from "../charts/chart";
 import type { HydrographRow, Inflow } from "../protocol/messages";
 import { fields as described } from "../protocol/schema";
-import { hasDensity, hydrographKeys, rowsAndOne, rowsOfDensity, rowsWith, rowsWithout, told, type HydrographKey } from "../state/inflows";
+import { hasDensity, hydrographKeys, rowsAndOne, rowsOfDensity, rowsWith, rowsWithout, rowsForServer, type HydrographKey } from "../state/inflows";
 import { unitText } from "../state/format";
 import { button, h } from "../ui/dom";
 import { valueField } from "../ui/value_field";
@@ -30,7 +30,7 @@ export function inflowFields(inflow: Inflow, downhill_deg: number, restDensity: 
   const put = (next: HydrographRow[], place?: (row: number) => number): void => {
     rows = next;
     fill(place);
-    onset({ hydrograph: told(next) });
+    onset({ hydrograph: rowsForServer(next) });
   };
   const add = button("Add a row", { class: "small", icon: "plus", onclick: () => put(rowsAndOne(rows)) });
   const density = h("input", { type: "checkbox", onchange: () => put(rowsOfDensity(rows, density.checked ? restDensity : null)) });

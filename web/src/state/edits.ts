@@ -2,7 +2,7 @@
 import type { Action, HydrographRow, Point } from "../protocol/messages";
 import type { BarrierSet } from "./barriers";
 import type { BedSet, ZoneSet } from "./ground";
-import { told } from "./inflows";
+import { rowsForServer } from "./inflows";
 import { lineOf, type Item } from "./shapes";
 import type { Shape, Twin } from "./twin";
 
@@ -18,7 +18,7 @@ export async function create(twin: Twin, shape: Shape, points: readonly Point[])
     building: () => ({ action: "put_building", footprint: corners, ...sizes.building }),
     zone: () => ({ action: "put_zone", polygon: corners, ...sizes.zone }),
     bed: () => ({ action: "put_bed", polygon: corners, ...sizes.bed }),
-    inflow: () => ({ action: "put_inflow", ...(twin.inflowByLine.value ? { line: corners } : { polygon: corners }), hydrograph: told(sizes.inflow.hydrograph) }),
+    inflow: () => ({ action: "put_inflow", ...(twin.inflowByLine.value ? { line: corners } : { polygon: corners }), hydrograph: rowsForServer(sizes.inflow.hydrograph) }),
   };
   const done = await twin.act(actions[shape]());
   if (done?.created) twin.selection.value = { shape, id: done.created };

@@ -28,7 +28,7 @@ export const hasDensity = (rows: readonly HydrographRow[]): boolean => rows.some
 export const rowsOfDensity = (rows: readonly HydrographRow[], density: number | null): HydrographRow[] => rows.map((row) => ({ ...row, density_kgpm3: density }));
 
 /** In the form for the server: an absent density is omitted. */
-export const told = (rows: readonly HydrographRow[]): HydrographRow[] => rows.map(({ density_kgpm3, ...row }) => (typeof density_kgpm3 === "number" ? { ...row, density_kgpm3 } : row));
+export const rowsForServer = (rows: readonly HydrographRow[]): HydrographRow[] => rows.map(({ density_kgpm3, ...row }) => (typeof density_kgpm3 === "number" ? { ...row, density_kgpm3 } : row));
 
 /** Discharge is linear between rows. */
 export function volumeOf(rows: readonly HydrographRow[]): number {

@@ -70,7 +70,7 @@ export class Twin {
   readonly api: Api;
   readonly live: Live;
   private readonly frameReaders: ((frame: Frame) => void)[] = [];
-  private readonly tellers: ((sentence: string, kind: "error" | "done") => void)[] = [];
+  private readonly noticeHandlers: ((sentence: string, kind: "error" | "done") => void)[] = [];
 
   constructor(token: string, readonly scene: SceneInfo, readonly relief: Relief, api: Api) {
     this.api = api;
@@ -92,11 +92,11 @@ export class Twin {
   showFrame(frame: Frame): void {
     for (const reader of this.frameReaders) reader(frame);
   }
-  onNotice(teller: (sentence: string, kind: "error" | "done") => void): void {
-    this.tellers.push(teller);
+  onNotice(handler: (sentence: string, kind: "error" | "done") => void): void {
+    this.noticeHandlers.push(handler);
   }
   notice(sentence: string, kind: "error" | "done"): void {
-    for (const tell of this.tellers) tell(sentence, kind);
+    for (const handle of this.noticeHandlers) handle(sentence, kind);
   }
 
   askForFrames(): void {
