@@ -6,8 +6,6 @@
 namespace talus::observe {
 namespace {
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
-
 int parts_of(double length, double edge) {
     return std::max(1, static_cast<int>(length / edge));
 }
@@ -95,43 +93,15 @@ void WallPatches::add_roof(const terrain::Terrain& terrain, const Polygon& part,
 }
 
 void WallPatches::fill_bins(double reach) {
-    if (columns_.empty()) return;
-    const auto box = [&](const Column& c) {
+    std::vector<Extent> extents;
+    for (const Column& c : columns_) {
         const double height = c.roof ? c.rows * c.row_height : 0;
         const PlanPoint end{c.x + c.width * c.along_x - height * c.along_y,
                             c.y + c.width * c.along_y + height * c.along_x};
-        return Extent{std::min(c.x, end.x), std::min(c.y, end.y), std::max(c.x, end.x), std::max(c.y, end.y)}.grown(
-            reach);
-    };
-    Extent all{infinity, infinity, -infinity, -infinity};
-    for (const Column& column : columns_) {
-        const Extent e = box(column);
-        all.include({e.x_min, e.y_min});
-        all.include({e.x_max, e.y_max});
+        extents.push_back(Extent{std::min(c.x, end.x), std::min(c.y, end.y), std::max(c.x, end.x), std::max(c.y, end.y)}
+                              .grown(reach));
     }
-    x_min_ = all.x_min;
-    y_min_ = all.y_min;
-    bin_ = std::max({reach, edge_, std::sqrt(all.width() * all.height() / 1e6)});  // about a million bins at most
-    bin_columns_ = static_cast<int>(all.width() / bin_) + 1;
-    bin_rows_ = static_cast<int>(all.height() / bin_) + 1;
-    const auto for_each_bin = [&](const Column& column, const auto& f) {
-        const Extent e = box(column);
-        for (int r = static_cast<int>((e.y_min - y_min_) / bin_); r <= static_cast<int>((e.y_max - y_min_) / bin_);
-             ++r) {
-            for (int c = static_cast<int>((e.x_min - x_min_) / bin_); c <= static_cast<int>((e.x_max - x_min_) / bin_);
-                 ++c) {
-                f(static_cast<std::size_t>(r) * static_cast<std::size_t>(bin_columns_) + static_cast<std::size_t>(c));
-            }
-        }
-    };
-    bin_start_.assign(static_cast<std::size_t>(bin_columns_) * static_cast<std::size_t>(bin_rows_) + 1, 0);
-    for (const Column& column : columns_) for_each_bin(column, [&](std::size_t bin) { ++bin_start_[bin + 1]; });
-    for (std::size_t bin = 1; bin < bin_start_.size(); ++bin) bin_start_[bin] += bin_start_[bin - 1];
-    bin_content_.resize(bin_start_.back());
-    std::vector<std::uint32_t> next = bin_start_;
-    for (std::uint32_t k = 0; k < columns_.size(); ++k) {
-        for_each_bin(columns_[k], [&](std::size_t bin) { bin_content_[next[bin]++] = k; });
-    }
+    bins_ = terrain::PlanBins(extents, std::max(reach, edge_));
 }
 
 }  // namespace talus::observe

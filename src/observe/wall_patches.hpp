@@ -10,6 +10,7 @@
 
 #include "core/geometry.hpp"
 #include "terrain/buildings.hpp"
+#include "terrain/plan_bins.hpp"
 #include "terrain/terrain.hpp"
 
 namespace talus::observe {
@@ -52,13 +53,7 @@ class WallPatches {
     [[nodiscard]] std::uint32_t patches_of(std::size_t building) const { return patches_[building]; }
 
     /// Columns within reach of a local plan position, and some more.
-    [[nodiscard]] std::span<const std::uint32_t> near(double x, double y) const {
-        const double u = (x - x_min_) / bin_, v = (y - y_min_) / bin_;
-        if (!(u >= 0 && v >= 0 && u < bin_columns_ && v < bin_rows_)) return {};  // true for NaN too
-        const std::size_t bin =
-            static_cast<std::size_t>(v) * static_cast<std::size_t>(bin_columns_) + static_cast<std::size_t>(u);
-        return {bin_content_.data() + bin_start_[bin], bin_content_.data() + bin_start_[bin + 1]};
-    }
+    [[nodiscard]] std::span<const std::uint32_t> near(double x, double y) const { return bins_.near(x, y); }
 
     /// Calls f(patch, share / m2) for the patches of a building that are covered by a square of edge `size` centred at
     /// `at`. The part beyond the wall's end, foot or top is folded back, so that the shares add up to 1 and a uniform
@@ -88,9 +83,7 @@ class WallPatches {
     double edge_ = 1;
     std::vector<Column> columns_;
     std::vector<std::uint32_t> patches_;  // by building, how many
-    double x_min_ = 0, y_min_ = 0, bin_ = 1;
-    int bin_columns_ = 0, bin_rows_ = 0;
-    std::vector<std::uint32_t> bin_start_, bin_content_;
+    terrain::PlanBins bins_;  // of columns_
 };
 
 template <class F>

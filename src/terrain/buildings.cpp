@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <span>
 #include <utility>
 
 namespace talus::terrain {
@@ -213,37 +214,11 @@ void BuildingSolids::split_walls() {
 }
 
 void BuildingSolids::fill_bins() {
-    if (solids_.empty()) return;
-    double x_max = -infinity, y_max = -infinity;
-    bin_x_min_ = bin_y_min_ = infinity;
+    std::vector<Extent> extents;
     for (const Solid& solid : solids_) {
-        bin_x_min_ = std::min(bin_x_min_, solid.x_min - range_);
-        bin_y_min_ = std::min(bin_y_min_, solid.y_min - range_);
-        x_max = std::max(x_max, solid.x_max + range_);
-        y_max = std::max(y_max, solid.y_max + range_);
+        extents.push_back(Extent{solid.x_min, solid.y_min, solid.x_max, solid.y_max}.grown(range_));
     }
-    const double area = (x_max - bin_x_min_) * (y_max - bin_y_min_);
-    bin_size_ = std::max({range_, 2.0, std::sqrt(area / 1e6)});  // about a million bins at most
-    bin_columns_ = static_cast<int>((x_max - bin_x_min_) / bin_size_) + 1;
-    bin_rows_ = static_cast<int>((y_max - bin_y_min_) / bin_size_) + 1;
-
-    const auto for_each_bin = [&](const Solid& solid, const auto& f) {
-        const auto column = [&](double x) { return static_cast<int>((x - bin_x_min_) / bin_size_); };
-        const auto row = [&](double y) { return static_cast<int>((y - bin_y_min_) / bin_size_); };
-        for (int r = row(solid.y_min - range_); r <= row(solid.y_max + range_); ++r) {
-            for (int c = column(solid.x_min - range_); c <= column(solid.x_max + range_); ++c) {
-                f(static_cast<std::size_t>(r) * static_cast<std::size_t>(bin_columns_) + static_cast<std::size_t>(c));
-            }
-        }
-    };
-    bin_start_.assign(static_cast<std::size_t>(bin_columns_) * static_cast<std::size_t>(bin_rows_) + 1, 0);
-    for (const Solid& solid : solids_) for_each_bin(solid, [&](std::size_t bin) { ++bin_start_[bin + 1]; });
-    for (std::size_t bin = 1; bin < bin_start_.size(); ++bin) bin_start_[bin] += bin_start_[bin - 1];
-    bin_solids_.resize(bin_start_.back());
-    std::vector<std::uint32_t> next = bin_start_;
-    for (std::uint32_t s = 0; s < solids_.size(); ++s) {
-        for_each_bin(solids_[s], [&](std::size_t bin) { bin_solids_[next[bin]++] = s; });
-    }
+    bins_ = PlanBins(extents, std::max(range_, 2.0));
 }
 
 bool BuildingSolids::in_plan(const Solid& solid, double x, double y) const {
@@ -256,26 +231,19 @@ bool BuildingSolids::in_plan(const Solid& solid, double x, double y) const {
     return in;
 }
 
-std::pair<std::uint32_t, std::uint32_t> BuildingSolids::candidates(double x, double y) const {
-    const double u = (x - bin_x_min_) / bin_size_, v = (y - bin_y_min_) / bin_size_;
-    if (!(u >= 0 && v >= 0 && u < bin_columns_ && v < bin_rows_)) return {0, 0};  // true for NaN too
-    const std::size_t bin = bin_at(u, v);
-    return {bin_start_[bin], bin_start_[bin + 1]};
-}
-
 template <class Real>
 SolidSample<Real> BuildingSolids::nearest(const Vec3<Real>& p, float grain_rank) const {
     // In double throughout, which represents a float position exactly, so that normals are correct down to a nanometre
     // from a wall.
     const double x = p.x, y = p.y, z = p.z;
-    const auto [first, last] = candidates(x, y);
-    if (first == last) return {};
+    const std::span<const std::uint32_t> candidates = bins_.near(x, y);
+    if (candidates.empty()) return {};
 
     // Above or below the highest roof at this plan position; below it, and above the floor, the position is inside.
     int roof_building = -1, floor_building = -1;
     double roof = -infinity, floor = -infinity, below = infinity;
-    for (std::uint32_t k = first; k < last; ++k) {
-        const Solid& solid = solids_[bin_solids_[k]];
+    for (const std::uint32_t k : candidates) {
+        const Solid& solid = solids_[k];
         if (z < solid.floor) {
             if (solid.floor - z < below && solid.stops(grain_rank) && in_plan(solid, x, y))
                 below = solid.floor - z, floor_building = solid.building;
@@ -294,8 +262,8 @@ SolidSample<Real> BuildingSolids::nearest(const Vec3<Real>& p, float grain_rank)
         normal.z = -1;
     }
 
-    for (std::uint32_t k = first; k < last; ++k) {
-        const Solid& solid = solids_[bin_solids_[k]];
+    for (const std::uint32_t k : candidates) {
+        const Solid& solid = solids_[k];
         if (!solid.stops(grain_rank)) continue;
         for (std::uint32_t i = solid.first_edge; i < solid.last_edge; ++i) {
             const Edge& e = edges_[i];
@@ -338,9 +306,9 @@ SolidSample<Real> BuildingSolids::second_nearest(const Vec3<Real>& p, const Soli
                   static_cast<Real>(distance),
                   {static_cast<Real>(nx), static_cast<Real>(ny), static_cast<Real>(nz)}};
     };
-    const auto [first, last] = candidates(x, y);
-    for (std::uint32_t k = first; k < last; ++k) {
-        const Solid& solid = solids_[bin_solids_[k]];
+    const std::span<const std::uint32_t> candidates = bins_.near(x, y);
+    for (const std::uint32_t k : candidates) {
+        const Solid& solid = solids_[k];
         if (!solid.stops(grain_rank) || z < solid.floor) continue;
         if (z >= solid.roof) {
             if (z - solid.roof < best && turned_away(0, 0, 1) && in_plan(solid, x, y)) {

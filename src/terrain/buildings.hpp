@@ -4,11 +4,11 @@
 #include <limits>
 #include <optional>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "core/geometry.hpp"
 #include "params/spec.hpp"
+#include "terrain/plan_bins.hpp"
 #include "terrain/terrain.hpp"
 
 namespace talus::terrain {
@@ -69,12 +69,7 @@ class BuildingSolids {
     [[nodiscard]] bool empty() const { return edges_.empty(); }
 
     /// False where no solid can be within range of a local plan position: most of the ground.
-    [[nodiscard]] bool near(float x, float y) const {
-        const double u = (x - bin_x_min_) / bin_size_, v = (y - bin_y_min_) / bin_size_;
-        if (!(u >= 0 && v >= 0 && u < bin_columns_ && v < bin_rows_)) return false;  // true for NaN too
-        const std::size_t bin = bin_at(u, v);
-        return bin_start_[bin] != bin_start_[bin + 1];
-    }
+    [[nodiscard]] bool near(float x, float y) const { return !bins_.near(x, y).empty(); }
 
     /// The building whose surface is nearest to the local position, if within range or inside. On an edge of a solid
     /// the normal is that of one of the faces that meet there.
@@ -124,18 +119,11 @@ class BuildingSolids {
     void split_walls();
     void fill_bins();
     [[nodiscard]] bool in_plan(const Solid& solid, double x, double y) const;
-    [[nodiscard]] std::size_t bin_at(double u, double v) const {
-        return static_cast<std::size_t>(v) * static_cast<std::size_t>(bin_columns_) + static_cast<std::size_t>(u);
-    }
-    /// Indices [first, last) into bin_solids_ of the solids near a local plan position.
-    [[nodiscard]] std::pair<std::uint32_t, std::uint32_t> candidates(double x, double y) const;
 
     std::vector<Edge> edges_;
     std::vector<Solid> solids_;
     double range_ = 0;
-    double bin_x_min_ = 0, bin_y_min_ = 0, bin_size_ = 1;
-    int bin_columns_ = 0, bin_rows_ = 0;
-    std::vector<std::uint32_t> bin_start_, bin_solids_;
+    PlanBins bins_;  // of solids_, grown by range_
 };
 
 }  // namespace talus::terrain
