@@ -35,8 +35,12 @@ export function impactColour(impact: Impact | undefined, by: HouseColour, scene:
 export const largestPressure = (impacts: Impacts | null): number =>
   (impacts?.buildings ?? []).reduce((most, b) => Math.max(most, b.peak_impact_pressure_kPa ?? 0), 0);
 
+/** The elements of a row stay while its values change: rows come anew every second, also between the press and the release of a click. */
 class SortedTable<Row extends Impact> {
-  readonly element = h("table", { class: "impacts" });
+  readonly element: HTMLElement;
+  private readonly body = h("tbody");
+  private readonly heads = new Map<string, { cell: HTMLElement; title: HTMLElement }>();
+  private readonly lines = new Map<string, { element: HTMLElement; show(row: Row): void }>();
   private sortKey: string;
   private down = true;
   private rows: Row[] = [];
@@ -44,10 +48,42 @@ class SortedTable<Row extends Impact> {
   constructor(private readonly columns: Column<Row>[], private readonly go: (row: Row) => void, private readonly mark: (row: Row) => string | null,
     private readonly selected: () => string | null) {
     this.sortKey = columns[1]?.key ?? "name";
+    this.element = h("table", { class: "impacts" }, h("thead", {}, h("tr", {}, ...columns.map((c) => this.head(c)))), this.body);
   }
   show(rows: readonly Row[]): void {
     this.rows = [...rows];
     this.draw();
+  }
+  private head(c: Column<Row>): HTMLElement {
+    const title = h("span", {}, c.title);
+    const cell = h("th", { scope: "col" }, h("button", { type: "button", onclick: () => {
+      this.down = c.key === this.sortKey ? !this.down : c.key !== "name";
+      this.sortKey = c.key;
+      this.draw();
+    } }, title, c.unit ? h("small", {}, unitText(c.unit)) : null));
+    this.heads.set(c.key, { cell, title });
+    return cell;
+  }
+  private line(first: Row): { element: HTMLElement; show(row: Row): void } {
+    let now = first;
+    const dot = h("i", { class: "dot" });
+    const name = h("button", { type: "button", title: "Show in the view" });
+    const values = this.columns.slice(1).map(() => h("td"));
+    const element = h("tr", { onclick: () => this.go(now) }, h("th", { scope: "row" }, dot, name), ...values);
+    return { element, show: (row) => {
+      now = row;
+      element.className = `${row.hit ? "" : "untouched"} ${row.id === this.selected() ? "chosen" : ""}`;
+      dot.style.background = this.mark(row) ?? "";
+      const texts = this.columns.map((c) => {
+        const v = c.value(row);
+        return { text: typeof v === "number" ? fixed(v, c.digits ?? 1) : (v ?? "–"), word: typeof v !== "number" };
+      });
+      name.textContent = texts[0].text;
+      values.forEach((cell, i) => {
+        cell.textContent = texts[i + 1].text;
+        cell.className = texts[i + 1].word ? "word" : "";
+      });
+    } };
   }
   private draw(): void {
     const column = this.columns.find((c) => c.key === this.sortKey);
@@ -58,26 +94,28 @@ class SortedTable<Row extends Impact> {
       if (v === null) return -1;
       return (u < v ? -1 : 1) * (this.down ? -1 : 1);
     });
-    const focused = document.activeElement instanceof HTMLElement && this.element.contains(document.activeElement) ? document.activeElement.dataset["focus"] : undefined;
-    this.element.replaceChildren(
-      h("thead", {}, h("tr", {}, ...this.columns.map((c) => h("th", { scope: "col", "aria-sort": c.key === this.sortKey ? (this.down ? "descending" : "ascending") : "none" },
-        h("button", { type: "button", "data-focus": `h-${c.key}`, onclick: () => {
-          this.down = c.key === this.sortKey ? !this.down : c.key !== "name";
-          this.sortKey = c.key;
-          this.draw();
-        } }, h("span", {}, c.title, c.key === this.sortKey ? (this.down ? " ▾" : " ▴") : ""), c.unit ? h("small", {}, unitText(c.unit)) : null))))),
-      h("tbody", {}, ...rows.map((row) => {
-        const colour = this.mark(row);
-        const dot = h("i", { class: "dot" });
-        if (colour) dot.style.background = colour;
-        return h("tr", { class: `${row.hit ? "" : "untouched"} ${row.id === this.selected() ? "chosen" : ""}`, onclick: () => this.go(row) },
-          ...this.columns.map((c, i) => {
-            const v = c.value(row);
-            const text = typeof v === "number" ? fixed(v, c.digits ?? 1) : (v ?? "–");
-            return i === 0 ? h("th", { scope: "row" }, dot, h("button", { type: "button", "data-focus": row.id, title: "Show in the view" }, text)) : h("td", { class: typeof v === "number" ? "" : "word" }, text);
-          }));
-      })));
-    if (focused) this.element.querySelector<HTMLElement>(`[data-focus="${CSS.escape(focused)}"]`)?.focus();
+    for (const c of this.columns) {
+      const { cell, title } = this.heads.get(c.key)!;
+      const by = c.key === this.sortKey;
+      cell.setAttribute("aria-sort", by ? (this.down ? "descending" : "ascending") : "none");
+      title.textContent = `${c.title}${by ? (this.down ? " ▾" : " ▴") : ""}`;
+    }
+    const present = new Set(rows.map((row) => row.id));
+    for (const [id, line] of this.lines) {
+      if (present.has(id)) continue;
+      line.element.remove();
+      this.lines.delete(id);
+    }
+    rows.forEach((row, i) => {
+      let line = this.lines.get(row.id);
+      if (!line) this.lines.set(row.id, (line = this.line(row)));
+      line.show(row);
+      if (this.body.children[i] === line.element) return;
+      // An element that is moved loses the focus.
+      const focused = line.element.contains(document.activeElement);
+      this.body.insertBefore(line.element, this.body.children[i] ?? null);
+      if (focused) line.element.querySelector("button")?.focus();
+    });
   }
 }
 
