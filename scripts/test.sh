@@ -22,7 +22,23 @@ build_and_test() {
     cmake --preset "$preset"
     cmake --build --preset "$preset" --parallel "$(nproc)"
     step "test $preset"
-    ctest --preset "$preset" --parallel "$(nproc)" --label-exclude style
+    local status=0
+    ctest --preset "$preset" --parallel "$(nproc)" --label-exclude style || status=$?
+    if ((status != 0)); then
+        tell_failures "build/$preset/Testing/Temporary"
+        exit "$status"
+    fi
+}
+
+# What the failed tests said, once more at the end: where only the end of a log is kept, nothing else says why.
+tell_failures() {
+    step "failed"
+    local log=$1/LastTest.log
+    cut -d: -f2- "$1/LastTestsFailed.log" | while IFS= read -r name; do
+        echo "-- $name"
+        awk -v name="$name" 'index($0, " Testing: " name) && $NF == name { inside = 1 }
+                             inside; /^<end of output>/ { inside = 0 }' "$log" | tail -n 30 | cut -c1-400
+    done | tail -n 200
 }
 
 install_browser_tests() {
