@@ -93,16 +93,6 @@ export class Run {
     page.on("request", (request) => {
       if (!/^(data|blob):/.test(request.url())) this.requests.push(request.url());
     });
-    page.asked = { begun: 0, open: 0 };
-    const count = (by) => (request) => {
-      // The answer to a POST may never be read, and so never end.
-      if (request.method() !== "GET" || !request.url().includes("/api/")) return;
-      page.asked.open += by;
-      if (by > 0) ++page.asked.begun;
-    };
-    page.on("request", count(1));
-    page.on("requestfinished", count(-1));
-    page.on("requestfailed", count(-1));
     page.setDefaultTimeout(limit_ms);
     if (!finest) await page.route(/\/api\/terrain/, (route) => route.continue({ url: route.request().url().replace(/max_cells=\d+/, "max_cells=20000") }));
     const begun = Date.now();
@@ -127,18 +117,21 @@ export class Run {
   }
   /** The colours of a part of the page at rest: two looks in a row find the same picture, all its pixels drawn, while nothing is asked of the server. */
   async still(page, clip) {
-    const at = () => page.evaluate(() => [window.talusStats.frames, window.talusStats.pixelRatio === Math.min(2, devicePixelRatio)]);
+    const at = () => page.evaluate(() => {
+      const { frames, pixelRatio, reads } = window.talusStats;
+      return { frames, pixelRatio, begun: reads.begun, ended: reads.ended, sharpest: Math.min(2, devicePixelRatio) };
+    });
     let last = null;
-    return until(async () => {
-      const { begun, open } = page.asked;
-      const [frames, all] = await at();
+    const { seen } = await until(async () => {
+      const before = await at();
       const seen = await this.colours(page, clip);
-      const [after] = await at();
-      const quiet = open === 0 && page.asked.begun === begun && all && after === frames;
+      const after = await at();
+      const quiet = before.begun === before.ended && after.begun === before.begun && before.pixelRatio === before.sharpest && after.frames === before.frames;
       const same = quiet && last === seen.hash;
       last = quiet ? seen.hash : null;
-      return same ? seen : null;
-    }, (seen) => seen !== null, "a view at rest");
+      return { seen: same ? seen : null, quiet, before, after };
+    }, ({ seen }) => seen !== null, "a view at rest");
+    return seen;
   }
   /** The same once it is another picture than `others`, hashes of earlier ones. */
   async changed(page, clip, others, what) {

@@ -15,6 +15,8 @@ const at = (time_s: number | null): string => (time_s === null ? "" : `?time_s=$
 export class Api {
   /** Id of this page's person, once the WebSocket has said hello. */
   person: string | null = null;
+  /** How many answers were asked for, and how many have been read or refused. */
+  readonly reads = { begun: 0, ended: 0 };
 
   constructor(private readonly token: string) {}
 
@@ -40,12 +42,17 @@ export class Api {
     }
     return response;
   }
-  private async json<T>(path: string): Promise<T> {
-    return (await (await this.ask("GET", path)).json()) as T;
+  private async get<T>(path: string, read: (response: Response) => Promise<T>): Promise<T> {
+    ++this.reads.begun;
+    try {
+      return await read(await this.ask("GET", path));
+    } finally {
+      ++this.reads.ended;
+    }
   }
-  private async binary(path: string): Promise<ArrayBuffer> {
-    return (await this.ask("GET", path)).arrayBuffer();
-  }
+  private readonly json = <T>(path: string): Promise<T> => this.get(path, (response) => response.json() as Promise<T>);
+  private readonly binary = (path: string): Promise<ArrayBuffer> => this.get(path, (response) => response.arrayBuffer());
+  private readonly blob = (path: string): Promise<Blob> => this.get(path, (response) => response.blob());
 
   session = (): Promise<Session> => this.json("session");
   scene = (): Promise<SceneInfo> => this.json("scene");
@@ -58,14 +65,14 @@ export class Api {
     decodeGrid(await this.binary(`scenarios/${s}/layers/${name}${at(time_s)}`));
   ensembles = async (): Promise<Ensemble[]> => (await this.json<{ ensembles: Ensemble[] }>("ensembles")).ensembles;
   ensembleMap = async (ensemble: string, name: string): Promise<Grid> => decodeGrid(await this.binary(`ensembles/${ensemble}/maps/${name}`));
-  orthophoto = async (): Promise<Blob> => (await this.ask("GET", "orthophoto")).blob();
+  orthophoto = (): Promise<Blob> => this.blob("orthophoto");
   frame = async (s: ScenarioName, time_s: number): Promise<Frame> =>
     decodeFrame(await this.binary(`scenarios/${s}/frame?time_s=${time_s.toFixed(4)}`));
   probe = (s: ScenarioName, x: number, y: number): Promise<ProbeSeries> =>
     this.json(`scenarios/${s}/probe?x_m=${x.toFixed(2)}&y_m=${y.toFixed(2)}`);
   exports = async (s: ScenarioName): Promise<ExportFile[]> => (await this.json<{ files: ExportFile[] }>(`scenarios/${s}/exports`)).files;
-  exported = async (s: ScenarioName, name: string): Promise<Blob> => (await this.ask("GET", `scenarios/${s}/exports/${name}`)).blob();
-  journal = async (s: ScenarioName): Promise<Blob> => (await this.ask("GET", `scenarios/${s}/journal`)).blob();
+  exported = (s: ScenarioName, name: string): Promise<Blob> => this.blob(`scenarios/${s}/exports/${name}`);
+  journal = (s: ScenarioName): Promise<Blob> => this.blob(`scenarios/${s}/journal`);
 
   act = async (s: ScenarioName, action: Action): Promise<Done> =>
     (await (await this.ask("POST", `scenarios/${s}/actions`, action)).json()) as Done;

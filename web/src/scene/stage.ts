@@ -31,6 +31,8 @@ export interface Stats {
   pixelRatio: number;
   /** Greatest depth of erosion, by scenario, m. */
   sunk_m: Partial<Record<ScenarioName, number>>;
+  /** Answers of the server asked for, and read. */
+  reads: Readonly<{ begun: number; ended: number }>;
 }
 declare global {
   interface Window {
@@ -46,7 +48,7 @@ export class Stage {
     "aria-label": "Three-dimensional view. Arrow keys turn, Shift with arrow keys moves, plus and minus zoom." });
   readonly rig: Rig;
   readonly views = new Map<ScenarioName, ScenarioView>();
-  readonly stats: Stats = { frames: 0, script_ms: 0, draw_ms: 0, decode_ms: 0, unfold_ms: 0, upload_ms: 0, particles: 0, shownTime_s: 0, pixelRatio: 1, sunk_m: {} };
+  readonly stats: Stats;
   /** Speed at the upper end of the colours; it grows with the displayed speeds, in round steps. */
   readonly fastest_mps = new Cell(10);
   /** Counts changes of the ground. */
@@ -66,6 +68,8 @@ export class Stage {
   private height = 1;
 
   constructor(readonly twin: Twin, readonly relief: Relief) {
+    this.stats = { frames: 0, script_ms: 0, draw_ms: 0, decode_ms: 0, unfold_ms: 0, upload_ms: 0, particles: 0, shownTime_s: 0, pixelRatio: 1, sunk_m: {},
+      reads: twin.api.reads };
     this.renderer = new WebGLRenderer({ canvas: this.canvas, antialias: true, preserveDrawingBuffer: false, powerPreference: "high-performance" });
     this.renderer.shadowMap.enabled = true;
     this.renderer.shadowMap.autoUpdate = false;
