@@ -159,6 +159,7 @@ int run_command(const RunArguments& arguments) {
         (watch.stop_requested() &&
          !std::all_of(comparisons.begin(), comparisons.end(), [](const run::Comparison& c) { return c.all_ran(); }));
     progress.say(interrupted ? "interrupted: writing the results so far" : "writing maps, tables and report");
+    take_followed_path(job->input.scene, *result);
     const Status written = write_report(*job, *result, comparisons, watch);  // report
     progress.clear();
     if (!written) return fail(exit_code::failure, written.error().message);

@@ -13,9 +13,6 @@ namespace talus::observe {
 namespace {
 
 constexpr std::size_t group = 64;  ///< particles examined together; usually none is relevant
-/// Upper limit of the front velocity relative to the fastest debris at the front: on the inside of a bend chainage
-/// grows faster than the distance travelled, by half at a third of the bend radius from the path.
-constexpr double fastest_front = 1.5;
 
 }  // namespace
 
@@ -23,6 +20,26 @@ std::uint32_t front_particle_count(const sim::State& state) {
     const std::uint32_t released = state.released() + state.entrained;
     const auto share = static_cast<std::uint32_t>(std::ceil(0.001 * released));
     return std::max(1U, std::min(released, std::max(5U, share)));
+}
+
+double fitted_velocity(std::span<const double> arrival, std::size_t first, std::size_t last, double interval) {
+    double count = 0, mean_time = 0, mean_chainage = 0;
+    for (std::size_t row = first; row <= last; ++row) {
+        if (std::isnan(arrival[row])) continue;
+        count += 1;
+        mean_time += arrival[row];
+        mean_chainage += static_cast<double>(row) * interval;
+    }
+    mean_time /= count;
+    mean_chainage /= count;
+    double covariance = 0, variance = 0;
+    for (std::size_t row = first; row <= last; ++row) {
+        if (std::isnan(arrival[row])) continue;
+        const double t = arrival[row] - mean_time;
+        covariance += t * (static_cast<double>(row) * interval - mean_chainage);
+        variance += t * t;
+    }
+    return variance > 0 ? covariance / variance : never;
 }
 
 FrontTracker::FrontTracker(const sim::Model& model, const sim::Ground& ground, const sim::State& state,
@@ -162,36 +179,20 @@ bool FrontTracker::jumped_to(std::size_t bin) const {
     return interval_ > fastest_front * fastest * (arrival_[bin] - arrival_[bin - 1]);  // false without both arrivals
 }
 
-double FrontTracker::fitted_velocity(std::size_t middle) const {
+double FrontTracker::velocity_at(std::size_t middle) const {
     const auto half = static_cast<std::size_t>(std::max(1.0, std::floor(window_ / 2 / interval_)));
     // Not across a jump.
     std::size_t first = middle, last = middle;
     while (first > 0 && middle - first < half && !jumped_to(first)) --first;
     while (last + 1 < arrival_.size() && last - middle < half && !jumped_to(last + 1)) ++last;
-    double count = 0, mean_time = 0, mean_chainage = 0;
-    for (std::size_t bin = first; bin <= last; ++bin) {
-        if (std::isnan(arrival_[bin])) continue;
-        count += 1;
-        mean_time += arrival_[bin];
-        mean_chainage += static_cast<double>(bin) * interval_;
-    }
-    mean_time /= count;
-    mean_chainage /= count;
-    double covariance = 0, variance = 0;
-    for (std::size_t bin = first; bin <= last; ++bin) {
-        if (std::isnan(arrival_[bin])) continue;
-        const double t = arrival_[bin] - mean_time;
-        covariance += t * (static_cast<double>(bin) * interval_ - mean_chainage);
-        variance += t * t;
-    }
-    return variance > 0 ? covariance / variance : never;
+    return fitted_velocity(arrival_, first, last, interval_);
 }
 
 std::vector<FrontSample> FrontTracker::samples() const {
     std::vector<FrontSample> samples;
     for (std::size_t bin = 0; bin < arrival_.size(); ++bin) {
         if (std::isnan(arrival_[bin])) continue;
-        samples.push_back({static_cast<double>(bin) * interval_, arrival_[bin], fitted_velocity(bin), head_[bin].mean});
+        samples.push_back({static_cast<double>(bin) * interval_, arrival_[bin], velocity_at(bin), head_[bin].mean});
     }
     return samples;
 }

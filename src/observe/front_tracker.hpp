@@ -1,6 +1,8 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "observe/observation.hpp"
@@ -14,6 +16,15 @@ namespace talus::observe {
 /// Particles that have to lie beyond a position for it to count as reached: 5, or 0.1 % of the released volume if that
 /// is more, so that a single stray particle is not a front.
 [[nodiscard]] std::uint32_t front_particle_count(const sim::State& state);
+
+/// Upper limit of the front velocity relative to the fastest debris at the front: on the inside of a bend chainage
+/// grows faster than the distance travelled, by half at a third of the bend radius from the path.
+inline constexpr double fastest_front = 1.5;
+
+/// Slope of chainage against arrival time (s; NaN: none) by least squares over the rows [first, last], m/s. The rows
+/// are `interval` m of chainage apart. NaN where all arrived at the same time.
+[[nodiscard]] double fitted_velocity(std::span<const double> arrival, std::size_t first, std::size_t last,
+                                     double interval);
 
 /// The front along the flow path: where it is, when it first reached each chainage and how fast it was there.
 ///
@@ -58,7 +69,7 @@ class FrontTracker {
     /// Whether the front went from the previous chainage to this one faster than the debris there moves: at a corner of
     /// the path, or because other debris entered its corridor.
     [[nodiscard]] bool jumped_to(std::size_t bin) const;
-    [[nodiscard]] double fitted_velocity(std::size_t middle) const;
+    [[nodiscard]] double velocity_at(std::size_t middle) const;
 
     terrain::FlowPath flow_path_;
     double interval_ = 1, window_ = 10, head_length_ = 0;

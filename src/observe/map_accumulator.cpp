@@ -259,6 +259,7 @@ void MapAccumulator::update_peaks(Tile& tile, double time) const {
             tile.peak_depth[cell] = static_cast<float>(now);
             if (now > arrival_depth_ && std::isnan(tile.arrival_time[cell])) {
                 tile.arrival_time[cell] = static_cast<float>(time);
+                tile.arrival_speed[cell] = static_cast<float>(sum.momentum() / sum.volume() / map_units::speed);
             }
         }
     }

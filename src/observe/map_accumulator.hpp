@@ -82,6 +82,7 @@ class MapAccumulator {
         std::array<float, tile_cells> peak_depth{};     // 0: not reached
         std::array<float, tile_cells> peak_speed{};     // depth-averaged
         std::array<float, tile_cells> arrival_time{};   // NaN: never
+        std::array<float, tile_cells> arrival_speed{};  // depth-averaged
         std::array<float, tile_cells> peak_pressure{};  // Pa; only where the density has changed
         std::vector<float> density;                     // mean, kg/m3, by cell; empty: the rest density
     };

@@ -86,7 +86,7 @@ HazardMaps MapAccumulator::maps() const {
                          geometry_.cell, last_column - first_column + 1, last_row - first_row + 1};
 
     const Grid<float> empty(g, std::numeric_limits<float>::quiet_NaN());
-    HazardMaps maps{empty, empty, empty, empty, empty};
+    HazardMaps maps{empty, empty, empty, empty, empty, empty};
     for (const auto& tile : tiles_) {
         for (std::size_t cell = 0; cell < tile_cells; ++cell) {
             if (tile->peak_depth[cell] == 0) continue;
@@ -96,6 +96,7 @@ HazardMaps MapAccumulator::maps() const {
             maps.peak_speed.values[k] = tile->peak_speed[cell];
             maps.peak_pressure.values[k] = peak_pressure(*tile, cell);
             maps.arrival_time.values[k] = tile->arrival_time[cell];
+            if (!std::isnan(tile->arrival_time[cell])) maps.arrival_speed.values[k] = tile->arrival_speed[cell];
             maps.deposit_depth.values[k] = static_cast<float>(depth(sum_of(*tile, cell).volume()));
         }
     }

@@ -2,11 +2,13 @@
 
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "core/geometry.hpp"
 #include "core/grid.hpp"
+#include "terrain/flow_path.hpp"
 #include "terrain/terrain.hpp"
 
 /// The measurements of a run: plain results in SI units.
@@ -16,11 +18,12 @@ inline constexpr double never = std::numeric_limits<double>::quiet_NaN();
 
 /// Rasters over the part of the terrain that debris reached, grown by a margin. NaN: debris never came there.
 struct HazardMaps {
-    Grid<float> peak_depth;     ///< vertical flow depth, m
-    Grid<float> peak_speed;     ///< depth-averaged speed, m/s
-    Grid<float> peak_pressure;  ///< dynamic: density * speed^2, Pa
-    Grid<float> arrival_time;   ///< first time above the arrival depth, s
-    Grid<float> deposit_depth;  ///< depth at the end of the run, m
+    Grid<float> peak_depth;       ///< vertical flow depth, m
+    Grid<float> peak_speed;       ///< depth-averaged speed, m/s
+    Grid<float> peak_pressure;    ///< dynamic: density * speed^2, Pa
+    Grid<float> arrival_time;     ///< first time above the arrival depth, s
+    Grid<float> deposit_depth;    ///< depth at the end of the run, m
+    Grid<float> arrival_speed{};  ///< depth-averaged speed at the arrival time, m/s
 };
 
 /// The front at one chainage of the flow path.
@@ -166,6 +169,9 @@ struct Observation {
     Erosion erosion;
     std::vector<FrontSample> front;  ///< by chainage
     RunOut run_out;
+    /// Where debris went, if the scene has no flow path of its own: all chainages are along it. Empty: along the
+    /// scene's.
+    std::optional<terrain::FlowPath> followed_path;
     std::vector<BuildingImpact> buildings;  ///< as in Ground::buildings
     std::vector<TimeSample> timeseries;
     double volume_released = 0;  ///< m3, less the removed volume

@@ -247,6 +247,10 @@ const MapAccumulator& Observer::maps() const {
     return parts_->maps;
 }
 
+const terrain::FlowPath& Observer::flow_path() const {
+    return parts_->front.flow_path();
+}
+
 Observation Observer::finish(const sim::Model& model, const sim::Ground& ground, const sim::State& state) const {
     const Parts& p = *parts_;
     Observation observation;

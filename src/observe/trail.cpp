@@ -38,7 +38,8 @@ TrailWays::TrailWays(const Grid<float>& covered, const PlanPoint& from)
       covered_(covered.values.size()),
       settled_(covered.values.size(), 0),
       length_(covered.values.size(), unreached),
-      bend_(covered.values.size(), -1) {
+      bend_(covered.values.size(), -1),
+      upstream_(covered.values.size(), -1) {
     std::transform(covered.values.begin(), covered.values.end(), covered_.begin(),
                    [](float value) { return static_cast<std::uint8_t>(!std::isnan(value)); });
     const Cell first = nearest_covered(from);
@@ -97,6 +98,7 @@ void TrailWays::settle(Cell cell, bool anywhere) {
             bend_[k] = other;
         });
     }
+    if (bend_[k] != cell) upstream_[k] = bend_[k];
     settled_[k] = 1;
 }
 
@@ -153,6 +155,28 @@ PlanPoint TrailWays::bend(Cell cell) const {
 double TrailWays::bend_length(Cell cell) const {
     const Cell at = bend_[static_cast<std::size_t>(cell)];
     return at < 0 ? 0 : length_[static_cast<std::size_t>(at)];
+}
+
+std::optional<std::size_t> TrailWays::cell_on_way(const PlanPoint& p, double along) const {
+    Cell cell = nearest_covered(p);
+    if (cell < 0) return {};
+    // Upstream from bend to bend, until the place lies between the bend and what comes after it.
+    const auto upstream = [&](Cell c) { return upstream_[static_cast<std::size_t>(c)]; };
+    const auto length_at = [&](Cell c) { return c < 0 ? 0 : length_[static_cast<std::size_t>(c)]; };
+    PlanPoint after = p;
+    while (length_at(upstream(cell)) > along) {
+        cell = upstream(cell);
+        after = centre(cell);
+    }
+    const Cell before = upstream(cell);
+    const PlanPoint from = before < 0 ? from_ : centre(before);
+    const double length = distance(from, after);
+    const double share = length > 0 ? std::min(1.0, (along - length_at(before)) / length) : 0;
+    const double u = (from.x + share * (after.x - from.x) - geometry_.x_min) / geometry_.cell;
+    const double v = (from.y + share * (after.y - from.y) - geometry_.y_min) / geometry_.cell;
+    if (!(u >= 0 && v >= 0 && u < geometry_.columns && v < geometry_.rows)) return {};
+    const std::size_t k = geometry_.index(static_cast<int>(u), static_cast<int>(v));
+    return covered_[k] != 0 ? std::optional(k) : std::nullopt;
 }
 
 double TrailWays::to(const PlanPoint& p) const {

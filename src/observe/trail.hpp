@@ -1,6 +1,8 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -25,6 +27,8 @@ class TrailWays {
     [[nodiscard]] double to(const PlanPoint& p) const;
     /// To the cell's centre; NaN: not covered.
     [[nodiscard]] double at(std::size_t cell) const { return covered_[cell] != 0 ? length_[cell] : never; }
+    /// The covered cell at a distance, m, along the shortest path to `p`; empty: that place is not covered.
+    [[nodiscard]] std::optional<std::size_t> cell_on_way(const PlanPoint& p, double distance) const;
 
   private:
     using Cell = std::int32_t;
@@ -42,7 +46,8 @@ class TrailWays {
     PlanPoint from_;
     std::vector<std::uint8_t> covered_, settled_;
     std::vector<double> length_;
-    std::vector<Cell> bend_;  // the cell of the last bend; -1: straight from `from_`
+    std::vector<Cell> bend_;      // the cell of the last bend; -1: straight from `from_`
+    std::vector<Cell> upstream_;  // the same, never the cell itself
     std::vector<std::pair<double, Cell>> open_;
 };
 

@@ -98,8 +98,9 @@ void WallPatches::fill_bins(double reach) {
         const double height = c.roof ? c.rows * c.row_height : 0;
         const PlanPoint end{c.x + c.width * c.along_x - height * c.along_y,
                             c.y + c.width * c.along_y + height * c.along_x};
-        extents.push_back(Extent{std::min(c.x, end.x), std::min(c.y, end.y), std::max(c.x, end.x), std::max(c.y, end.y)}
-                              .grown(reach));
+        extents.push_back(
+            Extent{std::min(c.x, end.x), std::min(c.y, end.y), std::max(c.x, end.x), std::max(c.y, end.y)}.grown(
+                reach));
     }
     bins_ = terrain::PlanBins(extents, std::max(reach, edge_));
 }

@@ -83,7 +83,7 @@ class WallPatches {
     double edge_ = 1;
     std::vector<Column> columns_;
     std::vector<std::uint32_t> patches_;  // by building, how many
-    terrain::PlanBins bins_;  // of columns_
+    terrain::PlanBins bins_;              // of columns_
 };
 
 template <class F>

@@ -86,7 +86,9 @@ Section declare_terrain() {
 Section declare_flow_path() {
     Declaration<FlowPathSpec> s("flow_path", "The line along which chainage is measured.", &SceneSpec::flow_path);
     s.path("file", &FlowPathSpec::file, "traced downhill from the release",
-           "A line from the crown downstream: GeoJSON, GeoPackage, Shapefile.");
+           "A line from the crown downstream: GeoJSON, GeoPackage, Shapefile. A traced path is a first guess: after "
+           "the run, "
+           "chainages are along the path that debris followed, unless observations refer to the traced one.");
     s.text("layer", &FlowPathSpec::layer, "the only layer", "Layer of the file.");
     s.key("corridor_width_m", "m", &FlowPathSpec::corridor_width, above(0),
           "Debris farther than half of this from the line does not count as front.");

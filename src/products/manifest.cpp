@@ -76,9 +76,7 @@ Json resolved(const scene::Scene& scene, const run::RunResult& result) {
             {"largest_time_step_s", result.largest_time_step},
             {"thread_count", result.thread_count},
             {"instruction_set", result.instruction_set},
-            {"flow_path", scene.flow_path.empty()  ? "none"
-                          : scene.flow_path_traced ? "traced"
-                                                   : "given"},
+            {"flow_path", scene.flow_path.empty() ? "none" : origin_text(scene.flow_path_origin)},
             {"flow_path_length_m", scene.flow_path.length()},
             {"releases", releases},
             {"inflows", inflows}};
@@ -202,6 +200,18 @@ Json files_in(const std::filesystem::path& folder) {
 }
 
 }  // namespace
+
+const char* origin_text(scene::PathOrigin origin) {
+    switch (origin) {
+        case scene::PathOrigin::file:
+            return "given";
+        case scene::PathOrigin::traced:
+            return "traced";
+        case scene::PathOrigin::followed:
+            break;
+    }
+    return "followed";
+}
 
 const char* status_text(run::RunStatus status) {
     switch (status) {

@@ -148,8 +148,8 @@ Status write_vectors(const scene::Scene& scene, const run::RunResult& result, co
     TALUS_TRY(write_intensity(scene, observation, file));
     if (scene.flow_path.empty()) return {};
     const geo::OutputFeature line{
-        {}, scene.flow_path.points(), {scene.flow_path.length(), yes_or_no(scene.flow_path_traced)}};
-    TALUS_TRY(write_geopackage_layer(file, "flow_path", {{"length_m"}, {"traced", true}}, {line}, scene.crs));
+        {}, scene.flow_path.points(), {scene.flow_path.length(), std::string(origin_text(scene.flow_path_origin))}};
+    TALUS_TRY(write_geopackage_layer(file, "flow_path", {{"length_m"}, {"origin", true}}, {line}, scene.crs));
     return write_geopackage_layer(file, "chainage", {{"chainage_m"}, {"first_arrival_time_s"}, {"front_velocity_mps"}},
                                   chainage_marks(scene, observation), scene.crs);
 }

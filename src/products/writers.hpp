@@ -36,6 +36,9 @@ namespace talus::products {
                                     const std::vector<run::Comparison>& comparisons,
                                     const std::filesystem::path& folder);
 
+/// "given", "traced" or "followed".
+[[nodiscard]] const char* origin_text(scene::PathOrigin origin);
+
 /// "complete", "interrupted" or "fault".
 [[nodiscard]] const char* status_text(run::RunStatus status);
 

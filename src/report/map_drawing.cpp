@@ -259,7 +259,10 @@ void draw_key(Svg& svg, const scene::Scene& scene, const BuildingMarks& marks, c
     if (!scene.releases.empty()) row("Release area", [&] { draw_cased(svg, "release", "M2 3h26v13h-26Z"); });
     if (!scene.inflows.empty()) row("Inflow", [&] { draw_cased(svg, "inflow", "M3 15h24M15 15v-10m-4 4l4 -5l4 5"); });
     if (!scene.flow_path.empty()) {
-        row(scene.flow_path_traced ? "Flow path (traced)" : "Flow path, chainage", [&] {
+        const char* label = scene.flow_path_origin == scene::PathOrigin::traced     ? "Flow path (traced)"
+                            : scene.flow_path_origin == scene::PathOrigin::followed ? "Path of the debris"
+                                                                                    : "Flow path, chainage";
+        row(label, [&] {
             draw_cased(svg, "flow-path", "M0 10h30");
             svg.path("chainage-tick", "M15 5v10");
         });

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "core/try.hpp"
+#include "observe/followed_path.hpp"
 #include "sim/sources/seed.hpp"
 #include "terrain/map_cell.hpp"
 
@@ -33,8 +34,10 @@ Result<std::unique_ptr<Run>> Run::start(const scene::Scene& scene, std::optional
         TALUS_ASSIGN(sim::State state, seed_releases(model, ground, scene.releases));
         sim::InflowFeeder inflow(model, ground.terrain.frame(), scene.inflows);
         TALUS_TRY(check_particle_count(model, state.count, inflow.to_come()));
-        return std::make_unique<Run>(RunStart{std::move(model), std::move(ground), std::move(state), std::move(inflow),
-                                              scene.flow_path, spec.outputs});
+        RunStart start{std::move(model),  std::move(ground), std::move(state),
+                       std::move(inflow), scene.flow_path,   spec.outputs};
+        if (follows_debris(scene)) start.followed_corridor_width = spec.flow_path.corridor_width;
+        return std::make_unique<Run>(std::move(start));
     });
 }
 
@@ -45,7 +48,8 @@ Run::Run(RunStart start)
                 start.outputs.map_cell.value_or(
                     terrain::default_map_cell(ground().terrain.cell(), model().particle_spacing))),
       rest_(model().solver, start.outputs.deposited_speed),
-      deposited_speed_(start.outputs.deposited_speed),
+      outputs_(start.outputs),
+      followed_corridor_width_(start.followed_corridor_width),
       endless_(start.endless),
       smallest_time_step_(model().solver.end_time) {
     observer_.expect(state().seeded + simulation_.inflow().to_come());
@@ -71,7 +75,7 @@ bool Run::advance() {
 
 bool Run::over() {
     if (reached_end_time(model().solver, state())) {
-        stop(RunPhase::ended, end_time_reason(model(), state(), deposited_speed_));
+        stop(RunPhase::ended, end_time_reason(model(), state(), outputs_.deposited_speed));
     } else if (no_debris()) {
         stop(RunPhase::at_rest, no_debris_reason);
     }
@@ -114,6 +118,9 @@ RunResult Run::result(const std::string& unfinished) const {
     result.stop_reason =
         phase_ == RunPhase::ready ? fmt::format("{} at t = {:.4g} s", unfinished, state().time) : stop_reason_;
     result.observation = threads_.execute([&] { return observer_.finish(model(), ground(), state()); });
+    if (followed_corridor_width_ > 0) {
+        observe::follow_debris(ground(), observer_.flow_path(), followed_corridor_width_, outputs_, result.observation);
+    }
     result.stage_times = simulation_.stage_times();
     result.hash = hash_state(state());
     result.particles = state().released();

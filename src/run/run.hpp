@@ -27,6 +27,8 @@ struct RunStart {
     params::OutputSpec outputs = {};
     /// Continues at rest, beyond solver.end_time and after a fault: the caller decides when it ends.
     bool endless = false;
+    /// m: the flow path is a first guess, and the result is along the path that debris followed. 0: it stays.
+    double followed_corridor_width = 0;
 };
 
 /// A run: a simulation, the observer that measures it, and the rule that says when it is over. Everything that runs a
@@ -77,7 +79,8 @@ class Run {
     sim::Simulation simulation_;
     observe::Observer observer_;
     RestDetector rest_;
-    double deposited_speed_;
+    params::OutputSpec outputs_;
+    double followed_corridor_width_;
     bool endless_;
     RunPhase phase_ = RunPhase::ready;
     std::string stop_reason_;

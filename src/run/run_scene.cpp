@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include <fmt/format.h>
+
 #include "run/run.hpp"
 
 namespace talus::run {
@@ -42,6 +44,16 @@ Result<RunResult> run_scene(const scene::Scene& scene, const RunOptions& options
         if (options.on_progress) options.on_progress(progress_of(run));
     }
     return run.result();
+}
+
+void take_followed_path(scene::Scene& scene, const RunResult& result) {
+    if (!result.observation.followed_path) return;
+    scene.flow_path = *result.observation.followed_path;
+    scene.flow_path_origin = scene::PathOrigin::followed;
+    scene.notes.push_back(
+        fmt::format("flow path: chainages are along the path that debris followed, {:.0f} m from the "
+                    "crown to the farthest deposit; the traced one was a first guess",
+                    scene.flow_path.length()));
 }
 
 }  // namespace talus::run

@@ -33,4 +33,7 @@ struct RunOptions {
 /// Errors (before anything ran): as Run::start(), with the scene's file.
 [[nodiscard]] Result<RunResult> run_scene(const scene::Scene& scene, const RunOptions& options);
 
+/// The scene with the path that debris followed, if the result's chainages are along that.
+void take_followed_path(scene::Scene& scene, const RunResult& result);
+
 }  // namespace talus::run

@@ -87,7 +87,9 @@ std::string describe_scene(const Scene& scene) {
     out += scene.flow_path.empty()
                ? "flow path   none\n"
                : fmt::format("flow path   {:.0f} m, {}\n", scene.flow_path.length(),
-                             scene.flow_path_traced ? "traced downhill from the release" : "from its file");
+                             scene.flow_path_origin == PathOrigin::file ? "from its file"
+                             : follows_debris(scene) ? "traced downhill from the release, a first guess until the run"
+                                                     : "traced downhill from the release");
     for (const params::VariantSpec& variant : scene.spec.variants) {
         out += fmt::format("variant     {}: {}\n", variant.name, fmt::join(variant.set, ", "));
     }

@@ -70,6 +70,12 @@ Status add_depths(const ParsedScene& parsed, const std::string& key, const std::
 
 }  // namespace
 
+bool follows_debris(const Scene& scene) {
+    const params::SceneSpec& s = scene.spec;
+    return scene.flow_path_origin == PathOrigin::traced && s.observations.empty() && s.superelevations.empty() &&
+           s.arrivals.empty() && s.observed_run_outs.empty();
+}
+
 double total_volume(const Scene& scene) {
     double volume = 0;
     for (const terrain::Release& release : scene.releases) volume += release.volume;

@@ -127,7 +127,6 @@ Status trace_from_release(const ParsedScene& parsed, Scene& scene) {
         return {};
     }
     scene.flow_path = terrain::FlowPath(points, scene.spec.flow_path.corridor_width);
-    scene.flow_path_traced = true;
     scene.notes.push_back(fmt::format("flow path: traced downhill from {}, {:.0f} m from its crown at {} to {}",
                                       relief.label, scene.flow_path.length(), place_text(points.front()),
                                       place_text(points.back())));
@@ -139,7 +138,10 @@ Status trace_from_release(const ParsedScene& parsed, Scene& scene) {
 
 Status load_flow_path(const ParsedScene& parsed, Scene& scene) {
     const params::FlowPathSpec& spec = scene.spec.flow_path;
-    if (spec.file.empty()) return trace_from_release(parsed, scene);
+    if (spec.file.empty()) {
+        scene.flow_path_origin = PathOrigin::traced;
+        return trace_from_release(parsed, scene);
+    }
     const Result<geo::LineLayer> layer = read_line(spec.file, spec.layer, scene.crs);
     if (!layer) return Error{parsed.at("flow_path.file") + ": " + layer.error().message};
     record_input("flow path", spec.file, scene);

@@ -29,6 +29,9 @@ struct InputFile {
     std::string hash;  ///< FNV-1a 64, hexadecimal
 };
 
+/// Where the flow path comes from: the scene's file, a trace downhill before the run, or the debris of a run.
+enum class PathOrigin { file, traced, followed };
+
 /// A scene file with all its inputs loaded, checked and transformed to the terrain's CRS.
 struct Scene {
     std::filesystem::path file;
@@ -47,13 +50,17 @@ struct Scene {
     std::vector<terrain::Inflow> inflows;
     std::vector<terrain::Building> buildings;
     terrain::FlowPath flow_path;
-    bool flow_path_traced = false;
+    PathOrigin flow_path_origin = PathOrigin::file;
     std::vector<std::vector<Polygon>> deposit_outlines;  ///< as in SceneSpec::deposit_outlines
     std::vector<std::vector<Polygon>> affected_areas;    ///< as in SceneSpec::affected_areas
     std::vector<Grid<float>> elevation_changes;          ///< m; as in SceneSpec::elevation_changes
     std::vector<InputFile> inputs;
     std::vector<std::string> notes;  ///< what was done to the inputs: reprojections, defaults, traced path
 };
+
+/// Whether a run takes the path that debris followed in place of a traced one. Not if the chainages of observations
+/// refer to that.
+[[nodiscard]] bool follows_debris(const Scene& scene);
 
 /// Total volume of all releases and inflows, m3.
 [[nodiscard]] double total_volume(const Scene& scene);

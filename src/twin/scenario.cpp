@@ -13,6 +13,7 @@
 #include "core/try.hpp"
 #include "observe/erosion.hpp"
 #include "products/products.hpp"
+#include "run/run_scene.hpp"
 #include "sim/sources/seed.hpp"
 #include "twin/action.hpp"
 #include "twin/json_keys.hpp"
@@ -278,7 +279,9 @@ std::function<Status(const std::filesystem::path&)> Scenario::products() const {
     for (const JournalEntry& entry : p.entries) {
         scene.notes.push_back(fmt::format("before step {}, by {}: {}", entry.step, entry.by, entry.action.dump()));
     }
-    return [scene = std::move(scene), result = p.run->result()](const std::filesystem::path& folder) {
+    run::RunResult result = p.run->result();
+    run::take_followed_path(scene, result);
+    return [scene = std::move(scene), result = std::move(result)](const std::filesystem::path& folder) {
         return products::write_products(scene, result, folder);
     };
 }

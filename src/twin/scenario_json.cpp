@@ -82,7 +82,7 @@ json flow_path_json(const scene::Scene& scene) {
     return {{"points", points},
             {"chainage_m", chainages},
             {"corridor_width_m", path.corridor_width()},
-            {"traced", scene.flow_path_traced}};
+            {"traced", scene.flow_path_origin != scene::PathOrigin::file}};
 }
 
 std::pair<float, float> elevation_range(const terrain::Terrain& terrain) {

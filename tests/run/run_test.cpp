@@ -52,6 +52,26 @@ TEST_F(RunOfAScene, StepByStepIsTheWholeOne) {
     EXPECT_EQ(result.observation.timeseries.size(), whole->observation.timeseries.size());
 }
 
+TEST_F(RunOfAScene, TakesThePathOfTheDebrisInPlaceOfATracedOne) {
+    scene::Scene scene = loaded("", {"solver.end_time_s=12"});
+    const std::vector<PlanPoint> traced = scene.flow_path.points();
+    const auto result = run_scene(scene, {});
+    ASSERT_TRUE(result);
+    ASSERT_TRUE(result->observation.followed_path);
+    EXPECT_NEAR(result->observation.run_out.front_chainage, result->observation.front.back().chainage, 1e-9);
+    take_followed_path(scene, *result);
+    EXPECT_EQ(scene.flow_path_origin, scene::PathOrigin::followed);
+    EXPECT_NE(scene.flow_path.points().size(), traced.size());
+    EXPECT_THAT(scene.notes.back(), HasSubstr("the path that debris followed"));
+}
+
+TEST_F(RunOfAScene, KeepsTheTracedPathThatObservationsReferTo) {
+    const auto result =
+        run_scene(loaded("[[observation]]\nchainage_m = 20\nfront_velocity_mps = 5\n", {"solver.end_time_s=12"}), {});
+    ASSERT_TRUE(result);
+    EXPECT_FALSE(result->observation.followed_path);
+}
+
 TEST_F(RunOfAScene, TakesWhatTheSceneHas) {
     const scene::Scene scene = loaded(
         "[[bed]]\ndepth_m = 0.4\ngrowth_rate_per_m = 0.01\n[[zone]]\nname = \"fan\"\n"

@@ -61,7 +61,8 @@ TEST_F(LoadScene, KnowsWhichKeysWereGiven) {
 TEST_F(LoadScene, TracesThePathFromTheCrown) {
     write_valley();
     const Scene scene = loaded();
-    EXPECT_TRUE(scene.flow_path_traced);
+    EXPECT_EQ(scene.flow_path_origin, PathOrigin::traced);
+    EXPECT_TRUE(follows_debris(scene));
     // The crown is where the release is highest: at its western edge, on a flank.
     EXPECT_NEAR(scene.flow_path.points().front().x, west + 20, 1.5);
     EXPECT_NEAR(scene.flow_path.points().back().x, west + columns * cell, 2 * cell);
@@ -302,7 +303,7 @@ TEST_F(LoadScene, AFlowPathFromAFileIsTurnedDownstream) {
     write_features("path.geojson", {R"({"type": "Feature", "properties": {}, "geometry": {"type": "LineString",
         "coordinates": [[824250, 825100], [824130, 825100], [824030, 825100]]}})"});
     const Scene scene = loaded();
-    EXPECT_FALSE(scene.flow_path_traced);
+    EXPECT_EQ(scene.flow_path_origin, PathOrigin::file);
     EXPECT_EQ(scene.flow_path.points().front().x, 824030);
     EXPECT_NEAR(scene.flow_path.length(), 220, 1e-6);
     EXPECT_THAT(scene.notes, Contains(HasSubstr("has been turned")));

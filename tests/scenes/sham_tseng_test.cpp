@@ -178,7 +178,7 @@ void expect_the_landslide(const scene::Scene& scene) {
     bool kitchen = false;
     for (const terrain::Building& building : scene.buildings) kitchen |= building.name == "House 38, kitchen";
     EXPECT_TRUE(kitchen);
-    EXPECT_FALSE(scene.flow_path_traced);
+    EXPECT_EQ(scene.flow_path_origin, scene::PathOrigin::file);
 }
 
 TEST(Scenes, ReconstructionLoads) {

@@ -1,0 +1,174 @@
+#include "observe/followed_path.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <vector>
+
+#include "observe/erosion.hpp"
+#include "observe/front_tracker.hpp"
+#include "observe/trail.hpp"
+
+namespace talus::observe {
+namespace {
+
+constexpr double band_cells = 3;       ///< length of a band of the trail, in map cells
+constexpr double shortest_cells = 10;  ///< a shorter trail has no line
+constexpr double reach_cells = 2;      ///< from a place on the line to the map cells whose arrivals count there
+
+PlanPoint centre_of(const GridGeometry& g, std::size_t k) {
+    const auto columns = static_cast<std::size_t>(g.columns);
+    return g.centre(static_cast<int>(k % columns), static_cast<int>(k / columns));
+}
+
+/// The cells of the band [from, to) of the trail that are connected with `first`. `taken`: by cell, of earlier bands.
+std::vector<std::size_t> connected_cells(const TrailWays& ways, const GridGeometry& g, std::size_t first, double from,
+                                         double to, std::vector<std::uint8_t>& taken) {
+    std::vector<std::size_t> cells{first};
+    taken[first] = 1;
+    for (std::size_t next = 0; next < cells.size(); ++next) {
+        const auto columns = static_cast<std::size_t>(g.columns);
+        const auto column = static_cast<int>(cells[next] % columns), row = static_cast<int>(cells[next] / columns);
+        for (int r = std::max(0, row - 1); r <= std::min(g.rows - 1, row + 1); ++r) {
+            for (int c = std::max(0, column - 1); c <= std::min(g.columns - 1, column + 1); ++c) {
+                const std::size_t k = g.index(c, r);
+                const double way = ways.at(k);
+                if (taken[k] != 0 || !(way >= from && way < to)) continue;
+                taken[k] = 1;
+                cells.push_back(k);
+            }
+        }
+    }
+    return cells;
+}
+
+PlanPoint centroid(const std::vector<std::size_t>& cells, const HazardMaps& maps) {
+    double sum = 0, x = 0, y = 0;
+    for (const std::size_t k : cells) {
+        const PlanPoint p = centre_of(maps.peak_depth.geometry, k);
+        // Ground that debris hardly moved over counts a little.
+        const double weight =
+            static_cast<double>(maps.peak_depth.values[k]) * (static_cast<double>(maps.peak_speed.values[k]) + 0.01);
+        sum += weight;
+        x += weight * p.x;
+        y += weight * p.y;
+    }
+    return {x / sum, y / sum};
+}
+
+/// From the crown to the toe, a point per band.
+std::vector<PlanPoint> find_course(const HazardMaps& maps, const RunOut& run_out) {
+    const GridGeometry& g = maps.peak_depth.geometry;
+    const TrailWays ways(maps.peak_depth, run_out.crown);
+    const double band = band_cells * g.cell;
+    std::vector<PlanPoint> middles{run_out.crown};
+    std::vector<std::uint8_t> taken(g.size(), 0);
+    for (double from = band; from + band < run_out.along_flow; from += band) {
+        const std::optional<std::size_t> k = ways.cell_on_way(run_out.toe, from + band / 2);
+        if (!k || !(ways.at(*k) >= from && ways.at(*k) < from + band)) continue;
+        middles.push_back(centroid(connected_cells(ways, g, *k, from, from + band, taken), maps));
+    }
+    middles.push_back(run_out.toe);
+
+    std::vector<PlanPoint> course{middles.front()};
+    for (std::size_t i = 1; i + 1 < middles.size(); ++i) {
+        const PlanPoint &a = middles[i - 1], &m = middles[i], &b = middles[i + 1];
+        course.push_back({(a.x + 2 * m.x + b.x) / 4, (a.y + 2 * m.y + b.y) / 4});
+    }
+    course.push_back(middles.back());
+    return course;
+}
+
+/// When debris first was at a chainage, or beyond it, and its speed.
+struct Arrival {
+    double chainage, time, speed;
+};
+
+/// Of the map cells around a place on the path: the first arrival.
+Arrival first_arrival(const HazardMaps& maps, const terrain::FlowPath& path, double chainage) {
+    const GridGeometry& g = maps.arrival_time.geometry;
+    const PlanPoint p = path.point_at(chainage);
+    const double u = (p.x - g.x_min) / g.cell, v = (p.y - g.y_min) / g.cell;
+    Arrival first{chainage, never, never};
+    for (int row = std::max(0, static_cast<int>(v - reach_cells)); row < std::min<double>(g.rows, v + reach_cells);
+         ++row) {
+        for (int column = std::max(0, static_cast<int>(u - reach_cells));
+             column < std::min<double>(g.columns, u + reach_cells); ++column) {
+            if (std::hypot(column + 0.5 - u, row + 0.5 - v) > reach_cells) continue;
+            const std::size_t k = g.index(column, row);
+            const double time = maps.arrival_time.values[k];
+            if (!(time < first.time || (std::isnan(first.time) && !std::isnan(time)))) continue;
+            first = {chainage, time, static_cast<double>(maps.arrival_speed.values[k])};
+        }
+    }
+    return first;
+}
+
+/// Every `interval` from the first chainage that the releases did not cover to the last with an arrival.
+std::vector<Arrival> find_arrivals(const HazardMaps& maps, const terrain::FlowPath& path, double interval) {
+    std::vector<Arrival> arrivals;
+    for (std::size_t k = 0; static_cast<double>(k) * interval <= path.length(); ++k) {
+        arrivals.push_back(first_arrival(maps, path, static_cast<double>(k) * interval));
+    }
+    while (!arrivals.empty() && std::isnan(arrivals.back().time)) arrivals.pop_back();
+    const auto covered = std::find_if(arrivals.rbegin(), arrivals.rend(), [](const Arrival& a) { return a.time <= 0; });
+    arrivals.erase(arrivals.begin(), covered.base());
+    // The front is at a place when debris is there or beyond.
+    for (std::size_t k = arrivals.size(); k-- > 1;) {
+        const Arrival& beyond = arrivals[k];
+        Arrival& here = arrivals[k - 1];
+        if (!(here.time <= beyond.time)) here = {here.chainage, beyond.time, beyond.speed};
+    }
+    return arrivals;
+}
+
+/// The front along the path, with velocities fitted over `window` m. None where the front outruns the debris: it came
+/// from elsewhere, or through the air.
+std::vector<FrontSample> front_of(const std::vector<Arrival>& arrivals, double interval, double window) {
+    const auto half = static_cast<std::size_t>(std::max(1.0, std::floor(window / 2 / interval)));
+    std::vector<double> times;
+    for (const Arrival& a : arrivals) times.push_back(a.time);
+    std::vector<FrontSample> front;
+    for (std::size_t i = 0; i < arrivals.size(); ++i) {
+        const std::size_t first = i > half ? i - half : 0, last = std::min(i + half, arrivals.size() - 1);
+        double fastest = 0;
+        for (std::size_t k = first; k <= last; ++k) fastest = std::max(fastest, arrivals[k].speed);
+        const double velocity = fitted_velocity(times, first, last, interval);
+        front.push_back({arrivals[i].chainage, arrivals[i].time, velocity <= fastest_front * fastest ? velocity : never,
+                         arrivals[i].speed});
+    }
+    return front;
+}
+
+/// Chainages of the front along another path.
+void move_chainages(const terrain::FlowPath& from, const terrain::FlowPath& to, std::vector<TimeSample>& timeseries) {
+    for (TimeSample& sample : timeseries) {
+        if (std::isnan(sample.front_chainage)) continue;
+        const auto at = to.locate(from.point_at(sample.front_chainage));
+        sample.front_chainage = at ? at->chainage : never;
+    }
+}
+
+}  // namespace
+
+void follow_debris(const sim::Ground& ground, const terrain::FlowPath& traced, double corridor_width,
+                   const params::OutputSpec& outputs, Observation& observation) {
+    const HazardMaps& maps = observation.maps;
+    RunOut& run_out = observation.run_out;
+    const double cell = maps.peak_depth.geometry.cell;
+    if (!(run_out.along_flow > shortest_cells * cell)) return;
+    const terrain::FlowPath path(find_course(maps, run_out), corridor_width);
+
+    const double interval = outputs.chainage_interval;
+    const std::vector<Arrival> arrivals = find_arrivals(maps, path, interval);
+    observation.front = front_of(arrivals, interval, std::max(outputs.front_velocity_window, 4 * cell));
+    run_out.front_chainage = arrivals.empty() ? never : arrivals.back().chainage;
+    move_chainages(traced, path, observation.timeseries);
+    observation.erosion = measure_erosion(ground, path, interval);
+    observation.followed_path = path;
+}
+
+}  // namespace talus::observe

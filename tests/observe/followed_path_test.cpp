@@ -1,0 +1,160 @@
+#include "observe/followed_path.hpp"
+
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <numbers>
+
+#include <gtest/gtest.h>
+
+#include "observe/trail.hpp"
+#include "particles.hpp"
+
+namespace talus::observe {
+namespace {
+
+constexpr float none = std::numeric_limits<float>::quiet_NaN();
+constexpr double trail_speed = 6;  // m/s
+
+/// Debris at `trail_speed` along a line within 6 m of it, on cells of 1 m: the observation of a run whose toe is the
+/// line's end. `traced` before the run: straight from the crown to the east.
+struct Trail {
+    explicit Trail(const std::vector<PlanPoint>& points) : line(points, 12) {
+        const Grid<float> empty(GridGeometry{1000, 2000, 1, 260, 140}, none);
+        HazardMaps& maps = o.maps;
+        maps = {empty, empty, empty, empty, empty, empty};
+        cover(line, 0);
+        o.run_out.crown = points.front();
+        o.run_out.toe = points.back();
+        o.run_out.along_flow = TrailWays(maps.peak_depth, points.front()).to(points.back());
+        o.run_out.front_chainage = 205.661545;
+    }
+    /// Deepest and fastest in the middle.
+    void cover(const terrain::FlowPath& path, double start_time) {
+        HazardMaps& maps = o.maps;
+        const GridGeometry& g = maps.peak_depth.geometry;
+        for (int row = 0; row < g.rows; ++row) {
+            for (int column = 0; column < g.columns; ++column) {
+                const auto at = path.locate(g.centre(column, row));
+                const std::size_t k = g.index(column, row);
+                if (!at || !std::isnan(maps.peak_depth.values[k])) continue;
+                maps.peak_depth.values[k] = static_cast<float>(1.2 - 0.15 * at->offset);
+                maps.peak_speed.values[k] = static_cast<float>(trail_speed * (1.2 - 0.1 * at->offset));
+                maps.arrival_time.values[k] = static_cast<float>(start_time + at->chainage / trail_speed);
+                maps.arrival_speed.values[k] = static_cast<float>(trail_speed);
+            }
+        }
+    }
+    [[nodiscard]] Observation& follow() {
+        follow_debris(ground, terrain::FlowPath({{1010, 2070}, {1250, 2070}}, 300), 40, outputs, o);
+        return o;
+    }
+
+    terrain::FlowPath line;
+    Observation o;
+    sim::Ground ground = test::make_ground();
+    params::OutputSpec outputs;
+};
+
+std::vector<PlanPoint> winding_line() {
+    std::vector<PlanPoint> points;
+    for (int x = 0; x <= 220; x += 2) {
+        points.push_back({1010.0 + x, 2070 + 30 * std::sin(x * std::numbers::pi / 70)});
+    }
+    return points;
+}
+
+TEST(FollowDebris, finds_the_middle_of_a_winding_trail) {
+    Trail trail(winding_line());
+    const Observation& o = trail.follow();
+    ASSERT_TRUE(o.followed_path);
+    EXPECT_EQ(o.followed_path->points().front().x, 1010);
+    EXPECT_EQ(o.followed_path->points().back().x, 1230);
+    for (const PlanPoint& p : o.followed_path->points()) {
+        const auto at = trail.line.locate(p);
+        ASSERT_TRUE(at) << p.x << ", " << p.y;
+        EXPECT_LT(at->offset, 1.5) << p.x << ", " << p.y;
+    }
+    // The shortest way over the covered ground cuts the corners, the line does not.
+    EXPECT_NEAR(o.followed_path->length(), trail.line.length(), 0.03 * trail.line.length());
+    EXPECT_LT(o.run_out.along_flow, 0.95 * trail.line.length());
+}
+
+TEST(FollowDebris, measures_the_front_along_it) {
+    Trail trail(winding_line());
+    const Observation& o = trail.follow();
+    ASSERT_GT(o.front.size(), 200U);
+    for (const FrontSample& s : o.front) {
+        if (s.chainage < 15 || s.chainage > trail.line.length() - 15) continue;
+        EXPECT_NEAR(s.arrival_time, s.chainage / trail_speed, 1.2) << s.chainage;
+        EXPECT_NEAR(s.front_velocity, trail_speed, 0.15 * trail_speed) << s.chainage;
+        EXPECT_NEAR(s.particle_speed, trail_speed, 1e-5) << s.chainage;
+    }
+    EXPECT_NEAR(o.run_out.front_chainage, o.followed_path->length(), 3);
+}
+
+TEST(FollowDebris, has_no_front_that_outruns_the_debris_at_a_sharp_corner) {
+    Trail trail({{1010, 2120}, {1120, 2120}, {1120, 2020}, {1240, 2020}});
+    const Observation& o = trail.follow();
+    ASSERT_TRUE(o.followed_path);
+    int known = 0;
+    for (const FrontSample& s : o.front) {
+        if (std::isnan(s.front_velocity)) continue;
+        ++known;
+        EXPECT_LE(s.front_velocity, 1.5 * trail_speed + 1e-6) << s.chainage;
+        EXPECT_GT(s.front_velocity, 0.5 * trail_speed) << s.chainage;
+    }
+    EXPECT_GT(known, 0.9 * static_cast<double>(o.front.size()));
+}
+
+TEST(FollowDebris, goes_with_the_branch_that_leads_to_the_toe) {
+    Trail trail({{1010, 2070}, {1230, 2070}});
+    trail.cover(terrain::FlowPath({{1060, 2070}, {1110, 2130}}, 12), 50 / trail_speed);
+    const Observation& o = trail.follow();
+    ASSERT_TRUE(o.followed_path);
+    for (const PlanPoint& p : o.followed_path->points()) {
+        if (p.x > 1085) {
+            EXPECT_NEAR(p.y, 2070, 1.5) << p.x;
+        }
+        EXPECT_LT(p.y, 2084) << p.x << ": where it parts, the middle of both";
+    }
+}
+
+TEST(FollowDebris, moves_all_chainages_to_the_new_path) {
+    Trail trail(winding_line());
+    TimeSample sample;
+    sample.front_chainage = 140;  // along the traced path: where the line crosses it at x = 1150
+    TimeSample beside;
+    beside.front_chainage = 105;  // 30 m from the line
+    trail.o.timeseries = {sample, TimeSample{}, beside};
+    const Observation& o = trail.follow();
+    const double expected = o.followed_path->locate({1150, 2070})->chainage;
+    EXPECT_GT(expected, 150);
+    EXPECT_EQ(o.timeseries[0].front_chainage, expected);
+    EXPECT_TRUE(std::isnan(o.timeseries[1].front_chainage));
+    EXPECT_TRUE(std::isnan(o.timeseries[2].front_chainage));
+}
+
+TEST(FollowDebris, leaves_all_as_it_was_where_debris_hardly_left_its_release) {
+    Trail trail({{1010, 2070}, {1016, 2070}});
+    trail.o.front = {{3, 1, 2, 2}};
+    const Observation& o = trail.follow();
+    EXPECT_FALSE(o.followed_path);
+    EXPECT_EQ(o.front.size(), 1U);
+    EXPECT_EQ(o.run_out.front_chainage, 205.661545);
+}
+
+TEST(TrailWays, name_the_cell_at_a_distance_on_the_way) {
+    Trail trail({{1010, 2070}, {1110, 2070}, {1110, 2010}});
+    const Grid<float>& covered = trail.o.maps.peak_depth;
+    const TrailWays ways(covered, {1010, 2070});
+    for (const double along : {0.5, 30.0, 90.0, 120.0, 140.0}) {
+        const auto k = ways.cell_on_way({1110, 2010}, along);
+        ASSERT_TRUE(k) << along;
+        EXPECT_NEAR(ways.at(*k), along, 1) << along;
+    }
+    EXPECT_FALSE(TrailWays(Grid<float>(covered.geometry, none), {1010, 2070}).cell_on_way({1110, 2010}, 5));
+}
+
+}  // namespace
+}  // namespace talus::observe
