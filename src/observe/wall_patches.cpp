@@ -73,7 +73,7 @@ void WallPatches::add_walls(const terrain::Terrain& terrain, const Ring& ring, b
             const double x = a.x - frame.origin.x + k * width * along_x;
             const double y = a.y - frame.origin.y + k * width * along_y;
             const double ground = terrain.sample(x + width / 2 * along_x, y + width / 2 * along_y).height + clearance;
-            const double foot = ground < roof - 1e-3 ? ground : roof - edge_;  // or buried, or ground without data
+            const double foot = ground < roof - 1e-3 ? ground : roof - edge_;  // or buried
             add_column({x, y, foot, along_x, along_y, k * width, length, width, 0, 0, 0, building, 0, false},
                        roof - foot);
         }

@@ -46,6 +46,7 @@ Terrain::Terrain(Grid<float> elevation) : elevation_(std::make_shared<Grid<float
     for (int row = 0; row < g.rows; ++row) {
         for (int column = 0; column < g.columns; ++column) nodes_[g.index(column, row)] = make_node(column, row);
     }
+    continue_into_nodata();
 }
 
 Quad Terrain::make_node(int column, int row) const {
@@ -55,8 +56,55 @@ Quad Terrain::make_node(int column, int row) const {
         return static_cast<float>(elevation_->at(c, r) - frame_.origin.z);
     };
     const float here = local(column, row);
+    if (std::isnan(here)) return {none, 0, 0, none};
     return {here, rise(local(column - 1, row), here, local(column + 1, row)),
             rise(local(column, row - 1), here, local(column, row + 1)), 0};
+}
+
+/// Ring by ring around the data, each cell takes the mean of the planes of its neighbours nearer to data.
+void Terrain::continue_into_nodata() {
+    const GridGeometry& g = elevation_->geometry;
+    constexpr float waiting = std::numeric_limits<float>::infinity();
+    const auto for_each_neighbour = [&](std::size_t cell, const auto& f) {
+        const auto columns = static_cast<std::size_t>(g.columns);
+        const int column = static_cast<int>(cell % columns), row = static_cast<int>(cell / columns);
+        if (column > 0) f(cell - 1, 1, 0);
+        if (column < last_column_) f(cell + 1, -1, 0);
+        if (row > 0) f(cell - columns, 0, 1);
+        if (row < last_row_) f(cell + columns, 0, -1);
+    };
+    std::vector<std::size_t> ring, next;
+    const auto add_unreached = [&](std::size_t cell) {
+        for_each_neighbour(cell, [&](std::size_t other, int, int) {
+            if (!std::isnan(nodes_[other][0])) return;
+            nodes_[other][0] = waiting;
+            next.push_back(other);
+        });
+    };
+    for (std::size_t cell = 0; cell < g.size(); ++cell) {
+        if (!std::isnan(nodes_[cell][3])) add_unreached(cell);
+    }
+    std::vector<Quad> planes;
+    while (!next.empty()) {
+        ring.swap(next);
+        next.clear();
+        planes.clear();
+        for (const std::size_t cell : ring) {
+            Quad plane{};
+            float known = 0;
+            for_each_neighbour(cell, [&](std::size_t other, int east, int north) {
+                const Quad& from = nodes_[other];
+                if (!std::isfinite(from[0])) return;
+                plane[0] += from[0] + static_cast<float>(east) * from[1] + static_cast<float>(north) * from[2];
+                plane[1] += from[1];
+                plane[2] += from[2];
+                ++known;
+            });
+            planes.push_back({plane[0] / known, plane[1] / known, plane[2] / known, nodes_[cell][3]});
+        }
+        for (std::size_t k = 0; k < ring.size(); ++k) nodes_[ring[k]] = planes[k];
+        for (const std::size_t cell : ring) add_unreached(cell);
+    }
 }
 
 std::size_t Terrain::cell_at(float x, float y) const {
@@ -83,9 +131,8 @@ void Terrain::set_elevation(std::size_t cell, float elevation) {
     const auto columns = static_cast<std::size_t>(elevation_->geometry.columns);
     const int column = static_cast<int>(cell % columns), row = static_cast<int>(cell / columns);
     const auto renew = [&](int c, int r) {
-        if (c >= 0 && r >= 0 && c <= last_column_ && r <= last_row_) {
-            nodes_[elevation_->geometry.index(c, r)] = make_node(c, r);
-        }
+        if (c < 0 || r < 0 || c > last_column_ || r > last_row_ || std::isnan(elevation_->at(c, r))) return;
+        nodes_[elevation_->geometry.index(c, r)] = make_node(c, r);
     };
     renew(column, row);
     for (const int side : {-1, 1}) {

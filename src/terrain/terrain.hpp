@@ -22,9 +22,11 @@ struct GroundSample {
 /// kink, and with normals that do not match the heights it would gain or lose energy. Slopes at the centres are central
 /// differences, limited as van Leer (1977) does, so that the ground does not overshoot beside a cliff.
 ///
-/// Debris can be on it where `covers` is true: inside the hull of the cell centres and away from nodata. Copies share
-/// the heights, which never change: copying a terrain is cheap, however large it is. A height's cell index and fraction
-/// come from the same floor(): taken from two roundings, a particle exactly on a cell edge would see the ground jump.
+/// Debris can be on it where `covers` is true: inside the hull of the cell centres and away from nodata. Elsewhere the
+/// ground continues as a plane, so that a particle on its way out, which is removed at the end of the step, still lies
+/// on ground and does not disturb its neighbours. Copies share the heights, which never change: copying a terrain is
+/// cheap, however large it is. A height's cell index and fraction come from the same floor(): taken from two roundings,
+/// a particle exactly on a cell edge would see the ground jump.
 class Terrain {
   public:
     Terrain() = default;
@@ -43,10 +45,11 @@ class Terrain {
     [[nodiscard]] bool covers(Real x, Real y) const {
         const auto c = locate(x, y);
         const bool inside = c.fx >= 0 && c.fy >= 0 && c.fx <= 1 && c.fy <= 1;
-        return inside && !std::isnan(corner_sum(c.index));
+        return inside && !std::isnan(corner_marks(c.index));
     }
 
-    /// Ground height and normal at a local plan position. Outside the grid, the nearest edge cell's plane continues.
+    /// Ground height and normal at a local plan position, finite everywhere. Outside the grid, the nearest edge cell's
+    /// plane continues; where there is no data, that of the cells around.
     template <class Real>
     [[nodiscard]] TALUS_INLINE GroundSample<Real> sample(Real x, Real y) const {
         using std::sqrt;
@@ -127,15 +130,17 @@ class Terrain {
     };
 
     [[nodiscard]] Quad make_node(int column, int row) const;
+    void continue_into_nodata();
 
-    float corner_sum(std::size_t i) const {
-        return nodes_[i][0] + nodes_[i + 1][0] + nodes_[i + stride_][0] + nodes_[i + stride_ + 1][0];
+    /// NaN if a corner of the cell has no data.
+    float corner_marks(std::size_t i) const {
+        return nodes_[i][3] + nodes_[i + 1][3] + nodes_[i + stride_][3] + nodes_[i + stride_ + 1][3];
     }
 
     std::shared_ptr<Grid<float>> elevation_ = std::make_shared<Grid<float>>();
     LocalFrame frame_;
-    /// A cell centre: local z (NaN: no data), and its rise over one cell eastwards and northwards, m. In fours, which
-    /// are loaded together.
+    /// A cell centre: local z and its rise over one cell eastwards and northwards, m; NaN where there is no data,
+    /// otherwise 0. In fours, which are loaded together.
     std::shared_ptr<Quad[]> nodes_;
     int stride_ = 0;
     int last_column_ = 0, last_row_ = 0;

@@ -2,6 +2,7 @@
 
 #include <atomic>
 #include <cmath>
+#include <limits>
 #include <stdexcept>
 #include <utility>
 
@@ -88,6 +89,29 @@ TEST_F(RunOfAScene, CountsTheParticlesOfReleasesNotThoseOfTheBed) {
     ASSERT_GT(result->observation.timeseries.back().volume_entrained, 0);
     const double particle = std::pow(result->particle_spacing, 3);
     EXPECT_NEAR(result->particles * particle, result->observation.volume_released, particle);
+}
+
+TEST_F(RunOfAScene, DebrisThatMeetsNodataHasLeftAndTheBalanceHolds) {
+    write_valley();
+    write_terrain("dem.tif", [](double x, double y) {
+        const bool hole = std::abs(x - west - 62) < 8 && std::abs(y - south - 100) < 12;
+        return hole ? std::numeric_limits<double>::quiet_NaN() : valley(x, y);
+    });
+    for (const char* method : {"pair", "stress"}) {
+        const auto scene = scene::load_scene(
+            folder / "scene.toml", {"solver.target_particle_count=400", "solver.end_time_s=8",
+                                    "release.start_time_s=0.5", fmt::format("solver.internal_friction={}", method)});
+        ASSERT_TRUE(scene) << scene.error().message;
+        const auto result = run_scene(*scene, {});
+        ASSERT_TRUE(result) << result.error().message;
+        EXPECT_EQ(result->status, RunStatus::complete) << result->stop_reason;
+        const observe::Observation& seen = result->observation;
+        for (const observe::TimeSample& now : seen.timeseries) {
+            EXPECT_NEAR(now.volume_held + now.volume_moving + now.volume_deposited + now.volume_left,
+                        now.volume_released, 1e-9 * seen.volume_released);
+        }
+        EXPECT_GT(seen.timeseries.back().volume_left, 0.5 * seen.volume_released);
+    }
 }
 
 TEST_F(RunOfAScene, StopsWhenAsked) {

@@ -166,6 +166,31 @@ TEST(Terrain, does_not_cover_cells_with_a_nodata_corner) {
     EXPECT_EQ(terrain.frame().origin.z, 5) << "nodata must not become the lowest elevation";
 }
 
+TEST(Terrain, continues_as_a_plane_where_there_is_no_data) {
+    const auto plane = [](double x, double y) { return 0.5 * x - 0.25 * y; };
+    const Terrain complete(make({0, 0, 1, 30, 20}, plane));
+    Grid<float> grid = make({0, 0, 1, 30, 20}, plane);
+    for (int row = 0; row < 20; ++row) {
+        for (int column = 0; column < 30; ++column) {
+            const bool collar = column + row < 8, hole = std::abs(column - 20) < 4 && std::abs(row - 10) < 3;
+            if (collar || hole || (column == 12 && row == 12)) grid.at(column, row) = nodata;
+        }
+    }
+    Terrain gaps(std::move(grid));
+    for (const bool changed : {false, true}) {
+        for (double x = -18; x <= 18; x += 0.35) {
+            for (double y = -12; y <= 12; y += 0.35) {
+                const auto here = gaps.sample(x, y), there = complete.sample(x, y);
+                EXPECT_NEAR(here.height + gaps.frame().origin.z, there.height + complete.frame().origin.z, 1e-4);
+                EXPECT_NEAR(here.normal.x, there.normal.x, 1e-5);
+            }
+        }
+        if (!changed) gaps.set_elevation(gaps.cell_at(-3.5F, 2.5F), gaps.elevation().at(11, 12));  // beside the hole
+    }
+    EXPECT_FALSE(gaps.covers(-2.5F, 2.5F));
+    EXPECT_TRUE(std::isnan(gaps.elevation_at({12.5, 12.5})));
+}
+
 TEST(Terrain, beyond_the_grid_the_edge_cell_goes_on) {
     const Terrain terrain(make({0, 0, 2, 10, 10}, [](double x, double) { return 2 * x; }));
     EXPECT_NEAR(terrain.sample(15.0F, 0.0F).height, 2 * (15 + 9), 1e-4);

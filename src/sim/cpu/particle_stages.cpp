@@ -154,7 +154,6 @@ TALUS_STAGE void undo_overlaps(const StageData& data, std::size_t first, std::si
         const V3 p = vector_of(load_low(work.displaced, i));
         const terrain::GroundSample<L> ground = data.ground.terrain.sample(p.x, p.y);
         const L overlap = touching - (p.z - ground.height) * ground.normal.z;
-        // False for the NaN of unknown ground.
         V3 shift = ground.normal * select(overlap > L(0), smaller(overlap, max_shift), L(0));
         const Mask near = near_walls(data.ground, p);
         if (any(near)) {

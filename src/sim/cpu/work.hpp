@@ -32,7 +32,7 @@ struct MotionRow : simd::Oct {};     ///< as in State: position x, y, z, 0; velo
     X(VectorArray, shift)                    /* undoes overlaps, becomes no velocity */                                \
     X(VectorArray, end)                      /* position at the end of the step */                                     \
     /* The ground, taken to be plane within the step, and the share of ground and walls in the density. */             \
-    X(std::vector<float>, ground_distance)   /* m, of a particle that is not displaced; NaN where unknown */           \
+    X(std::vector<float>, ground_distance)   /* m, of a particle that is not displaced */                              \
     X(std::vector<float>, ground_slope)                                                                                \
     X(VectorArray, ground_normal)                                                                                      \
     X(VectorArray, boundary_gradient)                                                                                  \

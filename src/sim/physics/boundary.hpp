@@ -12,7 +12,7 @@ namespace talus::sim {
 /// A face of the boundary, taken to be plane near a particle.
 template <class Real>
 struct BoundaryFace {
-    Real distance{};      ///< m along the normal; NaN where the ground is unknown
+    Real distance{};      ///< m along the normal
     Vec3<Real> normal{};  ///< unit, out of the ground or the solid
     Real slope{};         ///< d density / d distance, 1/m, <= 0
     int building = -1;    ///< the building it belongs to; -1: none

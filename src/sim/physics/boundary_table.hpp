@@ -23,7 +23,7 @@ class BoundaryTable {
     template <class Real>
     [[nodiscard]] Share<Real> at(Real distance) const {
         const Real r = Real(support_radius_);
-        const auto near = distance < r;  // false for the NaN distance of ground without data
+        const auto near = distance < r;
         const Real u = select(near, larger(Real(0), distance + r), Real(0)) * Real(inverse_step_);
         const auto i = truncated(u);
         const Real t = u - from_index<Real>(i);

@@ -43,18 +43,12 @@ template <class Real>
 using ContactMemories = std::array<ContactMemory<Real>, face_count>;
 
 /// Resolves the contact with a face, plane and at `distance` from the displaced particle. Returns the change of
-/// displacement; updates `memory`. Ground without data has a NaN distance and touches nothing: the particle is about
-/// to leave.
+/// displacement; updates `memory`.
 template <class Real>
 Vec3<Real> resolve_face(const Model& model, Real distance, const Vec3<Real>& normal, const Vec3<Real>& displacement,
                         Real density_push, Real friction_coefficient, Real strength, ContactMemory<Real>& memory) {
-    const ContactMemory<Real> before = memory;
-    const auto known = distance == distance;
-    const Vec3<Real> change = resolve_contact(Real(model.contact_distance()) - distance, normal, displacement,
-                                              density_push, friction_coefficient, strength, memory);
-    memory.normal = select(known, memory.normal, before.normal);
-    memory.friction = select(known, memory.friction, before.friction);
-    return select(known, change, Vec3<Real>{});
+    return resolve_contact(Real(model.contact_distance()) - distance, normal, displacement, density_push,
+                           friction_coefficient, strength, memory);
 }
 
 /// Resistance of ground and walls to a particle.
@@ -97,14 +91,13 @@ Vec3<Real> undo_overlap(const Model& model, const Ground& ground, const Vec3<Rea
     for (std::size_t f = 0; f < face_count; ++f) {
         const BoundaryFace<Real>& face = now.faces[f];
         const Real overlap = touching - face.distance;
-        // Negated, so that the NaN of unknown ground counts as no overlap.
-        if ((f > 0 && face.building < 0) || !(overlap > 0)) continue;
+        if ((f > 0 && face.building < 0) || overlap <= 0) continue;
         shift += face.normal * (overlap < max_shift ? overlap : max_shift);
     }
     return shift;
 }
 
-/// Whether a position is free: not below ground that is known, not inside a building, or a net that stops the grain.
+/// Whether a position is free: not below ground, not inside a building, or a net that stops the grain.
 template <class Real>
 bool is_free(const Ground& ground, const Vec3<Real>& p, float grain_rank = terrain::largest_grain) {
     if (p.z < ground.terrain.sample(p.x, p.y).height) return false;

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/geometry.hpp"
+#include "sim/ground.hpp"
 #include "sim/model.hpp"
 #include "sim/physics/stress.hpp"
 
@@ -185,8 +186,7 @@ Vec3<Real> slowed_by_drag(const Model& model, const GroundResistance<Real>& grou
                                   turbulence * Real(model.gravity) / thickness, Real(0));
     const Vec3<Real> along = velocity - below.normal * dot(velocity, below.normal);
     const Real loss = (turbulent + ground.stem_drag) * length(along) * time_step;
-    const Vec3<Real> slower = velocity - along * (loss / (Real(1) + loss));
-    return select(distance == distance, slower, velocity);
+    return velocity - along * (loss / (Real(1) + loss));
 }
 
 }  // namespace talus::sim
