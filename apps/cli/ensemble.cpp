@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -26,6 +27,12 @@ namespace {
 
 namespace fs = std::filesystem;
 
+/// What is made of the runs: may be changed later, by `merge`.
+struct Evaluation {
+    std::string depths, speeds, pressures;  ///< thresholds "0.5,1"; empty: the plan's
+    std::optional<double> return_period;    ///< years; absent: the plan's
+};
+
 struct EnsembleArguments {
     std::string scene;                 ///< a scene file; empty: the built-in scene
     std::string output;                ///< a folder; empty: talus_out/<scene name>_ensemble
@@ -34,9 +41,9 @@ struct EnsembleArguments {
     std::optional<std::string> design;
     std::optional<std::size_t> runs, levels;
     std::optional<std::uint64_t> seed;
-    std::string depths, speeds, pressures;  ///< thresholds "0.5,1"; empty: the plan's
-    std::vector<std::string> overrides;     ///< "section.key=value"
-    std::string data;                       ///< value of TALUS_DATA; empty: as in the environment
+    Evaluation evaluation;
+    std::vector<std::string> overrides;  ///< "section.key=value"
+    std::string data;                    ///< value of TALUS_DATA; empty: as in the environment
     std::optional<int> threads;
     std::string shard;  ///< "i/n"; empty: all runs
     bool retry_failed = false, quiet = false, json = false;
@@ -46,7 +53,7 @@ struct MergeArguments {
     std::vector<std::string> folders;
     std::string output;  ///< empty: the only folder itself
     std::string scene;   ///< current path of the scene; empty: unchanged
-    std::string depths, speeds, pressures;
+    Evaluation evaluation;
     std::string data;
     bool quiet = false, json = false;
 };
@@ -70,24 +77,34 @@ over ranks, and --shard i/n with talus ensemble merge does so without MPI, with 
 Exit codes: as talus run. A run that fails is listed with its fault, and the ensemble continues; 3: no run was complete.
 )";
 
-Status set_thresholds(ensemble::Thresholds& thresholds, const std::string& depths, const std::string& speeds,
-                      const std::string& pressures) {
+Status set_evaluation(ensemble::EnsemblePlan& plan, const Evaluation& evaluation) {
     const auto set = [](std::vector<double>& values, const std::string& text, const char* option) -> Status {
         if (text.empty()) return {};
         TALUS_ASSIGN(values, ensemble::parse_thresholds(text, option));
         return {};
     };
-    TALUS_TRY(set(thresholds.depth, depths, "--depth-m"));
-    TALUS_TRY(set(thresholds.speed, speeds, "--speed-mps"));
-    return set(thresholds.pressure, pressures, "--pressure-kPa");
+    TALUS_TRY(set(plan.thresholds.depth, evaluation.depths, "--depth-m"));
+    TALUS_TRY(set(plan.thresholds.speed, evaluation.speeds, "--speed-mps"));
+    TALUS_TRY(set(plan.thresholds.pressure, evaluation.pressures, "--pressure-kPa"));
+    if (const auto years = evaluation.return_period) {
+        if (!std::isfinite(*years) || !(*years > 0)) {
+            return Error{fmt::format("--return-period {} is refused; it must be a number above 0 (years)", *years)};
+        }
+        plan.return_period = years;
+    }
+    return {};
 }
 
-void add_thresholds(CLI::App& command, std::string& depths, std::string& speeds, std::string& pressures) {
-    command.add_option("--depth-m", depths, "peak depths whose probability is mapped; default: 0.1,0.5,1")
+void add_evaluation(CLI::App& command, Evaluation& evaluation) {
+    command.add_option("--depth-m", evaluation.depths, "peak depths whose probability is mapped; default: 0.1,0.5,1")
         ->type_name("M,M");
-    command.add_option("--speed-mps", speeds, "likewise peak speeds; default: 5,10")->type_name("MPS,MPS");
-    command.add_option("--pressure-kPa", pressures, "likewise pressures, on buildings too; default: 15,30")
+    command.add_option("--speed-mps", evaluation.speeds, "likewise peak speeds; default: 5,10")->type_name("MPS,MPS");
+    command.add_option("--pressure-kPa", evaluation.pressures, "likewise pressures, on buildings too; default: 15,30")
         ->type_name("KPA,KPA");
+    command
+        .add_option("--return-period", evaluation.return_period,
+                    "of the event that the runs are samples of: maps hazard zones")
+        ->type_name("YEARS");
 }
 
 /// The plan file, then the options over it.
@@ -109,7 +126,7 @@ Result<ensemble::EnsemblePlan> read_arguments(const EnsembleArguments& arguments
     plan.runs = arguments.runs.value_or(plan.runs);
     plan.levels = arguments.levels.value_or(plan.levels);
     plan.seed = arguments.seed.value_or(plan.seed);
-    TALUS_TRY(set_thresholds(plan.thresholds, arguments.depths, arguments.speeds, arguments.pressures));
+    TALUS_TRY(set_evaluation(plan, arguments.evaluation));
     return plan;
 }
 
@@ -246,7 +263,7 @@ int merge_command(const MergeArguments& arguments) {
     }
     Result<ensemble::EnsemblePlan> plan = ensemble::plan_of(*definition);
     if (!plan) return fail(exit_code::bad_input, plan.error().message);
-    if (Status s = set_thresholds(plan->thresholds, arguments.depths, arguments.speeds, arguments.pressures); !s) {
+    if (Status s = set_evaluation(*plan, arguments.evaluation); !s) {
         return fail(exit_code::bad_input, s.error().message);
     }
     const std::string scene = arguments.scene.empty() ? definition->value("scene", "") : arguments.scene;
@@ -293,7 +310,7 @@ void add_ensemble(CLI::App& program, std::vector<Command>& commands) {
     app->add_option("--runs", ensemble->runs, "maximum number of runs; default: 64")->type_name("N");
     app->add_option("--levels", ensemble->levels, "values per factor of a grid; default: 5")->type_name("N");
     app->add_option("--seed", ensemble->seed, "of the design; default: 1")->type_name("N");
-    add_thresholds(*app, ensemble->depths, ensemble->speeds, ensemble->pressures);
+    add_evaluation(*app, ensemble->evaluation);
     add_overrides(*app, ensemble->overrides);
     add_data_folder(*app, ensemble->data);
     app->add_option("--threads", ensemble->threads, "runs in parallel, one thread each; default: all cores, 1 per rank")
@@ -307,7 +324,8 @@ void add_ensemble(CLI::App& program, std::vector<Command>& commands) {
         ->excludes(quiet);
     app->footer(ensemble_help);
 
-    CLI::App* merge_app = app->add_subcommand("merge", "combine shards, or evaluate other thresholds");
+    CLI::App* merge_app =
+        app->add_subcommand("merge", "combine shards, or evaluate with other thresholds or another return period");
     const auto merge = std::make_shared<MergeArguments>();
     merge_app->add_option("folders", merge->folders, "folders of an ensemble or its shards")
         ->required()
@@ -316,7 +334,7 @@ void add_ensemble(CLI::App& program, std::vector<Command>& commands) {
         ->type_name("DIR");
     merge_app->add_option("--scene", merge->scene, "present path of the scene; default: the path of the runs")
         ->type_name("SCENE");
-    add_thresholds(*merge_app, merge->depths, merge->speeds, merge->pressures);
+    add_evaluation(*merge_app, merge->evaluation);
     add_data_folder(*merge_app, merge->data);
     CLI::Option* merge_quiet = merge_app->add_flag("--quiet", merge->quiet, "print only errors");
     merge_app->add_flag("--json", merge->json, "the result as one JSON object on stdout")->excludes(merge_quiet);

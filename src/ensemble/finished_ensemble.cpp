@@ -10,6 +10,8 @@
 #include "core/try.hpp"
 #include "ensemble/ensemble_folder.hpp"
 #include "ensemble/ensemble_products.hpp"
+#include "ensemble/hazard_zones.hpp"
+#include "report/intensity.hpp"
 
 namespace talus::ensemble {
 namespace {
@@ -29,12 +31,33 @@ std::string terrain_hash_of(const Json& definition) {
     return "";
 }
 
-void add_map(FinishedEnsemble& ensemble, const fs::path& folder, EnsembleMap::Kind kind, std::size_t map,
-             double level) {
-    FinishedMap made{kind, map, level, style_of({kind, map, level, {}}), {}};
-    made.file = folder / (made.style.file + ".tif");
+void add_map(FinishedEnsemble& ensemble, const fs::path& folder, FinishedMap map) {
+    map.file = folder / (map.style.file + ".tif");
     std::error_code error;
-    if (fs::is_regular_file(made.file, error)) ensemble.maps.push_back(std::move(made));
+    if (fs::is_regular_file(map.file, error)) ensemble.maps.push_back(std::move(map));
+}
+
+/// The probabilities of the classes of a guideline, and the zones that follow from them.
+void add_intensity_maps(FinishedEnsemble& ensemble, const fs::path& folder, const std::string& guideline_name) {
+    using enum params::GuidelineChoice;
+    for (const params::GuidelineChoice choice : {swiss_debris_flow, swiss_flood, garcia_2003}) {
+        const report::IntensityGuideline& guideline = report::intensity_guideline(choice);
+        if (guideline.name != guideline_name) continue;
+        for (std::size_t k = 0; k < guideline.classes.size(); ++k) {
+            const bool most_severe = k + 1 == guideline.classes.size();
+            add_map(ensemble, folder,
+                    {FinishedMap::Kind::probability,
+                     "intensity",
+                     observe::never,
+                     "",
+                     intensity_odds_style(guideline.classes[k], most_severe),
+                     {}});
+        }
+        if (const HazardMatrix* matrix = hazard_matrix(choice)) {
+            add_map(ensemble, folder,
+                    {FinishedMap::Kind::zones, "intensity", observe::never, "", zone_style(*matrix), {}});
+        }
+    }
 }
 
 }  // namespace
@@ -76,12 +99,21 @@ Result<FinishedEnsemble> read_finished_ensemble(const fs::path& folder) {
         return Error{fmt::format("{}: statistics.json is not as talus writes it: {}", folder.string(), wrong.what())};
     }
     const std::array<const std::vector<double>*, 3> lists = {&counted.depth, &counted.speed, &counted.pressure};
+    const auto add = [&](FinishedMap::Kind kind, EnsembleMap::Kind of_kind, std::size_t map, double level) {
+        const report::HazardMap& single = report::hazard_maps().at(map);
+        add_map(made, folder, {kind, single.file, level, single.unit, style_of({of_kind, map, level, {}}), {}});
+    };
     for (std::size_t map = 0; map < lists.size(); ++map) {
-        for (const double level : *lists[map]) add_map(made, folder, EnsembleMap::Kind::probability, map, level);
+        for (const double level : *lists[map]) {
+            add(FinishedMap::Kind::probability, EnsembleMap::Kind::probability, map, level);
+        }
     }
     for (std::size_t map = 0; map < recorded_maps.size(); ++map) {
-        for (const double level : mapped_percentiles) add_map(made, folder, EnsembleMap::Kind::percentile, map, level);
+        for (const double level : mapped_percentiles) {
+            add(FinishedMap::Kind::percentile, EnsembleMap::Kind::percentile, map, level);
+        }
     }
+    add_intensity_maps(made, folder, statistics.value("intensity_guideline", ""));
     if (made.maps.empty()) {
         return Error{fmt::format("{}: has no maps; debris reached no cell, or they were removed", folder.string())};
     }

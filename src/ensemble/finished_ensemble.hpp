@@ -15,10 +15,12 @@ namespace talus::ensemble {
 
 /// A map of an ensemble in its folder.
 struct FinishedMap {
-    EnsembleMap::Kind kind = EnsembleMap::Kind::probability;
-    std::size_t map = 0;      ///< index into recorded_maps
-    double level = 0;         ///< the threshold in the map's unit, or the percentile in %
-    report::HazardMap style;  ///< name, title, unit
+    enum class Kind { probability, percentile, zones };
+    Kind kind = Kind::probability;
+    std::string of;           ///< the map of a single run that it counts: "peak_depth", "intensity"
+    double level = 0;         ///< the threshold in that map's unit, or the percentile in %; NaN: neither
+    std::string level_unit;   ///< of a threshold
+    report::HazardMap style;  ///< name, title, unit, categories
     std::filesystem::path file;
 };
 

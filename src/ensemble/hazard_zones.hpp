@@ -16,7 +16,7 @@ struct HazardMatrix {
     std::vector<report::Category> zones;  ///< the least dangerous first
     std::vector<std::vector<int>> zone;   ///< by intensity class and class of return period: 1 + a zone; 0: none
 
-    /// 1 + the zone where debris of an intensity class (from 0) comes back after so many years; 0: none.
+    /// 1 + the zone for an intensity class (from 0) with a return period in years; 0: none.
     [[nodiscard]] int zone_of(std::size_t intensity, double return_period) const;
 };
 

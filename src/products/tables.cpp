@@ -36,7 +36,8 @@ std::string building_table(const scene::Scene& scene, const observe::Observation
         "name,hit,first_hit_time_s,peak_force_kN,peak_impact_pressure_kPa,peak_dynamic_pressure_kPa,peak_depth_m,"
         "filter_window_s,patch_edge_m,height_m,height_assumed,kind,impulse_kNs,failed_s,overtopped_m3,first_overtopped_"
         "s,passed_m3,"
-        "held_m3,peak_held_m3,peak_filling_height_m,removed_time_s");
+        "held_m3,peak_held_m3,peak_filling_height_m,removed_time_s,peak_speed_mps,intensity");
+    const report::IntensityGuideline& guideline = report::intensity_guideline(scene.spec.outputs.intensity_guideline);
     for (std::size_t i = 0; i < observation.buildings.size(); ++i) {
         const observe::BuildingImpact& b = observation.buildings[i];
         csv.word(b.name).word(b.hit ? "yes" : "no").number(b.first_hit_time);
@@ -51,7 +52,9 @@ std::string building_table(const scene::Scene& scene, const observe::Observation
         csv.number(of_barrier(b.overtopped_volume)).number(b.first_overtopping_time);
         csv.number(of_barrier(b.passed_volume)).number(of_barrier(b.held_volume));
         csv.number(of_barrier(b.peak_held_volume)).number(of_barrier(b.peak_filling_height));
-        csv.number(b.removed_time);
+        csv.number(b.removed_time).number(b.peak_speed);
+        const report::IntensityClass* intensity = guideline.class_of(b);
+        csv.word(intensity != nullptr ? intensity->name : "");
         csv.end_row();
     }
     return csv.text();

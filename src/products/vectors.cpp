@@ -37,12 +37,16 @@ Status write_buildings(const scene::Scene& scene, const observe::Observation& ob
                                             {"held_m3"},
                                             {"peak_held_m3"},
                                             {"peak_filling_height_m"},
-                                            {"removed_time_s"}};
+                                            {"removed_time_s"},
+                                            {"peak_speed_mps"},
+                                            {"intensity", true}};
+    const report::IntensityGuideline& guideline = report::intensity_guideline(scene.spec.outputs.intensity_guideline);
     std::vector<geo::OutputFeature> features;
     for (std::size_t i = 0; i < scene.buildings.size() && i < observation.buildings.size(); ++i) {
         const terrain::Building& building = scene.buildings[i];
         const observe::BuildingImpact& b = observation.buildings[i];
         const auto of_barrier = [&](double value) { return b.is_barrier ? value : observe::never; };
+        const report::IntensityClass* intensity = guideline.class_of(b);
         features.push_back({building.footprint,
                             {},
                             {b.name,
@@ -65,7 +69,9 @@ Status write_buildings(const scene::Scene& scene, const observe::Observation& ob
                              of_barrier(b.held_volume),
                              of_barrier(b.peak_held_volume),
                              of_barrier(b.peak_filling_height),
-                             b.removed_time}});
+                             b.removed_time,
+                             b.peak_speed,
+                             intensity != nullptr ? intensity->name : std::string()}});
     }
     return write_geopackage_layer(file, "buildings", fields, features, scene.crs);
 }

@@ -56,6 +56,11 @@ int IntensityGuideline::class_of(double depth, double speed) const {
     return 0;
 }
 
+const IntensityClass* IntensityGuideline::class_of(const observe::BuildingImpact& impact) const {
+    const int found = impact.hit ? class_of(impact.peak_depth, impact.peak_speed) : 0;
+    return found > 0 ? &classes[static_cast<std::size_t>(found) - 1] : nullptr;
+}
+
 const IntensityGuideline& intensity_guideline(params::GuidelineChoice choice) {
     return guidelines().at(static_cast<std::size_t>(choice));
 }

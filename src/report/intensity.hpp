@@ -34,6 +34,9 @@ struct IntensityGuideline {
 
     /// 1 + the most severe class that a place belongs to; 0: none.
     [[nodiscard]] int class_of(double depth, double speed) const;
+    /// By the peak depth at the walls of a building and the peak depth-averaged speed in front of them. nullptr: not
+    /// hit, or no class.
+    [[nodiscard]] const IntensityClass* class_of(const observe::BuildingImpact& impact) const;
 };
 
 [[nodiscard]] const IntensityGuideline& intensity_guideline(params::GuidelineChoice choice);

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "core/number_or_null.hpp"
+#include "report/intensity.hpp"
 #include "report/map.hpp"
 #include "report/number_text.hpp"
 #include "report/results.hpp"
@@ -116,15 +117,18 @@ Json building_rows(const scene::Scene& scene, const std::vector<observe::Buildin
     std::stable_sort(hit.begin(), hit.end(), [&](std::size_t a, std::size_t b) {
         return impacts[a].peak_impact_pressure > impacts[b].peak_impact_pressure;
     });
+    const IntensityGuideline& guideline = intensity_guideline(scene.spec.outputs.intensity_guideline);
     Json rows = table({{"name", "Building", ""},
                        {"first_hit_s", "First hit", "s", "f1"},
                        {"peak_force_kN", "Peak force", "kN", "s3"},
                        {"peak_impact_pressure_kPa", "Impact pressure", "kPa, highest patch", "s3", "", "–", true},
                        {"peak_dynamic_pressure_kPa", "Dynamic pressure", "kPa, ρv² to the wall", "s3"},
                        {"peak_depth_m", "Depth at walls", "m", "f2"},
+                       {"intensity", "Intensity", guideline.name},
                        {"height_m", "Height", "m", "f1"}});
     for (std::size_t k = 0; k < std::min(max_rows, hit.size()); ++k) {
         const observe::BuildingImpact& b = impacts[hit[k]];
+        const IntensityClass* intensity = guideline.class_of(b);
         Json name = {{"value", name_of(b)}, {"mark", fmt::format("hit-{}", impact_class(b))}};
         if (!std::isnan(b.removed_time)) name["note"] = fmt::format("until {} s", fixed(b.removed_time, 1));
         Json height;
@@ -138,6 +142,7 @@ Json building_rows(const scene::Scene& scene, const std::vector<observe::Buildin
                                 {"peak_impact_pressure_kPa", b.peak_impact_pressure / 1e3},
                                 {"peak_dynamic_pressure_kPa", b.peak_dynamic_pressure / 1e3},
                                 {"peak_depth_m", b.peak_depth},
+                                {"intensity", intensity != nullptr ? Json(intensity->name) : Json()},
                                 {"height_m", std::move(height)}});
     }
     return rows;

@@ -1,6 +1,7 @@
 #include "serve/ensembles.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include <fmt/format.h>
@@ -72,16 +73,24 @@ json Ensembles::describe() const {
         }
         for (const Map& map : ensemble.maps) {
             const ensemble::FinishedMap& about = map.about;
-            const bool probability = about.kind == ensemble::EnsembleMap::Kind::probability;
-            const report::HazardMap& counted = report::hazard_maps().at(about.map);
+            using Kind = ensemble::FinishedMap::Kind;
+            const bool threshold = about.kind == Kind::probability && !std::isnan(about.level);
+            json categories = json::array();
+            for (const report::Category& c : about.style.categories) {
+                categories.push_back({{"name", c.name}, {"colour", c.colour.hex()}});
+            }
             maps.push_back({{"name", about.style.file},
                             {"title", about.style.title},
                             {"unit", about.style.unit},
-                            {"kind", probability ? "probability" : "percentile"},
-                            {"of", counted.file},
-                            {"threshold", number_or_null(probability, about.level)},
-                            {"threshold_unit", probability ? json(counted.unit) : json()},
-                            {"percentile", number_or_null(!probability, about.level)},
+                            {"kind", about.kind == Kind::zones         ? "zones"
+                                     : about.kind == Kind::probability ? "probability"
+                                                                       : "percentile"},
+                            {"of", about.of},
+                            {"description", about.style.description},
+                            {"threshold", number_or_null(threshold, about.level)},
+                            {"threshold_unit", threshold ? json(about.level_unit) : json()},
+                            {"percentile", number_or_null(about.kind == Kind::percentile, about.level)},
+                            {"categories", categories},
                             {"greatest", number_or_null(map.greatest > 0, map.greatest)}});
         }
         list.push_back({{"id", std::to_string(list.size() + 1)},

@@ -6,8 +6,8 @@
 
 #include "core/hash.hpp"
 #include "core/number_or_null.hpp"
+#include "report/intensity.hpp"
 #include "scene/viscosity_limit.hpp"
-#include "twin/intensity.hpp"
 #include "twin/json_keys.hpp"
 #include "twin/scenario_parts.hpp"
 
@@ -94,8 +94,28 @@ std::pair<float, float> elevation_range(const terrain::Terrain& terrain) {
     return {lowest, highest};
 }
 
-json impact_json(const std::string& id, const observe::BuildingImpact& impact, bool barrier) {
-    const char* intensity = intensity_class(impact);
+const report::IntensityGuideline& guideline_of(const scene::Scene& scene) {
+    return report::intensity_guideline(scene.spec.outputs.intensity_guideline);
+}
+
+/// The scene's guideline, as GET /api/scene has it.
+json intensity_json(const report::IntensityGuideline& guideline) {
+    json classes = json::array();
+    for (const report::IntensityClass& c : guideline.classes) {
+        classes.push_back({{"name", c.name}, {"colour", c.colour.hex()}, {"criterion", c.criterion}});
+    }
+    return {{"guideline", guideline.name},
+            {"classes", classes},
+            {"rule", guideline.name +
+                         " of a building, by the peak depth h at its walls and the peak depth-averaged "
+                         "speed v within a map cell of them. " +
+                         guideline.remark},
+            {"source", guideline.citation}};
+}
+
+json impact_json(const std::string& id, const observe::BuildingImpact& impact, bool barrier,
+                 const report::IntensityGuideline& guideline) {
+    const report::IntensityClass* intensity = guideline.class_of(impact);
     json row = {{"id", id},
                 {"name", impact.name},
                 {"hit", impact.hit},
@@ -107,7 +127,7 @@ json impact_json(const std::string& id, const observe::BuildingImpact& impact, b
                 {"peak_dynamic_pressure_kPa", impact.peak_dynamic_pressure / 1e3},
                 {"impulse_kNs", impact.impulse / 1e3},
                 {"failed_s", number_or_null<json>(impact.failure_time)},
-                {"intensity", intensity != nullptr ? json(intensity) : json()}};
+                {"intensity", intensity != nullptr ? json(intensity->name) : json()}};
     if (barrier) {
         row["overtopped_m3"] = impact.overtopped_volume;
         row["first_overtopped_s"] = number_or_null<json>(impact.first_overtopping_time);
@@ -160,7 +180,7 @@ json Scenario::scene_json() const {
             {"observations", observations},
             {"parameters", live_parameters_json(scene, model, parts_->setup().material)},
             {"settings", settings_json(scene)},
-            {"intensity", intensity_json()}};
+            {"intensity", intensity_json(guideline_of(scene))}};
 }
 
 json Scenario::state_json(bool with_hash) const {
@@ -238,15 +258,16 @@ json Scenario::series_json() const {
 
 json Scenario::impacts_json(std::optional<double> time) const {
     const LiveRun& run = *parts_->run;
+    const report::IntensityGuideline& guideline = guideline_of(*parts_->scene);
     json buildings = json::array(), barriers = json::array(), removed = json::array();
     for (const BuildingSetup& building : parts_->setup().buildings) {
-        buildings.push_back(impact_json(building.id, run.impact_on(building.id, time), false));
+        buildings.push_back(impact_json(building.id, run.impact_on(building.id, time), false, guideline));
     }
     for (const BarrierSetup& barrier : parts_->setup().barriers) {
-        barriers.push_back(impact_json(barrier.id, run.impact_on(barrier.id, time), true));
+        barriers.push_back(impact_json(barrier.id, run.impact_on(barrier.id, time), true, guideline));
     }
     for (const LiveRun::Removed& gone : run.removed()) {
-        json row = impact_json(gone.id, gone.impact, gone.barrier);
+        json row = impact_json(gone.id, gone.impact, gone.barrier, guideline);
         row["kind"] = gone.barrier ? "barrier" : "building";
         row["removed_s"] = gone.impact.removed_time;
         removed.push_back(std::move(row));

@@ -239,11 +239,11 @@ TEST_F(Products, RunOutTableGivesAnglesInDegrees) {
 TEST_F(Products, BuildingTableUsesKilonewtonAndKilopascal) {
     const auto rows = rows_of(test::read_text(folder_->path() / "buildings.csv"));
     ASSERT_EQ(rows.size(), 6U);
-    EXPECT_THAT(rows[0],
-                ElementsAre("name", "hit", "first_hit_time_s", "peak_force_kN", "peak_impact_pressure_kPa",
-                            "peak_dynamic_pressure_kPa", "peak_depth_m", "filter_window_s", "patch_edge_m", "height_m",
-                            "height_assumed", "kind", "impulse_kNs", "failed_s", "overtopped_m3", "first_overtopped_s",
-                            "passed_m3", "held_m3", "peak_held_m3", "peak_filling_height_m", "removed_time_s"));
+    EXPECT_THAT(rows[0], ElementsAre("name", "hit", "first_hit_time_s", "peak_force_kN", "peak_impact_pressure_kPa",
+                                     "peak_dynamic_pressure_kPa", "peak_depth_m", "filter_window_s", "patch_edge_m",
+                                     "height_m", "height_assumed", "kind", "impulse_kNs", "failed_s", "overtopped_m3",
+                                     "first_overtopped_s", "passed_m3", "held_m3", "peak_held_m3",
+                                     "peak_filling_height_m", "removed_time_s", "peak_speed_mps", "intensity"));
     EXPECT_EQ(rows[1][0], "House 38");
     EXPECT_EQ(rows[1][1], "yes");
     EXPECT_EQ(rows[1][3], "412");
@@ -252,9 +252,11 @@ TEST_F(Products, BuildingTableUsesKilonewtonAndKilopascal) {
     EXPECT_EQ(rows[1][7], "0.2");
     EXPECT_EQ(rows[1][8], "1");
     EXPECT_EQ(rows[2][10], "yes");
-    EXPECT_EQ(rows[1].back(), "") << "it stands";
+    EXPECT_EQ(rows[1][20], "") << "it stands";
+    EXPECT_EQ(rows[1].back(), "medium");
     EXPECT_EQ(rows[5][1], "no");
     EXPECT_EQ(rows[5][2], "") << "never hit: no time";
+    EXPECT_EQ(rows[5].back(), "") << "never hit: no intensity";
 }
 
 TEST_F(Products, BarriersHaveTheirVolumesAndTheirHistory) {

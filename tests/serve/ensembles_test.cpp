@@ -21,9 +21,10 @@ using ::testing::HasSubstr;
 class EnsemblesTest : public Serve {
   protected:
     void SetUp() override {
-        const auto outcome = run_program({"ensemble", "slope.toml", "--vary", "material.friction_coefficient=0.1:0.4",
-                                          "--runs", "4", "--depth-m", "0.05,0.2", "-o", "ens", "--quiet"},
-                                         {.folder = scene_.folder()});
+        const auto outcome =
+            run_program({"ensemble", "slope.toml", "--vary", "material.friction_coefficient=0.1:0.4", "--runs", "4",
+                         "--depth-m", "0.05,0.2", "--return-period", "100", "-o", "ens", "--quiet"},
+                        {.folder = scene_.folder()});
         ASSERT_EQ(outcome.exit_code, 0) << outcome.error;
     }
     [[nodiscard]] fs::path ensemble() const { return scene_.folder() / "ens"; }
@@ -53,6 +54,21 @@ TEST_F(EnsemblesTest, are_listed_with_their_maps) {
     EXPECT_EQ(first["threshold_unit"], "m");
     EXPECT_EQ(first["unit"], "%");
     EXPECT_EQ(first["greatest"], 100);
+    const auto named = [&](const char* name) -> json {
+        for (const json& map : list[0]["maps"]) {
+            if (map["name"] == name) return map;
+        }
+        return {};
+    };
+    const json odds = named("probability_intensity_medium"), zones = named("hazard_zones");
+    EXPECT_EQ(odds["kind"], "probability");
+    EXPECT_EQ(odds["of"], "intensity");
+    EXPECT_EQ(odds["threshold"], nullptr);
+    EXPECT_EQ(zones["kind"], "zones");
+    EXPECT_THAT(zones["description"].get<std::string>(), HasSubstr("Swiss hazard matrix"));
+    ASSERT_EQ(zones["categories"].size(), 4U);
+    EXPECT_EQ(zones["categories"][3]["name"], "high (red)");
+    EXPECT_EQ(zones["categories"][3]["colour"], "#c81e28");
     for (const json& map : list[0]["maps"]) {
         const Answer grid = eye.get("/api/ensembles/1/maps/" + map["name"].get<std::string>());
         ASSERT_EQ(grid.status, 200) << map.dump();

@@ -222,5 +222,20 @@ TEST(Scenario, classifies_buildings_by_depth_and_speed_at_their_walls) {
     EXPECT_THAT(scenario->scene_json()["intensity"]["source"].get<std::string>(), HasSubstr("1997"));
 }
 
+TEST(Scenario, classifies_buildings_by_the_guideline_of_the_scene) {
+    scene::Scene scene = channel_scene();
+    scene.spec.outputs.intensity_guideline = params::GuidelineChoice::garcia_2003;
+    add_building(scene, "in the way", rectangle(west + 30, south + 27, west + 34, south + 33), 6);
+    const auto scenario = open(scene);
+    run_until(*scenario, 5);
+    const json told = scenario->scene_json()["intensity"];
+    ASSERT_EQ(told["classes"].size(), 3U);
+    EXPECT_EQ(told["guideline"], "Venezuelan debris-flow classes");
+    const json house = scenario->impacts_json()["buildings"][0];
+    const double depth = house["peak_depth_m"], speed = house["peak_speed_mps"];
+    ASSERT_GT(depth, 0.2);
+    EXPECT_EQ(house["intensity"], depth > 1 || depth * speed > 1 ? "high" : depth * speed > 0.2 ? "medium" : "low");
+}
+
 }  // namespace
 }  // namespace talus::twin::test

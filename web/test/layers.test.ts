@@ -1,8 +1,8 @@
 import { describe, expect, it } from "vitest";
 import type { Grid } from "../src/protocol/grid";
-import type { Ensemble } from "../src/protocol/messages";
-import { divergingAt, lightness, rampAt, ramps, roundStep } from "../src/scene/colour";
-import { differenceOf, ensembleLayer, ensembleTitle, findMap, infoOf, inUnit, rangeOfMap, scaleEnd, shownOfMap, shownValues } from "../src/scene/layers";
+import type { Ensemble, EnsembleMap } from "../src/protocol/messages";
+import { divergingAt, hex, lightness, rampAt, ramps, roundStep } from "../src/scene/colour";
+import { colourOf, differenceOf, ensembleLayer, ensembleTitle, findMap, infoOf, inUnit, rangeOfMap, scaleEnd, shownOfMap, shownValues } from "../src/scene/layers";
 
 const grid = (...values: number[]): Grid => ({ west: 0, south: 0, cell: 1, columns: values.length, rows: 1, values: Float32Array.from(values) });
 
@@ -57,8 +57,8 @@ describe("layers", () => {
 });
 
 describe("maps of an ensemble", () => {
-  const map = (name: string, kind: "probability" | "percentile", greatest: number | null = 80) =>
-    ({ name, title: `Title of ${name}`, unit: kind === "probability" ? "%" : "m", kind, of: "peak_depth" as const, threshold: 0.5, threshold_unit: "m", percentile: 95, greatest });
+  const map = (name: string, kind: "probability" | "percentile", greatest: number | null = 80): EnsembleMap =>
+    ({ name, title: `Title of ${name}`, unit: kind === "probability" ? "%" : "m", kind, of: "peak_depth" as const, description: "", threshold: 0.5, threshold_unit: "m", percentile: 95, categories: [], greatest });
   const ensemble: Ensemble = { id: "2", name: "wet", runs: 64, failed: 1, factors: [{ key: "material.viscosity", distribution: "uniform from 0 to 1" }],
     same_terrain: true, maps: [map("probability_depth_0.5m", "probability"), map("peak_depth_p95", "percentile", null)] };
   const name = ensembleLayer(ensemble, ensemble.maps[0]);
@@ -72,6 +72,18 @@ describe("maps of an ensemble", () => {
     expect(infoOf(ensembleLayer(ensemble, ensemble.maps[1]), [ensemble])).toMatchObject({ ramp: ramps.peak_depth, from: "wet, 64 runs, 1 failed: nowhere" });
     expect(infoOf(name, [{ ...ensemble, same_terrain: false }]).from).toContain("other terrain");
     expect(infoOf("peak_speed", []).title).toBe("Peak speed");
+  });
+  it("of an intensity say what they count, and zones have a colour per class", () => {
+    const odds: EnsembleMap = { ...map("probability_intensity_high", "probability"), title: "Probability of high intensity", of: "intensity", threshold: null, threshold_unit: null };
+    const zones: EnsembleMap = { ...odds, name: "hazard_zones", title: "Hazard zones", unit: "", kind: "zones", description: "hazard zones, a matrix: 1 low, 2 high",
+      categories: [{ name: "low", colour: "#f5dc46" }, { name: "high", colour: "#c81e28" }] };
+    const both = [{ ...ensemble, maps: [odds, zones] }];
+    expect(infoOf(ensembleLayer(both[0], odds), both)).toMatchObject({ ramp: ramps.probability, help: expect.stringContaining("with high intensity") });
+    const info = infoOf(ensembleLayer(both[0], zones), both);
+    expect(info.help).toContain("1 low, 2 high");
+    expect(rangeOfMap(zones, Float32Array.of(1, 2))).toEqual([0.5, 2.5]);
+    expect([0, 0.25, 0.49, 0.51, 1].map((s) => hex(colourOf(info, s)))).toEqual(["#f5dc46", "#f5dc46", "#f5dc46", "#c81e28", "#c81e28"]);
+    expect([...shownOfMap(zones, grid(NaN, 1, 2, NaN))]).toEqual([NaN, 1, 2, NaN]);
   });
   it("probabilities have one scale, and places that no run reached are left out", () => {
     const values = shownOfMap(ensemble.maps[0], grid(0, NaN, 12.5, 100));

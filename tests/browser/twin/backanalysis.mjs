@@ -11,7 +11,7 @@ export async function testBackanalysis(run) {
   const folder = join(run.output, "ensemble of friction");
   rmSync(folder, { recursive: true, force: true });
   const made = spawnSync(run.command[0], ["ensemble", run.scene, "--set", `solver.target_particle_count=${particles}`, "--vary", "material.friction_coefficient=0.25:0.5",
-    "--runs", "6", "-o", folder, "--quiet"]);
+    "--runs", "6", "--return-period", "50", "-o", folder, "--quiet"]);
   assert.equal(made.status, 0, String(made.stderr));
   const server = await run.start(["--ensemble", folder], { particles });
   const page = await run.open(server.controller, { name: "Ada" });
@@ -35,15 +35,17 @@ async function testMaps(run, page) {
     const legend = page.locator(".legend").last();
     const seen = new Set([bare.hash]);
     for (const [name, title, unit] of [["probability_depth_0.5m", "Probability of peak depth over 0.5 m", "%"], ["probability_speed_10mps", "Probability of peak speed over 10 m/s", "%"],
-      ["peak_depth_p95", "Peak depth, 95th percentile", "m"], ["peak_pressure_p50", "Peak dynamic pressure, 50th percentile", "kPa"], ["arrival_time_p05", "Arrival time, 5th percentile", "s"]]) {
+      ["peak_depth_p95", "Peak depth, 95th percentile", "m"], ["peak_pressure_p50", "Peak dynamic pressure, 50th percentile", "kPa"], ["arrival_time_p05", "Arrival time, 5th percentile", "s"],
+      ["probability_intensity_high", "Probability of high intensity", "%"], ["hazard_zones", "Hazard zones", null]]) {
       await page.selectOption(layerSelect, `ensemble/1/${name}`);
       await until(() => legend.locator(".legend-title b").textContent(), (t) => t === title, `legend of ${name}`);
-      assert.equal(await legend.locator(".legend-title span").textContent(), unit);
+      if (unit !== null) assert.equal(await legend.locator(".legend-title span").textContent(), unit);
+      else assert.deepEqual(await legend.locator(".legend-category").allTextContents(), ["high (red)", "medium (blue)", "low (yellow)", "residual (yellow-white)"]);
       assert.equal(await legend.locator(".legend-from").textContent(), "ensemble of friction, 6 runs");
       seen.add((await run.changed(page, clip, [...seen], name)).hash);
       await run.shot(page, `30-${name}`);
     }
-    assert.equal(seen.size, 6, "different pictures");
+    assert.equal(seen.size, 8, "different pictures");
     await page.selectOption(layerSelect, "none");
     await run.back(page, clip, bare, "the ground without a layer");
     await page.locator("label:has-text('Particles') input").check();

@@ -135,9 +135,7 @@ export function impactsPanel(twin: Twin, stage: Stage): HTMLElement {
   const classes = h("ul", { class: "classes" }, ...intensity.classes.map((c) => {
     const dot = h("i", { class: "dot" });
     dot.style.background = c.colour;
-    const thresholds = Object.entries(c).filter(([key, v]) => key !== "name" && key !== "colour" && (typeof v === "number" || typeof v === "string"))
-      .map(([key, v]) => (typeof v === "number" ? thresholdText(key, v) : String(v))).join(", ");
-    return h("li", {}, dot, h("b", {}, c.name), thresholds === "" ? null : h("span", { class: "muted" }, ` ${thresholds}`));
+    return h("li", {}, dot, h("b", {}, c.name), h("span", { class: "muted" }, ` ${c.criterion}`));
   }));
   const none = h("p", { class: "hint" }, "Nothing has been hit yet. Rows fill as debris reaches houses and barriers.");
   const measured = h("p", { class: "hint" }, "Impact is the highest force on a patch of the walls over its area (1 m x 1 m unless the scene says otherwise); Force is that on all walls; Depth is that of the debris in front of them. The map's dynamic pressure, density times speed squared, is that of the free flow.");
@@ -163,11 +161,4 @@ export function impactsPanel(twin: Twin, stage: Stage): HTMLElement {
   });
   return h("div", {}, then, none, barrierTitle, barriers.element, h("div", { class: "row" }, h("h3", { class: "grow" }, "Buildings"), h("label", { class: "check" }, "Colour", colouring)),
     houses.element, measured, goneTitle, gone, h("h3", {}, "Intensity classes"), classes, h("p", { class: "hint" }, intensity.rule), h("p", { class: "hint" }, `Source: ${intensity.source}`));
-}
-
-/** "depth_m", 0.5 becomes "depth ≥ 0.5 m". */
-function thresholdText(key: string, value: number): string {
-  const [, words = key, unit = ""] = /^(.*?)(?:_(m|mps|kPa|m2ps|s))?$/.exec(key) ?? [];
-  const units: Record<string, string> = { mps: "m/s", m2ps: "m²/s" };
-  return `${words.replaceAll("_", " ")} ${value} ${units[unit] ?? unit}`.trim();
 }

@@ -1,7 +1,8 @@
 // Legends with units, compass, scale bar, contour interval.
 import { css, divergingAt, rampAt, ramps, roundStep, type Rgb } from "../scene/colour";
 import { contourInterval } from "../scene/ground";
-import { infoOf, isEnsembleLayer } from "../scene/layers";
+import type { Category } from "../protocol/messages";
+import { colourOf, infoOf, isEnsembleLayer } from "../scene/layers";
 import type { ShownLayers } from "../scene/shown_layers";
 import type { Stage } from "../scene/stage";
 import { watchAll } from "../state/cell";
@@ -10,7 +11,8 @@ import { fixed, quantity, tick, unitText } from "../state/format";
 import type { Twin } from "../state/twin";
 import { h } from "../ui/dom";
 
-export interface Legend { title: string; unit: string; low: number; high: number; at: (share: number) => Rgb; note?: string; from?: string }
+/** categories: names of even classes from low to high, in place of a scale. */
+export interface Legend { title: string; unit: string; low: number; high: number; at: (share: number) => Rgb; note?: string; from?: string; categories?: readonly Category[] }
 
 const pastNote = "Rebuilt from the recording: peaks between recorded frames are missed, so values can be slightly low.";
 
@@ -33,7 +35,8 @@ export function presentLegends(twin: Twin, stage: Stage, layers: ShownLayers): L
     const [low, high] = layers.range.value;
     const time = layers.shown_s.value;
     if (isEnsembleLayer(name)) {
-      list.push({ title: info.title, unit: info.unit, low, high, at: (s) => rampAt(info.ramp, s), note: info.help, ...(info.from ? { from: info.from } : {}) });
+      list.push({ title: info.title, unit: info.unit, low, high, at: (s) => colourOf(info, s), note: info.help,
+        ...(info.from ? { from: info.from } : {}), ...(info.categories ? { categories: info.categories } : {}) });
       return list;
     }
     const title = (name === "depth" && time !== null ? "Depth" : info.title) + (layers.isDifference ? ", B − A" : "") +
@@ -64,6 +67,15 @@ export function legends(twin: Twin, stage: Stage, layers: ShownLayers): HTMLElem
     const anyHit = twin.scenarios.value.some((s) => twin.cells[s].impacts.value?.buildings.some((b) => b.hit));
     classes.hidden = twin.houseColour.value !== "intensity" || !anyHit;
     holder.replaceChildren(classes, ...presentLegends(twin, stage, layers).map((legend) => {
+      const from = legend.from ? h("div", { class: "legend-from" }, legend.from) : null;
+      if (legend.categories) {
+        const list = legend.categories.map((c) => {
+          const dot = h("i", { class: "dot" });
+          dot.style.background = c.colour;
+          return h("div", { class: "legend-category" }, dot, c.name);
+        });
+        return h("div", { class: "legend", ...(legend.note ? { title: legend.note } : {}) }, h("div", { class: "legend-title" }, h("b", {}, legend.title)), ...list.reverse(), from);
+      }
       const bar = h("div", { class: "legend-bar" });
       const stops = Array.from({ length: 17 }, (_, i) => css(legend.at(i / 16)));
       bar.style.background = `linear-gradient(to right, ${stops.join(", ")})`;
@@ -76,7 +88,7 @@ export function legends(twin: Twin, stage: Stage, layers: ShownLayers): HTMLElem
       return h("div", { class: "legend", role: "img", ...(legend.note ? { title: legend.note } : {}),
         "aria-label": `${legend.title}: colours from ${quantity(legend.low, legend.unit)} to ${quantity(legend.high, legend.unit)}${legend.from ? `; ${legend.from}` : ""}` },
       h("div", { class: "legend-title" }, h("b", {}, legend.title), h("span", {}, unitText(legend.unit))), bar, scale,
-      legend.from ? h("div", { class: "legend-from" }, legend.from) : null);
+      from);
     }));
   });
   return holder;

@@ -60,6 +60,22 @@ export class Picture {
     let bottom = height - 10;
     for (const legend of presentLegends(twin, stage, this.layers)) {
       if (legend.from) bottom -= 15;
+      if (legend.categories) {
+        const rows = legend.categories.length;
+        plate(10, bottom - 16 - 16 * rows, 208, 16 + 16 * rows + (legend.from ? 15 : 0));
+        c.font = `600 12px ${font}`;
+        c.fillText(legend.title, 20, bottom - 5 - 16 * rows, 188);
+        c.font = `11px ${font}`;
+        legend.categories.forEach((category, k) => {
+          c.fillStyle = category.colour;
+          c.fillRect(20, bottom - 14 - 16 * k, 11, 11);
+          c.fillStyle = "#48525b";
+          c.fillText(category.name, 38, bottom - 8 - 16 * k, 170);
+        });
+        if (legend.from) c.fillText(legend.from, 20, bottom + 6, 188);
+        bottom -= 22 + 16 * rows;
+        continue;
+      }
       plate(10, bottom - 48, 208, legend.from ? 63 : 48);
       c.font = `600 12px ${font}`;
       c.fillText(`${legend.title}, ${unitText(legend.unit)}`, 20, bottom - 37, 188);

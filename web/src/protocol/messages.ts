@@ -31,7 +31,8 @@ export interface Parameter {
 }
 export interface Observation { name: string; chainage_m: number; front_velocity_mps: number; source: string }
 export interface FlowPath { points: Place[]; chainage_m: number[]; corridor_width_m: number; traced: boolean }
-export interface IntensityClass { name: string; colour: string; [threshold: string]: unknown }
+export interface Category { name: string; colour: string }
+export interface IntensityClass extends Category { criterion: string }
 export interface SceneInfo {
   title: string;
   description: string;
@@ -55,7 +56,7 @@ export interface SceneInfo {
   parameters: Parameter[];
   /** Keys of the scene that others need, with their values. */
   settings: Record<string, string>;
-  intensity: { classes: IntensityClass[]; rule: string; source: string };
+  intensity: { guideline: string; classes: IntensityClass[]; rule: string; source: string };
 }
 
 export type Status = "paused" | "running" | "at_rest" | "ended" | "fault";
@@ -233,12 +234,16 @@ export interface EnsembleMap {
   name: string;
   title: string;
   unit: string;
-  kind: "probability" | "percentile";
-  /** The layer of a single run from which it is computed. */
-  of: Exclude<LayerName, "depth" | "erosion_depth">;
+  kind: "probability" | "percentile" | "zones";
+  /** The map of a single run from which it is computed. */
+  of: Exclude<LayerName, "depth" | "erosion_depth"> | "intensity";
+  description: string;
+  /** Of a probability of depth, speed or pressure. */
   threshold: number | null;
   threshold_unit: string | null;
   percentile: number | null;
+  /** Of zones: of the values 1, 2, ... */
+  categories: Category[];
   /** null: no run reached any place by that measure. */
   greatest: number | null;
 }

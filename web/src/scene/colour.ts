@@ -57,6 +57,7 @@ export function lightness([r, g, b]: Rgb): number {
 }
 
 export const hex = (colour: Rgb): string => `#${colour.map((v) => v.toString(16).padStart(2, "0")).join("")}`;
+export const fromHex = (text: string): Rgb => [1, 3, 5].map((k) => parseInt(text.slice(k, k + 2), 16)) as Rgb;
 export const css = (colour: Rgb): string => `rgb(${colour.join(" ")})`;
 
 const ramp = (lowHue: number, lowChroma: number, highHue: number, highChroma: number, lowLightness: number, highLightness: number): Ramp =>

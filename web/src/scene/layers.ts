@@ -1,8 +1,8 @@
 // The map layers: names, units, colours, and the conversion of a grid to a texture on the ground.
-import { DataTexture, FloatType, LinearFilter, RGFormat, Vector4 } from "three";
+import { DataTexture, FloatType, LinearFilter, NearestFilter, RGFormat, Vector4 } from "three";
 import type { Grid } from "../protocol/grid";
-import type { Ensemble, EnsembleLayer, EnsembleMap, LayerName, Place, ShownLayer } from "../protocol/messages";
-import { ramps, roundStep, type Ramp } from "./colour";
+import type { Category, Ensemble, EnsembleLayer, EnsembleMap, LayerName, Place, ShownLayer } from "../protocol/messages";
+import { fromHex, rampAt, ramps, roundStep, type Ramp, type Rgb } from "./colour";
 import type { Draped } from "./ground";
 
 export interface LayerInfo {
@@ -12,6 +12,8 @@ export interface LayerInfo {
   help: string;
   /** For a map of an ensemble: its source. */
   from?: string;
+  /** Of the values 1, 2, ...; then the ramp is not used. */
+  categories?: readonly Category[];
 }
 
 export const layerInfo: Record<LayerName, LayerInfo> = {
@@ -44,21 +46,32 @@ export function infoOf(name: ShownLayer, ensembles: readonly Ensemble[]): LayerI
   if (!found) return { title: "Map of an ensemble", unit: "", ramp: ramps.probability, help: "" };
   const { ensemble, map } = found;
   const runs = `${plural(ensemble.runs, "run")} of the ensemble ${ensemble.name}, with ${ensemble.factors.map((f) => `${f.key} ${f.distribution}`).join(", ")}`;
-  const help = map.kind === "probability" ? `Share of ${runs}, in which ${map.title.replace(/^Probability of /, "")} is exceeded`
-    : `${map.percentile} % of ${runs}, do not exceed this`;
+  const what = map.title.replace(/^Probability of /, "");
+  const help = map.kind === "zones" ? `${map.description}; from ${runs}`
+    : map.kind === "percentile" ? `${map.percentile} % of ${runs}, do not exceed this`
+    : `Share of ${runs}, ${map.threshold === null ? `with ${what}` : `in which ${what} is exceeded`}`;
   return {
-    title: map.title, unit: map.unit, ramp: map.kind === "probability" ? ramps.probability : layerInfo[map.of].ramp,
+    title: map.title, unit: map.unit, ramp: map.kind === "percentile" && map.of !== "intensity" ? layerInfo[map.of].ramp : ramps.probability,
+    ...(map.categories.length > 0 ? { categories: map.categories } : {}),
     help: help + (ensemble.same_terrain ? "" : ". Computed on another terrain file than this scene's") + (map.greatest === null ? ". Nowhere in any run" : ""),
     from: ensembleTitle(ensemble) + (ensemble.same_terrain ? "" : ", other terrain") + (map.greatest === null ? ": nowhere" : ""),
   };
 }
 /** Display options of an ensemble's map, NaN elsewhere; a place that no run reached is not part of it. */
 export function shownOfMap(map: EnsembleMap, grid: Grid): Float32Array {
-  return grid.values.map((v) => (v >= (map.kind === "probability" ? 1e-6 : least[map.of]) ? v : NaN));
+  const shown = map.kind === "percentile" && map.of !== "intensity" ? least[map.of] : 1e-6;
+  return grid.values.map((v) => (v >= shown ? v : NaN));
 }
-/** Ends of its scale: every probability has the same, so that thresholds can be compared. */
+/** Ends of its scale: every probability has the same, so that thresholds can be compared; of zones, half a class beyond the first and the last. */
 export function rangeOfMap(map: EnsembleMap, values: Float32Array): [number, number] {
+  if (map.kind === "zones") return [0.5, map.categories.length + 0.5];
   return [0, map.kind === "probability" ? 100 : scaleEnd(values)];
+}
+/** Colour at a share of a layer's scale. */
+export function colourOf(info: LayerInfo, share: number): Rgb {
+  const { categories } = info;
+  if (!categories) return rampAt(info.ramp, share);
+  return fromHex(categories[Math.min(categories.length - 1, Math.max(0, Math.floor(share * categories.length)))].colour);
 }
 
 /** A layer of the run in the unit of its legend: the server sends SI units. */
@@ -115,7 +128,8 @@ export function differenceOf(name: LayerName, a: Grid, b: Grid): Grid {
   return { west, south, cell, columns, rows, values };
 }
 
-export function drapedFrom(grid: Grid, origin: Place): Draped {
+/** smooth: interpolated between cells, as classes must not be. */
+export function drapedFrom(grid: Grid, origin: Place, smooth = true): Draped {
   const { values } = grid;
   // Value times cover and cover: filtering the pair gives edges without a fringe of zeros.
   const pairs = new Float32Array(2 * values.length);
@@ -127,7 +141,7 @@ export function drapedFrom(grid: Grid, origin: Place): Draped {
   }
   const texture = new DataTexture(pairs, grid.columns, grid.rows, RGFormat, FloatType);
   texture.internalFormat = "RG16F";
-  texture.minFilter = texture.magFilter = LinearFilter;
+  texture.minFilter = texture.magFilter = smooth ? LinearFilter : NearestFilter;
   texture.needsUpdate = true;
   const placing = new Vector4(grid.west - origin[0], grid.south - origin[1], 1 / (grid.columns * grid.cell), 1 / (grid.rows * grid.cell));
   return { texture, placing };

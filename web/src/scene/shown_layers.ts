@@ -8,7 +8,7 @@ import type { Twin } from "../state/twin";
 import { divergingAt, rampAt, ramps, roundStep } from "./colour";
 import { rampTexture, type Draped } from "./ground";
 import { photoTexture } from "./photo";
-import { differenceOf, drapedFrom, findMap, infoOf, inUnit, isEnsembleLayer, rangeOfMap, scaleEnd, shownOfMap, shownValues } from "./layers";
+import { colourOf, differenceOf, drapedFrom, findMap, infoOf, inUnit, isEnsembleLayer, rangeOfMap, scaleEnd, shownOfMap, shownValues } from "./layers";
 import type { Stage } from "./stage";
 
 const refresh_ms = 2000;
@@ -157,7 +157,7 @@ export class ShownLayers {
       const view = this.stage.views.get(s);
       if (!view) continue;
       this.held.get(s)?.dispose();
-      const draped = drapedFrom(grid, this.twin.scene.origin);
+      const draped = drapedFrom(grid, this.twin.scene.origin, infoOf(name, this.twin.ensembles.value).categories === undefined);
       this.held.set(s, draped.texture);
       view.ground.showLayer(draped, this.rampFor(name), [...this.range.value] as [number, number], this.twin.layerOpacity.value);
     }
@@ -175,7 +175,7 @@ export class ShownLayers {
     let texture = this.rampTextures.get(key);
     if (!texture) {
       texture = rampTexture(key === "difference" ? (s) => divergingAt(2 * s - 1)
-        : (s) => rampAt(key === "speed" ? ramps.speed : infoOf(key as ShownLayer, this.twin.ensembles.value).ramp, s));
+        : (s) => (key === "speed" ? rampAt(ramps.speed, s) : colourOf(infoOf(key as ShownLayer, this.twin.ensembles.value), s)));
       this.rampTextures.set(key, texture);
     }
     return texture;
