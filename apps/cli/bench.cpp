@@ -183,7 +183,7 @@ void add_bench(CLI::App& program, std::vector<Command>& commands) {
         ->check(CLI::Range(1, 1000));
     add_list("--threads", bench->threads, "numbers of threads; default: all cores")
         ->type_name("N,N")
-        ->check(CLI::Range(1, 4096));
+        ->check(CLI::Range(1, 512));
     app->add_option("--backend", bench->backend, "what computes the steps; default: cpu")
         ->type_name("NAME")
         ->check(CLI::IsMember(std::vector<std::string>{"cpu"}));

@@ -179,7 +179,7 @@ void add_calibrate(CLI::App& program, std::vector<Command>& commands) {
     add_data_folder(*app, arguments->data);
     app->add_option("--threads", arguments->threads, "runs in parallel, one thread each; default: all cores")
         ->type_name("N")
-        ->check(CLI::Range(1, 4096));
+        ->check(CLI::Range(1, 512));
     app->add_flag("--retry-failed", arguments->retry_failed, "repeat runs that failed in an earlier call");
     CLI::Option* quiet = app->add_flag("--quiet", arguments->quiet, "print only errors");
     app->add_flag("--json", arguments->json, "progress and result as one JSON object per line on stdout")

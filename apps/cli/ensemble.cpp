@@ -315,7 +315,7 @@ void add_ensemble(CLI::App& program, std::vector<Command>& commands) {
     add_data_folder(*app, ensemble->data);
     app->add_option("--threads", ensemble->threads, "runs in parallel, one thread each; default: all cores, 1 per rank")
         ->type_name("N")
-        ->check(CLI::Range(1, 4096));
+        ->check(CLI::Range(1, 512));
     app->add_option("--shard", ensemble->shard, "only every n-th run, from the i-th; each shard in its own folder")
         ->type_name("I/N");
     app->add_flag("--retry-failed", ensemble->retry_failed, "repeat runs that failed in an earlier call");

@@ -114,7 +114,7 @@ void add_replay(CLI::App& program, std::vector<Command>& commands) {
         ->type_name("SCENE");
     app->add_option("--threads", replay->threads, "number of threads; default: as in the scene")
         ->type_name("N")
-        ->check(CLI::Range(1, 4096));
+        ->check(CLI::Range(1, 512));
     add_data_folder(*app, replay->data);
     app->add_flag("--quiet", replay->quiet, "print only errors and differences");
     app->footer(replay_help);

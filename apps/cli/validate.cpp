@@ -158,7 +158,7 @@ void add_validate(CLI::App& program, std::vector<Command>& commands) {
         ->type_name("FILE");
     app->add_option("--threads", validate->threads, "number of threads; default: all cores")
         ->type_name("N")
-        ->check(CLI::Range(1, 4096));
+        ->check(CLI::Range(1, 512));
     app->add_option("--data", validate->data, "folder for TALUS_DATA, for cases on real terrain")->type_name("DIR");
     app->footer(validate_help);
     commands.push_back({app, [validate] { return validate_command(*validate); }});

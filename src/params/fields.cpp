@@ -90,27 +90,27 @@ Section declare_flow_path() {
            "the run, "
            "chainages are along the path that debris followed, unless observations refer to the traced one.");
     s.text("layer", &FlowPathSpec::layer, "the only layer", "Layer of the file.");
-    s.key("corridor_width_m", "m", &FlowPathSpec::corridor_width, above(0),
+    s.key("corridor_width_m", "m", &FlowPathSpec::corridor_width, between(0.01, 1e5),
           "Debris farther than half of this from the line does not count as front.");
     return s.take();
 }
 
 Section declare_solver() {
     Declaration<SolverSpec> s("solver", "How it is computed.", &SceneSpec::solver);
-    s.optional_key("particle_spacing_m", "m", &SolverSpec::particle_spacing, above(0),
+    s.optional_key("particle_spacing_m", "m", &SolverSpec::particle_spacing, between(1e-4, 100),
                    "from target_particle_count and the released volume",
                    "Edge of the cube of debris that a particle stands for.");
-    s.key("target_particle_count", "", &SolverSpec::target_particle_count, between(1, 1e9),
+    s.key("target_particle_count", "", &SolverSpec::target_particle_count, between(1, 1e8),
           "Particles to aim for where particle_spacing_m is not given.");
-    s.key("particle_limit", "", &SolverSpec::particle_limit, between(1, 1e9),
+    s.key("particle_limit", "", &SolverSpec::particle_limit, between(1, 1e8),
           "More particles than this are refused before the run.");
-    s.optional_key("time_step_s", "s", &SolverSpec::time_step, above_to(0, 1),
+    s.optional_key("time_step_s", "s", &SolverSpec::time_step, between(1e-5, 1),
                    "adaptive: a particle moves at most displacement_limit of a spacing per step", "Fixed time step.");
-    s.key("displacement_limit", "", &SolverSpec::displacement_limit, above_to(0, 1),
+    s.key("displacement_limit", "", &SolverSpec::displacement_limit, between(0.001, 1),
           "Share of a spacing that a particle moves at most in an adaptive time step.");
-    s.key("largest_time_step_s", "s", &SolverSpec::largest_time_step, above_to(0, 1),
+    s.key("largest_time_step_s", "s", &SolverSpec::largest_time_step, between(1e-5, 1),
           "Upper bound of the adaptive time step.");
-    s.key("smallest_time_step_s", "s", &SolverSpec::smallest_time_step, above_to(0, 1),
+    s.key("smallest_time_step_s", "s", &SolverSpec::smallest_time_step, between(1e-5, 1),
           "An adaptive time step below this stops the run as a fault.");
     s.key("iteration_count", "", &SolverSpec::iteration_count, between(1, 1000), "Solver iterations per time step.");
     s.key("extra_iteration_count", "", &SolverSpec::extra_iteration_count, between(0, 1000),
@@ -125,24 +125,26 @@ Section declare_solver() {
     s.key("support_ratio", "", &SolverSpec::support_ratio, between(1.5, 4),
           "Support radius of the kernel over the particle spacing.");
     s.key(
-        "under_relaxation", "", &SolverSpec::under_relaxation, above_to(0, 2),
+        "under_relaxation", "", &SolverSpec::under_relaxation, between(0.001, 2),
         "Factor on every correction of the Jacobi iteration, relative to its largest eigenvalue: above 2 it diverges.");
-    s.key("constraint_relaxation", "", &SolverSpec::constraint_relaxation, at_least(0),
+    s.key("constraint_relaxation", "", &SolverSpec::constraint_relaxation, between(0, 1000),
           "Softens the density constraint: term in the multiplier's denominator relative to its rest value.");
-    s.key("depenetration_speed_mps", "m/s", &SolverSpec::depenetration_speed, above(0),
+    s.key("depenetration_speed_mps", "m/s", &SolverSpec::depenetration_speed, between(1e-6, 1000),
           "With internal_friction = \"pair\": the fastest that compression at the start of a step is undone.");
-    s.key("end_time_s", "s", &SolverSpec::end_time, above(0), "Simulated time at which the run ends at the latest.");
+    s.key("end_time_s", "s", &SolverSpec::end_time, above_to(0, 1e7),
+          "Simulated time at which the run ends at the latest.");
     s.key("stop_moving_share", "", &SolverSpec::stop_moving_share, from_to_below(0, 1),
           "Ends the run when less of the debris than this (but five particles at least) is faster than "
           "outputs.deposited_speed_mps and no more than a ten-thousandth ten times as fast; 0 never does.");
-    s.key("stop_duration_s", "s", &SolverSpec::stop_duration, at_least(0), "For how long no more than that may move.");
+    s.key("stop_duration_s", "s", &SolverSpec::stop_duration, between(0, 1e7),
+          "For how long no more than that may move.");
     s.key(
-        "rest_duration_s", "s", &SolverSpec::rest_duration, at_least(0),
+        "rest_duration_s", "s", &SolverSpec::rest_duration, between(0, 1e7),
         "Debris that has hardly moved (a hundredth of a particle's free-fall speed) for so long is at rest: it presses "
         "as before and costs little until something moves next to it. 0: nothing sleeps.");
-    s.key("compression_limit", "", &SolverSpec::compression_limit, above(0),
+    s.key("compression_limit", "", &SolverSpec::compression_limit, above_to(0, 10),
           "Mean over-density (density over rest density, less 1) above which the run stops as a fault.");
-    s.key("thread_count", "", &SolverSpec::thread_count, between(0, 4096),
+    s.key("thread_count", "", &SolverSpec::thread_count, between(0, 512),
           "Threads to compute with; 0 takes all cores. Results do not depend on it.");
     s.rule([](const SolverSpec& solver, const SceneSpec&, double) -> std::optional<Violation> {
         const double small = solver.smallest_time_step, large = solver.largest_time_step;
@@ -158,25 +160,27 @@ Section declare_solver() {
 
 Section declare_outputs() {
     Declaration<OutputSpec> s("outputs", "What is written.", &SceneSpec::outputs);
-    s.optional_key("map_cell_m", "m", &OutputSpec::map_cell, above(0),
+    s.optional_key("map_cell_m", "m", &OutputSpec::map_cell, between(1e-4, 1000),
                    "a whole fraction or multiple of the terrain's cell near 2.5 particle spacings",
                    "Cell of the hazard maps.");
-    s.key("sample_interval_s", "s", &OutputSpec::sample_interval, above(0),
+    s.key("sample_interval_s", "s", &OutputSpec::sample_interval, between(0.001, 1e7),
           "Simulated time between rows of timeseries.csv.");
-    s.key("chainage_interval_m", "m", &OutputSpec::chainage_interval, above(0), "Chainage between rows of front.csv.");
-    s.key("front_velocity_window_m", "m", &OutputSpec::front_velocity_window, above(0),
+    s.key("chainage_interval_m", "m", &OutputSpec::chainage_interval, between(0.001, 1000),
+          "Chainage between rows of front.csv.");
+    s.key("front_velocity_window_m", "m", &OutputSpec::front_velocity_window, between(0.001, 1e5),
           "Chainage over which front velocity is fitted to the arrival times.");
-    s.key("arrival_depth_m", "m", &OutputSpec::arrival_depth, at_least(0),
+    s.key("arrival_depth_m", "m", &OutputSpec::arrival_depth, between(0, 1000),
           "Debris has arrived in a map cell once it is deeper than this.");
-    s.key("impact_filter_window_s", "s", &OutputSpec::impact_filter_window, above(0),
+    s.key("impact_filter_window_s", "s", &OutputSpec::impact_filter_window, above_to(0, 1000),
           "Averaging window of force and impact pressure on structures.")
         .assumes("Averaging time of force and impact pressure");
     s.key("impact_patch_edge_m", "m", &OutputSpec::impact_patch_edge, between(0.1, 100),
           "Edge of the square patches of walls and roofs, the reference area of impact pressure: a patch's filtered "
           "force over its area, independent of the particle spacing.")
         .assumes("Reference area of impact pressure, edge of the square");
-    s.key("deposited_speed_mps", "m/s", &OutputSpec::deposited_speed, above(0), "Slower debris counts as deposited.");
-    s.key("particle_series_interval_s", "s", &OutputSpec::particle_series_interval, at_least(0),
+    s.key("deposited_speed_mps", "m/s", &OutputSpec::deposited_speed, above_to(0, 100),
+          "Slower debris counts as deposited.");
+    s.key("particle_series_interval_s", "s", &OutputSpec::particle_series_interval, between(0, 1e7),
           "Simulated time between particle frames for ParaView; 0 writes none.");
     s.choice("intensity_guideline", &OutputSpec::intensity_guideline,
              {"swiss_debris_flow", "swiss_flood", "garcia_2003"},

@@ -9,17 +9,17 @@ namespace {
 void declare_resistance(Declaration<MaterialSpec>& s) {
     s.key("viscosity_on_ground", "", &MaterialSpec::viscosity_on_ground, anything(),
           "Whether viscosity acts between debris and ground as well, which a viscous fluid sticks to.");
-    s.optional_key("turbulent_friction_mps2", "m/s2", &MaterialSpec::turbulent_friction, above(0), "none",
+    s.optional_key("turbulent_friction_mps2", "m/s2", &MaterialSpec::turbulent_friction, between(1, 1e6), "none",
                    "Voellmy's xi: flow of thickness h is slowed by g v2 / (xi h) in addition to Coulomb friction.")
         .assumes("Turbulent friction, Voellmy's ξ")
         .live_as();
     s.optional_key(
-        "turbulent_friction_thickness_m", "m", &MaterialSpec::turbulent_friction_thickness, above_to(0, 1000),
+        "turbulent_friction_thickness_m", "m", &MaterialSpec::turbulent_friction_thickness, between(0.001, 1000),
         "xi is the same at every thickness",
         "Thickness of the flow at which xi, here and in zones, is as given. It then grows with the cube root "
         "of the thickness: Manning's law, with n = thickness^(1/6) / sqrt(xi).");
     s.key(
-         "cohesion_Pa", "Pa", &MaterialSpec::cohesion, at_least(0),
+         "cohesion_Pa", "Pa", &MaterialSpec::cohesion, between(0, 1e7),
          "Shear strength that needs no pressure, on the ground and inside: the yield stress of a mud where friction is "
          "0.")
         .assumes("Cohesion")
@@ -32,9 +32,9 @@ void declare_resistance(Declaration<MaterialSpec>& s) {
         .assumes("Pore-pressure ratio")
         .live_as()
         .needs(stress());
-    s.optional_key("pore_pressure_decay_time_s", "s", &MaterialSpec::pore_pressure_decay_time, above(0),
+    s.optional_key("pore_pressure_decay_time_s", "s", &MaterialSpec::pore_pressure_decay_time, between(0.001, 1e9),
                    "pore pressure stays", "Time since a body's start in which its pore-pressure ratio falls to 1/e.");
-    s.key("rest_density_kgpm3", "kg/m3", &MaterialSpec::rest_density, above_to(0, 30000), "Bulk density of the debris.")
+    s.key("rest_density_kgpm3", "kg/m3", &MaterialSpec::rest_density, between(1, 30000), "Bulk density of the debris.")
         .assumes("Bulk density")
         .live_as();
     s.optional_key("inertial_friction_coefficient", "", &MaterialSpec::inertial_friction_coefficient, between(0, 10),
@@ -42,11 +42,11 @@ void declare_resistance(Declaration<MaterialSpec>& s) {
                    "Internal friction that is neared as shear gets fast (mu(I) law); at slow shear it is "
                    "internal_friction_coefficient.")
         .needs(stress(true));
-    s.key("inertial_number", "", &MaterialSpec::inertial_number, above(0),
+    s.key("inertial_number", "", &MaterialSpec::inertial_number, between(1e-6, 1000),
           "Inertial number at which internal friction has risen half way to inertial_friction_coefficient.");
-    s.key("grain_diameter_m", "m", &MaterialSpec::grain_diameter, above_to(0, 100),
+    s.key("grain_diameter_m", "m", &MaterialSpec::grain_diameter, between(1e-6, 100),
           "Grain diameter in the inertial number.");
-    s.key("grain_density_kgpm3", "kg/m3", &MaterialSpec::grain_density, above_to(0, 30000),
+    s.key("grain_density_kgpm3", "kg/m3", &MaterialSpec::grain_density, between(1, 30000),
           "Density of the grains in the inertial number.");
 }
 
@@ -72,7 +72,7 @@ Section declare_material() {
           "same share is another material at another particle spacing; kinematic_viscosity_m2ps is not.")
         .assumes("Viscosity, as smoothing per 1/60 s")
         .live_as();
-    s.optional_key("kinematic_viscosity_m2ps", "m2/s", &MaterialSpec::kinematic_viscosity, at_least(0),
+    s.optional_key("kinematic_viscosity_m2ps", "m2/s", &MaterialSpec::kinematic_viscosity, between(0, 1e6),
                    "what viscosity amounts to at this particle spacing",
                    "Viscosity of the debris, in place of viscosity.");
     declare_resistance(s);
@@ -113,15 +113,15 @@ Section declare_zone() {
                   .first = 0.4,
                   .tick = "Friction",
                   .tick_help = "A separate Coulomb friction; unticked: as in [material]"});
-    s.optional_key("turbulent_friction_mps2", "m/s2", &ZoneSpec::turbulent_friction, above(0), "as in [material]",
-                   "Voellmy's xi on this ground; lower is rougher.")
+    s.optional_key("turbulent_friction_mps2", "m/s2", &ZoneSpec::turbulent_friction, between(1, 1e6),
+                   "as in [material]", "Voellmy's xi on this ground; lower is rougher.")
         .live_in({.label = "Voellmy's \u03be",
                   .slider_low = 100,
                   .slider_high = 2100,
                   .first = 500,
                   .tick = "Turbulent friction",
                   .tick_help = "A separate Voellmy turbulent friction; unticked: as in [material]"});
-    s.optional_key("cohesion_Pa", "Pa", &ZoneSpec::cohesion, at_least(0), "as in [material]",
+    s.optional_key("cohesion_Pa", "Pa", &ZoneSpec::cohesion, between(0, 1e7), "as in [material]",
                    "Shear strength without pressure between debris and this ground.")
         .live_in({.label = "Shear strength",
                   .slider_low = 0,
@@ -130,7 +130,7 @@ Section declare_zone() {
                   .tick = "Cohesion",
                   .tick_help = "A separate cohesion; unticked: as in [material]"})
         .needs(stress(true));
-    s.key("stem_density_pm2", "1/m2", &ZoneSpec::stem_density, at_least(0),
+    s.key("stem_density_pm2", "1/m2", &ZoneSpec::stem_density, between(0, 1000),
           "Stems of a forest per square metre that stand the flow; each drags on it as a cylinder.")
         .live_in({.label = "Stems",
                   .slider_low = 50,
@@ -138,9 +138,9 @@ Section declare_zone() {
                   .first = 400,
                   .tick = "Forest",
                   .tick_help = "Stems that drag on the flow"});
-    s.key("stem_diameter_m", "m", &ZoneSpec::stem_diameter, above_to(0, 100), "Diameter of a stem.")
+    s.key("stem_diameter_m", "m", &ZoneSpec::stem_diameter, between(0.001, 100), "Diameter of a stem.")
         .live_in({.label = "Stem diameter", .slider_low = 0.05, .slider_high = 1.05, .first = 0.3});
-    s.key("stem_drag_coefficient", "", &ZoneSpec::stem_drag_coefficient, at_least(0),
+    s.key("stem_drag_coefficient", "", &ZoneSpec::stem_drag_coefficient, between(0, 100),
           "Drag coefficient of a stem across the flow.")
         .live_in({.label = "Drag coefficient", .slider_low = 0, .slider_high = 3, .first = 1});
     s.exactly_one_of({"file", "polygon", "raster"});

@@ -14,14 +14,16 @@ void add_source(Declaration<Struct>& s) {
 }
 template <class Struct>
 void add_chainage(Declaration<Struct>& s) {
-    s.key("chainage_m", "m", &Struct::chainage, at_least(0),
+    s.key("chainage_m", "m", &Struct::chainage, between(0, 1e6),
           "Horizontal distance along the flow path from its first point.")
         .required = true;
 }
 template <class Struct>
 void add_place(Declaration<Struct>& s) {
-    s.key("x_m", "m", &Struct::x, anything(), "East coordinate in the terrain's reference system.").required = true;
-    s.key("y_m", "m", &Struct::y, anything(), "North coordinate in the terrain's reference system.").required = true;
+    s.key("x_m", "m", &Struct::x, between(-1e9, 1e9), "East coordinate in the terrain's reference system.").required =
+        true;
+    s.key("y_m", "m", &Struct::y, between(-1e9, 1e9), "North coordinate in the terrain's reference system.").required =
+        true;
 }
 
 Section declare_observation() {
@@ -30,12 +32,12 @@ Section declare_observation() {
         &SceneSpec::observations);
     add_name(s);
     add_chainage(s);
-    s.key("front_velocity_mps", "m/s", &ObservationSpec::front_velocity, above(0),
+    s.key("front_velocity_mps", "m/s", &ObservationSpec::front_velocity, between(0.001, 1000),
           "Velocity at which debris first reached this chainage.")
         .required = true;
     add_source(s);
-    s.optional_key("uncertainty_mps", "m/s", &ObservationSpec::uncertainty, above(0), "a fifth of the velocity",
-                   "Standard deviation of the velocity.");
+    s.optional_key("uncertainty_mps", "m/s", &ObservationSpec::uncertainty, between(0.001, 1e6),
+                   "a fifth of the velocity", "Standard deviation of the velocity.");
     return s.take();
 }
 
@@ -46,17 +48,19 @@ Section declare_superelevation() {
                                       &SceneSpec::superelevations);
     add_name(s);
     add_chainage(s);
-    s.key("bend_radius_m", "m", &SuperelevationSpec::bend_radius, above(0), "Radius of the path's centre line in plan.")
+    s.key("bend_radius_m", "m", &SuperelevationSpec::bend_radius, between(0.01, 1e5),
+          "Radius of the path's centre line in plan.")
         .required = true;
-    s.key("width_m", "m", &SuperelevationSpec::width, above(0), "Width of the flow between the marks in plan.")
+    s.key("width_m", "m", &SuperelevationSpec::width, between(0.01, 1e5),
+          "Width of the flow between the marks in plan.")
         .required = true;
-    s.key("level_difference_m", "m", &SuperelevationSpec::level_difference, above(0),
+    s.key("level_difference_m", "m", &SuperelevationSpec::level_difference, between(0.001, 1e4),
           "Height of the outer mark above the inner one.")
         .required = true;
     s.key("correction_factor", "", &SuperelevationSpec::correction_factor, between(0.1, 20),
           "For viscosity and sorting in the bend; 1 is a frictionless fluid, and published values for debris go to 5.");
-    s.optional_key("uncertainty_mps", "m/s", &SuperelevationSpec::uncertainty, above(0), "a quarter of the velocity",
-                   "Standard deviation of the velocity.");
+    s.optional_key("uncertainty_mps", "m/s", &SuperelevationSpec::uncertainty, between(0.001, 1e6),
+                   "a quarter of the velocity", "Standard deviation of the velocity.");
     add_source(s);
     return s.take();
 }
@@ -65,8 +69,8 @@ Section declare_arrival() {
     Declaration<ArrivalSpec> s("arrival", "When debris first came to a chainage.", &SceneSpec::arrivals);
     add_name(s);
     add_chainage(s);
-    s.key("time_s", "s", &ArrivalSpec::time, above(0), "Time since the release.").required = true;
-    s.optional_key("uncertainty_s", "s", &ArrivalSpec::uncertainty, above(0), "a fifth of the time",
+    s.key("time_s", "s", &ArrivalSpec::time, between(0.001, 1e7), "Time since the release.").required = true;
+    s.optional_key("uncertainty_s", "s", &ArrivalSpec::uncertainty, between(0.001, 1e6), "a fifth of the time",
                    "Standard deviation of the time.");
     add_source(s);
     return s.take();
@@ -76,9 +80,9 @@ Section declare_run_up() {
     Declaration<RunUpSpec> s("run_up", "A mark of how high debris stood at a place.", &SceneSpec::run_ups);
     add_name(s);
     add_place(s);
-    s.key("height_m", "m", &RunUpSpec::height, at_least(0), "Height of the mark above the ground at that place.")
+    s.key("height_m", "m", &RunUpSpec::height, between(0, 1e4), "Height of the mark above the ground at that place.")
         .required = true;
-    s.key("uncertainty_m", "m", &RunUpSpec::uncertainty, above(0), "Standard deviation of the height.");
+    s.key("uncertainty_m", "m", &RunUpSpec::uncertainty, between(0.001, 1e6), "Standard deviation of the height.");
     add_source(s);
     return s.take();
 }
@@ -87,9 +91,10 @@ Section declare_deposit_depth() {
     Declaration<DepositDepthSpec> s("deposit_depth", "What debris left at a place.", &SceneSpec::deposit_depths);
     add_name(s);
     add_place(s);
-    s.key("depth_m", "m", &DepositDepthSpec::depth, at_least(0), "Vertical depth of the deposit; 0: none.").required =
-        true;
-    s.key("uncertainty_m", "m", &DepositDepthSpec::uncertainty, above(0), "Standard deviation of the depth.");
+    s.key("depth_m", "m", &DepositDepthSpec::depth, between(0, 1e4), "Vertical depth of the deposit; 0: none.")
+        .required = true;
+    s.key("uncertainty_m", "m", &DepositDepthSpec::uncertainty, between(0.001, 1e6),
+          "Standard deviation of the depth.");
     add_source(s);
     return s.take();
 }
@@ -98,9 +103,9 @@ Section declare_damage() {
     Declaration<DamageSpec> s("damage", "A building that was damaged, or that was not.", &SceneSpec::damages);
     s.text("building", &DamageSpec::building, "", "Name of the building.").required = true;
     s.key("damaged", "", &DamageSpec::damaged, anything(), "Whether it was damaged.");
-    s.key("pressure_Pa", "Pa", &DamageSpec::pressure, above(0),
+    s.key("pressure_Pa", "Pa", &DamageSpec::pressure, between(1, 1e12),
           "Impact pressure (outputs.impact_patch_edge_m) from which such a building is damaged.");
-    s.key("uncertainty_Pa", "Pa", &DamageSpec::uncertainty, above(0), "Standard deviation of that limit.");
+    s.key("uncertainty_Pa", "Pa", &DamageSpec::uncertainty, between(1, 1e12), "Standard deviation of that limit.");
     add_source(s);
     return s.take();
 }
@@ -109,7 +114,8 @@ Section declare_run_out() {
     Declaration<ObservedRunOutSpec> s("observed_run_out", "Where the front stopped.", &SceneSpec::observed_run_outs);
     add_name(s);
     add_chainage(s);
-    s.key("uncertainty_m", "m", &ObservedRunOutSpec::uncertainty, above(0), "Standard deviation of the chainage.");
+    s.key("uncertainty_m", "m", &ObservedRunOutSpec::uncertainty, between(0.001, 1e6),
+          "Standard deviation of the chainage.");
     add_source(s);
     return s.take();
 }
@@ -118,7 +124,7 @@ void add_outline(Declaration<OutlineSpec>& s, const char* depth_help) {
     add_name(s);
     s.path("file", &OutlineSpec::file, "", "Polygons: GeoJSON, GeoPackage, Shapefile.").required = true;
     s.text("layer", &OutlineSpec::layer, "the only layer", "Layer of the file.");
-    s.key("depth_m", "m", &OutlineSpec::depth, at_least(0), depth_help);
+    s.key("depth_m", "m", &OutlineSpec::depth, between(0, 1e4), depth_help);
     s.key("uncertainty", "", &OutlineSpec::uncertainty, above_to(0, 1), "Standard deviation of that share.");
     add_source(s);
 }
@@ -149,7 +155,7 @@ Section declare_elevation_change() {
                                        &SceneSpec::elevation_changes);
     add_name(s);
     s.path("file", &ElevationChangeSpec::file, "", "Raster of the change in m, deposit positive.").required = true;
-    s.key("detection_limit_m", "m", &ElevationChangeSpec::detection_limit, at_least(0),
+    s.key("detection_limit_m", "m", &ElevationChangeSpec::detection_limit, between(0, 1e4),
           "Smaller changes count as none, observed and computed.");
     s.key("uncertainty", "", &ElevationChangeSpec::uncertainty, above_to(0, 1), "Standard deviation of the agreement.");
     add_source(s);

@@ -15,7 +15,7 @@ Section declare_release() {
     s.path("file", &ReleaseSpec::file, "the outline of thickness_raster where that is above 0",
            "Polygons of the release area: GeoJSON, GeoPackage, Shapefile.");
     s.text("layer", &ReleaseSpec::layer, "the only layer", "Layer of the file.");
-    s.optional_key("thickness_m", "m", &ReleaseSpec::thickness, above_to(0, 1000), "one of the other three is given",
+    s.optional_key("thickness_m", "m", &ReleaseSpec::thickness, between(0.001, 1000), "one of the other three is given",
                    "Uniform thickness.")
         .live_in({.label = "Thickness", .slider_low = 0.1, .slider_high = 10, .first = 1.5});
     s.text("thickness_attribute", &ReleaseSpec::thickness_attribute, "one of the other three is given",
@@ -26,9 +26,9 @@ Section declare_release() {
     s.choice("thickness_direction", &ReleaseSpec::thickness_direction, {"normal", "vertical"},
              "Whether thickness is measured normal to the slope or vertically, as a difference of elevations is.")
         .assumes("Direction in which the release's thickness is measured");
-    s.optional_key("volume_m3", "m3", &ReleaseSpec::volume, above(0), "one of the other three is given",
+    s.optional_key("volume_m3", "m3", &ReleaseSpec::volume, between(1e-6, 1e12), "one of the other three is given",
                    "Volume to release, spread as a uniform thickness over the polygons.");
-    s.key("start_time_s", "s", &ReleaseSpec::start_time, at_least(0),
+    s.key("start_time_s", "s", &ReleaseSpec::start_time, between(0, 1e7),
           "When the body starts to move; until then it is held in place.");
     s.key("shift_along_m", "m", &ReleaseSpec::shift_along, between(-1e5, 1e5),
           "How far its polygons, with the raster of their thickness, are moved in plan down the mean slope under them; "
@@ -71,7 +71,7 @@ Section declare_bed() {
                    "Share of its volume that debris entrains per metre: ln(volume after / volume before) over the "
                    "length of the bed.")
         .live_in({.label = "Growth rate", .slider_low = 0.0005, .slider_high = 0.0505, .first = 0.005});
-    s.key("critical_shear_stress_Pa", "Pa", &BedSpec::critical_shear_stress, at_least(0),
+    s.key("critical_shear_stress_Pa", "Pa", &BedSpec::critical_shear_stress, between(0, 1e7),
           "With law = \"shear\": less shear stress, rest density x gravity x depth x sine of the slope, entrains "
           "nothing.")
         .assumes("Critical shear stress of the bed")
@@ -140,18 +140,18 @@ Section declare_hydrograph() {
     Declaration<InflowSample> s("hydrograph",
                                 "A row of an inflow's hydrograph, a CSV of its own in a scene; linear between rows.",
                                 &SceneSpec::hydrograph);
-    s.key("time_s", "s", &InflowSample::time, at_least(0), "Simulated time; above that of the row before.")
+    s.key("time_s", "s", &InflowSample::time, between(0, 1e7), "Simulated time; above that of the row before.")
         .live_in({.label = "Time", .slider_low = 0, .slider_high = 60})
         .required = true;
-    s.key("discharge_m3ps", "m3/s", &InflowSample::discharge, at_least(0),
+    s.key("discharge_m3ps", "m3/s", &InflowSample::discharge, between(0, 1e7),
           "Bulk volume of debris that flows in per second.")
         .live_in({.label = "Discharge", .slider_low = 0, .slider_high = 50})
         .required = true;
-    s.key("velocity_mps", "m/s", &InflowSample::velocity, at_least(0),
+    s.key("velocity_mps", "m/s", &InflowSample::velocity, between(0, 300),
           "Along the ground; above 0 where debris flows in across a line.")
         .live_in({.label = "Velocity", .slider_low = 0, .slider_high = 20})
         .required = true;
-    Parameter& density = s.key("density_kgpm3", "kg/m3", &InflowSample::density, above_to(0, 30000),
+    Parameter& density = s.key("density_kgpm3", "kg/m3", &InflowSample::density, between(1, 30000),
                                "Bulk density of the inflow; in every row or in none.")
                              .live_in({.label = "Density", .slider_low = 1000, .slider_high = 2500, .first = 2000});
     density.absent = "the material's rest density";

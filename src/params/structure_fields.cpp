@@ -23,7 +23,7 @@ Section declare_buildings() {
     s.text("resistance_attribute", &BuildingsSpec::resistance_attribute, "every building has resistance_Pa",
            "Attribute that holds the pressure in Pa that a building stands.");
     s.optional_key(
-         "resistance_Pa", "Pa", &BuildingsSpec::resistance, above(0), "buildings never fail",
+         "resistance_Pa", "Pa", &BuildingsSpec::resistance, between(1, 1e12), "buildings never fail",
          "Impact pressure (outputs.impact_patch_edge_m) above which a building is destroyed: it is gone from then on.")
         .assumes("Resistance of buildings");
     return s.take();
@@ -39,7 +39,7 @@ Section declare_barrier() {
     s.optional_key("height_m", "m", &BarrierSpec::height, above_to(0, 200), "crest_elevation_m is given",
                    "Height above the ground under the line: the crest follows the ground.")
         .live_in({.label = "Height", .slider_low = 0.5, .slider_high = 15, .first = 3});
-    s.optional_key("crest_elevation_m", "m", &BarrierSpec::crest_elevation, anything(), "height_m is given",
+    s.optional_key("crest_elevation_m", "m", &BarrierSpec::crest_elevation, between(-20000, 20000), "height_m is given",
                    "Elevation of a level crest.")
         .live_as();
     s.key("thickness_m", "m", &BarrierSpec::thickness, above_to(0, 100),
@@ -68,7 +68,7 @@ Section declare_barrier() {
                   .tick_help = "It hangs above the ground: debris passes below it"})
         .at_least_spacings(1, "nothing would get through a lower gap; smaller particles allow less")
         .below_key("height_m");
-    s.optional_key("resistance_Npm", "N/m", &BarrierSpec::resistance_force, above(0), "it never fails",
+    s.optional_key("resistance_Npm", "N/m", &BarrierSpec::resistance_force, between(1, 1e12), "it never fails",
                    "Filtered force per metre of the line above which it is destroyed: it is gone from then on.")
         .live_in({.label = "Resistance",
                   .slider_low = 10,
@@ -76,7 +76,7 @@ Section declare_barrier() {
                   .first = 200,
                   .tick = "Fails under load",
                   .tick_help = "Beyond this mean force on its line it is gone"});
-    s.optional_key("resistance_Pa", "Pa", &BarrierSpec::resistance_pressure, above(0), "it never fails",
+    s.optional_key("resistance_Pa", "Pa", &BarrierSpec::resistance_pressure, between(1, 1e12), "it never fails",
                    "Impact pressure (outputs.impact_patch_edge_m) above which it is destroyed.")
         .live_as();
     s.exactly_one_of({"line_m", "file"});
@@ -89,16 +89,16 @@ Section declare_barrier_opening() {
                                       "A slot or a spillway in a barrier, as check dams have; any number.",
                                       &SceneSpec::barrier_openings);
     s.text("barrier", &BarrierOpeningSpec::barrier, "", "Name of the barrier.").required = true;
-    s.key("position_m", "m", &BarrierOpeningSpec::position, at_least(0),
+    s.key("position_m", "m", &BarrierOpeningSpec::position, between(0, 1e5),
           "Distance of its middle along the barrier's line from its first place.")
         .live_as()
         .required = true;
-    s.key("width_m", "m", &BarrierOpeningSpec::width, above(0),
+    s.key("width_m", "m", &BarrierOpeningSpec::width, above_to(0, 1e5),
           "Width along the line; at least two particle spacings, or nothing gets through.")
         .live_as()
         .at_least_spacings(2, "nothing would get through a narrower one; smaller particles allow less")
         .required = true;
-    s.key("sill_height_m", "m", &BarrierOpeningSpec::sill, at_least(0),
+    s.key("sill_height_m", "m", &BarrierOpeningSpec::sill, between(0, 200),
           "How much of the barrier stands there, above the ground; 0: open to the ground.")
         .live_as();
     return s.take();

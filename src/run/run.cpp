@@ -12,28 +12,16 @@
 #include "terrain/map_cell.hpp"
 
 namespace talus::run {
-namespace {
-
-Status check_particle_count(const sim::Model& model, std::uint32_t seeded, std::uint32_t to_come) {
-    const double particles = static_cast<double>(seeded) + to_come;
-    if (particles <= model.solver.particle_limit) return {};
-    return Error{
-        fmt::format("releases and inflows need {:.0f} particles of solver.particle_spacing_m = {:.4g}, more "
-                    "than solver.particle_limit = {}; a larger spacing needs fewer",
-                    particles, model.particle_spacing, model.solver.particle_limit)};
-}
-
-}  // namespace
 
 Result<std::unique_ptr<Run>> Run::start(const scene::Scene& scene, std::optional<double> particle_spacing) {
     const params::SceneSpec& spec = scene.spec;
     const double spacing = particle_spacing.value_or(sim::choose_particle_spacing(spec.solver, total_volume(scene)));
+    TALUS_TRY(sim::check_particle_count(scene.releases, scene.inflows, spec.solver, spacing));
     return Threads(spec.solver.thread_count).execute([&]() -> Result<std::unique_ptr<Run>> {
         sim::Model model = sim::make_model(spec.material, spec.solver, spacing, scene.cover);
         sim::Ground ground(scene.terrain, scene.buildings, model.support_radius, scene.bed);
         TALUS_ASSIGN(sim::State state, seed_releases(model, ground, scene.releases));
         sim::InflowFeeder inflow(model, ground.terrain.frame(), scene.inflows);
-        TALUS_TRY(check_particle_count(model, state.count, inflow.to_come()));
         RunStart start{std::move(model),  std::move(ground), std::move(state),
                        std::move(inflow), scene.flow_path,   spec.outputs};
         if (follows_debris(scene)) start.followed_corridor_width = spec.flow_path.corridor_width;

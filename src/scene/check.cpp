@@ -38,17 +38,9 @@ std::string release_line(const Scene& scene, const terrain::Release& release) {
 
 std::string particle_line(const Scene& scene, double volume, double spacing) {
     const double count = std::round(volume / (spacing * spacing * spacing));
-    const auto limit = static_cast<double>(scene.spec.solver.particle_limit);
-    std::string line = fmt::format(
+    return fmt::format(
         "particles   about {:.0f} with a spacing of {:.4g} m ({})\n", count, spacing,
         scene.spec.solver.particle_spacing ? "solver.particle_spacing_m" : "from solver.target_particle_count");
-    if (count > limit) {
-        // Rounded up, so that the suggested spacing fits.
-        const double fits = std::ceil(1000 * std::cbrt(volume / limit)) / 1000;
-        line += fmt::format("            more than solver.particle_limit = {:.0f}: a spacing of {:.4g} m would fit\n",
-                            limit, fits);
-    }
-    return line;
 }
 
 std::string buildings_line(const Scene& scene) {

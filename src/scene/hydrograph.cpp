@@ -91,9 +91,22 @@ Result<std::vector<params::InflowSample>> read_hydrograph(const params::InflowSp
 Status check_hydrograph(const terrain::Inflow& inflow, const params::SolverSpec& solver, const std::string& at) {
     if (!(inflow.volume() > 0)) return Error{at + ": brings no debris at all"};
     const double start = inflow.hydrograph.front().time;
-    if (start < solver.end_time) return {};
-    return Error{fmt::format("{}: begins at {:.6g} s; that must be below solver.end_time_s = {:.6g}", at, start,
-                             solver.end_time)};
+    if (start >= solver.end_time) {
+        return Error{fmt::format("{}: begins at {:.6g} s; that must be below solver.end_time_s = {:.6g}", at, start,
+                                 solver.end_time)};
+    }
+    if (inflow.over_area()) return {};
+    const double width = std::hypot(inflow.to.x - inflow.from.x, inflow.to.y - inflow.from.y);
+    const double thickest = params::parameter_of("release", "thickness_m").range.high;
+    for (const params::InflowSample& row : inflow.hydrograph) {
+        const double thickness = row.discharge > 0 ? row.discharge / (row.velocity * width) : 0;
+        if (thickness <= thickest) continue;
+        return Error{
+            fmt::format("{}: at {:.6g} s, {:.4g} m3/s at {:.4g} m/s across {:.4g} m is a flow {:.4g} m thick; "
+                        "it must be at most {:.0f} m",
+                        at, row.time, row.discharge, row.velocity, width, thickness, thickest)};
+    }
+    return {};
 }
 
 Status check_line(const terrain::Inflow& inflow, const terrain::Terrain& terrain, const std::string& at) {

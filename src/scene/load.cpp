@@ -10,6 +10,7 @@
 #include "core/hash.hpp"
 #include "core/try.hpp"
 #include "geo/orthophoto.hpp"
+#include "scene/limits.hpp"
 #include "scene/plausibility.hpp"
 #include "scene/viscosity_limit.hpp"
 #include "sim/sources/seed.hpp"
@@ -165,6 +166,7 @@ Result<Scene> assemble_scene(const ParsedScene& parsed) {
     TALUS_TRY(load_barriers(parsed, scene));
     TALUS_TRY(load_flow_path(parsed, scene));
     TALUS_TRY(load_observations(parsed, scene));
+    TALUS_TRY(check_limits(parsed, scene));
     note_implausible_terrain(scene);
     note_coarse_particles(scene);
     return Result<Scene>(std::move(scene));

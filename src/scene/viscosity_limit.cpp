@@ -33,9 +33,10 @@ std::optional<params::Violation> too_viscous(const params::MaterialSpec& materia
     }
     if (given <= highest) return {};
     return params::Violation{
-        key, fmt::format(" = {:.4g} is refused; with particles of {:.3g} m and steps of up to {:.3g} s it must be at "
-                         "most {:.4g}; larger particles or shorter steps allow more",
-                         given, particle_spacing, longest_step(solver), std::floor(1e4 * highest) / 1e4)};
+        key, fmt::format(" = {:.4g} is refused; with particles of {:.3g} m and solver.{} = {:.3g} it must be at most "
+                         "{:.4g}; larger particles or shorter steps allow more",
+                         given, particle_spacing, solver.time_step ? "time_step_s" : "largest_time_step_s",
+                         longest_step(solver), std::floor(1e4 * highest) / 1e4)};
 }
 
 }  // namespace talus::scene

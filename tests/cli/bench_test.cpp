@@ -83,7 +83,7 @@ TEST_F(Bench, BadInputIsRefusedInOneLineBeforeAnythingRuns) {
         {{"--method", "magic"}, {"--method", "magic", "pair", "stress"}},
         {{"--particles", "20000,5"}, {"--particles", "5", "500", "4000000"}},
         {{"--particles", "many"}, {"--particles", "many"}},
-        {{"--threads", "0"}, {"--threads", "0", "1", "4096"}},
+        {{"--threads", "0"}, {"--threads", "0", "1", "512"}},
         {{"--iterations", "0"}, {"--iterations", "0", "1000"}},
         {{"--repeats", "-1"}, {"--repeats", "-1", "1000"}},
         {{"--steps", "0"}, {"--steps", "0"}},

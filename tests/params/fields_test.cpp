@@ -217,7 +217,7 @@ TEST(FieldTable, AnAbsentValueCanBeTakenBack) {
 TEST(FieldTable, ValuesOutOfRangeNameTheRange) {
     const Parameter& spacing = parameter("solver", "particle_spacing_m");
     EXPECT_EQ(problem_with(spacing, 0.5), "");
-    EXPECT_EQ(problem_with(spacing, 0.0), "a number above 0 (m)");
+    EXPECT_EQ(problem_with(spacing, 0.0), "a number from 0.0001 to 100 (m)");
     const Parameter& viscosity = parameter("material", "viscosity");
     EXPECT_EQ(problem_with(viscosity, 0.0), "");
     EXPECT_EQ(problem_with(viscosity, 1.0), "a number from 0 to below 1");

@@ -142,7 +142,9 @@ TEST_F(RunOfAScene, AChangeBringsItBackFromRest) {
 }
 
 TEST_F(RunOfAScene, TooManyParticlesAreRefused) {
-    const auto result = run_scene(loaded("", {"solver.particle_limit=100"}), {});
+    scene::Scene scene = loaded("");
+    scene.spec.solver.particle_limit = 100;
+    const auto result = run_scene(scene, {});
     ASSERT_FALSE(result);
     EXPECT_THAT(result.error().message, HasSubstr("scene.toml: "));
     EXPECT_THAT(result.error().message, HasSubstr("solver.particle_limit = 100"));

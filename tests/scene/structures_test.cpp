@@ -157,7 +157,7 @@ TEST_F(Structures, BadBarriersAreRefusedByKey) {
     EXPECT_THAT(refusal("[[barrier]]\nheight_m = 8\nline_m = [[1, 2]]\n"),
                 HasSubstr("has 1 place; a line needs at least two"));
     EXPECT_THAT(refusal("[[barrier]]\nheight_m = 8\nline_m = [[1, 2], [3, 4]]\n"), HasSubstr("is not on known ground"));
-    EXPECT_THAT(refusal(dam("height_m = 8\nresistance_Npm = 0")), HasSubstr("must be a number above 0 (N/m)"));
+    EXPECT_THAT(refusal(dam("height_m = 8\nresistance_Npm = 0")), HasSubstr("must be a number from 1 to 1000000000000 (N/m)"));
     EXPECT_THAT(refusal(dam() + "[[barrier_opening]]\nbarrier = \"dyke\"\nposition_m = 3\nwidth_m = 3\n"),
                 HasSubstr("barrier_opening[0].barrier = \"dyke\": there is no such barrier; barriers: \"dam\""));
     EXPECT_THAT(refusal(dam() + "[[barrier_opening]]\nbarrier = \"dam\"\nposition_m = 3\nwidth_m = 0.2\n"),
@@ -304,7 +304,7 @@ TEST_F(Structures, BadInflowAreasAreRefused) {
     EXPECT_THAT(load_error(), HasSubstr("velocity_mps = 0 is refused")) << "across a line nothing comes in standing";
     const std::string header = "time_s,discharge_m3ps,velocity_mps,density_kgpm3\n";
     for (const auto& [row, message] :
-         {std::pair{"0,1,1,0\n", "density_kgpm3 = \"0\" is refused; it must be a number above 0 to 30000"},
+         {std::pair{"0,1,1,0\n", "density_kgpm3 = \"0\" is refused; it must be a number from 1 to 30000"},
           {"0,1,1,1e9\n", "density_kgpm3 = \"1e9\" is refused"},
           {"0,1,1\n", "density_kgpm3 = \"\" is refused"}}) {
         write("rain.csv", header + row);

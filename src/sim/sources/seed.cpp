@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "core/try.hpp"
 #include "sim/cpu/backend.hpp"
 #include "sim/physics/viscosity.hpp"
 #include "sim/relax.hpp"
@@ -111,6 +112,31 @@ double choose_particle_spacing(const params::SolverSpec& solver, double released
     return std::cbrt(released_volume / solver.target_particle_count);
 }
 
+Status check_particle_count(const std::vector<terrain::Release>& releases, const std::vector<terrain::Inflow>& inflows,
+                            const params::SolverSpec& solver, double particle_spacing) {
+    const double particle = particle_spacing * particle_spacing * particle_spacing;
+    double volume = 0, particles = 0;
+    const auto add = [&](const char* what, const std::string& name, double its_volume) -> Status {
+        const double count = std::round(its_volume / particle);
+        if (count < 1) {
+            return Error{
+                fmt::format("{} '{}': {:.4g} m3 is less than one particle of solver.particle_spacing_m = {:.4g}", what,
+                            name, its_volume, particle_spacing)};
+        }
+        volume += its_volume;
+        particles += count;
+        return {};
+    };
+    for (const terrain::Release& release : releases) TALUS_TRY(add("release", release.name, release.volume));
+    for (const terrain::Inflow& inflow : inflows) TALUS_TRY(add("inflow", inflow.name, inflow.volume()));
+    if (particles <= solver.particle_limit) return {};
+    return Error{
+        fmt::format("{:.4g} m3 at solver.particle_spacing_m = {:.4g} would need {:.0f} particles, more than "
+                    "solver.particle_limit = {}; a spacing of {:.4g} m or more would fit",
+                    volume, particle_spacing, particles, solver.particle_limit,
+                    std::ceil(std::cbrt(volume / solver.particle_limit) * 1000) / 1000)};
+}
+
 void set_material(Model& model, const params::MaterialSpec& material) {
     model.rest_density = material.rest_density;
     model.friction_coefficient = material.friction_coefficient;
@@ -152,25 +178,12 @@ Model make_model(const params::MaterialSpec& material, const params::SolverSpec&
 
 Result<State> seed_releases(Model& model, const Ground& ground, const std::vector<terrain::Release>& releases) {
     const double spacing = model.particle_spacing;
+    TALUS_TRY(check_particle_count(releases, {}, model.solver, spacing));
     std::vector<long> targets;
-    double volume = 0, particles = 0;
+    long particles = 0;
     for (const terrain::Release& release : releases) {
-        const double count = std::round(release.volume / model.particle_volume());
-        if (count < 1) {
-            return Error{
-                fmt::format("release '{}': {:.4g} m3 is less than one particle of solver.particle_spacing_m = {:.4g}",
-                            release.name, release.volume, spacing)};
-        }
-        targets.push_back(static_cast<long>(std::min(count, 1e15)));
-        volume += release.volume;
-        particles += count;
-    }
-    if (particles > model.solver.particle_limit) {
-        return Error{
-            fmt::format("{:.4g} m3 at solver.particle_spacing_m = {:.4g} would need {:.0f} particles, more than "
-                        "solver.particle_limit = {}; a spacing of {:.4g} m or more would fit",
-                        volume, spacing, particles, model.solver.particle_limit,
-                        std::ceil(std::cbrt(volume / model.solver.particle_limit) * 1000) / 1000)};
+        targets.push_back(std::lround(release.volume / model.particle_volume()));
+        particles += targets.back();
     }
 
     State state;

@@ -7,12 +7,19 @@
 #include "sim/ground.hpp"
 #include "sim/model.hpp"
 #include "sim/state.hpp"
+#include "terrain/inflow.hpp"
 #include "terrain/release.hpp"
 
 namespace talus::sim {
 
 /// The scene's spacing, or the one that makes `target_particle_count` particles of the volume, m.
 [[nodiscard]] double choose_particle_spacing(const params::SolverSpec& solver, double released_volume);
+
+/// Whether releases and inflows can be made of particles of this spacing: each of one at least, and no more in all than
+/// the solver's limit (the error gives the number and a spacing that would fit).
+[[nodiscard]] Status check_particle_count(const std::vector<terrain::Release>& releases,
+                                          const std::vector<terrain::Inflow>& inflows, const params::SolverSpec& solver,
+                                          double particle_spacing);
 
 /// Sets the model's values from the scene's material section. The model must have its kernel.
 void set_material(Model& model, const params::MaterialSpec& material);
@@ -25,8 +32,8 @@ void set_material(Model& model, const params::MaterialSpec& material);
 ///
 /// Every column of the spacing's lattice gets as many particles as its share of volume, stacked on the ground; each
 /// release gets volume / spacing^3 particles, to the nearest whole one. The mass is then relaxed without gravity until
-/// it is nowhere denser than rest: started over-dense, it would fly apart within a step. Errors: more particles than
-/// the solver's limit (gives the number and a spacing that would fit); a release that is smaller than one particle.
+/// it is nowhere denser than rest: started over-dense, it would fly apart within a step. Errors: those of
+/// check_particle_count.
 [[nodiscard]] Result<State> seed_releases(Model& model, const Ground& ground,
                                           const std::vector<terrain::Release>& releases);
 

@@ -120,7 +120,7 @@ export interface FieldDescription {
 export const fields = {
   release: {
     thickness_m: {
-      label: "Thickness", unit: "m", factor: 1, low: 0.0001, high: 1000, sliderLow: 0.1, sliderHigh: 10, first: 1.5,
+      label: "Thickness", unit: "m", factor: 1, low: 0.001, high: 1000, sliderLow: 0.1, sliderHigh: 10, first: 1.5,
       tick: null, tickHelp: "", help: "Uniform thickness.",
     },
   },
@@ -132,19 +132,19 @@ export const fields = {
   },
   hydrograph: {
     time_s: {
-      label: "Time", unit: "s", factor: 1, low: 0, high: Infinity, sliderLow: 0, sliderHigh: 60, first: 0,
+      label: "Time", unit: "s", factor: 1, low: 0, high: 10000000, sliderLow: 0, sliderHigh: 60, first: 0,
       tick: null, tickHelp: "", help: "Simulated time; above that of the row before.",
     },
     discharge_m3ps: {
-      label: "Discharge", unit: "m3/s", factor: 1, low: 0, high: Infinity, sliderLow: 0, sliderHigh: 50, first: 0,
+      label: "Discharge", unit: "m3/s", factor: 1, low: 0, high: 10000000, sliderLow: 0, sliderHigh: 50, first: 0,
       tick: null, tickHelp: "", help: "Bulk volume of debris that flows in per second.",
     },
     velocity_mps: {
-      label: "Velocity", unit: "m/s", factor: 1, low: 0, high: Infinity, sliderLow: 0, sliderHigh: 20, first: 0,
+      label: "Velocity", unit: "m/s", factor: 1, low: 0, high: 300, sliderLow: 0, sliderHigh: 20, first: 0,
       tick: null, tickHelp: "", help: "Along the ground; above 0 where debris flows in across a line.",
     },
     density_kgpm3: {
-      label: "Density", unit: "kg/m3", factor: 1, low: 0.1, high: 30000, sliderLow: 1000, sliderHigh: 2500, first: 2000,
+      label: "Density", unit: "kg/m3", factor: 1, low: 1, high: 30000, sliderLow: 1000, sliderHigh: 2500, first: 2000,
       tick: null, tickHelp: "", help: "Bulk density of the inflow; in every row or in none.",
     },
   },
@@ -158,7 +158,7 @@ export const fields = {
       tick: null, tickHelp: "", help: "Share of its volume that debris entrains per metre: ln(volume after / volume before) over the length of the bed.",
     },
     critical_shear_stress_Pa: {
-      label: "Critical shear stress", unit: "kPa", factor: 0.001, low: 0, high: Infinity, sliderLow: 0, sliderHigh: 5, first: 1,
+      label: "Critical shear stress", unit: "kPa", factor: 0.001, low: 0, high: 10000, sliderLow: 0, sliderHigh: 5, first: 1,
       tick: null, tickHelp: "", help: "With law = \"shear\": less shear stress, rest density x gravity x depth x sine of the slope, entrains nothing.",
     },
     erosion_rate_mps: {
@@ -194,7 +194,7 @@ export const fields = {
       tick: "Gap below", tickHelp: "It hangs above the ground: debris passes below it", help: "Height above the ground of the gap below it, as nets hang across a torrent: debris passes freely there; at least one particle spacing, or nothing gets through.",
     },
     resistance_Npm: {
-      label: "Resistance", unit: "kN/m", factor: 0.001, low: 0.01, high: Infinity, sliderLow: 10, sliderHigh: 1000, first: 200,
+      label: "Resistance", unit: "kN/m", factor: 0.001, low: 0.001, high: 1e+09, sliderLow: 10, sliderHigh: 1000, first: 200,
       tick: "Fails under load", tickHelp: "Beyond this mean force on its line it is gone", help: "Filtered force per metre of the line above which it is destroyed: it is gone from then on.",
     },
   },
@@ -204,23 +204,23 @@ export const fields = {
       tick: "Friction", tickHelp: "A separate Coulomb friction; unticked: as in [material]", help: "Coulomb friction on this ground.",
     },
     turbulent_friction_mps2: {
-      label: "Voellmy's ξ", unit: "m/s2", factor: 1, low: 0.1, high: Infinity, sliderLow: 100, sliderHigh: 2100, first: 500,
+      label: "Voellmy's ξ", unit: "m/s2", factor: 1, low: 1, high: 1000000, sliderLow: 100, sliderHigh: 2100, first: 500,
       tick: "Turbulent friction", tickHelp: "A separate Voellmy turbulent friction; unticked: as in [material]", help: "Voellmy's xi on this ground; lower is rougher.",
     },
     cohesion_Pa: {
-      label: "Shear strength", unit: "kPa", factor: 0.001, low: 0, high: Infinity, sliderLow: 0, sliderHigh: 10, first: 1,
+      label: "Shear strength", unit: "kPa", factor: 0.001, low: 0, high: 10000, sliderLow: 0, sliderHigh: 10, first: 1,
       tick: "Cohesion", tickHelp: "A separate cohesion; unticked: as in [material]", help: "Shear strength without pressure between debris and this ground.",
     },
     stem_density_pm2: {
-      label: "Stems", unit: "1/ha", factor: 10000, low: 0, high: Infinity, sliderLow: 50, sliderHigh: 1550, first: 400,
+      label: "Stems", unit: "1/ha", factor: 10000, low: 0, high: 10000000, sliderLow: 50, sliderHigh: 1550, first: 400,
       tick: "Forest", tickHelp: "Stems that drag on the flow", help: "Stems of a forest per square metre that stand the flow; each drags on it as a cylinder.",
     },
     stem_diameter_m: {
-      label: "Stem diameter", unit: "m", factor: 1, low: 0.0001, high: 100, sliderLow: 0.05, sliderHigh: 1.05, first: 0.3,
+      label: "Stem diameter", unit: "m", factor: 1, low: 0.001, high: 100, sliderLow: 0.05, sliderHigh: 1.05, first: 0.3,
       tick: null, tickHelp: "", help: "Diameter of a stem.",
     },
     stem_drag_coefficient: {
-      label: "Drag coefficient", unit: "", factor: 1, low: 0, high: Infinity, sliderLow: 0, sliderHigh: 3, first: 1,
+      label: "Drag coefficient", unit: "", factor: 1, low: 0, high: 100, sliderLow: 0, sliderHigh: 3, first: 1,
       tick: null, tickHelp: "", help: "Drag coefficient of a stem across the flow.",
     },
   },

@@ -1,0 +1,106 @@
+#include "scene/limits.hpp"
+
+#include <cmath>
+#include <unistd.h>
+
+#include <fmt/format.h>
+
+#include "core/try.hpp"
+#include "sim/sources/seed.hpp"
+#include "terrain/map_cell.hpp"
+
+namespace talus::scene {
+namespace {
+
+constexpr double max_map_cells = 4e8, max_front_rows = 1e6;
+/// Measured with a million particles, and with 20 million cells (docs/performance.md).
+constexpr double bytes_per_particle = 1500, bytes_per_terrain_cell = 20;
+
+/// A key and the value in force: "scene.toml:12: outputs.map_cell_m = 0.01".
+std::string key_with_value(const ParsedScene& parsed, const char* section, const char* key, double value) {
+    return fmt::format("{} = {:.6g}", parsed.at(fmt::format("{}.{}", section, key)), value);
+}
+
+const char* thickness_key(const params::ReleaseSpec& spec) {
+    if (spec.volume) return "volume_m3";
+    return spec.thickness_attribute.empty() ? "thickness_raster" : "thickness_attribute";
+}
+
+/// However thickness is given, its mean must be at least the minimum of thickness_m: thinner debris would need
+/// particles too small and too many.
+Status check_thickness(const ParsedScene& parsed, const Scene& scene) {
+    const double thinnest = params::parameter_of("release", "thickness_m").range.low;
+    for (std::size_t i = 0; i < scene.releases.size(); ++i) {
+        const terrain::Release& release = scene.releases[i];
+        const double area = release_slope_area(scene.terrain, release);
+        if (release.spec.thickness || release.volume >= thinnest * area) continue;
+        return Error{
+            fmt::format("{}: release \"{}\" of {:.4g} m3 over {:.4g} m2 of slope is {:.4g} m thick on average; "
+                        "it must be at least {} m",
+                        parsed.at(fmt::format("release[{}].{}", i, thickness_key(release.spec))), release.name,
+                        release.volume, area, release.volume / area, thinnest)};
+    }
+    return {};
+}
+
+Status check_particles(const ParsedScene& parsed, const Scene& scene, double spacing) {
+    const params::SolverSpec& solver = scene.spec.solver;
+    const params::Range& allowed = params::parameter_of("solver", "particle_spacing_m").range;
+    if (!allowed.contains(spacing)) {
+        return Error{
+            fmt::format("{} is refused; it puts the particles of {:.4g} m3 {:.4g} m apart, which must be {} m",
+                        key_with_value(parsed, "solver", "target_particle_count", solver.target_particle_count),
+                        total_volume(scene), spacing, allowed.text())};
+    }
+    const Status counted = sim::check_particle_count(scene.releases, scene.inflows, solver, spacing);
+    if (counted) return {};
+    return Error{parsed.at(solver.particle_spacing ? "solver.particle_spacing_m" : "solver.target_particle_count") +
+                 ": " + counted.error().message};
+}
+
+Status check_outputs(const ParsedScene& parsed, const Scene& scene, double spacing) {
+    const params::OutputSpec& outputs = scene.spec.outputs;
+    const Extent extent = scene.terrain.elevation().geometry.extent();
+    const double area = extent.width() * extent.height();
+    const double cell = outputs.map_cell.value_or(terrain::default_map_cell(scene.terrain.cell(), spacing));
+    if (area / (cell * cell) > max_map_cells) {
+        return Error{
+            fmt::format("{} is refused; maps of the terrain would have {:.3g} cells, and may have {:.3g}: it "
+                        "must be at least {:.3g} (m)",
+                        key_with_value(parsed, "outputs", "map_cell_m", cell), area / (cell * cell), max_map_cells,
+                        std::ceil(1e3 * std::sqrt(area / max_map_cells)) / 1e3)};
+    }
+    const double length = scene.flow_path.empty() ? 0 : scene.flow_path.length();
+    if (length / outputs.chainage_interval > max_front_rows) {
+        return Error{fmt::format("{} is refused; on a flow path of {:.0f} m it must be at least {:.3g} (m)",
+                                 key_with_value(parsed, "outputs", "chainage_interval_m", outputs.chainage_interval),
+                                 length, length / max_front_rows)};
+    }
+    return {};
+}
+
+Status check_memory(const ParsedScene& parsed, const Scene& scene, double spacing) {
+    const double particles = total_volume(scene) / (spacing * spacing * spacing);
+    const double needed = particles * bytes_per_particle +
+                          static_cast<double>(scene.terrain.elevation().geometry.size()) * bytes_per_terrain_cell;
+    const double there = static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGE_SIZE));
+    if (!(there > 0) || needed <= there) return {};
+    constexpr double gigabyte = 1e9;
+    return Error{fmt::format(
+        "{}: {:.3g} particles {:.4g} m apart need about {:.3g} GB of memory, and this machine has "
+        "{:.3g} GB; a larger spacing needs less",
+        parsed.at(scene.spec.solver.particle_spacing ? "solver.particle_spacing_m" : "solver.target_particle_count"),
+        particles, spacing, needed / gigabyte, there / gigabyte)};
+}
+
+}  // namespace
+
+Status check_limits(const ParsedScene& parsed, const Scene& scene) {
+    const double spacing = sim::choose_particle_spacing(scene.spec.solver, total_volume(scene));
+    TALUS_TRY(check_thickness(parsed, scene));
+    TALUS_TRY(check_particles(parsed, scene, spacing));
+    TALUS_TRY(check_outputs(parsed, scene, spacing));
+    return check_memory(parsed, scene, spacing);
+}
+
+}  // namespace talus::scene

@@ -1,0 +1,12 @@
+#pragma once
+
+#include "scene/load.hpp"
+
+namespace talus::scene {
+
+/// Whether a run of the loaded scene has a size that makes sense: thickness of its releases, particle spacing and
+/// number of particles, cells of the maps, rows of front.csv, memory. Errors name the key to change, its value and what
+/// is allowed.
+[[nodiscard]] Status check_limits(const ParsedScene& parsed, const Scene& scene);
+
+}  // namespace talus::scene

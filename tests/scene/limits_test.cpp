@@ -1,0 +1,75 @@
+#include <unistd.h>
+
+#include <gmock/gmock.h>
+
+#include "scene/scene_folder.hpp"
+
+namespace talus::scene {
+namespace {
+
+using testing::AllOf;
+using testing::HasSubstr;
+
+class Limits : public SceneFolder {
+  protected:
+    static constexpr const char* loaded = "(it loaded)";
+};
+
+TEST_F(Limits, TooManyParticlesNameTheSpacingThatFits) {
+    write_valley("", "volume_m3 = 512");
+    EXPECT_THAT(load_error({"solver.particle_spacing_m=0.1", "solver.particle_limit=1024"}),
+                AllOf(HasSubstr("solver.particle_spacing_m: "), HasSubstr("512000 particles"),
+                      HasSubstr("a spacing of 0.794 m or more would fit")));
+}
+
+TEST_F(Limits, ParticlesTooFarApartAreRefused) {
+    write_valley("", "thickness_m = 1000");
+    EXPECT_EQ(load_error({"solver.target_particle_count=1"}), std::string(loaded));
+    write_features("release.geojson", {rectangle(20, 50, 120, 150)});
+    EXPECT_THAT(load_error({"solver.target_particle_count=1"}),
+                AllOf(HasSubstr("solver.target_particle_count = 1 is refused"), HasSubstr("0.0001 to 100 m")));
+}
+
+TEST_F(Limits, MoreMemoryThanTheMachineHasIsRefused) {
+    const double memory = static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGE_SIZE));
+    if (memory > 140e9) GTEST_SKIP() << "a scene of the largest number of particles fits";
+    write_valley("", "thickness_m = 1000");
+    EXPECT_THAT(load_error({"solver.target_particle_count=100000000", "solver.particle_limit=100000000"}),
+                AllOf(HasSubstr("1e+08 particles"), HasSubstr("GB of memory, and this machine has")));
+}
+
+TEST_F(Limits, AThinReleaseIsRefusedHoweverItsThicknessIsGiven) {
+    write_valley("", "volume_m3 = 0.01");
+    EXPECT_THAT(load_error(), AllOf(HasSubstr("scene.toml:6: release[0].volume_m3: "), HasSubstr("0.01 m3 over"),
+                                    HasSubstr("at least 0.001 m")));
+    write_features("release.geojson", {rectangle(20, 90, 40, 110, R"("t": 1e-9)")});
+    write("scene.toml",
+          "[terrain]\nfile = \"dem.tif\"\n[[release]]\nfile = \"release.geojson\"\nthickness_attribute = \"t\"\n");
+    EXPECT_THAT(load_error(),
+                AllOf(HasSubstr("release[0].thickness_attribute: "), HasSubstr("1e-09 m thick on average")));
+}
+
+TEST_F(Limits, MapsAndFrontTableHaveASizeThatCanBeWritten) {
+    write_valley("[outputs]\nmap_cell_m = 0.01\n");
+    EXPECT_THAT(load_error(), AllOf(HasSubstr("scene.toml:8: outputs.map_cell_m = 0.01 is refused"),
+                                    HasSubstr("6e+08 cells"), HasSubstr("at least 0.013 (m)")));
+    EXPECT_EQ(load_error({"outputs.map_cell_m=0.013"}), std::string(loaded));
+}
+
+TEST_F(Limits, AnInflowDeeperThanAnyReleaseIsRefused) {
+    write_valley("[[inflow]]\nline_m = [[824100, 825110], [824100, 825090]]\nhydrograph = \"h.csv\"\n");
+    const auto error = [&](const std::string& lines) {
+        write("h.csv", "time_s,discharge_m3ps,velocity_mps\n" + lines);
+        return load_error();
+    };
+    EXPECT_EQ(error("0,10,2\n10,10,2\n"), std::string(loaded));
+    EXPECT_THAT(error("0,1e308,1\n10,1e308,1\n"), HasSubstr("h.csv:2: discharge_m3ps = \"1e308\" is refused"));
+    EXPECT_THAT(error("0,1e7,300\n1e308,1e7,300\n"), HasSubstr("h.csv:3: time_s = \"1e308\" is refused"));
+    EXPECT_THAT(
+        error("0,1e6,1\n10,10,2\n"),
+        AllOf(HasSubstr("inflow[0].hydrograph: at 0 s, 1e+06 m3/s at 1 m/s across 20 m is a flow 5e+04 m thick"),
+              HasSubstr("at most 1000 m")));
+}
+
+}  // namespace
+}  // namespace talus::scene
