@@ -127,7 +127,7 @@ std::string summary_text(const scene::Scene& scene, const run::RunResult& result
                                        seen.volume_released, end.volume_deposited, end.volume_moving + end.volume_held,
                                        end.volume_left));
     if (!scene.bed.empty()) {
-        text += line("picked up", fmt::format("{:.1f} m3 from the bed", seen.erosion.volume));
+        text += line("entrained", fmt::format("{:.1f} m3 from the bed", seen.erosion.volume));
     }
     if (hits_among(seen.buildings, false).all > 0) text += line("buildings hit", buildings_text(seen));
     for (const observe::BuildingImpact& b : seen.buildings) {

@@ -23,10 +23,10 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 /// The runs of one process, taken one after the other by its threads.
-class Crew {
+class Workers {
   public:
-    Crew(const PlannedRuns& runs, const run::SceneSource& source, const EnsembleFolder& folder,
-         const EnsembleOptions& options)
+    Workers(const PlannedRuns& runs, const run::SceneSource& source, const EnsembleFolder& folder,
+            const EnsembleOptions& options)
         : runs_(runs), source_(source), folder_(folder), options_(options) {}
 
     Result<EnsembleOutcome> work();
@@ -59,7 +59,7 @@ class Crew {
     Clock::time_point start_ = Clock::now();
 };
 
-void Crew::find_work() {
+void Workers::find_work() {
     for (std::size_t run = options_.shard; run < runs_.count(); run += options_.shard_count) {
         ++outcome_.count;
         const auto file = folder_.run_file(run);
@@ -76,7 +76,7 @@ void Crew::find_work() {
     }
 }
 
-std::optional<std::pair<RunRecord, observe::HazardMaps>> Crew::compute(std::size_t run, std::size_t worker) {
+std::optional<std::pair<RunRecord, observe::HazardMaps>> Workers::compute(std::size_t run, std::size_t worker) {
     const PlannedRun planned = runs_.at(run);
     std::vector<std::string> overrides = source_.overrides;
     overrides.insert(overrides.end(), planned.overrides.begin(), planned.overrides.end());
@@ -119,7 +119,7 @@ std::optional<std::pair<RunRecord, observe::HazardMaps>> Crew::compute(std::size
     return made;
 }
 
-void Crew::report(std::size_t worker, double share) {
+void Workers::report(std::size_t worker, double share) {
     if (!options_.on_progress) return;
     const std::lock_guard lock(mutex_);
     under_way_[worker] = share;
@@ -140,7 +140,7 @@ void Crew::report(std::size_t worker, double share) {
     options_.on_progress(p);
 }
 
-void Crew::finish(const RunRecord& record, const observe::HazardMaps& maps, std::size_t worker) {
+void Workers::finish(const RunRecord& record, const observe::HazardMaps& maps, std::size_t worker) {
     const Status written = write_run_record(folder_.run_file(record.run), record, maps);
     {
         const std::lock_guard lock(mutex_);
@@ -157,7 +157,7 @@ void Crew::finish(const RunRecord& record, const observe::HazardMaps& maps, std:
     report(worker, 0);
 }
 
-void Crew::take_runs(std::size_t worker) {
+void Workers::take_runs(std::size_t worker) {
     while (!stopped()) {
         const std::size_t k = next_++;
         if (k >= todo_.size()) return;
@@ -175,7 +175,7 @@ void Crew::take_runs(std::size_t worker) {
     }
 }
 
-Result<EnsembleOutcome> Crew::work() {
+Result<EnsembleOutcome> Workers::work() {
     find_work();
     const std::size_t workers = std::min(todo_.size(), static_cast<std::size_t>(std::max(1, options_.runs_at_once)));
     under_way_.assign(workers, 0);
@@ -193,7 +193,7 @@ Result<EnsembleOutcome> Crew::work() {
 
 Result<EnsembleOutcome> run_ensemble(const PlannedRuns& runs, const run::SceneSource& source,
                                      const EnsembleFolder& folder, const EnsembleOptions& options) {
-    return Crew(runs, source, folder, options).work();
+    return Workers(runs, source, folder, options).work();
 }
 
 }  // namespace talus::ensemble

@@ -15,6 +15,7 @@
 #include "core/try.hpp"
 #include "ensemble/predict.hpp"
 #include "products/text_file.hpp"
+#include "report/hazard_map.hpp"
 
 namespace talus::ensemble {
 namespace {
@@ -89,14 +90,6 @@ double reached_area(const observe::HazardMaps& maps) {
     return static_cast<double>(cells) * cell * cell;
 }
 
-double greatest_of(const Grid<float>& grid) {
-    double most = 0;
-    for (const float v : grid.values) {
-        if (v > most) most = v;
-    }
-    return most;
-}
-
 }  // namespace
 
 std::vector<Measure> measures_of(const scene::Scene& scene) {
@@ -122,8 +115,8 @@ std::vector<double> measure(const scene::Scene& scene, const run::RunResult& res
                                   o.run_out.runout_angle * degrees_per_radian,
                                   o.run_out.travel_angle * degrees_per_radian,
                                   reached_area(o.maps),
-                                  greatest_of(o.maps.peak_depth),
-                                  greatest_of(o.maps.peak_speed),
+                                  report::greatest(o.maps.peak_depth),
+                                  report::greatest(o.maps.peak_speed),
                                   result.simulated_time};
     if (!scene.buildings.empty()) {
         values.push_back(static_cast<double>(hits_among(o.buildings, false).hit));

@@ -25,8 +25,8 @@ PlanPoint centre_of(const GridGeometry& g, std::size_t k) {
 }
 
 /// The cells of the band [from, to) of the trail that are connected with `first`. `taken`: by cell, of earlier bands.
-std::vector<std::size_t> connected_cells(const TrailWays& ways, const GridGeometry& g, std::size_t first, double from,
-                                         double to, std::vector<std::uint8_t>& taken) {
+std::vector<std::size_t> connected_cells(const TrailDistances& ways, const GridGeometry& g, std::size_t first,
+                                         double from, double to, std::vector<std::uint8_t>& taken) {
     std::vector<std::size_t> cells{first};
     taken[first] = 1;
     for (std::size_t next = 0; next < cells.size(); ++next) {
@@ -62,7 +62,7 @@ PlanPoint centroid(const std::vector<std::size_t>& cells, const HazardMaps& maps
 /// From the crown to the toe, a point per band.
 std::vector<PlanPoint> find_course(const HazardMaps& maps, const RunOut& run_out) {
     const GridGeometry& g = maps.peak_depth.geometry;
-    const TrailWays ways(maps.peak_depth, run_out.crown);
+    const TrailDistances ways(maps.peak_depth, run_out.crown);
     const double band = band_cells * g.cell;
     std::vector<PlanPoint> middles{run_out.crown};
     std::vector<std::uint8_t> taken(g.size(), 0);

@@ -11,10 +11,11 @@ namespace talus::observe {
 
 /// In place of a path that was traced before the run: the line that debris followed, and what is measured along it.
 ///
-/// The line has a point every three map cells along the flow (TrailWays): the centroid of the covered ground there,
-/// each cell counting by peak depth times peak speed. It runs from the crown to the toe; where the flow parted, through
-/// the part that leads to the toe. The front is at a place of the line when debris first arrived in the map cells
-/// around it, or around a place beyond it: no projection, so that a corner of the line cannot make the front jump.
+/// The line has a point every three map cells along the flow (TrailDistances): the centroid of the covered ground
+/// there, each cell counting by peak depth times peak speed. It runs from the crown to the toe; where the flow parted,
+/// through the part that leads to the toe. The front is at a place of the line when debris first arrived in the map
+/// cells around it, or around a place beyond it: no projection, so that a corner of the line cannot make the front
+/// jump.
 ///
 /// Sets followed_path, front, erosion and all front chainages of `observation`, whose maps and run-out are known.
 /// `corridor_width` in m. `traced`: the path that the front chainages refer to so far; may be empty. Nothing changes

@@ -104,7 +104,7 @@ struct Observer::Parts {
             for (std::uint32_t id = first; id < last; ++id) lay.position.set(lay.count++, start[id]);
         };
         for (const sim::ReleaseGroup& release : model.releases) add(release.first_particle, release.last_particle);
-        for (const auto& [first, last] : came_in) add(first, last);
+        for (const auto& [first, last] : injected) add(first, last);
         return measure_release(ground, lay);
     }
 
@@ -133,8 +133,8 @@ struct Observer::Parts {
     FrontTracker front;
     ImpactRecorder impact;
     ReleasedMass released;
-    std::vector<LocalPoint> start;                                 ///< by particle id
-    std::vector<std::pair<std::uint32_t, std::uint32_t>> came_in;  ///< ids [first, last) injected during the run
+    std::vector<LocalPoint> start;                                  ///< by particle id
+    std::vector<std::pair<std::uint32_t, std::uint32_t>> injected;  ///< ids [first, last) injected during the run
     std::vector<TimeSample> timeseries;
     std::uint64_t next_row = 1;  ///< due at next_row * sample_interval
     StepRate rate;
@@ -188,10 +188,10 @@ void Observer::follow_inflow(const sim::State& state, std::uint32_t first_new_id
     Parts& p = *parts_;
     if (first_new_id == state.seeded) return;
     p.keep_starts(state, first_new_id);
-    if (!p.came_in.empty() && p.came_in.back().second == first_new_id) {
-        p.came_in.back().second = state.seeded;
+    if (!p.injected.empty() && p.injected.back().second == first_new_id) {
+        p.injected.back().second = state.seeded;
     } else {
-        p.came_in.emplace_back(first_new_id, state.seeded);
+        p.injected.emplace_back(first_new_id, state.seeded);
     }
     p.maps.make_room(state.count);
     p.front.follow(state);
@@ -258,7 +258,7 @@ Observation Observer::finish(const sim::Model& model, const sim::Ground& ground,
     observation.thickness = measure_thickness(observation.maps.peak_depth, ground.terrain, p.outputs.arrival_depth);
     observation.deposit = measure_deposit(observation.maps.deposit_depth, p.outputs.arrival_depth);
     observation.front = p.front.samples();
-    const ReleasedMass released = p.came_in.empty() ? p.released : p.measure_starts(model, ground);
+    const ReleasedMass released = p.injected.empty() ? p.released : p.measure_starts(model, ground);
     observation.run_out = measure_run_out(ground, state, observation.maps.peak_depth, released, p.front.farthest());
     observation.buildings = p.impact.complete(state);
     observation.timeseries = p.timeseries;

@@ -70,7 +70,7 @@ RunOut measure_run_out(const sim::Ground& ground, const sim::State& state, const
     RunOut run_out;
     run_out.front_chainage = front_chainage;
     const PlanPoint crown = plan(released.crown);
-    const TrailWays ways(covered, crown);
+    const TrailDistances ways(covered, crown);
     const auto reach = [&](double along_flow, const WorldPoint& at) {
         const double straight = plan_distance(crown, plan(at));
         return Reach{std::max(along_flow, straight), straight, at};  // may be slightly less by rounding
@@ -100,7 +100,7 @@ RunOut measure_run_out(const sim::Ground& ground, const sim::State& state, const
 
     if (!lies) return run_out;
     const ReleasedMass deposit = measure_mass(ground, state, [&](std::uint32_t i) { return state.held[i] == 0; });
-    const double travelled = std::max(TrailWays(covered, plan(released.centre)).to(plan(deposit.centre)),
+    const double travelled = std::max(TrailDistances(covered, plan(released.centre)).to(plan(deposit.centre)),
                                       plan_distance(plan(released.centre), plan(deposit.centre)));
     run_out.travel_angle = std::atan2(released.centre.z - deposit.centre.z, travelled);
     return run_out;

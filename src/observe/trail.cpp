@@ -32,7 +32,7 @@ void for_each_neighbour(const GridGeometry& g, std::int32_t cell, const Function
 
 }  // namespace
 
-TrailWays::TrailWays(const Grid<float>& covered, const PlanPoint& from)
+TrailDistances::TrailDistances(const Grid<float>& covered, const PlanPoint& from)
     : geometry_(covered.geometry),
       from_(from),
       covered_(covered.values.size()),
@@ -62,7 +62,7 @@ TrailWays::TrailWays(const Grid<float>& covered, const PlanPoint& from)
     search(true);
 }
 
-void TrailWays::search(bool anywhere) {
+void TrailDistances::search(bool anywhere) {
     while (!open_.empty()) {
         std::pop_heap(open_.begin(), open_.end(), std::greater<>{});
         const Cell cell = open_.back().second;
@@ -84,7 +84,7 @@ void TrailWays::search(bool anywhere) {
     }
 }
 
-void TrailWays::settle(Cell cell, bool anywhere) {
+void TrailDistances::settle(Cell cell, bool anywhere) {
     const auto k = static_cast<std::size_t>(cell);
     if (bend_[k] != cell && !in_sight(bend(cell), centre(cell), anywhere)) {
         double shortest = unreached;
@@ -102,7 +102,7 @@ void TrailWays::settle(Cell cell, bool anywhere) {
     settled_[k] = 1;
 }
 
-bool TrailWays::in_sight(const PlanPoint& a, const PlanPoint& b, bool anywhere) const {
+bool TrailDistances::in_sight(const PlanPoint& a, const PlanPoint& b, bool anywhere) const {
     const double length = distance(a, b) / geometry_.cell;
     if (length > longest_sight) return false;
     if (anywhere || length < 1.5) return true;  // adjacent, also diagonally
@@ -118,7 +118,7 @@ bool TrailWays::in_sight(const PlanPoint& a, const PlanPoint& b, bool anywhere) 
     return true;
 }
 
-TrailWays::Cell TrailWays::nearest_covered(const PlanPoint& p) const {
+TrailDistances::Cell TrailDistances::nearest_covered(const PlanPoint& p) const {
     const double u = (p.x - geometry_.x_min) / geometry_.cell, v = (p.y - geometry_.y_min) / geometry_.cell;
     if (u >= 0 && v >= 0 && u < geometry_.columns && v < geometry_.rows) {
         const std::size_t k = geometry_.index(static_cast<int>(u), static_cast<int>(v));
@@ -143,21 +143,21 @@ TrailWays::Cell TrailWays::nearest_covered(const PlanPoint& p) const {
     return nearest;
 }
 
-PlanPoint TrailWays::centre(Cell cell) const {
+PlanPoint TrailDistances::centre(Cell cell) const {
     return geometry_.centre(cell % geometry_.columns, cell / geometry_.columns);
 }
 
-PlanPoint TrailWays::bend(Cell cell) const {
+PlanPoint TrailDistances::bend(Cell cell) const {
     const Cell at = bend_[static_cast<std::size_t>(cell)];
     return at < 0 ? from_ : centre(at);
 }
 
-double TrailWays::bend_length(Cell cell) const {
+double TrailDistances::bend_length(Cell cell) const {
     const Cell at = bend_[static_cast<std::size_t>(cell)];
     return at < 0 ? 0 : length_[static_cast<std::size_t>(at)];
 }
 
-std::optional<std::size_t> TrailWays::cell_on_way(const PlanPoint& p, double along) const {
+std::optional<std::size_t> TrailDistances::cell_on_way(const PlanPoint& p, double along) const {
     Cell cell = nearest_covered(p);
     if (cell < 0) return {};
     // Upstream from bend to bend, until the place lies between the bend and what comes after it.
@@ -179,7 +179,7 @@ std::optional<std::size_t> TrailWays::cell_on_way(const PlanPoint& p, double alo
     return covered_[k] != 0 ? std::optional(k) : std::nullopt;
 }
 
-double TrailWays::to(const PlanPoint& p) const {
+double TrailDistances::to(const PlanPoint& p) const {
     const Cell cell = nearest_covered(p);
     return cell < 0 ? never : bend_length(cell) + distance(bend(cell), p);
 }

@@ -18,10 +18,10 @@ namespace talus::observe {
 /// Dijkstra's search over the covered cells, in which the path to a cell runs straight from the last bend, if the
 /// straight line stays on the trail (lazy Theta*: Nash, Koenig & Tovey 2010): on open ground it is the straight
 /// distance, without the 8 % that steps from cell to cell add.
-class TrailWays {
+class TrailDistances {
   public:
     /// `covered`: NaN where debris never was. Parts that debris reached through the air are joined to the nearest.
-    TrailWays(const Grid<float>& covered, const PlanPoint& from);
+    TrailDistances(const Grid<float>& covered, const PlanPoint& from);
 
     /// m; for a place off the trail, to the nearest covered cell and straight from there. NaN: no cell is covered.
     [[nodiscard]] double to(const PlanPoint& p) const;

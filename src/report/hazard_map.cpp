@@ -22,6 +22,25 @@ HazardMap map(const char* file, const char* title, const char* description, cons
     return {file, title, description, unit, factor, grid, std::move(breaks), ramp};
 }
 
+/// A QGIS 3 layer style around the element of a renderer.
+std::string layer_style(const std::string& renderer) {
+    return R"qml(<!DOCTYPE qgis PUBLIC 'http://mrcc.com/qgis.dtd' 'SYSTEM'>
+<qgis version="3.22.0" styleCategories="AllStyleCategories" hasScaleBasedVisibilityFlag="0">
+  <customproperties>
+    <Option/>
+  </customproperties>
+  <pipe>
+)qml" + renderer +
+           R"qml(    <brightnesscontrast brightness="0" contrast="0" gamma="1"/>
+    <huesaturation saturation="0" grayscaleMode="0" colorizeOn="0"/>
+    <rasterresampler maxOversampling="2"/>
+    <resamplingStage>resamplingFilter</resamplingStage>
+  </pipe>
+  <blendMode>0</blendMode>
+</qgis>
+)qml";
+}
+
 /// A QGIS style with a colour per class.
 std::string category_style(const HazardMap& map) {
     std::string entries;
@@ -30,23 +49,14 @@ std::string category_style(const HazardMap& map) {
         entries += fmt::format("        <paletteEntry value=\"{}\" color=\"{}\" alpha=\"255\" label=\"{}\"/>\n", k + 1,
                                category.colour.hex(), report::escape(category.name));
     }
-    return fmt::format(R"qml(<!DOCTYPE qgis PUBLIC 'http://mrcc.com/qgis.dtd' 'SYSTEM'>
-<qgis version="3.22.0" styleCategories="AllStyleCategories" hasScaleBasedVisibilityFlag="0">
-  <pipe>
-    <rasterrenderer type="paletted" band="1" opacity="0.85" alphaBand="-1" nodataColor="">
+    return layer_style(fmt::format(
+        R"qml(    <rasterrenderer type="paletted" band="1" opacity="0.85" alphaBand="-1" nodataColor="">
       <rasterTransparency/>
       <colorPalette>
 {}      </colorPalette>
     </rasterrenderer>
-    <brightnesscontrast brightness="0" contrast="0" gamma="1"/>
-    <huesaturation saturation="0" grayscaleMode="0" colorizeOn="0"/>
-    <rasterresampler maxOversampling="2"/>
-    <resamplingStage>resamplingFilter</resamplingStage>
-  </pipe>
-  <blendMode>0</blendMode>
-</qgis>
 )qml",
-                       entries);
+        entries));
 }
 
 }  // namespace
@@ -73,7 +83,7 @@ const std::vector<HazardMap>& hazard_maps() {
 
 const HazardMap& erosion_map() {
     static const HazardMap erosion =
-        map("erosion_depth", "Erosion depth", "depth that debris picked up from the bed, vertical", "m", 1, nullptr,
+        map("erosion_depth", "Erosion depth", "depth that debris entrained from the bed, vertical", "m", 1, nullptr,
             {0, 0.05, 0.1, 0.25, 0.5, 1, 2, 3, 5}, {25, 0.07, 52, 0.13, 0.92, 0.30});
     return erosion;
 }
@@ -120,14 +130,8 @@ std::string qgis_style(const HazardMap& map, double largest) {
                                        : fmt::format("{} – {} {}", classes.breaks[k], upper, map.unit);
         items += item(upper, classes.colours[k], 255, label);
     }
-    return fmt::format(
-        R"qml(<!DOCTYPE qgis PUBLIC 'http://mrcc.com/qgis.dtd' 'SYSTEM'>
-<qgis version="3.22.0" styleCategories="AllStyleCategories" hasScaleBasedVisibilityFlag="0">
-  <customproperties>
-    <Option/>
-  </customproperties>
-  <pipe>
-    <rasterrenderer type="singlebandpseudocolor" band="1" opacity="0.85" alphaBand="-1" nodataColor="" classificationMin="{0}" classificationMax="{1}">
+    return layer_style(fmt::format(
+        R"qml(    <rasterrenderer type="singlebandpseudocolor" band="1" opacity="0.85" alphaBand="-1" nodataColor="" classificationMin="{0}" classificationMax="{1}">
       <rasterTransparency/>
       <minMaxOrigin>
         <limits>None</limits>
@@ -139,15 +143,8 @@ std::string qgis_style(const HazardMap& map, double largest) {
 {2}        </colorrampshader>
       </rastershader>
     </rasterrenderer>
-    <brightnesscontrast brightness="0" contrast="0" gamma="1"/>
-    <huesaturation saturation="0" grayscaleMode="0" colorizeOn="0"/>
-    <rasterresampler maxOversampling="2"/>
-    <resamplingStage>resamplingFilter</resamplingStage>
-  </pipe>
-  <blendMode>0</blendMode>
-</qgis>
 )qml",
-        classes.breaks.front(), std::max(largest, classes.breaks.back()), items);
+        classes.breaks.front(), std::max(largest, classes.breaks.back()), items));
 }
 
 }  // namespace talus::report

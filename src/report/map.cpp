@@ -263,7 +263,7 @@ MapContent map_content(const scene::Scene& scene, const run::RunResult& result) 
                               0, guideline.name});
     if (!observation.erosion.depth.values.empty()) {
         content.layers.push_back({erosion_map(), &observation.erosion.depth, "Erosion",
-                                  "What debris picked up from the bed, measured vertically, on the cells of the "
+                                  "Depth that debris entrained from the bed, measured vertically, on the cells of the "
                                   "terrain, which sank by it.",
                                   2});
     }

@@ -133,7 +133,7 @@ Json key_figures(const scene::Scene& scene, const run::RunResult& result) {
         plural(scene.releases.size(), "release") +
             (scene.inflows.empty() ? "" : ", " + plural(scene.inflows.size(), "inflow")));
     if (!scene.bed.empty()) {
-        add("entrained_volume_m3", "Picked up from the bed", mass.entrained, mass.entrained < 100 ? "f1" : "f0", "m³",
+        add("entrained_volume_m3", "Entrained from the bed", mass.entrained, mass.entrained < 100 ? "f1" : "f0", "m³",
             fmt::format("{} × the released volume, deepest {} m", fixed(mass.entrained / o.volume_released, 2),
                         fixed(greatest(o.erosion.depth), 2)));
     }
@@ -234,7 +234,7 @@ Json quality(const scene::Scene& scene, const run::RunResult& result) {
                  : fmt::format("{} per step", scene.spec.solver.iteration_count)),
         fact("Mass balance",
              fmt::format("released {}{} = held {} + moving {} + deposited {} + left {} m³", fixed(o.volume_released, 2),
-                         scene.bed.empty() ? "" : fmt::format(" + picked up {}", fixed(mass.entrained, 2)),
+                         scene.bed.empty() ? "" : fmt::format(" + entrained {}", fixed(mass.entrained, 2)),
                          fixed(mass.held, 2), fixed(mass.moving, 2), fixed(mass.deposited, 2), fixed(mass.left, 2)),
              mass.closes ? "" : fmt::format("; {} m³ missing", fixed(mass.residual, 3))),
     };

@@ -27,7 +27,7 @@ Json erosion_chart(const run::RunResult& result) {
     Plot plot(66, 34, 916, 240, {0, end}, volumes);
     plot.axes("chainage along the flow path, m", "volume, m³");
     plot.horizontal(result.observation.volume_released, "limit blue", "released");
-    plot.line(erosion.chainage, volume, "series blue", "released, and picked up upstream of here");
+    plot.line(erosion.chainage, volume, "series blue", "released, and entrained upstream of here");
     return chart_json({"Volume against chainage", 1000, 325, {std::move(plot)}});
 }
 

@@ -142,7 +142,7 @@ Result<Json> zone_figure(const scene::Scene& scene, const MapContent& content, d
     draw_key(svg, scene, content.buildings, frame, contour_interval);
     svg.close("g");
     const char* title = scene.spec.beds.empty()    ? "Zones of the ground"
-                        : scene.spec.zones.empty() ? "Bed that can be picked up"
+                        : scene.spec.zones.empty() ? "Bed that can be entrained"
                                                    : "Zones of the ground and bed";
     const double height = std::max(frame.bottom() + 30, y + 8 + key_height(scene));
     return Json{{"title", title},

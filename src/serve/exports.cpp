@@ -19,7 +19,7 @@ using nlohmann::json;
 
 struct ExportFile {
     const char *name = nullptr, *type = nullptr, *what = nullptr;
-    bool of_erosion = false;  ///< written only if debris picked up anything
+    bool of_erosion = false;  ///< written only if debris entrained anything
 };
 
 // The files of a run; requested names are checked against these, so none leads out of the folder.
@@ -47,9 +47,9 @@ constexpr ExportFile export_files[] = {
     {"intensity.qml", "application/xml", "QGIS style of it"},
     {"peak_thickness.tif", "image/tiff", "Peak flow thickness normal to the slope, m", true},
     {"peak_thickness.qml", "application/xml", "QGIS style of it", true},
-    {"erosion_depth.tif", "image/tiff", "Depth picked up from the bed, m", true},
+    {"erosion_depth.tif", "image/tiff", "Depth of erosion of the bed, m", true},
     {"erosion_depth.qml", "application/xml", "QGIS style of it", true},
-    {"erosion.csv", "text/csv", "Volume picked up against chainage", true},
+    {"erosion.csv", "text/csv", "Volume entrained from the bed against chainage", true},
 };
 
 const ExportFile* find_file(const std::string& name) {
@@ -149,7 +149,7 @@ void Exports::file(const std::string& scenario, const std::string& name, const R
         SnapshotPtr& taken = taken_[static_cast<std::size_t>(*index)];
         const twin::Scenario& run = all.at(*index);
         if (wanted->of_erosion && !run.has_erosion()) {
-            respond(error_response(404, fmt::format("there is no {}: nothing was picked up", wanted->name)));
+            respond(error_response(404, fmt::format("there is no {}: nothing was entrained", wanted->name)));
             return;
         }
         if (!is_current(*index, run)) {

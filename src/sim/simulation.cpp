@@ -80,7 +80,7 @@ Status Simulation::entrain_bed() {
     const std::size_t count = state_.count + loose, limit = static_cast<std::size_t>(model_.solver.particle_limit);
     if (count > limit) {
         return Error{fmt::format(
-            "at t = {:.4g} s debris has picked up its bed until it has more than solver.particle_limit = {} particles: "
+            "at t = {:.4g} s debris has entrained its bed until it has more than solver.particle_limit = {} particles: "
             "raise it, or solver.particle_spacing_m",
             state_.time, limit)};
     }

@@ -26,7 +26,7 @@ struct Trail {
         cover(line, 0);
         o.run_out.crown = points.front();
         o.run_out.toe = points.back();
-        o.run_out.along_flow = TrailWays(maps.peak_depth, points.front()).to(points.back());
+        o.run_out.along_flow = TrailDistances(maps.peak_depth, points.front()).to(points.back());
         o.run_out.front_chainage = 205.661545;
     }
     /// Deepest and fastest in the middle.
@@ -144,16 +144,16 @@ TEST(FollowDebris, leaves_all_as_it_was_where_debris_hardly_left_its_release) {
     EXPECT_EQ(o.run_out.front_chainage, 205.661545);
 }
 
-TEST(TrailWays, name_the_cell_at_a_distance_on_the_way) {
+TEST(TrailDistances, name_the_cell_at_a_distance_on_the_way) {
     Trail trail({{1010, 2070}, {1110, 2070}, {1110, 2010}});
     const Grid<float>& covered = trail.o.maps.peak_depth;
-    const TrailWays ways(covered, {1010, 2070});
+    const TrailDistances ways(covered, {1010, 2070});
     for (const double along : {0.5, 30.0, 90.0, 120.0, 140.0}) {
         const auto k = ways.cell_on_way({1110, 2010}, along);
         ASSERT_TRUE(k) << along;
         EXPECT_NEAR(ways.at(*k), along, 1) << along;
     }
-    EXPECT_FALSE(TrailWays(Grid<float>(covered.geometry, none), {1010, 2070}).cell_on_way({1110, 2010}, 5));
+    EXPECT_FALSE(TrailDistances(Grid<float>(covered.geometry, none), {1010, 2070}).cell_on_way({1110, 2010}, 5));
 }
 
 }  // namespace

@@ -196,24 +196,25 @@ bool in_the_bend(const PlanPoint& p) {
     return (p.y > 1940 && p.y < 1960 && p.x > 920 && p.x < 1010) || (p.x > 990 && p.x < 1010 && p.y > 1940);
 }
 
-TEST(TrailWays, lead_round_a_bend_and_straight_over_open_ground) {
-    const TrailWays bend(trail(in_the_bend), {925, 1950});
+TEST(TrailDistances, lead_round_a_bend_and_straight_over_open_ground) {
+    const TrailDistances bend(trail(in_the_bend), {925, 1950});
     EXPECT_NEAR(bend.to({980, 1955}), std::hypot(55, 5), 1e-9);
     const double taut = std::hypot(990 - 925, 1960 - 1950) + 90;  // past the inner corner
     EXPECT_GT(bend.to({991, 2050}), taut);
     EXPECT_NEAR(bend.to({991, 2050}), taut, 2);
-    const TrailWays open(trail([](const PlanPoint&) { return true; }), {925, 1950});
+    const TrailDistances open(trail([](const PlanPoint&) { return true; }), {925, 1950});
     for (const PlanPoint& p : {PlanPoint{1090, 1951}, PlanPoint{930, 2090}, PlanPoint{1060, 2033}}) {
         EXPECT_NEAR(open.to(p), std::hypot(p.x - 925, p.y - 1950), 1e-9);
     }
 }
 
-TEST(TrailWays, join_what_debris_reached_through_the_air) {
+TEST(TrailDistances, join_what_debris_reached_through_the_air) {
     const auto two_parts = [](const PlanPoint& p) { return p.y > 1940 && p.y < 1960 && (p.x < 960 || p.x > 980); };
-    const TrailWays ways(trail(two_parts), {925, 1951});
+    const TrailDistances ways(trail(two_parts), {925, 1951});
     EXPECT_NEAR(ways.to({1050, 1951}), 125, 0.5);
     EXPECT_TRUE(std::isnan(ways.at(0)));
-    EXPECT_TRUE(std::isnan(TrailWays(trail([](const PlanPoint&) { return false; }), {925, 1951}).to({1050, 1951})));
+    EXPECT_TRUE(
+        std::isnan(TrailDistances(trail([](const PlanPoint&) { return false; }), {925, 1951}).to({1050, 1951})));
 }
 
 TEST(RunOut, along_the_flow_and_straight_of_a_block_that_moved_round_a_bend) {

@@ -241,7 +241,7 @@ TEST_F(OpenApi, exports_are_of_the_run_so_far) {
     EXPECT_EQ(bytes_of("erosion_depth.tif"), "not listed");
     const Answer none = eye.get("/api/scenarios/A/exports/erosion_depth.tif");
     EXPECT_EQ(none.status, 404);
-    EXPECT_NE(none.body.find("nothing was picked up"), std::string::npos);
+    EXPECT_NE(none.body.find("nothing was entrained"), std::string::npos);
 }
 
 }  // namespace

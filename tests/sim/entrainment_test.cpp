@@ -118,7 +118,7 @@ TEST(Entrainment, makes_room_without_a_pop) {
     sim::Model model = sim::make_model({}, {}, coarse_spacing);
     sim::Ground ground(level);
     Result<sim::State> seeded = seed_releases(model, ground, {block(level, rectangle(5, 5, 25, 25), 2)});
-    // Debris that seems to move picks up its bed for a moment, and lies still again.
+    // Debris that seems to move entrains its bed for a moment, and lies still again.
     lay(ground, growing(0.02), 1);
     sim::State state = *seeded;
     state.resize(2 * state.count);

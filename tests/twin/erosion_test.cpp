@@ -133,7 +133,7 @@ TEST(ErosionHistory, holds_each_cell_as_it_was_last) {
     EXPECT_TRUE(history.at(1).empty());
     history.add(0, 0, {0, 0, 0});
     history.add(1, 1, {0, 0.5F, 0});
-    history.add(2, 1, {9, 9, 9});  // nothing was picked up since: not looked at
+    history.add(2, 1, {9, 9, 9});  // nothing was entrained since: not looked at
     history.add(3, 3, {0.25F, 0.75F, 0});
     EXPECT_THAT(history.at(0.9), ElementsAre(0, 0, 0));
     EXPECT_THAT(history.at(1), ElementsAre(0, 0.5F, 0));

@@ -91,7 +91,7 @@ inline std::string refusal(Scenario& scenario, const json& action) {
     return done ? "" : done.error().message;
 }
 
-/// released + picked up = held + moving + deposited + left.
+/// released + entrained = held + moving + deposited + left.
 inline void expect_balance(const Scenario& scenario) {
     const json s = scenario.state_json();
     const double sum = s["volume_held_m3"].get<double>() + s["volume_moving_m3"].get<double>() +

@@ -99,7 +99,7 @@ void compute_one(const GrowthSpec& spec, double spacing, const Setting& setting,
 
 Result<Outcome> compute(const GrowthSpec& spec, const Setting& setting, const Watch& watch) {
     Outcome outcome;
-    outcome.charts.push_back({"speed", "Mean speed of a slab that picks up its bed", "time, s", "m/s", {}});
+    outcome.charts.push_back({"speed", "Mean speed of a slab that entrains its bed", "time, s", "m/s", {}});
     outcome.charts.push_back({"volume", "Its volume over that at the start", "time, s", "1", {}});
     const double acceleration = sim::Model{}.gravity * (std::sin(spec.slope) - spec.friction * std::cos(spec.slope));
     const GrowthLaw law{acceleration, spec.growth_rate};

@@ -1,4 +1,4 @@
-// Debris that picks up its bed: the ground sinks under it, on the page too, as far as at the time on display, and a restart
+// Debris that entrains its bed: the ground sinks under it, on the page too, as far as at the time on display, and a restart
 // brings it back. On a server and a scene of its own: the shipped ones have no bed.
 import { assert, boxOf, inControl, pause, saved, until, viewClip } from "./harness.mjs";
 import { writeGully } from "./gully.mjs";
@@ -40,13 +40,13 @@ export async function testErosion(run) {
     const text = await until(() => page.textContent(".read-out"), (t) => /ground/.test(t), "the read-out");
     return Number(/ground (\S+) m/.exec(text)[1]);
   };
-  /** Share of the flow path in the reach that debris picks up from. */
+  /** Share of the flow path in the reach that debris erodes. */
   const path = async () => (await run.colours(page, { ...clip, width: 0.4 * box.width })).bluish;
 
-  await run.check("the ground sinks where debris picks up its bed, as far as the server says", async () => {
+  await run.check("the ground sinks where debris entrains its bed, as far as the server says", async () => {
     await page.click("[aria-label='Top view']");
     for (const name of ["Names", "Particles"]) await page.locator(`label:has-text('${name}') input`).uncheck();
-    assert.equal(await offered(), false, "nothing was picked up, so there is no map of it");
+    assert.equal(await offered(), false, "nothing was entrained, so there is no map of it");
     before = { ...await run.still(page, clip), path: await path(), height: await heightAt(0.5, 0.5) };
     // No faster than in reality, so that it is still under way when it is paused: a scenario B does not run then.
     await page.selectOption("select[aria-label^=Speed]", "1");

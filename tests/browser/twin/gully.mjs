@@ -1,4 +1,4 @@
-// A small scene: a gully in gravel 2 m deep, which debris picks up.
+// A small scene: a gully in gravel 2 m deep, which debris entrains.
 import { writeFileSync } from "node:fs";
 import { join } from "node:path";
 

@@ -72,7 +72,7 @@ export function balance(twin: Twin): HTMLElement {
     };
     const error = s.volume_released_m3 + s.volume_entrained_m3 - s.volume_held_m3 - s.volume_moving_m3 - s.volume_deposited_m3 - s.volume_left_m3;
     body.replaceChildren(...parts.map(([key, label, colour]) => row(label, `${fixed(s[key], 1)} m³`, colour)), row("All releases", `${fixed(s.volume_released_m3, 1)} m³`),
-      ...(s.volume_entrained_m3 > 0 ? [row("Picked up from the bed", `${fixed(s.volume_entrained_m3, 1)} m³`)] : []),
+      ...(s.volume_entrained_m3 > 0 ? [row("Entrained from the bed", `${fixed(s.volume_entrained_m3, 1)} m³`)] : []),
       row("Residual", `${fixed(Math.abs(error) < 0.05 ? 0 : error, 1)} m³`));
     more.tBodies[0]?.replaceChildren(row("Step", live ? count(s.step) : "–"), row("Compression, mean", `${fixed(100 * s.mean_compression, 2)} %`),
       row("Particles above 3 %", `${fixed(100 * s.squeezed_share, 2)} %`), row("Compression, largest", `${fixed(100 * s.max_compression, 2)} %`), row("Recording", `${s.recording.frames} frames, ${bytes(s.recording.bytes)}`),

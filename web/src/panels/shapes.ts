@@ -16,7 +16,7 @@ const words: Record<Shape, { title: string; empty: string }> = {
   barrier: { title: "Barriers", empty: "No barrier. Draw a line across the path to hold debris back." },
   building: { title: "Buildings", empty: "No building." },
   zone: { title: "Zones", empty: "No zone. Draw one where ground resistance differs, such as a forest." },
-  bed: { title: "Beds", empty: "No bed. Draw one where debris can pick up loose material." },
+  bed: { title: "Beds", empty: "No bed. Draw one where debris can entrain loose material." },
   inflow: { title: "Inflows", empty: "No inflow. Draw one where debris enters during the run." },
 };
 /** Longer ones (the houses of a village) are picked in the view. */

@@ -23,7 +23,7 @@ export const layerInfo: Record<LayerName, LayerInfo> = {
   peak_pressure: { title: "Peak dynamic pressure", unit: "kPa", ramp: ramps.peak_pressure, help: "Largest dynamic pressure of the free flow so far: density times speed squared" },
   arrival_time: { title: "Arrival time", unit: "s", ramp: ramps.arrival_time, help: "Time when debris first arrived" },
   deposit_depth: { title: "Deposit depth", unit: "m", ramp: ramps.deposit_depth, help: "Depth of debris as it lies" },
-  erosion_depth: { title: "Erosion", unit: "m", ramp: ramps.erosion_depth, help: "Depth that debris picked up from the bed, vertical: the ground is lower by it" },
+  erosion_depth: { title: "Erosion", unit: "m", ramp: ramps.erosion_depth, help: "Depth that debris entrained from the bed, vertical: the ground is lower by it" },
 };
 
 export const isEnsembleLayer = (name: ShownLayer | "none"): name is EnsembleLayer => name.startsWith("ensemble/");
