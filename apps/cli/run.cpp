@@ -34,9 +34,11 @@ constexpr const char* run_help = R"(
 Every value of the scene can be set with --set section.key=value. The result folder holds maps (GeoTIFF with QGIS
 styles), front.csv, timeseries.csv, buildings.csv, results.gpkg, results.json, manifest.json and report.html.
 
---convergence, --vary and --variants compare front velocity at every observation, arrival (first building hit; if there
-is none, the front at 90 % of its chainage) and run-out with the scene as given: on the terminal, in convergence.csv and
-variants.csv, in the report, the manifest and --json. --convergence passes if nothing changes by more than 5 %.
+--convergence, --vary and --variants compare with the scene as given: front velocity at every observation, arrival (first
+building hit; if there is none, the front at 90 % of its chainage), run-out, deposit area and depth, which buildings are
+hit, force and impact pressure on each; on the terminal, in convergence.csv and variants.csv, in the report, the manifest
+and --json. --convergence passes if none changes by more than its limit: 5 % of velocity, arrival and run-out, 10 % of
+the deposit, 15 % of force and pressure, and the same buildings.
 )";
 
 /// talus_out in the current folder, created when needed and removed again if it remains empty.
