@@ -20,16 +20,6 @@ std::string lower_case(std::string_view text) {
     return lower;
 }
 
-/// Compares every byte, so that the time does not reveal where the first difference is.
-bool same(std::string_view given, std::string_view secret) {
-    unsigned difference = given.size() == secret.size() ? 0 : 1;
-    for (std::size_t i = 0; i < secret.size(); ++i) {
-        const char c = i < given.size() ? given[i] : '\0';
-        difference |= static_cast<unsigned char>(c) ^ static_cast<unsigned char>(secret[i]);
-    }
-    return difference == 0 && !secret.empty();
-}
-
 bool has_port(std::string_view name) {
     const std::size_t colon = name.rfind(':');
     if (colon == std::string_view::npos) return false;
@@ -39,6 +29,15 @@ bool has_port(std::string_view name) {
 }
 
 }  // namespace
+
+bool same_secret(std::string_view given, std::string_view secret) {
+    unsigned difference = given.size() == secret.size() ? 0 : 1;
+    for (std::size_t i = 0; i < secret.size(); ++i) {
+        const char c = i < given.size() ? given[i] : '\0';
+        difference |= static_cast<unsigned char>(c) ^ static_cast<unsigned char>(secret[i]);
+    }
+    return difference == 0 && !secret.empty();
+}
 
 Result<std::string> random_token() {
     std::array<unsigned char, 16> bytes{};
@@ -100,8 +99,8 @@ bool Access::origin_allowed(std::string_view origin, std::string_view host) cons
 }
 
 Role Access::role_of(std::string_view token) const {
-    const bool controller = same(token, tokens_.controller);
-    const bool viewer = same(token, tokens_.viewer);
+    const bool controller = same_secret(token, tokens_.controller);
+    const bool viewer = same_secret(token, tokens_.viewer);
     return controller ? Role::controller : viewer ? Role::viewer : Role::nobody;
 }
 

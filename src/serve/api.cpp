@@ -20,11 +20,15 @@ Router make_api(Session& session, Exports& exports, const Ensembles& ensembles, 
 
 void change(Session& session, const Request& request, const Respond& respond,
             const std::function<void(const std::string& by)>& act) {
-    if (const Status allowed = session.people().may_act(request.person); !allowed) {
+    const Person* who = session.people().whose(request.secret);
+    if (who == nullptr && !request.secret.empty()) {
+        respond(error_response(409, nobody_in_session));
+        return;
+    }
+    if (const Status allowed = session.people().may_act(who ? who->id : ""); !allowed) {
         respond(error_response(409, allowed.error().message));
         return;
     }
-    const Person* who = session.people().find(request.person);
     act(who ? who->name : "a program");
 }
 

@@ -22,6 +22,9 @@ void add_calibration_routes(Router& router, Session& session, Calibrations& cali
 void change(Session& session, const Request& request, const Respond& respond,
             const std::function<void(const std::string& by)>& act);
 
+/// To a request with a secret that nobody in the session has: the page has left, or it is made up.
+inline constexpr const char* nobody_in_session = "the sender is not in this session; reload the page";
+
 [[nodiscard]] Response no_scenario(const std::string& name);
 [[nodiscard]] Response binary_response(std::string bytes);
 

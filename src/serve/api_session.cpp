@@ -160,12 +160,17 @@ void control(Session& session, const Request& request, const Respond& respond) {
         const auto found = wanted->is_object() ? wanted->find(key) : wanted->end();
         return found != wanted->end() && found->is_string() ? found->get<std::string>() : "";
     };
-    const std::string what = text_of("do"), person = text_of("person");
+    const std::string what = text_of("do"), secret = text_of("secret");
     if (what != "request" && what != "release" && what != "grant" && what != "decline") {
         respond(error_response(400, fmt::format("do = \"{}\"; it is request, release, grant or decline", what)));
         return;
     }
-    const Status changed = session.people().control(what, person.empty() ? request.person : person, Clock::now());
+    const Person* who = session.people().whose(secret.empty() ? request.secret : secret);
+    if (who == nullptr) {
+        respond(error_response(409, nobody_in_session));
+        return;
+    }
+    const Status changed = session.people().control(what, who->id, Clock::now());
     if (!changed) {
         respond(error_response(409, changed.error().message));
         return;

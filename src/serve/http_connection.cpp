@@ -99,7 +99,7 @@ void HttpConnection::on_header(beast::error_code error) {
     }
     const auto& message = parser_->get();
     request_.method = text_of(message.method_string());
-    request_.person = text_of(message["Talus-Person"]);
+    request_.secret = text_of(message["Talus-Person"]);
     if (auto refused = refusal()) {
         // Its body is not read.
         close_ = close_ || !parser_->is_done() || parser_->chunked() || parser_->content_length().value_or(0) > 0;

@@ -24,7 +24,7 @@ struct Request {
     Arguments query;       ///< decoded
     Arguments parameters;  ///< the values of {name} in the route's pattern
     std::string body;
-    std::string person;  ///< header Talus-Person: the id that a page received on its WebSocket; empty: a program
+    std::string secret;  ///< header Talus-Person: what a page received on its WebSocket; empty: a program
     Role role = Role::nobody;
 };
 

@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "serve/access.hpp"
 #include "serve/json_text.hpp"
 
 namespace talus::serve {
@@ -28,6 +29,12 @@ const Person* People::find(const std::string& id) const {
     return found == members_.end() ? nullptr : &*found;
 }
 
+const Person* People::whose(const std::string& secret) const {
+    const auto found = std::find_if(members_.begin(), members_.end(),
+                                    [&](const Member& m) { return !m.away && same_secret(secret, m.secret); });
+    return found == members_.end() ? nullptr : &*found;
+}
+
 std::size_t People::count() const {
     return static_cast<std::size_t>(
         std::count_if(members_.begin(), members_.end(), [](const Member& m) { return !m.away; }));
@@ -42,8 +49,12 @@ const char* People::free_colour() const {
 }
 
 const Person& People::join(Role role, const std::string& name, const std::string& former, Time) {
-    Member* known = member(former);
-    if (known != nullptr && known->away && known->role == role) {
+    const auto left = std::find_if(members_.begin(), members_.end(), [&](const Member& m) {
+        return m.away && m.role == role && same_secret(former, m.secret);
+    });
+    Member* known = nullptr;
+    if (left != members_.end()) {
+        known = &*left;
         known->away = false;
     } else {
         ++joined_;
@@ -55,6 +66,8 @@ const Person& People::join(Role role, const std::string& name, const std::string
         members_.push_back(fresh);
         known = &members_.back();
     }
+    const Result<std::string> secret = random_token();
+    known->secret = secret ? *secret : "";
     rename(known->id, name);
     if (role == Role::controller && holder_.empty()) holder_ = known->id;
     return *known;

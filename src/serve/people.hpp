@@ -18,6 +18,8 @@ struct Person {
     Role role = Role::viewer;
     std::optional<std::array<double, 3>> mark;  ///< what the person points at, local position, m
     bool away = false;                          ///< the connection is lost; the person comes back or is removed
+    /// Shows that a request or a connection is this person's; never told to anybody else. Empty: shows nothing.
+    std::string secret{};
 };
 
 /// Who is in the session, and which controller has control. Does not depend on connections; time is an argument.
@@ -29,8 +31,8 @@ class People {
     /// Time for which a person whose connection broke keeps place and control, unless it is requested.
     static constexpr std::chrono::seconds return_time{3};
 
-    /// `former`: the id that a connection had before it broke; empty or unknown: a new person. The first controller has
-    /// control.
+    /// `former`: the secret that the connection had before it broke; empty or unknown: a new person. Every connection
+    /// gets a secret of its own. The first controller has control.
     const Person& join(Role role, const std::string& name, const std::string& former, Time now);
     void leave(const std::string& id, Time now);
     void rename(const std::string& id, const std::string& name);
@@ -48,6 +50,8 @@ class People {
     [[nodiscard]] bool waiting() const;
 
     [[nodiscard]] const Person* find(const std::string& id) const;
+    /// Who has this secret and is here; nullptr: nobody.
+    [[nodiscard]] const Person* whose(const std::string& secret) const;
     [[nodiscard]] std::size_t count() const;
     /// Keys people, controller and request, as in the protocol's message `people`.
     [[nodiscard]] nlohmann::json to_json() const;

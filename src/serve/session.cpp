@@ -73,7 +73,8 @@ json Session::describe(Role role) const {
 void Session::join(Viewer& viewer, Role role, const std::string& name, const std::string& former) {
     const Person& who = people_.join(role, name, former, Clock::now());
     viewers_[&viewer].person = who.id;
-    json you = {{"id", who.id}, {"name", who.name}, {"role", role_name(role)}, {"colour", who.colour}};
+    json you = {
+        {"id", who.id}, {"name", who.name}, {"role", role_name(role)}, {"colour", who.colour}, {"secret", who.secret}};
     viewer.send(message_text("hello", {{"protocol", protocol_version}, {"you", you}, {"session", describe(role)}}));
     for (std::size_t i = 0; i < names_.size(); ++i) {
         if (setups_[i]) viewer.send(setups_[i]);

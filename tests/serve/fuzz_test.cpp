@@ -72,7 +72,7 @@ TEST_F(Fuzz, thousands_of_mutated_requests) {
         post(
             "/api/scenarios/A/actions",
             R"({"action": "put_release", "polygon": [[824180, 825090], [824190, 825090], [824185, 825099]], "thickness_m": 0.1})"),
-        post("/api/control", R"({"do": "request", "person": "p1"})"),
+        post("/api/control", R"({"do": "request", "secret": "p1"})"),
         "POST /api/scenarios/A/actions" + common +
             "Transfer-Encoding: chunked\r\n\r\n12\r\n{\"action\":\"pause\"}\r\n0\r\n\r\n",
     };

@@ -1,5 +1,7 @@
 #include "serve/people.hpp"
 
+#include <map>
+
 #include <gtest/gtest.h>
 
 namespace talus::serve {
@@ -10,7 +12,9 @@ using std::chrono::seconds;
 class PeopleTest : public ::testing::Test {
   protected:
     std::string join(Role role, const std::string& name, const std::string& former = "") {
-        return people.join(role, name, former, now).id;
+        const Person& who = people.join(role, name, former.empty() ? "" : secrets[former], now);
+        secrets[who.id] = who.secret;
+        return who.id;
     }
     [[nodiscard]] std::string holder() const {
         const auto all = people.to_json();
@@ -23,6 +27,7 @@ class PeopleTest : public ::testing::Test {
     }
 
     People people;
+    std::map<std::string, std::string> secrets;  ///< by id, of the last connection
     People::Time now{seconds(1000)};
 };
 
@@ -119,6 +124,22 @@ TEST_F(PeopleTest, who_comes_back_in_time_is_the_same_person) {
     EXPECT_NE(join(Role::viewer, "Mallory", bo), bo);
     pass(seconds(5));
     EXPECT_NE(join(Role::controller, "Bo", bo), bo);
+}
+
+TEST_F(PeopleTest, a_secret_shows_who_is_who_and_an_id_does_not) {
+    const std::string ada = join(Role::controller, "Ada"), bo = join(Role::controller, "Bo");
+    ASSERT_EQ(people.whose(secrets[ada]), people.find(ada));
+    EXPECT_EQ(people.whose(ada), nullptr);
+    EXPECT_EQ(people.whose(""), nullptr);
+    EXPECT_NE(secrets[ada], secrets[bo]);
+    EXPECT_EQ(people.to_json().dump().find(secrets[ada]), std::string::npos);
+    const std::string first = secrets[ada];
+    people.leave(ada, now);
+    EXPECT_EQ(people.whose(first), nullptr) << "nobody acts in the name of who has gone";
+    EXPECT_NE(people.join(Role::controller, "Mallory", ada, now).id, ada) << "an id brings nobody back";
+    EXPECT_EQ(join(Role::controller, "Ada", ada), ada);
+    EXPECT_EQ(people.whose(first), nullptr) << "each connection has a secret of its own";
+    EXPECT_EQ(people.whose(secrets[ada]), people.find(ada));
 }
 
 TEST_F(PeopleTest, a_request_ends_with_who_made_it) {

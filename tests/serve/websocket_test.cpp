@@ -154,7 +154,9 @@ TEST_F(Web, control_goes_from_hand_to_hand) {
     WebSocket ada = join(controller, "Ada"), bo = join(controller, "Bo");
     ASSERT_FALSE(ada.wait_for("hello").is_null());
     ASSERT_FALSE(bo.wait_for("hello").is_null());
-    const std::string first = ada.hello["you"]["id"], second = bo.hello["you"]["id"];
+    const std::string first = ada.hello["you"]["secret"], second = bo.hello["you"]["secret"];
+    EXPECT_EQ(act({{"action", "run"}}, ada.hello["you"]["id"]).status, 409) << "an id shows nothing";
+    EXPECT_EQ(as_viewer().get("/api/session").body.find(first), std::string::npos);
     HttpClient hand = as_controller();
     const json change = {{"action", "set_parameter"}, {"key", "material.friction_coefficient"}, {"value", 0.35}};
     EXPECT_EQ(act(change).status, 409);
@@ -166,33 +168,33 @@ TEST_F(Web, control_goes_from_hand_to_hand) {
     EXPECT_EQ(done["by"], "Ada");
     EXPECT_EQ(done["scenario"], "A");
 
-    EXPECT_EQ(hand.post("/api/control", {{"do", "request"}, {"person", second}}).status, 200);
+    EXPECT_EQ(hand.post("/api/control", {{"do", "request"}, {"secret", second}}).status, 200);
     json people;
     while (!(people = ada.wait_for("people")).is_null() && people["request"].is_null()) {
     }
     EXPECT_EQ(people["request"]["name"], "Bo");
-    EXPECT_EQ(hand.post("/api/control", {{"do", "grant"}, {"person", second}}).status, 409);
-    EXPECT_EQ(hand.post("/api/control", {{"do", "grant"}, {"person", first}}).status, 200);
+    EXPECT_EQ(hand.post("/api/control", {{"do", "grant"}, {"secret", second}}).status, 409);
+    EXPECT_EQ(hand.post("/api/control", {{"do", "grant"}, {"secret", first}}).status, 200);
     EXPECT_EQ(act(change, second).status, 200);
     EXPECT_EQ(act(change, first).status, 409);
-    EXPECT_EQ(hand.post("/api/control", {{"do", "release"}, {"person", second}}).status, 200);
+    EXPECT_EQ(hand.post("/api/control", {{"do", "release"}, {"secret", second}}).status, 200);
     EXPECT_EQ(act(change).status, 200);
-    for (const json& bad : {json{{"do", "take"}, {"person", first}}, json::array(), json{{"person", first}}}) {
+    for (const json& bad : {json{{"do", "take"}, {"secret", first}}, json::array(), json{{"secret", first}}}) {
         EXPECT_EQ(hand.post("/api/control", bad).status, 400);
     }
-    EXPECT_EQ(hand.post("/api/control", {{"do", "request"}, {"person", "p77"}}).status, 409);
+    EXPECT_EQ(hand.post("/api/control", {{"do", "request"}, {"secret", "p77"}}).status, 409);
 }
 
 TEST_F(Web, a_broken_connection_comes_back_as_the_same_person_in_the_running_session) {
     WebSocket ada = join(controller, "Ada");
     ASSERT_FALSE(ada.wait_for("hello").is_null());
-    const std::string id = ada.hello["you"]["id"];
-    ASSERT_EQ(act({{"action", "run"}}, id).status, 200);
+    const std::string id = ada.hello["you"]["id"], secret = ada.hello["you"]["secret"];
+    ASSERT_EQ(act({{"action", "run"}}, secret).status, 200);
     ada.send(view_message(30));
     const auto before = read_frame_header(ada.wait_for_frame());
     ada.socket().kill();
     std::this_thread::sleep_for(std::chrono::milliseconds(300));
-    WebSocket again(port(), fmt::format("token={}&name=Ada&person={}", controller, id));
+    WebSocket again(port(), fmt::format("token={}&name=Ada&person={}", controller, secret));
     EXPECT_EQ(again.wait_for("hello")["you"]["id"], id);
     EXPECT_EQ(again.hello["session"]["controller"], id);
     EXPECT_EQ(again.wait_for("state")["status"], "running");
@@ -200,7 +202,8 @@ TEST_F(Web, a_broken_connection_comes_back_as_the_same_person_in_the_running_ses
     const auto after = read_frame_header(again.wait_for_frame());
     ASSERT_TRUE(before && after);
     EXPECT_GT(after->step, before->step);
-    EXPECT_EQ(act({{"action", "pause"}}, id).status, 200);
+    EXPECT_EQ(act({{"action", "pause"}}, secret).status, 409) << "of the connection that broke";
+    EXPECT_EQ(act({{"action", "pause"}}, again.hello["you"]["secret"]).status, 200);
 }
 
 TEST_F(Web, a_viewer_killed_in_mid_frame_harms_nobody) {
@@ -224,7 +227,7 @@ TEST_F(Web, a_viewer_killed_in_mid_frame_harms_nobody) {
 TEST_F(Web, two_scenarios_keep_abreast) {
     WebSocket ada = join(controller, "Ada");
     ASSERT_FALSE(ada.wait_for("hello").is_null());
-    const std::string id = ada.hello["you"]["id"];
+    const std::string id = ada.hello["you"]["secret"];
     HttpClient hand = as_controller();
     act({{"action", "set_speed"}, {"factor", nullptr}}, id);
     for (int i = 0; i < 5; ++i) EXPECT_EQ(act({{"action", "step"}}, id).status, 200);

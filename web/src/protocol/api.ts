@@ -13,8 +13,8 @@ export class Refused extends Error {
 const at = (time_s: number | null): string => (time_s === null ? "" : `?time_s=${time_s.toFixed(4)}`);
 
 export class Api {
-  /** Id of this page's person, once the WebSocket has said hello. */
-  person: string | null = null;
+  /** Of this page's person, once the WebSocket has said hello. */
+  secret: string | null = null;
   /** How many answers were asked for, and how many have been read or refused. */
   readonly reads = { begun: 0, ended: 0 };
 
@@ -23,7 +23,7 @@ export class Api {
   private async ask(method: string, path: string, body?: object): Promise<Response> {
     const headers: Record<string, string> = { Authorization: `Bearer ${this.token}` };
     if (body !== undefined) headers["Content-Type"] = "application/json";
-    if (method !== "GET" && this.person !== null) headers["Talus-Person"] = this.person;
+    if (method !== "GET" && this.secret !== null) headers["Talus-Person"] = this.secret;
     let response: Response;
     try {
       response = await fetch(`api/${path}`, { method, headers, ...(body === undefined ? {} : { body: JSON.stringify(body) }) });
@@ -82,5 +82,5 @@ export class Api {
     void (await this.ask("POST", "calibration", { parameters, runs }));
   cancelCalibration = async (): Promise<void> => void (await this.ask("DELETE", "calibration"));
   control = async (what: "request" | "release" | "grant" | "decline"): Promise<void> =>
-    void (await this.ask("POST", "control", { do: what, person: this.person }));
+    void (await this.ask("POST", "control", { do: what }));
 }

@@ -19,8 +19,8 @@ export class Live {
   private wait_s = firstWait_s;
   private everOpen = false;
   private view: View | null = null;
-  /** Id given by the last hello: sent again after a break, so that the person is recognised. */
-  person: string | null = null;
+  /** Given by the last hello: sent again after a break, so that the person is recognised. */
+  secret: string | null = null;
   private timer: number | undefined;
   // Of each scenario only the newest frame that waits is kept: a page that cannot keep up shows fewer frames.
   private readonly waiting = new Map<number, ArrayBuffer>();
@@ -35,7 +35,7 @@ export class Live {
     const base = new URL("ws", location.href);
     base.protocol = base.protocol === "https:" ? "wss:" : "ws:";
     base.hash = "";
-    base.search = new URLSearchParams({ token: this.token, name: this.name, ...(this.person ? { person: this.person } : {}) }).toString();
+    base.search = new URLSearchParams({ token: this.token, name: this.name, ...(this.secret ? { person: this.secret } : {}) }).toString();
     const socket = new WebSocket(base);
     socket.binaryType = "arraybuffer";
     this.socket = socket;

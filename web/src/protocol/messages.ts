@@ -7,7 +7,8 @@ export type Place = [number, number, number];
 export type Role = "viewer" | "controller";
 
 export interface Person { id: string; name: string; role: Role; colour: string; mark: Place | null }
-export interface You { id: string; name: string; role: Role; colour: string }
+/** secret: what this page shows with its requests, so that nobody can act in its name. */
+export interface You { id: string; name: string; role: Role; colour: string; secret: string }
 export interface Session {
   protocol: number;
   program: string;

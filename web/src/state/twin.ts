@@ -81,7 +81,7 @@ export class Twin {
       },
       connection: (state, retryIn_s) => {
         this.connection.value = { state, retryIn_s };
-        if (state !== "open") this.api.person = null;
+        if (state !== "open") this.api.secret = null;
       },
     });
   }
@@ -166,7 +166,7 @@ export class Twin {
     switch (message.type) {
       case "hello":
         this.you.value = message.you;
-        this.api.person = this.live.person = message.you.id;
+        this.api.secret = this.live.secret = message.you.secret;
         this.controller.value = message.session.controller;
         this.people.value = message.session.people;
         this.setScenarios(message.session.scenarios);
