@@ -151,13 +151,13 @@ int bench_command(const BenchArguments& arguments) {
     }
     progress.clear();
     if (outcome.code != exit_code::success) return fail(outcome.code, outcome.problem);
-    (void)std::fputs(bench::table_text(outcome.rows).c_str(), stdout);
+    const int printed = print_result(bench::table_text(outcome.rows));
     if (watch.stop_requested()) return exit_code::interrupted;
     Status written;
     if (!arguments.json.empty()) written = products::write_text_file(arguments.json, bench::table_json(outcome.rows));
     if (written && !arguments.svg.empty())
         written = products::write_text_file(arguments.svg, bench::scaling_svg(outcome.rows));
-    return written ? exit_code::success : fail(exit_code::failure, written.error().message);
+    return written ? printed : fail(exit_code::failure, written.error().message);
 }
 
 }  // namespace

@@ -94,11 +94,9 @@ int run_recovery(const CalibrateArguments& arguments, const calibrate::Calibrati
         return fail(exit_code::failure, s.error().message);
     }
     if (arguments.json) {
-        print(recovery_json(*recovery) + "\n");
-    } else if (!arguments.quiet) {
-        print(recovery_text(*recovery, path));
+        return print_result(recovery_json(*recovery) + "\n");
     }
-    return exit_code::success;
+    return arguments.quiet ? exit_code::success : print_result(recovery_text(*recovery, path));
 }
 
 int run_calibration(const CalibrateArguments& arguments, const calibrate::CalibrationPlan& plan,
@@ -120,11 +118,9 @@ int run_calibration(const CalibrateArguments& arguments, const calibrate::Calibr
     reporter.clear();
     if (!written) return fail(exit_code::failure, written.error().message);
     if (arguments.json) {
-        print(calibration_line(*made, path) + "\n");
-    } else if (!arguments.quiet) {
-        print(calibration_text(*made, path));
+        return print_result(calibration_line(*made, path) + "\n");
     }
-    return exit_code::success;
+    return arguments.quiet ? exit_code::success : print_result(calibration_text(*made, path));
 }
 
 int calibrate_command(const CalibrateArguments& arguments) {

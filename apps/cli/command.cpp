@@ -18,6 +18,14 @@ int fail(int code, const std::string& message) {
     return code;
 }
 
+bool print(const std::string& text) {
+    return std::fputs(text.c_str(), stdout) >= 0 && std::fflush(stdout) == 0;
+}
+
+int print_result(const std::string& text, int code) {
+    return print(text) ? code : fail(exit_code::failure, "cannot write to standard output");
+}
+
 Status check_output_file(const std::string& file) {
     if (file.empty()) return {};
     const std::filesystem::path parent = std::filesystem::absolute(file).parent_path();

@@ -7,6 +7,7 @@
 #include <CLI/CLI.hpp>
 
 #include "core/result.hpp"
+#include "exit_code.hpp"
 
 /// The program's commands, one per file. Each declares its options next to its code.
 namespace talus::cli {
@@ -33,6 +34,11 @@ void add_data_folder(CLI::App& command, std::string& data);  ///< --data DIR
 
 /// Prints "talus: error: MESSAGE" as exactly one line on stderr and returns `code`.
 int fail(int code, const std::string& message);
+
+/// Prints on stdout at once. False on a full disk or a closed pipe, where the text is lost.
+bool print(const std::string& text);
+/// Prints a result and returns `code`, or that of a failure if it is lost: a script must be able to tell.
+int print_result(const std::string& text, int code = exit_code::success);
 
 /// Checks in advance, as far as possible, that `file` (empty: none) can be written: a long run must not fail on it.
 [[nodiscard]] Status check_output_file(const std::string& file);

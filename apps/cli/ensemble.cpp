@@ -163,11 +163,9 @@ int write_results(const SceneInput& source, const ensemble::PlannedRuns& runs, c
     reporter.clear();
     if (!written) return fail(exit_code::failure, written.error().message);
     if (json) {
-        print(ensemble_json(result, folder) + "\n");
-    } else if (!quiet) {
-        print(ensemble_text(result, folder));
+        return print_result(ensemble_json(result, folder) + "\n");
     }
-    return exit_code::success;
+    return quiet ? exit_code::success : print_result(ensemble_text(result, folder));
 }
 
 /// Sets the number of simultaneous runs. One run on several threads is slower than as many runs on one thread each.
@@ -236,11 +234,10 @@ int ensemble_command(const EnsembleArguments& arguments) {
                                 path.string()));
     }
     if (shard->second > 1) {
-        if (!arguments.quiet && !arguments.json)
-            print(fmt::format("shard {} is complete: {} runs in {}; talus ensemble merge combines shards\n",
-                              arguments.shard, done, path.string()));
-        if (arguments.json) print(fmt::format("{{\"event\":\"shard\",\"runs_done\":{}}}\n", done));
-        return exit_code::success;
+        if (arguments.json) return print_result(fmt::format("{{\"event\":\"shard\",\"runs_done\":{}}}\n", done));
+        if (arguments.quiet) return exit_code::success;
+        return print_result(fmt::format("shard {} is complete: {} runs in {}; talus ensemble merge combines shards\n",
+                                        arguments.shard, done, path.string()));
     }
     return write_results(*source, *runs, {path}, path, arguments.quiet, arguments.json, reporter);
 }

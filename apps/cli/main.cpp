@@ -2,6 +2,7 @@
 #include <exception>
 #include <new>
 #include <signal.h>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -69,7 +70,9 @@ int talus_main(int argc, char** argv) {
     try {
         app.parse(argc, argv);
     } catch (const CLI::Success& help_or_version) {
-        return app.exit(help_or_version);
+        std::ostringstream text;
+        (void)app.exit(help_or_version, text);
+        return print_result(text.str());
     } catch (const CLI::ParseError& error) {
         return fail(exit_code::bad_input, fmt::format("{}; see {} --help", error.what(), deepest_command(app)));
     }
@@ -80,8 +83,7 @@ int talus_main(int argc, char** argv) {
     for (const Command& command : commands) {
         if (*command.app) return command.run();
     }
-    std::fputs(app.help().c_str(), stdout);
-    return exit_code::success;
+    return print_result(app.help());
 }
 
 }  // namespace

@@ -97,11 +97,9 @@ int replay_command(const ReplayArguments& arguments) {
                         "or an instruction set that differs is the usual reason (the session ran on {})",
                         arguments.journal, replayed->hash, replayed->steps, journal->hash, journal->instruction_set));
     }
-    if (!arguments.quiet) {
-        (void)std::printf("the same result: %zu actions, step %llu, t = %.4g s, hash %s\n", journal->entries.size(),
-                          static_cast<unsigned long long>(replayed->steps), replayed->time, replayed->hash.c_str());
-    }
-    return exit_code::success;
+    if (arguments.quiet) return exit_code::success;
+    return print_result(fmt::format("the same result: {} actions, step {}, t = {:.4g} s, hash {}\n",
+                                    journal->entries.size(), replayed->steps, replayed->time, replayed->hash));
 }
 
 }  // namespace

@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <cstdio>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -59,11 +58,6 @@ class DefaultParent {
     bool made_;
 };
 
-void print(const std::string& text) {
-    (void)std::fputs(text.c_str(), stdout);
-    (void)std::fflush(stdout);
-}
-
 /// Everything that is checked before a run: the scene, its variants, the output folder.
 struct Job {
     SceneInput input;
@@ -116,7 +110,7 @@ class Onlooker {
     void report(const run::Progress& now) {
         // Notes are printed only now: an invalid input is refused with a single line.
         if (!std::exchange(notes_said_, true)) {
-            for (const std::string& note : job_.input.scene.notes) print(fmt::format("note: {}\n", note));
+            for (const std::string& note : job_.input.scene.notes) (void)print(fmt::format("note: {}\n", note));
         }
         job_.plan.report_base(progress_, now);
     }
@@ -166,12 +160,14 @@ int run_command(const RunArguments& arguments) {
     progress.clear();
     if (!written) return fail(exit_code::failure, written.error().message);
 
+    std::string summary;
     if (arguments.json) {
-        print(summary_json(scene, *result, comparisons, job->output.final_path()) + "\n");
+        summary = summary_json(scene, *result, comparisons, job->output.final_path()) + "\n";
     } else if (!arguments.quiet) {
-        print(summary_text(scene, *result, comparisons, job->shown));
+        summary = summary_text(scene, *result, comparisons, job->shown);
     }
-    if (result->status != run::RunStatus::fault) return interrupted ? exit_code::interrupted : exit_code::success;
+    const int printed = print_result(summary, interrupted ? exit_code::interrupted : exit_code::success);
+    if (result->status != run::RunStatus::fault) return printed;
     return fail(exit_code::fault, fmt::format("{}; the results so far are in {}, marked partial", result->stop_reason,
                                               job->shown.string()));
 }

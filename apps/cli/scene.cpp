@@ -1,6 +1,5 @@
 #include "scene/scene.hpp"
 
-#include <cstdio>
 #include <filesystem>
 #include <memory>
 #include <string>
@@ -29,17 +28,11 @@ struct ExportArguments {
     bool force = false;
 };
 
-/// On a full disk or a closed pipe the text is lost; a script must be able to tell.
-int print_all(const std::string& text) {
-    if (std::fputs(text.c_str(), stdout) >= 0 && std::fflush(stdout) == 0) return exit_code::success;
-    return fail(exit_code::failure, "cannot write to standard output");
-}
-
 int check_command(const CheckArguments& arguments) {
     if (!arguments.data.empty()) set_data_folder(arguments.data);
     const auto scene = scene::load_scene(arguments.scene, arguments.overrides);
     if (!scene) return fail(exit_code::bad_input, scene.error().message);
-    return print_all(describe_scene(*scene));
+    return print_result(describe_scene(*scene));
 }
 
 int new_command(const scene::NewSceneOptions& options) {
@@ -47,7 +40,7 @@ int new_command(const scene::NewSceneOptions& options) {
     if (!created) return fail(exit_code::bad_input, created.error().message);
     std::string text = fmt::format("wrote {}\n", created->file.string());
     for (const std::string& note : created->notes) text += fmt::format("note: {}\n", note);
-    return print_all(text + fmt::format("run it: talus run {}\n", created->file.string()));
+    return print_result(text + fmt::format("run it: talus run {}\n", created->file.string()));
 }
 
 int export_builtin_command(const ExportArguments& arguments) {
@@ -59,7 +52,7 @@ int export_builtin_command(const ExportArguments& arguments) {
     }
     const auto file = scene::unpack_builtin_scene(arguments.folder);
     if (!file) return fail(exit_code::bad_input, file.error().message);
-    return print_all(fmt::format("wrote {}\nrun it: talus run {}\n", file->string(), file->string()));
+    return print_result(fmt::format("wrote {}\nrun it: talus run {}\n", file->string(), file->string()));
 }
 
 }  // namespace
@@ -107,9 +100,9 @@ void add_scene(CLI::App& program, std::vector<Command>& commands) {
     reference_app->add_flag("--markdown", *markdown, "as a Markdown document");
     reference_app->add_flag("--typescript", *typescript, "the live keys as types and form fields of the page");
     commands.push_back({reference_app, [markdown, typescript] {
-                            if (*typescript) return print_all(params::scene_typescript());
-                            return print_all(*markdown ? params::scene_reference_markdown()
-                                                       : params::scene_reference_text());
+                            if (*typescript) return print_result(params::scene_typescript());
+                            return print_result(*markdown ? params::scene_reference_markdown()
+                                                          : params::scene_reference_text());
                         }});
 }
 

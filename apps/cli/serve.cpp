@@ -80,8 +80,8 @@ Result<serve::Tokens> choose_tokens(const std::vector<std::string>& given) {
     return tokens;
 }
 
-void print_links(const ServeArguments& arguments, const scene::Scene& scene, const serve::Server& server) {
-    if (arguments.quiet) return;
+int print_links(const ServeArguments& arguments, const scene::Scene& scene, const serve::Server& server) {
+    if (arguments.quiet) return exit_code::success;
     const std::string control = server.link(serve::Role::controller), view = server.link(serve::Role::viewer);
     std::string text;
     if (arguments.json) {
@@ -97,8 +97,7 @@ void print_links(const ServeArguments& arguments, const scene::Scene& scene, con
                             arguments.run ? "It runs. Open a link in the browser."
                                           : "Open the first link in the browser and press Run.");
     }
-    (void)std::fputs(text.c_str(), stdout);
-    (void)std::fflush(stdout);
+    return print_result(text);
 }
 
 int serve_command(const ServeArguments& arguments) {
@@ -165,7 +164,8 @@ int serve_command(const ServeArguments& arguments) {
     if (!server) return fail(exit_code::failure, server.error().message);
     if (const Status serving = (*server)->serve(scene); !serving)
         return fail(exit_code::bad_input, serving.error().message);
-    print_links(arguments, *scene, **server);
+    // Nobody could open a session whose links are lost.
+    if (const int printed = print_links(arguments, *scene, **server); printed != exit_code::success) return printed;
     watch.wait();
     server->reset();
 

@@ -1,18 +1,12 @@
 #pragma once
 
 #include <chrono>
-#include <cstdio>
 #include <string>
 
+#include "command.hpp"
 #include "progress.hpp"
 
 namespace talus::cli {
-
-/// Prints text on stdout immediately.
-inline void print(const std::string& text) {
-    (void)std::fputs(text.c_str(), stdout);
-    (void)std::fflush(stdout);
-}
 
 /// Progress of many runs, for a user or a program, at a limited rate.
 class ThrottledProgress {
@@ -27,7 +21,7 @@ class ThrottledProgress {
         const auto now = std::chrono::steady_clock::now();
         if (now < next_) return;
         if (style_ == ProgressStyle::json) {
-            print(json() + "\n");
+            (void)print(json() + "\n");  // the result that follows is lost as well, and says so
         } else {
             reporter_.say(text());
         }

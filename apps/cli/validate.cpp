@@ -108,8 +108,7 @@ int validate_command(const ValidateArguments& arguments) {
     const Result<std::vector<Case>> cases = load_cases(arguments, *builtin);
     if (!cases) return fail(exit_code::bad_input, cases.error().message);
     if (arguments.list) {
-        (void)std::fputs(list_text(*cases).c_str(), stdout);
-        return exit_code::success;
+        return print_result(list_text(*cases));
     }
 
     const ProgressStyle style = progress_style(false, false);
@@ -130,12 +129,11 @@ int validate_command(const ValidateArguments& arguments) {
     }
     progress.clear();
 
-    (void)std::fputs(validate::table_text(results).c_str(), stdout);
+    const int printed = print_result(validate::table_text(results));
     if (Status s = write_outputs(arguments, results); !s) return fail(exit_code::failure, s.error().message);
     if (watch.stop_requested()) return exit_code::interrupted;
     const validate::Tally tally = validate::count(results);
-    return tally.failed > 0 || (tally.known_failures > 0 && !arguments.known) ? exit_code::case_failed
-                                                                              : exit_code::success;
+    return tally.failed > 0 || (tally.known_failures > 0 && !arguments.known) ? exit_code::case_failed : printed;
 }
 
 }  // namespace

@@ -1,4 +1,7 @@
+#include <cerrno>
+#include <fcntl.h>
 #include <fstream>
+#include <sys/file.h>
 #include <system_error>
 #include <unistd.h>
 #include <utility>
@@ -61,6 +64,36 @@ fs::path hidden_sibling(const fs::path& path, const char* purpose, int attempt) 
     return path.parent_path() / fmt::format(".{}.{}-{}-{}", path.filename().string(), purpose, getpid(), attempt);
 }
 
+/// Locks a folder until the file is closed, at the latest when the process ends, however it does. -1, with errno: it
+/// is locked already, it is not there, or the file system has no locks.
+int lock(const fs::path& folder) {
+    const int file = open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC);
+    if (file < 0 || flock(file, LOCK_EX | LOCK_NB) == 0) return file;
+    const int cause = errno;
+    close(file);
+    errno = cause;
+    return -1;
+}
+
+/// Deletes the temporary folders of this output that no process locks.
+void remove_leftovers(const fs::path& final_path) {
+    const std::string prefix = fmt::format(".{}.unfinished-", final_path.filename().string());
+    std::error_code ignored;
+    std::vector<fs::path> leftovers;
+    for (const fs::directory_entry& entry : fs::directory_iterator(final_path.parent_path(), ignored)) {
+        const std::string name = entry.path().filename().string();
+        const bool ours =
+            name.starts_with(prefix) && name.find_first_not_of("0123456789-", prefix.size()) == std::string::npos;
+        if (ours) leftovers.push_back(entry.path());
+    }
+    for (const fs::path& leftover : leftovers) {
+        const int locked = lock(leftover);
+        if (locked < 0) continue;
+        fs::remove_all(leftover, ignored);
+        close(locked);
+    }
+}
+
 }  // namespace
 
 Result<OutputFolder> OutputFolder::create(const fs::path& final_path, bool force) {
@@ -76,10 +109,14 @@ Result<OutputFolder> OutputFolder::create(const fs::path& final_path, bool force
         return Error{fmt::format("{}: the folder to put it in does not exist: {}", folder.final_.string(),
                                  failed ? failed.message() : parent.string())};
     }
+    remove_leftovers(folder.final_);
     constexpr int max_attempts = 1000;
     for (int attempt = 0; attempt < max_attempts; ++attempt) {
         const fs::path candidate = hidden_sibling(folder.final_, "unfinished", attempt);
         if (fs::create_directory(candidate, failed)) {
+            folder.lock_ = lock(candidate);
+            // Another run may take it for a leftover before it is locked.
+            if (folder.lock_ < 0 && (errno == EWOULDBLOCK || errno == ENOENT)) continue;
             folder.temporary_ = candidate;
             return Result<OutputFolder>(std::move(folder));
         }
@@ -90,11 +127,15 @@ Result<OutputFolder> OutputFolder::create(const fs::path& final_path, bool force
 }
 
 OutputFolder::OutputFolder(OutputFolder&& other) noexcept
-    : temporary_(std::exchange(other.temporary_, {})), final_(std::move(other.final_)), force_(other.force_) {}
+    : temporary_(std::exchange(other.temporary_, {})),
+      final_(std::move(other.final_)),
+      force_(other.force_),
+      lock_(std::exchange(other.lock_, -1)) {}
 
 OutputFolder::~OutputFolder() {
     std::error_code ignored;
     if (!temporary_.empty()) fs::remove_all(temporary_, ignored);
+    if (lock_ >= 0) close(lock_);
 }
 
 Status OutputFolder::commit() {

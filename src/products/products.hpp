@@ -15,7 +15,8 @@ namespace talus::products {
 /// incomplete folder never has the final name.
 class OutputFolder {
   public:
-    /// Errors: not writable, already there without `force`, parent missing.
+    /// Deletes what earlier runs of this output left behind when they were killed. Errors: not writable, already there
+    /// without `force`, parent missing.
     [[nodiscard]] static Result<OutputFolder> create(const std::filesystem::path& final_path, bool force);
 
     OutputFolder(OutputFolder&& other) noexcept;
@@ -34,6 +35,7 @@ class OutputFolder {
     OutputFolder() = default;
     std::filesystem::path temporary_, final_;
     bool force_ = false;
+    int lock_ = -1;  ///< held on the temporary folder while it is written; -1: the file system has no locks
 };
 
 /// Writes maps (.tif + .qml), front.csv, buildings.csv, results.gpkg, timeseries.csv, manifest.json, results.json,

@@ -29,7 +29,7 @@ namespace {
     argv.push_back(nullptr);
     for (const std::string& variable : options.environment) putenv(const_cast<char*>(variable.c_str()));
     dup2(open("/dev/null", O_RDONLY), STDIN_FILENO);
-    dup2(out, STDOUT_FILENO);
+    dup2(options.out.empty() ? out : open(options.out.c_str(), O_WRONLY), STDOUT_FILENO);
     dup2(error, STDERR_FILENO);
     if (chdir(options.folder.c_str()) == 0) execv(TALUS_PROGRAM, argv.data());
     _exit(127);

@@ -11,6 +11,7 @@ namespace talus::test {
 struct ProgramOptions {
     std::filesystem::path folder = ".";         ///< current folder of the program
     std::vector<std::string> environment = {};  ///< "NAME=value", beside the test's own
+    std::filesystem::path out = {};             ///< file that stdout goes to in place of ProgramOutcome::out
     bool error_is_terminal = false;             ///< stderr is a pseudo-terminal of 100 columns
     long largest_file = 0;                      ///< bytes that a file may grow to, as on a full disk; 0: no limit
     std::function<void(int process)> while_running = {};  ///< called once when the program has printed `wait_for`

@@ -53,6 +53,27 @@ TEST(Run, QuietPrintsNothing) {
     EXPECT_TRUE(fs::exists(scene.folder() / "result/report.html"));
 }
 
+TEST(StandardOutput, OnAFullDiskIsAFailure) {
+    const SmallScene scene;
+    const std::vector<std::vector<std::string>> commands{{"--help"},
+                                                         {"--version"},
+                                                         {"run", "--help"},
+                                                         {"scene", "reference"},
+                                                         {"scene", "check", "slope.toml"},
+                                                         {"validate", "--list"},
+                                                         {"run", "slope.toml", "-o", "result"},
+                                                         {"run", "slope.toml", "-o", "other", "--json"}};
+    for (const std::vector<std::string>& command : commands) {
+        const auto outcome = run_program(command, {.folder = scene.folder(), .out = "/dev/full"});
+        EXPECT_EQ(outcome.exit_code, 1) << command.front();
+        EXPECT_THAT(outcome.error, HasSubstr("talus: error: cannot write to standard output\n"));
+    }
+    EXPECT_TRUE(std::filesystem::exists(scene.folder() / "result/report.html")) << "only the printed text is lost";
+    const auto quiet =
+        run_program({"run", "slope.toml", "-o", "quiet", "--quiet"}, {.folder = scene.folder(), .out = "/dev/full"});
+    EXPECT_EQ(quiet.exit_code, 0) << quiet.error;
+}
+
 TEST(Run, JsonIsOneObjectPerLineWithTheResultLast) {
     const SmallScene scene;
     const auto outcome = run_program({"run", "slope.toml", "--json", "-o", "result"}, {.folder = scene.folder()});

@@ -58,6 +58,25 @@ TEST_F(OutputFolders, AbandonedOneLeavesNothing) {
     EXPECT_TRUE(listing().empty());
 }
 
+TEST_F(OutputFolders, WhatKilledRunsOfTheSameOutputLeftIsDeletedByTheNext) {
+    for (const char* name : {".out.unfinished-4711-0", ".out.unfinished-1-12", ".other.unfinished-4711-0",
+                             ".out.unfinished-notes", ".out.replaced-4711-0"}) {
+        fs::create_directory(parent_.path() / name);
+        test::write_text(parent_.file(std::string(name) + "/a.txt"), "a");
+    }
+    const auto running = OutputFolder::create(parent_.path() / "out", false);
+    ASSERT_TRUE(running) << running.error().message;
+    test::write_text((running->path() / "a.txt").string(), "a");
+    const auto next = OutputFolder::create(parent_.path() / "out", false);
+    ASSERT_TRUE(next) << next.error().message;
+    EXPECT_NE(next->path(), running->path());
+    EXPECT_TRUE(fs::exists(running->path() / "a.txt")) << "that of a run that goes on stays";
+    std::vector<std::string> expected{".other.unfinished-4711-0", ".out.replaced-4711-0", ".out.unfinished-notes",
+                                      running->path().filename(), next->path().filename()};
+    std::sort(expected.begin(), expected.end());
+    EXPECT_EQ(listing(), expected);
+}
+
 TEST_F(OutputFolders, ExistingOneIsRefusedWithoutForce) {
     const fs::path out = make_result("out");
     EXPECT_EQ(refusal(out, false), out.string() +
