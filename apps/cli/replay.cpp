@@ -10,6 +10,8 @@
 #include <fmt/format.h>
 
 #include "command.hpp"
+#include "core/input_file.hpp"
+#include "core/try.hpp"
 #include "exit_code.hpp"
 #include "interrupt.hpp"
 #include "scene/builtin.hpp"
@@ -44,6 +46,7 @@ Exit codes:
 )";
 
 Result<std::string> read_file(const std::string& path) {
+    TALUS_TRY(check_input_file(path));
     std::ifstream file(path, std::ios::binary);
     if (!file) return Error{fmt::format("{}: cannot be opened", path)};
     std::string text{std::istreambuf_iterator<char>(file), {}};

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "core/input_file.hpp"
 #include "core/try.hpp"
 #include "scene/parse.hpp"
 
@@ -49,6 +50,9 @@ Status resolve_paths(ParsedScene& scene) {
                                              tell ? "; to obtain the file: " + one_line(obtain, 4000) : "")};
                 }
                 const std::filesystem::path path = scene.file.parent_path() / *expanded;
+                if (Status s = check_input_file(path); !s) {
+                    return Error{scene.at(key_path(section, index, parameter)) + ": " + s.error().message};
+                }
                 parameter.set(scene.spec, index,
                               is_driver_name(*expanded) ? *expanded : path.lexically_normal().string());
             }

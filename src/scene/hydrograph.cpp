@@ -46,11 +46,16 @@ Result<std::vector<params::InflowSample>> read_hydrograph(const params::InflowSp
     if (!in || std::filesystem::is_directory(file, code)) return Error{file + ": no such file, or it cannot be opened"};
     std::string line;
     std::getline(in, line);
+    constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";  // spreadsheets write it before UTF-8
+    if (line.starts_with(byte_order_mark)) line.erase(0, byte_order_mark.size());
     const std::vector<std::string> header = fields_of(line.substr(0, 1000));
     const params::Section& table = params::live_section("hydrograph");
     std::vector<std::pair<const params::Parameter*, std::size_t>> columns;  // and its position in a line
     for (const params::Parameter& column : table.parameters) {
         const auto found = std::find(header.begin(), header.end(), column.key);
+        if (found != header.end() && std::find(found + 1, header.end(), column.key) != header.end()) {
+            return Error{fmt::format("{}:1: there are two columns {}; leave one of them out", file, column.key)};
+        }
         if (found != header.end()) {
             columns.emplace_back(&column, found - header.begin());
         } else if (column.required) {

@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include "core/input_file.hpp"
 #include "core/try.hpp"
 #include "geo/vector.hpp"
 #include "params/scene_text.hpp"
@@ -59,6 +60,9 @@ Status check_number(const std::string& section, const std::string& key, const st
 
 Status check_options(const NewSceneOptions& options) {
     std::error_code code;
+    for (const fs::path& input : {options.dem, options.release, options.buildings}) {
+        TALUS_TRY(check_input_file(input));
+    }
     if (options.folder.empty()) return Error{"the folder for the new scene has no name"};
     if (fs::exists(fs::symlink_status(options.folder, code))) {
         return Error{options.folder.string() + ": is already there; name a folder that is not"};

@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include "core/input_file.hpp"
 #include "core/try.hpp"
 #include "scene/parse.hpp"
 
@@ -44,6 +45,7 @@ Result<std::string> read_text(const std::filesystem::path& file, const std::stri
     if (std::filesystem::is_directory(status)) {
         return Error{name + ": is a folder, not a " + what + " file; name the .toml file in it"};
     }
+    TALUS_TRY(check_input_file(file));
     std::ifstream in(file, std::ios::binary);
     if (!in) return Error{name + ": cannot be opened: " + std::generic_category().message(errno)};
     std::string text;

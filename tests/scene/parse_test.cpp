@@ -186,7 +186,9 @@ TEST_F(ParseScene, UnreadableFilesAreNamed) {
     EXPECT_THAT(error(folder.string()), HasSubstr("is a folder, not a scene file"));
     EXPECT_EQ(error_of("[terrain]\nfile = \"d\xe9m.tif\"\n"), line(2) + "not UTF-8 text; save the scene file as UTF-8");
     EXPECT_THAT(error_of(std::string("\xff\xfe[\0t\0", 6)), StartsWith(line(1) + "not UTF-8"));
-    EXPECT_THAT(error("/dev/zero"), HasSubstr("larger than 16 MB"));
+    EXPECT_THAT(error("/dev/zero"), HasSubstr("/dev/zero: is a pipe, a socket or a device; it must be a file"));
+    write("large.toml", std::string(17 << 20, ' '));
+    EXPECT_THAT(error(path("large.toml")), HasSubstr("larger than 16 MB"));
 }
 
 TEST_F(ParseScene, AByteOrderMarkAndWindowsLineEndsAreFine) {

@@ -157,7 +157,8 @@ TEST_F(Structures, BadBarriersAreRefusedByKey) {
     EXPECT_THAT(refusal("[[barrier]]\nheight_m = 8\nline_m = [[1, 2]]\n"),
                 HasSubstr("has 1 place; a line needs at least two"));
     EXPECT_THAT(refusal("[[barrier]]\nheight_m = 8\nline_m = [[1, 2], [3, 4]]\n"), HasSubstr("is not on known ground"));
-    EXPECT_THAT(refusal(dam("height_m = 8\nresistance_Npm = 0")), HasSubstr("must be a number from 1 to 1000000000000 (N/m)"));
+    EXPECT_THAT(refusal(dam("height_m = 8\nresistance_Npm = 0")),
+                HasSubstr("must be a number from 1 to 1000000000000 (N/m)"));
     EXPECT_THAT(refusal(dam() + "[[barrier_opening]]\nbarrier = \"dyke\"\nposition_m = 3\nwidth_m = 3\n"),
                 HasSubstr("barrier_opening[0].barrier = \"dyke\": there is no such barrier; barriers: \"dam\""));
     EXPECT_THAT(refusal(dam() + "[[barrier_opening]]\nbarrier = \"dam\"\nposition_m = 3\nwidth_m = 0.2\n"),

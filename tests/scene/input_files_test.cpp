@@ -1,0 +1,59 @@
+#include <sys/stat.h>
+
+#include <gmock/gmock.h>
+
+#include "scene/new_scene.hpp"
+#include "scene/scene_folder.hpp"
+
+namespace talus::scene {
+namespace {
+
+using testing::AllOf;
+using testing::HasSubstr;
+
+class InputFiles : public SceneFolder {
+  protected:
+    static constexpr const char* loaded = "(it loaded)";
+
+    void write_inflow(const std::string& hydrograph) const {
+        write_valley("[[inflow]]\nline_m = [[824100, 825110], [824100, 825090]]\nhydrograph = \"h.csv\"\n");
+        write("h.csv", hydrograph);
+    }
+};
+
+TEST_F(InputFiles, PipesAndDevicesAreRefused) {
+    write_inflow("");
+    ASSERT_EQ(mkfifo(path("pipe").c_str(), 0600), 0);
+    for (const char* key : {"terrain.file", "release.file", "inflow.hydrograph"}) {
+        for (const std::string& file : {path("pipe"), std::string("/dev/zero")}) {
+            EXPECT_THAT(load_error({key + ("=" + file)}), AllOf(HasSubstr("--set"), HasSubstr(file + ": is a pipe")));
+        }
+    }
+    for (const char* file : {"pipe", "/dev/zero"}) {
+        const auto scene = load_scene(folder / file);
+        ASSERT_FALSE(scene);
+        EXPECT_THAT(scene.error().message, HasSubstr("it must be a file"));
+    }
+    NewSceneOptions options;
+    options.dem = path("dem.tif");
+    options.release = path("pipe");
+    options.folder = folder / "new";
+    const auto created = write_new_scene(options);
+    ASSERT_FALSE(created);
+    EXPECT_THAT(created.error().message, HasSubstr("it must be a file"));
+}
+
+TEST_F(InputFiles, AByteOrderMarkBeforeAHydrographIsRead) {
+    write_inflow("\xEF\xBB\xBFtime_s,discharge_m3ps,velocity_mps\n0,10,2\n10,10,2\n");
+    EXPECT_EQ(load_error(), std::string(loaded));
+}
+
+TEST_F(InputFiles, AColumnGivenTwiceIsRefused) {
+    write_inflow("time_s,discharge_m3ps,velocity_mps,discharge_m3ps\n0,10,2,20\n10,10,2,20\n");
+    EXPECT_THAT(load_error(), HasSubstr("h.csv:1: there are two columns discharge_m3ps; leave one of them out"));
+    write_inflow("time_s,discharge_m3ps,velocity_mps,note,note\n0,10,2,a,b\n10,10,2,a,b\n");
+    EXPECT_EQ(load_error(), std::string(loaded)) << "columns that are not read";
+}
+
+}  // namespace
+}  // namespace talus::scene
