@@ -59,7 +59,10 @@ std::vector<std::string> split_values(std::string_view text) {
 /// Messages about overrides name the command-line option, which is not where a variant's values come from.
 std::string of_variant(const Variant& variant, std::string_view message) {
     constexpr std::string_view option = "--set ";
-    if (message.starts_with(option)) return fmt::format("variant {}", message.substr(option.size()));
+    if (message.starts_with(option)) message.remove_prefix(option.size());
+    std::string set = variant.name;  // "key = value", if one value varies
+    std::erase(set, ' ');
+    if (message.starts_with(set)) return fmt::format("variant {}", message);
     return fmt::format("variant {}: {}", variant.name, message);
 }
 
@@ -134,11 +137,6 @@ Result<std::vector<Variant>> prepare_variants(const SceneSource& source, const s
                                               std::vector<Variant> variants) {
     for (Variant& variant : variants) {
         TALUS_ASSIGN(const scene::Scene scene, load_variant(source, variant));
-        const auto limit = static_cast<double>(scene.spec.solver.particle_limit);
-        if (particles_of(scene) > limit) {
-            return Error{fmt::format("variant {}: about {:.0f} particles, more than solver.particle_limit = {:.0f}",
-                                     variant.name, particles_of(scene), limit)};
-        }
         variant.effort = effort_of(scene) / effort_of(base);
     }
     return variants;
