@@ -38,6 +38,11 @@ class CityReader {
         if (member(city_, "type") != "CityJSON") {
             return Error{file_ + ": is no CityJSON file; its \"type\" must be \"CityJSON\""};
         }
+        const json& version = member(city_, "version");
+        if (!version.is_null() && version != "1.0" && version != "1.1" && version != "2.0") {
+            return Error{
+                fmt::format("{}: version is {}; it must be \"1.0\", \"1.1\" or \"2.0\"", file_, brief(version))};
+        }
         const json& system = member(member(city_, "metadata"), "referenceSystem");
         if (!system.is_string() || terrain_crs.epsg == 0) return {};
         const std::string name = system;  // .../def/crs/EPSG/0/7415, urn:ogc:def:crs:EPSG::28992

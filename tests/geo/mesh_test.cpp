@@ -102,6 +102,7 @@ TEST_F(Mesh, BadFilesAreRefusedWithThePlace) {
         return refusal("a.city.json", text);
     };
     EXPECT_THAT(changed("CityJSON", "CityGML"), HasSubstr("is no CityJSON file"));
+    EXPECT_THAT(changed(R"("version": "2.0")", R"("version": "3.0")"), HasSubstr("version is \"3.0\"; it must be"));
     EXPECT_THAT(changed("0/2326", "0/28992"), HasSubstr("is EPSG:28992, the terrain's is EPSG:2326"));
     EXPECT_THAT(changed("[8, 9, 6, 7]", "[8, 9, 6, 70]"),
                 HasSubstr("\"id-1-0\": a ring names vertex 70; there are 10"));
