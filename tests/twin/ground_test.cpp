@@ -255,7 +255,8 @@ TEST(Inflow, refusals_name_key_value_and_what_is_allowed) {
     EXPECT_THAT(refusal(*scenario, with({rows(1)[1], rows(1)[0]})), HasSubstr("hydrograph[1]: time_s = 0 is refused"));
     EXPECT_THAT(refusal(*scenario, with(rows(1, 0))), HasSubstr("hydrograph[0]: velocity_mps = 0 is refused"));
     EXPECT_THAT(refusal(*scenario, with(rows(0))), HasSubstr("no debris at all"));
-    EXPECT_THAT(refusal(*scenario, with(rows(1e7))), HasSubstr("solver.particle_limit"));
+    EXPECT_THAT(refusal(*scenario, with(rows(1e6, 300))), HasSubstr("solver.particle_limit"));
+    EXPECT_THAT(refusal(*scenario, with(rows(1e7))), HasSubstr("m thick; it must be at most 1000 m"));
     json mixed = rows(1);
     mixed[0]["density_kgpm3"] = 2000;
     EXPECT_THAT(refusal(*scenario, with(mixed)), HasSubstr("in every row or in none"));

@@ -10,8 +10,11 @@ namespace {
 /// An allowed value that no new shape begins with.
 json value_of(const params::Parameter& parameter) {
     if (parameter.kind == params::ParameterKind::choice) return parameter.choices.back();
-    if (parameter.range.text().empty()) return 20;  // an elevation
-    return parameter.range.contains(0.75) ? 0.75 : 0.01;
+    if (parameter.live == "crest_elevation_m") return 20;
+    for (const double value : {0.75, 0.01}) {
+        if (parameter.range.contains(value)) return value;
+    }
+    return 20;
 }
 
 json row(double time) {

@@ -202,7 +202,7 @@ TEST(Release, refuses_what_cannot_fail) {
     EXPECT_THAT(refusal(*scenario, action), HasSubstr("polygon: touches or crosses itself"));
     action["polygon"] = {{west + 30, south + 20}, {west + 36, south + 26}};
     EXPECT_THAT(refusal(*scenario, action), HasSubstr("must be 3 to 500 points"));
-    EXPECT_THAT(refusal(*scenario, drawn(30, 0)), HasSubstr("thickness_m = 0.0: must be a number from 0.001 to 1000"));
+    EXPECT_THAT(refusal(*scenario, drawn(30, 0)), HasSubstr("thickness_m = 0.0: must be a number 0.001 to 1000 (m)"));
     EXPECT_THAT(refusal(*scenario, drawn(30, 50)), HasSubstr("solver.particle_limit"));
     EXPECT_THAT(refusal(*scenario, drawn(30, 1e-3)), HasSubstr("at least one particle"));
     action = drawn(30, 1);
