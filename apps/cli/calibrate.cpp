@@ -13,6 +13,7 @@
 #include "core/try.hpp"
 #include "exit_code.hpp"
 #include "interrupt.hpp"
+#include "layers.hpp"
 #include "products/text_file.hpp"
 #include "scene_input.hpp"
 #include "throttled_progress.hpp"
@@ -30,6 +31,7 @@ struct CalibrateArguments {
     std::optional<std::uint64_t> seed;
     std::optional<std::size_t> recover;  ///< number of attempts with known values
     std::vector<std::string> overrides;  ///< "section.key=value"
+    std::string layers;                  ///< of --layers; empty: not given
     std::string data;                    ///< value of TALUS_DATA; empty: as in the environment
     std::optional<int> threads;
     bool retry_failed = false, quiet = false, json = false;
@@ -128,7 +130,7 @@ int calibrate_command(const CalibrateArguments& arguments) {
     InterruptWatch watch;
     const Result<calibrate::CalibrationPlan> plan = read_arguments(arguments);
     if (!plan) return fail(exit_code::bad_input, plan.error().message);
-    const Result<SceneInput> input = open_scene(arguments.scene, arguments.overrides, watch);
+    const Result<SceneInput> input = open_scene(arguments.scene, arguments.overrides, arguments.layers, watch);
     if (!input) return fail(exit_code::bad_input, input.error().message);
     const Result<ensemble::PlannedRuns> runs = plan_calibration(*plan, input->source, input->scene);
     if (!runs) return fail(exit_code::bad_input, runs.error().message);
@@ -172,6 +174,7 @@ void add_calibrate(CLI::App& program, std::vector<Command>& commands) {
         ->type_name("N")
         ->check(CLI::Range(1, 1000));
     add_overrides(*app, arguments->overrides);
+    add_layers(*app, arguments->layers, false);
     add_data_folder(*app, arguments->data);
     app->add_option("--threads", arguments->threads, "runs in parallel, one thread each; default: all cores")
         ->type_name("N")

@@ -18,6 +18,7 @@
 #include "ensemble_text.hpp"
 #include "exit_code.hpp"
 #include "interrupt.hpp"
+#include "layers.hpp"
 #include "ranks.hpp"
 #include "scene_input.hpp"
 #include "throttled_progress.hpp"
@@ -43,6 +44,7 @@ struct EnsembleArguments {
     std::optional<std::uint64_t> seed;
     Evaluation evaluation;
     std::vector<std::string> overrides;  ///< "section.key=value"
+    std::string layers;                  ///< of --layers; empty: not given
     std::string data;                    ///< value of TALUS_DATA; empty: as in the environment
     std::optional<int> threads;
     std::string shard;  ///< "i/n"; empty: all runs
@@ -191,7 +193,7 @@ int ensemble_command(const EnsembleArguments& arguments) {
     if (!plan) return refuse(plan.error());
     const auto shard = parse_shard(arguments.shard);
     if (!shard) return refuse(shard.error());
-    const Result<SceneInput> source = open_scene(arguments.scene, arguments.overrides, watch);
+    const Result<SceneInput> source = open_scene(arguments.scene, arguments.overrides, arguments.layers, watch);
     if (!source) return refuse(source.error());
     const Result<ensemble::PlannedRuns> runs = ensemble::PlannedRuns::make(*plan, source->source, source->scene);
     if (!runs) return refuse(runs.error());
@@ -265,7 +267,7 @@ int merge_command(const MergeArguments& arguments) {
     }
     const std::string scene = arguments.scene.empty() ? definition->value("scene", "") : arguments.scene;
     const Result<SceneInput> source =
-        open_scene(scene, definition->value("overrides", std::vector<std::string>()), watch);
+        open_scene(scene, definition->value("overrides", std::vector<std::string>()), "", watch);
     if (!source)
         return fail(exit_code::bad_input,
                     source.error().message + (arguments.scene.empty() ? "; give its present path with --scene" : ""));
@@ -309,6 +311,7 @@ void add_ensemble(CLI::App& program, std::vector<Command>& commands) {
     app->add_option("--seed", ensemble->seed, "of the design; default: 1")->type_name("N");
     add_evaluation(*app, ensemble->evaluation);
     add_overrides(*app, ensemble->overrides);
+    add_layers(*app, ensemble->layers, false);
     add_data_folder(*app, ensemble->data);
     app->add_option("--threads", ensemble->threads, "runs in parallel, one thread each; default: all cores, 1 per rank")
         ->type_name("N")

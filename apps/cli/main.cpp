@@ -21,6 +21,7 @@ Examples:
   talus run                                 the built-in scene, into talus_out/sham_tseng
   talus run my_scene.toml -o result         your scene, into the folder result
   talus run my_scene.toml --set material.friction_coefficient=0.3
+  talus run my_scene.toml --layers 4        debris four particles thick; says what it costs before it starts
   talus run my_scene.toml --convergence     check convergence: four runs, about nine times as long
   talus run my_scene.toml --vary material.friction_coefficient=0.3,0.5 --vary solver.target_particle_count=3000
                                             sensitivity to inputs: a run per value, one at a time

@@ -16,13 +16,12 @@
 #include "interrupt.hpp"
 #include "scene/builtin.hpp"
 #include "scene/scene.hpp"
+#include "scene_input.hpp"
 #include "temporary_folder.hpp"
 #include "twin/journal.hpp"
 
 namespace talus::cli {
 namespace {
-
-constexpr std::string_view builtin_prefix = "built-in:";
 
 struct ReplayArguments {
     std::string journal;

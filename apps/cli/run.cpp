@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -13,6 +14,7 @@
 #include "core/try.hpp"
 #include "exit_code.hpp"
 #include "interrupt.hpp"
+#include "layers.hpp"
 #include "params/scene_text.hpp"
 #include "products/particle_series.hpp"
 #include "products/products.hpp"
@@ -32,6 +34,9 @@ namespace fs = std::filesystem;
 constexpr const char* run_help = R"(
 Every value of the scene can be set with --set section.key=value. The result folder holds maps (GeoTIFF with QGIS
 styles), front.csv, timeseries.csv, buildings.csv, results.gpkg, results.json, manifest.json and report.html.
+
+--layers N chooses the particle spacing from the thickness of the debris, and says what it costs before it starts;
+--layers real-time takes the most layers that this machine runs in real time, and says how to repeat that elsewhere.
 
 --convergence, --vary and --variants compare with the scene as given: front velocity at every observation, arrival (first
 building hit; if there is none, the front at 90 % of its chainage), run-out, deposit area and depth, which buildings are
@@ -67,18 +72,26 @@ struct Job {
     products::OutputFolder output;
 };
 
-Result<Job> open_job(const RunArguments& arguments, InterruptWatch& watch) {
+Result<Job> open_job(const RunArguments& arguments, ProgressReporter& progress, InterruptWatch& watch) {
     std::vector<std::string> overrides = arguments.overrides;
     if (arguments.threads) overrides.push_back(fmt::format("solver.thread_count={}", *arguments.threads));
-    TALUS_ASSIGN(auto input, open_scene(arguments.scene, overrides, watch));
-    TALUS_ASSIGN(auto plan, VariantPlan::make(arguments, input.source, input.scene));
-    if (input.unpacked) name_builtin_files(input.scene, input.unpacked->path());
+    TALUS_ASSIGN(auto input, open_scene(arguments.scene, overrides, arguments.layers, watch));
 
     std::unique_ptr<DefaultParent> parent;
     if (arguments.output.empty()) parent = std::make_unique<DefaultParent>();
     const fs::path shown = parent ? fs::path(DefaultParent::name) / input.short_name : fs::path(arguments.output);
     TALUS_ASSIGN(auto output, products::OutputFolder::create(shown, arguments.force));
     watch.remove_at_once(output.path());
+
+    std::function<void(const std::string&)> say;
+    if (!arguments.quiet) say = [&](const std::string& what) { progress.say(what); };
+    TALUS_ASSIGN(const auto settled, settle_layers(input.source.file, input.source.overrides, arguments.layers,
+                                                   input.scene, say, watch.stop_requested()));
+    TALUS_ASSIGN(auto plan, VariantPlan::make(arguments, input.source, input.scene));
+    if (input.unpacked) name_builtin_files(input.scene, input.unpacked->path());
+    progress.clear();
+    if (settled && arguments.json) (void)print(cost_json(*settled) + "\n");
+    if (settled && !arguments.json && !arguments.quiet) (void)std::fputs((cost_text(*settled) + "\n").c_str(), stderr);
     return Job{std::move(input), std::move(plan), std::move(parent), shown, std::move(output)};
 }
 
@@ -138,7 +151,8 @@ int run_command(const RunArguments& arguments) {
     InterruptWatch watch;
     ProgressReporter progress(progress_style(arguments.quiet, arguments.json));
 
-    auto job = open_job(arguments, watch);  // load
+    auto job = open_job(arguments, progress, watch);  // load
+    progress.clear();
     if (!job) return fail(exit_code::bad_input, job.error().message);
     if (watch.stop_requested()) return fail(exit_code::interrupted, "interrupted before the run began");
     const scene::Scene& scene = job->input.scene;
@@ -183,6 +197,7 @@ void add_run(CLI::App& program, std::vector<Command>& commands) {
     app->add_option("--threads", run->threads, "number of threads; default: all cores; does not affect the result")
         ->type_name("N");
     add_overrides(*app, run->overrides);
+    add_layers(*app, run->layers, true);
     app->add_flag("--convergence", run->convergence,
                   "run again with half the time step, double the iterations, three times the particles; compare");
     app->add_flag("--variants", run->named_variants, "run again as every [[variant]] of the scene; compare")

@@ -9,6 +9,8 @@
 
 #include "command.hpp"
 #include "exit_code.hpp"
+#include "interrupt.hpp"
+#include "layers.hpp"
 #include "params/scene_text.hpp"
 #include "scene/builtin.hpp"
 #include "scene/check.hpp"
@@ -20,6 +22,7 @@ namespace {
 struct CheckArguments {
     std::string scene;
     std::vector<std::string> overrides;
+    std::string layers;  ///< of --layers; empty: not given
     std::string data;
 };
 
@@ -30,9 +33,16 @@ struct ExportArguments {
 
 int check_command(const CheckArguments& arguments) {
     if (!arguments.data.empty()) set_data_folder(arguments.data);
-    const auto scene = scene::load_scene(arguments.scene, arguments.overrides);
+    InterruptWatch watch;
+    auto overrides = with_layers(arguments.overrides, arguments.layers);
+    if (!overrides) return fail(exit_code::bad_input, overrides.error().message);
+    auto scene = load_layered(arguments.scene, *overrides, arguments.layers);
     if (!scene) return fail(exit_code::bad_input, scene.error().message);
-    return print_result(describe_scene(*scene));
+    const auto say = [](const std::string& what) { (void)std::fputs((what + "\n").c_str(), stderr); };
+    const auto settled =
+        settle_layers(arguments.scene, *overrides, arguments.layers, *scene, say, watch.stop_requested());
+    if (!settled) return fail(exit_code::bad_input, settled.error().message);
+    return print_result(describe_scene(*scene) + (*settled ? "cost        " + cost_text(**settled) + "\n" : ""));
 }
 
 int new_command(const scene::NewSceneOptions& options) {
@@ -65,6 +75,7 @@ void add_scene(CLI::App& program, std::vector<Command>& commands) {
     const auto check = std::make_shared<CheckArguments>();
     check_app->add_option("scene", check->scene, "scene file")->required()->type_name("SCENE");
     add_overrides(*check_app, check->overrides);
+    add_layers(*check_app, check->layers, true);
     add_data_folder(*check_app, check->data);
     commands.push_back({check_app, [check] { return check_command(*check); }});
 

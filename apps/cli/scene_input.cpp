@@ -4,22 +4,17 @@
 #include <utility>
 
 #include "core/try.hpp"
+#include "layers.hpp"
 #include "scene/builtin.hpp"
 
 namespace talus::cli {
 
 namespace fs = std::filesystem;
 
-namespace {
-
-const std::string builtin_prefix = "built-in:";
-
-}  // namespace
-
 Result<SceneInput> open_scene(const std::string& scene, const std::vector<std::string>& overrides,
-                              InterruptWatch& watch) {
+                              const std::string& layers, InterruptWatch& watch) {
     SceneInput s;
-    s.source.overrides = overrides;
+    TALUS_ASSIGN(s.source.overrides, with_layers(overrides, layers));
     if (scene.empty() || scene.starts_with(builtin_prefix)) {
         s.unpacked = std::make_unique<TemporaryFolder>();
         if (s.unpacked->path().empty())
@@ -35,7 +30,7 @@ Result<SceneInput> open_scene(const std::string& scene, const std::vector<std::s
         const std::string folder = fs::absolute(scene).parent_path().filename().string();
         s.short_name = stem == "scene" && !folder.empty() ? folder : stem;
     }
-    TALUS_ASSIGN(s.scene, scene::load_scene(s.source.file, overrides));
+    TALUS_ASSIGN(s.scene, load_layered(s.source.file, s.source.overrides, layers));
     return Result<SceneInput>(std::move(s));
 }
 

@@ -12,6 +12,9 @@
 
 namespace talus::cli {
 
+/// Of the names of built-in scenes, which stand for a file.
+inline const std::string builtin_prefix = "built-in:";
+
 /// The scene of a command, on disk and loaded.
 struct SceneInput {
     std::unique_ptr<TemporaryFolder> unpacked;  ///< of the built-in scene
@@ -21,8 +24,9 @@ struct SceneInput {
     scene::Scene scene;
 };
 
-/// `scene` as given, empty or "built-in:sham_tseng" for the built-in one. Errors: as load_scene.
+/// `scene` as given, empty or "built-in:sham_tseng" for the built-in one; `layers`: see with_layers(). Errors: as
+/// with_layers() and load_scene().
 [[nodiscard]] Result<SceneInput> open_scene(const std::string& scene, const std::vector<std::string>& overrides,
-                                            InterruptWatch& watch);
+                                            const std::string& layers, InterruptWatch& watch);
 
 }  // namespace talus::cli

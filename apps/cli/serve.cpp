@@ -1,6 +1,7 @@
 #include <arpa/inet.h>
 #include <cstdio>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -15,6 +16,7 @@
 #include "core/try.hpp"
 #include "exit_code.hpp"
 #include "interrupt.hpp"
+#include "layers.hpp"
 #include "scene/builtin.hpp"
 #include "scene/scene.hpp"
 #include "serve/server.hpp"
@@ -33,6 +35,7 @@ struct ServeArguments {
     std::vector<std::string> tokens;  ///< the controllers', then the viewers'; absent: random ones
     std::optional<int> threads;
     std::vector<std::string> overrides;  ///< "section.key=value"
+    std::string layers;                  ///< of --layers; empty: not given
     std::string data;                    ///< value of TALUS_DATA; empty: as in the environment
     std::string calibrations;            ///< a folder that keeps calibrations; empty: they are not kept
     std::vector<std::string> ensembles;  ///< folders of finished ensembles whose maps are shown
@@ -120,10 +123,16 @@ int serve_command(const ServeArguments& arguments) {
         if (!scene_file) return fail(exit_code::failure, scene_file.error().message);
         file = *scene_file;
     }
-    std::vector<std::string> overrides = arguments.overrides;
-    if (arguments.threads) overrides.push_back(fmt::format("solver.thread_count={}", *arguments.threads));
-    auto loaded = scene::load_scene(file, overrides);
+    auto overrides = with_layers(arguments.overrides, arguments.layers);
+    if (!overrides) return fail(exit_code::bad_input, overrides.error().message);
+    if (arguments.threads) overrides->push_back(fmt::format("solver.thread_count={}", *arguments.threads));
+    auto loaded = load_layered(file, *overrides, arguments.layers);
     if (!loaded) return fail(exit_code::bad_input, loaded.error().message);
+    std::function<void(const std::string&)> say;
+    if (!arguments.quiet) say = [](const std::string& what) { (void)std::fputs((what + "\n").c_str(), stderr); };
+    const auto settled = settle_layers(file, *overrides, arguments.layers, *loaded, say, watch.stop_requested());
+    if (!settled) return fail(exit_code::bad_input, settled.error().message);
+    if (*settled && say) say(cost_text(**settled));
     if (arguments.scene.empty()) name_builtin_files(*loaded, unpacked);
     if (watch.stop_requested()) return exit_code::success;
     const auto scene = std::make_shared<const scene::Scene>(std::move(*loaded));
@@ -136,10 +145,10 @@ int serve_command(const ServeArguments& arguments) {
     options.allowed_hosts = arguments.allowed_hosts;
     options.tokens = std::move(*tokens);
     options.export_folder = folder.path();
-    options.scenario.overrides = overrides;
+    options.scenario.overrides = *overrides;
     options.run = arguments.run;
     options.ensembles.assign(arguments.ensembles.begin(), arguments.ensembles.end());
-    options.calibration.source = {file, overrides};
+    options.calibration.source = {file, *overrides};
     options.calibration.own_files = arguments.scene.empty();
     options.calibration.scene_name =
         arguments.scene.empty() ? std::string("built-in") : fs::absolute(file).lexically_normal().string();
@@ -205,6 +214,7 @@ void add_serve(CLI::App& program, std::vector<Command>& commands) {
     app->add_option("--threads", serve->threads, "number of threads; default: all cores; does not affect the result")
         ->type_name("N");
     add_overrides(*app, serve->overrides);
+    add_layers(*app, serve->layers, true);
     add_data_folder(*app, serve->data);
     CLI::Option* quiet = app->add_flag("--quiet", serve->quiet, "print only errors");
     app->add_flag("--json", serve->json, "print the links as one JSON object on stdout")->excludes(quiet);

@@ -61,13 +61,16 @@ std::string compression_text(const observe::Compression& c) {
     return text;
 }
 
-std::string layers_text(const observe::FlowThickness& flow, double spacing) {
+std::string layers_text(const scene::Scene& scene, const observe::FlowThickness& flow, double spacing) {
     const double median = flow.median / spacing;
-    return fmt::format("the flow was {:.1f} particles thick in the median of the trail, {:.1f} in its thinnest tenth{}",
-                       median, flow.thin / spacing,
-                       median < observe::FlowThickness::min_layers
-                           ? "; WARNING: fewer than 2, depths, speeds and forces mean little"
-                           : "");
+    const std::string asked = scene.thinnest ? fmt::format("{:.4g} asked for over {}; ",
+                                                           *scene.spec.solver.target_layers, scene.thinnest->name)
+                                             : "";
+    return fmt::format(
+        "{}the flow was {:.1f} particles thick in the median of the trail, {:.1f} in its thinnest tenth{}", asked,
+        median, flow.thin / spacing,
+        median < observe::FlowThickness::min_layers ? "; WARNING: fewer than 2, depths, speeds and forces mean little"
+                                                    : "");
 }
 
 /// What to change where compression is above its limits.
@@ -134,7 +137,7 @@ std::string summary_text(const scene::Scene& scene, const run::RunResult& result
         if (b.is_barrier) text += line("barrier", barrier_text(b));
         if (!std::isnan(b.failure_time)) text += line("FAILED", fmt::format("{} at {:.2f} s", b.name, b.failure_time));
     }
-    if (seen.thickness.known()) text += line("layers", layers_text(seen.thickness, result.particle_spacing));
+    if (seen.thickness.known()) text += line("layers", layers_text(scene, seen.thickness, result.particle_spacing));
     text += line("compression", compression_text(seen.compression));
     const run::NumericalVerdict verdict = numerical_verdict(result, comparisons);
     if (verdict.converged == run::Answer::no) {
@@ -182,6 +185,7 @@ std::string summary_json(const scene::Scene& scene, const run::RunResult& result
         {"steps", result.steps},
         {"particles", result.particles},
         {"particle_spacing_m", result.particle_spacing},
+        {"target_layers", scene.thinnest ? nlohmann::ordered_json(*scene.spec.solver.target_layers) : nullptr},
         {"thread_count", result.thread_count},
         {"volume_released_m3", seen.volume_released},
         {"volume_entrained_m3", seen.erosion.volume},

@@ -9,7 +9,7 @@
 
 #include "core/try.hpp"
 #include "params/fields.hpp"
-#include "sim/sources/seed.hpp"
+#include "scene/particle_spacing.hpp"
 #include "terrain/map_cell.hpp"
 
 namespace talus::ensemble {
@@ -185,8 +185,8 @@ Result<PlannedRuns> PlannedRuns::make(const EnsemblePlan& plan, const run::Scene
         runs.whole_.push_back(parameter != nullptr && parameter->kind == params::ParameterKind::integer);
         if (parameter != nullptr && number) cut_to_range(factor.distribution, parameter->range);
         TALUS_TRY(check_factor(factor, runs.whole_.back(), source));
-        own_spacing =
-            own_spacing || factor.key == "solver.particle_spacing_m" || factor.key == "solver.target_particle_count";
+        own_spacing = own_spacing || factor.key == "solver.particle_spacing_m" ||
+                      factor.key == "solver.target_layers" || factor.key == "solver.target_particle_count";
         runs.levels_.push_back(factor.distribution.kind == stats::DistributionKind::list
                                    ? factor.distribution.entries.size()
                                    : plan.levels);
@@ -196,7 +196,7 @@ Result<PlannedRuns> PlannedRuns::make(const EnsemblePlan& plan, const run::Scene
     }
     TALUS_ASSIGN(runs.points_, make_points(plan, runs.levels_));
 
-    const double spacing = sim::choose_particle_spacing(base.spec.solver, total_volume(base));
+    const double spacing = particle_spacing(base);
     const double cell = base.spec.outputs.map_cell.value_or(terrain::default_map_cell(base.terrain.cell(), spacing));
     if (!own_spacing) runs.fixed_.push_back(fmt::format("solver.particle_spacing_m={:.9g}", spacing));
     runs.fixed_.push_back(fmt::format("outputs.map_cell_m={:.17g}", cell));

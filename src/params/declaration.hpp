@@ -157,7 +157,11 @@ class Declaration {
     /// `blamed`: the key to name where none is given.
     void exactly_one_of(std::vector<std::string> keys, std::string blamed = "") {
         if (blamed.empty()) blamed = keys.front();
-        section_.alternatives.push_back({std::move(keys), std::move(blamed)});
+        section_.alternatives.push_back({std::move(keys), true, std::move(blamed)});
+    }
+
+    void at_most_one_of(std::vector<std::string> keys) {
+        section_.alternatives.push_back({std::move(keys), false, ""});
     }
 
     /// `problem(entry, scene, particle_spacing)` is a std::optional<Violation>.

@@ -98,10 +98,15 @@ Section declare_flow_path() {
 Section declare_solver() {
     Declaration<SolverSpec> s("solver", "How it is computed.", &SceneSpec::solver);
     s.optional_key("particle_spacing_m", "m", &SolverSpec::particle_spacing, between(1e-4, 100),
-                   "from target_particle_count and the released volume",
+                   "from target_layers or target_particle_count",
                    "Edge of the cube of debris that a particle stands for.");
-    s.key("target_particle_count", "", &SolverSpec::target_particle_count, between(1, 1e8),
-          "Particles to aim for where particle_spacing_m is not given.");
+    s.optional_key("target_layers", "", &SolverSpec::target_layers, between(1, 1000), "from target_particle_count",
+                   "Particles over the mean thickness of the thinnest release, normal to the slope; an inflow across a "
+                   "line counts with the mean thickness at which it enters.");
+    s.optional_key("target_particle_count", "", &SolverSpec::target_particle_count, between(1, 1e8),
+                   fmt::format("{}, unless one of the two keys above is given", SolverSpec::usual_particle_count),
+                   "Particles of the volume of all releases and inflows.");
+    s.at_most_one_of({"particle_spacing_m", "target_layers", "target_particle_count"});
     s.key("particle_limit", "", &SolverSpec::particle_limit, between(1, 1e8),
           "More particles than this are refused before the run.");
     s.optional_key("time_step_s", "s", &SolverSpec::time_step, between(1e-5, 1),
@@ -283,10 +288,11 @@ std::optional<Violation> wrong_choice(const Section& section, const SceneSpec& s
             all_live = all_live && !parameter.live.empty();
             if (is_given(parameter.get(spec, index))) given.push_back(key);
         }
-        if (given.size() == 1 || (live_only && !all_live)) continue;
+        if (given.size() == 1 || (given.empty() && !choice.required) || (live_only && !all_live)) continue;
         return Violation{
             given.empty() ? choice.blamed : given.back(),
-            fmt::format(": exactly one of {} must be given; {}", fmt::join(choice.keys, ", "),
+            fmt::format(": {} of {} {} be given; {}", choice.required ? "exactly one" : "at most one",
+                        fmt::join(choice.keys, ", "), choice.required ? "must" : "may",
                         given.empty() ? "there is none" : fmt::format("given are {}", fmt::join(given, ", ")))};
     }
     return {};

@@ -115,9 +115,10 @@ struct Violation {
 /// A rule between keys. `particle_spacing`: m, 0 while unknown.
 using Rule = std::function<std::optional<Violation>(const SceneSpec&, std::size_t index, double particle_spacing)>;
 
-/// Keys of which exactly one must be given.
+/// Keys of which no two may be given.
 struct Alternatives {
     std::vector<std::string> keys;
+    bool required;       ///< one must be given; otherwise `--set` of one also replaces the scene file's
     std::string blamed;  ///< where none is
 };
 
@@ -172,7 +173,8 @@ inline constexpr std::pair section_of<BedSpec>{"bed", &SceneSpec::beds};
 /// Whether there is a value that is not empty.
 [[nodiscard]] bool is_given(const ParameterValue& value);
 
-/// The first set of alternatives of which not exactly one is given; among all keys, or among live parameters only.
+/// The first set of alternatives of which too many are given, or none of those that are required; among all keys, or
+/// among live parameters only.
 [[nodiscard]] std::optional<Violation> wrong_choice(const Section& section, const SceneSpec& spec, std::size_t index,
                                                     bool live_only);
 

@@ -40,7 +40,8 @@ std::string header_of(const Section& section) {
 std::string help_of(const Section& section) {
     std::string text = section.help;
     for (const Alternatives& choice : section.alternatives) {
-        text += fmt::format(" Exactly one of {} must be given.", fmt::join(choice.keys, ", "));
+        text += fmt::format(" {} one of {} {} be given.", choice.required ? "Exactly" : "At most",
+                            fmt::join(choice.keys, ", "), choice.required ? "must" : "may");
     }
     return text;
 }

@@ -204,8 +204,11 @@ enum class InternalFriction {
 
 /// `[solver]`: an absent optional is chosen by the program and reported.
 struct SolverSpec {
-    std::optional<double> particle_spacing;  ///< m; absent: from target_particle_count and the released volume
-    int target_particle_count = 10000;
+    // At most one of the three; none: usual_particle_count.
+    std::optional<double> particle_spacing;    ///< m
+    std::optional<double> target_layers;       ///< of particles over the thickness of the thinnest release
+    std::optional<int> target_particle_count;  ///< of the volume of releases and inflows
+    static constexpr int usual_particle_count = 10000;
     int particle_limit = 2000000;
     std::optional<double> time_step;         ///< s, fixed; absent: adaptive, see displacement_limit
     double displacement_limit = 0.5;         ///< maximum displacement of a particle in an adaptive step, in spacings

@@ -112,13 +112,14 @@ Json compression(const scene::Scene& scene, const run::RunResult& result) {
             {"fixed_time_step", solver.time_step.has_value()}};
 }
 
-Json flow_thickness(const run::RunResult& result) {
+Json flow_thickness(const scene::Scene& scene, const run::RunResult& result) {
     const observe::FlowThickness& flow = result.observation.thickness;
     if (!flow.known()) return nullptr;
     return {{"median_m", flow.median},
             {"thinnest_tenth_m", flow.thin},
             {"median_layers", flow.median / result.particle_spacing},
-            {"thinnest_tenth_layers", flow.thin / result.particle_spacing}};
+            {"thinnest_tenth_layers", flow.thin / result.particle_spacing},
+            {"target_layers", scene.thinnest ? Json(*scene.spec.solver.target_layers) : Json()}};
 }
 
 Json key_figures(const scene::Scene& scene, const run::RunResult& result) {
@@ -181,18 +182,22 @@ Json key_figures(const scene::Scene& scene, const run::RunResult& result) {
 }
 
 /// Thickness of the flow in particles.
-Json layers(const run::RunResult& result) {
+Json layers(const scene::Scene& scene, const run::RunResult& result) {
     const observe::FlowThickness& flow = result.observation.thickness;
-    if (!flow.known()) return fact("Layers of particles", "debris reached no map cell");
+    const std::string asked =
+        scene.thinnest ? fmt::format("asked for: {} over {}, {} m thick; ", plain(*scene.spec.solver.target_layers),
+                                     scene.thinnest->name, significant(scene.thinnest->thickness, 3))
+                       : "";
+    if (!flow.known()) return fact("Layers of particles", asked + "debris reached no map cell");
     const double median = flow.median / result.particle_spacing;
     const bool enough = median >= observe::FlowThickness::min_layers;
     const std::string warning = fmt::format("fewer than {}: depths, speeds and forces mean little",
                                             fixed(observe::FlowThickness::min_layers, 0));
     return fact("Layers of particles",
-                fmt::format("median {} ({} m), thinnest tenth of the trail {} ({} m), when the flow was thickest at "
+                fmt::format("{}median {} ({} m), thinnest tenth of the trail {} ({} m), when the flow was thickest at "
                             "each place{}",
-                            fixed(median, 1), fixed(flow.median, 2), fixed(flow.thin / result.particle_spacing, 1),
-                            fixed(flow.thin, 2), enough ? "" : ": "),
+                            asked, fixed(median, 1), fixed(flow.median, 2),
+                            fixed(flow.thin / result.particle_spacing, 1), fixed(flow.thin, 2), enough ? "" : ": "),
                 enough ? "" : warning, enough);
 }
 
@@ -212,7 +217,7 @@ Json quality(const scene::Scene& scene, const run::RunResult& result) {
         fact("Real-time factor",
              significant(result.real_time_factor(), 3) + " (simulated over wall time; 1 is real time)"),
         fact("Particles", fmt::format("{}, spacing {} m", fixed(result.particles, 0), plain(result.particle_spacing))),
-        layers(result),
+        layers(scene, result),
         fact("Compression",
              fmt::format(
                  "worst mean over the debris {} % (at {} s; limit {} %), more than {} % in {} % of the particles "
@@ -305,7 +310,7 @@ Json run_results(const scene::Scene& scene, const run::RunResult& result,
     all.update({{"status", status(result)},
                 {"verdict", verdict(result, comparisons)},
                 {"compression", compression(scene, result)},
-                {"flow_thickness", flow_thickness(result)},
+                {"flow_thickness", flow_thickness(scene, result)},
                 {"key_figures", key_figures(scene, result)},
                 {"observations", observations(scene, result)},
                 {"quality", quality(scene, result)},

@@ -8,6 +8,7 @@
 
 #include "core/try.hpp"
 #include "observe/followed_path.hpp"
+#include "scene/particle_spacing.hpp"
 #include "sim/sources/seed.hpp"
 #include "terrain/map_cell.hpp"
 
@@ -15,7 +16,7 @@ namespace talus::run {
 
 Result<std::unique_ptr<Run>> Run::start(const scene::Scene& scene, std::optional<double> particle_spacing) {
     const params::SceneSpec& spec = scene.spec;
-    const double spacing = particle_spacing.value_or(sim::choose_particle_spacing(spec.solver, total_volume(scene)));
+    const double spacing = particle_spacing.value_or(scene::particle_spacing(scene));
     TALUS_TRY(sim::check_particle_count(scene.releases, scene.inflows, spec.solver, spacing));
     return Threads(spec.solver.thread_count).execute([&]() -> Result<std::unique_ptr<Run>> {
         sim::Model model = sim::make_model(spec.material, spec.solver, spacing, scene.cover);

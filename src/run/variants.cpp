@@ -8,8 +8,8 @@
 
 #include "core/try.hpp"
 #include "observe/observer.hpp"
+#include "scene/particle_spacing.hpp"
 #include "sim/physics/viscosity.hpp"
-#include "sim/sources/seed.hpp"
 #include "terrain/map_cell.hpp"
 
 namespace talus::run {
@@ -17,12 +17,8 @@ namespace {
 
 constexpr std::string_view base_name = "as given";
 
-double spacing_of(const scene::Scene& scene) {
-    return sim::choose_particle_spacing(scene.spec.solver, total_volume(scene));
-}
-
 double particles_of(const scene::Scene& scene) {
-    return total_volume(scene) / std::pow(spacing_of(scene), 3);
+    return total_volume(scene) / std::pow(particle_spacing(scene), 3);
 }
 
 /// What a run costs, in arbitrary units: particles times iterations, over the time step at a speed that debris has.
@@ -31,7 +27,7 @@ double effort_of(const scene::Scene& scene) {
     constexpr double beside_iterations = 2.2;  // cost of neighbours, contacts and observation, in iterations
     const params::SolverSpec& solver = scene.spec.solver;
     const double adaptive =
-        std::min(solver.largest_time_step, solver.displacement_limit * spacing_of(scene) / usual_speed);
+        std::min(solver.largest_time_step, solver.displacement_limit * particle_spacing(scene) / usual_speed);
     return particles_of(scene) * (solver.iteration_count + beside_iterations) / solver.time_step.value_or(adaptive);
 }
 
@@ -77,7 +73,7 @@ Result<scene::Scene> load_variant(const SceneSource& source, const Variant& vari
 double kinematic_viscosity_of(const scene::Scene& scene) {
     const params::MaterialSpec& material = scene.spec.material;
     if (material.kinematic_viscosity) return *material.kinematic_viscosity;
-    const double spacing = spacing_of(scene), radius = scene.spec.solver.support_ratio * spacing;
+    const double spacing = particle_spacing(scene), radius = scene.spec.solver.support_ratio * spacing;
     return sim::kinematic_viscosity(material.viscosity,
                                     sim::make_kernel(scene.spec.solver.kernel, spacing, radius).second_moment);
 }
@@ -97,13 +93,14 @@ std::vector<Variant> refinements(const scene::Scene& base) {
     Variant iterations{.name = "double the iterations",
                        .overrides = {fmt::format("solver.iteration_count={}", 2 * solver.iteration_count)}};
     const double map_cell =
-        base.spec.outputs.map_cell.value_or(terrain::default_map_cell(base.terrain.cell(), spacing_of(base)));
-    Variant particles{.name = "three times the particles",
-                      .overrides = {fmt::format("solver.particle_spacing_m={}", spacing_of(base) / std::cbrt(3.0)),
-                                    // The same smoothing would be another material at another spacing.
-                                    fmt::format("material.kinematic_viscosity_m2ps={}", kinematic_viscosity_of(base)),
-                                    // Areas and depths are compared on the same cells.
-                                    fmt::format("outputs.map_cell_m={}", map_cell)}};
+        base.spec.outputs.map_cell.value_or(terrain::default_map_cell(base.terrain.cell(), particle_spacing(base)));
+    Variant particles{
+        .name = "three times the particles",
+        .overrides = {fmt::format("solver.particle_spacing_m={}", particle_spacing(base) / std::cbrt(3.0)),
+                      // The same smoothing would be another material at another spacing.
+                      fmt::format("material.kinematic_viscosity_m2ps={}", kinematic_viscosity_of(base)),
+                      // Areas and depths are compared on the same cells.
+                      fmt::format("outputs.map_cell_m={}", map_cell)}};
     return {step, iterations, particles};
 }
 

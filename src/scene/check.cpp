@@ -7,7 +7,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "sim/sources/seed.hpp"
+#include "scene/particle_spacing.hpp"
 #include "terrain/map_cell.hpp"
 
 namespace talus::scene {
@@ -30,17 +30,15 @@ std::string terrain_line(const Scene& scene) {
 std::string release_line(const Scene& scene, const terrain::Release& release) {
     double plan = 0;
     for (const terrain::ReleasePatch& patch : release.patches) plan += plan_area(patch.polygon);
-    const double slope_area = release_slope_area(scene.terrain, release);
     return fmt::format(
         "release     \"{}\": {:.6g} m3, {:.6g} m2 in plan, mean thickness {:.3g} m, starts at {:.4g} s\n", release.name,
-        release.volume, plan, slope_area > 0 ? release.volume / slope_area : 0, release.spec.start_time);
+        release.volume, plan, mean_thickness(scene.terrain, release), release.spec.start_time);
 }
 
 std::string particle_line(const Scene& scene, double volume, double spacing) {
     const double count = std::round(volume / (spacing * spacing * spacing));
-    return fmt::format(
-        "particles   about {:.0f} with a spacing of {:.4g} m ({})\n", count, spacing,
-        scene.spec.solver.particle_spacing ? "solver.particle_spacing_m" : "from solver.target_particle_count");
+    return fmt::format("particles   about {:.0f} with a spacing of {:.4g} m ({}{})\n", count, spacing,
+                       scene.spec.solver.particle_spacing ? "" : "from ", spacing_key(scene.spec.solver));
 }
 
 std::string buildings_line(const Scene& scene) {
@@ -71,7 +69,7 @@ std::string describe_scene(const Scene& scene) {
         out += fmt::format("inflow      \"{}\": {:.4g} m3 between {:.6g} and {:.6g} s\n", inflow.name, inflow.volume(),
                            inflow.hydrograph.front().time, inflow.hydrograph.back().time);
     }
-    const double spacing = sim::choose_particle_spacing(scene.spec.solver, volume);
+    const double spacing = particle_spacing(scene);
     out += particle_line(scene, volume, spacing);
     out += fmt::format("map cell    {:.4g} m\n",
                        scene.spec.outputs.map_cell.value_or(terrain::default_map_cell(scene.terrain.cell(), spacing)));

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "core/try.hpp"
+#include "scene/particle_spacing.hpp"
 #include "sim/sources/seed.hpp"
 #include "terrain/map_cell.hpp"
 
@@ -47,15 +48,15 @@ Status check_particles(const ParsedScene& parsed, const Scene& scene, double spa
     const params::SolverSpec& solver = scene.spec.solver;
     const params::Range& allowed = params::parameter_of("solver", "particle_spacing_m").range;
     if (!allowed.contains(spacing)) {
-        return Error{
-            fmt::format("{} is refused; it puts the particles of {:.4g} m3 {:.4g} m apart, which must be {} m",
-                        key_with_value(parsed, "solver", "target_particle_count", solver.target_particle_count),
-                        total_volume(scene), spacing, allowed.text())};
+        return Error{fmt::format("{} is refused; it puts the particles of {:.4g} m3 {:.4g} m apart, which must be {} m",
+                                 fmt::format("{} = {:.6g}", parsed.at(spacing_key(solver)),
+                                             solver.target_layers.value_or(solver.target_particle_count.value_or(
+                                                 params::SolverSpec::usual_particle_count))),
+                                 total_volume(scene), spacing, allowed.text())};
     }
     const Status counted = sim::check_particle_count(scene.releases, scene.inflows, solver, spacing);
     if (counted) return {};
-    return Error{parsed.at(solver.particle_spacing ? "solver.particle_spacing_m" : "solver.target_particle_count") +
-                 ": " + counted.error().message};
+    return Error{parsed.at(spacing_key(solver)) + ": " + counted.error().message};
 }
 
 Status check_outputs(const ParsedScene& parsed, const Scene& scene, double spacing) {
@@ -81,22 +82,25 @@ Status check_outputs(const ParsedScene& parsed, const Scene& scene, double spaci
 
 Status check_memory(const ParsedScene& parsed, const Scene& scene, double spacing) {
     const double particles = total_volume(scene) / (spacing * spacing * spacing);
-    const double needed = particles * bytes_per_particle +
-                          static_cast<double>(scene.terrain.elevation().geometry.size()) * bytes_per_terrain_cell;
+    const double needed = memory_needed(scene, particles);
     const double there = static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGE_SIZE));
     if (!(there > 0) || needed <= there) return {};
     constexpr double gigabyte = 1e9;
     return Error{fmt::format(
         "{}: {:.3g} particles {:.4g} m apart need about {:.3g} GB of memory, and this machine has "
         "{:.3g} GB; a larger spacing needs less",
-        parsed.at(scene.spec.solver.particle_spacing ? "solver.particle_spacing_m" : "solver.target_particle_count"),
-        particles, spacing, needed / gigabyte, there / gigabyte)};
+        parsed.at(spacing_key(scene.spec.solver)), particles, spacing, needed / gigabyte, there / gigabyte)};
 }
 
 }  // namespace
 
+double memory_needed(const Scene& scene, double particles) {
+    return particles * bytes_per_particle +
+           static_cast<double>(scene.terrain.elevation().geometry.size()) * bytes_per_terrain_cell;
+}
+
 Status check_limits(const ParsedScene& parsed, const Scene& scene) {
-    const double spacing = sim::choose_particle_spacing(scene.spec.solver, total_volume(scene));
+    const double spacing = particle_spacing(scene);
     TALUS_TRY(check_thickness(parsed, scene));
     TALUS_TRY(check_particles(parsed, scene, spacing));
     TALUS_TRY(check_outputs(parsed, scene, spacing));

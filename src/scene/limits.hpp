@@ -9,4 +9,7 @@ namespace talus::scene {
 /// is allowed.
 [[nodiscard]] Status check_limits(const ParsedScene& parsed, const Scene& scene);
 
+/// Of a run with so many particles, bytes, beside what the program needs anyway.
+[[nodiscard]] double memory_needed(const Scene& scene, double particles);
+
 }  // namespace talus::scene

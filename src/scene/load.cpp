@@ -11,9 +11,9 @@
 #include "core/try.hpp"
 #include "geo/orthophoto.hpp"
 #include "scene/limits.hpp"
+#include "scene/particle_spacing.hpp"
 #include "scene/plausibility.hpp"
 #include "scene/viscosity_limit.hpp"
-#include "sim/sources/seed.hpp"
 
 namespace talus::scene {
 namespace {
@@ -158,8 +158,8 @@ Result<Scene> assemble_scene(const ParsedScene& parsed) {
     TALUS_TRY(load_releases(parsed, scene));
     TALUS_TRY(load_bed(parsed, scene));
     TALUS_TRY(load_inflows(parsed, scene));
-    const double spacing = sim::choose_particle_spacing(scene.spec.solver, total_volume(scene));
-    if (const auto broken = too_viscous(scene.spec.material, scene.spec.solver, spacing)) {
+    TALUS_TRY(settle_layers(parsed, scene));
+    if (const auto broken = too_viscous(scene.spec.material, scene.spec.solver, particle_spacing(scene))) {
         return Error{parsed.at("material." + broken->key) + broken->text};
     }
     TALUS_TRY(load_buildings(parsed, scene));

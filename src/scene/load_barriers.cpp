@@ -5,7 +5,7 @@
 #include "core/try.hpp"
 #include "geo/vector.hpp"
 #include "scene/load.hpp"
-#include "sim/sources/seed.hpp"
+#include "scene/particle_spacing.hpp"
 #include "terrain/barrier.hpp"
 
 namespace talus::scene {
@@ -62,7 +62,7 @@ Status check_names(const ParsedScene& parsed, const Scene& scene, std::size_t fi
 }  // namespace
 
 Status load_barriers(const ParsedScene& parsed, Scene& scene) {
-    TALUS_TRY(check_rules(parsed, sim::choose_particle_spacing(scene.spec.solver, total_volume(scene))));
+    TALUS_TRY(check_rules(parsed, particle_spacing(scene)));
     const std::size_t first = scene.buildings.size();
     for (std::size_t k = 0; k < scene.spec.barriers.size(); ++k) {
         const params::BarrierSpec& spec = scene.spec.barriers[k];

@@ -1,5 +1,6 @@
 #include "scene/parse.hpp"
 
+#include <algorithm>
 #include <optional>
 
 #include <fmt/format.h>
@@ -216,6 +217,7 @@ class SceneReader {
                              parameter.kind == params::ParameterKind::path ||
                              parameter.kind == params::ParameterKind::choice;
         const bool in_quotes = !text.empty() && (text.front() == '"' || text.front() == '\'');
+        drop_alternatives(section, index, parameter, where);
         if (is_text && !in_quotes) {  // a shell has taken the quotes away already
             return read_parameter(section, index, parameter, toml::value<std::string>(text), where);
         }
@@ -228,6 +230,22 @@ class SceneReader {
         }
         return Error{fmt::format("{}: {} = {} is refused; it must be {}", where, key_path(section, index, parameter),
                                  one_line(text, 80), allowed_text(parameter))};
+    }
+
+    /// An override replaces what was given elsewhere in place of its key, where neither is required.
+    void drop_alternatives(const params::Section& section, std::size_t index, const params::Parameter& parameter,
+                           const std::string& where) {
+        for (const params::Alternatives& choice : section.alternatives) {
+            const auto begin = choice.keys.begin(), end = choice.keys.end();
+            if (choice.required || std::find(begin, end, parameter.key) == end) continue;
+            for (const std::string& key : choice.keys) {
+                const params::Parameter& other = *section.find(key);
+                const auto given = scene_.places.find(key_path(section, index, other));
+                if (key == parameter.key || given == scene_.places.end() || given->second == where) continue;
+                other.set(scene_.spec, index, {});
+                scene_.places.erase(given);
+            }
+        }
     }
 
     std::string name_;

@@ -9,7 +9,7 @@
 #include <fmt/format.h>
 
 #include "core/angle.hpp"
-#include "sim/sources/seed.hpp"
+#include "scene/particle_spacing.hpp"
 
 namespace talus::scene {
 namespace {
@@ -108,10 +108,9 @@ void note_implausible_terrain(Scene& scene) {
 void note_coarse_particles(Scene& scene) {
     if (scene.releases.empty()) return;
     constexpr double layers = 5;
-    const double spacing = sim::choose_particle_spacing(scene.spec.solver, total_volume(scene));
+    const double spacing = particle_spacing(scene);
     for (const terrain::Release& release : scene.releases) {
-        const double area = release_slope_area(scene.terrain, release);
-        const double thickness = area > 0 ? release.volume / area : 0;
+        const double thickness = mean_thickness(scene.terrain, release);
         if (!(thickness > 0) || spacing <= thickness / layers) continue;
         const double wanted = thickness / layers;
         const std::string needed =

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <set>
 #include <string>
 #include <vector>
@@ -32,6 +33,12 @@ struct InputFile {
 /// Where the flow path comes from: the scene's file, a trace downhill before the run, or the debris of a run.
 enum class PathOrigin { file, traced, followed };
 
+/// The release or inflow whose thickness `solver.target_layers` counts.
+struct ThinnestSource {
+    std::string name;      ///< with its kind: `release "scar"`
+    double thickness = 0;  ///< mean, normal to the slope, m
+};
+
 /// A scene file with all its inputs loaded, checked and transformed to the terrain's CRS.
 struct Scene {
     std::filesystem::path file;
@@ -48,6 +55,7 @@ struct Scene {
     std::vector<BedLayer> bed_layers;
     terrain::Bed bed;  ///< of the layers
     std::vector<terrain::Inflow> inflows;
+    std::optional<ThinnestSource> thinnest;  ///< where solver.target_layers is given
     std::vector<terrain::Building> buildings;
     terrain::FlowPath flow_path;
     PathOrigin flow_path_origin = PathOrigin::file;

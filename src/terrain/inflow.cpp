@@ -1,6 +1,7 @@
 #include "terrain/inflow.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 namespace talus::terrain {
 namespace {
@@ -49,6 +50,16 @@ double Inflow::mass_until(double time) const {
                 share * ((a.discharge * denser + rise * a.density) / 2 + share * rise * denser / 3));
     }
     return sum;
+}
+
+double Inflow::mean_thickness() const {
+    double way = 0;
+    for (std::size_t k = 0; k + 1 < hydrograph.size(); ++k) {
+        const params::InflowSample &a = hydrograph[k], &b = hydrograph[k + 1];
+        if (a.discharge + b.discharge > 0) way += (b.time - a.time) * (a.velocity + b.velocity) / 2;
+    }
+    const double covered = way * std::hypot(to.x - from.x, to.y - from.y);
+    return covered > 0 ? volume() / covered : 0;
 }
 
 double Inflow::velocity_at(double time) const {

@@ -31,6 +31,8 @@ struct Inflow {
     [[nodiscard]] double density_between(double early, double late) const;
     /// Of the whole hydrograph, m3.
     [[nodiscard]] double volume() const { return volume_until(hydrograph.back().time); }
+    /// Mean over the ground that the debris would cover at inflow velocity, m; of inflow across a line.
+    [[nodiscard]] double mean_thickness() const;
 };
 
 }  // namespace talus::terrain

@@ -87,8 +87,12 @@ Extent Release::extent() const {
     return extent;
 }
 
-double release_volume(const Terrain& terrain, const Release& release) {
-    double volume = 0;
+namespace {
+
+/// Integral of `f(place, thickness)` over the plan area.
+template <class Function>
+double integrate(const Terrain& terrain, const Release& release, const Function& f) {
+    double sum = 0;
     const auto add = [&](const Polygon& polygon, double thickness) {
         const Extent extent = extent_of(polygon);
         // An eighth of a cell resolves the slope's jumps at cell edges, a 400th of the patch its outline.
@@ -96,16 +100,30 @@ double release_volume(const Terrain& terrain, const Release& release) {
         if (release.thickness_raster) step = std::min(step, release.thickness_raster->geometry.cell / 8);
         // A large patch needs at most 4000 strips: its outline is a small share of it.
         step = std::max(step, std::max(extent.width(), extent.height()) / 4000);
-        volume += integrate(polygon, step, [&](const PlanPoint& p) {
-            const double t = release.thickness_raster ? raster_thickness(*release.thickness_raster, p) : thickness;
-            return vertical_depth(terrain, p, t, release.vertical());
+        sum += integrate(polygon, step, [&](const PlanPoint& p) {
+            return f(p, release.thickness_raster ? raster_thickness(*release.thickness_raster, p) : thickness);
         });
     };
     if (release.patches.empty() && release.thickness_raster) {
         add(rectangle(release.thickness_raster->geometry.extent()), 0);
     }
     for (const ReleasePatch& patch : release.patches) add(patch.polygon, patch.thickness);
-    return volume;
+    return sum;
+}
+
+}  // namespace
+
+double release_volume(const Terrain& terrain, const Release& release) {
+    return integrate(terrain, release, [&](const PlanPoint& p, double thickness) {
+        return vertical_depth(terrain, p, thickness, release.vertical());
+    });
+}
+
+double mean_thickness(const Terrain& terrain, const Release& release) {
+    const double slope_area = integrate(terrain, release, [&](const PlanPoint& p, double thickness) {
+        return vertical_depth(terrain, p, thickness > 0 ? 1 : 0, false);
+    });
+    return slope_area > 0 ? release.volume / slope_area : 0;
 }
 
 double release_slope_area(const Terrain& terrain, const Release& release) {

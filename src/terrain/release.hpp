@@ -39,6 +39,9 @@ struct Release {
 /// that the terrain does not cover does not count.
 [[nodiscard]] double release_volume(const Terrain& terrain, const Release& release);
 
+/// Mean over the ground that has any, normal to the slope, m; 0 without ground. The release must have its volume.
+[[nodiscard]] double mean_thickness(const Terrain& terrain, const Release& release);
+
 /// Area of its patches on the slope, m2.
 [[nodiscard]] double release_slope_area(const Terrain& terrain, const Release& release);
 

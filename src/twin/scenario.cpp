@@ -14,7 +14,7 @@
 #include "observe/erosion.hpp"
 #include "products/products.hpp"
 #include "run/run_scene.hpp"
-#include "sim/sources/seed.hpp"
+#include "scene/particle_spacing.hpp"
 #include "twin/action.hpp"
 #include "twin/json_keys.hpp"
 #include "twin/past_maps.hpp"
@@ -84,7 +84,7 @@ Scenario::~Scenario() = default;
 
 Scenario::Parts::Parts(std::shared_ptr<const scene::Scene> its_scene, ScenarioOptions its_options)
     : scene(std::move(its_scene)), options(std::move(its_options)) {
-    particle_spacing = sim::choose_particle_spacing(scene->spec.solver, total_volume(*scene));
+    particle_spacing = scene::particle_spacing(*scene);
 }
 
 Result<std::unique_ptr<Scenario>> Scenario::open(std::shared_ptr<const scene::Scene> scene, ScenarioOptions options) {

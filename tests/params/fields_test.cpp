@@ -126,7 +126,7 @@ ParameterValue other_value(const Section& section, const Parameter& p) {
         case ParameterKind::boolean:
             return !std::get<bool>(usual);
         case ParameterKind::integer:
-            return std::get<std::int64_t>(usual) + 1;
+            return std::holds_alternative<std::monostate>(usual) ? std::int64_t{7} : std::get<std::int64_t>(usual) + 1;
         case ParameterKind::number:
             for (const double candidate : {0.75, 1.75, 0.25}) {
                 if (p.range.contains(candidate) && toml_text(candidate) != toml_text(usual)) return candidate;

@@ -41,7 +41,7 @@ TEST(SceneReference, NamesEveryKeyWithUnitDefaultAndRange) {
         }
     }
     EXPECT_THAT(page, HasSubstr("| `viscosity` |  | `0.1` | a number from 0 to below 1 |"));
-    EXPECT_THAT(page, HasSubstr("| from target_particle_count and the released volume |"));
+    EXPECT_THAT(page, HasSubstr("| from target_layers or target_particle_count |"));
 }
 
 TEST(WriteScene, SetsWhatDiffersAndCommentsTheRest) {

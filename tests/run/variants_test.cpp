@@ -5,8 +5,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "scene/particle_spacing.hpp"
 #include "scene/scene_folder.hpp"
-#include "sim/sources/seed.hpp"
 
 namespace talus::run {
 namespace {
@@ -84,12 +84,9 @@ TEST_F(Variants, AFixedTimeStepIsHalvedItself) {
 }
 
 TEST_F(Variants, ThreeTimesTheParticlesAlsoWhereTheirNumberIsGiven) {
-    source.overrides = {"solver.particle_spacing_m=none", "solver.target_particle_count=100"};
+    source.overrides = {"solver.target_particle_count=100"};
     const scene::Scene scene = base(), finer = with(refinements(scene)[2]);
-    EXPECT_NEAR(std::pow(sim::choose_particle_spacing(scene.spec.solver, scene.releases[0].volume) /
-                             *finer.spec.solver.particle_spacing,
-                         3),
-                3, 1e-9);
+    EXPECT_NEAR(std::pow(particle_spacing(scene) / *finer.spec.solver.particle_spacing, 3), 3, 1e-9);
 }
 
 TEST_F(Variants, AreRefusedBeforeAnythingRanWithTheMessageOfTheParser) {

@@ -55,14 +55,6 @@ TEST(Seeding, puts_no_particle_into_a_building_at_the_rim) {
     }
 }
 
-TEST(Seeding, spacing_follows_the_target_particle_count) {
-    params::SolverSpec solver;
-    solver.target_particle_count = 8000;
-    EXPECT_NEAR(choose_particle_spacing(solver, 1000), 0.5, 1e-12);
-    solver.particle_spacing = 0.7;
-    EXPECT_EQ(choose_particle_spacing(solver, 1000), 0.7);
-}
-
 TEST(Seeding, too_many_particles_say_how_many_and_which_spacing_fits) {
     const terrain::Terrain terrain = inclined_plane(0, 30, 30);
     params::SolverSpec solver;

@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "terrain/grids.hpp"
+#include "terrain/inflow.hpp"
 
 namespace talus::terrain {
 namespace {
@@ -98,6 +99,36 @@ TEST(ReleaseVolume, on_curved_ground_agrees_with_a_fine_sum) {
         }
     }
     EXPECT_NEAR(release_volume(terrain, r), expected, 1e-3 * expected);
+}
+
+TEST(MeanThickness, is_normal_to_the_slope_and_of_the_ground_that_has_any) {
+    const Terrain slope = plane(1);
+    Release slab = release({square(100, 100, 20), {}}, 1.5);
+    const auto mean = [&] {
+        slab.volume = release_volume(slope, slab);
+        return mean_thickness(slope, slab);
+    };
+    EXPECT_NEAR(mean(), 1.5, 1e-3);
+    slab.spec.thickness_direction = params::ThicknessDirection::vertical;
+    EXPECT_NEAR(mean(), 1.5 / std::sqrt(2.0), 1e-3);
+    slab.spec.thickness_direction = params::ThicknessDirection::normal;
+    slab.thickness_raster = make({90, 90, 5, 8, 8}, [](double x, double) { return x < 105 ? 0 : x < 110 ? 1 : 3; });
+    EXPECT_NEAR(mean(), (1 + 3 + 3) / 3.0, 5e-3) << "a quarter of the polygon is bare";
+    slab.patches.front().thickness = 0;
+    slab.thickness_raster.reset();
+    EXPECT_EQ(mean(), 0);
+}
+
+TEST(MeanThickness, of_an_inflow_is_its_discharge_over_width_and_velocity) {
+    Inflow inflow;
+    inflow.from = {0, 0};
+    inflow.to = {3, 4};
+    inflow.hydrograph = {{.time = 0, .velocity = 9}, {.time = 10, .velocity = 2}};
+    EXPECT_EQ(inflow.mean_thickness(), 0);
+    inflow.hydrograph.push_back({.time = 20, .discharge = 8, .velocity = 2});
+    EXPECT_DOUBLE_EQ(inflow.mean_thickness(), 4 / (5.0 * 2)) << "of the surge, not of the ten seconds before it";
+    inflow.hydrograph.push_back({.time = 30, .discharge = 8, .velocity = 2});
+    EXPECT_DOUBLE_EQ(inflow.mean_thickness(), 6 / (5.0 * 2));
 }
 
 }  // namespace

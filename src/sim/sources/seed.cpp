@@ -107,11 +107,6 @@ void find_pressures(const Model& model, const Ground& ground, State& state) {
     state.step = start.step;
 }
 
-double choose_particle_spacing(const params::SolverSpec& solver, double released_volume) {
-    if (solver.particle_spacing) return *solver.particle_spacing;
-    return std::cbrt(released_volume / solver.target_particle_count);
-}
-
 Status check_particle_count(const std::vector<terrain::Release>& releases, const std::vector<terrain::Inflow>& inflows,
                             const params::SolverSpec& solver, double particle_spacing) {
     const double particle = particle_spacing * particle_spacing * particle_spacing;

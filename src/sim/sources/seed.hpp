@@ -12,9 +12,6 @@
 
 namespace talus::sim {
 
-/// The scene's spacing, or the one that makes `target_particle_count` particles of the volume, m.
-[[nodiscard]] double choose_particle_spacing(const params::SolverSpec& solver, double released_volume);
-
 /// Whether releases and inflows can be made of particles of this spacing: each of one at least, and no more in all than
 /// the solver's limit (the error gives the number and a spacing that would fit).
 [[nodiscard]] Status check_particle_count(const std::vector<terrain::Release>& releases,
