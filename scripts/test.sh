@@ -22,8 +22,13 @@ build_and_test() {
     cmake --preset "$preset"
     cmake --build --preset "$preset" --parallel "$(nproc)"
     step "test $preset"
-    local status=0
-    ctest --preset "$preset" --parallel "$(nproc)" --label-exclude style || status=$?
+    run_tests "$preset" --label-exclude style
+}
+
+run_tests() {
+    local preset=$1 status=0
+    shift
+    ctest --preset "$preset" --parallel "$(nproc)" "$@" || status=$?
     if ((status != 0)); then
         tell_failures "build/$preset/Testing/Temporary"
         exit "$status"
@@ -33,11 +38,10 @@ build_and_test() {
 # What the failed tests said, once more at the end: where only the end of a log is kept, nothing else says why.
 tell_failures() {
     step "failed"
-    local log=$1/LastTest.log
     cut -d: -f2- "$1/LastTestsFailed.log" | while IFS= read -r name; do
         echo "-- $name"
         awk -v name="$name" 'index($0, " Testing: " name) && $NF == name { inside = 1 }
-                             inside; /^<end of output>/ { inside = 0 }' "$log" | tail -n 30 | cut -c1-400
+                             inside; /^<end of output>/ { inside = 0 }' "$1/LastTest.log" | tail -n 30 | cut -c1-400
     done | tail -n 200
 }
 
@@ -64,7 +68,7 @@ for name in "$@"; do
             cmake --preset release
             # clang-tidy reads headers that the build makes.
             cmake --build --preset release --target generated_sources --parallel "$(nproc)"
-            ctest --preset release --parallel "$(nproc)" --label-regex style
+            run_tests release --label-regex style
             ;;
         *)
             echo "scripts/test.sh: $name is none of release, asan, tsan, style, dev" >&2

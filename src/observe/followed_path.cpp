@@ -129,9 +129,10 @@ std::vector<Arrival> find_arrivals(const HazardMaps& maps, const terrain::FlowPa
 /// from elsewhere, or through the air.
 std::vector<FrontSample> front_of(const std::vector<Arrival>& arrivals, double interval, double window) {
     const auto half = static_cast<std::size_t>(std::max(1.0, std::floor(window / 2 / interval)));
-    std::vector<double> times;
-    for (const Arrival& a : arrivals) times.push_back(a.time);
+    std::vector<double> times(arrivals.size());
+    std::transform(arrivals.begin(), arrivals.end(), times.begin(), [](const Arrival& a) { return a.time; });
     std::vector<FrontSample> front;
+    front.reserve(arrivals.size());
     for (std::size_t i = 0; i < arrivals.size(); ++i) {
         const std::size_t first = i > half ? i - half : 0, last = std::min(i + half, arrivals.size() - 1);
         double fastest = 0;

@@ -176,7 +176,8 @@ TEST_F(ObservedScene, ObservationsThatCannotBeAreRefused) {
     write_valley("[[elevation_change]]\nfile = \"dem.tif\"\ndetection_limit_m = 9000\n");
     EXPECT_THAT(load_error(), HasSubstr("holds no change of at least detection_limit_m = 9000"));
     write_valley("[[superelevation]]\nchainage_m = 3\nbend_radius_m = 0\nwidth_m = 1\nlevel_difference_m = 1\n");
-    EXPECT_THAT(load_error(), HasSubstr("superelevation[0].bend_radius_m = 0 is refused; it must be a number from 0.01 to"));
+    EXPECT_THAT(load_error(),
+                HasSubstr("superelevation[0].bend_radius_m = 0 is refused; it must be a number from 0.01 to"));
 }
 
 }  // namespace
