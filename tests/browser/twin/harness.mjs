@@ -115,7 +115,7 @@ export class Run {
     const png = await page.screenshot({ clip });
     return (await page.evaluate(readPixels, png.toString("base64"))).reddish;
   }
-  /** The colours of a part of the page at rest: two looks in a row find the same picture, all its pixels drawn, while nothing is asked of the server. */
+  /** The colours of a part of the page at rest: two looks in a row find the same picture (but for the noise of drawing the same text again, 2 of 255), all its pixels drawn, while nothing is asked of the server. */
   async still(page, clip) {
     const at = () => page.evaluate(() => {
       const { frames, pixelRatio, reads } = window.talusStats;
@@ -127,8 +127,8 @@ export class Run {
       const seen = await this.colours(page, clip);
       const after = await at();
       const quiet = before.begun === before.ended && after.begun === before.begun && before.pixelRatio === before.sharpest && after.frames === before.frames;
-      const same = quiet && last === seen.hash;
-      last = quiet ? seen.hash : null;
+      const same = quiet && last !== null && (last.hash === seen.hash || await page.evaluate(largestDifference, [last.png.toString("base64"), seen.png.toString("base64")]) <= 3);
+      last = quiet ? seen : null;
       return { seen: same ? seen : null, quiet, before, after };
     }, ({ seen }) => seen !== null, "a view at rest");
     return seen;
@@ -167,6 +167,20 @@ async function readPixels(data) {
     bluish += pixels[i + 2] > 1.5 * pixels[i];
   }
   return { reddish: reddish / (pixels.length / 4), bluish: bluish / (pixels.length / 4), different: counts.size, commonest: Math.max(...counts.values()) / (pixels.length / 4) };
+}
+
+/** Between two pictures of one size, of 255. */
+async function largestDifference(pictures) {
+  const [a, b] = await Promise.all(pictures.map(async (data) => {
+    const bitmap = await createImageBitmap(new Blob([Uint8Array.from(atob(data), (c) => c.charCodeAt(0))], { type: "image/png" }));
+    const context = new OffscreenCanvas(bitmap.width, bitmap.height).getContext("2d");
+    context.drawImage(bitmap, 0, 0);
+    return context.getImageData(0, 0, bitmap.width, bitmap.height).data;
+  }));
+  if (a.length !== b.length) return 255;
+  let most = 0;
+  for (let i = 0; i < a.length; ++i) most = Math.max(most, Math.abs(a[i] - b[i]));
+  return most;
 }
 
 /** The middle of the view: without bars, legends and labels' edges. */
