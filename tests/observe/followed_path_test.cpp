@@ -107,6 +107,30 @@ TEST(FollowDebris, has_no_front_that_outruns_the_debris_at_a_sharp_corner) {
     EXPECT_GT(known, 0.9 * static_cast<double>(o.front.size()));
 }
 
+TEST(FollowDebris, has_no_velocity_where_other_debris_was_beyond_the_front_before) {
+    Trail trail({{1010, 2070}, {1230, 2070}});
+    Grid<float>& arrival = trail.o.maps.arrival_time;
+    for (std::size_t k = 0; k < arrival.values.size(); ++k) {
+        const int column = static_cast<int>(k % static_cast<std::size_t>(arrival.geometry.columns));
+        if (arrival.geometry.centre(column, 0).x > 1120) arrival.values[k] -= 8;
+    }
+    const Observation& o = trail.follow();
+    int none_there = 0;
+    for (std::size_t k = 0; k < o.front.size(); ++k) {
+        const FrontSample& s = o.front[k];
+        if (k > 0) {
+            EXPECT_GE(s.arrival_time, o.front[k - 1].arrival_time) << s.chainage;
+        }
+        if (std::isnan(s.front_velocity)) {
+            ++none_there;
+            EXPECT_NEAR(s.chainage, 85, 35);
+        } else {
+            EXPECT_LE(s.front_velocity, 1.5 * trail_speed + 1e-6) << s.chainage;
+        }
+    }
+    EXPECT_GT(none_there, 20);
+}
+
 TEST(FollowDebris, goes_with_the_branch_that_leads_to_the_toe) {
     Trail trail({{1010, 2070}, {1230, 2070}});
     trail.cover(terrain::FlowPath({{1060, 2070}, {1110, 2130}}, 12), 50 / trail_speed);
