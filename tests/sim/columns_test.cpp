@@ -36,6 +36,19 @@ TEST(Columns, hold_what_is_above_their_area_wherever_a_lattice_lies) {
     }
 }
 
+TEST(Columns, are_the_same_whether_one_far_away_makes_them_hashed_or_not) {
+    auto points = testing::random_points(3000, {-20, -20, 0}, {20, 20, 1}, 3);
+    const std::size_t near = points.size();
+    points.push_back({5e4F, -3e4F, 0});
+    const VectorArray array = array_of(points);
+    Columns together(points.size()), hashed(points.size());
+    together.count(array, near, 0.8);
+    hashed.count(array, points.size(), 0.8);
+    for (std::size_t i = 0; i < near; ++i) {
+        EXPECT_EQ(together.particles_at(points[i].x, points[i].y), hashed.particles_at(points[i].x, points[i].y));
+    }
+}
+
 TEST(Columns, have_room_for_particles_that_are_all_alone) {
     const auto points = testing::random_points(5000, {-4e4F, -4e4F, 0}, {4e4F, 4e4F, 1}, 7);
     Columns columns(points.size());

@@ -86,6 +86,7 @@ void Backend::count_columns(const Model& model, const Ground& ground, const Stat
     columns_.count(state.position, state.count, column_width(model));
     simd::parallel_ranges(state.count, particle_grain, [&](std::size_t first, std::size_t last) {
         for (std::size_t i = first; i < last; ++i) {
+            if (state.asleep[i] || state.held[i]) continue;
             const Vec3<float> p = state.position.at(i);
             work_.column_particles[i] =
                 columns_.particles_at(p.x, p.y) / open_share(model, ground, p, grain_rank(state.id[i]));
@@ -230,7 +231,7 @@ void Backend::update_sleep(const Model& model, const Ground& ground, State& stat
 
 void Backend::remove_outflow(const Model&, const Ground& ground, State& state) {
     const bool any = simd::reduce_ranges(
-        state.count, 4096, false,
+        state.awake, 2048, false,
         [&](std::size_t first, std::size_t last, bool found) {
             for (std::size_t i = first; i < last; ++i) {
                 gone_[i] = !ground.terrain.covers(state.position.x[i], state.position.y[i]);
@@ -240,6 +241,7 @@ void Backend::remove_outflow(const Model&, const Ground& ground, State& state) {
         },
         [](bool a, bool b) { return a || b; });
     if (!any) return;
+    std::fill(gone_.begin() + state.awake, gone_.begin() + state.count, std::uint8_t{0});
     std::vector<std::uint32_t>& moved_to = new_index_;
     state.outflow += state.remove_if([&](std::uint32_t i) { return gone_[i] != 0; },
                                      [&](std::uint32_t i, std::uint32_t k) { moved_to[i] = k; });

@@ -11,7 +11,7 @@ namespace {
 constexpr int digit_bits = 11;
 constexpr std::size_t digit_count = std::size_t{1} << digit_bits;
 constexpr std::size_t histogram_span =
-    16384;  // particles per histogram; fixed, so the work does not depend on the number of threads
+    4096;  // particles per histogram; fixed, so the work does not depend on the number of threads
 
 struct Bounds {
     float x_min = std::numeric_limits<float>::max(), y_min = x_min, z_min = x_min;

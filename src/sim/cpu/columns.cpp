@@ -1,7 +1,9 @@
 #include "sim/cpu/columns.hpp"
 
+#include <algorithm>
+#include <array>
 #include <bit>
-#include <cmath>
+#include <limits>
 
 #include "simd/parallel.hpp"
 
@@ -9,11 +11,45 @@ namespace talus::sim::cpu {
 namespace {
 
 constexpr float one = 65536;  // a whole particle
+constexpr std::size_t nowhere = std::numeric_limits<std::size_t>::max();
+constexpr std::size_t grain = 2048;               // particles per task
+constexpr std::size_t columns_per_particle = 16;  // of the box; with more of them, columns are hashed
 
 /// Never 0, which marks an empty slot: columns are numbered from far outside.
 std::uint64_t key_of(std::int64_t column, std::int64_t row) {
     constexpr std::int64_t outside = std::int64_t{1} << 31;
     return (static_cast<std::uint64_t>(row + outside) << 32) | static_cast<std::uint64_t>(column + outside);
+}
+
+/// As std::floor, which is a call without SSE4.1.
+std::int64_t floor_of(double x) {
+    const auto whole = static_cast<std::int64_t>(x);
+    return whole - (static_cast<double>(whole) > x ? 1 : 0);
+}
+
+template <class Array>
+void clear(Array& array, std::size_t count) {
+    simd::parallel_ranges(count, 16384, [&](std::size_t first, std::size_t last) {
+        for (std::size_t k = first; k < last; ++k) array[k].store(0, std::memory_order_relaxed);
+    });
+}
+
+/// The range of finite values.
+std::array<float, 2> range_of(const std::vector<float>& values, std::size_t count) {
+    using Range = std::array<float, 2>;
+    constexpr float highest = std::numeric_limits<float>::max();
+    return simd::reduce_ranges(
+        count, 4096, Range{highest, -highest},
+        [&](std::size_t first, std::size_t last, Range range) {
+            for (std::size_t i = first; i < last; ++i) {
+                range[0] = std::min(range[0], values[i]);
+                range[1] = std::max(range[1], values[i]);
+            }
+            return range;
+        },
+        [](const Range& a, const Range& b) {
+            return Range{std::min(a[0], b[0]), std::max(a[1], b[1])};
+        });
 }
 
 }  // namespace
@@ -22,29 +58,44 @@ std::uint64_t key_of(std::int64_t column, std::int64_t row) {
 template <class F>
 void Columns::for_each_column(float x, float y, const F& f) const {
     const double u = x * inverse_width_ - 0.5, v = y * inverse_width_ - 0.5;
-    const double column = std::floor(u), row = std::floor(v);
-    const auto right = static_cast<float>(u - column), upper = static_cast<float>(v - row);
+    const std::int64_t column = floor_of(u), row = floor_of(v);
+    const auto right = static_cast<float>(u - static_cast<double>(column)),
+               upper = static_cast<float>(v - static_cast<double>(row));
     for (int dy = 0; dy < 2; ++dy) {
         for (int dx = 0; dx < 2; ++dx) {
-            const float share = (dx == 1 ? right : 1 - right) * (dy == 1 ? upper : 1 - upper);
-            f(key_of(static_cast<std::int64_t>(column) + dx, static_cast<std::int64_t>(row) + dy), share);
+            f(Place{column + dx, row + dy}, (dx == 1 ? right : 1 - right) * (dy == 1 ? upper : 1 - upper));
         }
     }
 }
 
+/// Chooses between box and hash, and empties the columns.
+void Columns::frame(const VectorArray& points, std::size_t count) {
+    const auto along = [&](const std::vector<float>& values, std::int64_t& first, std::int64_t& size) {
+        const auto [low, high] = range_of(values, count);
+        first = floor_of(low * inverse_width_ - 0.5);
+        size = floor_of(high * inverse_width_ - 0.5) + 2 - first;
+    };
+    along(points.x, first_.column, size_.column);
+    along(points.y, first_.row, size_.row);
+    hashed_ = static_cast<double>(size_.column) * static_cast<double>(size_.row) >
+              static_cast<double>(columns_per_particle * capacity_);
+    if (hashed_ && keys_.empty()) keys_ = std::vector<std::atomic<std::uint64_t>>(std::bit_ceil(5 * capacity_ + 1));
+    if (hashed_) clear(keys_, keys_.size());
+    clear(sums_, hashed_ ? keys_.size() : static_cast<std::size_t>(size_.column * size_.row));
+}
+
 void Columns::count(const VectorArray& points, std::size_t count, double width) {
-    if (slots_.empty()) slots_ = std::vector<Slot>(std::bit_ceil(5 * capacity_ + 1));
+    if (sums_.empty()) sums_ = std::vector<std::atomic<std::uint32_t>>(columns_per_particle * capacity_);
     inverse_width_ = 1 / width;
-    simd::parallel_ranges(slots_.size(), 16384, [&](std::size_t first, std::size_t last) {
-        for (std::size_t k = first; k < last; ++k) {
-            slots_[k].key.store(0, std::memory_order_relaxed);
-            slots_[k].sum.store(0, std::memory_order_relaxed);
-        }
-    });
-    simd::parallel_ranges(count, 4096, [&](std::size_t first, std::size_t last) {
+    size_ = {};
+    hashed_ = false;
+    if (count == 0) return;
+    frame(points, count);
+    simd::parallel_ranges(count, grain, [&](std::size_t first, std::size_t last) {
         for (std::size_t i = first; i < last; ++i) {
-            for_each_column(points.x[i], points.y[i], [&](std::uint64_t key, float share) {
-                add(key, static_cast<std::uint32_t>(std::lround(share * one)));
+            for_each_column(points.x[i], points.y[i], [&](Place place, float share) {
+                const auto units = static_cast<std::uint32_t>(static_cast<double>(share * one) + 0.5);
+                if (units != 0) sums_[find_or_keep(place)].fetch_add(units, std::memory_order_relaxed);
             });
         }
     });
@@ -52,32 +103,42 @@ void Columns::count(const VectorArray& points, std::size_t count, double width) 
 
 float Columns::particles_at(float x, float y) const {
     float sum = 0;
-    for_each_column(
-        x, y, [&](std::uint64_t key, float share) { sum += share * static_cast<float>(sum_of(key)) * (1 / one); });
+    for_each_column(x, y, [&](Place place, float share) {
+        const std::size_t at = find(place);
+        const std::uint32_t units = at == nowhere ? 0 : sums_[at].load(std::memory_order_relaxed);
+        sum += share * static_cast<float>(units) * (1 / one);
+    });
     return sum;
+}
+
+std::size_t Columns::in_box(Place place) const {
+    const std::int64_t column = place.column - first_.column, row = place.row - first_.row;
+    const bool inside = column >= 0 && row >= 0 && column < size_.column && row < size_.row;
+    return inside ? static_cast<std::size_t>(row * size_.column + column) : nowhere;
 }
 
 /// Fibonacci hashing (Knuth, "The Art of Computer Programming", vol. 3, 6.4): neighbouring keys end up far apart.
 std::size_t Columns::first_slot(std::uint64_t key) const {
-    return (key * 0x9E3779B97F4A7C15U) >> (65 - std::bit_width(slots_.size()));
+    return (key * 0x9E3779B97F4A7C15U) >> (65 - std::bit_width(keys_.size()));
 }
 
-void Columns::add(std::uint64_t key, std::uint32_t share) {
-    if (share == 0) return;
-    for (std::size_t k = first_slot(key);; k = (k + 1) & (slots_.size() - 1)) {
-        std::uint64_t there = slots_[k].key.load(std::memory_order_relaxed);
-        if (there == 0 && slots_[k].key.compare_exchange_strong(there, key, std::memory_order_relaxed)) there = key;
-        if (there != key) continue;
-        slots_[k].sum.fetch_add(share, std::memory_order_relaxed);
-        return;
+std::size_t Columns::find_or_keep(Place place) {
+    if (!hashed_) return in_box(place);
+    const std::uint64_t key = key_of(place.column, place.row);
+    for (std::size_t k = first_slot(key);; k = (k + 1) & (keys_.size() - 1)) {
+        std::uint64_t there = keys_[k].load(std::memory_order_relaxed);
+        if (there == 0 && keys_[k].compare_exchange_strong(there, key, std::memory_order_relaxed)) return k;
+        if (there == key) return k;
     }
 }
 
-std::uint32_t Columns::sum_of(std::uint64_t key) const {
-    for (std::size_t k = first_slot(key);; k = (k + 1) & (slots_.size() - 1)) {
-        const std::uint64_t there = slots_[k].key.load(std::memory_order_relaxed);
-        if (there == key) return slots_[k].sum.load(std::memory_order_relaxed);
-        if (there == 0) return 0;
+std::size_t Columns::find(Place place) const {
+    if (!hashed_) return in_box(place);
+    const std::uint64_t key = key_of(place.column, place.row);
+    for (std::size_t k = first_slot(key);; k = (k + 1) & (keys_.size() - 1)) {
+        const std::uint64_t there = keys_[k].load(std::memory_order_relaxed);
+        if (there == key) return k;
+        if (there == 0) return nowhere;
     }
 }
 

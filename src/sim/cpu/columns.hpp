@@ -8,8 +8,11 @@
 
 namespace talus::sim::cpu {
 
-/// The number of particles above each place in plan: a sparse grid of columns, rebuilt in each step. Shares of
-/// particles are whole numbers, so that sums do not depend on the number of threads.
+/// The number of particles above each place in plan: a grid of columns, rebuilt in each step. Shares of particles are
+/// whole numbers, so that sums do not depend on the number of threads.
+///
+/// Debris is near together in plan as a rule: the grid is then an array over its bounding box. Where the box has many
+/// more columns than there are particles, the columns that hold any are found by hashing.
 class Columns {
   public:
     explicit Columns(std::size_t capacity) : capacity_(capacity) {}
@@ -21,20 +24,28 @@ class Columns {
     [[nodiscard]] float particles_at(float x, float y) const;
 
   private:
-    struct Slot {
-        std::atomic<std::uint64_t> key{};  // 0: empty
-        std::atomic<std::uint32_t> sum{};
+    /// Column and row, counted from the frame's origin.
+    struct Place {
+        std::int64_t column, row;
     };
 
     template <class F>
     void for_each_column(float x, float y, const F& f) const;
+    void frame(const VectorArray& points, std::size_t count);
+    /// Where the sum of a column is kept, or `nowhere`.
+    [[nodiscard]] std::size_t find(Place place) const;
+    /// The same; if the columns are hashed, it is kept from now on.
+    [[nodiscard]] std::size_t find_or_keep(Place place);
+    [[nodiscard]] std::size_t in_box(Place place) const;
     [[nodiscard]] std::size_t first_slot(std::uint64_t key) const;
-    void add(std::uint64_t key, std::uint32_t share);
-    [[nodiscard]] std::uint32_t sum_of(std::uint64_t key) const;
 
     std::size_t capacity_;
     double inverse_width_ = 1;
-    std::vector<Slot> slots_;  // their number is a power of two; a single particle takes four
+    bool hashed_ = false;
+    Place first_{}, size_{};  // of the box
+    std::vector<std::atomic<std::uint32_t>> sums_;
+    std::vector<std::atomic<std::uint64_t>>
+        keys_;  // if hashed; a power of two, as a single particle takes four. 0: empty
 };
 
 }  // namespace talus::sim::cpu

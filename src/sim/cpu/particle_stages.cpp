@@ -28,12 +28,14 @@ TALUS_STAGE void drag(const StageData& data, std::size_t first, std::size_t last
     State& state = data.state;
     const L dt(state.time_step);
     for_each_lanes(first, last, [&](std::size_t i) {
+        const Mask moves = mobility(state, i) > L(0);
+        if (!any(moves)) return;
         const V3 velocity = load(state.velocity, i), p = load(state.position, i);
         const terrain::GroundSample<L> below = data.ground.terrain.sample(p.x, p.y);
         const L distance = (p.z - below.height) * below.normal.z;
         const L thickness = flow_thickness(model, below, load(data.work.column_particles, i));
         const V3 slower = slowed_by_drag(model, ground_resistance(model, p), below, distance, thickness, velocity, dt);
-        store(select(mobility(state, i) > L(0), slower, velocity), state.velocity, i);
+        store(select(moves, slower, velocity), state.velocity, i);
     });
 }
 
