@@ -1,9 +1,13 @@
+#include <algorithm>
 #include <cstdio>
 #include <filesystem>
 #include <memory>
+#include <mutex>
+#include <numeric>
 #include <optional>
 #include <string>
 #include <system_error>
+#include <thread>
 #include <vector>
 
 #include <fmt/format.h>
@@ -16,6 +20,7 @@
 #include "products/results_json.hpp"
 #include "products/text_file.hpp"
 #include "progress.hpp"
+#include "run/threads.hpp"
 #include "temporary_folder.hpp"
 #include "validate/page.hpp"
 #include "validate/suite.hpp"
@@ -93,6 +98,55 @@ Status write_outputs(const ValidateArguments& arguments, const std::vector<CaseR
     return {};
 }
 
+/// The results of the cases that were not interrupted, in order. As many cases at once as there are threads for: most
+/// cases are small, and two of them are sooner done beside each other than one after the other.
+std::vector<CaseResult> compute(const std::vector<Case>& cases, std::optional<int> threads, InterruptWatch& watch) {
+    const int most = threads ? *threads : run::Threads().count();
+    const int at_once = std::min(most, static_cast<int>(cases.size()));
+    // The long ones first, so that no thread is left with one at the end.
+    std::vector<std::size_t> order(cases.size());
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    std::stable_partition(order.begin(), order.end(), [&](std::size_t i) { return !cases[i].quick; });
+
+    const ProgressStyle style = progress_style(false, false);
+    ProgressReporter progress(style);
+    std::vector<std::optional<CaseResult>> computed(cases.size());
+    std::mutex reporting;
+    std::size_t next = 0;
+    const auto work = [&] {
+        for (;;) {
+            std::unique_lock lock(reporting);
+            if (next == order.size() || watch.stop_requested()) return;
+            const std::size_t i = order[next++];
+            const std::string heading = fmt::format("case {} of {}: {}", next, cases.size(), cases[i].name);
+            progress.say(heading);
+            lock.unlock();
+            validate::Watch told;
+            told.stop_requested = &watch.stop_requested();
+            told.thread_count = std::max(1, most / at_once);
+            if (style == ProgressStyle::bar) {
+                told.on_progress = [&](const std::string& what) {
+                    const std::scoped_lock say(reporting);
+                    progress.say(fmt::format("{}: {}", heading, what));
+                };
+            }
+            CaseResult result = validate::run_case(cases[i], told);
+            if (!watch.stop_requested()) computed[i] = std::move(result);
+        }
+    };
+    {
+        std::vector<std::jthread> workers;
+        for (int k = 1; k < at_once; ++k) workers.emplace_back(work);
+        work();
+    }
+    progress.clear();
+    std::vector<CaseResult> results;
+    for (std::optional<CaseResult>& result : computed) {
+        if (result) results.push_back(std::move(*result));
+    }
+    return results;
+}
+
 int validate_command(const ValidateArguments& arguments) {
     if (!arguments.data.empty()) set_data_folder(arguments.data);
     InterruptWatch watch;
@@ -111,24 +165,7 @@ int validate_command(const ValidateArguments& arguments) {
         return print_result(list_text(*cases));
     }
 
-    const ProgressStyle style = progress_style(false, false);
-    ProgressReporter progress(style);
-    std::vector<CaseResult> results;
-    for (std::size_t i = 0; i < cases->size() && !watch.stop_requested(); ++i) {
-        const Case& c = (*cases)[i];
-        const std::string heading = fmt::format("case {} of {}: {}", i + 1, cases->size(), c.name);
-        progress.say(heading);
-        validate::Watch told;
-        told.stop_requested = &watch.stop_requested();
-        told.thread_count = arguments.threads.value_or(0);
-        if (style == ProgressStyle::bar) {
-            told.on_progress = [&](const std::string& what) { progress.say(fmt::format("{}: {}", heading, what)); };
-        }
-        CaseResult result = validate::run_case(c, told);
-        if (!watch.stop_requested()) results.push_back(std::move(result));
-    }
-    progress.clear();
-
+    const std::vector<CaseResult> results = compute(*cases, arguments.threads, watch);
     const int printed = print_result(validate::table_text(results));
     if (Status s = write_outputs(arguments, results); !s) return fail(exit_code::failure, s.error().message);
     if (watch.stop_requested()) return exit_code::interrupted;
@@ -154,7 +191,8 @@ void add_validate(CLI::App& program, std::vector<Command>& commands) {
     app->add_option("--markdown", validate->markdown,
                     "write the same as Markdown, with its plots in a folder beside it")
         ->type_name("FILE");
-    app->add_option("--threads", validate->threads, "number of threads; default: all cores")
+    app->add_option("--threads", validate->threads,
+                    "number of threads, and of cases computed at once; default: all cores")
         ->type_name("N")
         ->check(CLI::Range(1, 512));
     app->add_option("--data", validate->data, "folder for TALUS_DATA, for cases on real terrain")->type_name("DIR");

@@ -28,7 +28,7 @@ std::string summary_text(const std::vector<CaseResult>& results) {
     for (const CaseResult& result : results) wall_time += result.wall_time;
     return fmt::format(
         "{} quantities of {} cases: {} pass, {} fail ({} of them known), {} are only shown, {} were skipped. "
-        "Computed in {:.0f} s.",
+        "The cases took {:.0f} s in all.",
         tally.passed + tally.failed + tally.known_failures + tally.shown + tally.skipped, results.size(), tally.passed,
         tally.failed + tally.known_failures, tally.known_failures, tally.shown, tally.skipped, wall_time);
 }
