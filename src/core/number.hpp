@@ -42,6 +42,12 @@ Real select(bool condition, Real yes, Real no) {
 inline bool any(bool condition) {
     return condition;
 }
+/// The same number, of which the compiler knows nothing. Where conditions meet: it takes combined ones, and nested
+/// choices between the same values, apart lane by lane where AVX-512 has one bit per lane (GCC 12).
+template <std::floating_point Real>
+Real opaque(Real a) {
+    return a;
+}
 /// Towards zero; for values that fit an int.
 template <std::floating_point Real>
 std::int32_t truncated(Real a) {

@@ -206,6 +206,11 @@ struct Lanes {
         for (int lane = 0; lane < count; ++lane) result.v[lane] = __builtin_sqrtf(a.v[lane]);
         return result;
     }
+    TALUS_INLINE friend Lanes opaque(const Lanes& a) {
+        Floats v = a.v;
+        __asm__("" : "+x"(v));
+        return Lanes(v);
+    }
     /// Towards zero; for values that fit an int.
     TALUS_INLINE friend Ints truncated(const Lanes& a) { return __builtin_convertvector(a.v, Ints); }
     TALUS_INLINE static Lanes from(const Ints& ints) { return Lanes(Floats(__builtin_convertvector(ints, Floats))); }

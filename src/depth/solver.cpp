@@ -1,0 +1,339 @@
+#include "depth/solver.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <span>
+
+#include <fmt/format.h>
+
+#include "core/hash.hpp"
+
+namespace talus::depth {
+namespace {
+
+/// Share of the stable time step of a scheme whose waves may cross a cell in it. Mass leaves no cell in more than one.
+constexpr double courant_number = 0.6;
+
+/// A multiple of the float spacing of `range`.
+float on_common_spacing(double value, double range) {
+    const double spacing = std::ldexp(1.0, std::ilogb(std::max(range, 1.0)) - std::numeric_limits<float>::digits + 1);
+    return static_cast<float>(std::round(value / spacing) * spacing);
+}
+
+float greater_or_unknown(float a, float b) {
+    return std::isnan(a) || b <= a ? a : b;
+}
+
+}  // namespace
+
+Solver::Solver(const Grid<double>& bed, const Material& material, const GroundValues& ground, Edges edges)
+    : geometry_(bed.geometry), material_(material), edges_(edges), stages_(stages_for_processor()) {
+    const auto tiles = [](int cells) { return (cells + 2 * margin + tile_edge - 1) / tile_edge; };
+    tile_columns_ = tiles(geometry_.columns);
+    tile_rows_ = tiles(geometry_.rows);
+    stride_ = static_cast<std::size_t>(tile_columns_) * tile_edge;
+    // Stages read two cells around a tile, and up to a vector beyond its row.
+    constexpr std::size_t guard = 2 * tile_edge;
+    origin_ = 2 * stride_ + guard;
+    const std::size_t size = (static_cast<std::size_t>(tile_rows_) * tile_edge + 4) * stride_ + 2 * guard;
+    for (std::vector<float>* array :
+         {&bed_, &slope_x_, &slope_y_, &depth_, &u_, &v_, &next_depth_, &next_u_, &next_v_}) {
+        array->assign(size, 0.0F);
+    }
+    unknown_.assign(size, 1);
+    const auto tile_count = static_cast<std::size_t>(tile_columns_) * static_cast<std::size_t>(tile_rows_);
+    has_unknown_.assign(tile_count, 0);
+    changed_.assign(tile_count, 0);
+    segments_.reserve(tile_count);
+    fastest_.assign(tile_count, 0);
+    lost_.assign(tile_count, 0);
+    set_bed(bed);
+    set_cover(ground);
+}
+
+void Solver::set_bed(const Grid<double>& bed) {
+    double lowest = std::numeric_limits<double>::infinity(), highest = -lowest;
+    for (const double z : bed.values) {
+        if (std::isnan(z)) continue;
+        lowest = std::min(lowest, z);
+        highest = std::max(highest, z);
+    }
+    for (int row = 0; row < geometry_.rows; ++row) {
+        for (int column = 0; column < geometry_.columns; ++column) {
+            const double z = bed.at(column, row);
+            if (std::isnan(z)) continue;
+            bed_[index(column, row)] = on_common_spacing(z - lowest, highest - lowest);
+            unknown_[index(column, row)] = 0;
+        }
+    }
+    // Unknown ground beside known ground continues its slope, so that debris leaves as if it went on.
+    std::vector<std::uint8_t> filled(unknown_.size());
+    std::transform(unknown_.begin(), unknown_.end(), filled.begin(), [](std::uint8_t u) { return u ? 0 : 1; });
+    for (int ring = 0; ring < margin; ++ring) {
+        std::vector<std::pair<std::size_t, float>> found;
+        for (int row = -margin; row < geometry_.rows + margin; ++row) {
+            for (int column = -margin; column < geometry_.columns + margin; ++column) {
+                const std::size_t i = index(column, row);
+                if (filled[i]) continue;
+                double sum = 0, flat_sum = 0;
+                int count = 0, flat_count = 0;
+                for (int dy = -1; dy <= 1; ++dy) {
+                    for (int dx = -1; dx <= 1; ++dx) {
+                        const auto beside = [&](int steps) { return index(column + steps * dx, row + steps * dy); };
+                        const auto inside = [&](int steps) {
+                            const int c = column + steps * dx, r = row + steps * dy;
+                            return c >= -margin && r >= -margin && c < geometry_.columns + margin &&
+                                   r < geometry_.rows + margin && filled[beside(steps)];
+                        };
+                        if ((dx == 0 && dy == 0) || !inside(1)) continue;
+                        if (inside(2)) {
+                            sum += 2 * bed_[beside(1)] - bed_[beside(2)];
+                            ++count;
+                        } else {
+                            flat_sum += bed_[beside(1)];
+                            ++flat_count;
+                        }
+                    }
+                }
+                if (count + flat_count == 0) continue;
+                const double z = count > 0 ? sum / count : flat_sum / flat_count;
+                found.emplace_back(i, on_common_spacing(z, highest - lowest));
+            }
+        }
+        for (const auto& [i, z] : found) {
+            bed_[i] = z;
+            filled[i] = 1;
+        }
+    }
+    if (edges_ == Edges::continued) {
+        for_each_continued_row([&](std::size_t to, std::size_t from) {
+            std::copy_n(bed_.begin() + static_cast<std::ptrdiff_t>(from), stride_,
+                        bed_.begin() + static_cast<std::ptrdiff_t>(to));
+        });
+    }
+    const auto half_cell = static_cast<float>(0.5 / geometry_.cell);
+    for (int row = -margin; row < geometry_.rows + margin; ++row) {
+        for (int column = -margin; column < geometry_.columns + margin; ++column) {
+            const std::size_t i = index(column, row);
+            if (unknown_[i]) has_unknown_[tile_of(column, row)] = 1;
+            slope_x_[i] = (bed_[i + 1] - bed_[i - 1]) * half_cell;
+            slope_y_[i] = (bed_[i + stride_] - bed_[i - stride_]) * half_cell;
+        }
+    }
+}
+
+/// Calls f with the first index of a row of the margin and of the row that it repeats.
+template <class F>
+void Solver::for_each_continued_row(const F& f) const {
+    for (int k = 1; k <= margin; ++k) {
+        f(index(-margin, -k), index(-margin, 0));
+        f(index(-margin, geometry_.rows - 1 + k), index(-margin, geometry_.rows - 1));
+    }
+}
+
+void Solver::continue_rows(const Motion& motion) const {
+    for_each_continued_row([&](std::size_t to, std::size_t from) {
+        for (float* array : {motion.depth, motion.u, motion.v}) {
+            std::copy_n(array + (from - origin_), stride_, array + (to - origin_));
+        }
+    });
+}
+
+void Solver::set_cover(const GroundValues& ground) {
+    const auto pad = [&](const std::vector<float>& values, std::vector<float>& to, double scale) {
+        if (values.empty()) return;
+        to.assign(depth_.size(), std::numeric_limits<float>::quiet_NaN());
+        for (int row = 0; row < geometry_.rows; ++row) {
+            for (int column = 0; column < geometry_.columns; ++column) {
+                to[index(column, row)] = static_cast<float>(values[geometry_.index(column, row)] * scale);
+            }
+        }
+    };
+    pad(ground.friction_coefficient, friction_, 1);
+    pad(ground.inverse_turbulent_friction, inverse_turbulence_, 1);
+    pad(ground.cohesion, strength_, 1 / material_.rest_density);
+    pad(ground.stem_drag, stem_drag_, 1);
+}
+
+void Solver::add(const Grid<float>& depth) {
+    for (int row = 0; row < geometry_.rows; ++row) {
+        for (int column = 0; column < geometry_.columns; ++column) {
+            if (const float more = depth.at(column, row); more > 0) inject(column, row, more, 0, 0);
+        }
+    }
+}
+
+void Solver::inject(int column, int row, double depth, double u, double v) {
+    const std::size_t i = index(column, row);
+    if (unknown_[i] || !(depth > 0)) return;
+    const double all = depth_[i] + depth;
+    const auto mixed = [&](float before, double added) {
+        return static_cast<float>((static_cast<double>(depth_[i]) * before + depth * added) / all);
+    };
+    u_[i] = next_u_[i] = mixed(u_[i], u);
+    v_[i] = next_v_[i] = mixed(v_[i], v);
+    depth_[i] = next_depth_[i] = static_cast<float>(all);
+    changed_[tile_of(column, row)] = 1;
+    const auto wave = 2 * std::sqrt(material_.gravity * all);
+    signal_ = std::max(signal_, std::abs(static_cast<double>(u_[i])) + std::abs(static_cast<double>(v_[i])) + wave);
+}
+
+void Solver::find_active_tiles() {
+    // What changes in a step reaches at most four cells further in the next.
+    const auto active = [&](int column, int row) {
+        for (int r = std::max(0, row - 1); r <= std::min(tile_rows_ - 1, row + 1); ++r) {
+            for (int c = std::max(0, column - 1); c <= std::min(tile_columns_ - 1, column + 1); ++c) {
+                if (changed_[static_cast<std::size_t>(r) * tile_columns_ + c]) return true;
+            }
+        }
+        return false;
+    };
+    segments_.clear();
+    for (int row = 0; row < tile_rows_; ++row) {
+        bool open = false;
+        for (int column = 0; column < tile_columns_; ++column) {
+            const bool on = active(column, row);
+            if (on && open && segments_.back().tiles < largest_segment) {
+                ++segments_.back().tiles;
+            } else if (on) {
+                segments_.push_back({row, column, 1});
+            }
+            open = on;
+        }
+    }
+    std::fill(changed_.begin(), changed_.end(), std::uint8_t{0});
+}
+
+double Solver::take_outflow(const Segment& segment, const Motion& motion) {
+    double sum = 0;
+    for (int tile = segment.first_tile; tile < segment.first_tile + segment.tiles; ++tile) {
+        if (!has_unknown_[static_cast<std::size_t>(segment.tile_row) * tile_columns_ + tile]) continue;
+        for (int row = 0; row < tile_edge; ++row) {
+            const int of_grid = segment.tile_row * tile_edge + row - margin;
+            const bool counts = edges_ == Edges::open || (of_grid >= 0 && of_grid < geometry_.rows);
+            for (int column = 0; column < tile_edge; ++column) {
+                const std::size_t i = static_cast<std::size_t>(segment.tile_row * tile_edge + row) * stride_ +
+                                      static_cast<std::size_t>(tile * tile_edge + column);
+                if (!unknown_[origin_ + i]) continue;
+                if (counts) sum += motion.depth[i];
+                motion.depth[i] = motion.u[i] = motion.v[i] = 0;
+            }
+        }
+    }
+    return sum;
+}
+
+double Solver::advance_stage(bool second) {
+    const auto pointer = [&](std::vector<float>& array) { return array.empty() ? nullptr : array.data() + origin_; };
+    StageData data;
+    data.stride = static_cast<int>(stride_);
+    data.bed = pointer(bed_);
+    data.from = {pointer(depth_), pointer(u_), pointer(v_)};
+    data.to = {pointer(next_depth_), pointer(next_u_), pointer(next_v_)};
+    if (second) std::swap(data.from, data.to);
+    data.second = second;
+    data.time_step = static_cast<float>(time_step_);
+    data.inverse_cell = static_cast<float>(1 / geometry_.cell);
+    data.gravity = static_cast<float>(material_.gravity);
+    data.friction = static_cast<float>(material_.friction_coefficient);
+    data.strength = static_cast<float>(material_.cohesion / material_.rest_density);
+    data.inverse_turbulence =
+        material_.turbulent_friction > 0 ? static_cast<float>(1 / material_.turbulent_friction) : 0;
+    data.turbulent_thickness = static_cast<float>(material_.turbulent_thickness);
+    data.viscosity = static_cast<float>(material_.viscosity);
+    double ratio = material_.pore_pressure_ratio;
+    if (material_.pore_pressure_decay_time > 0) ratio *= std::exp(-time_ / material_.pore_pressure_decay_time);
+    data.effective_share = static_cast<float>(1 - ratio);
+    data.cover = {pointer(friction_), pointer(inverse_turbulence_), pointer(strength_), pointer(stem_drag_)};
+
+    simd::parallel_ranges(segments_.size(), 1, [&](std::size_t first, std::size_t last) {
+        for (std::size_t s = first; s < last; ++s) {
+            const Segment& segment = segments_[s];
+            std::uint8_t* changed =
+                &changed_[static_cast<std::size_t>(segment.tile_row) * tile_columns_ + segment.first_tile];
+            fastest_[s] = stages_.advance(data, segment, changed);
+            lost_[s] = take_outflow(segment, data.to);
+        }
+    });
+    if (edges_ == Edges::continued) continue_rows(data.to);
+    double lost = 0;
+    for (std::size_t s = 0; s < segments_.size(); ++s) lost += lost_[s];
+    return lost * geometry_.cell * geometry_.cell;
+}
+
+Status Solver::advance(double longest) {
+    find_active_tiles();
+    if (steps_ == 0 && edges_ == Edges::continued) {
+        continue_rows({depth_.data() + origin_, u_.data() + origin_, v_.data() + origin_});
+        continue_rows({next_depth_.data() + origin_, next_u_.data() + origin_, next_v_.data() + origin_});
+    }
+    time_step_ = longest;
+    if (signal_ > 0 && !segments_.empty()) {
+        time_step_ = std::min(longest, courant_number * geometry_.cell / signal_);
+    }
+    if (!segments_.empty()) {
+        // Heun's method takes the mean of what leaves in either stage.
+        left_ += advance_stage(false) / 2;
+        left_ += advance_stage(true);
+    }
+    float fastest = 0;
+    for (std::size_t s = 0; s < segments_.size(); ++s) fastest = greater_or_unknown(fastest, fastest_[s]);
+    signal_ = fastest;
+    time_ += time_step_;
+    ++steps_;
+    for (const Segment& s : segments_) {
+        cell_updates_ += static_cast<std::uint64_t>(s.tiles) * tile_edge * tile_edge;
+    }
+    if (!std::isfinite(fastest)) {
+        return Error{
+            fmt::format("a speed of the depth-averaged model is not a number at t = {:.4g} s; check the "
+                        "terrain for single cells that stand out, or choose another solver.grid_cell_m",
+                        time_)};
+    }
+    return {};
+}
+
+double Solver::volume() const {
+    double sum = 0;
+    for (int row = 0; row < geometry_.rows; ++row) {
+        for (int column = 0; column < geometry_.columns; ++column) sum += depth_at(column, row);
+    }
+    return sum * geometry_.cell * geometry_.cell;
+}
+
+double Solver::bytes_per_cell() const {
+    std::size_t bytes = unknown_.size();
+    for (const std::vector<float>* array : {&bed_, &slope_x_, &slope_y_, &depth_, &u_, &v_, &next_depth_, &next_u_,
+                                            &next_v_, &friction_, &inverse_turbulence_, &strength_, &stem_drag_}) {
+        bytes += array->size() * sizeof(float);
+    }
+    return static_cast<double>(bytes) / static_cast<double>(geometry_.size());
+}
+
+ActiveRow Solver::active_row(const Segment& segment, int row_of_tile) const {
+    ActiveRow result;
+    result.row = segment.tile_row * tile_edge + row_of_tile - margin;
+    const int west = segment.first_tile * tile_edge - margin;
+    result.first = std::max(0, west);
+    result.last = std::min(geometry_.columns, west + segment.tiles * tile_edge);
+    if (result.row < 0 || result.row >= geometry_.rows || result.first >= result.last) return {};
+    const std::size_t i = index(result.first, result.row);
+    result.depth = &depth_[i];
+    result.u = &u_[i];
+    result.v = &v_[i];
+    result.slope_x = &slope_x_[i];
+    result.slope_y = &slope_y_[i];
+    return result;
+}
+
+std::uint64_t Solver::hash() const {
+    StateHash hash;
+    hash.add(&time_, sizeof time_);
+    hash.add(std::span<const float>(depth_));
+    hash.add(std::span<const float>(u_));
+    hash.add(std::span<const float>(v_));
+    return hash.value();
+}
+
+}  // namespace talus::depth

@@ -1,0 +1,147 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string_view>
+#include <vector>
+
+#include "core/grid.hpp"
+#include "core/result.hpp"
+#include "depth/stages.hpp"
+#include "simd/parallel.hpp"
+
+/// Debris as a depth and a velocity per cell of a grid: the depth-averaged model beside the particles. Its equations
+/// and their sources are in docs/depth-averaged.md.
+namespace talus::depth {
+
+/// Resistance of the ground and of the debris inside, everywhere the same.
+struct Material {
+    double rest_density = 2000;           ///< kg/m3
+    double friction_coefficient = 0;      ///< Coulomb's
+    double turbulent_friction = 0;        ///< xi, m/s2; 0: none
+    double turbulent_thickness = 0;       ///< m, normal to the ground, of flow with that xi; 0: of any
+    double cohesion = 0;                  ///< Pa
+    double viscosity = 0;                 ///< kinematic, m2/s, of laminar flow over ground that holds it; 0: none
+    double pore_pressure_ratio = 0;       ///< r_u, at the start
+    double pore_pressure_decay_time = 0;  ///< s; 0: constant
+    double gravity = 9.80665;             ///< m/s2
+};
+
+/// Where the ground differs: a value per cell, NaN as elsewhere; no cells: nowhere.
+struct GroundValues {
+    std::vector<float> friction_coefficient, inverse_turbulent_friction, cohesion;  ///< 1, s2/m, Pa
+    std::vector<float> stem_drag;                                                   ///< 1/m
+};
+
+/// What is north and south of the grid.
+enum class Edges {
+    open,       ///< as at its other edges: unknown ground, over which debris leaves
+    continued,  ///< the same as in the outermost row: for flow that differs along rows only
+};
+
+/// The state of a row of cells that may have changed in a step: columns [first, last), pointers to the first.
+struct ActiveRow {
+    int row = 0, first = 0, last = 0;
+    const float *depth = nullptr, *u = nullptr, *v = nullptr;  ///< m, m/s
+    const float *slope_x = nullptr, *slope_y = nullptr;        ///< of the ground
+};
+
+/// Steps debris over fixed ground with Heun's method; a step costs what moves. Single precision, two copies of depth
+/// and velocity. Results have the same bits on any number of threads and any instruction set. Allocates nothing after
+/// construction.
+///
+/// Elevations are rounded to the float spacing of the largest one above the lowest (0.03 mm at 500 m), so that the sum
+/// of bed and depth is exact where the level of a lake is such a number.
+class Solver {
+  public:
+    /// `bed`: elevations at cell centres, m; NaN: unknown ground, over which debris leaves, as over the grid's edge.
+    Solver(const Grid<double>& bed, const Material& material, const GroundValues& ground = {},
+           Edges edges = Edges::open);
+
+    /// Adds debris at rest: m of vertical depth per cell of the grid. Unknown ground takes none.
+    void add(const Grid<float>& depth);
+    /// Adds debris with a velocity to a cell of known ground; momenta add up.
+    void inject(int column, int row, double depth, double u, double v);
+
+    /// Takes a step of at most `longest` s, at most what is stable. Error: a speed that is not finite.
+    [[nodiscard]] Status advance(double longest);
+
+    [[nodiscard]] const GridGeometry& geometry() const { return geometry_; }
+    [[nodiscard]] double time() const { return time_; }
+    [[nodiscard]] double time_step() const { return time_step_; }  ///< s, of the last step
+    [[nodiscard]] std::uint64_t steps() const { return steps_; }
+    /// Cells that steps have updated so far.
+    [[nodiscard]] std::uint64_t cell_updates() const { return cell_updates_; }
+    /// Whether the last step changed anything, or debris was added since.
+    [[nodiscard]] bool active() const { return !segments_.empty(); }
+    [[nodiscard]] double volume() const;                        ///< m3, on the grid
+    [[nodiscard]] double volume_left() const { return left_; }  ///< m3, over its edge
+    [[nodiscard]] const Material& material() const { return material_; }
+    [[nodiscard]] std::string_view instruction_set() const { return stages_.instruction_set; }
+    /// Bytes of memory per cell of the grid.
+    [[nodiscard]] double bytes_per_cell() const;
+
+    [[nodiscard]] float depth_at(int column, int row) const { return depth_[index(column, row)]; }
+    [[nodiscard]] float u_at(int column, int row) const { return u_[index(column, row)]; }
+    [[nodiscard]] float v_at(int column, int row) const { return v_[index(column, row)]; }
+    /// m, as rounded, above the lowest known ground.
+    [[nodiscard]] float bed_at(int column, int row) const { return bed_[index(column, row)]; }
+    [[nodiscard]] float slope_x_at(int column, int row) const { return slope_x_[index(column, row)]; }
+    [[nodiscard]] float slope_y_at(int column, int row) const { return slope_y_[index(column, row)]; }
+    [[nodiscard]] bool known(int column, int row) const { return !unknown_[index(column, row)]; }
+
+    /// Calls f(const ActiveRow&) in parallel for the rows of what the last step may have changed.
+    template <class F>
+    void for_each_active_row(const F& f) const {
+        simd::parallel_ranges(segments_.size(), 1, [&](std::size_t first, std::size_t last) {
+            for (std::size_t s = first; s < last; ++s) {
+                for (int k = 0; k < tile_edge; ++k) {
+                    const ActiveRow row = active_row(segments_[s], k);
+                    if (row.first < row.last) f(row);
+                }
+            }
+        });
+    }
+
+    /// Hash of time, depths and velocities of all cells.
+    [[nodiscard]] std::uint64_t hash() const;
+
+  private:
+    [[nodiscard]] std::size_t index(int column, int row) const {
+        return origin_ + static_cast<std::size_t>(row + margin) * stride_ + static_cast<std::size_t>(column + margin);
+    }
+    [[nodiscard]] std::size_t tile_of(int column, int row) const {
+        return static_cast<std::size_t>((row + margin) / tile_edge) * tile_columns_ + (column + margin) / tile_edge;
+    }
+    [[nodiscard]] ActiveRow active_row(const Segment& segment, int row_of_tile) const;
+    void set_bed(const Grid<double>& bed);
+    void set_cover(const GroundValues& ground);
+    void find_active_tiles();
+    [[nodiscard]] double advance_stage(bool second);
+    [[nodiscard]] double take_outflow(const Segment& segment, const Motion& motion);
+    void continue_rows(const Motion& motion) const;
+    template <class F>
+    void for_each_continued_row(const F& f) const;
+
+    static constexpr int margin = 2;  ///< cells of unknown ground around the grid
+
+    GridGeometry geometry_;
+    Material material_;
+    Edges edges_;
+    Stages stages_;
+    int tile_columns_ = 0, tile_rows_ = 0;
+    std::size_t stride_ = 0, origin_ = 0;  ///< origin_: index of the padded grid's south-western cell
+    std::vector<float> bed_, slope_x_, slope_y_;
+    std::vector<float> depth_, u_, v_, next_depth_, next_u_, next_v_;
+    std::vector<float> friction_, inverse_turbulence_, strength_, stem_drag_;  ///< empty: everywhere the same
+    std::vector<std::uint8_t> unknown_;                                        ///< by cell
+    std::vector<std::uint8_t> has_unknown_, changed_;                          ///< by tile
+    std::vector<Segment> segments_;
+    std::vector<float> fastest_;  ///< by segment
+    std::vector<double> lost_;    ///< m, by segment
+    double signal_ = 0;           ///< m/s, the fastest wave of the next step; 0: to be found
+    double time_ = 0, time_step_ = 0, left_ = 0;
+    std::uint64_t steps_ = 0, cell_updates_ = 0;
+};
+
+}  // namespace talus::depth

@@ -1,0 +1,48 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string_view>
+
+namespace talus::depth {
+
+/// What is switched on and off together: tiles of 16 x 16 cells. Neighbouring ones of a row make a segment, which is
+/// what a task works on.
+inline constexpr int tile_edge = 16, largest_segment = 8;
+
+struct Segment {
+    int tile_row = 0, first_tile = 0, tiles = 0;
+};
+
+/// Pointers to the south-western cell of padded rasters, row by row.
+struct Motion {
+    float *depth, *u, *v;
+};
+/// Per cell; null: everywhere the same.
+struct Cover {
+    const float *friction, *inverse_turbulence, *strength, *stem_drag;
+};
+
+/// One stage of Heun's method: `to` = `from` + dt F(`from`); in the second stage `to` is its mean with what it holds.
+struct StageData {
+    int stride = 0;
+    const float* bed = nullptr;
+    Motion from{}, to{};
+    bool second = false;
+    float time_step = 0, inverse_cell = 0, gravity = 0;
+    float friction = 0, strength = 0, inverse_turbulence = 0, turbulent_thickness = 0, viscosity = 0;
+    float effective_share = 1;  ///< of the normal stress, borne by the grains
+    Cover cover{};
+};
+
+struct Stages {
+    /// Writes whether a cell changed to `changed`, one entry per tile of the segment. Returns the largest |u| + |v| +
+    /// 2 sqrt(g h) of `to`, m/s; NaN where any is.
+    float (*advance)(const StageData& data, const Segment& segment, std::uint8_t* changed);
+    std::string_view instruction_set;
+};
+
+/// For the chosen instruction set (simd/dispatch.hpp).
+[[nodiscard]] Stages stages_for_processor();
+
+}  // namespace talus::depth

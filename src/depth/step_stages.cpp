@@ -1,0 +1,304 @@
+// A stage of the depth-averaged step. Compiled once per instruction set by Highway's foreach_target.
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "depth/step_stages.cpp"
+#include <hwy/foreach_target.h>
+// (must come after foreach_target)
+#include <array>
+#include <cmath>
+#include <hwy/highway.h>
+
+#include "depth/formulas.hpp"
+#include "depth/stages.hpp"
+#include "sim/physics/resistance.hpp"
+#include "simd/lanes.hpp"
+
+HWY_BEFORE_NAMESPACE();
+namespace talus::depth::HWY_NAMESPACE {
+namespace {
+
+constexpr int lane_count = HWY_MAX_BYTES >= 64 ? 16 : HWY_MAX_BYTES >= 32 ? 8 : 4;
+static_assert(tile_edge % lane_count == 0);
+using L = simd::Lanes<lane_count>;
+
+// Numbers of a row of a segment. Entry 0 is the cell west of it; the last vector may extend beyond the cell east of it.
+constexpr int row_length = (largest_segment + 2) * tile_edge;
+using Numbers = std::array<float, row_length>;
+
+HWY_INLINE L load(const Numbers& from, int j) {
+    return L::load(from.data() + j);
+}
+HWY_INLINE void store(const L& numbers, Numbers& to, int j) {
+    numbers.store(to.data() + j);
+}
+
+/// What the faces see of a row of cells along an axis.
+struct AxisRow {
+    Numbers depth_before, depth_after, rise, normal_before, normal_after, across_before, across_after;
+    Numbers limit_before, limit_after, wave;
+    Numbers wall_before, wall_after;  ///< 1: the neighbour there is dry and stands above the surface
+};
+struct Row {
+    AxisRow x, y;
+    Numbers at_rest, bed_x, bed_y;
+};
+/// Fluxes of a row of faces, and what the ground's curvature presses at them.
+struct Faces {
+    Numbers mass, normal, across, pressure_before, pressure_after, press;
+};
+struct Scratch {
+    std::array<Row, 2> rows;  ///< of the row and the one before it
+    std::array<Numbers, 3> speed;
+    Faces x;
+    std::array<Faces, 2> y;
+    Numbers change;  ///< of the cells of a column: more than 0 if there was any
+};
+
+struct Fastest {
+    L largest = L(0);
+    L unknown = L(0);  ///< 0, or NaN if there was one
+};
+
+HWY_INLINE Resistance<L> resistance_at(const StageData& data, std::ptrdiff_t i, const L& depth, const L& stretch) {
+    const auto known = [&](const float* raster, float elsewhere) HWY_ATTR {
+        if (raster == nullptr) return L(elsewhere);
+        const L here = L::load(raster + i);
+        return select(here == here, here, L(elsewhere));
+    };
+    Resistance<L> r;
+    r.friction = known(data.cover.friction, data.friction) * L(data.effective_share);
+    r.strength = known(data.cover.strength, data.strength);
+    r.inverse_turbulence = known(data.cover.inverse_turbulence, data.inverse_turbulence);
+    if (data.turbulent_thickness > 0) {
+        const L thickness = larger(depth, L(dry_depth)) / stretch;
+        r.inverse_turbulence = r.inverse_turbulence * sim::cube_root(L(data.turbulent_thickness) / thickness);
+    }
+    r.stem_drag = known(data.cover.stem_drag, 0);
+    r.viscosity = L(data.viscosity);
+    return r;
+}
+
+HWY_INLINE void keep(const Line<L>& line, const Sides<L>& sides, const L& wave, const L& limit_before,
+                     const L& limit_after, AxisRow& row, int j) {
+    store(sides.depth_before, row.depth_before, j);
+    store(sides.depth_after, row.depth_after, j);
+    store(sides.rise, row.rise, j);
+    store(sides.normal_before, row.normal_before, j);
+    store(sides.normal_after, row.normal_after, j);
+    store(sides.across_before, row.across_before, j);
+    store(sides.across_after, row.across_after, j);
+    store(limit_before, row.limit_before, j);
+    store(limit_after, row.limit_after, j);
+    store(wave, row.wave, j);
+    store(wall_beside(line.depth, line.before, line.bed_before), row.wall_before, j);
+    store(wall_beside(line.depth, line.after, line.bed_after), row.wall_after, j);
+}
+
+/// Reconstructs a row of cells; `i`: index of entry 0.
+HWY_INLINE void reconstruct(const StageData& data, std::ptrdiff_t i, int cells, Row& row, Numbers& speed) {
+    const std::ptrdiff_t up = data.stride;
+    const L zero(0), one(1), dry_limit(dry_depth), gravity(data.gravity), inverse_cell(data.inverse_cell);
+    const L flow_scale(0.999999F / (data.inverse_cell * data.time_step));
+    for (int j = 0; j < cells; j += lane_count) {
+        const auto at = [&](const float* raster, std::ptrdiff_t offset)
+                            HWY_ATTR { return L::load(raster + (i + j + offset)); };
+        const float *h = data.from.depth, *u = data.from.u, *v = data.from.v;
+        const L bed = at(data.bed, 0), depth = at(h, 0);
+        const L bed_west = at(data.bed, -1) - bed, bed_east = at(data.bed, 1) - bed;
+        const L bed_south = at(data.bed, -up) - bed, bed_north = at(data.bed, up) - bed;
+        const L west = at(h, -1), east = at(h, 1), south = at(h, -up), north = at(h, up);
+        const L own_u = at(u, 0), own_v = at(v, 0);
+        const auto dry = depth <= dry_limit;
+        const Line<L> x{depth, west, east, bed_west, bed_east, own_u, at(u, -1), at(u, 1), own_v, at(v, -1), at(v, 1)};
+        const Line<L> y{depth,      south,     north, bed_south,  bed_north, own_v,
+                        at(v, -up), at(v, up), own_u, at(u, -up), at(u, up)};
+        const L bed_x = (bed_east - bed_west) * (inverse_cell * L(0.5F));
+        const L bed_y = (bed_north - bed_south) * (inverse_cell * L(0.5F));
+        const L square_stretch = one + bed_x * bed_x + bed_y * bed_y, stretch = sqrt(square_stretch);
+        const L flatness = one / square_stretch;
+
+        const L twice_wave = L(2) * sqrt(gravity * depth);
+        const L out_west = larger(zero, twice_wave - own_u), out_east = larger(zero, twice_wave + own_u);
+        const L out_south = larger(zero, twice_wave - own_v), out_north = larger(zero, twice_wave + own_v);
+        const L can_flow =
+            select(dry, zero, depth * flow_scale / (out_west + out_east + out_south + out_north + L(1e-12F)));
+        keep(x, sides_of(x), gravity * flatness * (one - flatness * bed_x * bed_x), can_flow * out_west,
+             can_flow * out_east, row.x, j);
+        keep(y, sides_of(y), gravity * flatness * (one - flatness * bed_y * bed_y), can_flow * out_south,
+             can_flow * out_north, row.y, j);
+
+        const Resistance<L> resistance = resistance_at(data, i + j, depth, stretch);
+        const RestBalance<L> balance = rest_balance(rest_slope(x, inverse_cell), rest_slope(y, inverse_cell), bed_x,
+                                                    bed_y, square_stretch, gravity, depth, resistance);
+        const L held = opaque(select(balance.driving <= balance.resisting, one, zero));
+        const L still = opaque(select(larger(magnitude(own_u), magnitude(own_v)) <= zero, one, zero));
+        store(larger(opaque(select(dry, one, zero)), still * held), row.at_rest, j);
+        store(bed_x, row.bed_x, j);
+        store(bed_y, row.bed_y, j);
+        store(select(dry, zero, sqrt(own_u * own_u + own_v * own_v) + twice_wave), speed, j);
+    }
+}
+
+/// Fluxes between entry j of `before` and entry k of `after`; the normal velocity of the axis is u, if `along_x`.
+HWY_INLINE void cross_faces(const Row& before, int j, const Row& after, int k, bool along_x, Faces& faces, int to) {
+    const AxisRow &b = along_x ? before.x : before.y, &a = along_x ? after.x : after.y;
+    FaceSide<L> from{load(b.depth_after, j), load(b.normal_after, j), load(b.across_after, j), load(b.wave, j),
+                     load(b.limit_after, j)};
+    FaceSide<L> onto{load(a.depth_before, k), load(a.normal_before, k), load(a.across_before, k), load(a.wave, k),
+                     load(a.limit_before, k)};
+    // Beside dry ground that stands above it, debris sees itself.
+    const auto mirror = [](const L& wall, const FaceSide<L>& of, FaceSide<L>& in) HWY_ATTR {
+        in.depth = select(wall > L(0), of.depth, in.depth);
+        in.normal = select(wall > L(0), of.normal, in.normal);
+        in.across = select(wall > L(0), of.across, in.across);
+        in.wave = select(wall > L(0), of.wave, in.wave);
+    };
+    // Not both: of two neighbours, a wall is the dry one.
+    const FaceSide<L> unchanged = from;
+    mirror(load(a.wall_before, k), onto, from);
+    mirror(load(b.wall_after, j), unchanged, onto);
+    Flux<L> flux = face_flux(from, onto);
+    const L open = select(load(before.at_rest, j) * load(after.at_rest, k) > L(0), L(0), L(1));
+    // Debris that passes has followed the ground of one cell and meets that of the other: half of the change is felt on
+    // either side.
+    const L turn_x = load(after.bed_x, k) - load(before.bed_x, j),
+            turn_y = load(after.bed_y, k) - load(before.bed_y, j);
+    const L turn = along_x ? turn_x * flux.carried_normal + turn_y * flux.carried_across
+                           : turn_y * flux.carried_normal + turn_x * flux.carried_across;
+    store(flux.mass * open, faces.mass, to);
+    store(flux.normal * open, faces.normal, to);
+    store(flux.across * open, faces.across, to);
+    store(flux.pressure_before * open, faces.pressure_before, to);
+    store(flux.pressure_after * open, faces.pressure_after, to);
+    store(L(0.5F) * flux.mass * turn * open, faces.press, to);
+}
+
+/// Updates lane_count cells at index i, entry j of the row.
+HWY_INLINE void update(const StageData& data, Scratch& scratch, int r, std::ptrdiff_t i, int j, Fastest& fastest) {
+    const Row& row = scratch.rows[static_cast<std::size_t>(r & 1)];
+    const Faces &x = scratch.x, &south = scratch.y[static_cast<std::size_t>(r & 1)];
+    const Faces& north = scratch.y[static_cast<std::size_t>((r + 1) & 1)];
+    const L zero(0), half(0.5F), one(1), gravity(data.gravity), inverse_cell(data.inverse_cell);
+    const L dt(data.time_step), per_cell = dt * inverse_cell;
+    const L depth = L::load(data.from.depth + i), u = L::load(data.from.u + i), v = L::load(data.from.v + i);
+    const L bed_x = load(row.bed_x, j), bed_y = load(row.bed_y, j);
+    const L square_stretch = one + bed_x * bed_x + bed_y * bed_y, stretch = sqrt(square_stretch);
+
+    const auto force = [&](const AxisRow& axis, const L& after, const L& before) HWY_ATTR {
+        return (before - after - (load(axis.depth_before, j) + load(axis.depth_after, j)) * half * load(axis.rise, j)) *
+               inverse_cell;
+    };
+    const L force_x = force(row.x, load(x.pressure_before, j), load(x.pressure_after, j - 1));
+    const L force_y = force(row.y, load(north.pressure_before, j), load(south.pressure_after, j));
+    // The gravity correction of Xia & Liang (2018): on a sheet cos^2 of the slope, on a lake 1.
+    const L tilt = larger(zero, (bed_x * load(row.x.rise, j) + bed_y * load(row.y.rise, j)) * inverse_cell);
+    const L free = one - load(row.at_rest, j);
+    const L pull = free * gravity / (one + tilt);
+    const L press =
+        (load(x.press, j - 1) + load(x.press, j) + load(south.press, j) + load(north.press, j)) * inverse_cell;
+    const L curvature = free * larger(press, zero - gravity * depth) / square_stretch;
+
+    const L new_depth = larger(
+        zero, depth - per_cell * (load(x.mass, j) - load(x.mass, j - 1) + (load(north.mass, j) - load(south.mass, j))));
+    const L out_x = load(x.normal, j) - load(x.normal, j - 1) + (load(north.across, j) - load(south.across, j));
+    const L out_y = load(x.across, j) - load(x.across, j - 1) + (load(north.normal, j) - load(south.normal, j));
+    const L m_x = depth * u - per_cell * out_x + dt * (pull * force_x - curvature * bed_x);
+    const L m_y = depth * v - per_cell * out_y + dt * (pull * force_y - curvature * bed_y);
+
+    const L m_up = bed_x * m_x + bed_y * m_y, momentum = sqrt(m_x * m_x + m_y * m_y + m_up * m_up);
+    const L normal_force = larger(zero, gravity * depth / (one + tilt) + curvature);
+    const L left =
+        resisted(resistance_at(data, i, new_depth, stretch), gravity, momentum, new_depth, normal_force, stretch, dt);
+    const L moves = smaller(new_depth - L(dry_depth), left);
+    const L to_speed =
+        select(moves > zero, left / (larger(momentum, L(1e-30F)) * larger(new_depth, L(dry_depth))), zero);
+    L new_u = m_x * to_speed, new_v = m_y * to_speed;
+    // Emptied cells keep no momentum without mass: no faster than the fastest around, its front and free fall.
+    L bound = load(scratch.speed[static_cast<std::size_t>(r % 3)], j);
+    bound = larger(bound, larger(load(scratch.speed[static_cast<std::size_t>(r % 3)], j - 1),
+                                 load(scratch.speed[static_cast<std::size_t>(r % 3)], j + 1)));
+    bound = larger(bound, larger(load(scratch.speed[static_cast<std::size_t>((r + 1) % 3)], j),
+                                 load(scratch.speed[static_cast<std::size_t>((r + 2) % 3)], j)));
+    bound = bound + gravity * dt;
+    const L speed = sqrt(new_u * new_u + new_v * new_v);
+    const L slower = select(speed > bound, bound / larger(speed, L(1e-30F)), one);
+    new_u = new_u * slower;
+    new_v = new_v * slower;
+
+    L to_depth = new_depth;
+    const auto difference = [](const L& a, const L& b) HWY_ATTR { return magnitude(a - b); };
+    L change = load(scratch.change, j) + difference(new_depth, depth) + difference(new_u, u) + difference(new_v, v);
+    if (data.second) {
+        const L old_depth = L::load(data.to.depth + i);
+        const L old_u = L::load(data.to.u + i), old_v = L::load(data.to.v + i);
+        to_depth = half * (old_depth + new_depth);
+        const L scale =
+            select(smaller(moves, to_depth - L(dry_depth)) > zero, half / larger(to_depth, L(dry_depth)), zero);
+        new_u = (old_depth * old_u + new_depth * new_u) * scale;
+        new_v = (old_depth * old_v + new_depth * new_v) * scale;
+        change = change + difference(to_depth, old_depth) + difference(new_u, old_u) + difference(new_v, old_v);
+        const L signal = select(to_depth <= L(dry_depth), zero,
+                                magnitude(new_u) + magnitude(new_v) + L(2) * sqrt(gravity * to_depth));
+        fastest.largest = larger(fastest.largest, signal);
+        fastest.unknown = fastest.unknown + signal * zero;
+    }
+    store(change, scratch.change, j);
+    to_depth.store(data.to.depth + i);
+    new_u.store(data.to.u + i);
+    new_v.store(data.to.v + i);
+}
+
+[[gnu::flatten]] float advance(const StageData& data, const Segment& segment, std::uint8_t* changed) {
+    Scratch scratch{};
+    const int width = segment.tiles * tile_edge;
+    const std::ptrdiff_t first =
+        static_cast<std::ptrdiff_t>(segment.tile_row) * tile_edge * data.stride + segment.first_tile * tile_edge;
+    const auto row_of = [&](int r) HWY_ATTR -> Row& { return scratch.rows[static_cast<std::size_t>(r & 1)]; };
+    Fastest fastest;
+    // Row r of the segment is r + 1 here, so that the row before it is 0.
+    for (int r = 0; r < tile_edge + 2; ++r) {
+        if (r >= 2) {
+            const Row& row = row_of(r - 1);
+            for (int j = 0; j <= width; j += lane_count) cross_faces(row, j, row, j + 1, true, scratch.x, j);
+        }
+        reconstruct(data, first + (r - 1) * static_cast<std::ptrdiff_t>(data.stride) - 1, width + 2, row_of(r),
+                    scratch.speed[static_cast<std::size_t>(r % 3)]);
+        if (r == 0) continue;
+        Faces& faces = scratch.y[static_cast<std::size_t>(r & 1)];
+        for (int j = 1; j <= width; j += lane_count) cross_faces(row_of(r - 1), j, row_of(r), j, false, faces, j);
+        if (r < 2) continue;
+        for (int j = 1; j <= width; j += lane_count) {
+            const std::ptrdiff_t i = first + (r - 2) * static_cast<std::ptrdiff_t>(data.stride) + (j - 1);
+            update(data, scratch, r - 1, i, j, fastest);
+        }
+    }
+    for (int j = 1; j <= width; ++j) {
+        if (scratch.change[static_cast<std::size_t>(j)] > 0) changed[(j - 1) / tile_edge] = 1;
+    }
+    float result = 0;
+    for (int lane = 0; lane < lane_count; ++lane) {
+        const float one = fastest.largest.at(lane) + fastest.unknown.at(lane);
+        if (!(one <= result)) result = one;
+        if (std::isnan(one)) break;
+    }
+    return result;
+}
+
+Stages make_stages() {
+    return {advance, hwy::TargetName(HWY_TARGET)};
+}
+
+}  // namespace
+}  // namespace talus::depth::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace talus::depth {
+
+HWY_EXPORT(make_stages);
+
+Stages stages_for_processor() {
+    return HWY_DYNAMIC_DISPATCH(make_stages)();
+}
+
+}  // namespace talus::depth
+#endif

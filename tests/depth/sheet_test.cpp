@@ -1,0 +1,91 @@
+#include <cmath>
+
+#include "grids.hpp"
+
+namespace talus::test {
+namespace {
+
+/// Speed along the ground in the middle of a sheet, m/s, `normal_depth` thick on a slope, after a time. The slope falls
+/// to the south-east, the sheet goes on beyond the part that is looked at.
+double sheet_speed(double slope, double normal_depth, double time, const depth::Material& material,
+                   bool oblique = false) {
+    const double s = std::tan(slope) / (oblique ? std::sqrt(2.0) : 1);
+    const int edge = oblique ? 160 : 1;
+    const auto bed = grid_of(160, edge, 1, [&](double x, double y) { return oblique ? s * (y - x) : -s * x; });
+    depth::Solver solver(bed, material, {}, oblique ? depth::Edges::open : depth::Edges::continued);
+    solver.add(grid_of<float>(160, edge, 1, [&](double, double) { return normal_depth / std::cos(slope); }));
+    advance_until(solver, time);
+    const int middle = 80, row = edge / 2;
+    const double u = solver.u_at(middle, row), v = solver.v_at(middle, row);
+    const double w = u * solver.slope_x_at(middle, row) + v * solver.slope_y_at(middle, row);
+    return std::sqrt(u * u + v * v + w * w);
+}
+
+TEST(Sheet, accelerates_by_gravity_along_the_slope_less_friction) {
+    for (const double slope : {0.2, 0.5, 0.8}) {
+        depth::Material material;
+        material.friction_coefficient = 0.15;
+        const double exact = gravity * (std::sin(slope) - 0.15 * std::cos(slope));
+        EXPECT_NEAR(sheet_speed(slope, 1, 1, material), exact, 2e-4 * exact);
+        EXPECT_NEAR(sheet_speed(slope, 1, 1, material, true), exact, 2e-4 * exact);
+    }
+}
+
+TEST(Sheet, reaches_the_speed_of_voellmy) {
+    depth::Material material;
+    material.friction_coefficient = 0.1;
+    material.turbulent_friction = 100;
+    const double slope = 0.35, exact = std::sqrt(100 * 0.8 * (std::sin(slope) - 0.1 * std::cos(slope)));
+    EXPECT_NEAR(sheet_speed(slope, 0.8, 12, material), exact, 1e-3 * exact);
+}
+
+TEST(Sheet, reaches_the_speed_of_manning) {
+    // v = h^(2/3) sqrt(sin) / n is Voellmy's with xi = h^(1/3) / n^2.
+    const double n = 0.06, slope = 0.3, thickness = 0.5;
+    depth::Material material;
+    material.turbulent_friction = 1 / (n * n);
+    material.turbulent_thickness = 1;
+    const double exact = std::pow(thickness, 2.0 / 3) * std::sqrt(std::sin(slope)) / n;
+    EXPECT_NEAR(sheet_speed(slope, thickness, 8, material), exact, 2e-3 * exact);
+}
+
+TEST(Sheet, reaches_the_speed_of_viscous_flow) {
+    depth::Material material;
+    material.viscosity = 0.3;
+    const double slope = 0.3, thickness = 0.5, exact = gravity * std::sin(slope) * thickness * thickness / (3 * 0.3);
+    EXPECT_NEAR(sheet_speed(slope, thickness, 6, material), exact, 1e-3 * exact);
+}
+
+TEST(Sheet, is_relieved_by_pore_pressure) {
+    depth::Material material;
+    material.friction_coefficient = 0.4;
+    material.pore_pressure_ratio = 0.5;
+    const double slope = 0.4, exact = gravity * (std::sin(slope) - 0.2 * std::cos(slope));
+    EXPECT_NEAR(sheet_speed(slope, 1, 1, material), exact, 2e-4 * exact);
+}
+
+/// Ground that turns level along an arc, without friction.
+TEST(Arc, keeps_the_energy_of_debris) {
+    const int cells = 400;
+    const double cell = 0.5, radius = 120;
+    const auto bed = grid_of(cells, 1, cell, [&](double x, double) {
+        return x < 100 ? radius - std::sqrt(radius * radius - (100 - x) * (100 - x)) : 0;
+    });
+    depth::Solver solver(bed, {}, {}, depth::Edges::continued);
+    solver.add(grid_of<float>(cells, 1, cell, [](double x, double) { return x > 16 && x < 24 ? 1 : 0; }));
+    const auto energy = [&] {
+        double sum = 0;
+        for (int c = 0; c < cells; ++c) {
+            const double h = solver.depth_at(c, 0), u = solver.u_at(c, 0), w = u * solver.slope_x_at(c, 0);
+            sum += h * (gravity * (solver.bed_at(c, 0) + h / 2) + (u * u + w * w) / 2);
+        }
+        return sum;
+    };
+    const double start = energy();
+    advance_until(solver, 7);
+    EXPECT_NEAR(energy(), start, 0.01 * start);
+    EXPECT_EQ(solver.volume_left(), 0);
+}
+
+}  // namespace
+}  // namespace talus::test

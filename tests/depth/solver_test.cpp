@@ -1,0 +1,132 @@
+#include <cmath>
+#include <limits>
+
+#include <tbb/global_control.h>
+
+#include "grids.hpp"
+#include "simd/dispatch.hpp"
+#include "support/allocations.hpp"
+
+namespace talus::test {
+namespace {
+
+double valley(double x, double y) {
+    return 0.02 * std::pow(std::hypot(x - 60, y - 60), 1.5) + 0.5 * std::sin(x / 9) * std::cos(y / 7);
+}
+
+depth::Solver in_a_valley() {
+    depth::Material material;
+    material.friction_coefficient = 0.1;
+    material.turbulent_friction = 500;
+    material.turbulent_thickness = 1;
+    depth::Solver solver(grid_of(120, 120, 1, valley), material);
+    solver.add(grid_of<float>(120, 120, 1, [](double x, double y) { return std::hypot(x - 42, y - 50) < 20 ? 4 : 0; }));
+    return solver;
+}
+
+TEST(Solver, keeps_volume_to_rounding) {
+    depth::Solver solver = in_a_valley();
+    const double start = solver.volume();
+    advance_until(solver, 15);
+    EXPECT_EQ(solver.volume_left(), 0);
+    EXPECT_NEAR(solver.volume() / start, 1, 1e-6);
+}
+
+TEST(Solver, counts_what_leaves_over_edges_and_unknown_ground) {
+    auto bed = grid_of(80, 60, 1, [](double x, double) { return -0.3 * x; });
+    for (int row = 20; row < 30; ++row) {
+        for (int column = 50; column < 54; ++column) bed.at(column, row) = std::numeric_limits<double>::quiet_NaN();
+    }
+    depth::Solver solver(bed, {});
+    solver.add(grid_of<float>(80, 60, 1, [](double x, double y) { return std::hypot(x - 30, y - 25) < 10 ? 2 : 0; }));
+    const double start = solver.volume();
+    advance_until(solver, 4);
+    EXPECT_GT(solver.volume_left(), 1);
+    advance_until(solver, 20);
+    EXPECT_GT(solver.volume_left(), 0.9 * start);
+    EXPECT_NEAR((solver.volume() + solver.volume_left()) / start, 1, 1e-6);
+}
+
+TEST(Solver, never_has_a_negative_depth_or_a_wild_speed) {
+    depth::Solver solver = in_a_valley();
+    for (int k = 0; k < 300; ++k) {
+        ASSERT_TRUE(solver.advance(0.1).ok());
+        for (int row = 0; row < 120; ++row) {
+            for (int column = 0; column < 120; ++column) {
+                ASSERT_GE(solver.depth_at(column, row), 0);
+                ASSERT_LT(std::hypot(solver.u_at(column, row), solver.v_at(column, row)), 25);
+            }
+        }
+    }
+}
+
+TEST(Solver, gives_the_same_bits_on_any_number_of_threads) {
+    std::uint64_t expected = 0;
+    for (const std::size_t threads : {1, 2, 5}) {
+        const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
+        depth::Solver solver = in_a_valley();
+        advance_until(solver, 5);
+        if (threads == 1) expected = solver.hash();
+        EXPECT_EQ(solver.hash(), expected) << threads;
+    }
+}
+
+TEST(Solver, gives_the_same_bits_on_any_instruction_set) {
+    std::uint64_t expected = 0;
+    for (const std::string& set : simd::instruction_sets()) {
+        ASSERT_TRUE(simd::choose_instruction_set(set));
+        depth::Solver solver = in_a_valley();
+        EXPECT_EQ(solver.instruction_set(), set);
+        advance_until(solver, 5);
+        if (expected == 0) expected = solver.hash();
+        EXPECT_EQ(solver.hash(), expected) << set;
+    }
+    ASSERT_TRUE(simd::choose_instruction_set(simd::instruction_sets().front()));
+}
+
+TEST(Solver, allocates_nothing_in_a_step_and_little_per_cell) {
+    const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, 1);
+    depth::Solver solver = in_a_valley();
+    EXPECT_LT(solver.bytes_per_cell(), 100);
+    advance_until(solver, 0.5);
+    const long before = allocation_count();
+    for (int k = 0; k < 50; ++k) ASSERT_TRUE(solver.advance(0.1).ok());
+    EXPECT_EQ(allocation_count(), before);
+}
+
+TEST(Solver, costs_what_moves) {
+    depth::Solver solver(grid_of(400, 400, 1, [](double, double) { return 0.0; }), {});
+    solver.add(
+        grid_of<float>(400, 400, 1, [](double x, double y) { return std::hypot(x - 200, y - 200) < 10 ? 1 : 0; }));
+    ASSERT_TRUE(solver.advance(0.01).ok());
+    EXPECT_LE(solver.cell_updates(), 25u * 256u);
+}
+
+TEST(Solver, takes_debris_with_momentum) {
+    depth::Solver solver(grid_of(20, 20, 1, [](double, double) { return 0.0; }), {});
+    solver.inject(10, 10, 1, 4, 0);
+    solver.inject(10, 10, 1, 0, 2);
+    EXPECT_FLOAT_EQ(solver.depth_at(10, 10), 2);
+    EXPECT_FLOAT_EQ(solver.u_at(10, 10), 2);
+    EXPECT_FLOAT_EQ(solver.v_at(10, 10), 1);
+}
+
+TEST(Solver, feels_zones) {
+    const auto bed = grid_of(100, 40, 1, [](double x, double) { return -0.3 * x; });
+    depth::GroundValues ground;
+    ground.friction_coefficient.assign(4000, std::numeric_limits<float>::quiet_NaN());
+    for (int row = 0; row < 20; ++row) {
+        for (int column = 0; column < 100; ++column)
+            ground.friction_coefficient[static_cast<std::size_t>(row * 100 + column)] = 0.5F;
+    }
+    depth::Material material;
+    material.friction_coefficient = 0.05;
+    depth::Solver solver(bed, material, ground);
+    solver.add(grid_of<float>(100, 40, 1, [](double x, double) { return x > 20 && x < 40 ? 1 : 0; }));
+    advance_until(solver, 2);
+    EXPECT_EQ(solver.u_at(30, 8), 0);
+    EXPECT_GT(solver.u_at(35, 32), 3);
+}
+
+}  // namespace
+}  // namespace talus::test
