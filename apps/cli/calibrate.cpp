@@ -146,6 +146,7 @@ int calibrate_command(const CalibrateArguments& arguments) {
     options.retry_failed = arguments.retry_failed;
     options.stop_requested = &watch.stop_requested();
     ThrottledProgress reporter(arguments.quiet, arguments.json);
+    options.on_refused = [&](const std::string& why) { reporter.note(why); };
     return arguments.recover ? run_recovery(arguments, *plan, *runs, *input, path, options, reporter)
                              : run_calibration(arguments, *plan, *runs, *input, path, options, reporter);
 }

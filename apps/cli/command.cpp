@@ -1,6 +1,7 @@
 #include "command.hpp"
 
 #include <algorithm>
+#include <cerrno>
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
@@ -9,17 +10,24 @@
 
 #include <fmt/format.h>
 
+#include "core/visible_text.hpp"
+
 namespace talus::cli {
 
 int fail(int code, const std::string& message) {
-    std::string line = "talus: error: " + message;
+    std::string line = "talus: error: " + visible(message);
     std::replace(line.begin(), line.end(), '\n', ' ');
     (void)std::fputs((line + "\n").c_str(), stderr);
     return code;
 }
 
+void note(const std::string& message) {
+    (void)std::fputs(("talus: note: " + visible(message) + "\n").c_str(), stderr);
+}
+
 bool print(const std::string& text) {
-    return std::fputs(text.c_str(), stdout) >= 0 && std::fflush(stdout) == 0;
+    if (std::fputs(visible(text).c_str(), stdout) >= 0 && std::fflush(stdout) == 0) return true;
+    return errno == EPIPE;
 }
 
 int print_result(const std::string& text, int code) {

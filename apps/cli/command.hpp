@@ -35,7 +35,11 @@ void add_data_folder(CLI::App& command, std::string& data);  ///< --data DIR
 /// Prints "talus: error: MESSAGE" as exactly one line on stderr and returns `code`.
 int fail(int code, const std::string& message);
 
-/// Prints on stdout at once. False on a full disk or a closed pipe, where the text is lost.
+/// Prints "talus: note: MESSAGE" on stderr: the work goes on.
+void note(const std::string& message);
+
+/// Prints on stdout at once, with escapes for what a reader cannot see. False on a full disk, where the text is lost. A
+/// reader that has gone, such as `head`, has read what it wanted: that is no failure.
 bool print(const std::string& text);
 /// Prints a result and returns `code`, or that of a failure if it is lost: a script must be able to tell.
 int print_result(const std::string& text, int code = exit_code::success);

@@ -145,12 +145,12 @@ Result<std::pair<std::size_t, std::size_t>> parse_shard(const std::string& text)
     return Error{fmt::format("--shard {} is refused; it must be i/n with i from 1 to n, such as 3/8", text)};
 }
 
-/// Evaluates the runs of the folders and writes the results into `folder`.
-int write_results(const SceneInput& source, const ensemble::PlannedRuns& runs, const std::vector<fs::path>& folders,
-                  const fs::path& folder, bool quiet, bool json, ThrottledProgress& reporter) {
+/// Evaluates the runs of the folder and writes the results into it.
+int write_results(const SceneInput& source, const ensemble::PlannedRuns& runs, const ensemble::EnsembleFolder& folder,
+                  bool quiet, bool json, ThrottledProgress& reporter) {
     reporter.say("evaluating the runs, writing maps, tables and report");
     Result<ensemble::Reduction> reduction =
-        reduce(folders, runs.count(), runs.plan().thresholds,
+        reduce({folder.path()}, runs.count(), folder.plan(), runs.plan().thresholds,
                report::intensity_guideline(source.scene.spec.outputs.intensity_guideline));
     if (!reduction) return fail(exit_code::failure, reduction.error().message);
     if (reduction->complete == 0) {
@@ -158,16 +158,16 @@ int write_results(const SceneInput& source, const ensemble::PlannedRuns& runs, c
         const std::string fault = reduction->runs.empty() ? "none was run" : reduction->runs.front().fault;
         return fail(exit_code::fault,
                     fmt::format("no run of {} is complete, so there is nothing to evaluate; the first: {}",
-                                folder.string(), fault));
+                                folder.path().string(), fault));
     }
     const ensemble::EnsembleResult result = summarise(source.scene, runs, *std::move(reduction));
-    const Status written = write_ensemble(result, folder);
+    const Status written = write_ensemble(result, folder.path());
     reporter.clear();
     if (!written) return fail(exit_code::failure, written.error().message);
     if (json) {
-        return print_result(ensemble_json(result, folder) + "\n");
+        return print_result(ensemble_json(result, folder.path()) + "\n");
     }
-    return quiet ? exit_code::success : print_result(ensemble_text(result, folder));
+    return quiet ? exit_code::success : print_result(ensemble_text(result, folder.path()));
 }
 
 /// Sets the number of simultaneous runs. One run on several threads is slower than as many runs on one thread each.
@@ -208,7 +208,7 @@ int ensemble_command(const EnsembleArguments& arguments) {
         folder.emplace(*std::move(opened));
     } else {
         if (!ranks.hear_first(false)) return exit_code::bad_input;
-        folder.emplace(ensemble::EnsembleFolder::join(path));
+        folder.emplace(ensemble::EnsembleFolder::join(path, definition));
     }
 
     ThrottledProgress reporter(arguments.quiet || !ranks.first(), arguments.json && ranks.first());
@@ -220,6 +220,7 @@ int ensemble_command(const EnsembleArguments& arguments) {
     options.on_progress = [&](const ensemble::EnsembleProgress& progress) {
         reporter.report([&] { return progress_text(progress); }, [&] { return progress_json(progress); });
     };
+    options.on_refused = [&](const std::string& why) { reporter.note(why); };
     share_threads(arguments, *runs, ranks.count(), options);
 
     const Result<ensemble::EnsembleOutcome> outcome = run_ensemble(*runs, source->source, *folder, options);
@@ -241,7 +242,7 @@ int ensemble_command(const EnsembleArguments& arguments) {
         return print_result(fmt::format("shard {} is complete: {} runs in {}; talus ensemble merge combines shards\n",
                                         arguments.shard, done, path.string()));
     }
-    return write_results(*source, *runs, {path}, path, arguments.quiet, arguments.json, reporter);
+    return write_results(*source, *runs, *folder, arguments.quiet, arguments.json, reporter);
 }
 
 int merge_command(const MergeArguments& arguments) {
@@ -287,7 +288,7 @@ int merge_command(const MergeArguments& arguments) {
             return fail(exit_code::bad_input, s.error().message);
     }
     ThrottledProgress reporter(arguments.quiet, arguments.json);
-    return write_results(*source, *runs, {path}, path, arguments.quiet, arguments.json, reporter);
+    return write_results(*source, *runs, *folder, arguments.quiet, arguments.json, reporter);
 }
 
 }  // namespace

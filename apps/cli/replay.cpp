@@ -76,9 +76,7 @@ int replay_command(const ReplayArguments& arguments) {
         return fail(exit_code::bad_input,
                     scene.error().message + " (the scene of this journal; give its present path with --scene)");
     }
-    for (const std::string& sentence : twin::changed_inputs(*journal, *scene)) {
-        (void)std::fprintf(stderr, "talus: note: %s\n", sentence.c_str());
-    }
+    for (const std::string& sentence : twin::changed_inputs(*journal, *scene)) note(sentence);
 
     const bool shows = !arguments.quiet && isatty(STDERR_FILENO) != 0;
     const auto replayed =

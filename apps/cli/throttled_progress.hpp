@@ -30,6 +30,11 @@ class ThrottledProgress {
                                                                                 : 200);
     }
     void say(const std::string& what) { reporter_.say(what); }
+    /// A line that stays, above the progress.
+    void note(const std::string& what) {
+        reporter_.clear();
+        cli::note(what);
+    }
     void clear() { reporter_.clear(); }
 
   private:

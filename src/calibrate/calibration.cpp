@@ -44,6 +44,8 @@ class SceneModel {
         options.threads_per_run = options_.threads_per_run;
         options.retry_failed = options_.retry_failed;
         options.stop_requested = options_.stop_requested;
+        options.verified = verified_;
+        options.on_refused = options_.on_refused;
         options.on_progress = [&](const ensemble::EnsembleProgress& now) { tell(now, phase); };
         if (options_.on_run)
             options.on_run = [&](const ensemble::RunRecord& record) { tell_run(record, points, phase); };
@@ -52,14 +54,12 @@ class SceneModel {
         stats::Points predicted;
         records_.clear();
         for (std::size_t run = 0; run < points.size(); ++run) {
-            TALUS_ASSIGN(ensemble::RunRecord record, ensemble::read_run_record(folder_.run_file(run)));
-            if (record.values != runs_.at(run).values) {
-                return Error{fmt::format("{}: is of other values than this program would choose; name another folder",
-                                         folder_.run_file(run).string())};
-            }
+            TALUS_ASSIGN(ensemble::RunRecord record, ensemble::read_run_record(folder_.run_file(run), folder_.plan(),
+                                                                               run, ensemble::Verify::header));
             predicted.push_back(predictions_of(record));
             records_.push_back(std::move(record));
         }
+        verified_ = points.size();
         return std::optional(std::move(predicted));
     }
 
@@ -114,6 +114,7 @@ class SceneModel {
     std::vector<ensemble::RunRecord>& records_;
     const std::vector<ensemble::ObservedValue>& observed_;
     double least_misfit_ = observe::never;
+    std::size_t verified_ = 0;  // runs whose records were verified or written by this process
 };
 
 }  // namespace

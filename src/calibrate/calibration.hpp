@@ -59,6 +59,7 @@ struct CalibrationOptions {
     std::function<void(const CalibrationRun&)> on_run = {};            ///< likewise, for each run of this call
     /// After each round, from the caller's thread: emulators and runs so far; no posterior and no records yet.
     std::function<void(const Calibration&)> on_fit = {};
+    std::function<void(const std::string&)> on_refused = {};  ///< as in EnsembleOptions
 };
 
 /// The factors as runs of the scene. Errors: as PlannedRuns::make; a factor without a range; too few runs; nothing

@@ -33,6 +33,7 @@ class Workers {
 
   private:
     void find_work();
+    [[nodiscard]] Result<RunRecord> recorded(std::size_t run) const;
     void take_runs(std::size_t worker);
     [[nodiscard]] bool stopped() const {
         return failed_ || (options_.stop_requested && options_.stop_requested->load());
@@ -59,18 +60,27 @@ class Workers {
     Clock::time_point start_ = Clock::now();
 };
 
+/// The record of an earlier call. Errors: as read_run_record, of other values.
+Result<RunRecord> Workers::recorded(std::size_t run) const {
+    const auto file = folder_.run_file(run);
+    TALUS_ASSIGN(RunRecord record,
+                 read_run_record(file, folder_.plan(), run, run < options_.verified ? Verify::header : Verify::bytes));
+    if (record.values == runs_.at(run).values) return record;
+    return Error{fmt::format("{}: is of other values than this program chooses", file.string())};
+}
+
 void Workers::find_work() {
     for (std::size_t run = options_.shard; run < runs_.count(); run += options_.shard_count) {
         ++outcome_.count;
-        const auto file = folder_.run_file(run);
         std::error_code error;
-        if (std::filesystem::exists(file, error)) {
-            const Result<RunRecord> record = read_run_record(file);
+        if (std::filesystem::exists(folder_.run_file(run), error)) {
+            const Result<RunRecord> record = recorded(run);
             if (record && (record->complete() || !options_.retry_failed)) {
                 ++outcome_.resumed;
                 record->complete() ? ++outcome_.done : ++outcome_.failed;
                 continue;
             }
+            if (!record && options_.on_refused) options_.on_refused(record.error().message + "; the run is made again");
         }
         todo_.push_back(run);
     }
@@ -141,7 +151,7 @@ void Workers::report(std::size_t worker, double share) {
 }
 
 void Workers::finish(const RunRecord& record, const observe::HazardMaps& maps, std::size_t worker) {
-    const Status written = write_run_record(folder_.run_file(record.run), record, maps);
+    const Status written = write_run_record(folder_.run_file(record.run), folder_.plan(), record, maps);
     {
         const std::lock_guard lock(mutex_);
         under_way_[worker] = 0;
@@ -169,7 +179,7 @@ void Workers::take_runs(std::size_t worker) {
             RunRecord record;
             record.run = todo_[k];
             record.values = runs_.at(todo_[k]).values;
-            record.fault = error.what();
+            record.fault = std::string("the run ended unexpectedly: ") + error.what();
             finish(record, {}, worker);
         }
     }

@@ -28,6 +28,8 @@ struct EnsembleOptions {
     const std::atomic<bool>* stop_requested = nullptr;  ///< runs in progress are discarded, completed ones are kept
     std::function<void(const EnsembleProgress&)> on_progress = {};  ///< from any of the runs' threads, one at a time
     std::function<void(const RunRecord&)> on_run = {};              ///< likewise, when a run of this call is recorded
+    std::size_t verified = 0;  ///< records of runs before this one were verified or written by this process
+    std::function<void(const std::string&)> on_refused = {};  ///< why a record is not used and its run made again
 };
 
 struct EnsembleOutcome {
@@ -37,8 +39,8 @@ struct EnsembleOutcome {
     double wall_time = 0;  ///< s, of this call
 };
 
-/// Computes the runs of this process's share that are missing in the folder. A run that fails is recorded with its
-/// fault and the rest continue. Errors: a record cannot be written.
+/// Computes the runs of this process's share that are missing in the folder, damaged or of another plan. A run that
+/// fails is recorded with its fault and the rest continue. Errors: a record cannot be written.
 [[nodiscard]] Result<EnsembleOutcome> run_ensemble(const PlannedRuns& runs, const run::SceneSource& source,
                                                    const EnsembleFolder& folder, const EnsembleOptions& options);
 

@@ -11,6 +11,7 @@
 
 #include <fmt/format.h>
 
+#include "core/hash.hpp"
 #include "core/try.hpp"
 #include "products/text_file.hpp"
 
@@ -22,7 +23,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr int format_version = 1;  // of the files of runs
+constexpr int format_version = 2;  // of the files of runs
 
 /// Keys that may differ within the same ensemble: path and author of the scene, and the thresholds.
 bool is_incidental(const std::string& key) {
@@ -32,6 +33,16 @@ bool is_incidental(const std::string& key) {
 std::string shortened(const Json& value) {
     std::string text = value.dump();
     return text.size() > 120 ? text.substr(0, 117) + "..." : text;
+}
+
+/// Files that a killed process was writing. The folder is locked.
+void remove_leftovers(const fs::path& folder) {
+    std::error_code ignored;
+    std::vector<fs::path> leftovers;
+    for (const fs::directory_entry& entry : fs::directory_iterator(folder, ignored)) {
+        if (products::is_unfinished_file(entry.path())) leftovers.push_back(entry.path());
+    }
+    for (const fs::path& leftover : leftovers) fs::remove(leftover, ignored);
 }
 
 }  // namespace
@@ -71,6 +82,17 @@ std::string difference(const Json& there, const Json& wanted) {
         if (found != value) return fmt::format("{}: {}, not {}", key, shortened(found), shortened(value));
     }
     return "";
+}
+
+std::string plan_identity(const Json& definition) {
+    Json identifying = Json::object();
+    for (const auto& [key, value] : definition.items()) {
+        if (!is_incidental(key)) identifying[key] = value;
+    }
+    const std::string text = identifying.dump(-1, ' ', false, Json::error_handler_t::replace);
+    StateHash hash;
+    hash.add(text.data(), text.size());
+    return to_hex(hash.value());
 }
 
 Result<Json> read_definition(const fs::path& folder, const std::string& kind) {
@@ -122,6 +144,7 @@ Result<EnsembleFolder> EnsembleFolder::open(const fs::path& path, const Json& de
 
     EnsembleFolder folder;
     folder.path_ = path;
+    folder.plan_ = plan_identity(definition);
     folder.lock_ = ::open((path / "lock").c_str(), O_CREAT | O_RDWR | O_CLOEXEC, 0666);
     if (folder.lock_ < 0) return Error{fmt::format("{}: cannot be written: {}", path.string(), std::strerror(errno))};
     if (flock(folder.lock_, LOCK_EX | LOCK_NB) != 0) {
@@ -138,19 +161,22 @@ Result<EnsembleFolder> EnsembleFolder::open(const fs::path& path, const Json& de
                 fmt::format("{}: holds another ensemble ({}); name another output folder", path.string(), differs)};
         }
     } else {
-        TALUS_TRY(products::write_text_file(path / "ensemble.json", definition.dump(2) + "\n"));
+        TALUS_TRY(products::replace_text_file(path / "ensemble.json", definition.dump(2) + "\n"));
     }
+    remove_leftovers(path);
+    remove_leftovers(path / "runs");
     return Result<EnsembleFolder>(std::move(folder));
 }
 
-EnsembleFolder EnsembleFolder::join(const fs::path& path) {
+EnsembleFolder EnsembleFolder::join(const fs::path& path, const Json& definition) {
     EnsembleFolder folder;
     folder.path_ = path;
+    folder.plan_ = plan_identity(definition);
     return folder;
 }
 
 EnsembleFolder::EnsembleFolder(EnsembleFolder&& other) noexcept
-    : path_(std::move(other.path_)), lock_(std::exchange(other.lock_, -1)) {}
+    : path_(std::move(other.path_)), plan_(std::move(other.plan_)), lock_(std::exchange(other.lock_, -1)) {}
 
 EnsembleFolder::~EnsembleFolder() {
     if (lock_ >= 0) close(lock_);
@@ -165,13 +191,13 @@ Status take_runs(const fs::path& from, const EnsembleFolder& to, std::size_t cou
         const fs::path target = to.run_file(run), source = from / "runs" / target.filename();
         std::error_code error;
         if (!fs::exists(source, error) || fs::equivalent(source, target, error)) continue;
-        if (fs::exists(target, error)) {
-            TALUS_ASSIGN(const RunRecord here, read_run_record(target));
-            TALUS_ASSIGN(const RunRecord there, read_run_record(source));
-            if (here.hash == there.hash && here.fault == there.fault) continue;
+        TALUS_ASSIGN(const RunRecord there, read_run_record(source, to.plan(), run));
+        if (const auto here = read_run_record(target, to.plan(), run); here) {
+            if (here->hash == there.hash && here->fault == there.fault) continue;
             return Error{
                 fmt::format("run {}: {} and {} hold different results", run, source.string(), target.string())};
         }
+        fs::remove(target, error);
         fs::create_hard_link(source, target, error);
         if (error) fs::copy_file(source, target, error);
         if (error) return Error{fmt::format("{}: cannot be made: {}", target.string(), error.message())};

@@ -16,6 +16,9 @@ namespace talus::ensemble {
 [[nodiscard]] nlohmann::ordered_json ensemble_definition(const PlannedRuns& runs, const run::SceneSource& source,
                                                          const scene::Scene& base, const std::string& scene_name);
 
+/// The same for the records of its runs: a checksum of the definition without what `difference` ignores.
+[[nodiscard]] std::string plan_identity(const nlohmann::ordered_json& definition);
+
 /// The plan that a definition was made from. Errors: not as ensemble_definition writes it.
 [[nodiscard]] Result<EnsemblePlan> plan_of(const nlohmann::ordered_json& definition);
 
@@ -28,7 +31,8 @@ class EnsembleFolder {
     [[nodiscard]] static Result<EnsembleFolder> open(const std::filesystem::path& path,
                                                      const nlohmann::ordered_json& definition);
     /// The same without a lock, for the other processes of the holder, whose folder exists.
-    [[nodiscard]] static EnsembleFolder join(const std::filesystem::path& path);
+    [[nodiscard]] static EnsembleFolder join(const std::filesystem::path& path,
+                                             const nlohmann::ordered_json& definition);
 
     EnsembleFolder(EnsembleFolder&& other) noexcept;
     EnsembleFolder& operator=(EnsembleFolder&&) = delete;
@@ -37,17 +41,20 @@ class EnsembleFolder {
     ~EnsembleFolder();
 
     [[nodiscard]] const std::filesystem::path& path() const { return path_; }
+    /// As plan_identity of the definition.
+    [[nodiscard]] const std::string& plan() const { return plan_; }
     /// FOLDER/runs/000012.run
     [[nodiscard]] std::filesystem::path run_file(std::size_t run) const;
 
   private:
     EnsembleFolder() = default;
     std::filesystem::path path_;
+    std::string plan_;
     int lock_ = -1;
 };
 
-/// Puts the runs of `from` into `to` as well (as links where the file system has them). Errors: a run that both have
-/// with different results, a file that cannot be created.
+/// Puts the runs of `from` into `to` as well (as links where the file system has them). Damaged ones of `to` are
+/// replaced. Errors: a run that both have with different results, a damaged one, a file that cannot be created.
 [[nodiscard]] Status take_runs(const std::filesystem::path& from, const EnsembleFolder& to, std::size_t count);
 
 /// ensemble.json of a folder. Errors: missing, not of that kind.

@@ -238,8 +238,9 @@ double percentile(std::vector<double>& values, double percent) {
     return values[rank_of(values.size(), percent)];
 }
 
-Result<Reduction> reduce(const std::vector<fs::path>& folders, std::size_t count, const Thresholds& thresholds,
-                         const report::IntensityGuideline& guideline, std::size_t memory) {
+Result<Reduction> reduce(const std::vector<fs::path>& folders, std::size_t count, const std::string& plan,
+                         const Thresholds& thresholds, const report::IntensityGuideline& guideline,
+                         std::size_t memory) {
     Reduction out;
     std::vector<fs::path> files;
     for (std::size_t run = 0; run < count; ++run) {
@@ -251,9 +252,10 @@ Result<Reduction> reduce(const std::vector<fs::path>& folders, std::size_t count
             out.missing.push_back(run);
             continue;
         }
-        TALUS_ASSIGN(RunRecord record, read_run_record(*there / name));
-        record.complete() ? ++out.complete : ++out.failed;
-        out.runs.push_back(std::move(record));
+        Result<RunRecord> record = read_run_record(*there / name, plan, run);
+        if (!record) return Error{record.error().message + "; the command that made it makes the run again"};
+        record->complete() ? ++out.complete : ++out.failed;
+        out.runs.push_back(*std::move(record));
         files.push_back(*there / name);
     }
     TALUS_ASSIGN(const Stack stack, stack_of(out.runs, files));

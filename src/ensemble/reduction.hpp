@@ -50,13 +50,13 @@ inline constexpr std::array<double, 3> mapped_percentiles = {5, 50, 95};
 /// The smallest value that at least `percent` of the values do not exceed (nearest rank). Orders the values.
 [[nodiscard]] double percentile(std::vector<double>& values, double percent);
 
-/// Reads the records of runs 0 to count - 1 wherever one of the folders has them. Maps are worked through in bands of
-/// rows that fit into `memory` bytes whatever the number of runs, so results are exact and hang neither on the order of
-/// the runs nor on the machine that made them; those of intensity run by run. In percentiles of depth, speed and
-/// pressure a run that never came to a place counts as 0, in those of arrival as never. Errors: a record cannot be
-/// read, maps of different cells.
+/// Reads the records of runs 0 to count - 1 of `plan` (plan_identity) wherever one of the folders has them. Maps are
+/// worked through in bands of rows that fit into `memory` bytes whatever the number of runs, so results are exact and
+/// hang neither on the order of the runs nor on the machine that made them; those of intensity run by run. In
+/// percentiles of depth, speed and pressure a run that never came to a place counts as 0, in those of arrival as never.
+/// Errors: a record cannot be read or is damaged, maps of different cells.
 [[nodiscard]] Result<Reduction> reduce(const std::vector<std::filesystem::path>& folders, std::size_t count,
-                                       const Thresholds& thresholds,
+                                       const std::string& plan, const Thresholds& thresholds,
                                        const report::IntensityGuideline& guideline = report::intensity_guideline({}),
                                        std::size_t memory = std::size_t{256} << 20);
 

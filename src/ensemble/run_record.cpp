@@ -3,14 +3,17 @@
 #include <bit>
 #include <cmath>
 #include <cstring>
+#include <exception>
 #include <fstream>
+#include <limits>
+#include <string_view>
 #include <system_error>
-#include <unistd.h>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include "core/angle.hpp"
+#include "core/hash.hpp"
 #include "core/number_or_null.hpp"
 #include "core/try.hpp"
 #include "ensemble/predict.hpp"
@@ -23,6 +26,30 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 static_assert(std::endian::native == std::endian::little, "records are written as the machine holds them");
+
+constexpr std::string_view signature = "talus run 2 ";  // before the checksum
+
+std::string first_line(std::uint64_t checksum) {
+    return std::string(signature) + to_hex(checksum) + "\n";
+}
+
+/// Of everything after the first line. FNV-1a maps states to states one to one, so one changed byte changes the sum.
+std::uint64_t checksum_of(std::ifstream& in) {
+    StateHash sum;
+    std::vector<char> block(std::size_t{1} << 16);
+    while (in.read(block.data(), static_cast<std::streamsize>(block.size())) || in.gcount() > 0) {
+        sum.add(block.data(), static_cast<std::size_t>(in.gcount()));
+    }
+    return sum.value();
+}
+
+/// Of the maps that belong to a record; more than any file has if they cannot be.
+std::uintmax_t map_bytes(const RunRecord& record) {
+    const GridGeometry& g = record.geometry;
+    if (g.columns < 0 || g.rows < 0) return std::numeric_limits<std::uintmax_t>::max();
+    const auto cells = static_cast<std::uintmax_t>(g.columns) * static_cast<std::uintmax_t>(g.rows);
+    return record.complete() ? recorded_maps.size() * cells * sizeof(float) : 0;
+}
 
 double number_or_never(const Json& json) {
     return json.is_number() ? json.get<double>() : observe::never;
@@ -49,11 +76,12 @@ observe::BuildingImpact building_of(const Json& j) {
             number_or_never(j.at(4)),   number_or_never(j.at(5)), number_or_never(j.at(6))};
 }
 
-Json header_json(const RunRecord& r) {
+Json header_json(const std::string& plan, const RunRecord& r) {
     Json buildings = Json::array();
     for (const observe::BuildingImpact& b : r.buildings) buildings.push_back(building_json(b));
     const GridGeometry& g = r.geometry;
-    return {{"run", r.run},
+    return {{"plan", plan},
+            {"run", r.run},
             {"fault", r.fault},
             {"values", r.values},
             {"results", numbers_json(r.results)},
@@ -125,8 +153,11 @@ std::vector<double> measure(const scene::Scene& scene, const run::RunResult& res
     return values;
 }
 
-Status write_run_record(const std::filesystem::path& file, const RunRecord& record, const observe::HazardMaps& maps) {
-    std::string text = header_json(record).dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
+Status write_run_record(const std::filesystem::path& file, const std::string& plan, const RunRecord& record,
+                        const observe::HazardMaps& maps) {
+    std::string text = first_line(0);
+    const std::size_t begin = text.size();
+    text += header_json(plan, record).dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
     for (const auto map : recorded_maps) {
         const std::vector<float>& values = (maps.*map).values;
         if (values.size() != record.geometry.size()) continue;  // a run that failed has none
@@ -134,29 +165,39 @@ Status write_run_record(const std::filesystem::path& file, const RunRecord& reco
         text.resize(at + values.size() * sizeof(float));
         std::memcpy(text.data() + at, values.data(), values.size() * sizeof(float));
     }
-    const std::filesystem::path unfinished =
-        file.parent_path() / fmt::format(".{}.{}", file.filename().string(), getpid());
-    TALUS_TRY(products::write_text_file(unfinished, text));
-    std::error_code error;
-    std::filesystem::rename(unfinished, file, error);
-    if (error) return Error{fmt::format("{}: cannot be given its name: {}", file.string(), error.message())};
-    return {};
+    StateHash sum;
+    sum.add(text.data() + begin, text.size() - begin);
+    text.replace(0, begin, first_line(sum.value()));
+    return products::replace_text_file(file, text);
 }
 
-Result<RunRecord> read_run_record(const std::filesystem::path& file) {
+Result<RunRecord> read_run_record(const std::filesystem::path& file, const std::string& plan, std::size_t run,
+                                  Verify verify) {
     std::ifstream in(file, std::ios::binary);
-    std::string line;
-    if (!in || !std::getline(in, line)) return Error{file.string() + ": cannot be read; delete it to run it again"};
-    const Json json = Json::parse(line, nullptr, false);
-    try {
-        RunRecord record = record_of(json);
-        std::error_code error;
-        const auto bytes = std::filesystem::file_size(file, error);
-        const std::size_t maps = record.complete() ? recorded_maps.size() * record.geometry.size() * sizeof(float) : 0;
-        if (!error && bytes == line.size() + 1 + maps) return record;
-    } catch (const Json::exception&) {  // falls through to the message below
+    std::string first, header;
+    if (!in || !std::getline(in, first)) return Error{file.string() + ": cannot be read"};
+    const std::streampos begin = in.tellg();
+    if (!first.starts_with(signature)) return Error{file.string() + ": is no record of a run, or of another version"};
+    if (verify == Verify::bytes) {
+        if (first + "\n" != first_line(checksum_of(in))) {
+            return Error{file.string() + ": is damaged: its checksum is not that of its contents"};
+        }
+        in.clear();
+        in.seekg(begin);
     }
-    return Error{file.string() + ": is no record of a run, or cut off; delete it to run it again"};
+    std::getline(in, header);
+    try {
+        const Json json = Json::parse(header);
+        if (json.at("plan") != plan) return Error{file.string() + ": is a run of another plan"};
+        RunRecord record = record_of(json);
+        if (record.run != run) return Error{fmt::format("{}: is run {}, not run {}", file.string(), record.run, run)};
+        if (in.good() &&
+            std::filesystem::file_size(file) - static_cast<std::uintmax_t>(in.tellg()) == map_bytes(record))
+            return record;
+        return Error{file.string() + ": is no record of a run"};
+    } catch (const std::exception&) {  // another program has written it, checksum and all
+        return Error{file.string() + ": is no record of a run"};
+    }
 }
 
 Result<std::vector<float>> read_map_rows(const std::filesystem::path& file, const RunRecord& record, std::size_t map,
@@ -166,9 +207,9 @@ Result<std::vector<float>> read_map_rows(const std::filesystem::path& file, cons
     const std::size_t columns = static_cast<std::size_t>(record.geometry.columns);
     std::vector<float> rows(columns * static_cast<std::size_t>(std::max(0, last - first)));
     if (rows.empty()) return rows;
-    if (in && std::getline(in, line)) {
+    if (in && std::getline(in, line) && std::getline(in, line)) {
         const std::size_t cells = map * record.geometry.size() + columns * static_cast<std::size_t>(first);
-        in.seekg(static_cast<std::streamoff>(line.size() + 1 + cells * sizeof(float)));
+        in.seekg(static_cast<std::streamoff>(cells * sizeof(float)), std::ios::cur);
         in.read(reinterpret_cast<char*>(rows.data()), static_cast<std::streamsize>(rows.size() * sizeof(float)));
     }
     if (!in) return Error{file.string() + ": cannot be read"};

@@ -12,8 +12,9 @@
 #include "run/run_result.hpp"
 #include "scene/scene.hpp"
 
-/// The record of a run in an ensemble: a small file with a line of JSON (values, scalar results, buildings) and the
-/// peak maps as they are, so that it can be evaluated again without a new run.
+/// The record of a run in an ensemble: a file with a line that has the checksum of all that follows, a line of JSON
+/// (which run of which plan, values, scalar results, buildings) and the peak maps as they are, so that it can be
+/// evaluated again without a new run.
 namespace talus::ensemble {
 
 /// A scalar result of a run.
@@ -48,13 +49,19 @@ inline constexpr std::array<Grid<float> observe::HazardMaps::*, 5> recorded_maps
     &observe::HazardMaps::peak_depth, &observe::HazardMaps::peak_speed, &observe::HazardMaps::peak_pressure,
     &observe::HazardMaps::arrival_time, &observe::HazardMaps::deposit_depth};
 
-/// Writes under a temporary name first, so that a file with the final name is complete. `maps` all have
-/// record.geometry.
-[[nodiscard]] Status write_run_record(const std::filesystem::path& file, const RunRecord& record,
-                                      const observe::HazardMaps& maps);
+/// Writes under a temporary name first, so that a file with the final name is complete. `plan`: as plan_identity;
+/// `maps` all have record.geometry.
+[[nodiscard]] Status write_run_record(const std::filesystem::path& file, const std::string& plan,
+                                      const RunRecord& record, const observe::HazardMaps& maps);
 
-/// The record without its maps. Errors: missing, truncated, not such a file.
-[[nodiscard]] Result<RunRecord> read_run_record(const std::filesystem::path& file);
+enum class Verify {
+    bytes,   ///< also the checksum, for which the whole file is read
+    header,  ///< of a file that this process has verified or written before
+};
+
+/// Run `run` of the plan without its maps. Errors: missing, damaged, of another plan or run.
+[[nodiscard]] Result<RunRecord> read_run_record(const std::filesystem::path& file, const std::string& plan,
+                                                std::size_t run, Verify verify = Verify::bytes);
 
 /// Rows [first, last) of one map of the record (index into recorded_maps), NaN where debris never came.
 [[nodiscard]] Result<std::vector<float>> read_map_rows(const std::filesystem::path& file, const RunRecord& record,

@@ -76,6 +76,22 @@ TEST(Ensemble, AnInterruptedOneGoesOn) {
     EXPECT_TRUE(fs::exists(scene.folder() / "result/report.html"));
 }
 
+TEST(Ensemble, ADamagedRunIsMadeAgainWithANote) {
+    const SmallScene scene;
+    const ProgramOptions here{.folder = scene.folder()};
+    ASSERT_EQ(run_program(ensemble_command("result", {"--quiet"}), here).exit_code, 0);
+    const std::string before = read_text(scene.folder() / "result/statistics.json");
+    fs::copy_file(scene.folder() / "result/runs/000000.run", scene.folder() / "result/runs/000001.run",
+                  fs::copy_options::overwrite_existing);
+    const auto merged = run_program({"ensemble", "merge", "result"}, here);
+    EXPECT_EQ(merged.exit_code, 1);
+    EXPECT_THAT(merged.error, HasSubstr("000001.run: is run 0, not run 1"));
+    const auto again = run_program(ensemble_command("result", {"--quiet"}), here);
+    EXPECT_EQ(again.exit_code, 0) << again.error;
+    EXPECT_EQ(again.error, "talus: note: result/runs/000001.run: is run 0, not run 1; the run is made again\n");
+    EXPECT_EQ(read_text(scene.folder() / "result/statistics.json"), before);
+}
+
 TEST(Ensemble, BadInputIsOneLineAndLeavesNothing) {
     const SmallScene scene;
     const auto before = scene.files();

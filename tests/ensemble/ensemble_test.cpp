@@ -39,6 +39,9 @@ class EnsembleTest : public scene::SceneFolder {
     [[nodiscard]] Result<EnsembleFolder> opened(const std::string& name) const {
         return EnsembleFolder::open(folder / name, ensemble_definition(planned(), source, *scene, "valley"));
     }
+    [[nodiscard]] std::string identity() const {
+        return plan_identity(ensemble_definition(planned(), source, *scene, "valley"));
+    }
     EnsembleOutcome run(const std::string& name, const EnsembleOptions& options) const {
         auto made = opened(name);
         EXPECT_TRUE(made) << (made ? "" : made.error().message);
@@ -49,7 +52,7 @@ class EnsembleTest : public scene::SceneFolder {
     [[nodiscard]] std::vector<std::string> hashes(const std::vector<std::string>& names) const {
         std::vector<std::filesystem::path> folders;
         for (const auto& name : names) folders.push_back(folder / name);
-        const auto reduction = reduce(folders, plan.runs, plan.thresholds);
+        const auto reduction = reduce(folders, plan.runs, identity(), plan.thresholds);
         EXPECT_TRUE(reduction) << (reduction ? "" : reduction.error().message);
         std::vector<std::string> list;
         for (const RunRecord& r : reduction->runs) list.push_back(r.hash + r.fault);
@@ -90,13 +93,40 @@ TEST_F(EnsembleTest, GoesOnWhereItStopped) {
     EXPECT_EQ(hashes({"part"}), hashes({"whole"}));
 }
 
+TEST_F(EnsembleTest, DamagedRunsAndThoseOfOthersAreMadeAgain) {
+    run("mended", {});
+    const auto expected = hashes({"mended"});
+    const auto file = [&](const std::string& name, int number) {
+        return folder / name / "runs" / fmt::format("{:06}.run", number);
+    };
+    std::string text = test::read_text(file("mended", 0));
+    text.back() = static_cast<char>(text.back() ^ 1);
+    write("mended/runs/000000.run", text);
+    std::filesystem::copy_file(file("mended", 1), file("mended", 2), std::filesystem::copy_options::overwrite_existing);
+    plan.seed = 2;
+    run("other", {});
+    std::filesystem::copy_file(file("other", 3), file("mended", 3), std::filesystem::copy_options::overwrite_existing);
+    plan.seed = 1;
+    write("mended/runs/.000004.run.unfinished-1", "left by a process that was killed");
+    std::vector<std::string> notes;
+    EnsembleOptions options;
+    options.on_refused = [&](const std::string& why) { notes.push_back(why); };
+    EXPECT_EQ(run("mended", options).resumed, 3u);
+    ASSERT_EQ(notes.size(), 3u);
+    EXPECT_THAT(notes[0], HasSubstr("000000.run: is damaged"));
+    EXPECT_THAT(notes[1], HasSubstr("000002.run: is run 1, not run 2; the run is made again"));
+    EXPECT_THAT(notes[2], HasSubstr("000003.run: is a run of another plan"));
+    EXPECT_EQ(hashes({"mended"}), expected);
+    EXPECT_FALSE(std::filesystem::exists(folder / "mended/runs/.000004.run.unfinished-1"));
+}
+
 TEST_F(EnsembleTest, ARunThatFailsIsRecordedAndTheRestGoOn) {
     plan.factors.clear();
     ASSERT_TRUE(add_factor(plan, "solver.particle_limit=10,100000"));
     const EnsembleOutcome outcome = run("some", {});
     EXPECT_EQ(outcome.done + outcome.failed, 6u);
     EXPECT_EQ(outcome.failed, 3u);
-    const auto reduction = reduce({folder / "some"}, 6, plan.thresholds);
+    const auto reduction = reduce({folder / "some"}, 6, identity(), plan.thresholds);
     ASSERT_TRUE(reduction);
     for (const RunRecord& r : reduction->runs) {
         EXPECT_EQ(r.complete(), r.values[0] == "100000");
@@ -143,7 +173,7 @@ TEST_F(EnsembleTest, AReturnPeriodMakesHazardZones) {
     run("zoned", {.runs_at_once = 2});
     const auto written = [&] {
         const PlannedRuns runs = planned();
-        auto reduction = reduce({folder / "zoned"}, 6, plan.thresholds);
+        auto reduction = reduce({folder / "zoned"}, 6, identity(), plan.thresholds);
         const EnsembleResult result = summarise(*scene, runs, *std::move(reduction));
         const Status status = write_ensemble(result, folder / "zoned");
         EXPECT_TRUE(status) << status.error().message;
@@ -215,7 +245,7 @@ TEST_F(EnsembleTest, WeightsOfScenariosAreThoseOfTheRuns) {
 TEST_F(EnsembleTest, WritesMapsTablesAndAReport) {
     run("done", {.runs_at_once = 2});
     const PlannedRuns runs = planned();
-    auto reduction = reduce({folder / "done"}, 6, plan.thresholds);
+    auto reduction = reduce({folder / "done"}, 6, identity(), plan.thresholds);
     ASSERT_TRUE(reduction);
     const EnsembleResult result = summarise(*scene, runs, *std::move(reduction));
     const Status written = write_ensemble(result, folder / "done");

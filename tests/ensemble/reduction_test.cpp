@@ -38,15 +38,16 @@ class ReductionTest : public scene::SceneFolder {
         record.results = {10.0 * static_cast<double>(run), observe::never};
         record.buildings = {{"shed", pressure > 0, pressure > 0 ? 4.0 : observe::never, 1, pressure, 0.5, 0}};
         record.geometry = g;
-        ASSERT_TRUE(write_run_record(file(run), record, maps));
+        ASSERT_TRUE(write_run_record(file(run), plan, record, maps));
     }
     void write_failed(std::size_t run) const {
         RunRecord record;
         record.run = run;
         record.fault = "time step too small";
         record.values = {"0.9"};
-        ASSERT_TRUE(write_run_record(file(run), record, {}));
+        ASSERT_TRUE(write_run_record(file(run), plan, record, {}));
     }
+    const std::string plan = "of this plan";
     [[nodiscard]] std::filesystem::path file(std::size_t run) const {
         return folder / "runs" / fmt::format("{:06}.run", run);
     }
@@ -64,7 +65,7 @@ TEST_F(ReductionTest, CountsRunsAboveThresholdsWhereverTheirMapsLie) {
     write_run(1, 1, {3, 0.4F});
     write_run(2, -1, {0.2F, 0.5F});
     write_failed(3);
-    const auto r = reduce({folder}, 5, {{0.5}, {1}, {1.5}});
+    const auto r = reduce({folder}, 5, plan, {{0.5}, {1}, {1.5}});
     ASSERT_TRUE(r) << r.error().message;
     EXPECT_EQ(r->complete, 3u);
     EXPECT_EQ(r->failed, 1u);
@@ -83,7 +84,7 @@ TEST_F(ReductionTest, CountsRunsOfAnIntensityOrAHigherOne) {
     write_run(1, 1, {0.3F});
     write_run(2, -1, {0.2F, 1.5F});
     write_failed(3);
-    const auto r = reduce({folder}, 4, {});
+    const auto r = reduce({folder}, 4, plan, {});
     ASSERT_TRUE(r) << r.error().message;
     ASSERT_EQ(r->intensity.size(), 2u);
     const float third = 1.0F / 3;
@@ -95,7 +96,7 @@ TEST_F(ReductionTest, CountsRunsOfAnIntensityOrAHigherOne) {
     EXPECT_EQ(r->intensity[1].values[0], 0);
     EXPECT_EQ(r->intensity[1].values[1], third) << "high in run 2 alone";
     EXPECT_EQ(r->intensity[1].values[2], third);
-    const auto flood = reduce({folder}, 4, {}, report::intensity_guideline(params::GuidelineChoice::swiss_flood));
+    const auto flood = reduce({folder}, 4, plan, {}, report::intensity_guideline(params::GuidelineChoice::swiss_flood));
     ASSERT_TRUE(flood);
     ASSERT_EQ(flood->intensity.size(), 3u);
     EXPECT_EQ(flood->intensity[2].values[2], third) << "2 m at 4 m/s, and 0.3 m at 0.6 m/s";
@@ -106,7 +107,7 @@ TEST_F(ReductionTest, PercentilesCountRunsThatNeverCameAsNothingAndInArrivalAsNe
     write_run(1, 0, {3});
     write_run(2, 0, {2});
     write_run(3, 5, {9});
-    const auto r = reduce({folder}, 4, {});
+    const auto r = reduce({folder}, 4, plan, {});
     ASSERT_TRUE(r);
     const auto at = [&](std::size_t map, double level, int column) {
         return find(*r, EnsembleMap::Kind::percentile, map, level).grid.at(column, 0);
@@ -127,12 +128,13 @@ TEST_F(ReductionTest, HangsNeitherOnTheMemoryNorOnTheFoldersOfTheRuns) {
         write_run(run, static_cast<int>(run % 5),
                   {0.1F * static_cast<float>(run), 2.0F - 0.1F * static_cast<float>(run)});
     }
-    const auto one = reduce({folder}, 20, {});
+    const auto one = reduce({folder}, 20, plan, {});
     const auto other = folder / "other";
     std::filesystem::create_directories(other / "runs");
     for (std::size_t run = 1; run < 20; run += 2)
         std::filesystem::rename(file(run), other / "runs" / file(run).filename());
-    const auto two = reduce({folder, other}, 20, {}, report::intensity_guideline({}), 1);  // a byte: one row at a time
+    const auto two =
+        reduce({folder, other}, 20, plan, {}, report::intensity_guideline({}), 1);  // a byte: one row at a time
     ASSERT_TRUE(one && two);
     ASSERT_EQ(one->maps.size(), two->maps.size());
     for (std::size_t m = 0; m < one->maps.size(); ++m) {
@@ -145,7 +147,7 @@ TEST_F(ReductionTest, HangsNeitherOnTheMemoryNorOnTheFoldersOfTheRuns) {
 TEST_F(ReductionTest, BuildingsHaveOdds) {
     for (std::size_t run = 0; run < 10; ++run)
         write_run(run, 0, {1}, run < 4 ? 10e3 * static_cast<double>(run + 1) : 0);
-    const auto r = reduce({folder}, 10, {{1}, {1}, {15, 30}});
+    const auto r = reduce({folder}, 10, plan, {{1}, {1}, {15, 30}});
     ASSERT_TRUE(r);
     ASSERT_EQ(r->buildings.size(), 1u);
     const BuildingOdds& b = r->buildings[0];
@@ -162,7 +164,7 @@ TEST_F(ReductionTest, BuildingsHaveOdds) {
 
 TEST_F(ReductionTest, ARecordComesBackAsItWasAndACutOneIsRefused) {
     write_run(2, 3, {1, nan_value, 5});
-    const auto record = read_run_record(file(2));
+    const auto record = read_run_record(file(2), plan, 2);
     ASSERT_TRUE(record) << record.error().message;
     EXPECT_EQ(record->run, 2u);
     EXPECT_EQ(record->results[0], 20);
@@ -173,9 +175,42 @@ TEST_F(ReductionTest, ARecordComesBackAsItWasAndACutOneIsRefused) {
     EXPECT_TRUE(std::isnan((*row)[1]));
 
     std::filesystem::resize_file(file(2), std::filesystem::file_size(file(2)) - 1);
-    const auto cut = reduce({folder}, 3, {});
+    const auto cut = reduce({folder}, 3, plan, {});
     ASSERT_FALSE(cut);
-    EXPECT_THAT(cut.error().message, HasSubstr("000002.run: is no record of a run, or cut off"));
+    EXPECT_THAT(cut.error().message, HasSubstr("000002.run: is damaged: its checksum is not that of its contents"));
+}
+
+TEST_F(ReductionTest, EveryBitOfARecordCounts) {
+    write_run(2, 3, {1, nan_value, 5}, 20e3);
+    const std::string good = test::read_text(file(2));
+    ASSERT_TRUE(read_run_record(file(2), plan, 2));
+    for (std::size_t bit = 0; bit < 8 * good.size(); ++bit) {
+        std::string bad = good;
+        bad[bit / 8] = static_cast<char>(bad[bit / 8] ^ (1 << bit % 8));
+        write("runs/000002.run", bad);
+        EXPECT_FALSE(read_run_record(file(2), plan, 2)) << "bit " << bit;
+    }
+    EXPECT_TRUE(read_run_record(file(2), plan, 2, Verify::header)) << "the last byte is the checksum's to find";
+    write("runs/000002.run", good + "x");
+    EXPECT_FALSE(read_run_record(file(2), plan, 2));
+    write("runs/000002.run", "");
+    EXPECT_FALSE(read_run_record(file(2), plan, 2));
+}
+
+TEST_F(ReductionTest, ARecordIsOfOneRunOfOnePlan) {
+    write_run(2, 3, {1});
+    const auto why = [](const Result<RunRecord>& record) {
+        return record ? std::string("(accepted)") : record.error().message;
+    };
+    EXPECT_THAT(why(read_run_record(file(2), "another", 2)), HasSubstr("000002.run: is a run of another plan"));
+    for (const Verify verify : {Verify::bytes, Verify::header}) {
+        EXPECT_THAT(why(read_run_record(file(2), plan, 1, verify)), HasSubstr("000002.run: is run 2, not run 1"));
+    }
+    write_run(0, 3, {1});
+    std::filesystem::copy_file(file(2), file(1));
+    const auto r = reduce({folder}, 3, plan, {});
+    ASSERT_FALSE(r) << "run 2 would count twice";
+    EXPECT_THAT(r.error().message, HasSubstr("000001.run: is run 2, not run 1; the command that made it makes"));
 }
 
 TEST_F(ReductionTest, PercentilesAreNearestRanks) {
