@@ -1,13 +1,18 @@
+#include <algorithm>
+#include <array>
 #include <cstdio>
 #include <exception>
 #include <new>
 #include <signal.h>
 #include <sstream>
 #include <string>
+#include <string_view>
+#include <unistd.h>
 #include <vector>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "command.hpp"
 #include "exit_code.hpp"
@@ -37,7 +42,8 @@ Examples:
 
 Exit codes:
     0  complete
-    1  the machine failed: disk full, out of memory
+    1  the machine failed: disk full, out of memory. A reader of what is printed that ends early, such as head, is
+       no failure
     2  bad input: command line, scene or a file it names; nothing was written
     3  a step could not be trusted (fault); the results so far are written, marked partial
     4  talus validate: a case failed
@@ -53,6 +59,18 @@ std::string deepest_command(const CLI::App& app) {
         name += " " + command->get_name();
     }
     return name;
+}
+
+/// A misspelt variable would be ignored in silence.
+Status check_environment() {
+    constexpr std::array<std::string_view, 2> known = {"TALUS_DATA", "TALUS_SIMD"};
+    for (char** entry = environ; *entry != nullptr; ++entry) {
+        const std::string_view variable = *entry;
+        const std::string_view name = variable.substr(0, variable.find('='));
+        if (!name.starts_with("TALUS_") || std::find(known.begin(), known.end(), name) != known.end()) continue;
+        return Error{fmt::format("environment variable {} is unknown; talus reads {}", name, fmt::join(known, ", "))};
+    }
+    return simd::choose_instruction_set_of_environment();
 }
 
 int talus_main(int argc, char** argv) {
@@ -78,8 +96,8 @@ int talus_main(int argc, char** argv) {
         return fail(exit_code::bad_input, fmt::format("{}; see {} --help", error.what(), deepest_command(app)));
     }
 
-    if (const Status chosen = simd::choose_instruction_set_of_environment(); !chosen) {
-        return fail(exit_code::bad_input, chosen.error().message);
+    if (const Status checked = check_environment(); !checked) {
+        return fail(exit_code::bad_input, checked.error().message);
     }
     for (const Command& command : commands) {
         if (*command.app) return command.run();
@@ -100,6 +118,6 @@ int main(int argc, char** argv) {
         return talus::cli::fail(talus::cli::exit_code::failure,
                                 "out of memory; set a larger solver.particle_spacing_m or a smaller terrain.extent");
     } catch (const std::exception& error) {
-        return talus::cli::fail(talus::cli::exit_code::failure, error.what());
+        return talus::cli::fail(talus::cli::exit_code::failure, std::string("ended unexpectedly: ") + error.what());
     }
 }

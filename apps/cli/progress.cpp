@@ -12,6 +12,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/number_or_null.hpp"
+#include "core/visible_text.hpp"
 
 namespace talus::cli {
 namespace {
@@ -111,16 +112,16 @@ void ProgressReporter::report(const run::Progress& progress, const std::optional
         case ProgressStyle::none:
             break;
         case ProgressStyle::bar:
-            write(stderr, "\r" + bar_text(progress, series) + "\x1b[K");
+            write(stderr, "\r" + visible(bar_text(progress, series)) + "\x1b[K");
             drawn_ = true;
             next_ = now + bar_interval;
             break;
         case ProgressStyle::lines:
-            write(stderr, line_text(progress, series));
+            write(stderr, visible(line_text(progress, series)));
             next_ = now + line_interval;
             break;
         case ProgressStyle::json:
-            write(stdout, json_text(progress, series) + "\n");
+            write(stdout, visible(json_text(progress, series)) + "\n");
             next_ = now + json_interval;
             break;
     }
@@ -128,10 +129,10 @@ void ProgressReporter::report(const run::Progress& progress, const std::optional
 
 void ProgressReporter::say(const std::string& what) {
     if (style_ == ProgressStyle::bar) {
-        write(stderr, "\r" + what + "\x1b[K");
+        write(stderr, "\r" + visible(what) + "\x1b[K");
         drawn_ = true;
     } else if (style_ == ProgressStyle::lines) {
-        write(stderr, what + "\n");
+        write(stderr, visible(what) + "\n");
     }
 }
 

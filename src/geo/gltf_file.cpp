@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "core/try.hpp"
+#include "geo/json_text.hpp"
 #include "geo/mesh_faces.hpp"
 
 namespace talus::geo {
@@ -153,10 +154,9 @@ Result<GltfFile> GltfFile::open(const std::string& file) {
     gltf.file_ = file;
     TALUS_ASSIGN(gltf.text_, read_mesh_text(file));
     TALUS_TRY(gltf.split_container());
-    const auto begin = gltf.text_.begin() + static_cast<std::ptrdiff_t>(gltf.json_begin_);
-    gltf.root_ = std::make_unique<const json>(
-        json::parse(begin, begin + static_cast<std::ptrdiff_t>(gltf.json_size_), nullptr, false));
-    if (gltf.root_->is_discarded()) return Error{file + ": is no glTF file; what it says is not valid JSON"};
+    Result<json> root = parse_json(std::string_view(gltf.text_).substr(gltf.json_begin_, gltf.json_size_));
+    if (!root) return Error{file + ": is no glTF file; what it says " + root.error().message};
+    gltf.root_ = std::make_unique<const json>(*std::move(root));
     TALUS_TRY(gltf.check_version());
     TALUS_TRY(gltf.check_extensions());
     TALUS_TRY(gltf.read_buffers());

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/try.hpp"
+#include "geo/json_text.hpp"
 #include "geo/mesh_faces.hpp"
 
 namespace talus::geo {
@@ -183,9 +184,9 @@ class CityReader {
 
 Result<std::vector<MeshBuilding>> read_city_json(const std::string& file, const Crs& terrain_crs) {
     TALUS_ASSIGN(const std::string text, read_mesh_text(file));
-    const json city = json::parse(text, nullptr, false);
-    if (city.is_discarded()) return Error{file + ": is not valid JSON"};
-    CityReader reader(file, city);
+    const Result<json> city = parse_json(text);
+    if (!city) return Error{file + ": " + city.error().message};
+    CityReader reader(file, *city);
     TALUS_TRY(reader.check(terrain_crs));
     TALUS_TRY(reader.read_vertices());
     return reader.read_buildings();

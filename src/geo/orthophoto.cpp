@@ -125,14 +125,18 @@ Result<Picture> open_picture(const std::string& file, const Crs& crs, const Exte
     if (own.IsEmpty() && !target.IsEmpty()) words.insert(words.end(), {"-a_srs", picture.target_crs});
     picture.name = memory_name("vrt");
     picture.view = translated(data, picture.name, words);
-    if (!picture.view) return Error{fmt::format("{}: {}", file, messages.failure_or("cannot be read as a picture"))};
+    if (!picture.view)
+        return Error{
+            fmt::format("{}: {}", file, "cannot be read as a picture: " + messages.failure_or("GDAL gave no reason"))};
 
     // Its position and resolution in the terrain's system.
     std::vector<std::string> ask{"-of", "VRT"};
     if (!target.IsEmpty()) ask.insert(ask.end(), {"-t_srs", picture.target_crs});
     const GDALDatasetUniquePtr placed = warped(*picture.view, ask);
     if (!placed || placed->GetGeoTransform(place.data()) != CE_None) {
-        return Error{fmt::format("{}: {}", file, messages.failure_or("cannot be brought into the terrain's system"))};
+        return Error{
+            fmt::format("{}: {}", file,
+                        "cannot be brought into the terrain's system: " + messages.failure_or("GDAL gave no reason"))};
     }
     picture.pixel = std::min(std::abs(place[1]), std::abs(place[5]));
     const double east = place[0] + place[1] * placed->GetRasterXSize();
@@ -196,7 +200,8 @@ Result<Orthophoto> read_orthophoto(const std::string& file, const Crs& crs, cons
     if (!picture.target_crs.empty()) words.insert(words.end(), {"-t_srs", picture.target_crs});
     const GDALDatasetUniquePtr cut = warped(*picture.view, words);
     if (!cut || messages.has_failure()) {
-        return Error{fmt::format("{}: {}", file, messages.failure_or("its pixels cannot be read"))};
+        return Error{
+            fmt::format("{}: {}", file, "its pixels cannot be read: " + messages.failure_or("GDAL gave no reason"))};
     }
     photo.type = "image/webp";
     photo.bytes = encoded(*cut, "WEBP", {"QUALITY=80"});
@@ -204,7 +209,8 @@ Result<Orthophoto> read_orthophoto(const std::string& file, const Crs& crs, cons
         photo.type = "image/png";
         photo.bytes = encoded(*cut, "PNG", {});
     }
-    if (photo.bytes.empty()) return Error{fmt::format("{}: {}", file, messages.failure_or("cannot be encoded"))};
+    if (photo.bytes.empty())
+        return Error{fmt::format("{}: {}", file, "cannot be encoded: " + messages.failure_or("GDAL gave no reason"))};
     return photo;
 }
 

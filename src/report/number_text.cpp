@@ -6,10 +6,12 @@
 
 #include <fmt/format.h>
 
+#include "core/visible_text.hpp"
+
 namespace talus::report {
 
 std::string escape(std::string_view text) {
-    return kainjow::mustache::html_escape(std::string(text));
+    return kainjow::mustache::html_escape(visible(text));
 }
 
 std::string fixed(double value, int digits) {

@@ -10,6 +10,7 @@
 
 #include <fmt/format.h>
 
+#include "core/visible_text.hpp"
 #include "report/chart.hpp"
 #include "report/number_text.hpp"
 #include "report/table.hpp"
@@ -58,7 +59,7 @@ mustache::data converted(const Json& json) {
         }
         case Json::value_t::string: {
             const auto& text = json.get_ref<const std::string&>();
-            return text.empty() ? mustache::data(false) : mustache::data(text);
+            return text.empty() ? mustache::data(false) : mustache::data(visible(text));
         }
         case Json::value_t::boolean:
             return json.get<bool>();

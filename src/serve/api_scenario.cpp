@@ -138,10 +138,10 @@ void add_scenario_routes(Router& router, Session& session, Exports& exports) {
         return
             [&session, handler](const Request& request, const Respond& respond) { handler(session, request, respond); };
     };
-    router.add({"GET", "/api/scenarios/{s}/frame", Role::viewer, with_session(frame)});
-    router.add({"GET", "/api/scenarios/{s}/impacts", Role::viewer, with_session(impacts)});
-    router.add({"GET", "/api/scenarios/{s}/probe", Role::viewer, with_session(probe)});
-    router.add({"GET", "/api/scenarios/{s}/layers/{name}", Role::viewer, with_session(layer)});
+    router.add({"GET", "/api/scenarios/{s}/frame", Role::viewer, with_session(frame), {"time_s"}});
+    router.add({"GET", "/api/scenarios/{s}/impacts", Role::viewer, with_session(impacts), {"time_s"}});
+    router.add({"GET", "/api/scenarios/{s}/probe", Role::viewer, with_session(probe), {"x_m", "y_m"}});
+    router.add({"GET", "/api/scenarios/{s}/layers/{name}", Role::viewer, with_session(layer), {"time_s"}});
     router.add({"POST", "/api/scenarios/{s}/actions", Role::controller, with_session(action)});
     router.add(
         {"GET", "/api/scenarios/{s}/exports", Role::viewer, [&exports](const Request& request, const Respond& respond) {

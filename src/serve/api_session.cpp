@@ -10,6 +10,7 @@
 #include "serve/api.hpp"
 #include "serve/json_text.hpp"
 #include "serve/openapi.hpp"
+#include "twin/json_keys.hpp"
 
 namespace talus::serve {
 namespace {
@@ -55,27 +56,30 @@ Grid<float> thinned(const Grid<float>& whole, int factor) {
 void add_terrain(Router& router, Session& session) {
     // By thinning factor, so there are only a few. Used by the worker's thread only.
     const auto encoded = std::make_shared<std::map<int, Bytes>>();
-    router.add(
-        {"GET", "/api/terrain", Role::viewer, [&session, encoded](const Request& request, const Respond& respond) {
-             const auto wanted = number_of(request, "max_cells", min_cells, most_cells);
-             if (!wanted) {
-                 respond(error_response(400, wanted.error().message));
-                 return;
-             }
-             const Grid<float>& whole = session.scene()->terrain.elevation();
-             const int factor = thinning(whole.geometry, wanted->value_or(usual_cells));
-             session.worker().post([respond, encoded, factor, scene = session.scene()] {
-                 Bytes& bytes = (*encoded)[factor];
-                 if (!bytes) {
-                     bytes = std::make_shared<const std::string>(
-                         twin::encode_grid(thinned(scene->terrain.elevation(), factor)));
-                 }
-                 Response response;
-                 response.type = "application/octet-stream";
-                 response.body = bytes;
-                 respond(response);
-             });
-         }});
+    router.add({"GET",
+                "/api/terrain",
+                Role::viewer,
+                [&session, encoded](const Request& request, const Respond& respond) {
+                    const auto wanted = number_of(request, "max_cells", min_cells, most_cells);
+                    if (!wanted) {
+                        respond(error_response(400, wanted.error().message));
+                        return;
+                    }
+                    const Grid<float>& whole = session.scene()->terrain.elevation();
+                    const int factor = thinning(whole.geometry, wanted->value_or(usual_cells));
+                    session.worker().post([respond, encoded, factor, scene = session.scene()] {
+                        Bytes& bytes = (*encoded)[factor];
+                        if (!bytes) {
+                            bytes = std::make_shared<const std::string>(
+                                twin::encode_grid(thinned(scene->terrain.elevation(), factor)));
+                        }
+                        Response response;
+                        response.type = "application/octet-stream";
+                        response.body = bytes;
+                        respond(response);
+                    });
+                },
+                {"max_cells"}});
 }
 
 void add_orthophoto(Router& router, Session& session) {
@@ -108,6 +112,7 @@ Result<std::string> read_copy_of(const std::string& body) {
     const auto name = wanted.is_object() ? wanted.find("copy_of") : wanted.end();
     if (name == wanted.end() || !name->is_string())
         return Error{"the body is an object with copy_of, a scenario's name"};
+    TALUS_TRY(twin::check_keys(wanted, {"copy_of"}));
     return name->get<std::string>();
 }
 
@@ -154,6 +159,10 @@ void control(Session& session, const Request& request, const Respond& respond) {
     const auto wanted = parse_json(request.body);
     if (!wanted) {
         respond(error_response(400, wanted.error().message));
+        return;
+    }
+    if (const Status known = wanted->is_object() ? twin::check_keys(*wanted, {"do", "secret"}) : Status(); !known) {
+        respond(error_response(400, known.error().message));
         return;
     }
     const auto text_of = [&](const char* key) -> std::string {

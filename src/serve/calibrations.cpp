@@ -15,6 +15,7 @@
 #include "core/try.hpp"
 #include "ensemble/ensemble_folder.hpp"
 #include "params/fields.hpp"
+#include "twin/json_keys.hpp"
 #include "twin/setup.hpp"
 
 namespace talus::serve {
@@ -44,6 +45,7 @@ const params::Parameter* find_live_parameter(const std::string& key) {
 /// One of "parameters" of the body.
 Result<ensemble::Factor> read_factor(const json& entry) {
     if (!entry.is_object()) return Error{"parameters: each is an object with key, low and high"};
+    TALUS_TRY(twin::check_keys(entry, {"key", "low", "high"}));
     const auto number = [&](const char* name) {
         const auto found = entry.find(name);
         return found != entry.end() && found->is_number() ? found->get<double>() : observe::never;
@@ -66,6 +68,7 @@ Result<ensemble::Factor> read_factor(const json& entry) {
 
 Result<calibrate::CalibrationPlan> read_plan(const json& wanted) {
     calibrate::CalibrationPlan plan;
+    if (wanted.is_object()) TALUS_TRY(twin::check_keys(wanted, {"parameters", "runs"}));
     const auto list = wanted.is_object() ? wanted.find("parameters") : wanted.end();
     if (list == wanted.end() || !list->is_array() || list->empty() || list->size() > max_parameters) {
         return Error{fmt::format("parameters: must be a list of 1 to {}, each with key, low and high", max_parameters)};
@@ -222,7 +225,7 @@ void Calibrations::work(const calibrate::CalibrationPlan& plan, const std::strin
         respond(json_response(200, {{"done", done}, {"created", nullptr}}));
         ending = calibrate_in(folder, plan, *runs);
     } catch (const std::exception& error) {  // running out of memory here must not end the live run
-        ending = {"failed", error.what()};
+        ending = {"failed", fmt::format("the calibration ended unexpectedly: {}", error.what())};
     }
     std::error_code ignored;
     if (!settings_.keep) fs::remove_all(folder, ignored);

@@ -8,6 +8,7 @@
 #include <chrono>
 
 #include "serve/access.hpp"
+#include "serve/connection_counts.hpp"
 #include "serve/router.hpp"
 #include "serve/session.hpp"
 #include "serve/site.hpp"
@@ -26,13 +27,20 @@ struct ServerContext {
     Session& session;
     Site site;
     std::chrono::milliseconds patience;  ///< timeout of a silent connection, or of one that sends its header slowly
-    std::size_t connections = 0;         ///< open ones
-    std::size_t people_limit = 0;        ///< WebSockets at once, at most
+    ConnectionCounts connections;
+    std::size_t people_limit = 0;  ///< WebSockets at once, at most
 };
 
 inline constexpr std::size_t largest_header = 16 * 1024, largest_body = 1024 * 1024, largest_message = 64 * 1024;
 
 using HttpRequest = http::request<http::string_body>;
+
+/// The other side of a connection; 0.0.0.0 if it has gone.
+[[nodiscard]] inline asio::ip::address address_of(const asio::ip::tcp::socket& socket) {
+    beast::error_code gone;
+    const auto end = socket.remote_endpoint(gone);
+    return gone ? asio::ip::address() : end.address();
+}
 
 /// Serves HTTP on a new connection until it ends or becomes a WebSocket.
 void serve_http(asio::ip::tcp::socket socket, ServerContext& context);
@@ -40,17 +48,5 @@ void serve_http(asio::ip::tcp::socket socket, ServerContext& context);
 /// Continues with `request`, which requests a WebSocket and has passed all checks.
 void serve_websocket(beast::tcp_stream stream, HttpRequest request, ServerContext& context, Role role,
                      const std::string& name, const std::string& former);
-
-/// Counts an open connection for as long as it lives.
-class ConnectionCount {
-  public:
-    explicit ConnectionCount(std::size_t& count) : count_(count) { ++count_; }
-    ~ConnectionCount() { --count_; }
-    ConnectionCount(const ConnectionCount&) = delete;
-    ConnectionCount& operator=(const ConnectionCount&) = delete;
-
-  private:
-    std::size_t& count_;
-};
 
 }  // namespace talus::serve

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <boost/asio/post.hpp>
 #include <boost/beast/http/parser.hpp>
 #include <boost/beast/http/read.hpp>
@@ -9,8 +10,10 @@
 #include <optional>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "serve/connection.hpp"
 #include "serve/url.hpp"
@@ -22,6 +25,7 @@ using std::chrono::seconds;
 
 constexpr std::size_t slowest_reader = 16 * 1024;  // bytes per second
 constexpr seconds linger_time{2};
+const std::vector<std::string> websocket_keys = {"token", "name", "person"};
 constexpr std::size_t linger_bytes = 8 * 1024 * 1024;
 
 std::string text_of(beast::string_view text) {
@@ -31,7 +35,7 @@ std::string text_of(beast::string_view text) {
 class HttpConnection : public std::enable_shared_from_this<HttpConnection> {
   public:
     HttpConnection(asio::ip::tcp::socket socket, ServerContext& context)
-        : context_(context), count_(context.connections), stream_(std::move(socket)) {}
+        : context_(context), count_(context.connections, address_of(socket)), stream_(std::move(socket)) {}
 
     void read_header();
 
@@ -51,7 +55,7 @@ class HttpConnection : public std::enable_shared_from_this<HttpConnection> {
     [[nodiscard]] std::string header(http::field name) const { return text_of(parser_->get()[name]); }
 
     ServerContext& context_;
-    ConnectionCount count_;
+    ConnectionCounts::Counted count_;
     beast::tcp_stream stream_;
     beast::flat_buffer buffer_{64 * 1024};
     std::optional<http::request_parser<http::string_body>> parser_;
@@ -139,6 +143,7 @@ std::optional<Response> HttpConnection::refusal() {
         return wrong;
     }
     Role needs = Role::viewer;
+    const std::vector<std::string>* keys = &websocket_keys;
     if (!websocket) {
         auto match = context_.router.find(request_.method, request_.path);
         if (match.route == nullptr) {
@@ -151,6 +156,13 @@ std::optional<Response> HttpConnection::refusal() {
         route_ = match.route;
         request_.parameters = std::move(match.parameters);
         needs = route_->needs;
+        keys = &route_->query;
+    }
+    for (const auto& [key, value] : request_.query) {
+        if (std::find(keys->begin(), keys->end(), key) != keys->end()) continue;
+        return error_response(
+            400, fmt::format("{} is no key of this address; {}", key.substr(0, 40),
+                             keys->empty() ? "it has none" : fmt::format("it has {}", fmt::join(*keys, ", "))));
     }
     std::string token;
     if (websocket) {

@@ -1,54 +1,30 @@
 #include "serve/json_text.hpp"
 
-#include <algorithm>
-
-#include <fmt/format.h>
+#include "core/visible_text.hpp"
+#include "geo/json_text.hpp"
 
 namespace talus::serve {
 namespace {
 
-/// Maximum number of open brackets; checked before the text is parsed.
-int nesting(std::string_view text) {
-    int depth = 0, deepest = 0;
-    bool quoted = false;
-    for (std::size_t i = 0; i < text.size(); ++i) {
-        const char c = text[i];
-        if (quoted) {
-            if (c == '\\') ++i;
-            if (c == '"') quoted = false;
-        } else if (c == '"') {
-            quoted = true;
-        } else if (c == '[' || c == '{') {
-            deepest = std::max(deepest, ++depth);
-        } else if (c == ']' || c == '}') {
-            --depth;
-        }
-    }
-    return deepest;
+std::string utf8(const nlohmann::json& content) {
+    return content.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
 }
 
 }  // namespace
 
 Result<nlohmann::json> parse_json(std::string_view text) {
-    if (const int depth = nesting(text); depth > deepest_json) {
-        return Error{fmt::format("the body is nested {} levels deep; at most {} are read", depth, deepest_json)};
-    }
-    try {
-        return nlohmann::json::parse(text);
-    } catch (const nlohmann::json::parse_error& error) {
-        return Error{fmt::format("the body is not valid JSON, at byte {}", error.byte)};
-    } catch (const nlohmann::json::exception&) {
-        return Error{"the body has a number that is out of range"};
-    }
+    Result<nlohmann::json> parsed = geo::parse_json(text);
+    if (!parsed) return Error{"the body " + parsed.error().message};
+    return parsed;
 }
 
 std::string to_text(const nlohmann::json& content) {
-    return content.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+    return visible(utf8(content), "\\\\");
 }
 
 std::string tidy_name(std::string_view name, std::size_t longest) {
     // The dump replaces what is not UTF-8, so that the text below is.
-    const std::string valid = nlohmann::json::parse(to_text(std::string(name))).get<std::string>();
+    const std::string valid = nlohmann::json::parse(utf8(std::string(name))).get<std::string>();
     std::string tidy;
     std::size_t count = 0;
     for (std::size_t i = 0; i < valid.size();) {

@@ -9,13 +9,11 @@
 
 namespace talus::serve {
 
-/// Maximum nesting of arrays and objects in a received text.
-inline constexpr int deepest_json = 32;
-
-/// Parses a received text. Errors: not JSON (with the place), nested too deeply, not UTF-8.
+/// Parses a received text. Errors: not JSON (with the place), nested too deeply, a key given twice, not UTF-8.
 [[nodiscard]] Result<nlohmann::json> parse_json(std::string_view text);
 
-/// Always valid UTF-8; numbers that are not finite become null.
+/// Always valid UTF-8; numbers that are not finite become null. Characters that a reader cannot see, or that change the
+/// direction of writing, are shown as escapes.
 [[nodiscard]] std::string to_text(const nlohmann::json& content);
 
 /// A name given by a user, cleaned up: valid UTF-8 without control characters, without blanks at the ends, at most

@@ -45,7 +45,7 @@ void Loop::run() {
     try {
         threads_->execute([this] { work_until_done(); });
     } catch (const std::exception& error) {
-        failed_(error.what());
+        failed_(std::string("the session ended unexpectedly: ") + error.what());
     }
 }
 

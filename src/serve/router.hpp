@@ -13,9 +13,10 @@ using Handler = std::function<void(const Request&, const Respond&)>;
 
 struct Route {
     std::string method;
-    std::string pattern;        ///< "/api/scenarios/{s}/state"
-    Role needs = Role::viewer;  ///< nobody: no token required
-    Handler handler;            ///< called on the server's thread; must not block
+    std::string pattern;                  ///< "/api/scenarios/{s}/state"
+    Role needs = Role::viewer;            ///< nobody: no token required
+    Handler handler;                      ///< called on the server's thread; must not block
+    std::vector<std::string> query = {};  ///< keys that the query of a request may have
 };
 
 /// The table of routes.

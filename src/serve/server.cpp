@@ -71,7 +71,6 @@ struct Server::Parts {
     tcp::acceptor acceptor;
     asio::steady_timer retry, ticker;
     asio::executor_work_guard<asio::io_context::executor_type> guard;
-    std::size_t connection_limit = 0;
     tcp::endpoint bound;
     std::thread thread;
 };
@@ -116,7 +115,7 @@ void Server::Parts::accept() {
             retry.async_wait([this](boost::system::error_code) { accept(); });
             return;
         }
-        if (context->connections < connection_limit) serve_http(std::move(socket), *context);
+        if (context->connections.has_room(address_of(socket))) serve_http(std::move(socket), *context);
         accept();
     });
 }
@@ -155,11 +154,13 @@ Status Server::serve(std::shared_ptr<const scene::Scene> scene) {
     parts.calibrations.emplace(std::move(scene), options.calibration,
                                [&parts](nlohmann::json status) { parts.session->calibration(std::move(status)); });
     parts.session->calibration(parts.calibrations->describe());
-    parts.connection_limit = raise_connection_limit();
+    const std::size_t connections = raise_connection_limit();
+    const std::size_t per_address = options.connections_per_address;
     parts.context.emplace(ServerContext{
         Access(options.tokens, bracketed(parts.bound.address()), parts.bound.port(), options.allowed_hosts),
         make_api(*parts.session, *parts.exports, parts.ensembles, *parts.calibrations), *parts.session, Site(),
-        options.patience, 0, parts.connection_limit / 2});
+        options.patience, ConnectionCounts(connections, per_address > 0 ? per_address : connections / 3),
+        connections / 2});
     if (options.run) {
         parts.session->loop().post([](Scenarios& all) { (void)all.act(0, {{"action", "run"}}, ""); });
     }

@@ -24,11 +24,12 @@ struct ServerOptions {
     Tokens tokens;
     std::filesystem::path export_folder;  ///< an existing folder for result files
     twin::ScenarioOptions scenario;
-    std::chrono::milliseconds patience{60000};     ///< timeout of a silent connection, or for its header
+    std::chrono::milliseconds patience{30000};     ///< timeout of a silent connection, for a header, for a body
     bool run = false;                              ///< start immediately
     CalibrationSettings calibration;               ///< without a scene file there are none
     std::vector<std::filesystem::path> ensembles;  ///< folders of finished ensembles whose maps are shown
     std::function<void(std::string)> on_failure;   ///< the simulation cannot continue: out of memory; from any thread
+    std::size_t connections_per_address = 0;       ///< at once; 0: a third of what the system allows in all
 };
 
 /// A session that users and programs access over HTTP and WebSocket, as described in docs/protocol.md. Runs on its own

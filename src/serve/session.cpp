@@ -6,6 +6,7 @@
 
 #include "core/try.hpp"
 #include "serve/json_text.hpp"
+#include "twin/json_keys.hpp"
 
 namespace talus::serve {
 namespace {
@@ -101,7 +102,11 @@ bool Session::receive(Viewer& viewer, std::string_view text) {
     const auto found = viewers_.find(&viewer);
     if (type == message.end() || found == viewers_.end()) return false;
     View& view = found->second;
+    const auto only = [&](std::initializer_list<std::string_view> keys) {
+        return twin::check_keys(message, keys).ok();
+    };
     if (*type == "view") {
+        if (!only({"type", "scenarios", "rate_hz", "particle_cap"})) return false;
         try {
             return set_view(viewer, view, message);
         } catch (const json::exception&) {
@@ -110,13 +115,13 @@ bool Session::receive(Viewer& viewer, std::string_view text) {
     }
     if (*type == "mark") {
         std::optional<std::array<double, 3>> mark;
-        if (!message.contains("at") || !read_mark(message["at"], mark)) return false;
+        if (!only({"type", "at"}) || !message.contains("at") || !read_mark(message["at"], mark)) return false;
         people_.set_mark(view.person, mark);
         people_changed();
         return true;
     }
     if (*type == "name") {
-        if (!message.contains("name") || !message["name"].is_string()) return false;
+        if (!only({"type", "name"}) || !message.contains("name") || !message["name"].is_string()) return false;
         people_.rename(view.person, message["name"].get<std::string>());
         people_changed();
         return true;

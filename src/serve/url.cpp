@@ -52,7 +52,10 @@ Result<Target> parse_target(std::string_view text) {
         const auto value =
             decode(equals == std::string_view::npos ? std::string_view() : item.substr(equals + 1), true);
         if (!key || !value) return bad;
-        if (!key->empty()) target.query.insert_or_assign(*key, *value);
+        if (key->empty()) continue;
+        if (!target.query.emplace(*key, *value).second) {
+            return Error{"the address of the request has " + key->substr(0, 40) + " twice"};
+        }
     }
     return target;
 }

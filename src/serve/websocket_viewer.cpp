@@ -29,7 +29,7 @@ class WebSocketViewer final : public Viewer, public std::enable_shared_from_this
   public:
     WebSocketViewer(beast::tcp_stream stream, ServerContext& context, Role role, std::string name, std::string former)
         : context_(context),
-          count_(context.connections),
+          count_(context.connections, address_of(stream.socket())),
           socket_(std::move(stream)),
           timer_(socket_.get_executor()),
           role_(role),
@@ -58,7 +58,7 @@ class WebSocketViewer final : public Viewer, public std::enable_shared_from_this
     void end_politely(websocket::close_code code);
 
     ServerContext& context_;
-    ConnectionCount count_;
+    ConnectionCounts::Counted count_;
     websocket::stream<beast::tcp_stream> socket_;
     asio::steady_timer timer_;
     Role role_;

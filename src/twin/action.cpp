@@ -59,6 +59,19 @@ class ActionReader {
     Edit& edit_;
 };
 
+/// Objects of one kind that a session may draw: each change looks through all of them.
+constexpr std::ptrdiff_t max_drawn = 200;
+
+template <class Entry>
+std::ptrdiff_t drawn(const std::vector<Entry>& entries) {
+    return std::count_if(entries.begin(), entries.end(), [](const Entry& entry) {
+        if constexpr (requires { entry.scene_index; })
+            return entry.scene_index < 0;
+        else
+            return !entry.from_scene;
+    });
+}
+
 std::string in_quotes(const std::string& name) {
     return "\"" + name + "\"";
 }
@@ -152,6 +165,9 @@ Status ActionReader::put(std::vector<Entry>& entries, const char* what, int& num
     TALUS_ASSIGN(const auto given_id, id());
     Entry* existing = find_id(entries, given_id);
     if (!given_id.empty() && existing == nullptr) return no_such(given_id, what);
+    if (existing == nullptr && drawn(entries) >= max_drawn) {
+        return Error{fmt::format("{} {}s are drawn, the most there can be; remove one first", max_drawn, what)};
+    }
     TALUS_ASSIGN(const auto name, read_text(action_, "name"));
     TALUS_ASSIGN(auto body, read(existing, name.value_or(existing != nullptr ? name_of(*existing->body)
                                                                              : fmt::format("{} {}", what, number))));

@@ -6,6 +6,7 @@
 
 #include "core/hash.hpp"
 #include "core/try.hpp"
+#include "geo/json_text.hpp"
 #include "twin/json_keys.hpp"
 #include "twin/scenario.hpp"
 
@@ -93,8 +94,7 @@ json write_journal(const Journal& journal) {
 }
 
 Result<Journal> read_journal(const std::string& text) {
-    const json file = json::parse(text, nullptr, false);
-    if (file.is_discarded()) return Error{"is not JSON"};
+    TALUS_ASSIGN(const json file, geo::parse_json(text));
     JournalReader read;
     if (const std::uint64_t found = read.whole(file, "talus_journal"); read.status() && found != version) {
         return Error{fmt::format("talus_journal = {}: this program reads version {}", found, version)};

@@ -91,7 +91,7 @@ class LiveRun {
     LiveRun(std::unique_ptr<run::Run> run, Setup setup, const ScenarioOptions& options);
 
     [[nodiscard]] Result<Change> plan(const Setup& next) const;
-    void plan_obstacles(const Setup& next, Change& change) const;
+    [[nodiscard]] Status plan_obstacles(const Setup& next, Change& change) const;
     [[nodiscard]] Status plan_releases(const Setup& next, Change& change) const;
     void carry_out(Change& change, const Setup& next);
     void replace_releases(sim::Model& model, sim::State& state, Change& change);

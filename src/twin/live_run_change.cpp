@@ -10,6 +10,7 @@
 #include "core/try.hpp"
 #include "sim/change.hpp"
 #include "sim/sources/seed.hpp"
+#include "terrain/wall_effort.hpp"
 #include "twin/live_run.hpp"
 
 namespace talus::twin {
@@ -32,6 +33,12 @@ bool same_bodies(const Entries& a, const Entries& b) {
                       [](const auto& p, const auto& q) { return p.id == q.id && p.body == q.body; });
 }
 
+/// What an action may take by estimate, s of processor time: nobody else's action is heard meanwhile.
+constexpr double max_effort = 10;
+// Measured on a core of 2.6 GHz, with barriers upon each other on the built-in scene.
+constexpr double seconds_per_comparison = 13e-9;
+constexpr double seconds_per_particle = 0.5e-3, seconds_per_particle_and_piece = 12e-6;  // seeded
+
 /// Resistances: if any of them changes, debris at rest may move again.
 std::array<double, 6> holding_back(const sim::Model& model) {
     return {model.friction_coefficient,
@@ -49,6 +56,7 @@ struct LiveRun::Change {
     std::vector<Obstacle> obstacles;
     std::optional<std::vector<terrain::Building>> buildings;  ///< of the ground, if any changes
     std::optional<terrain::BuildingSolids> solids;            ///< likewise
+    std::optional<terrain::WallEffort> effort;                ///< likewise
     std::vector<Extent> touched;                              ///< world, of obstacles that were added, removed or moved
     std::vector<std::size_t> renewed;                         ///< obstacles whose record is reset
 
@@ -62,9 +70,9 @@ struct LiveRun::Change {
     std::vector<bool> gone;  ///< by group: its debris is removed
 };
 
-void LiveRun::plan_obstacles(const Setup& next, Change& change) const {
+Status LiveRun::plan_obstacles(const Setup& next, Change& change) const {
     change.obstacles = obstacles_;
-    if (same_bodies(setup_.buildings, next.buildings) && same_bodies(setup_.barriers, next.barriers)) return;
+    if (same_bodies(setup_.buildings, next.buildings) && same_bodies(setup_.barriers, next.barriers)) return {};
     std::vector<terrain::Building>& buildings = change.buildings.emplace(ground().buildings);
     for (std::size_t k = 0; k < obstacles_.size(); ++k) {
         Obstacle& obstacle = change.obstacles[k];
@@ -98,7 +106,16 @@ void LiveRun::plan_obstacles(const Setup& next, Change& change) const {
     };
     for (const BuildingSetup& building : next.buildings) put(building, false);
     for (const BarrierSetup& barrier : next.barriers) put(barrier, true);
-    if (!change.touched.empty()) change.solids.emplace(ground().terrain, buildings, model().support_radius);
+    if (change.touched.empty()) return {};
+    change.effort.emplace(buildings, model().support_radius);
+    if (const double estimate = change.effort->comparisons() * seconds_per_comparison; estimate > max_effort) {
+        return Error{
+            fmt::format("obstacles that overlap: their walls would take about {:.0f} s to cut; an action may take "
+                        "{:.0f} s. Place them apart",
+                        estimate, max_effort)};
+    }
+    change.solids.emplace(ground().terrain, buildings, model().support_radius);
+    return {};
 }
 
 Status LiveRun::plan_releases(const Setup& next, Change& change) const {
@@ -127,14 +144,14 @@ Status LiveRun::plan_releases(const Setup& next, Change& change) const {
     sim::Ground around = ground();
     if (change.solids) around.solids = *change.solids;
     double particles = state().count;
-    for (std::uint32_t i = 0; i < state().count; ++i) {
-        for (std::size_t g = 0; g < groups_.size(); ++g) {
-            const sim::ReleaseGroup& group = model().releases[g];
-            const bool own = state().id[i] >= group.first_particle && state().id[i] < group.last_particle;
-            if (change.gone[g] && own) particles -= 1;
+    for (std::size_t g = 0; g < groups_.size(); ++g) {
+        if (!change.gone[g]) continue;
+        const sim::ReleaseGroup& group = model().releases[g];
+        for (std::uint32_t i = 0; i < state().count; ++i) {
+            particles -= state().id[i] >= group.first_particle && state().id[i] < group.last_particle ? 1 : 0;
         }
     }
-    for (const ReleaseSetup* release : to_seed) {
+    for (const ReleaseSetup* release : to_seed) {  // before any of it is done
         particles += std::round(release->body->volume / model().particle_volume());
         if (particles > model().solver.particle_limit) {
             return Error{fmt::format(
@@ -142,6 +159,22 @@ Status LiveRun::plan_releases(const Setup& next, Change& change) const {
                 "that, and is {}",
                 release->body->name, release->body->volume, particles, model().solver.particle_limit)};
         }
+    }
+    const terrain::WallEffort effort =
+        change.effort ? *change.effort : terrain::WallEffort(ground().buildings, model().support_radius);
+    double open_ground = 0, estimate = 0;
+    for (const ReleaseSetup* release : to_seed) {
+        const double count = release->body->volume / model().particle_volume();
+        open_ground += seconds_per_particle * count;
+        const double pieces = effort.pieces_near(release->body->extent());
+        estimate += (seconds_per_particle + seconds_per_particle_and_piece * pieces) * count;
+        if (estimate <= std::max(max_effort, 2 * open_ground)) continue;
+        return Error{
+            fmt::format("release \"{}\": its debris would take about {:.0f} s to seed among the obstacles there; "
+                        "an action may take {:.0f} s. Remove obstacles or debris there first",
+                        release->body->name, estimate, max_effort)};
+    }
+    for (const ReleaseSetup* release : to_seed) {
         TALUS_ASSIGN(sim::State seeded, seed_releases(alone, around, {*release->body}));
         change.seeds.push_back({release, std::move(seeded)});
     }
@@ -150,7 +183,7 @@ Status LiveRun::plan_releases(const Setup& next, Change& change) const {
 
 Result<LiveRun::Change> LiveRun::plan(const Setup& next) const {
     Change change;
-    plan_obstacles(next, change);
+    TALUS_TRY(plan_obstacles(next, change));
     if (!same_shapes(setup_.zones, next.zones)) {
         change.cover = lay_zones(bodies_of(next.zones), ground().terrain).cover;
     }

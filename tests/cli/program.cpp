@@ -27,6 +27,15 @@ namespace {
     std::vector<char*> argv{const_cast<char*>(TALUS_PROGRAM)};
     for (const std::string& argument : arguments) argv.push_back(const_cast<char*>(argument.c_str()));
     argv.push_back(nullptr);
+    for (std::size_t i = 0; environ[i] != nullptr;) {  // of the tests themselves, which the program does not know
+        const std::string entry = environ[i];
+        const std::string name = entry.substr(0, entry.find('='));
+        if (name.starts_with("TALUS_") && name != "TALUS_DATA" && name != "TALUS_SIMD") {
+            unsetenv(name.c_str());
+        } else {
+            ++i;
+        }
+    }
     for (const std::string& variable : options.environment) putenv(const_cast<char*>(variable.c_str()));
     dup2(open("/dev/null", O_RDONLY), STDIN_FILENO);
     dup2(options.out.empty() ? out : open(options.out.c_str(), O_WRONLY), STDOUT_FILENO);

@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
@@ -72,6 +73,43 @@ TEST(StandardOutput, OnAFullDiskIsAFailure) {
     const auto quiet =
         run_program({"run", "slope.toml", "-o", "quiet", "--quiet"}, {.folder = scene.folder(), .out = "/dev/full"});
     EXPECT_EQ(quiet.exit_code, 0) << quiet.error;
+}
+
+TEST(StandardOutput, AReaderThatEndsEarlyIsNoFailure) {
+    const SmallScene scene;
+    const std::string command =
+        fmt::format("cd '{}' && {{ '{}' run slope.toml -o result; echo $? >code; }} | head -n 1 >first",
+                    scene.folder().string(), TALUS_PROGRAM);
+    ASSERT_EQ(std::system(command.c_str()), 0);
+    EXPECT_EQ(read_text(scene.folder() / "code"), "0\n");
+    EXPECT_EQ(lines_of(read_text(scene.folder() / "first")).size(), 1u);
+    EXPECT_TRUE(std::filesystem::exists(scene.folder() / "result/report.html"));
+}
+
+TEST(StandardOutput, ShowsWhatWouldReverseTheTextOrControlTheTerminal) {
+    const SmallScene scene;
+    scene.replace("title = \"", "title = \"safe\\u202Efdp \\u001b[31m");
+    const auto outcome = run_program({"run", "slope.toml", "-o", "result"}, {.folder = scene.folder()});
+    ASSERT_EQ(outcome.exit_code, 0) << outcome.error;
+    const std::string report = read_text(scene.folder() / "result/report.html");
+    for (const std::string& text : {outcome.out, outcome.error, report}) {
+        EXPECT_EQ(text.find("\u202E"), std::string::npos);
+        EXPECT_EQ(text.find('\x1b'), std::string::npos);
+    }
+    EXPECT_THAT(outcome.out + outcome.error, HasSubstr("safe\\u202Efdp \\u001B[31m"));
+    EXPECT_THAT(report, HasSubstr("safe\\u202Efdp \\u001B[31m"));
+    const auto refused = run_program({"run", "\u202Etoml"}, {.folder = scene.folder()});
+    EXPECT_THAT(refused.error, HasSubstr("\\u202Etoml"));
+}
+
+TEST(Environment, UnknownVariablesOfTalusAreRefused) {
+    const SmallScene scene;
+    for (const std::string wrong : {"TALUS_SIMDS=AVX2", "TALUS_SIMD=fast"}) {
+        const auto outcome =
+            run_program({"scene", "check", "slope.toml"}, {.folder = scene.folder(), .environment = {wrong}});
+        EXPECT_EQ(outcome.exit_code, 2);
+        EXPECT_THAT(outcome.error, HasSubstr(wrong.substr(0, wrong.find('='))));
+    }
 }
 
 TEST(Run, JsonIsOneObjectPerLineWithTheResultLast) {

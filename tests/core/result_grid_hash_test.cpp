@@ -7,6 +7,7 @@
 #include "core/grid.hpp"
 #include "core/hash.hpp"
 #include "core/try.hpp"
+#include "core/visible_text.hpp"
 
 namespace talus {
 namespace {
@@ -88,6 +89,14 @@ TEST(StateHash, in_pieces_as_in_one) {
     pieces.add(std::span<const float>(values).first(1));
     pieces.add(std::span<const float>(values).last(3));
     EXPECT_EQ(whole.value(), pieces.value());
+}
+
+TEST(VisibleText, ShowsWhatChangesTheTextAroundIt) {
+    EXPECT_EQ(visible("a\u202Eb\u2066\u200F\u061C\u2028"), R"(a\u202Eb\u2066\u200F\u061C\u2028)");
+    EXPECT_EQ(visible(std::string("\x1b[31m\x7f\0\u0085", 9)), R"(\u001B[31m\u007F\u0000\u0085)");
+    const std::string plain = "Łódź, 深水埗, \u00e9\u2013\u202f1\u2265\n\ttab \xff\xe2\x80";
+    EXPECT_EQ(visible(plain), plain);
+    EXPECT_EQ(visible("\u202E", "\\\\"), R"(\\u202E)");
 }
 
 }  // namespace

@@ -29,10 +29,14 @@ T read_number(const std::string& bytes, std::size_t offset) {
 
 }  // namespace
 
-Socket::Socket(std::uint16_t port, int receive_buffer) : file_(::socket(AF_INET, SOCK_STREAM, 0)) {
+Socket::Socket(std::uint16_t port, int receive_buffer, const char* from) : file_(::socket(AF_INET, SOCK_STREAM, 0)) {
     if (receive_buffer > 0) setsockopt(file_, SOL_SOCKET, SO_RCVBUF, &receive_buffer, sizeof receive_buffer);
     sockaddr_in address{};
     address.sin_family = AF_INET;
+    if (from != nullptr) {
+        address.sin_addr.s_addr = inet_addr(from);
+        (void)::bind(file_, reinterpret_cast<const sockaddr*>(&address), sizeof address);
+    }
     address.sin_port = htons(port);
     address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
     if (file_ < 0 || ::connect(file_, reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0) {

@@ -20,7 +20,8 @@ using Milliseconds = std::chrono::milliseconds;
 class Socket {
   public:
     /// `receive_buffer`: bytes that the system takes in for it; 0: as usual.
-    explicit Socket(std::uint16_t port, int receive_buffer = 0);
+    /// `from`: an address of this machine.
+    explicit Socket(std::uint16_t port, int receive_buffer = 0, const char* from = nullptr);
     ~Socket();
     Socket(Socket&& other) noexcept;
     Socket& operator=(Socket&& other) = delete;

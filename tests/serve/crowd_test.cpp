@@ -116,6 +116,29 @@ std::vector<std::string> people_of(HttpClient client) {
     return names;
 }
 
+TEST_F(Crowd, one_address_cannot_take_all_connections) {
+    connections_per_address_ = 20;
+    start();
+    const auto answered = [&](Socket& socket) {
+        socket.send(fmt::format("GET /api/openapi.json HTTP/1.1\r\nHost: 127.0.0.1:{}\r\n\r\n", port()));
+        std::string buffer;
+        return read_answer(socket, buffer).status == 200;
+    };
+    std::vector<Socket> idle;
+    for (int i = 0; i < 100; ++i) idle.emplace_back(port());
+    Socket late(port()), other(port(), 0, "127.0.0.2");
+    EXPECT_FALSE(answered(late)) << "the address has its share";
+    EXPECT_TRUE(answered(other));
+    EXPECT_TRUE(answered(idle.front())) << "those before it stay";
+    idle.clear();
+    bool again = false;
+    for (int k = 0; k < 100 && !again; ++k) {
+        Socket fresh(port());
+        again = answered(fresh);
+    }
+    EXPECT_TRUE(again) << "connections that have ended count no more";
+}
+
 TEST_F(Crowd, who_is_silent_or_slow_for_too_long_is_let_go_and_nobody_else) {
     start({}, Milliseconds(2000));
     const auto closed = [](Socket& socket) {

@@ -34,6 +34,7 @@ class Serve : public ::testing::Test {
         options.tokens = {controller, viewer};
         options.export_folder = scene_.folder();
         options.patience = patience;
+        options.connections_per_address = connections_per_address_;
         options.allowed_hosts = {"twin.example.org"};
         options.ensembles = ensembles_;
         options.calibration.source = {scene_.scene_file(), all};
@@ -60,7 +61,8 @@ class Serve : public ::testing::Test {
 
     SmallScene scene_;
     std::vector<std::filesystem::path> ensembles_;  ///< whose maps are shown
-    bool keep_ = false;                             ///< what calibrations find
+    std::size_t connections_per_address_ = 0;
+    bool keep_ = false;  ///< what calibrations find
     std::unique_ptr<serve::Server> server_;
 };
 

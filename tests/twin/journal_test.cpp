@@ -122,7 +122,7 @@ TEST(Journal, refuses_what_is_none_naming_key_and_value) {
         return again ? "" : again.error().message;
     };
     EXPECT_EQ(error_of("/last/step", 0), "");
-    EXPECT_THAT(read_journal("{nonsense").error().message, HasSubstr("is not JSON"));
+    EXPECT_THAT(read_journal("{nonsense").error().message, HasSubstr("is not valid JSON, at byte 3"));
     EXPECT_THAT(read_journal("[1]").error().message, HasSubstr("talus_journal: missing"));
     EXPECT_THAT(error_of("/talus_journal", 7), HasSubstr("talus_journal = 7"));
     EXPECT_THAT(error_of("/scene/file", 3), HasSubstr("file = 3: must be a text"));

@@ -2,7 +2,7 @@
 import { spawnSync } from "node:child_process";
 import { cpSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import { basename, dirname, join, resolve } from "node:path";
-import { assert, inControl, until, viewClip } from "./harness.mjs";
+import { assert, inControl, until, viewClip, programEnvironment } from "./harness.mjs";
 
 const particles = 400;
 const layerSelect = "select[aria-label^='Map layer']";
@@ -11,7 +11,7 @@ export async function testBackanalysis(run) {
   const folder = join(run.output, "ensemble of friction");
   rmSync(folder, { recursive: true, force: true });
   const made = spawnSync(run.command[0], ["ensemble", run.scene, "--set", `solver.target_particle_count=${particles}`, "--vary", "material.friction_coefficient=0.25:0.5",
-    "--runs", "6", "--return-period", "50", "-o", folder, "--quiet"]);
+    "--runs", "6", "--return-period", "50", "-o", folder, "--quiet"], { env: programEnvironment });
   assert.equal(made.status, 0, String(made.stderr));
   const server = await run.start(["--ensemble", folder], { particles });
   const page = await run.open(server.controller, { name: "Ada" });

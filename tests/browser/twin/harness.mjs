@@ -6,9 +6,12 @@ import { existsSync, mkdirSync, readFileSync } from "node:fs";
 import { join } from "node:path";
 import { createInterface } from "node:readline";
 
+/// Without the variables of this test, which the program does not know and refuses.
+export const programEnvironment = Object.fromEntries(Object.entries(process.env).filter(([name]) => !/^TALUS_(?!DATA$|SIMD$)/.test(name)));
+
 /** command: how the server is started; it prints one line of JSON with controller_url and viewer_url. */
 export async function startServer(command) {
-  const process_ = spawn(command[0], command.slice(1), { stdio: ["ignore", "pipe", "pipe"] });
+  const process_ = spawn(command[0], command.slice(1), { env: programEnvironment, stdio: ["ignore", "pipe", "pipe"] });
   let told = "";
   process_.stderr.on("data", (data) => (told += data));
   const links = await new Promise((resolve, reject) => {
