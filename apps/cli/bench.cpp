@@ -15,12 +15,12 @@
 #include "bench/scenes.hpp"
 #include "bench/table.hpp"
 #include "command.hpp"
+#include "core/temporary_folder.hpp"
 #include "exit_code.hpp"
 #include "interrupt.hpp"
 #include "products/text_file.hpp"
 #include "progress.hpp"
 #include "scene/builtin.hpp"
-#include "temporary_folder.hpp"
 
 namespace talus::cli {
 namespace {

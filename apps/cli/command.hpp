@@ -26,6 +26,7 @@ void add_validate(CLI::App& program, std::vector<Command>& commands);
 void add_ensemble(CLI::App& program, std::vector<Command>& commands);
 void add_calibrate(CLI::App& program, std::vector<Command>& commands);
 void add_bench(CLI::App& program, std::vector<Command>& commands);
+void add_manual(CLI::App& program, std::vector<Command>& commands);  ///< and completion; they describe all the others
 
 // Options shared by several commands.
 void add_overrides(CLI::App& command,

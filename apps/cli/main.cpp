@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <array>
 #include <cstdio>
+#include <cstdlib>
 #include <exception>
 #include <new>
 #include <signal.h>
@@ -73,15 +74,22 @@ Status check_environment() {
     return simd::choose_instruction_set_of_environment();
 }
 
+std::string version_text() {
+    const std::vector<std::string> sets = simd::instruction_sets();
+    const char* chosen = std::getenv("TALUS_SIMD");
+    return fmt::format("talus {}\ncommit {}\ninstruction set {}, of {}\nbackends cpu", TALUS_VERSION, TALUS_COMMIT,
+                       chosen != nullptr && *chosen != 0 ? chosen : sets.front(), fmt::join(sets, ", "));
+}
+
 int talus_main(int argc, char** argv) {
     CLI::App app("talus simulates landslides and debris flows on a terrain model, and writes hazard maps and a report.",
                  "talus");
-    app.set_version_flag("--version", "talus " TALUS_VERSION);
+    app.set_version_flag("-V,--version", version_text, "Print version, commit, instruction set and backends");
     app.require_subcommand(0, 1);
 
     std::vector<Command> commands;
-    for (const auto add :
-         {add_run, add_serve, add_replay, add_scene, add_validate, add_ensemble, add_calibrate, add_bench}) {
+    for (const auto add : {add_run, add_serve, add_replay, add_scene, add_validate, add_ensemble, add_calibrate,
+                           add_bench, add_manual}) {
         add(app, commands);
     }
     app.footer(program_help);  // last: commands made after it would inherit it

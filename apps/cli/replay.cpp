@@ -11,13 +11,13 @@
 
 #include "command.hpp"
 #include "core/input_file.hpp"
+#include "core/temporary_folder.hpp"
 #include "core/try.hpp"
 #include "exit_code.hpp"
 #include "interrupt.hpp"
 #include "scene/builtin.hpp"
 #include "scene/scene.hpp"
 #include "scene_input.hpp"
-#include "temporary_folder.hpp"
 #include "twin/journal.hpp"
 
 namespace talus::cli {

@@ -5,10 +5,10 @@
 #include <vector>
 
 #include "core/result.hpp"
+#include "core/temporary_folder.hpp"
 #include "interrupt.hpp"
 #include "run/variants.hpp"
 #include "scene/scene.hpp"
-#include "temporary_folder.hpp"
 
 namespace talus::cli {
 

@@ -13,6 +13,7 @@
 #include <nlohmann/json.hpp>
 
 #include "command.hpp"
+#include "core/temporary_folder.hpp"
 #include "core/try.hpp"
 #include "exit_code.hpp"
 #include "interrupt.hpp"
@@ -20,7 +21,6 @@
 #include "scene/builtin.hpp"
 #include "scene/scene.hpp"
 #include "serve/server.hpp"
-#include "temporary_folder.hpp"
 
 namespace talus::cli {
 namespace {

@@ -13,6 +13,7 @@
 #include <fmt/format.h>
 
 #include "command.hpp"
+#include "core/temporary_folder.hpp"
 #include "core/try.hpp"
 #include "exit_code.hpp"
 #include "interrupt.hpp"
@@ -21,7 +22,6 @@
 #include "products/text_file.hpp"
 #include "progress.hpp"
 #include "run/threads.hpp"
-#include "temporary_folder.hpp"
 #include "validate/page.hpp"
 #include "validate/suite.hpp"
 

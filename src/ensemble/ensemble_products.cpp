@@ -132,8 +132,10 @@ Status write_one(const EnsembleResult& result, const report::HazardMap& style, c
     if (si.values.empty()) return {};  // no run came anywhere
     const Grid<float> grid = report::in_unit(si, style.factor);
     const std::string note = result.scene->spec.scene.reconstruction ? " (reconstruction)" : "";
-    const geo::RasterBand band{
-        &grid, fmt::format("{} of {} runs{}", style.description, result.reduction.complete, note), style.unit};
+    // In legends the unit follows: "share of runs ..., in" %.
+    std::string what = style.description;
+    if (what.ends_with(", in")) what.resize(what.size() - 4);
+    const geo::RasterBand band{&grid, fmt::format("{}; {} runs{}", what, result.reduction.complete, note), style.unit};
     const std::string stem = (folder / style.file).string();
     TALUS_TRY(write_cog(stem + ".tif", band, result.scene->crs));
     return products::write_text_file(stem + ".qml", qgis_style(style, report::greatest(grid)));

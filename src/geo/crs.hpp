@@ -2,6 +2,8 @@
 
 #include <string>
 
+#include "core/result.hpp"
+
 namespace talus::geo {
 
 /// A coordinate reference system as read from data.
@@ -13,5 +15,8 @@ struct Crs {
     /// "EPSG:2326 (Hong Kong 1980 Grid System)" or the name alone.
     [[nodiscard]] std::string label() const;
 };
+
+/// "EPSG:2326", WKT or anything else that PROJ knows. Errors: unknown.
+[[nodiscard]] Result<Crs> crs_from_text(const std::string& text);
 
 }  // namespace talus::geo

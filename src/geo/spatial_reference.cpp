@@ -43,6 +43,16 @@ std::string Crs::label() const {
     return name.empty() ? fmt::format("EPSG:{}", epsg) : fmt::format("EPSG:{} ({})", epsg, name);
 }
 
+Result<Crs> crs_from_text(const std::string& text) {
+    const GdalMessages messages;
+    const char* const options[] = {"ALLOW_NETWORK_ACCESS=NO", "ALLOW_FILE_ACCESS=NO", nullptr};
+    OGRSpatialReference reference;
+    if (text.empty() || reference.SetFromUserInput(text.c_str(), options) != OGRERR_NONE) {
+        return Error{fmt::format("crs = \"{}\" is not known; give a code such as \"EPSG:2326\", or WKT", text)};
+    }
+    return to_crs(reference);
+}
+
 Crs to_crs(const OGRSpatialReference& reference) {
     const GdalMessages messages;
     Crs crs;

@@ -160,7 +160,9 @@ std::string nearest_word(std::string_view word, const std::vector<std::string>& 
     std::string nearest;
     std::size_t smallest = std::numeric_limits<std::size_t>::max();
     for (const std::string& candidate : candidates) {
-        const std::size_t distance = edit_distance(word, candidate);
+        // Of "friction" the nearest is friction_coefficient, although viscosity has fewer other letters.
+        const bool begun = word.size() >= 3 && candidate.starts_with(word);
+        const std::size_t distance = begun ? 0 : edit_distance(word, candidate);
         if (distance < smallest) {
             smallest = distance;
             nearest = candidate;

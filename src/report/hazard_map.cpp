@@ -120,7 +120,7 @@ std::string qgis_style(const HazardMap& map, double largest) {
     std::string items;
     if (!map.breaks.empty()) {
         const double lowest = classes.breaks.front();
-        items += item(fmt::format("{}", lowest), classes.colours.front(), 0,
+        items += item(fmt::format("{}", lowest), Colour{255, 255, 255}, 0,  // a legend shows it without its alpha
                       lowest > 0 ? fmt::format("up to {} {}", lowest, map.unit) : std::string("none"));
     }
     for (std::size_t k = 0; k < count; ++k) {

@@ -117,8 +117,10 @@ void draw_profile(Plot& plot, const scene::Scene& scene, const run::RunResult& r
         }
     }
     if (steepest > 5) {
-        plot.label(place + 5, (profile.at(place) + profile.at(place + 10)) / 2, -9, 16, "end", "ground-note",
-                   fmt::format("steepest 10 m: falls {} m", fixed(steepest, 1)));
+        // Below the ground, which falls to the right; to the right of it where there is no room on the left.
+        const bool room = place > 0.25 * end;
+        plot.label(place + 5, (profile.at(place) + profile.at(place + 10)) / 2, room ? -9 : 9, room ? 16 : -9,
+                   room ? "end" : "start", "ground-note", fmt::format("steepest 10 m: falls {} m", fixed(steepest, 1)));
     }
 }
 

@@ -178,7 +178,7 @@ Result<Replayed> replay(const Journal& journal, std::shared_ptr<const scene::Sce
         if (Status s = scenario.follow(entry); !s) return Error{fmt::format("actions[{}]: {}", k, s.error().message)};
     }
     if (Status s = go_to(journal.steps); !s) return Error{"last." + s.error().message};
-    return Replayed{scenario.step(), scenario.time(), to_hex(scenario.hash())};
+    return Replayed{scenario.step(), scenario.time(), to_hex(scenario.hash()), std::move(opened)};
 }
 
 }  // namespace talus::twin

@@ -10,6 +10,7 @@
 
 #include "core/result.hpp"
 #include "scene/scene.hpp"
+#include "twin/scenario.hpp"
 #include "twin/setup.hpp"
 
 namespace talus::twin {
@@ -47,8 +48,9 @@ struct Journal {
 /// The result of a replay of a journal.
 struct Replayed {
     std::uint64_t steps = 0;
-    double time = 0;   ///< s
-    std::string hash;  ///< as in the journal
+    double time = 0;                          ///< s
+    std::string hash;                         ///< as in the journal
+    std::unique_ptr<Scenario> scenario = {};  ///< as it is then
 };
 
 /// Runs a journal on its scene. `on_step` gets the number of each step; false stops. Errors: the setup does not fit the

@@ -201,6 +201,15 @@ std::uint64_t Scenario::revision() const {
 const scene::Scene& Scenario::scene() const {
     return *parts_->scene;
 }
+const sim::Model& Scenario::model() const {
+    return parts_->run->model();
+}
+const sim::State& Scenario::state() const {
+    return parts_->run->state();
+}
+const observe::Observer& Scenario::observer() const {
+    return parts_->run->observer();
+}
 
 FramePtr Scenario::frame(unsigned stride, unsigned flags) const {
     return parts_->run->frame(stride, flags);

@@ -14,8 +14,11 @@
 
 #include "core/grid.hpp"
 #include "core/result.hpp"
+#include "observe/observer.hpp"
 #include "run/run_result.hpp"
 #include "scene/scene.hpp"
+#include "sim/model.hpp"
+#include "sim/state.hpp"
 #include "twin/frame.hpp"
 
 namespace talus::twin {
@@ -74,6 +77,9 @@ class Scenario {
     [[nodiscard]] std::uint64_t hash() const;
     [[nodiscard]] std::uint64_t revision() const;  ///< grows with every change of the setup
     [[nodiscard]] const scene::Scene& scene() const;
+    [[nodiscard]] const sim::Model& model() const;
+    [[nodiscard]] const sim::State& state() const;
+    [[nodiscard]] const observe::Observer& observer() const;
 
     // Answers, as docs/protocol.md has them. They lack `scenario`, which only the loop knows; state_json() also lacks
     // speed_factor, real_time_factor, steps_per_second, and its "status" is phase_name(phase()).

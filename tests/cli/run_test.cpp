@@ -315,11 +315,5 @@ TEST(Help, TeachesCommandsExitCodesAndEveryTunable) {
     EXPECT_EQ(run_program({}).out, general.out) << "without a command the program explains itself";
 }
 
-TEST(Version, IsPrinted) {
-    const auto outcome = run_program({"--version"});
-    EXPECT_EQ(outcome.exit_code, 0);
-    EXPECT_THAT(outcome.out, testing::MatchesRegex("talus [0-9]+\\.[0-9]+\\.[0-9]+\n"));
-}
-
 }  // namespace
 }  // namespace talus::test

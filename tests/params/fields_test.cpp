@@ -256,6 +256,8 @@ TEST(NearestWord, TakesTheSmallestEditDistance) {
     EXPECT_EQ(edit_distance("kitten", "sitting"), 3U);
     EXPECT_EQ(edit_distance("", "abc"), 3U);
     EXPECT_EQ(nearest_word("viscocity", {"friction_coefficient", "viscosity"}), "viscosity");
+    EXPECT_EQ(nearest_word("friction", {"viscosity", "friction_coefficient"}), "friction_coefficient")
+        << "as it begins";
 }
 
 }  // namespace

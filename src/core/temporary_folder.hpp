@@ -5,7 +5,7 @@
 #include <string>
 #include <system_error>
 
-namespace talus::cli {
+namespace talus {
 
 /// A folder in the system's temporary folder, removed with this object.
 class TemporaryFolder {
@@ -29,4 +29,4 @@ class TemporaryFolder {
     std::filesystem::path path_;
 };
 
-}  // namespace talus::cli
+}  // namespace talus

@@ -1,0 +1,199 @@
+/*
+ * talus.h - landslides and debris flows in other programs: the C interface of libtalus.
+ *
+ * A simulation is made from a scene file or from arrays, stepped, changed between steps, and read through pointers.
+ * SI units throughout. Plan positions of what is passed in and of maps are world coordinates; debris is in local
+ * single-precision metres from talus_origin().
+ *
+ * Errors: a function that can fail returns a code, and writes a sentence into `error` unless that is NULL. Nothing is
+ * changed by a call that fails. No exception leaves the library, and it keeps no state outside a simulation.
+ *
+ * Threads: a simulation is used by one thread at a time; several simulations can be used at once. A step computes on
+ * the threads of solver.thread_count (default: all cores); results do not depend on their number.
+ *
+ * Pointers that are returned remain valid until the next call that takes the same simulation without const.
+ */
+#ifndef TALUS_H
+#define TALUS_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+/* Semantic versioning: a new major version may break programs, a new minor version adds functions. */
+#define TALUS_VERSION_MAJOR 0
+#define TALUS_VERSION_MINOR 1
+#define TALUS_VERSION_PATCH 0
+
+#if defined(__GNUC__)
+#define TALUS_API __attribute__((visibility("default")))
+#else
+#define TALUS_API
+#endif
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+typedef struct talus_simulation talus_simulation;
+
+enum {
+    TALUS_OK = 0,
+    TALUS_FAILURE = 1,   /* the machine: out of memory, disk full */
+    TALUS_BAD_INPUT = 2, /* an argument, the scene or a file it names */
+    TALUS_FAULT = 3      /* the last step cannot be trusted; talus_message() says why */
+};
+
+typedef struct talus_error {
+    int code;
+    char text[2000]; /* one sentence: file, key, value and what is allowed, where they apply */
+} talus_error;
+
+/* "0.1.0" */
+TALUS_API const char* talus_version(void);
+
+/*
+ * A scene file. `settings`: "section.key=value" as for `talus run --set`, `setting_count` of them. `scene_file` NULL:
+ * the scene that the library carries inside itself. Close what was opened with talus_close().
+ */
+TALUS_API int talus_open(const char* scene_file, const char* const* settings, size_t setting_count,
+                         talus_simulation** simulation, talus_error* error);
+
+/* Square cells; row 0 is the southernmost, column 0 the westernmost, rows follow one another. */
+typedef struct talus_grid {
+    double x_min, y_min; /* west and south edge, m */
+    double cell;         /* m */
+    int32_t columns, rows;
+} talus_grid;
+
+/* A building: `x_y` has `point_count` corners in the order of its outline, x before y. */
+typedef struct talus_building {
+    const char* name;
+    const double* x_y;
+    size_t point_count;
+    double height; /* m above the mean ground of the outline */
+} talus_building;
+
+typedef struct talus_arrays {
+    const char* crs; /* projected and metric: "EPSG:2326", or WKT */
+    talus_grid grid;
+    const float* elevation; /* m; NaN: not known */
+    const float* release;   /* m, vertical thickness of the debris that fails, part of `elevation`; 0: none */
+    const talus_building* buildings;
+    size_t building_count;
+} talus_arrays;
+
+/*
+ * A scene from arrays. `folder`: a new or empty one that the scene is written into, as files that `talus run` and
+ * talus_open() read; NULL: none is kept. The rest as talus_open(): material, solver and outputs are settings.
+ */
+TALUS_API int talus_open_arrays(const talus_arrays* arrays, const char* folder, const char* const* settings,
+                                size_t setting_count, talus_simulation** simulation, talus_error* error);
+
+/* NULL is allowed. */
+TALUS_API void talus_close(talus_simulation* simulation);
+
+/*
+ * Takes `steps` time steps, fewer if the run is over before: see talus_get_phase(). The time step adapts to the flow,
+ * unless solver.time_step_s is given.
+ */
+TALUS_API int talus_step(talus_simulation* simulation, uint64_t steps, talus_error* error);
+
+/* Takes steps until `time`, s, is reached or the run is over. */
+TALUS_API int talus_advance(talus_simulation* simulation, double time, talus_error* error);
+
+typedef enum talus_phase {
+    TALUS_READY = 0,
+    TALUS_AT_REST = 1, /* what still moves changes no result; a change may make it ready again */
+    TALUS_ENDED = 2,   /* solver.end_time_s is reached, or no debris is left */
+    TALUS_STOPPED = 3  /* a step could not be trusted */
+} talus_phase;
+
+TALUS_API talus_phase talus_get_phase(const talus_simulation* simulation);
+/* Why it is at rest, ended or stopped; "" while ready. */
+TALUS_API const char* talus_message(talus_simulation* simulation);
+TALUS_API double talus_time(const talus_simulation* simulation); /* s */
+TALUS_API uint64_t talus_steps(const talus_simulation* simulation);
+/* Of time, positions and velocities: equal for equal results, on any number of threads and any instruction set. */
+TALUS_API uint64_t talus_hash(const talus_simulation* simulation);
+/* World position of the local frame's origin: x, y, z. */
+TALUS_API void talus_origin(const talus_simulation* simulation, double x_y_z[3]);
+TALUS_API double talus_particle_volume(const talus_simulation* simulation); /* m3 */
+
+/* `count` particles in an order that changes with every step; `id` names a particle for good. */
+typedef struct talus_debris {
+    size_t count;
+    const float *x, *y, *z;                            /* m, local */
+    const float *velocity_x, *velocity_y, *velocity_z; /* m/s */
+    const uint32_t* id;
+    const uint8_t* held; /* 1: its release has not started */
+} talus_debris;
+
+TALUS_API talus_debris talus_get_debris(const talus_simulation* simulation);
+
+typedef struct talus_map {
+    talus_grid grid;
+    const float* values; /* NaN: no value */
+} talus_map;
+
+/*
+ * "depth" (m, now), "peak_depth" (m), "peak_speed" (m/s), "peak_pressure" (Pa, density times speed squared),
+ * "arrival_time" (s), "deposit_depth" (m), "erosion_depth" (m).
+ */
+TALUS_API int talus_get_map(talus_simulation* simulation, const char* name, talus_map* map, talus_error* error);
+
+/* The front along the flow path: `count` chainages that it has passed. NaN: no value. */
+typedef struct talus_front {
+    size_t count;
+    const double* chainage;     /* m */
+    const double* arrival_time; /* s */
+    const double* velocity;     /* m/s */
+} talus_front;
+
+TALUS_API talus_front talus_get_front(talus_simulation* simulation);
+
+/* A building or barrier, in the order in which they were added; removed ones keep their place. */
+typedef struct talus_structure {
+    const char* name;
+    int hit, is_barrier;
+    double first_hit_time;       /* s; NaN: not hit, or not failed */
+    double failure_time;         /* s */
+    double peak_force;           /* N, on all its walls, filtered over outputs.impact_filter_window_s */
+    double peak_impact_pressure; /* Pa, of a patch of outputs.impact_patch_edge_m squared, filtered likewise */
+    double peak_depth;           /* m, of the flow in front of its walls */
+    double impulse;              /* N s */
+} talus_structure;
+
+TALUS_API size_t talus_structure_count(const talus_simulation* simulation);
+TALUS_API int talus_get_structure(talus_simulation* simulation, size_t index, talus_structure* structure,
+                                  talus_error* error);
+
+/* A live key of the scene reference between two steps: "material.friction_coefficient". */
+TALUS_API int talus_set(talus_simulation* simulation, const char* key, double value, talus_error* error);
+
+/*
+ * Any action of docs/protocol.md on releases, inflows, buildings, barriers, zones, beds and material, as JSON:
+ * {"action": "put_barrier", "line": [[x, y], [x, y]], "height_m": 4}. `created` (may be NULL): the id of what is new,
+ * or
+ * "".
+ */
+TALUS_API int talus_apply(talus_simulation* simulation, const char* action, const char** created, talus_error* error);
+
+/* "scene", "state", "setup", "impacts" or "series" as JSON, as docs/protocol.md has them. */
+TALUS_API int talus_get_json(talus_simulation* simulation, const char* name, const char** json, talus_error* error);
+
+/* Writes maps, tables and report of the run so far, as `talus run` does, into a new or empty folder. */
+TALUS_API int talus_write_results(talus_simulation* simulation, const char* folder, talus_error* error);
+
+/*
+ * Saves what determines the state: the scene's name and all changes with the step before which they were made.
+ * talus_open_saved() computes the same state again, to the bit; it takes as long as the steps did. A scene from arrays
+ * needs a folder of its own for this.
+ */
+TALUS_API int talus_save(talus_simulation* simulation, const char* file, talus_error* error);
+TALUS_API int talus_open_saved(const char* file, talus_simulation** simulation, talus_error* error);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif
