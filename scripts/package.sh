@@ -26,7 +26,7 @@ leave() {
 }
 trap leave EXIT
 # From where this machine takes its own packages.
-mirror=$(apt-cache policy base-files | grep --only-matching --max-count=1 --extended-regexp 'https?://[^ ]+')
+mirror=$(apt-cache policy base-files | awk '/ https?:/ && !found { print $2; found = 1 }')
 debootstrap --variant=minbase bookworm "$root" "$mirror"
 mount -t proc proc "$root/proc"
 cp "$package" "$root/talus.deb"
