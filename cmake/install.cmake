@@ -36,6 +36,9 @@ install(DIRECTORY ${shared}/man/ DESTINATION ${CMAKE_INSTALL_MANDIR}/man1)
 install(FILES ${shared}/bash/talus DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions)
 install(FILES ${shared}/zsh/_talus DESTINATION ${CMAKE_INSTALL_DATADIR}/zsh/site-functions)
 
+# Where Debian's Python looks; elsewhere PYTHONPATH names it. The package finds the library from where it lies itself.
+install(DIRECTORY ${PROJECT_SOURCE_DIR}/python/talus DESTINATION lib/python3/dist-packages PATTERN "__pycache__" EXCLUDE)
+
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/scenes DESTINATION ${CMAKE_INSTALL_DATADIR}/talus PATTERN "*.py" EXCLUDE)
 install(FILES ${PROJECT_SOURCE_DIR}/examples/embed.c DESTINATION ${CMAKE_INSTALL_DOCDIR}/examples)
 install(FILES ${PROJECT_SOURCE_DIR}/README.md ${PROJECT_SOURCE_DIR}/LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR})
@@ -56,6 +59,7 @@ set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_PACKAGE_SECTION science)
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
 set(CPACK_DEBIAN_PACKAGE_DEPENDS "proj-data")  # which libproj only recommends
+set(CPACK_DEBIAN_PACKAGE_RECOMMENDS "python3-numpy")
 set(CPACK_DEBIAN_PACKAGE_GENERATE_SHLIBS ON)
 set(CPACK_ARCHIVE_COMPONENT_INSTALL OFF)
 include(CPack)

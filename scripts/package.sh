@@ -43,6 +43,8 @@ inside test -s /usr/share/man/man1/talus-run.1.gz -o -s /usr/share/man/man1/talu
 # The library, for a program in C.
 inside apt-get install --yes --no-install-recommends gcc libc6-dev pkg-config
 inside sh -c 'gcc -std=c11 -o /embed /embed.c $(pkg-config --cflags --libs talus) -lm && /embed'
+inside apt-get install --yes --no-install-recommends python3-numpy
+inside python3 -c 'import talus; s = talus.Simulation(settings={"solver.target_particle_count": 500}); s.advance(2); print("Python:", talus.__version__, s.hash)'
 inside apt-get remove --yes talus
 if inside sh -c 'command -v talus'; then
     echo "scripts/package.sh: the package leaves talus behind when it is removed" >&2

@@ -1,0 +1,101 @@
+"""Whole runs, and many of them."""
+
+from __future__ import annotations
+
+import itertools
+import os
+import sys
+from concurrent.futures import ProcessPoolExecutor
+from dataclasses import dataclass, field
+from typing import Any, Mapping, Sequence, Union
+
+from .simulation import UNITS, Front, Map, Phase, Settings, Simulation, Structure
+
+Scene = Union[str, "os.PathLike[str]", None]
+
+
+@dataclass(frozen=True)
+class Result:
+    """The result of a run."""
+
+    settings: dict[str, object]  #: beside those of the scene
+    phase: Phase
+    message: str  #: why it ended
+    time: float  #: s, simulated
+    hash: str
+    front: Front = field(repr=False)
+    structures: list[Structure] = field(repr=False)
+    maps: dict[str, Map] = field(repr=False)  #: by name, see UNITS
+
+    def to_xarray(self) -> Any:
+        """An xarray.Dataset of all maps that have a value anywhere. Needs xarray."""
+        import numpy as np
+        import xarray
+
+        filled = {name: found for name, found in self.maps.items() if np.isfinite(found.values).any()}
+        return xarray.Dataset({name: found.to_xarray() for name, found in filled.items()})
+
+    def to_geopandas(self, crs: str, threshold: float = 0.1) -> Any:
+        """The cells where debris was deeper than `threshold`, m, as a geopandas.GeoDataFrame of squares with their
+        values. Needs geopandas."""
+        import geopandas
+        import numpy as np
+        from shapely.geometry import box
+
+        depth = self.maps["peak_depth"]
+        rows, columns = np.nonzero(depth.values > threshold)
+        half = depth.cell / 2
+        squares = [box(x - half, y - half, x + half, y + half) for x, y in zip(depth.x[columns], depth.y[rows])]
+        alike = {n: m for n, m in self.maps.items() if m.values.shape == depth.values.shape}
+        return geopandas.GeoDataFrame({n: m.values[rows, columns] for n, m in alike.items()}, geometry=squares, crs=crs)
+
+    def plot(self, ax: Any = None) -> Any:
+        """Peak depth on matplotlib axes. Needs matplotlib."""
+        return self.maps["peak_depth"].plot(ax)
+
+
+def run(
+    scene: Scene = None, settings: Settings | None = None, *, end_time: float | None = None, progress: bool | None = None
+) -> Result:
+    """Runs a scene until it is over, or until `end_time`, s. `progress`: a bar on stderr; None: where that is a terminal."""
+    bar = sys.stderr.isatty() if progress is None else progress
+    with Simulation(scene, settings) as simulation:
+        end = simulation.json("scene")["end_time_s"]
+        if end_time is not None:
+            end = min(end, end_time)
+        parts = 100
+        for part in range(1, parts + 1):
+            phase = simulation.advance(end * part / parts)
+            if bar:
+                done = "#" * (part * 40 // parts)
+                print(f"\r[{done:40}] {simulation.time:.1f} of at most {end:g} s", end="", file=sys.stderr, flush=True)
+            if phase != Phase.READY:
+                break
+        if bar:
+            print(file=sys.stderr)
+        maps = {name: simulation.map(name) for name in UNITS}
+        return Result(
+            dict(settings or {}), simulation.phase, simulation.message, simulation.time, simulation.hash,
+            simulation.front, simulation.structures, maps,
+        )  # fmt: skip
+
+
+def _run_one(job: tuple[Any, dict[str, object], float | None]) -> Result:
+    scene, settings, end_time = job
+    return run(scene, settings, end_time=end_time, progress=False)
+
+
+def study(
+    scene: Scene,
+    values: Mapping[str, Sequence[object]],
+    settings: Settings | None = None,
+    *,
+    end_time: float | None = None,
+    processes: int | None = None,
+) -> list[Result]:
+    """Runs a scene once for every combination of `values` (a list by key), in `processes` at once (None: one per core),
+    each on one thread. Results are in the order of itertools.product; Result.settings says what each run had."""
+    base = {"solver.thread_count": 1, **(settings or {})}
+    jobs = [(scene, {**base, **dict(zip(values, chosen))}, end_time) for chosen in itertools.product(*values.values())]
+    with ProcessPoolExecutor(processes) as pool:
+        return list(pool.map(_run_one, jobs))
