@@ -64,7 +64,7 @@ std::string end_time_reason(const sim::Model& model, const sim::State& state, do
     std::string reached = fmt::format("reached solver.end_time_s = {:.4g}", model.solver.end_time);
     const std::uint32_t moving = motion_of(state, deposited_speed).moving;
     if (moving == 0) return reached;
-    return fmt::format("{} with {:.3g} m3 still moving ({:.2g} % of the debris)", reached,
+    return fmt::format("{} with {:.3g} m3 still moving ({:.3g} % of the debris)", reached,
                        moving * model.particle_volume(), 100.0 * moving / state.count);
 }
 

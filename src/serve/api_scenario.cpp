@@ -91,6 +91,12 @@ void probe(Session& session, const Request& request, const Respond& respond) {
     });
 }
 
+void figures(Session& session, const Request& request, const Respond& respond) {
+    take(session, request, respond, [](Scenarios& all, int index) -> Result<Work> {
+        return Work([figures = all.at(index).figures()] { return json_response(200, figures()); });
+    });
+}
+
 void layer(Session& session, const Request& request, const Respond& respond) {
     const auto time = number_of(request, "time_s", 0, 1e9);
     if (!time) {
@@ -141,6 +147,7 @@ void add_scenario_routes(Router& router, Session& session, Exports& exports) {
     router.add({"GET", "/api/scenarios/{s}/frame", Role::viewer, with_session(frame), {"time_s"}});
     router.add({"GET", "/api/scenarios/{s}/impacts", Role::viewer, with_session(impacts), {"time_s"}});
     router.add({"GET", "/api/scenarios/{s}/probe", Role::viewer, with_session(probe), {"x_m", "y_m"}});
+    router.add({"GET", "/api/scenarios/{s}/figures", Role::viewer, with_session(figures)});
     router.add({"GET", "/api/scenarios/{s}/layers/{name}", Role::viewer, with_session(layer), {"time_s"}});
     router.add({"POST", "/api/scenarios/{s}/actions", Role::controller, with_session(action)});
     router.add(

@@ -106,36 +106,43 @@ void add_orthophoto(Router& router, Session& session) {
                 }});
 }
 
-/// The scenario that `{"copy_of": "A"}` names. Error: it names none.
-Result<std::string> read_copy_of(const std::string& body) {
+/// What `{"copy_of": "A", "action": {...}}` asks for.
+struct WantedCopy {
+    std::string of;
+    json action;  ///< null: none
+};
+
+Result<WantedCopy> read_copy(const std::string& body) {
     TALUS_ASSIGN(const auto wanted, parse_json(body));
     const auto name = wanted.is_object() ? wanted.find("copy_of") : wanted.end();
     if (name == wanted.end() || !name->is_string())
         return Error{"the body is an object with copy_of, a scenario's name"};
-    TALUS_TRY(twin::check_keys(wanted, {"copy_of"}));
-    return name->get<std::string>();
+    TALUS_TRY(twin::check_keys(wanted, {"copy_of", "action"}));
+    return WantedCopy{name->get<std::string>(), wanted.value("action", json())};
 }
 
 void add_scenario(Session& session, const Request& request, const Respond& respond) {
-    change(session, request, respond, [&](const std::string&) {
-        const auto from = read_copy_of(request.body);
-        if (!from) {
-            respond(error_response(400, from.error().message));
+    change(session, request, respond, [&](const std::string& by) {
+        auto wanted = read_copy(request.body);
+        if (!wanted) {
+            respond(error_response(400, wanted.error().message));
             return;
         }
-        session.loop().post([respond, name = *from](Scenarios& all) {
-            const auto index = all.find(name);
+        session.loop().post([respond, by, wanted = std::move(*wanted)](Scenarios& all) {
+            const auto index = all.find(wanted.of);
             if (!index) {
-                respond(no_scenario(name));
+                respond(no_scenario(wanted.of));
                 return;
             }
-            const auto made = all.copy(*index);
+            const auto made = all.copy(*index, wanted.action, by);
             if (!made) {
                 respond(error_response(409, made.error().message));
                 return;
             }
-            respond(json_response(
-                200, {{"done", fmt::format("scenario {}, a copy of {}", *made, name)}, {"created", *made}}));
+            const std::string& object = made->done.created;
+            respond(json_response(200, {{"done", made->done.sentence},
+                                        {"created", made->name},
+                                        {"object", object.empty() ? json() : json(object)}}));
         });
     });
 }

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "core/try.hpp"
+#include "serve/json_text.hpp"
 
 namespace talus::serve {
 namespace {
@@ -14,7 +15,8 @@ using nlohmann::json;
 
 constexpr std::chrono::milliseconds state_interval{200};
 constexpr double slowest = 0.05, fastest = 100;  // times real time
-constexpr double abreast = 0.05;                 // s; closer in time than this, both take a single step
+constexpr double abreast = 0.05;                 // s; closer in time than this, all take a single step
+constexpr std::size_t longest_title = 60;
 
 Clock::duration interval_of(double rate_hz) {
     return std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(1 / rate_hz));
@@ -58,8 +60,8 @@ void Scenarios::want_all() {
     for (Slot& slot : slots_) slot.frame_wanted = slot.state_wanted = true;
 }
 
-void Scenarios::set_running(bool running) {
-    running_ = running;
+/// After a change of which scenarios run: time and rates are counted from now.
+void Scenarios::start_clock() {
     pace_.restart();
     for (Slot& slot : slots_) slot.rate.restart();
     want_all();
@@ -68,70 +70,101 @@ void Scenarios::set_running(bool running) {
 void Scenarios::advance(Slot& slot) {
     slot.scenario->advance();
     slot.frame_wanted = true;
+    // What is over does not go on by itself when something is changed later.
+    if (!slot.ready()) slot.running = false;
 }
 
-Scenarios::Slot* Scenarios::furthest_behind() {
-    Slot* behind = nullptr;
+Scenarios::Slots Scenarios::all() {
+    Slots list;
     for (Slot& slot : slots_) {
-        if (slot.ready() && (behind == nullptr || slot.scenario->time() < behind->scenario->time())) behind = &slot;
+        if (slot.scenario) list.push_back(&slot);
+    }
+    return list;
+}
+
+Result<Scenarios::Slots> Scenarios::listed(const json& action, Slots otherwise) {
+    const auto names = action.find("scenarios");
+    if (names == action.end()) return otherwise;
+    Slots list;
+    for (const json& name : names->is_array() ? *names : json::array()) {
+        const auto index = find(name.is_string() ? name.get<std::string>() : "");
+        if (!index) return Error{fmt::format("scenarios: there is no scenario {}", tidy_name(name.dump(), 20))};
+        list.push_back(&slots_[static_cast<std::size_t>(*index)]);
+    }
+    if (list.empty()) return Error{"scenarios: must be a list of the names of scenarios"};
+    return list;
+}
+
+Scenarios::Slot* Scenarios::furthest_behind(const Slots& slots) {
+    Slot* behind = nullptr;
+    for (Slot* slot : slots) {
+        if (slot->ready() && (behind == nullptr || slot->scenario->time() < behind->scenario->time())) behind = slot;
     }
     return behind;
 }
 
-void Scenarios::step_all() {
-    const Slot* behind = furthest_behind();
-    if (behind == nullptr) return;
-    const double limit = behind->scenario->time() + abreast;
-    for (Slot& slot : slots_) {
-        if (slot.ready() && slot.scenario->time() <= limit) advance(slot);
+void Scenarios::step_all(const Slots& slots) {
+    const double limit = furthest_behind(slots)->scenario->time() + abreast;
+    for (Slot* slot : slots) {
+        if (slot->ready() && slot->scenario->time() <= limit) advance(*slot);
     }
 }
 
-Result<twin::Done> Scenarios::steer(const std::string& name, const json& action) {
-    twin::Done done;
-    if (name == "set_speed") {
-        const auto factor = action.find("factor");
-        if (factor == action.end()) return Error{"set_speed needs the key factor: a number, or null for no limit"};
-        if (factor->is_null()) {
-            pace_.set_factor({});
-            done.sentence = "as fast as it goes";
-        } else {
-            const double value = factor->is_number() ? factor->get<double>() : -1;
-            if (!(value >= slowest && value <= fastest)) {
-                return Error{
-                    fmt::format("factor = {}; allowed are {} to {}, or null", factor->dump(), slowest, fastest)};
-            }
-            pace_.set_factor(value);
-            done.sentence = fmt::format("{} times real time", value);
-        }
+Result<twin::Done> Scenarios::set_speed(const json& action) {
+    const auto factor = action.find("factor");
+    if (factor == action.end()) return Error{"set_speed needs the key factor: a number, or null for no limit"};
+    if (factor->is_null()) {
+        pace_.set_factor({});
         want_all();
-        return done;
+        return twin::Done{"as fast as it goes", ""};
     }
+    const double value = factor->is_number() ? factor->get<double>() : -1;
+    if (!(value >= slowest && value <= fastest)) {
+        return Error{fmt::format("factor = {}; allowed are {} to {}, or null", factor->dump(), slowest, fastest)};
+    }
+    pace_.set_factor(value);
+    want_all();
+    return twin::Done{fmt::format("{} times real time", value), ""};
+}
+
+Result<twin::Done> Scenarios::steer(const std::string& name, const Slots& slots) {
     if (name == "pause") {
-        set_running(false);
-        done.sentence = "paused";
-        return done;
+        for (Slot* slot : slots) slot->running = false;
+        start_clock();
+        return twin::Done{"paused", ""};
     }
-    if (furthest_behind() == nullptr) {
-        // At rest, debris may move again when something changes; the request to run is then kept.
-        const bool can_come = std::any_of(slots_.begin(), slots_.end(), [](const Slot& slot) {
-            return slot.scenario && slot.scenario->phase() == run::RunPhase::at_rest;
-        });
-        if (name == "step" || !can_come) {
-            return Error{
-                fmt::format("{}: nothing is left to compute ({}); restart it", name, slots_[0].scenario->message())};
-        }
+    if (furthest_behind(slots) == nullptr) {
+        return Error{
+            fmt::format("{}: nothing is left to compute ({}); restart it", name, slots.front()->scenario->message())};
     }
     if (name == "run") {
-        set_running(true);
-        done.sentence = "running";
-        return done;
+        for (Slot* slot : slots) slot->running = slot->ready();
+        start_clock();
+        return twin::Done{"running", ""};
     }
-    if (running_) return Error{"step is for a scenario that is paused; pause it first"};
-    step_all();
+    if (std::any_of(slots.begin(), slots.end(), [](const Slot* slot) { return slot->steps(); })) {
+        return Error{"step is for a scenario that is paused; pause it first"};
+    }
+    step_all(slots);
     want_all();
-    done.sentence = "one step";
+    return twin::Done{"one step", ""};
+}
+
+Result<twin::Done> Scenarios::change(Slot& slot, const json& action, const std::string& by) {
+    auto done = slot.scenario->apply(action, by);
+    if (!done) return done;
+    start_clock();
+    tell_setup(index_of(slot));
+    watcher_.done(index_of(slot), by, done->sentence);
     return done;
+}
+
+Result<twin::Done> Scenarios::give_name(Slot& slot, const json& action) {
+    const auto name = action.find("name");
+    if (name == action.end() || !name->is_string()) return Error{"name_scenario needs the key name, a string"};
+    slot.title = tidy_name(name->get<std::string>(), longest_title);
+    tell_setup(index_of(slot));
+    return twin::Done{fmt::format("scenario {} is named \"{}\"", name_of(index_of(slot)), slot.title), ""};
 }
 
 Result<twin::Done> Scenarios::act(int index, const json& action, const std::string& by) {
@@ -139,65 +172,76 @@ Result<twin::Done> Scenarios::act(int index, const json& action, const std::stri
     const auto named = action.find("action");
     if (named == action.end() || !named->is_string()) return Error{"an action has the key action, a string"};
     const std::string name = named->get<std::string>();
-    if (name == "run" || name == "pause" || name == "step" || name == "set_speed") return steer(name, action);
-
     Slot& slot = slots_[static_cast<std::size_t>(index)];
-    const bool nothing_steps = furthest_behind() == nullptr;
-    auto done = slot.scenario->apply(action, by);
-    if (!done) return done;
-    // After the restart of a run that has ended, its initial state is shown first.
-    if (name == "restart" && nothing_steps) running_ = false;
-    pace_.restart();
-    slot.rate.restart();
-    want_all();
-    tell_setup(index);
-    watcher_.done(index, by, done->sentence);
+    if (name == "set_speed") return set_speed(action);
+    if (name == "name_scenario") return give_name(slot, action);
+    if (name == "run" || name == "pause" || name == "step") {
+        TALUS_ASSIGN(const Slots slots, listed(action, all()));
+        return steer(name, slots);
+    }
+    if (name != "restart") return change(slot, action, by);
+    TALUS_ASSIGN(const Slots slots, listed(action, {&slot}));
+    json alone = action;
+    alone.erase("scenarios");
+    twin::Done done;
+    for (Slot* each : slots) {
+        TALUS_ASSIGN(done, change(*each, alone, by));
+    }
     return done;
 }
 
-Result<std::string> Scenarios::copy(int from) {
-    for (int i = 0; i < max_count; ++i) {
-        Slot& slot = slots_[i];
-        if (slot.scenario) continue;
-        TALUS_ASSIGN(auto made, slots_[static_cast<std::size_t>(from)].scenario->copy());
-        slot = Slot();
-        slot.scenario = std::move(made);
-        set_running(running_);
-        tell_names();
-        return std::string(name_of(i));
+Result<Copied> Scenarios::copy(int from, const json& action, const std::string& by) {
+    const auto free = std::find_if(slots_.begin(), slots_.end(), [](const Slot& slot) { return !slot.scenario; });
+    if (free == slots_.end()) {
+        return Error{fmt::format("there are {} scenarios already, the most there can be; end one first", max_count)};
     }
-    return Error{fmt::format("there are {} scenarios already, the most there can be; end scenario B first", max_count)};
+    const Slot& origin = slots_[static_cast<std::size_t>(from)];
+    TALUS_ASSIGN(auto made, origin.scenario->copy());
+    const std::string name = name_of(index_of(*free));
+    Copied copied{name, {fmt::format("scenario {}, a copy of {}", name, name_of(from)), ""}};
+    if (!action.is_null()) {
+        TALUS_ASSIGN(copied.done, made->apply(action, by));
+    }
+    *free = Slot();
+    free->scenario = std::move(made);
+    free->running = !action.is_null() && origin.steps();
+    start_clock();
+    tell_names();
+    watcher_.done(index_of(*free), by,
+                  action.is_null() ? copied.done.sentence : "new scenario from the start: " + copied.done.sentence);
+    return copied;
 }
 
 Status Scenarios::remove(int index) {
-    if (index == 0) return Error{"scenario A stays; scenario B can be ended"};
+    if (index == 0) return Error{"scenario A stays; the others can be ended"};
     slots_[static_cast<std::size_t>(index)] = Slot();
-    set_running(running_);
+    start_clock();
     tell_names();
     return {};
 }
 
 json Scenarios::state(int index) const {
     const Slot& slot = slots_[static_cast<std::size_t>(index)];
-    const bool steps = running_ && slot.ready();
+    const bool steps = slot.steps();
     json state = slot.scenario->state_json(!steps);
     state["scenario"] = name_of(index);
     state["speed_factor"] = pace_.factor() ? json(*pace_.factor()) : json();
     state["real_time_factor"] = steps ? slot.rate.real_time_factor() : 0.0;
     state["steps_per_second"] = steps ? slot.rate.steps_per_second() : 0.0;
-    if (slot.ready()) state["status"] = running_ ? "running" : "paused";
+    if (slot.ready()) state["status"] = steps ? "running" : "paused";
     return state;
 }
 
 json Scenarios::setup(int index) const {
     json setup = slots_[static_cast<std::size_t>(index)].scenario->setup_json();
     setup["scenario"] = name_of(index);
+    setup["name"] = slots_[static_cast<std::size_t>(index)].title;
     return setup;
 }
 
 twin::FramePtr Scenarios::frame(int index, unsigned stride) const {
     const Slot& slot = slots_[static_cast<std::size_t>(index)];
-    return slot.scenario->frame(stride, running_ && slot.ready() ? twin::frame_running : 0);
+    return slot.scenario->frame(stride, slot.steps() ? twin::frame_running : 0);
 }
 
 void Scenarios::set_audience(const std::vector<Audience>& audience) {
@@ -256,7 +300,9 @@ std::optional<Clock::time_point> Scenarios::work(Clock::time_point now) {
     const auto wait_for = [&](Clock::time_point when) { next = next ? std::min(*next, when) : when; };
 
     bool stepped = false;
-    if (Slot* behind = running_ ? furthest_behind() : nullptr) {
+    Slots going = all();
+    std::erase_if(going, [](const Slot* slot) { return !slot->steps(); });
+    if (Slot* behind = furthest_behind(going)) {
         const Clock::time_point due = pace_.due(behind->scenario->time(), now);
         if (due <= now) {
             const double before = behind->scenario->time();

@@ -77,7 +77,7 @@ void Session::join(Viewer& viewer, Role role, const std::string& name, const std
     json you = {
         {"id", who.id}, {"name", who.name}, {"role", role_name(role)}, {"colour", who.colour}, {"secret", who.secret}};
     viewer.send(message_text("hello", {{"protocol", protocol_version}, {"you", you}, {"session", describe(role)}}));
-    for (std::size_t i = 0; i < names_.size(); ++i) {
+    for (std::size_t i = 0; i < setups_.size(); ++i) {
         if (setups_[i]) viewer.send(setups_[i]);
         if (states_[i]) viewer.send(states_[i]);
     }
@@ -263,7 +263,8 @@ void Session::done(int scenario, const std::string& by, const std::string& sente
 void Session::scenarios(std::vector<std::string> names) {
     thread_.post([this, names = std::move(names)] {
         names_ = names;
-        for (std::size_t i = names.size(); i < Scenarios::max_count; ++i) {
+        for (int i = 0; i < Scenarios::max_count; ++i) {
+            if (std::find(names.begin(), names.end(), Scenarios::name_of(i)) != names.end()) continue;
             states_[i] = setups_[i] = nullptr;
             newest_[i] = {};
         }

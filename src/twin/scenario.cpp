@@ -13,6 +13,7 @@
 #include "core/try.hpp"
 #include "observe/erosion.hpp"
 #include "products/products.hpp"
+#include "report/results.hpp"
 #include "run/run_scene.hpp"
 #include "scene/particle_spacing.hpp"
 #include "twin/action.hpp"
@@ -38,10 +39,23 @@ std::vector<std::string> obstacle_notes(const LiveRun& run) {
     return notes;
 }
 
-/// Whether a setup's releases wait again, as they do at time 0.
+/// A setup whose releases wait again, as they do at time 0.
 Setup held_again(Setup setup) {
     for (ReleaseSetup& release : setup.releases) release.triggered = false;
     return setup;
+}
+
+/// Changes of setups that can be undone or redone at time 0: all releases wait, so no start is among them.
+template <class Pasts>
+Pasts held_again(Pasts pasts) {
+    std::erase_if(pasts, [](const auto& past) { return past.by_trigger; });
+    for (auto& past : pasts) past.setup = held_again(std::move(past.setup));
+    return pasts;
+}
+
+/// Whether an action gives a new name and nothing else.
+bool only_renames(const json& action) {
+    return action.contains("id") && action.contains("name") && action.size() == 3;
 }
 
 }  // namespace
@@ -67,6 +81,7 @@ Status Scenario::Parts::start(const Setup& setup) {
     first_setup = write_setup(setup);
     first_next = next;
     entries.clear();
+    changes.clear();
     ++revision;
     return {};
 }
@@ -108,6 +123,8 @@ Result<std::unique_ptr<Scenario>> Scenario::copy() const {
     auto parts = std::make_unique<Parts>(parts_->scene, parts_->options);
     parts->next = parts_->next;
     TALUS_TRY(parts->start(held_again(parts_->setup())));
+    parts->undo = held_again(parts_->undo);
+    parts->redo = held_again(parts_->redo);
     return std::unique_ptr<Scenario>(new Scenario(std::move(parts)));
 }
 
@@ -141,12 +158,21 @@ Result<Done> Scenario::Parts::step_back(std::vector<Past>& from, std::vector<Pas
 
 Result<Done> Scenario::Parts::restart() {
     TALUS_TRY(start(held_again(setup())));
-    // All releases wait again: there is no start left to undo.
-    for (std::vector<Past>* pasts : {&undo, &redo}) {
-        std::erase_if(*pasts, [](const Past& past) { return past.by_trigger; });
-        for (Past& past : *pasts) past.setup = held_again(std::move(past.setup));
-    }
+    undo = held_again(std::move(undo));
+    redo = held_again(std::move(redo));
     return Done{"started again from time 0", ""};
+}
+
+void Scenario::Parts::note_change(const json& action, const std::string& by, const std::string& sentence) {
+    const std::uint64_t step = run->state().step;
+    if (step == 0 || only_renames(action)) return;
+    const bool undoes = action["action"] == "undo", redoes = action["action"] == "redo";
+    const bool reverses = !changes.empty() && changes.back().step == step && (changes.back().undoes ? redoes : undoes);
+    if (reverses) {
+        changes.pop_back();
+    } else {
+        changes.push_back({step, run->state().time, by, sentence, undoes});
+    }
 }
 
 Result<Done> Scenario::apply(const json& action, const std::string& by) {
@@ -164,6 +190,7 @@ Result<Done> Scenario::apply(const json& action, const std::string& by) {
     if (!done || again) return done;
     if (back || forth) entry.setup = write_setup(p.setup());
     p.entries.push_back(std::move(entry));
+    p.note_change(action, by, done->sentence);
     ++p.revision;
     return done;
 }
@@ -273,25 +300,38 @@ bool Scenario::has_erosion() const {
     return parts_->run->state().entrained > 0;
 }
 
-std::function<Status(const std::filesystem::path&)> Scenario::products() const {
-    const Parts& p = *parts_;
+std::pair<scene::Scene, run::RunResult> Scenario::Parts::outcome() const {
     // Beds and inflows of the start of the run, the rest of the current setup.
-    Setup setup = p.setup();
-    setup.beds = p.run->begun_with().beds;
-    setup.inflows = p.run->begun_with().inflows;
-    scene::Scene scene = scene_of(*p.scene, setup);
-    for (std::size_t k = 0; k < setup.releases.size(); ++k) {
-        scene.releases[k].spec.start_time = p.run->start_time_of(setup.releases[k].id);
+    Setup wanted = setup();
+    wanted.beds = run->begun_with().beds;
+    wanted.inflows = run->begun_with().inflows;
+    scene::Scene told = scene_of(*scene, wanted);
+    for (std::size_t k = 0; k < wanted.releases.size(); ++k) {
+        told.releases[k].spec.start_time = run->start_time_of(wanted.releases[k].id);
     }
-    for (const LiveRun::Removed& removed : p.run->removed()) scene.buildings.push_back(*removed.body);
-    for (std::string& note : obstacle_notes(*p.run)) scene.notes.push_back(std::move(note));
-    for (const JournalEntry& entry : p.entries) {
-        scene.notes.push_back(fmt::format("before step {}, by {}: {}", entry.step, entry.by, entry.action.dump()));
+    for (const LiveRun::Removed& removed : run->removed()) told.buildings.push_back(*removed.body);
+    for (std::string& note : obstacle_notes(*run)) told.notes.push_back(std::move(note));
+    for (const JournalEntry& entry : entries) {
+        if (entry.step > 0) break;
+        told.notes.push_back(fmt::format("before step 0, by {}: {}", entry.by, entry.action.dump()));
     }
-    run::RunResult result = p.run->result();
-    run::take_followed_path(scene, result);
-    return [scene = std::move(scene), result = std::move(result)](const std::filesystem::path& folder) {
-        return products::write_products(scene, result, folder);
+    for (const ChangeOnTheWay& change : changes) {
+        told.notes.push_back(fmt::format("changed at {:.1f} s, by {}: {}", change.time, change.by, change.sentence));
+    }
+    run::RunResult result = run->result();
+    run::take_followed_path(told, result);
+    return {std::move(told), std::move(result)};
+}
+
+std::function<json()> Scenario::figures() const {
+    return [outcome = parts_->outcome()] {
+        return json{{"figures", json::parse(report::key_figures(outcome.first, outcome.second).dump())}};
+    };
+}
+
+std::function<Status(const std::filesystem::path&)> Scenario::products() const {
+    return [outcome = parts_->outcome()](const std::filesystem::path& folder) {
+        return products::write_products(outcome.first, outcome.second, folder);
     };
 }
 

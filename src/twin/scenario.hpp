@@ -55,7 +55,7 @@ class Scenario {
     [[nodiscard]] static Result<std::unique_ptr<Scenario>> open_at(const Journal& journal,
                                                                    std::shared_ptr<const scene::Scene> scene,
                                                                    ScenarioOptions options);
-    /// The same scene and the setup of this one as it is now, at time 0.
+    /// The same scene and the setup of this one as it is now, at time 0, with what can be undone and redone.
     [[nodiscard]] Result<std::unique_ptr<Scenario>> copy() const;
     ~Scenario();
     Scenario(const Scenario&) = delete;
@@ -111,6 +111,8 @@ class Scenario {
                                                              std::optional<double> time = {}) const;
     /// Whether debris has eroded any of its bed.
     [[nodiscard]] bool has_erosion() const;
+    /// `{"figures": [...]}`: the key figures of the run so far, as in results.json.
+    [[nodiscard]] std::function<nlohmann::json()> figures() const;
     /// Writes the run so far as `talus run` would, into an existing empty folder.
     [[nodiscard]] std::function<Status(const std::filesystem::path& folder)> products() const;
 

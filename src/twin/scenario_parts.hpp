@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "twin/journal.hpp"
@@ -18,6 +19,13 @@ struct Scenario::Parts {
         std::string sentence;
         bool by_trigger = false;
     };
+    /// A change after the first step.
+    struct ChangeOnTheWay {
+        std::uint64_t step = 0;
+        double time = 0;  ///< s
+        std::string by, sentence;
+        bool undoes = false;
+    };
 
     Parts(std::shared_ptr<const scene::Scene> its_scene, ScenarioOptions its_options);
 
@@ -31,6 +39,7 @@ struct Scenario::Parts {
     nlohmann::json first_setup;  ///< the journal begins with it
     NextNumbers first_next;
     std::vector<JournalEntry> entries;
+    std::vector<ChangeOnTheWay> changes;  ///< those without which the run would be that of its setup from time 0
 
     [[nodiscard]] const Setup& setup() const { return run->setup(); }
     /// Starts, or restarts, with a setup.
@@ -40,6 +49,9 @@ struct Scenario::Parts {
     [[nodiscard]] Result<Done> edit(const nlohmann::json& action);
     [[nodiscard]] Result<Done> step_back(std::vector<Past>& from, std::vector<Past>& to, const char* word);
     [[nodiscard]] Result<Done> restart();
+    /// The scene with the present setup, and the result of the run so far.
+    [[nodiscard]] std::pair<scene::Scene, run::RunResult> outcome() const;
+    void note_change(const nlohmann::json& action, const std::string& by, const std::string& sentence);
 };
 
 }  // namespace talus::twin

@@ -140,7 +140,12 @@ json Scenario::setup_json() const {
         entry["in_force"] = in_force(inflow, p.run->begun_with().inflows);
         inflows.push_back(std::move(entry));
     }
+    json changes = json::array();
+    for (const Parts::ChangeOnTheWay& change : p.changes) {
+        changes.push_back({{"time_s", change.time}, {"by", change.by}, {"sentence", change.sentence}});
+    }
     return {{"revision", p.revision},
+            {"changes", changes},
             {"parameters", parameters},
             {"releases", releases},
             {"barriers", barriers},

@@ -13,6 +13,7 @@ import { testControls } from "./twin/controls.mjs";
 import { testParts } from "./twin/parts.mjs";
 import { testPhoto } from "./twin/photo.mjs";
 import { testReadings } from "./twin/readings.mjs";
+import { testScenarios } from "./twin/scenarios.mjs";
 import { testSharing } from "./twin/sharing.mjs";
 
 const [, , output, ...command] = process.argv;
@@ -34,7 +35,7 @@ const browser = await chromium.launch({ executablePath: browserPath, args: ["--h
   "--enable-unsafe-swiftshader", "--ignore-gpu-blocklist", "--webgl-msaa-sample-count=0", "--disable-background-networking",
   "--disable-component-update", "--no-first-run"] });
 const run = new Run(browser, resolve(output), command, process.env.TALUS_ONLY);
-const parts = { controls: testControls, readings: testReadings, barrier: testBarrier, parts: testParts, erosion: testErosion, ground: testGround, photo: testPhoto,
+const parts = { controls: testControls, readings: testReadings, scenarios: testScenarios, barrier: testBarrier, parts: testParts, erosion: testErosion, ground: testGround, photo: testPhoto,
   backanalysis: testBackanalysis, sharing: testSharing };
 try {
   for (const part of (process.env.TALUS_PARTS ?? Object.keys(parts).join()).split(",")) {

@@ -235,7 +235,6 @@ TEST_F(Web, two_scenarios_keep_abreast) {
     EXPECT_EQ(made.status, 200);
     EXPECT_EQ(made.json()["created"], "B");
     EXPECT_EQ(ada.wait_for("scenarios")["scenarios"], (json{"A", "B"}));
-    EXPECT_EQ(hand.post("/api/scenarios", {{"copy_of", "A"}}, id).status, 409);
     EXPECT_EQ(hand.post("/api/scenarios", {{"copy_of", "C"}}, id).status, 404);
     EXPECT_EQ(hand.post("/api/scenarios", {{"copy", "A"}}, id).status, 400);
     ada.send(view_message(60, 1000000, {"A", "B"}));
@@ -258,6 +257,61 @@ TEST_F(Web, two_scenarios_keep_abreast) {
     EXPECT_EQ(hand.get("/api/scenarios/B/state").status, 404);
     act({{"action", "run"}}, id);
     EXPECT_FALSE(ada.wait_for_frame().empty());
+}
+
+TEST_F(Web, scenarios_are_runs_from_time_0_which_run_pause_and_restart_by_name) {
+    HttpClient hand = as_controller();
+    const auto state = [&](const char* name) {
+        return as_viewer().get(std::string("/api/scenarios/") + name + "/state").json();
+    };
+    const auto setup = [&](const char* name) {
+        return as_viewer().get(std::string("/api/scenarios/") + name + "/setup").json();
+    };
+    const json friction = {{"action", "set_parameter"}, {"key", "material.friction_coefficient"}, {"value", 0.2}};
+    for (int i = 0; i < 3; ++i) EXPECT_EQ(act({{"action", "step"}}).status, 200);
+    const Answer refused = hand.post(
+        "/api/scenarios",
+        {{"copy_of", "A"}, {"action", {{"action", "set_parameter"}, {"key", "material.viscosity"}, {"value", -1}}}});
+    EXPECT_EQ(refused.status, 409);
+    EXPECT_EQ(hand.get("/api/session").json()["scenarios"], (json{"A"})) << "nothing is made of a refused action";
+
+    const Answer made = hand.post("/api/scenarios", {{"copy_of", "A"}, {"action", friction}});
+    EXPECT_EQ(made.json()["created"], "B");
+    EXPECT_EQ(state("B")["step"], 0);
+    EXPECT_EQ(setup("B")["parameters"]["material.friction_coefficient"], 0.2);
+    EXPECT_EQ(setup("B")["changes"], json::array());
+    EXPECT_EQ(setup("B")["undo"], "friction coefficient 0.4 -> 0.2");
+    EXPECT_NE(setup("A")["parameters"]["material.friction_coefficient"], 0.2);
+
+    EXPECT_EQ(act(friction).status, 200);
+    ASSERT_EQ(setup("A")["changes"].size(), 1U);
+    EXPECT_EQ(setup("A")["changes"][0]["sentence"], "friction coefficient 0.4 -> 0.2");
+    EXPECT_EQ(setup("A")["changes"][0]["time_s"], state("A")["time_s"]);
+    EXPECT_EQ(act({{"action", "undo"}}).status, 200);
+    EXPECT_EQ(setup("A")["changes"], json::array()) << "nothing has moved between";
+    EXPECT_EQ(act({{"action", "redo"}}).status, 200);
+
+    const json b_alone = {"B"}, both = {"A", "B"};
+    EXPECT_EQ(act({{"action", "run"}, {"scenarios", b_alone}}).status, 200);
+    EXPECT_EQ(state("A")["status"], "paused");
+    EXPECT_EQ(state("B")["status"], "running");
+    EXPECT_EQ(act({{"action", "pause"}, {"scenarios", both}}).status, 200);
+    EXPECT_EQ(act({{"action", "restart"}, {"scenarios", both}}).status, 200);
+    EXPECT_EQ(state("A")["step"], 0);
+    EXPECT_EQ(state("B")["step"], 0);
+    EXPECT_EQ(setup("A")["changes"], json::array());
+    EXPECT_EQ(act({{"action", "run"}, {"scenarios", {"A", "E"}}}).status, 400);
+    EXPECT_EQ(act({{"action", "run"}, {"scenarios", json::array()}}).status, 400);
+    EXPECT_EQ(act({{"action", "name_scenario"}, {"name", " Wet year\n"}}).status, 200);
+    EXPECT_EQ(setup("A")["name"], "Wet year");
+
+    for (const char* name : {"C", "D", "E", "F"}) {
+        EXPECT_EQ(hand.post("/api/scenarios", {{"copy_of", "B"}}).json()["created"], name);
+    }
+    EXPECT_EQ(hand.post("/api/scenarios", {{"copy_of", "B"}}).status, 409);
+    EXPECT_EQ(hand.ask("DELETE", "/api/scenarios/C").status, 200);
+    EXPECT_EQ(hand.get("/api/session").json()["scenarios"], (json{"A", "B", "D", "E", "F"}));
+    EXPECT_EQ(hand.post("/api/scenarios", {{"copy_of", "A"}}).json()["created"], "C");
 }
 
 TEST_F(Web, run_pause_step_and_speed) {

@@ -1,9 +1,11 @@
 // Assembles the parts of the page.
+import { scenarioNames } from "./protocol/frame";
 import "uplot/dist/uPlot.min.css";
 import { Probes } from "./charts/probes";
 import { sectionPanel } from "./charts/section";
 import { frontCharts, timeCharts } from "./charts/series_charts";
 import { calibratePanel } from "./panels/calibrate";
+import { ComparePanel } from "./panels/compare";
 import { exportButtons } from "./panels/exports";
 import { impactColour, impactsPanel, largestPressure } from "./panels/impacts";
 import { help, keys } from "./panels/keys";
@@ -12,6 +14,7 @@ import { controls } from "./panels/controls";
 import { people } from "./panels/people";
 import { Picture } from "./panels/picture";
 import { balance, runCard } from "./panels/run_card";
+import { changedOnTheWay } from "./panels/scenarios";
 import { transport } from "./panels/transport";
 import { viewBar } from "./panels/view_bar";
 import type { Api } from "./protocol/api";
@@ -25,11 +28,13 @@ import { ShownLayers } from "./scene/shown_layers";
 import { Sinking } from "./scene/sinking";
 import { Stage } from "./scene/stage";
 import { watchAll } from "./state/cell";
+import { paneText } from "./state/differences";
 import { Playback } from "./state/playback";
 import { Refresher } from "./state/refresher";
 import { Twin } from "./state/twin";
 import { button, h } from "./ui/dom";
 import { tabs } from "./ui/tabs";
+import { watchTyping } from "./ui/typed";
 import { Toasts } from "./ui/toast";
 
 export function openPage(page: HTMLElement, token: string, info: SceneInfo, terrain: Grid, api: Api): void {
@@ -39,6 +44,7 @@ export function openPage(page: HTMLElement, token: string, info: SceneInfo, terr
 }
 
 function buildPage(page: HTMLElement, twin: Twin): void {
+  watchTyping();
   const stage = new Stage(twin, twin.relief);
   const drawing = new Drawing(twin, stage);
   const layers = new ShownLayers(twin, stage);
@@ -52,6 +58,7 @@ function buildPage(page: HTMLElement, twin: Twin): void {
   followFront(twin, stage);
 
   const probes = new Probes(twin);
+  const compare = new ComparePanel(twin, picture);
   const section = sectionPanel(twin, stage);
   const readings = tabs("Readings", [
     { name: "front", title: "Front", content: frontCharts(twin) },
@@ -60,17 +67,20 @@ function buildPage(page: HTMLElement, twin: Twin): void {
     { name: "section", title: "Section", content: section.element },
     { name: "impact", title: "Impact", content: impactsPanel(twin, stage) },
     { name: "balance", title: "Balance", content: balance(twin) },
+    { name: "compare", title: "Compare", content: compare.element, onshow: () => compare.open() },
     { name: "calibrate", title: "Calibrate", content: calibratePanel(twin) },
   ]);
   twin.probes.watch((list) => {
     if (list.length > 0) readings.show("points");
   });
+  watchAll([twin.shown], () => readings.offer("compare", twin.shown.value.length > 1));
   twin.section.watch((line) => {
     if (line) readings.show("section");
   });
   new Refresher(twin, () => {
     if (readings.shown() === "points") void probes.refresh();
     if (readings.shown() === "section") section.refresh();
+    if (readings.shown() === "compare") void compare.refresh();
   });
   const readOut = marks(twin, stage, layers);
   keys(twin, stage, drawing, bar, playback);
@@ -88,12 +98,15 @@ function buildPage(page: HTMLElement, twin: Twin): void {
   const key = legends(twin, stage, layers);
   const scale = scaleAndCompass(twin, stage, readOut);
   stage.covers = [bar.camera, bar.show, key, scale];
+  const middle = h("main", { class: "middle" }, stage.element, bar.camera, bar.show, key, scale);
+  // Names of the two views stand below the bars, which wrap on a narrow page.
+  new ResizeObserver(() => middle.style.setProperty("--bars", `${bar.show.offsetTop + bar.show.offsetHeight}px`)).observe(bar.show);
   page.replaceChildren(
     h("header", { class: "topbar" }, h("span", { class: "wordmark" }, "talus"), h("h1", {}, twin.scene.title), badge, h("span", { class: "spring" }),
       people(twin), ...exportButtons(twin, picture), button("Help", { icon: "help", bare: true, title: "Help and shortcuts (?)", onclick: help }), drawer),
     controls(twin, drawing),
-    h("main", { class: "middle" }, stage.element, bar.camera, bar.show, key, scale),
-    h("aside", { class: "readings", "aria-label": "Readings" }, runCard(twin), readings.element, readings.panel),
+    middle,
+    h("aside", { class: "readings", "aria-label": "Readings" }, runCard(twin), changedOnTheWay(twin), readings.element, readings.panel),
     transport(twin, playback),
     toasts.polite, toasts.urgent,
   );
@@ -101,7 +114,7 @@ function buildPage(page: HTMLElement, twin: Twin): void {
 
 /** Setups and impacts go to the views; the view that the controls edit is marked. */
 function showSetups(twin: Twin, stage: Stage): void {
-  for (const name of ["A", "B"] as const) {
+  for (const name of scenarioNames) {
     const put = (): void => {
       const setup = twin.cells[name].setup.value;
       const view = stage.views.get(name);
@@ -109,8 +122,8 @@ function showSetups(twin: Twin, stage: Stage): void {
       view.setSetup(setup);
       stage.relabel(view);
     };
-    watchAll([twin.cells[name].setup, twin.scenarios], put);
-    watchAll([twin.cells[name].setup, twin.cells[name].impacts, twin.selection, twin.houseColour, twin.scenarios], () => {
+    watchAll([twin.cells[name].setup, twin.shown], put);
+    watchAll([twin.cells[name].setup, twin.cells[name].impacts, twin.selection, twin.houseColour, twin.shown], () => {
       const impacts = twin.cells[name].impacts.value;
       const most = largestPressure(impacts);
       stage.views.get(name)?.colourSolids(impacts, (id) => impactColour(impacts?.buildings.find((b) => b.id === id), twin.houseColour.value, twin.scene, most),
@@ -118,14 +131,14 @@ function showSetups(twin: Twin, stage: Stage): void {
       stage.invalidate();
     });
   }
-  watchAll([twin.scenarios, twin.edited], () => {
-    for (const name of twin.scenarios.value) {
+  watchAll([twin.shown, twin.edited, ...twin.every("setup")], () => {
+    for (const name of twin.shown.value) {
       const pane = stage.pane(name);
       pane?.querySelector(".pane-name")?.remove();
-      if (twin.scenarios.value.length > 1) pane?.append(h("div", { class: `pane-name${name === twin.edited.value ? " edited" : ""}` }, name));
+      if (twin.shown.value.length > 1) pane?.append(h("div", { class: `pane-name${name === twin.edited.value ? " edited" : ""}` }, paneText(twin, name)));
     }
   });
-  watchAll([twin.names, twin.scenarios, twin.selection], () => {
+  watchAll([twin.names, twin.shown, twin.selection], () => {
     for (const view of stage.views.values()) {
       view.namesShown = twin.names.value;
       view.selected = twin.hindrance === null ? (twin.selection.value?.id ?? null) : null;

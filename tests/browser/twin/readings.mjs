@@ -255,7 +255,7 @@ export async function testReadings(run) {
     await friction.press("Enter");
     await until(() => server.ask("scenarios/B/setup"), (s) => s.parameters["material.friction_coefficient"] === 0.2, "friction of B");
     assert.equal((await server.ask("scenarios/A/setup")).parameters["material.friction_coefficient"], a);
-    // A has ended while it was running: B runs on at once.
+    await page.click(".run"); // A has ended: B alone runs
     await until(() => server.ask("scenarios/B/state"), (s) => s.time_s > 6, "B runs");
     await pause(page, () => server.ask("scenarios/B/state"));
     const left = await run.still(page, await viewClip(page, "A"));
@@ -271,6 +271,7 @@ export async function testReadings(run) {
     await page.click("button[data-scenario=A]");
     assert.equal(await friction.inputValue(), String(a));
     await page.click("[aria-label='End scenario B']");
+    await page.click("dialog[open] button:has-text('End it')");
     await until(() => page.locator(".pane").count(), (n) => n === 1, "one view");
     await page.selectOption("select[aria-label^='Map layer']", "none");
   });

@@ -37,6 +37,7 @@ export class Chart {
   private data: AlignedData = [[]];
   private curves: Curve[];
   private cursor_s: number | null = null;
+  private changes: readonly number[] = [];
 
   constructor(private readonly options: ChartOptions) {
     this.curves = options.curves;
@@ -64,6 +65,14 @@ export class Chart {
   mark(x: number | null): void {
     if (x === this.cursor_s) return;
     this.cursor_s = x;
+    this.plot?.redraw(false);
+  }
+
+  /** Dashed vertical lines where a run was changed on the way. */
+  markChanges(xs: readonly number[]): void {
+    if (xs.join() === this.changes.join()) return;
+    this.changes = xs;
+    if (!this.holder.hidden) this.holder.setAttribute("aria-label", this.sentence());
     this.plot?.redraw(false);
   }
 
@@ -98,17 +107,21 @@ export class Chart {
       axes: [axis(x.label, x.unit, 2), axis(y.label, y.unit, 3), ...(right ? [{ ...axis(right.label, right.unit, 1), scale: "right" }] : [])],
       cursor: { points: { size: 6 }, drag: { x: true, y: false } },
       legend: { show: this.options.legend ?? true, live: true },
-      hooks: { draw: [(plot) => this.drawMark(plot)] },
+      hooks: { draw: [(plot) => this.drawMarks(plot)] },
     };
     this.plot = new uPlot(options, this.data, this.holder);
   }
-  private drawMark(plot: uPlot): void {
-    if (this.cursor_s === null) return;
-    const at = plot.valToPos(this.cursor_s, "x", true);
+  private drawMarks(plot: uPlot): void {
+    for (const x of this.changes) this.drawMark(plot, x, "#a3262a", [4, 4]);
+    if (this.cursor_s !== null) this.drawMark(plot, this.cursor_s, "#d98a00", []);
+  }
+  private drawMark(plot: uPlot, x: number, colour: string, dash: readonly number[]): void {
+    const at = plot.valToPos(x, "x", true);
     const { left, top, width, height } = plot.bbox;
     if (at < left || at > left + width) return;
     plot.ctx.save();
-    plot.ctx.strokeStyle = "#d98a00";
+    plot.ctx.strokeStyle = colour;
+    plot.ctx.setLineDash(dash.map((length) => length * devicePixelRatio));
     plot.ctx.lineWidth = 1.5 * devicePixelRatio;
     plot.ctx.beginPath();
     plot.ctx.moveTo(at, top);
@@ -134,7 +147,8 @@ export class Chart {
       }
       return low <= high ? `${c.label} from ${number(low)} to ${number(high)} ${unitText(c.unit)}` : `${c.label} without values`;
     });
-    return `${this.options.title} over ${this.options.x.label}: ${parts.join("; ")}.`;
+    const changed = this.changes.length > 0 ? ` Changed on the way at ${this.changes.map((x) => number(x)).join(", ")} ${unitText(this.options.x.unit)}.` : "";
+    return `${this.options.title} over ${this.options.x.label}: ${parts.join("; ")}.${changed}`;
   }
 }
 

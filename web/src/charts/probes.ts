@@ -26,7 +26,7 @@ export class Probes {
     const hint = h("p", { class: "hint" }, "Choose “Put a probe”, then click on the ground (or press Space for the middle of the view). Depth, speed and pressure there are read from the recording, up to six points.");
     this.element = h("div", {}, h("div", { class: "row" }, add, clear), hint, this.list, this.charted);
     watchAll([twin.tool], () => add.setAttribute("aria-pressed", String(twin.tool.value.kind === "probe")));
-    watchAll([twin.probes, twin.scenarios], () => {
+    watchAll([twin.probes, twin.shown], () => {
       clear.hidden = twin.probes.value.length === 0;
       this.charted.hidden = twin.probes.value.length === 0;
       this.fill();
@@ -50,7 +50,7 @@ export class Probes {
   }
   async refresh(): Promise<void> {
     const { twin } = this;
-    const names = twin.scenarios.value;
+    const names = twin.shown.value;
     const probes = twin.probes.value;
     if (probes.length === 0) return;
     await twin.attempt(async () => {
@@ -69,11 +69,11 @@ export class Probes {
       const tables: { x: (number | null)[]; y: (number | null)[] }[] = [];
       const curves: Curve[] = [];
       twin.probes.value.forEach((probe, i) => {
-        for (const name of twin.scenarios.value) {
+        for (const name of twin.shown.value) {
           const series = probe.series[name];
           if (!series) continue;
           tables.push({ x: series.time_s, y: series[kind] });
-          curves.push({ label: `${i + 1}${twin.scenarios.value.length > 1 ? ` ${name}` : ""}`, unit, colour: probe.colour, dashed: name === "B" });
+          curves.push({ label: `${i + 1}${twin.shown.value.length > 1 ? ` ${name}` : ""}`, unit, colour: probe.colour, dashed: name === twin.shown.value[1] });
         }
       });
       this.charts[c]?.update(tables.length > 0 ? joined(tables) : [[]], curves);

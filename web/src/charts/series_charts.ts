@@ -1,13 +1,13 @@
 // Front velocity against chainage, and quantities over time.
-import type { ScenarioName } from "../protocol/frame";
-import type { Column, Series } from "../protocol/messages";
+import type { Column } from "../protocol/messages";
 import { watchAll } from "../state/cell";
 import { seriesUntil } from "../state/past";
 import type { Twin } from "../state/twin";
 import { h } from "../ui/dom";
 import { Chart, joined, type Curve } from "./chart";
 
-const colours: Record<ScenarioName, string> = { A: "#0b5fa5", B: "#d1640f" };
+/** Of the two that are shown. */
+const colours = ["#0b5fa5", "#d1640f"];
 const observationColour = "#a3262a";
 
 /** Every n-th value of a long column, few enough to plot. */
@@ -25,20 +25,20 @@ export function frontCharts(twin: Twin): HTMLElement {
   const arrival = new Chart({ title: "Arrival of the front", x: { label: "Chainage", unit: "m" }, y: { label: "Time", unit: "s" }, curves: [], height: 170,
     empty: "No arrivals yet." });
   const observed = twin.scene.observations;
-  watchAll([twin.scenarios, twin.cells.A.series, twin.cells.B.series, twin.replay_s], () => {
+  watchAll([twin.shown, ...twin.every("series"), twin.replay_s], () => {
     const tables = [];
     const curves: Curve[] = [];
     const times = [];
     const timeCurves: Curve[] = [];
-    for (const name of twin.scenarios.value) {
+    for (const [i, name] of twin.shown.value.entries()) {
       const front = seriesUntil(twin.cells[name].series.value, twin.replay_s.value)?.front;
       if (!front || front.chainage_m.length === 0) continue;
-      const suffix = twin.scenarios.value.length > 1 ? ` ${name}` : "";
+      const suffix = twin.shown.value.length > 1 ? ` ${name}` : "";
       tables.push({ x: front.chainage_m, y: front.front_velocity_mps }, { x: front.chainage_m, y: front.particle_speed_mps });
-      curves.push({ label: `Front${suffix}`, unit: "m/s", colour: colours[name], points: front.chainage_m.length < 40 },
-        { label: `Debris at front${suffix}`, unit: "m/s", colour: colours[name], dashed: true });
+      curves.push({ label: `Front${suffix}`, unit: "m/s", colour: colours[i], points: front.chainage_m.length < 40 },
+        { label: `Debris at front${suffix}`, unit: "m/s", colour: colours[i], dashed: true });
       times.push({ x: front.chainage_m, y: front.arrival_time_s });
-      timeCurves.push({ label: `Arrival${suffix}`, unit: "s", colour: colours[name] });
+      timeCurves.push({ label: `Arrival${suffix}`, unit: "s", colour: colours[i] });
     }
     if (observed.length > 0) {
       tables.push({ x: observed.map((o) => o.chainage_m), y: observed.map((o) => o.front_velocity_mps) });
@@ -67,20 +67,23 @@ export function timeCharts(twin: Twin): HTMLElement {
   const speed = new Chart({ title: "Speed", x: time, y: { label: "Speed", unit: "m/s" }, curves: [], empty: "No speeds yet." });
   const energy = new Chart({ title: "Energy", x: time, y: { label: "Energy", unit: "MJ" }, curves: [], empty: "No energies yet." });
   const all = [volume, speed, energy];
-  watchAll([twin.scenarios, twin.edited, twin.cells.A.series, twin.cells.B.series, twin.replay_s], () => {
-    const series: Series | null = seriesUntil(twin.now.series.value, twin.replay_s.value);
-    const table = series?.time;
-    const times = table?.["time_s"] ?? [];
-    const picked = thinned(times);
-    const pick = (column: Column | undefined, factor = 1): (number | null)[] =>
-      picked.map((k) => {
-        const v = column?.[k];
-        return v === null || v === undefined ? null : v * factor;
-      });
-    const xs = pick(times) as number[];
+  watchAll([twin.shown, ...twin.every("series"), ...twin.every("setup"), twin.replay_s], () => {
+    const two = twin.shown.value.length > 1;
     const put = (chart: Chart, list: Plotted[], unit: string, factor = 1): void => {
-      const there = list.filter((p) => table?.[p.column]);
-      chart.update(xs.length > 0 ? [xs, ...there.map((p) => pick(table?.[p.column], factor))] : [[]], there.map((p) => ({ ...p, unit })));
+      const tables: { x: Column; y: Column }[] = [];
+      const curves: Curve[] = [];
+      for (const [i, name] of twin.shown.value.entries()) {
+        const table = seriesUntil(twin.cells[name].series.value, twin.replay_s.value)?.time;
+        const picked = thinned(table?.["time_s"] ?? []);
+        const pick = (column: Column | undefined, by: number): Column => picked.map((k) => (column?.[k] ?? null) === null ? null : (column?.[k] ?? 0) * by);
+        for (const { column, label, colour } of list) {
+          if (!table?.[column] || picked.length === 0) continue;
+          tables.push({ x: pick(table["time_s"], 1), y: pick(table[column], factor) });
+          curves.push({ label: two ? `${label} ${name}` : label, colour, unit, dashed: i === 1 });
+        }
+      }
+      chart.update(tables.length > 0 ? joined(tables) : [[]], curves);
+      chart.markChanges(twin.shown.value.flatMap((name) => twin.cells[name].setup.value?.changes.map((c) => c.time_s) ?? []));
     };
     put(volume, volumes, "m3");
     put(speed, [{ column: "largest_speed_mps", label: "Largest speed", colour: "#0b5fa5" }], "m/s");

@@ -1,4 +1,5 @@
 // Barriers: every key of the field table that has a form, and openings.
+import { isTyped } from "../ui/typed";
 import type { BarrierOpening } from "../protocol/messages";
 import { fields as described } from "../protocol/schema";
 import { openingsWith, type BarrierSet } from "../state/barriers";
@@ -26,7 +27,10 @@ export function barrierFields(value: BarrierSet, scene: Given, onset: (change: P
     onset({ openings: [...openings] });
   } });
   const refill = (): void => {
-    if (list.contains(document.activeElement) && document.activeElement instanceof HTMLInputElement) return;
+    const inputs = (): HTMLInputElement[] => [...list.querySelectorAll("input")];
+    if (inputs().some(isTyped)) return;
+    const focused = inputs().findIndex((input) => input === document.activeElement);
+    if (focused >= 0) queueMicrotask(() => inputs()[focused]?.focus());
     list.replaceChildren(...openings.map((opening, k) => {
       const input = (key: keyof BarrierOpening, name: string): HTMLInputElement => {
         const field = h("input", { type: "number", step: "0.1", min: key === "width_m" ? narrowest_m : 0, value: String(opening[key]), disabled: hindered !== null, title: `${name}, m`,

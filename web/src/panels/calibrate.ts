@@ -154,6 +154,6 @@ export function calibratePanel(twin: Twin): HTMLElement {
     told = status;
   };
   for (const { free } of choices) free.addEventListener("change", show);
-  watchAll([twin.calibration, twin.edited, twin.you, twin.controller, twin.connection, twin.people, twin.cells.A.setup, twin.cells.B.setup], show);
+  watchAll([twin.calibration, twin.edited, twin.you, twin.controller, twin.connection, twin.people, ...twin.every("setup")], show);
   return element;
 }

@@ -15,7 +15,7 @@ export function groundGroup(twin: Twin, drawing: Drawing): HTMLElement {
   const group = h("details", { class: "ground-group" }, h("summary", {}, h("h2", {}, "Ground and inflow"), count), pending,
     ...shapes.map((shape) => shapeSection(twin, drawing, shape)));
   let before = 0;
-  watchAll([twin.edited, twin.cells.A.setup, twin.cells.B.setup, twin.selection, twin.tool, twin.you, twin.controller, twin.connection, twin.people], () => {
+  watchAll([twin.edited, ...twin.every("setup"), twin.selection, twin.tool, twin.you, twin.controller, twin.connection, twin.people], () => {
     const setup = twin.now.setup.value;
     const there = shapes.reduce((sum, shape) => sum + itemsOf(setup, shape).length, 0);
     const tool = twin.tool.value;

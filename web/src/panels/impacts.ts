@@ -143,7 +143,7 @@ export function impactsPanel(twin: Twin, stage: Stage): HTMLElement {
   const goneTitle = h("h3", {}, "Taken away");
   const gone = h("ul", { class: "removed" });
   const then = h("p", { class: "hint" });
-  watchAll([twin.edited, twin.cells.A.impacts, twin.cells.B.impacts, twin.selection, twin.houseColour, twin.replay_s], () => {
+  watchAll([twin.edited, ...twin.every("impacts"), twin.selection, twin.houseColour, twin.replay_s], () => {
     const impacts = twin.now.impacts.value;
     houses.show(impacts?.buildings ?? []);
     barriers.show(impacts?.barriers ?? []);

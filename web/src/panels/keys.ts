@@ -7,6 +7,7 @@ import type { Twin } from "../state/twin";
 import { dialog, openDialog } from "../ui/dialog";
 import { h } from "../ui/dom";
 import { toggle } from "./transport";
+import { isTyped } from "../ui/typed";
 import type { ViewBar } from "./view_bar";
 
 const shortcuts: [string, [string, string][]][] = [
@@ -15,7 +16,7 @@ const shortcuts: [string, [string, string][]][] = [
     ["W A S D, Q E", "Fly"], ["T", "Top view"], ["F", "Whole scene"], ["Alt + 1 … 9", "Saved view"]]],
   ["Drawing", [["Space", "Point in the middle of the view"], ["Enter", "Finish"], ["Backspace", "Remove the last point"], ["Escape", "Cancel, or clear the selection"],
     ["Delete", "Remove the selection"], ["Arrow keys on a corner", "Move it by 1 m"]]],
-  ["Everywhere", [["Ctrl + Z", "Undo"], ["Ctrl + Shift + Z", "Redo"], ["?", "This help"]]],
+  ["Everywhere", [["Ctrl + Z", "Undo; in a field with text that is not sent yet, undo typing"], ["Ctrl + Shift + Z", "Redo"], ["?", "This help"]]],
 ];
 
 export function help(): void {
@@ -32,7 +33,7 @@ export function keys(twin: Twin, stage: Stage, drawing: Drawing, bar: ViewBar, t
     if (document.querySelector("dialog[open]")) return;
     const target = event.target instanceof HTMLElement ? event.target : document.body;
     const typing = target.matches("input:not([type=checkbox]):not([type=range]), textarea, select");
-    if ((event.ctrlKey || event.metaKey) && !event.altKey && event.key.toLowerCase() === "z" && !typing) {
+    if ((event.ctrlKey || event.metaKey) && !event.altKey && event.key.toLowerCase() === "z" && !isTyped(target)) {
       event.preventDefault();
       if (twin.hindrance === null) void twin.act({ action: event.shiftKey ? "redo" : "undo" });
       return;
@@ -51,7 +52,7 @@ export function keys(twin: Twin, stage: Stage, drawing: Drawing, bar: ViewBar, t
         if (twin.hindrance === null) void toggle(twin);
         break;
       case ".":
-        if (twin.hindrance === null) void twin.act({ action: "step" });
+        if (twin.hindrance === null) void twin.drive("step");
         break;
       case "r": timeline.toggle(); break;
       case "l": timeline.live(); break;

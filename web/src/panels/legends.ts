@@ -7,6 +7,7 @@ import type { ShownLayers } from "../scene/shown_layers";
 import type { Stage } from "../scene/stage";
 import { watchAll } from "../state/cell";
 import { largestPressure } from "./impacts";
+import { changesText } from "../state/differences";
 import { fixed, quantity, tick, unitText } from "../state/format";
 import type { Twin } from "../state/twin";
 import { h } from "../ui/dom";
@@ -25,7 +26,7 @@ export function presentLegends(twin: Twin, stage: Stage, layers: ShownLayers): L
   if (twin.surface.value === "depth") {
     list.push({ title: "Flow depth", unit: "m", low: 0, high: layers.surfaceTop, at: (s) => rampAt(ramps.depth, s) });
   }
-  const most = Math.max(...twin.scenarios.value.map((s) => largestPressure(twin.cells[s].impacts.value)));
+  const most = Math.max(...twin.shown.value.map((s) => largestPressure(twin.cells[s].impacts.value)));
   if (twin.houseColour.value === "pressure" && most > 0) {
     list.push({ title: "Houses, impact pressure", unit: "kPa", low: 0, high: most, at: (s) => rampAt(ramps.peak_pressure, s) });
   }
@@ -39,7 +40,7 @@ export function presentLegends(twin: Twin, stage: Stage, layers: ShownLayers): L
         ...(info.from ? { from: info.from } : {}), ...(info.categories ? { categories: info.categories } : {}) });
       return list;
     }
-    const title = (name === "depth" && time !== null ? "Depth" : info.title) + (layers.isDifference ? ", B − A" : "") +
+    const title = (name === "depth" && time !== null ? "Depth" : info.title) + (layers.isDifference ? `, ${twin.differenceName}` : "") +
       (time === null ? "" : name === "depth" || name === "deposit_depth" ? ` at ${fixed(time, 1)} s` : ` until ${fixed(time, 1)} s`);
     list.push(layers.isDifference ? { title, unit: info.unit, low, high, at: (s) => divergingAt(2 * s - 1) }
       : { title, unit: info.unit, low, high, at: (s) => rampAt(info.ramp, s), ...(time !== null && name.startsWith("peak_") ? { note: pastNote } : {}) });
@@ -63,10 +64,14 @@ export function legends(twin: Twin, stage: Stage, layers: ShownLayers): HTMLElem
       return h("span", {}, dot, c.name);
     }));
   classes.title = twin.scene.intensity.rule;
-  watchAll([twin.particles, twin.surface, twin.layer, twin.difference, layers.range, layers.shown_s, stage.fastest_mps, twin.houseColour, twin.cells.A.impacts, twin.cells.B.impacts], () => {
-    const anyHit = twin.scenarios.value.some((s) => twin.cells[s].impacts.value?.buildings.some((b) => b.hit));
+  watchAll([twin.particles, twin.surface, twin.layer, twin.difference, layers.range, layers.shown_s, stage.fastest_mps, twin.houseColour, twin.shown, ...twin.every("impacts"), ...twin.every("setup")], () => {
+    const anyHit = twin.shown.value.some((s) => twin.cells[s].impacts.value?.buildings.some((b) => b.hit));
     classes.hidden = twin.houseColour.value !== "intensity" || !anyHit;
-    holder.replaceChildren(classes, ...presentLegends(twin, stage, layers).map((legend) => {
+    const changed = twin.shown.value.filter((s) => (twin.cells[s].setup.value?.changes.length ?? 0) > 0);
+    const note = h("div", { class: "legend on-the-way" }, `${twin.shown.value.length > 1 ? `${changed.join(", ")} c` : "C"}hanged on the way: not the results of one setup`);
+    note.title = changed.map((s) => changesText(twin.cells[s].setup.value)).join("; ");
+    note.hidden = changed.length === 0;
+    holder.replaceChildren(note, classes, ...presentLegends(twin, stage, layers).map((legend) => {
       const from = legend.from ? h("div", { class: "legend-from" }, legend.from) : null;
       if (legend.categories) {
         const list = legend.categories.map((c) => {

@@ -46,7 +46,7 @@ export function parameterFields(twin: Twin): HTMLElement {
     const key = parameter.key.slice("material.".length);
     const needed = hindranceOf("material", key, twin.scene);
     field.limit({ low: parameter.range.low ?? -1e12, high: parameter.range.high ?? 1e12, hindrance: needed, hint: needed });
-    watchAll([twin.edited, twin.cells.A.setup, twin.cells.B.setup, twin.you, twin.controller, twin.connection], () => {
+    watchAll([twin.edited, ...twin.every("setup"), twin.you, twin.controller, twin.connection], () => {
       const value = twin.now.setup.value?.parameters[parameter.key];
       field.show(value === undefined ? parameter.value : value);
       field.enable(twin.hindrance);

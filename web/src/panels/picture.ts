@@ -2,6 +2,7 @@
 import type { ShownLayers } from "../scene/shown_layers";
 import type { Stage } from "../scene/stage";
 import { css, roundStep } from "../scene/colour";
+import { changesText } from "../state/differences";
 import { fixed, tick, unitText } from "../state/format";
 import type { Twin } from "../state/twin";
 import { presentLegends } from "./legends";
@@ -53,10 +54,13 @@ export class Picture {
     const title = twin.scene.title;
     const time = `t = ${fixed(stage.stats.shownTime_s, 1)} s`;
     c.font = `600 14px ${font}`;
-    plate(10, 10, Math.max(c.measureText(title).width, 90) + 20, 44);
+    const changed = twin.shown.value.filter((name) => changesText(twin.cells[name].setup.value))
+      .map((name) => `${twin.shown.value.length > 1 ? `${name} c` : "C"}hanged on the way: ${changesText(twin.cells[name].setup.value)}`);
+    plate(10, 10, Math.max(c.measureText(title).width, 90) + 20, 44 + 15 * changed.length);
     c.fillText(title, 20, 25);
     c.font = `12px ${font}`;
-    c.fillText(time + (stage.views.size > 1 ? "   A left, B right" : ""), 20, 43);
+    changed.forEach((line, i) => c.fillText(line, 20, 58 + 15 * i, width - 60));
+    c.fillText(time + (stage.views.size > 1 ? `   ${twin.shown.value[0]} left, ${twin.shown.value[1]} right` : ""), 20, 43);
     let bottom = height - 10;
     for (const legend of presentLegends(twin, stage, this.layers)) {
       if (legend.from) bottom -= 15;
@@ -110,6 +114,10 @@ export class Picture {
     const canvas = this.compose(this.stage.drawNow());
     const blob = await new Promise<Blob | null>((resolve) => canvas.toBlob(resolve, "image/png"));
     if (blob) save(`${this.fileName}-${fixed(this.stage.stats.shownTime_s, 1)}s.png`, blob);
+  }
+  /** The view as it is, for another document. */
+  still(): string {
+    return this.compose(this.stage.drawNow()).toDataURL("image/jpeg", 0.9);
   }
   get recording(): boolean {
     return this.recorder !== null;

@@ -5,7 +5,7 @@ import type { Twin } from "../state/twin";
 import { h } from "../ui/dom";
 
 const watched = (twin: Twin): Parameters<typeof watchAll>[0] =>
-  [twin.edited, twin.cells.A.state, twin.cells.B.state, twin.cells.A.series, twin.cells.B.series, twin.replay_s, twin.replaySqueezed];
+  [twin.edited, ...twin.every("state"), ...twin.every("series"), twin.replay_s, twin.replaySqueezed];
 
 export function runCard(twin: Twin): HTMLElement {
   const cell = (label: string, help: string): { element: HTMLElement; value: HTMLElement } => {
@@ -29,8 +29,10 @@ export function runCard(twin: Twin): HTMLElement {
     particles.value.textContent = count(s?.particles);
     steps.value.textContent = s && live ? `${fixed(s.steps_per_second, 0)} /s` : "–";
     real.value.textContent = s && live ? `${fixed(s.real_time_factor, 2)} ×` : "–";
-    message.hidden = !s?.message;
-    if (message.textContent !== (s?.message ?? "")) message.textContent = s?.message ?? "";
+    // Of the run's end, not of the time that is looked back at.
+    const said = live ? (s?.message ?? "") : "";
+    message.hidden = said === "";
+    if (message.textContent !== said) message.textContent = said;
     message.classList.toggle("bad", s?.status === "fault");
     // Before the first step there is nothing to judge.
     const squeezed = live ? s?.too_compressed ?? null : twin.replaySqueezed.value;

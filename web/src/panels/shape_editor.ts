@@ -6,6 +6,7 @@ import { peakOf } from "../state/inflows";
 import { area, canReshape, footprintArea, hasOutline, itemOf, length, lineOf, partsOf, pointsOf, releaseVolume, type Item } from "../state/shapes";
 import type { Shape, Twin } from "../state/twin";
 import { button, h } from "../ui/dom";
+import { isTyped, put } from "../ui/typed";
 import { shapeFields } from "./shape_fields";
 
 const editors = new WeakMap<HTMLElement, { id: string; update(item: Item): void; end(): void }>();
@@ -44,7 +45,7 @@ function editor(twin: Twin, drawing: Drawing, item: Item, holder: HTMLElement): 
   const measure = h("output", { class: "measure" });
   const update = (fresh: Item): void => {
     const hindrance = twin.hindrance;
-    if (document.activeElement !== name) name.value = fresh.name;
+    if (!isTyped(name)) put(name, fresh.name);
     name.disabled = away.disabled = hindrance !== null;
     fields.show(fresh);
     fields.enable(hindrance);
@@ -107,7 +108,10 @@ function measureOf(twin: Twin, item: Item, points: readonly (readonly [number, n
 
 /** Corners as numbers, for exact positions and for use without a mouse. */
 function fillCorners(twin: Twin, item: Item, holder: HTMLElement, now: () => Item, send: (what: Change) => void): void {
-  if (holder.contains(document.activeElement)) return;
+  const inputs = (): HTMLInputElement[] => [...holder.querySelectorAll("input")];
+  if (inputs().some(isTyped)) return;
+  const focused = inputs().findIndex((input) => input === document.activeElement);
+  if (focused >= 0) queueMicrotask(() => inputs()[focused]?.focus());
   const disabled = twin.hindrance !== null;
   if (!canReshape(item)) {
     const [east, north] = ["east", "north"].map((way) => h("input", { type: "number", step: "0.1", value: "0", disabled,

@@ -80,7 +80,7 @@ export function shapeSection(twin: Twin, drawing: Drawing, shape: Shape): HTMLEl
     // After its group has opened.
     if (opens) queueMicrotask(() => reveal(section));
   };
-  watchAll([twin.edited, twin.cells.A.setup, twin.cells.B.setup, twin.selection, twin.tool, twin.you, twin.controller, twin.connection, twin.people], refresh);
+  watchAll([twin.edited, ...twin.every("setup"), twin.selection, twin.tool, twin.you, twin.controller, twin.connection, twin.people], refresh);
   return section;
 }
 

@@ -1,4 +1,5 @@
 // Run, pause, step, restart, speed; the timeline with the recording, and the return to live.
+import { scenarioNames } from "../protocol/frame";
 import { watchAll } from "../state/cell";
 import { fixed } from "../state/format";
 import type { Playback } from "../state/playback";
@@ -10,10 +11,12 @@ const speeds: [string, string][] = [
   ["", "Fastest"],
 ];
 
+export const statusWords = { running: "Running", paused: "Paused", at_rest: "At rest", ended: "End reached", fault: "Stopped by a fault" } as const;
+
 export function transport(twin: Twin, playback: Playback): HTMLElement {
   const run = button("Run", { class: "primary run", icon: "run", onclick: () => void toggle(twin) });
-  const step = button("Step", { icon: "step", bare: true, title: "One step (period key)", onclick: () => void twin.act({ action: "step" }) });
-  const restart = button("Restart", { icon: "restart", bare: true, title: "Back to time 0 with the present setup",
+  const step = button("Step", { icon: "step", bare: true, title: "One step (period key)", onclick: () => void twin.drive("step") });
+  const restart = button("Restart", { icon: "restart", bare: true, title: "Back to time 0 with the present setup: every scenario shown",
     onclick: () => void twin.restart() });
   const speed = h("select", { "aria-label": "Speed of the simulation", title: "Speed of the simulation; “Fastest” is without limit", onchange: () =>
     void twin.act({ action: "set_speed", factor: speed.value === "" ? null : Number(speed.value) }) },
@@ -41,7 +44,7 @@ export function transport(twin: Twin, playback: Playback): HTMLElement {
   };
   const showState = (): void => {
     const state = twin.now.state.value;
-    const running = state?.status === "running";
+    const { running } = twin;
     face(run, running ? "Pause" : "Run", running ? "pause" : "run");
     const hindrance = twin.hindrance;
     for (const control of [run, step, restart, speed]) {
@@ -49,26 +52,25 @@ export function transport(twin: Twin, playback: Playback): HTMLElement {
       if (hindrance) control.setAttribute("data-why", hindrance);
       else control.removeAttribute("data-why");
     }
-    const over = state?.status === "ended" || state?.status === "at_rest";
+    const over = twin.shown.value.every((name) => ["ended", "at_rest"].includes(twin.cells[name].state.value?.status ?? ""));
     run.disabled ||= over;
     step.disabled ||= running || over;
     const chosen = state?.speed_factor;
     const value = chosen === null || chosen === undefined ? "" : String(chosen);
-    if (document.activeElement !== speed && state) {
+    if (state) {
       if (![...speed.options].some((o) => o.value === value)) speed.prepend(h("option", { value }, `${value} ×`));
       speed.value = value;
     }
-    const words = { running: "Running", paused: "Paused", at_rest: "At rest", ended: "End reached", fault: "Stopped by a fault" };
-    status.textContent = state ? (twin.replay_s.value === null ? words[state.status] : "Recording") : "";
+    status.textContent = state ? (twin.replay_s.value === null ? statusWords[state.status] : "Recording") : "";
     status.dataset["status"] = twin.replay_s.value === null ? (state?.status ?? "") : "replay";
-    if (state?.message) status.title = state.message;
+    status.title = twin.replay_s.value === null ? (state?.message ?? "") : "";
     live.classList.toggle("on", twin.replay_s.value === null);
     live.setAttribute("aria-pressed", String(twin.replay_s.value === null));
     face(play, twin.playing.value ? "Pause the recording" : "Play the recording", twin.playing.value ? "pause" : "run");
     showTime();
   };
-  for (const name of ["A", "B"] as const) twin.cells[name].state.watch(showState);
-  watchAll([twin.replay_s, twin.playing, twin.edited, twin.you, twin.controller, twin.connection, twin.people], showState);
+  for (const name of scenarioNames) twin.cells[name].state.watch(showState);
+  watchAll([twin.replay_s, twin.playing, twin.edited, twin.shown, twin.you, twin.controller, twin.connection, twin.people], showState);
 
   return h("footer", { class: "transport", "aria-label": "Time" },
     h("div", { class: "drive" }, run, step, restart, speed),
@@ -79,9 +81,8 @@ export function transport(twin: Twin, playback: Playback): HTMLElement {
 }
 
 export async function toggle(twin: Twin): Promise<void> {
-  const running = twin.now.state.value?.status === "running";
-  if (!running) twin.replay_s.value = null;
-  await twin.act({ action: running ? "pause" : "run" });
+  if (!twin.running) twin.replay_s.value = null;
+  await twin.drive(twin.running ? "pause" : "run");
 }
 
 function face(control: HTMLButtonElement, text: string, name: IconName): void {

@@ -58,8 +58,8 @@ export function viewBar(twin: Twin, stage: Stage): ViewBar {
     h("option", { value: "none" }, "no layer"), ...layerNames.map((name) => h("option", { value: name, title: layerInfo[name].help }, layerInfo[name].title)));
   // A selected layer remains in the list, also while there is no erosion again.
   const erosion = layer.querySelector<HTMLOptionElement>("option[value=erosion_depth]");
-  watchAll([twin.cells.A.state, twin.cells.B.state, twin.layer], () => {
-    const some = twin.scenarios.value.some((s) => (twin.cells[s].state.value?.volume_entrained_m3 ?? 0) > 0);
+  watchAll([...twin.every("state"), twin.layer], () => {
+    const some = twin.shown.value.some((s) => (twin.cells[s].state.value?.volume_entrained_m3 ?? 0) > 0);
     if (erosion) erosion.hidden = erosion.disabled = !some && twin.layer.value !== "erosion_depth";
   });
   twin.ensembles.watch((list) => {
@@ -71,14 +71,15 @@ export function viewBar(twin: Twin, stage: Stage): ViewBar {
   });
   const opacity = h("input", { type: "range", min: "0.1", max: "1", step: "0.05", "aria-label": "Opacity of the layer", title: "Opacity of the layer",
     oninput: () => (twin.layerOpacity.value = Number(opacity.value)) });
+  const differenceName = h("span", {}, "");
   const difference = h("input", { type: "checkbox", onchange: () => (twin.difference.value = difference.checked) });
-  const differenceLabel = h("label", { class: "check", title: "Difference of the layer between the two scenarios" }, difference, "B − A");
+  const differenceLabel = h("label", { class: "check", title: "Difference of the layer between the two scenarios" }, difference, differenceName);
   const contours = h("input", { type: "checkbox", onchange: () => (twin.contours.value = contours.checked) });
   const photo = h("input", { type: "checkbox", onchange: () => (twin.photo.value = photo.checked) });
   const photoLabel = h("label", { class: "check", title: "The scene's orthophoto, draped over the terrain" }, photo, "Photo");
   photoLabel.hidden = !twin.scene.orthophoto;
   const names = h("input", { type: "checkbox", onchange: () => (twin.names.value = names.checked) });
-  watchAll([twin.particles, twin.surface, twin.layer, twin.layerOpacity, twin.difference, twin.scenarios, twin.contours, twin.names, twin.photo], () => {
+  watchAll([twin.particles, twin.surface, twin.layer, twin.layerOpacity, twin.difference, twin.shown, twin.contours, twin.names, twin.photo], () => {
     photo.checked = twin.photo.value;
     particles.checked = twin.particles.value;
     surface.value = twin.surface.value;
@@ -87,7 +88,8 @@ export function viewBar(twin: Twin, stage: Stage): ViewBar {
     opacity.value = String(twin.layerOpacity.value);
     opacity.hidden = twin.layer.value === "none";
     difference.checked = twin.difference.value;
-    differenceLabel.hidden = twin.scenarios.value.length < 2;
+    differenceName.textContent = twin.differenceName;
+    differenceLabel.hidden = twin.shown.value.length < 2;
     difference.disabled = twin.layer.value === "none" || isEnsembleLayer(twin.layer.value);
     contours.checked = twin.contours.value;
     names.checked = twin.names.value;

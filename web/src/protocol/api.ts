@@ -1,7 +1,7 @@
 // The HTTP half of docs/protocol.md.
 import { decodeFrame, type Frame, type ScenarioName } from "./frame";
 import { decodeGrid, type Grid } from "./grid";
-import type { Action, Done, Ensemble, ExportFile, Impacts, LayerName, ProbeSeries, Recording, SceneInfo, Series, Session } from "./messages";
+import type { Action, Done, Ensemble, ExportFile, Figure, Impacts, LayerName, NewScenario, ProbeSeries, Recording, SceneInfo, Series, Session } from "./messages";
 
 /** The server's answer to a request that it refused. */
 export class Refused extends Error {
@@ -60,6 +60,7 @@ export class Api {
   series = (s: ScenarioName): Promise<Series> => this.json(`scenarios/${s}/series`);
   /** Now, or at a time of the recording. */
   impacts = (s: ScenarioName, time_s: number | null = null): Promise<Impacts> => this.json(`scenarios/${s}/impacts${at(time_s)}`);
+  figures = async (s: ScenarioName): Promise<Figure[]> => (await this.json<{ figures: Figure[] }>(`scenarios/${s}/figures`)).figures;
   recording = (s: ScenarioName): Promise<Recording> => this.json(`scenarios/${s}/recording`);
   layer = async (s: ScenarioName, name: LayerName, time_s: number | null = null): Promise<Grid> =>
     decodeGrid(await this.binary(`scenarios/${s}/layers/${name}${at(time_s)}`));
@@ -76,8 +77,10 @@ export class Api {
 
   act = async (s: ScenarioName, action: Action): Promise<Done> =>
     (await (await this.ask("POST", `scenarios/${s}/actions`, action)).json()) as Done;
-  addScenario = async (): Promise<void> => void (await this.ask("POST", "scenarios", { copy_of: "A" }));
-  endScenario = async (): Promise<void> => void (await this.ask("DELETE", "scenarios/B"));
+  /** Another scenario from time 0, with an action applied to it first. */
+  addScenario = async (of: ScenarioName, action: Action | null): Promise<NewScenario> =>
+    (await (await this.ask("POST", "scenarios", { copy_of: of, ...(action === null ? {} : { action }) })).json()) as NewScenario;
+  endScenario = async (s: ScenarioName): Promise<void> => void (await this.ask("DELETE", `scenarios/${s}`));
   calibrate = async (parameters: { key: string; low: number; high: number }[], runs: number): Promise<void> =>
     void (await this.ask("POST", "calibration", { parameters, runs }));
   cancelCalibration = async (): Promise<void> => void (await this.ask("DELETE", "calibration"));

@@ -1,6 +1,8 @@
 // Frames of docs/protocol.md.
 
-export type ScenarioName = "A" | "B";
+/** Those that there can be at one time. */
+export const scenarioNames = ["A", "B", "C", "D", "E", "F"] as const;
+export type ScenarioName = (typeof scenarioNames)[number];
 
 export const frameFlag = { running: 1, tooCompressed: 2, recorded: 4 } as const;
 
@@ -101,7 +103,7 @@ export async function decodeFrame(data: ArrayBuffer): Promise<Frame> {
   const three = (at: number): [number, number, number] =>
     [head.getFloat32(at, true), head.getFloat32(at + 4, true), head.getFloat32(at + 8, true)];
   return {
-    scenario: head.getUint8(5) === 0 ? "A" : "B",
+    scenario: scenarioNames[head.getUint8(5)] ?? "A",
     flags: head.getUint16(6, true),
     time_s: head.getFloat64(8, true),
     step: Number(head.getBigUint64(16, true)),

@@ -152,8 +152,13 @@ export interface Inflow extends InflowValues {
   from_scene: boolean;
   in_force: boolean;
 }
+/** A change of a run after its first step. */
+export interface ChangeOnTheWay { time_s: number; by: string; sentence: string }
 export interface Setup {
   scenario: ScenarioName;
+  /** Given by people; may be empty. */
+  name: string;
+  changes: ChangeOnTheWay[];
   revision: number;
   parameters: Record<string, number | null>;
   releases: Release[];
@@ -199,6 +204,8 @@ export interface Series {
 }
 export interface ProbeSeries { time_s: Column; depth_m: Column; speed_mps: Column; pressure_kPa: Column }
 export interface Recording { times_s: number[]; bytes: number }
+/** Of a run, as in its report. */
+export interface Figure { key: string; name: string; value: number | string | null; unit: string }
 export interface ExportFile { name: string; bytes: number | null; what: string }
 
 export type CalibrationState = "idle" | "running" | "cancelling" | "done" | "cancelled" | "failed";
@@ -262,7 +269,9 @@ export type EnsembleLayer = `ensemble/${string}/${string}`;
 export type ShownLayer = LayerName | EnsembleLayer;
 
 export type Action =
-  | { action: "run" | "pause" | "step" | "restart" | "undo" | "redo" }
+  | { action: "run" | "pause" | "step" | "restart"; scenarios: ScenarioName[] }
+  | { action: "undo" | "redo" }
+  | { action: "name_scenario"; name: string }
   | { action: "set_speed"; factor: number | null }
   | { action: "set_parameter"; key: string; value: number }
   | { action: "set_parameters"; values: Record<string, number> }
@@ -275,6 +284,8 @@ export type Action =
   | { action: "put_inflow"; id?: string; name?: string; line?: Point[]; polygon?: Point[]; move_m?: Point; hydrograph?: HydrographRow[] } & Partial<InflowValues>
   | { action: "trigger_release" | "remove_release" | "remove_barrier" | "remove_building" | "remove_zone" | "remove_bed" | "remove_inflow"; id: string };
 export interface Done { done: string; created: string | null }
+/** object: id of what the action made. */
+export interface NewScenario { done: string; created: ScenarioName; object: string | null }
 
 export type ServerMessage =
   | { type: "hello"; protocol: number; you: You; session: Session }

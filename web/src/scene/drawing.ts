@@ -36,7 +36,7 @@ export class Drawing {
       this.redraw();
     });
     const reselect = (): void => this.reselect();
-    watchAll([twin.selection, twin.edited, twin.cells.A.setup, twin.cells.B.setup, twin.controller, twin.you, twin.tool], reselect);
+    watchAll([twin.selection, twin.edited, ...twin.every("setup"), twin.controller, twin.you, twin.tool], reselect);
   }
 
   get shape(): Shape | "section" | null {
@@ -156,7 +156,7 @@ export class Drawing {
       const { relief, metresPerPixel } = this.stage;
       selection = release ? { shape: "release", id: release.id } : groundUnder(setup, [x, y], 8 * metresPerPixel, relief.width * relief.height);
     }
-    if (selection && this.twin.scenarios.value.length > 1) this.twin.edited.value = name;
+    if (selection && this.twin.shown.value.length > 1) this.twin.edited.value = name;
     this.twin.selection.value = selection;
   }
 

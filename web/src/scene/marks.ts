@@ -26,7 +26,7 @@ export function marks(twin: Twin, stage: Stage, layers: ShownLayers): HTMLElemen
       if (person.id === twin.you.value?.id) continue;
       const element = people.get(person.id);
       if (!element) continue;
-      const at = person.mark ? stage.seenAt(person.mark, "A") : null;
+      const at = person.mark ? stage.seenAt(person.mark, twin.shown.value[0]) : null;
       const box = stage.element.getBoundingClientRect();
       element.hidden = at === null || at.x < box.left || at.x > box.right || at.y < box.top || at.y > box.bottom;
       if (at) element.style.transform = `translate(${Math.round(at.x - box.left)}px, ${Math.round(at.y - box.top)}px)`;
@@ -54,7 +54,7 @@ export function marks(twin: Twin, stage: Stage, layers: ShownLayers): HTMLElemen
     place();
   });
 
-  watchAll([twin.probes, twin.section, twin.scenarios, stage.sinkings], () => {
+  watchAll([twin.probes, twin.section, twin.shown, stage.sinkings], () => {
     for (const line of lines.values()) disposeLine(line);
     lines.clear();
     for (const [name, view] of stage.views) {

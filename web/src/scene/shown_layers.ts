@@ -1,6 +1,6 @@
 // Keeps the selected map layer of every scenario on its ground, updated during the run.
 import type { Texture } from "three";
-import type { ScenarioName } from "../protocol/frame";
+import { scenarioNames, type ScenarioName } from "../protocol/frame";
 import { gridAt, type Grid } from "../protocol/grid";
 import type { EnsembleLayer, LayerName, ShownLayer } from "../protocol/messages";
 import { Cell, watchAll } from "../state/cell";
@@ -30,16 +30,16 @@ export class ShownLayers {
   private again = false;
 
   constructor(private readonly twin: Twin, private readonly stage: Stage) {
-    watchAll([twin.layer, twin.difference, twin.scenarios, twin.replay_s], () => void this.load());
+    watchAll([twin.layer, twin.difference, twin.shown, twin.replay_s], () => void this.load());
     twin.layerOpacity.watch(() => this.put());
-    watchAll([twin.surface, twin.particles, twin.contours, twin.scenarios, stage.fastest_mps], () => this.putSurface());
-    watchAll([twin.photo, twin.scenarios], () => void this.putPhoto());
+    watchAll([twin.surface, twin.particles, twin.contours, twin.shown, stage.fastest_mps], () => this.putSurface());
+    watchAll([twin.photo, twin.shown], () => void this.putPhoto());
     setInterval(() => {
-      const running = twin.scenarios.value.some((s) => twin.cells[s].state.value?.status === "running");
+      const running = twin.shown.value.some((s) => twin.cells[s].state.value?.status === "running");
       if (running && this.isLive && twin.replay_s.value === null) void this.load();
     }, refresh_ms);
     // A step or the end of the run changes the maps once more.
-    for (const s of ["A", "B"] as const) {
+    for (const s of scenarioNames) {
       let before = -1;
       twin.cells[s].state.watch((state) => {
         if (state && state.status !== "running" && state.step !== before) {
@@ -55,7 +55,7 @@ export class ShownLayers {
     return name !== "none" && !isEnsembleLayer(name);
   }
   get isDifference(): boolean {
-    return this.twin.difference.value && this.twin.scenarios.value.length > 1 && this.isLive;
+    return this.twin.difference.value && this.twin.shown.value.length > 1 && this.isLive;
   }
   /** Value of the shown layer of a scenario, or of the difference, at a world place; null: no layer or no value. */
   valueAt(scenario: ScenarioName, x: number, y: number): number | null {
@@ -83,7 +83,7 @@ export class ShownLayers {
         if (!(await this.twin.attempt(() => this.loadMap(name)))) break;
         continue;
       }
-      const names = this.twin.scenarios.value;
+      const names = this.twin.shown.value;
       const time = this.twin.replay_s.value;
       const fine = await this.twin.attempt(async () => {
         const [grids, present] = await Promise.all([Promise.all(names.map((s) => this.layerOf(s, name, time))), this.presentFor(name, names, time)]);
@@ -110,7 +110,7 @@ export class ShownLayers {
     this.shown_s.value = null;
     this.range.value = rangeOfMap(found.map, shown.values);
     this.grids.clear();
-    for (const s of this.twin.scenarios.value) this.grids.set(s, shown);
+    for (const s of this.twin.shown.value) this.grids.set(s, shown);
     this.lay(name, this.grids);
   }
   /** In the recording, colours remain those of the current time, so that maps of different times can be compared. */
@@ -125,9 +125,8 @@ export class ShownLayers {
   }
   private show(name: LayerName, present: readonly Grid[] | null): void {
     const { twin } = this;
-    const a = this.grids.get("A");
+    const [a, b] = twin.shown.value.map((s) => this.grids.get(s));
     if (!a) return;
-    const b = this.grids.get("B");
     const all = new Map<ScenarioName, Grid>();
     this.difference = null;
     if (this.isDifference && b) {
@@ -137,10 +136,10 @@ export class ShownLayers {
       const end = scaleEnd(ends.values.map(Math.abs));
       this.range.value = [-end, end];
       // Both views show it, so that it can be compared with either flow.
-      for (const s of twin.scenarios.value) all.set(s, difference);
+      for (const s of twin.shown.value) all.set(s, difference);
     } else {
       let end = 0;
-      for (const s of twin.scenarios.value) {
+      for (const s of twin.shown.value) {
         const grid = this.grids.get(s);
         if (!grid) continue;
         const values = shownValues(name, grid);

@@ -1,5 +1,5 @@
 // Lowers the ground of every scenario by the erosion of its bed, live and in the recording.
-import type { ScenarioName } from "../protocol/frame";
+import { scenarioNames, type ScenarioName } from "../protocol/frame";
 import { watchAll } from "../state/cell";
 import type { Twin } from "../state/twin";
 import type { ScenarioView } from "./scenario_view";
@@ -23,12 +23,12 @@ export class Sinking {
   private again = false;
 
   constructor(private readonly twin: Twin, private readonly stage: Stage) {
-    for (const name of ["A", "B"] as const) {
+    for (const name of scenarioNames) {
       twin.cells[name].state.watch((state) => {
         if (state && (state.status !== "running" || state.volume_entrained_m3 === 0)) void this.follow();
       });
     }
-    watchAll([twin.scenarios, twin.replay_s], () => void this.follow());
+    watchAll([twin.shown, twin.replay_s], () => void this.follow());
     setInterval(() => void this.follow(), every_ms);
   }
 

@@ -1,6 +1,6 @@
 // The canvas: one renderer, a view per scenario side by side, one camera for all, pictures only when something changed.
 import { Vector3, WebGLRenderer, type BufferGeometry } from "three";
-import { lastDecode, type Frame, type ScenarioName } from "../protocol/frame";
+import { lastDecode, scenarioNames, type Frame, type ScenarioName } from "../protocol/frame";
 import type { Grid } from "../protocol/grid";
 import type { Place } from "../protocol/messages";
 import type { Twin } from "../state/twin";
@@ -82,12 +82,12 @@ export class Stage {
     });
     window.talusStats = this.stats;
     new ResizeObserver(() => this.resize()).observe(this.element);
-    for (const name of ["A", "B"] as const) {
+    for (const name of scenarioNames) {
       twin.cells[name].state.watch((state) => {
         if (state && state.largest_speed_mps > this.fastest_mps.value) this.fastest_mps.value = roundStep(state.largest_speed_mps);
       });
     }
-    twin.scenarios.watch((names) => this.arrange(names));
+    twin.shown.watch((names) => this.arrange(names));
     twin.onFrame((frame) => this.push(frame));
     requestAnimationFrame((now) => this.tick(now));
   }
@@ -135,6 +135,13 @@ export class Stage {
       const pane = h("div", { class: "pane", "data-scenario": name }, view.labels.layer);
       this.panes.set(name, pane);
       this.element.append(pane);
+    }
+    // From left to right in the order of the names.
+    for (const name of names) {
+      const view = this.views.get(name);
+      this.views.delete(name);
+      if (view) this.views.set(name, view);
+      this.panes.get(name)?.classList.toggle("second", names.indexOf(name) === 1);
     }
     this.element.classList.toggle("two", names.length > 1);
     this.resize();

@@ -67,7 +67,7 @@ export class Playback {
       this.wanted = null;
       const fine = await this.twin.attempt(async () => {
         const { api, cells } = this.twin;
-        await Promise.all(this.twin.scenarios.value.map(async (name: ScenarioName) => {
+        await Promise.all(this.twin.shown.value.map(async (name: ScenarioName) => {
           const [frame, impacts] = await Promise.all([api.frame(name, time), api.impacts(name, time)]);
           if (this.twin.replay_s.value === null) return;
           this.twin.showFrame(frame);

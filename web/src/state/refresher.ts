@@ -1,5 +1,5 @@
 // Polls data that the server does not push: series and impacts, during the run and once after it stops.
-import type { ScenarioName } from "../protocol/frame";
+import { scenarioNames, type ScenarioName } from "../protocol/frame";
 import type { Twin } from "./twin";
 
 const every_ms = 1000;
@@ -9,7 +9,7 @@ export class Refresher {
   private busy = false;
   /** `also` is called after every refresh, for panels with their own requests. */
   constructor(private readonly twin: Twin, private readonly also: () => void) {
-    for (const name of ["A", "B"] as const) {
+    for (const name of scenarioNames) {
       let seen = "";
       twin.cells[name].state.watch((state) => {
         const key = state ? `${state.status} ${state.step}` : "";
@@ -21,18 +21,19 @@ export class Refresher {
     // Live again: the impacts are still those of the displayed time.
     twin.replay_s.watch((time) => {
       if (time !== null) return;
-      for (const name of twin.scenarios.value) this.stale.add(name);
+      for (const name of twin.shown.value) this.stale.add(name);
       void this.refresh();
     });
+    twin.shown.watch(() => void this.refresh());
     setInterval(() => void this.refresh(), every_ms);
     void this.refresh();
   }
   private async refresh(): Promise<void> {
     const { twin } = this;
-    if (this.busy || this.stale.size === 0 || twin.connection.value.state !== "open" || document.hidden) return;
+    const names = [...this.stale].filter((n) => twin.shown.value.includes(n));
+    if (this.busy || names.length === 0 || twin.connection.value.state !== "open" || document.hidden) return;
     this.busy = true;
-    const names = [...this.stale].filter((n) => twin.scenarios.value.includes(n));
-    this.stale.clear();
+    names.forEach((name) => this.stale.delete(name));
     try {
       await Promise.all(names.map(async (name) => {
         const [series, impacts] = await Promise.all([twin.api.series(name), twin.api.impacts(name)]);

@@ -1,6 +1,6 @@
 // The shared state of the page. Panels and views read cells; only this file talks to the server's actions.
 import { Api, Refused } from "../protocol/api";
-import type { Frame, ScenarioName } from "../protocol/frame";
+import { scenarioNames, type Frame, type ScenarioName } from "../protocol/frame";
 import { Live, type Connection } from "../protocol/live";
 import type { Action, CalibrationStatus, Done, Ensemble, Impacts, Person, Place, Point, ProbeSeries, SceneInfo, Series, ServerMessage, Session, Setup, ShownLayer, State, You } from "../protocol/messages";
 import type { Relief } from "../scene/relief";
@@ -23,11 +23,20 @@ export type Tool = { kind: "none" } | { kind: "draw"; shape: Shape } | { kind: "
 export interface Selection { shape: Shape; id: string }
 export interface Probe { at: Point; colour: string; series: Partial<Record<ScenarioName, ProbeSeries>> }
 export type SurfaceColour = "off" | "depth" | "speed";
+/** How a run that has begun is edited: by a new scenario from the start, or on the way. */
+export type Habit = "new" | "now";
 export type HouseColour = "intensity" | "pressure";
 
 export const probeColours = ["#0072b2", "#d55e00", "#009e73", "#b8428c", "#c78500", "#6b4a94"];
 
 const nameKey = "talus-name";
+const habitKey = "talus-edits";
+
+/** Whether an action changes results. Starting a release is part of running. */
+function isEdit(action: Action): boolean {
+  if ("id" in action && "name" in action && Object.keys(action).length === 3) return false;
+  return /^(put|remove|set)_/.test(action.action) ? action.action !== "set_speed" : action.action === "undo" || action.action === "redo";
+}
 
 export class Twin {
   readonly connection = new Cell<{ state: Connection; retryIn_s: number }>({ state: "connecting", retryIn_s: 0 });
@@ -37,8 +46,15 @@ export class Twin {
   readonly request = new Cell<{ id: string; name: string } | null>(null);
   readonly links = new Cell<NonNullable<Session["links"]>>({});
   readonly scenarios = new Cell<ScenarioName[]>(["A"]);
+  /** One, or two side by side, in the order of their names. */
+  readonly shown = new Cell<ScenarioName[]>(["A"]);
+  /** One of those shown, which the controls change. */
   readonly edited = new Cell<ScenarioName>("A");
-  readonly cells: Record<ScenarioName, ScenarioCells> = { A: emptyCells(), B: emptyCells() };
+  readonly cells = Object.fromEntries(scenarioNames.map((name) => [name, emptyCells()])) as Record<ScenarioName, ScenarioCells>;
+  /** null: it is asked for at the first edit of a run that has begun. */
+  readonly habit = new Cell<Habit | null>(sessionStorage.getItem(habitKey) as Habit | null);
+  /** Asks which of the two; null: neither. */
+  askHabit: (scenario: ScenarioName) => Promise<Habit | null> = async () => "new";
   /** Displayed time of the recording; null: live. */
   readonly replay_s = new Cell<number | null>(null);
   /** Whether the displayed frame of the recording is too compressed. */
@@ -69,6 +85,7 @@ export class Twin {
 
   readonly api: Api;
   readonly live: Live;
+  private beginning: Promise<unknown> = Promise.resolve();
   private readonly frameReaders: ((frame: Frame) => void)[] = [];
   private readonly noticeHandlers: ((sentence: string, kind: "error" | "done") => void)[] = [];
 
@@ -100,7 +117,30 @@ export class Twin {
   }
 
   askForFrames(): void {
-    this.live.show({ scenarios: this.scenarios.value, rate_hz: 30, particle_cap: 100000 });
+    this.live.show({ scenarios: this.shown.value, rate_hz: 30, particle_cap: 100000 });
+  }
+  /** That cell of every scenario there can be. */
+  every<K extends keyof ScenarioCells>(which: K): ScenarioCells[K][] {
+    return scenarioNames.map((name) => this.cells[name][which]);
+  }
+  /** Shows one or two scenarios; the controls change `edited`. */
+  show(names: readonly ScenarioName[], edited: ScenarioName): void {
+    const ordered = [...new Set(names)].sort();
+    if (ordered.join() !== this.shown.value.join()) {
+      this.replay_s.value = null;
+      this.shown.value = ordered;
+      if (ordered.length < 2) this.difference.value = false;
+      this.askForFrames();
+    }
+    this.edited.value = edited;
+  }
+  /** What a difference of the two scenarios shown is. */
+  get differenceName(): string {
+    return `${this.shown.value[1] ?? ""} − ${this.shown.value[0]}`;
+  }
+  /** Whether any of the scenarios shown runs. */
+  get running(): boolean {
+    return this.shown.value.some((name) => this.cells[name].state.value?.status === "running");
   }
   /** The state at the displayed time. */
   shownState(scenario: ScenarioName = this.edited.value): State | null {
@@ -121,14 +161,39 @@ export class Twin {
     return holder ? `${holder.name} has control. Ask for it to change anything.` : "Nobody has control. Take it to change anything.";
   }
 
-  /** Requests a change; a refusal is shown to the user next to `anchor`, and returns null. */
-  async act(action: Action, scenario: ScenarioName = this.edited.value): Promise<Done | null> {
+  /** Requests a change; a refusal is shown to the user next to the control used last, and returns null, as does a change of mind. */
+  async act(action: Action): Promise<Done | null> {
     try {
-      return await this.api.act(scenario, action);
+      await this.beginning; // a scenario that is being made is the one to change
+      const scenario = this.edited.value;
+      const begun = (this.cells[scenario].state.value?.step ?? 0) > 0;
+      if (!begun || !isEdit(action)) return await this.api.act(scenario, action);
+      const habit = this.habit.value ?? (await this.askHabit(scenario));
+      if (habit === null) return null;
+      this.setHabit(habit);
+      return habit === "now" ? await this.api.act(scenario, action) : await this.begin(scenario, action);
     } catch (error) {
       this.refused(error);
       return null;
     }
+  }
+  setHabit(habit: Habit): void {
+    sessionStorage.setItem(habitKey, habit);
+    this.habit.value = habit;
+  }
+  /** A new scenario from time 0 with the setup of another, shown beside it; an action is applied to it first. */
+  begin(from: ScenarioName, action: Action | null): Promise<Done> {
+    const begun = this.api.addScenario(from, action).then(({ done, created, object }) => {
+      if (!this.scenarios.value.includes(created)) this.scenarios.value = [...this.scenarios.value, created].sort();
+      this.show([from, created], created);
+      return { done, created: object };
+    });
+    this.beginning = begun.catch(() => null);
+    return begun;
+  }
+  /** Run, pause, step or restart of the scenarios shown. */
+  async drive(action: "run" | "pause" | "step" | "restart"): Promise<void> {
+    await this.act({ action, scenarios: this.shown.value });
   }
   /** Back to time 0 with the current setup, also in the display. */
   async restart(): Promise<void> {
@@ -136,7 +201,7 @@ export class Twin {
       this.replay_s.value = null;
       this.askForFrames();
     }
-    await this.act({ action: "restart" });
+    await this.drive("restart");
   }
   async attempt(work: () => Promise<void>): Promise<boolean> {
     try {
@@ -200,13 +265,17 @@ export class Twin {
         break;
     }
   }
+  /** A scenario that somebody has made is shown beside the first one shown. */
   private setScenarios(scenarios: ScenarioName[]): void {
-    if (!scenarios.includes("B")) {
-      this.edited.value = "A";
-      this.difference.value = false;
-      Object.values(this.cells.B).forEach((cell: { value: unknown }) => (cell.value = null));
+    const fresh = scenarios.filter((name) => !this.scenarios.value.includes(name)).at(-1);
+    for (const name of scenarioNames) {
+      if (!scenarios.includes(name)) Object.values(this.cells[name]).forEach((cell: { value: unknown }) => (cell.value = null));
     }
     if (scenarios.join() !== this.scenarios.value.join()) this.scenarios.value = scenarios;
+    const kept = this.shown.value.filter((name) => scenarios.includes(name));
+    const first = kept[0] ?? "A";
+    const shown = fresh ? [first, fresh] : kept.length > 0 ? kept : [first];
+    this.show(shown, shown.includes(this.edited.value) ? this.edited.value : first);
   }
 }
 

@@ -14,6 +14,21 @@ export function dialog(title: string, ...children: Child[]): HTMLDialogElement {
   return element;
 }
 
+/** Asks for one of a few answers, the first of which is the usual one; null: none of them. */
+export function askFor<T extends string>(title: string, sentences: readonly string[], answers: readonly (readonly [T, string])[]): Promise<T | null> {
+  return new Promise((resolve) => {
+    let chosen: T | null = null;
+    const choices = answers.map(([value, text], i) => button(text, { class: i === 0 ? "primary" : "", autofocus: i === 0, onclick: () => {
+      chosen = value;
+      element.close();
+    } }));
+    const element = dialog(title, ...sentences.map((sentence) => h("p", { class: "hint" }, sentence)),
+      h("div", { class: "row answers" }, ...choices, button("Cancel", { class: "quiet", onclick: () => element.close() })));
+    element.addEventListener("close", () => resolve(chosen));
+    openDialog(element);
+  });
+}
+
 export function openDialog(element: HTMLDialogElement): HTMLDialogElement {
   document.body.append(element);
   element.showModal();

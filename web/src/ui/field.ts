@@ -2,11 +2,12 @@
 import { unitText } from "../state/format";
 import type { Limits } from "../state/rules";
 import { freshId, h } from "./dom";
+import { isTyped, put } from "./typed";
 
 export interface NumberField {
   element: HTMLElement;
   input: HTMLInputElement;
-  /** Shows a value from elsewhere; does nothing while the user edits it. */
+  /** Shows a value from elsewhere, also in a field with the focus; beside text that is typed and not sent yet it is told. */
   show(value: number | null): void;
   enable(hindrance: string | null): void;
   /** Narrows the allowed range; a hindrance disables the field. */
@@ -45,6 +46,9 @@ export function numberField(options: NumberFieldOptions): NumberField {
   const hint = h("p", { class: "hint" });
   hint.hidden = true;
   let shown: number | null = null;
+  /** The value has changed elsewhere since the text was typed. */
+  let overtaken = false;
+  let entering = false;
   let limits: Limits = { low: options.low, high: options.high, hindrance: null, hint: null };
   let hindered: string | null = null;
 
@@ -63,11 +67,28 @@ export function numberField(options: NumberFieldOptions): NumberField {
     shown = value;
     options.onset(value);
   };
+  const back = (): void => {
+    put(input, shown === null ? "" : text(shown));
+    overtaken = false;
+  };
   input.addEventListener("change", () => {
+    // Text typed beside a value that has changed meanwhile is sent by Enter alone, not by leaving the field.
+    if (overtaken && !entering) {
+      const typed = input.value;
+      back();
+      complain(`${typed} was not sent: ${options.label} had changed meanwhile`);
+      return;
+    }
+    overtaken = entering = false;
     set(input.valueAsNumber);
     if (slider && shown !== null) slider.value = String(shown);
   });
   input.addEventListener("keydown", (event) => {
+    entering = event.key === "Enter";
+    if (event.key === "Escape") {
+      back();
+      complain(null);
+    }
     if (event.key === "ArrowUp" || event.key === "ArrowDown") {
       event.preventDefault();
       const next = (input.valueAsNumber || 0) + (event.key === "ArrowUp" ? step : -step);
@@ -92,12 +113,18 @@ export function numberField(options: NumberFieldOptions): NumberField {
     element,
     input,
     show(value) {
-      const busy = document.activeElement === input || (slider !== null && slider.matches(":active"));
-      if (busy && shown !== null) return;
+      if (shown !== null && slider?.matches(":active")) return;
+      const changed = value !== shown;
       shown = value;
-      input.value = value === null ? "" : text(value);
       if (slider && value !== null) slider.value = String(value);
-      complain(null);
+      if (isTyped(input)) {
+        if (!changed) return;
+        overtaken = true;
+        complain(`Now ${value === null ? "none" : `${text(value)} ${unitText(options.unit)}`.trim()}; Enter sets ${input.value}`);
+        return;
+      }
+      back();
+      if (changed) complain(null);
     },
     enable(hindrance) {
       hindered = hindrance;

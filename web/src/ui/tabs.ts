@@ -2,7 +2,7 @@
 import { freshId, h } from "./dom";
 
 export interface Tab { name: string; title: string; content: HTMLElement; onshow?(): void }
-export interface Tabs { element: HTMLElement; panel: HTMLElement; show(name: string): void; shown(): string }
+export interface Tabs { element: HTMLElement; panel: HTMLElement; show(name: string): void; shown(): string; /** Whether a tab can be chosen now. */ offer(name: string, on: boolean): void }
 
 export function tabs(label: string, list: readonly Tab[]): Tabs {
   const panel = h("div", { class: "tab-panels" });
@@ -14,9 +14,11 @@ export function tabs(label: string, list: readonly Tab[]): Tabs {
       onkeydown: (event: KeyboardEvent) => {
         const move = event.key === "ArrowRight" ? 1 : event.key === "ArrowLeft" ? -1 : 0;
         if (move === 0) return;
-        const next = list[(i + move + list.length) % list.length];
-        show(next.name);
-        buttons[(i + move + list.length) % list.length].focus();
+        let next = i;
+        do next = (next + move + list.length) % list.length;
+        while (buttons[next].hidden);
+        show(list[next].name);
+        buttons[next].focus();
       } }, tab.title);
     tab.content.setAttribute("role", "tabpanel");
     tab.content.setAttribute("aria-labelledby", id);
@@ -36,5 +38,10 @@ export function tabs(label: string, list: readonly Tab[]): Tabs {
     });
   };
   if (list[0]) show(list[0].name);
-  return { element: bar, panel, show, shown: () => current };
+  const offer = (name: string, on: boolean): void => {
+    const index = list.findIndex((tab) => tab.name === name);
+    buttons[index].hidden = !on;
+    if (!on && current === name) show(list[0].name);
+  };
+  return { element: bar, panel, show, shown: () => current, offer };
 }

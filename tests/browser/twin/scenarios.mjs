@@ -1,0 +1,213 @@
+// Scenarios: runs with parameters from time 0. What is asked before a run is changed on the way, what is marked, and what Compare acts on.
+import { readFileSync } from "node:fs";
+import { join } from "node:path";
+import { assert, clickGround, inControl, pause, saved, until } from "./harness.mjs";
+
+const key = "material.friction_coefficient";
+
+export async function testScenarios(run) {
+  const server = await run.start(["--set", "solver.end_time_s=4"], { particles: 500 });
+  const page = await run.open(server.controller, { name: "Ada", edits: null });
+  await inControl(page);
+  const state = (s) => server.ask(`scenarios/${s}/state`);
+  const setup = (s) => server.ask(`scenarios/${s}/setup`);
+  const ended = (s) => until(() => state(s), (now) => now.status === "ended", `the end of ${s}`);
+  const friction = page.locator(".field", { hasText: "riction" }).first().locator("input[type=number]");
+  const setFriction = async (value) => {
+    await friction.fill(String(value));
+    await friction.press("Enter");
+  };
+  const row = (s) => page.locator(`button[data-scenario=${s}]`);
+  await page.selectOption("select[aria-label^=Speed]", "");
+  await page.click(".run");
+  await ended("A");
+  const first = (await setup("A")).parameters[key];
+  const seriesOfA = JSON.stringify(await server.ask("scenarios/A/series"));
+
+  await run.check("an edit of a finished run asks once: a new scenario from the start, listed with what sets it apart, status and time", async () => {
+    await setFriction(0.2);
+    const dialog = page.locator("dialog[open]");
+    await dialog.waitFor();
+    await page.keyboard.press("Escape");
+    await until(() => friction.inputValue(), (v) => Number(v) === first, "the field goes back");
+    assert.equal((await setup("A")).parameters[key], first);
+    await setFriction(0.2);
+    await dialog.waitFor();
+    await run.shot(page, "37-ask");
+    assert.equal(await page.evaluate(() => document.activeElement.textContent), "New scenario from the start");
+    await page.keyboard.press("Enter");
+    await row("B").waitFor();
+    await until(() => row("B").textContent(), (t) => /Paused, 0\.0 s.*friction 0\.2/.test(t), "B in the list");
+    assert.match(await row("A").textContent(), /End reached, 4\.0 s/);
+    assert.equal((await setup("A")).parameters[key], first);
+    assert.deepEqual((await setup("A")).changes, []);
+    assert.equal(await page.locator(".pane").count(), 2);
+    await until(() => page.locator(".pane-name").allTextContents(), (t) => t[0] === `A, friction ${first}` && t[1] === "B, friction 0.2", "panes with their parameters");
+    // B has not begun: it is edited without a new scenario.
+    await setFriction(0.25);
+    await until(() => setup("B"), (s) => s.parameters[key] === 0.25, "an edit of B");
+    assert.equal(await dialog.count(), 0);
+    await run.shot(page, "38-two");
+  });
+
+  await run.check("run, pause and restart in Compare act on both scenarios, and B − A is not blank", async () => {
+    await page.click(".run");
+    await ended("B");
+    assert.equal(JSON.stringify(await server.ask("scenarios/A/series")), seriesOfA, "A is as it was");
+    await page.click("[aria-label=Restart]");
+    for (const s of ["A", "B"]) await until(() => state(s), (now) => now.time_s === 0, `time 0 of ${s}`);
+    await page.click(".run");
+    for (const s of ["A", "B"]) await ended(s);
+    await page.selectOption("select[aria-label^='Map layer']", "peak_depth");
+    await page.locator("label:has-text('B − A') input").check();
+    const legend = page.locator(".legend").last();
+    await until(() => legend.getAttribute("aria-label"), (t) => /B − A: colours from −[\d.]*[1-9]/.test(t ?? ""), "depths that differ");
+    await run.shot(page, "39-difference");
+    await page.selectOption("select[aria-label^='Map layer']", "none");
+  });
+
+  await run.check("two scenarios in numbers: figures, houses, barriers with differences, both curves, a report on one page", async () => {
+    await page.click("[data-tab=compare]");
+    const [a, b] = await Promise.all(["A", "B"].map(async (s) => (await server.ask(`scenarios/${s}/figures`)).figures.find((f) => f.key === "run_out_along_flow_m").value));
+    const rows = () => page.locator(".comparison tbody tr:not(.group-row)").evaluateAll((list) => list.map((tr) => [...tr.children].map((cell) => cell.textContent)));
+    const told = await until(rows, (list) => list.some(([name]) => name.startsWith("Run-out along the flow")), "key figures");
+    const [, ...runOut] = told.find(([name]) => name.startsWith("Run-out along the flow"));
+    const read = (text) => Number(text.replace("−", "-").replace("+", ""));
+    for (const [i, wanted] of [a, b, b - a].entries()) assert.ok(Math.abs(read(runOut[i]) - wanted) <= 0.006 * Math.max(a, b), `${runOut[i]} for ${wanted} m`);
+    assert.deepEqual(told[0].slice(1).map(read), [first, 0.25, Number((0.25 - first).toPrecision(3))], told[0].join());
+    await run.shot(page, "41-numbers");
+    const report = await saved(page, () => page.click("button:has-text('Save the comparison')"));
+    assert.equal(report.name, "comparison.html");
+    const text = report.bytes.toString();
+    for (const words of [`B, friction 0.25`, "End reached, 4.0 s", "Run-out along the flow", "<polyline", "data:image/jpeg"]) assert.ok(text.includes(words), words);
+    const paper = await page.context().newPage();
+    await paper.setContent(text);
+    await paper.pdf({ path: join(run.output, "comparison.pdf"), preferCSSPageSize: true });
+    await run.shot(paper, "42-comparison");
+    const pages = readFileSync(join(run.output, "comparison.pdf")).toString("latin1").match(/\/Type\s*\/Page\b/g);
+    assert.equal(pages?.length, 1, "one page");
+    await paper.close();
+    await page.click("[data-tab=time]");
+    const chart = page.locator(".tab-panel:visible .chart-plot").first();
+    await until(() => chart.getAttribute("aria-label"), (t) => /Moving A from .*Moving B from/.test(t ?? ""), "both curves");
+  });
+
+  await run.check("restart, run and pause in Compare act on both", async () => {
+    await page.click("[aria-label=Restart]");
+    await page.selectOption("select[aria-label^=Speed]", "0.1");
+    await page.click(".run");
+    for (const s of ["A", "B"]) await until(() => state(s), (now) => now.status === "running", `${s} runs`);
+    await pause(page, () => state("B"));
+    assert.equal((await state("A")).status, "paused");
+    await page.selectOption("select[aria-label^=Speed]", "");
+  });
+
+  await run.check("an edit made while a new scenario opens goes to it", async () => {
+    await page.route("**/api/scenarios", async (route) => {
+      await new Promise((resolve) => setTimeout(resolve, 700));
+      await route.continue();
+    });
+    await page.click("[aria-label='New scenario']");
+    await setFriction(0.31);
+    await until(() => server.ask("session"), (s) => s.scenarios.includes("C"), "C");
+    await until(() => setup("C"), (s) => s.parameters[key] === 0.31, "its friction");
+    assert.equal((await setup("A")).parameters[key], first);
+    assert.equal((await setup("B")).parameters[key], 0.25);
+    await page.unroute("**/api/scenarios");
+    assert.deepEqual((await server.ask("session")).scenarios, ["A", "B", "C"]);
+  });
+
+  await run.check("a scenario is named; one with results is ended only after a question", async () => {
+    await page.click("[aria-label='Name scenario C']");
+    await page.fill("[aria-label='Name of scenario C']", "Dry year");
+    await page.keyboard.press("Enter");
+    await until(() => row("C").textContent(), (t) => t.startsWith("Dry year"), "the name");
+    await page.click(".run");
+    await until(() => state("C"), (s) => s.step > 0, "a run of C");
+    await pause(page, () => state("C"));
+    await page.click("[aria-label='End scenario C']");
+    await page.click("dialog[open] button:has-text('Cancel')");
+    assert.deepEqual((await server.ask("session")).scenarios, ["A", "B", "C"]);
+    await page.click("[aria-label='End scenario C']");
+    await page.click("dialog[open] button:has-text('End it')");
+    await until(() => server.ask("session"), (s) => s.scenarios.join("") === "AB", "C has ended");
+  });
+
+  await run.check("a barrier drawn on a finished run does not start it, and the run is marked wherever its results are", async () => {
+    await row("A").click();
+    if (await page.locator(".pane").count() > 1) await page.click("button:has-text('Compare')");
+    await page.click(".run");
+    await ended("A");
+    await page.selectOption("[aria-label='Edits of a run that has begun']", "now");
+    await page.click("[data-draw=barrier]");
+    for (const [u, v] of [[0.4, 0.5], [0.5, 0.55]]) await clickGround(page, u, v);
+    await page.keyboard.press("Enter");
+    const { changes } = await until(() => setup("A"), (s) => s.barriers.length > 0, "the barrier");
+    assert.equal(changes.length, 1);
+    await setFriction(0.27);
+    await until(() => setup("A"), (s) => s.changes.length === 2, "two changes");
+    assert.notEqual((await state("A")).status, "running");
+    const words = `friction coefficient ${first} -> 0.27 at 4.0 s`;
+    await until(() => page.textContent(".readings .on-the-way"), (t) => t.includes(words), "marked above charts and tables");
+    assert.match(await page.textContent(".legends .on-the-way"), /Changed on the way/);
+    assert.match(await row("A").textContent(), /4\.0 s, changed/);
+    await page.click("[data-tab=time]");
+    const chart = page.locator(".tab-panel:visible .chart-plot").first();
+    await until(() => chart.getAttribute("aria-label"), (t) => /Changed on the way at 4/.test(t ?? ""), "marked in the chart");
+    await run.shot(page, "40-on-the-way");
+    const ask = async (name) => (await fetch(`${server.base}api/scenarios/A/exports/${name}`, { headers: { Authorization: `Bearer ${server.token}` } })).text();
+    assert.match(await ask("report.html"), /changed at 4\.0 s, by Ada: friction coefficient/i);
+    assert.match(await ask("manifest.json"), /changed at 4\.0 s, by Ada: barrier/);
+    await page.click("[aria-label=Restart]");
+    await until(() => setup("A"), (s) => s.changes.length === 0, "nothing is changed on the way any more");
+    await until(() => page.locator(".on-the-way:visible").count(), (n) => n === 0, "no mark");
+  });
+
+  await run.check("a field with the focus shows what is; Ctrl+Z in it undoes typing first, then the model; a stale text is not sent by leaving", async () => {
+    const parameter = async () => (await setup("A")).parameters[key];
+    const press = (text) => page.evaluate((t) => [...document.querySelectorAll(".controls button")].find((b) => b.textContent === t).click(), text);
+    await setFriction(0.33);
+    await until(parameter, (v) => v === 0.33, "friction");
+    await page.keyboard.type("9");
+    assert.notEqual(Number(await friction.inputValue()), 0.33);
+    await page.keyboard.press("Control+z");
+    await until(() => friction.inputValue(), (v) => Number(v) === 0.33, "the text before");
+    assert.equal(await parameter(), 0.33, "typing was undone, not the model");
+    await setFriction(0.34);
+    await until(parameter, (v) => v === 0.34, "friction");
+    await page.keyboard.press("Control+z");
+    await until(parameter, (v) => v === 0.33, "the model is undone");
+    await until(() => friction.inputValue(), (v) => Number(v) === 0.33, "the field with the focus shows it");
+    const { revision } = await setup("A");
+    await page.keyboard.press("Control+a");
+    await page.keyboard.type("0.5");
+    await press("Redo");
+    const note = page.locator(".field", { hasText: "riction" }).first().locator(".field-note");
+    await until(() => note.textContent(), (t) => t === "Now 0.34; Enter sets 0.5", "the new value is told beside what is typed");
+    assert.equal(await friction.inputValue(), "0.5");
+    await page.keyboard.press("Tab");
+    assert.match(await note.textContent(), /^0\.5 was not sent/);
+    assert.equal(Number(await friction.inputValue()), 0.34);
+    await friction.focus();
+    await press("Undo");
+    await until(() => friction.inputValue(), (v) => Number(v) === 0.33, "without typed text the field follows");
+    await page.keyboard.press("Tab");
+    assert.equal((await setup("A")).revision, revision + 2, "nothing else was sent");
+  });
+
+  await run.check("nothing is said of the flow before the first step, nor of its end while one looks back", async () => {
+    assert.equal(await page.locator(".compression:visible, .run-message:visible").count(), 0);
+    await page.click(".run");
+    await ended("A");
+    await until(() => page.locator(".run-message:visible").count(), (n) => n === 1, "why it has ended");
+    await until(() => page.textContent(".status"), (t) => t === "End reached", "the end");
+    const line = await page.locator(".timeline").boundingBox();
+    await page.mouse.click(line.x + 0.4 * line.width, line.y + 0.5 * line.height);
+    await until(() => page.textContent(".status"), (t) => t === "Recording", "the recording");
+    await until(() => page.locator(".run-message:visible").count(), (n) => n === 0, "no message of the end");
+    await until(() => page.textContent(".compression"), (t) => / at [\d.]+ s$/.test(t), "the verdict names its time");
+    await page.click(".live");
+  });
+  await page.context().close();
+  await server.stop();
+}

@@ -1,0 +1,52 @@
+// What two scenarios have come to, side by side: figures, houses, barriers, points.
+import type { Figure, Impact, BarrierImpact, Impacts, Parameter, Setup } from "../protocol/messages";
+import { differingKeys } from "./differences";
+
+export interface Row { group: string; name: string; unit: string; a: number | string | null; b: number | string | null }
+export interface Side { setup: Setup | null; figures: readonly Figure[]; impacts: Impacts | null; points: readonly PointPeaks[] }
+/** Peaks at a probe. */
+export interface PointPeaks { name: string; depth_m: number | null; speed_mps: number | null; pressure_kPa: number | null }
+
+/** b − a; null where one of them is no number. */
+export const differenceOf = (row: Row): number | null => (typeof row.a === "number" && typeof row.b === "number" ? row.b - row.a : null);
+
+type Measure<T> = readonly [string, string, (of: T) => number | null];
+const atHouses: readonly Measure<Impact>[] = [["impact pressure", "kPa", (i) => i.peak_impact_pressure_kPa], ["force", "kN", (i) => i.peak_force_kN],
+  ["depth", "m", (i) => i.peak_depth_m], ["hit at", "s", (i) => i.first_hit_s]];
+const atBarriers: readonly Measure<BarrierImpact>[] = [["force", "kN", (i) => i.peak_force_kN], ["held", "m3", (i) => i.held_m3], ["over", "m3", (i) => i.overtopped_m3],
+  ["through", "m3", (i) => i.passed_m3], ["failed at", "s", (i) => i.failed_s]];
+const atPoints: readonly Measure<PointPeaks>[] = [["peak depth", "m", (p) => p.depth_m], ["peak speed", "m/s", (p) => p.speed_mps], ["peak pressure", "kPa", (p) => p.pressure_kPa]];
+
+/** Rows of what is in either list; values that neither has are left out. */
+function paired<T extends { name: string }>(group: string, key: (of: T) => string, a: readonly T[], b: readonly T[], measures: readonly Measure<T>[]): Row[] {
+  const all = [...a, ...b.filter((other) => !a.some((one) => key(one) === key(other)))];
+  return all.flatMap((item) => {
+    const [one, other] = [a, b].map((list) => list.find((i) => key(i) === key(item)));
+    return measures.map(([name, unit, of]) => ({ group, name: `${item.name}, ${name}`, unit, a: one ? of(one) : null, b: other ? of(other) : null }))
+      .filter((row) => row.a !== null || row.b !== null);
+  });
+}
+
+export function comparisonRows(a: Side, b: Side, parameters: readonly Parameter[]): Row[] {
+  const keys = a.setup && b.setup ? differingKeys([a.setup, b.setup]) : [];
+  const given = parameters.filter((p) => keys.includes(p.key))
+    .map((p): Row => ({ group: "Parameters", name: p.label, unit: p.unit, a: a.setup?.parameters[p.key] ?? null, b: b.setup?.parameters[p.key] ?? null }));
+  const figures = a.figures.flatMap((one): Row[] => {
+    const other = b.figures.find((f) => f.key === one.key);
+    // "At least" belongs to a figure: said if it holds for either.
+    const name = [one.name, other?.name ?? ""].sort((p, q) => q.length - p.length)[0];
+    return [{ group: "Key figures", name, unit: one.unit || other?.unit || "", a: one.value, b: other?.value ?? null }];
+  });
+  const hit = (side: Side): Impact[] => (side.impacts?.buildings ?? []);
+  const reached = new Set([...hit(a), ...hit(b)].filter((i) => i.hit).map((i) => i.id));
+  const houses = (side: Side): Impact[] => hit(side).filter((i) => reached.has(i.id));
+  return [...given, ...figures, ...paired("Houses", (i: Impact) => i.id, houses(a), houses(b), atHouses),
+    ...paired("Barriers", (i: BarrierImpact) => i.id, a.impacts?.barriers ?? [], b.impacts?.barriers ?? [], atBarriers),
+    ...paired("Points", (p: PointPeaks) => p.name, a.points, b.points, atPoints)];
+}
+
+/** Houses that neither has hit. */
+export function untouched(a: Side, b: Side): number {
+  const hit = new Set([...(a.impacts?.buildings ?? []), ...(b.impacts?.buildings ?? [])].filter((i) => i.hit).map((i) => i.id));
+  return (a.impacts?.buildings ?? []).filter((i) => !hit.has(i.id)).length;
+}

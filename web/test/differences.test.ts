@@ -1,0 +1,37 @@
+import { describe, expect, it } from "vitest";
+import type { Parameter, Setup } from "../src/protocol/messages";
+import { changesText, differences } from "../src/state/differences";
+
+const parameter = (key: string, label: string, unit = ""): Parameter =>
+  ({ key: `material.${key}`, label, unit, default: null, value: null, range: { low: null, high: null, low_included: true, high_included: true }, help: "" });
+const parameters = [parameter("friction_coefficient", "friction coefficient"), parameter("building_friction_coefficient", "building friction coefficient"),
+  parameter("cohesion_kPa", "cohesion", "kPa")];
+const setup = (scenario: "A" | "B", friction: number, more: Partial<Setup> = {}): Setup => ({ scenario, name: "", changes: [], revision: 1,
+  parameters: { "material.friction_coefficient": friction, "material.building_friction_coefficient": friction, "material.cohesion_kPa": 0 },
+  releases: [], barriers: [], buildings: [], zones: [], beds: [], inflows: [], pending_restart: false, undo: null, redo: null, ...more });
+const barrier = (id: string, height_m: number, name = id): Setup["barriers"][number] => ({ id, name, height_m }) as Setup["barriers"][number];
+
+describe("differences of two scenarios", () => {
+  it("names values that differ, but not those that follow another", () => {
+    expect(differences(setup("A", 0.4), setup("B", 0.27), parameters)).toEqual(["friction 0.27"]);
+    const rough = setup("B", 0.4);
+    rough.parameters["material.building_friction_coefficient"] = 0.1;
+    rough.parameters["material.cohesion_kPa"] = 2;
+    expect(differences(setup("A", 0.4), rough, parameters)).toEqual(["building friction 0.1", "cohesion 2\u202fkPa"]);
+  });
+  it("names what was added, removed and changed; another name is no difference", () => {
+    const a = setup("A", 0.4, { barriers: [barrier("barrier-1", 3), barrier("barrier-2", 3, "net")] });
+    expect(differences(a, { ...a, scenario: "B", barriers: [barrier("barrier-1", 4), barrier("barrier-3", 1)] }, parameters))
+      .toEqual(["barrier-3", "no net", "barrier-1 changed"]);
+    expect(differences(a, { ...a, scenario: "B", barriers: [barrier("barrier-1", 3, "dam"), barrier("barrier-2", 3)] }, parameters)).toEqual([]);
+  });
+  it("of many changes tells the last ones", () => {
+    const change = (time_s: number): Setup["changes"][number] => ({ time_s, by: "Ada", sentence: `step ${time_s}` });
+    expect(changesText(setup("A", 0.4, { changes: [1, 2, 3, 4].map(change) }))).toBe("2 changes from 1.0 s; step 3 at 3.0 s; step 4 at 4.0 s");
+  });
+  it("says when a run was changed on the way", () => {
+    expect(changesText(setup("A", 0.4))).toBe("");
+    expect(changesText(setup("A", 0.27, { changes: [{ time_s: 30.31, by: "Ada", sentence: "friction coefficient 0.4 -> 0.27" }] })))
+      .toBe("friction coefficient 0.4 -> 0.27 at 30.3 s");
+  });
+});
