@@ -146,6 +146,7 @@ int serve_command(const ServeArguments& arguments) {
     options.tokens = std::move(*tokens);
     options.export_folder = folder.path();
     options.scenario.overrides = *overrides;
+    options.scenario.fault_folder = "talus_out";
     options.run = arguments.run;
     options.ensembles.assign(arguments.ensembles.begin(), arguments.ensembles.end());
     options.calibration.source = {file, *overrides};

@@ -10,6 +10,7 @@
 #include "run/run.hpp"
 #include "scene/scene.hpp"
 #include "twin/erosion_history.hpp"
+#include "twin/fault_record.hpp"
 #include "twin/impact_history.hpp"
 #include "twin/recording.hpp"
 #include "twin/scenario.hpp"
@@ -47,6 +48,8 @@ class LiveRun {
     [[nodiscard]] const observe::Observer& observer() const { return run_->observer(); }
     [[nodiscard]] const Recording& recording() const { return recording_; }
     [[nodiscard]] bool too_compressed() const;
+    /// What is known about the step that cannot be trusted, at fault.
+    [[nodiscard]] const std::optional<FaultRecord>& fault() const { return fault_; }
     [[nodiscard]] std::string instruction_set() const {
         return std::string(run_->simulation().backend().instruction_set());
     }
@@ -106,6 +109,9 @@ class LiveRun {
     std::vector<Group> groups_;
     std::vector<Obstacle> obstacles_;
     std::uint32_t slots_ = 0;
+    /// A state of a few steps ago, after the last change: a fault is explained with it.
+    sim::State good_;
+    std::optional<FaultRecord> fault_;
     Recording recording_;
     ImpactHistory impact_history_;
     ErosionHistory erosion_history_;

@@ -280,6 +280,7 @@ Status LiveRun::bring_to(const Setup& next) {
         TALUS_ASSIGN(Change change, plan(next));
         carry_out(change, next);
         setup_ = next;
+        good_ = state();
         return {};
     });
 }

@@ -129,7 +129,19 @@ Result<std::unique_ptr<Scenario>> Scenario::copy() const {
 }
 
 void Scenario::advance() {
-    parts_->run->advance();
+    Parts& p = *parts_;
+    const bool ready = phase() == run::RunPhase::ready;
+    p.run->advance();
+    if (!ready || phase() != run::RunPhase::fault) return;
+    FaultRecord record = *p.run->fault();
+    const json last = p.entries.empty() ? json() : p.entries.back().action;
+    record.content["last_action"] = last;
+    p.fault_note = record.sentence;
+    if (!last.is_null()) p.fault_note += fmt::format("; the last action was {}", last["action"].get<std::string>());
+    if (p.options.fault_folder.empty()) return;
+    const auto kept = keep_fault(record, journal_json(), p.options.fault_folder);
+    p.fault_note += kept ? fmt::format("; journal and last good state are in {}", kept->string())
+                         : "; nothing is kept of it: " + kept.error().message;
 }
 
 Result<Done> Scenario::Parts::edit(const json& action) {
@@ -211,7 +223,7 @@ run::RunPhase Scenario::phase() const {
     return parts_->run->phase();
 }
 std::string Scenario::message() const {
-    return parts_->run->message();
+    return parts_->run->message() + (phase() == run::RunPhase::fault ? parts_->fault_note : "");
 }
 double Scenario::time() const {
     return parts_->run->state().time;

@@ -33,6 +33,7 @@ struct ScenarioOptions {
     std::vector<std::string> overrides;         ///< that the scene was loaded with, for the journal
     double frame_interval = 0.1;                ///< s of simulated time between recorded frames
     std::size_t recording_bytes = 512'000'000;  ///< when full, every second frame of the older half is removed
+    std::filesystem::path fault_folder{};       ///< a fault is kept in a new folder there; empty: nowhere
 };
 
 /// The effect of an action.

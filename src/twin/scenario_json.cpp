@@ -193,7 +193,7 @@ json Scenario::state_json(bool with_hash) const {
     const bool advances = !front.empty() && state.time - front.back().arrival_time <= lately;
     const std::vector<FramePtr>& frames = run.recording().frames();
     json answer = {{"status", phase_name(run.phase())},
-                   {"message", run.message()},
+                   {"message", message()},
                    {"time_s", state.time},
                    {"end_time_s", scene().spec.solver.end_time},
                    {"step", state.step},
