@@ -22,6 +22,10 @@ if(TALUS_SANITIZE)
   endif()
 endif()
 
+if(TALUS_FUZZ)
+  target_compile_options(talus_options INTERFACE -fsanitize=fuzzer-no-link -Wno-unknown-warning-option)
+endif()
+
 # For what is compiled once per instruction set. SSSE3 alone is on no processor that anybody still has. Sanitized builds take
 # minutes per instruction set and look at AVX2, which is on all of them, and at the baseline that every build has.
 set(talus_disabled_instruction_sets HWY_SSSE3)
