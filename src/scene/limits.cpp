@@ -14,6 +14,7 @@ namespace talus::scene {
 namespace {
 
 constexpr double max_map_cells = 4e8, max_front_rows = 1e6;
+constexpr double max_cells_per_spacing = 50;
 /// Measured with a million particles, and with 20 million cells (docs/performance.md).
 constexpr double bytes_per_particle = 1500, bytes_per_terrain_cell = 20;
 
@@ -70,6 +71,13 @@ Status check_outputs(const ParsedScene& parsed, const Scene& scene, double spaci
                         "must be at least {:.3g} (m)",
                         key_with_value(parsed, "outputs", "map_cell_m", cell), area / (cell * cell), max_map_cells,
                         std::ceil(1e3 * std::sqrt(area / max_map_cells)) / 1e3)};
+    }
+    if (cell < spacing / max_cells_per_spacing) {
+        return Error{
+            fmt::format("{} is refused; particles {:.4g} m apart would cover too many cells in every step: it "
+                        "must be at least {:.3g} (m)",
+                        key_with_value(parsed, "outputs", "map_cell_m", cell), spacing,
+                        std::ceil(1e3 * spacing / max_cells_per_spacing) / 1e3)};
     }
     const double length = scene.flow_path.empty() ? 0 : scene.flow_path.length();
     if (length / outputs.chainage_interval > max_front_rows) {

@@ -56,6 +56,13 @@ TEST_F(Limits, MapsAndFrontTableHaveASizeThatCanBeWritten) {
     EXPECT_EQ(load_error({"outputs.map_cell_m=0.013"}), std::string(loaded));
 }
 
+TEST_F(Limits, AMapHasNoCellsThatEveryParticleCoversInThousands) {
+    write_valley("[outputs]\nmap_cell_m = 0.05\n[solver]\nparticle_spacing_m = 3\n");
+    EXPECT_THAT(load_error(), AllOf(HasSubstr("scene.toml:8: outputs.map_cell_m = 0.05 is refused"),
+                                    HasSubstr("it must be at least 0.06 (m)")));
+    EXPECT_EQ(load_error({"outputs.map_cell_m=0.06"}), std::string(loaded));
+}
+
 TEST_F(Limits, AnInflowDeeperThanAnyReleaseIsRefused) {
     write_valley("[[inflow]]\nline_m = [[824100, 825110], [824100, 825090]]\nhydrograph = \"h.csv\"\n");
     const auto error = [&](const std::string& lines) {
