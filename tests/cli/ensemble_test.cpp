@@ -76,6 +76,50 @@ TEST(Ensemble, AnInterruptedOneGoesOn) {
     EXPECT_TRUE(fs::exists(scene.folder() / "result/report.html"));
 }
 
+TEST(Ensemble, KilledAgainAndAgainEndsInTheSameResult) {
+    const SmallScene scene;
+    scene.replace("end_time_s = 1", "end_time_s = 2");
+    const ProgramOptions here{.folder = scene.folder()};
+    ASSERT_EQ(run_program(ensemble_command("whole", {"--quiet"}, "6"), here).exit_code, 0);
+    ProgramOptions killed = here;
+    killed.wait_for = "\"event\":\"progress\"";
+    killed.while_running = [](int process) { kill(process, SIGKILL); };
+    for (int k = 0; k < 4; ++k)
+        (void)run_program(ensemble_command("result", {"--json", "--threads", "1"}, "6"), killed);
+    const auto rest = run_program(ensemble_command("result", {"--quiet"}, "6"), here);
+    EXPECT_EQ(rest.exit_code, 0) << rest.error;
+    EXPECT_EQ(rest.error, "") << "a run is there whole or not at all";
+    EXPECT_EQ(read_text(scene.folder() / "result/statistics.json"),
+              read_text(scene.folder() / "whole/statistics.json"));
+    for (const auto& entry : fs::recursive_directory_iterator(scene.folder() / "result")) {
+        EXPECT_THAT(entry.path().filename().string(), testing::Not(HasSubstr("unfinished")));
+    }
+}
+
+TEST(Ensemble, WhicheverFileCannotBeWrittenNothingThatWasFinishedIsLost) {
+    const SmallScene scene;
+    const ProgramOptions here{.folder = scene.folder()};
+    ASSERT_EQ(run_program(ensemble_command("whole", {"--quiet"}), here).exit_code, 0);
+    int failed = 0;
+    for (const long largest :
+         {1L, 1000L, 4000L, 12000L, 40000L, 150000L}) {  // bytes of a file: one kind after the other
+        ProgramOptions full = here;
+        full.largest_file = largest;
+        const auto outcome = run_program(ensemble_command("result", {"--quiet"}), full);
+        if (outcome.exit_code == 0) break;
+        ++failed;
+        EXPECT_THAT(outcome.exit_code, testing::AnyOf(1, 2)) << largest;
+        EXPECT_EQ(lines_of(outcome.error).size(), 1u) << outcome.error;
+        EXPECT_THAT(outcome.error, HasSubstr("result/")) << largest;
+    }
+    EXPECT_GE(failed, 3);
+    const auto rest = run_program(ensemble_command("result", {"--quiet"}), here);
+    EXPECT_EQ(rest.exit_code, 0) << rest.error;
+    EXPECT_EQ(rest.error, "");
+    EXPECT_EQ(read_text(scene.folder() / "result/statistics.json"),
+              read_text(scene.folder() / "whole/statistics.json"));
+}
+
 TEST(Ensemble, ADamagedRunIsMadeAgainWithANote) {
     const SmallScene scene;
     const ProgramOptions here{.folder = scene.folder()};
