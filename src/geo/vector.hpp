@@ -56,4 +56,12 @@ struct OutputFeature {
                                             const std::vector<Field>& fields,
                                             const std::vector<OutputFeature>& features, const Crs& crs);
 
+/// A QGIS style of a layer, as QML.
+struct LayerStyle {
+    std::string layer, qml;
+};
+
+/// Adds the table `layer_styles` to a GeoPackage, from which QGIS takes the style of a layer that it opens.
+[[nodiscard]] Status write_geopackage_styles(const std::string& file, const std::vector<LayerStyle>& styles);
+
 }  // namespace talus::geo

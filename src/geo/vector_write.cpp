@@ -63,6 +63,17 @@ bool write_feature(OGRLayer& layer, const OutputFeature& from) {
     return layer.CreateFeature(&feature) == OGRERR_NONE;
 }
 
+GDALDatasetUniquePtr open_geopackage(const std::string& file) {
+    VSIStatBufL existing;
+    if (VSIStatL(file.c_str(), &existing) == 0) {
+        return GDALDatasetUniquePtr(
+            GDALDataset::Open(file.c_str(), GDAL_OF_VECTOR | GDAL_OF_UPDATE | GDAL_OF_VERBOSE_ERROR));
+    }
+    GDALDriver* driver = GetGDALDriverManager()->GetDriverByName("GPKG");
+    return GDALDatasetUniquePtr(driver != nullptr ? driver->Create(file.c_str(), 0, 0, 0, GDT_Unknown, nullptr)
+                                                  : nullptr);
+}
+
 }  // namespace
 
 Status write_geopackage_layer(const std::string& file, const std::string& layer, const std::vector<Field>& fields,
@@ -72,13 +83,7 @@ Status write_geopackage_layer(const std::string& file, const std::string& layer,
         return Error{fmt::format("{}: layer \"{}\" cannot be written: {}", file, layer,
                                  messages.failure_or("GDAL gave no reason"))};
     };
-    GDALDatasetUniquePtr data;
-    VSIStatBufL existing;
-    if (VSIStatL(file.c_str(), &existing) == 0) {
-        data.reset(GDALDataset::Open(file.c_str(), GDAL_OF_VECTOR | GDAL_OF_UPDATE | GDAL_OF_VERBOSE_ERROR));
-    } else if (GDALDriver* driver = GetGDALDriverManager()->GetDriverByName("GPKG")) {
-        data.reset(driver->Create(file.c_str(), 0, 0, 0, GDT_Unknown, nullptr));
-    }
+    GDALDatasetUniquePtr data = open_geopackage(file);
     if (!data) return failed();
 
     OGRSpatialReference reference = to_spatial_reference(crs);
@@ -95,6 +100,43 @@ Status write_geopackage_layer(const std::string& file, const std::string& layer,
     }
     if (data->CommitTransaction() != OGRERR_NONE) return failed();
     data.reset();  // disk errors may be reported only here
+    if (messages.has_failure()) return failed();
+    return {};
+}
+
+Status write_geopackage_styles(const std::string& file, const std::vector<LayerStyle>& styles) {
+    GdalMessages messages;
+    const auto failed = [&] {
+        return Error{
+            fmt::format("{}: its styles cannot be written: {}", file, messages.failure_or("GDAL gave no reason"))};
+    };
+    GDALDatasetUniquePtr data = open_geopackage(file);
+    if (!data) return failed();
+    // The columns are those that QGIS itself makes.
+    CPLStringList options;
+    options.SetNameValue("FID", "id");
+    OGRLayer* table = data->CreateLayer("layer_styles", nullptr, wkbNone, options.List());
+    if (table == nullptr) return failed();
+    for (const char* name : {"f_table_catalog", "f_table_schema", "f_table_name", "f_geometry_column", "styleName",
+                             "styleQML", "styleSLD", "description", "owner", "ui"}) {
+        OGRFieldDefn column(name, OFTString);
+        if (table->CreateField(&column) != OGRERR_NONE) return failed();
+    }
+    OGRFieldDefn by_default("useAsDefault", OFTInteger), time("update_time", OFTDateTime);
+    by_default.SetSubType(OFSTBoolean);
+    if (table->CreateField(&by_default) != OGRERR_NONE || table->CreateField(&time) != OGRERR_NONE) return failed();
+    for (const LayerStyle& style : styles) {
+        OGRFeature feature(table->GetLayerDefn());
+        feature.SetField("f_table_catalog", "");
+        feature.SetField("f_table_schema", "");
+        feature.SetField("f_table_name", style.layer.c_str());
+        feature.SetField("f_geometry_column", "geom");
+        feature.SetField("styleName", style.layer.c_str());
+        feature.SetField("styleQML", style.qml.c_str());
+        feature.SetField("useAsDefault", 1);
+        if (table->CreateFeature(&feature) != OGRERR_NONE) return failed();
+    }
+    data.reset();
     if (messages.has_failure()) return failed();
     return {};
 }

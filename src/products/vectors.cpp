@@ -6,6 +6,7 @@
 #include "geo/vector.hpp"
 #include "products/writers.hpp"
 #include "report/intensity.hpp"
+#include "report/vector_style.hpp"
 
 namespace talus::products {
 
@@ -144,6 +145,41 @@ Status write_intensity(const scene::Scene& scene, const observe::Observation& ob
         features, scene.crs);
 }
 
+/// One feature: where a map is at least `level`, m.
+Status write_outline(const scene::Scene& scene, const Grid<float>& map, double level, const char* layer,
+                     const std::string& file) {
+    Grid<float> inside = map;
+    for (float& value : inside.values) value = value >= static_cast<float>(level) ? 1 : 0;
+    std::vector<geo::OutputFeature> features;
+    TALUS_ASSIGN(auto outlines, geo::class_outlines(inside, 1));
+    for (geo::ClassOutline& outline : outlines) {
+        features.push_back({std::move(outline.polygons), {}, {level, outline.area}});
+    }
+    return write_geopackage_layer(file, layer, {{"above_m"}, {"area_m2"}}, features, scene.crs);
+}
+
+/// How QGIS draws the layers when it opens the file.
+std::vector<geo::LayerStyle> styles(const scene::Scene& scene) {
+    using report::Colour;
+    using report::VectorClass;
+    using report::VectorSymbol;
+    const Colour dark{60, 60, 60}, red{179, 32, 43}, blue{20, 80, 140}, brown{122, 84, 48};
+    std::vector<VectorClass> buildings, intensities;
+    for (const report::IntensityClass& c :
+         report::intensity_guideline(scene.spec.outputs.intensity_guideline).classes) {
+        intensities.push_back({c.name, c.name, VectorSymbol{false, c.colour, c.colour, 170, 0.1}});
+        buildings.push_back({c.name, "intensity " + c.name, VectorSymbol{false, c.colour, dark}});
+    }
+    buildings.push_back({"", "no intensity class", VectorSymbol{false, {217, 217, 217}, dark}});
+    return {{"buildings", report::qgis_vector_style("intensity", buildings, "name")},
+            {"intensity", report::qgis_vector_style("intensity", intensities)},
+            {"release", report::qgis_vector_style(VectorSymbol{false, red, red, 40, 0.5})},
+            {"inundation", report::qgis_vector_style(VectorSymbol{false, blue, blue, 0, 0.5})},
+            {"deposit", report::qgis_vector_style(VectorSymbol{false, brown, brown, 60, 0.4})},
+            {"flow_path", report::qgis_vector_style(VectorSymbol{true, {}, blue, 255, 0.5})},
+            {"chainage", report::qgis_vector_style(VectorSymbol{true, {}, dark, 255, 0.2}, "chainage_m")}};
+}
+
 }  // namespace
 
 Status write_vectors(const scene::Scene& scene, const run::RunResult& result, const std::filesystem::path& folder) {
@@ -152,6 +188,10 @@ Status write_vectors(const scene::Scene& scene, const run::RunResult& result, co
     TALUS_TRY(write_buildings(scene, observation, file));
     TALUS_TRY(write_releases(scene, file));
     TALUS_TRY(write_intensity(scene, observation, file));
+    const double least = scene.spec.outputs.arrival_depth;
+    TALUS_TRY(write_outline(scene, observation.maps.peak_depth, least, "inundation", file));
+    TALUS_TRY(write_outline(scene, observation.maps.deposit_depth, least, "deposit", file));
+    TALUS_TRY(geo::write_geopackage_styles(file, styles(scene)));
     if (scene.flow_path.empty()) return {};
     const geo::OutputFeature line{
         {}, scene.flow_path.points(), {scene.flow_path.length(), std::string(origin_text(scene.flow_path_origin))}};

@@ -1,5 +1,7 @@
+#include <algorithm>
 #include <cmath>
 #include <csignal>
+#include <map>
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -169,6 +171,58 @@ TEST_F(Products, StyleLeavesZeroDepthAndThinDepositsTransparent) {
     EXPECT_THAT(test::read_text(folder_->path() / "peak_depth.qml"), HasSubstr("<item value=\"0\""));
     EXPECT_THAT(test::read_text(folder_->path() / "deposit_depth.qml"), HasSubstr("label=\"up to 0.05 m\""));
     EXPECT_THAT(test::read_text(folder_->path() / "arrival_time.qml"), Not(HasSubstr("alpha=\"0\"")));
+}
+
+std::vector<OGRFeatureUniquePtr> read_layer(GDALDataset& data, const char* name) {
+    std::vector<OGRFeatureUniquePtr> features;
+    OGRLayer* layer = data.GetLayerByName(name);
+    EXPECT_NE(layer, nullptr) << name;
+    if (layer == nullptr) return features;
+    for (auto& feature : layer) features.push_back(std::move(feature));
+    return features;
+}
+
+TEST_F(Products, OutlinesHoldWhatIsDeepEnough) {
+    const GDALDatasetUniquePtr data(GDALDataset::Open(folder_->file("results.gpkg").c_str(), GDAL_OF_VECTOR));
+    ASSERT_TRUE(data);
+    const double level = scene_->spec.outputs.arrival_depth;
+    const observe::HazardMaps& maps = result_->observation.maps;
+    for (const auto& [name, map] :
+         {std::pair{"inundation", &maps.peak_depth}, std::pair{"deposit", &maps.deposit_depth}}) {
+        const auto cells = std::count_if(map->values.begin(), map->values.end(),
+                                         [&](float depth) { return depth >= static_cast<float>(level); });
+        const auto features = read_layer(*data, name);
+        ASSERT_EQ(features.size(), 1U) << name;
+        EXPECT_DOUBLE_EQ(features[0]->GetFieldAsDouble("above_m"), level);
+        const double area = static_cast<double>(cells) * map->geometry.cell * map->geometry.cell;
+        EXPECT_GT(area, 0) << name;
+        EXPECT_NEAR(features[0]->GetFieldAsDouble("area_m2"), area, 1e-6) << name;
+        EXPECT_NEAR(features[0]->GetGeometryRef()->toMultiPolygon()->get_Area(), area, 1e-6) << name;
+    }
+}
+
+TEST_F(Products, EveryLayerHasAStyleForQgisInTheFile) {
+    const GDALDatasetUniquePtr data(GDALDataset::Open(folder_->file("results.gpkg").c_str(), GDAL_OF_VECTOR));
+    ASSERT_TRUE(data);
+    std::map<std::string, std::string> styles;
+    for (const auto& style : read_layer(*data, "layer_styles")) {
+        EXPECT_EQ(style->GetFieldAsInteger("useAsDefault"), 1);
+        styles[style->GetFieldAsString("f_table_name")] = style->GetFieldAsString("styleQML");
+    }
+    for (int k = 0; k < data->GetLayerCount(); ++k) {
+        OGRLayer& layer = *data->GetLayer(k);
+        const std::string name = layer.GetName();
+        if (name == "layer_styles") continue;
+        ASSERT_EQ(styles.count(name), 1U) << name;
+        CPLXMLNode* tree = CPLParseXMLString(styles[name].c_str());
+        CPLXMLNode* renderer = tree != nullptr ? CPLGetXMLNode(tree, "=qgis.renderer-v2") : nullptr;
+        ASSERT_NE(renderer, nullptr) << name;
+        if (const char* attribute = CPLGetXMLValue(renderer, "attr", nullptr)) {
+            EXPECT_GE(layer.GetLayerDefn()->GetFieldIndex(attribute), 0)
+                << name << ": its classes are of a field that it has";
+        }
+        CPLDestroyXMLNode(tree);
+    }
 }
 
 TEST_F(Products, IntensityIsARasterOfClassesWithAStyleAndPolygonsOfTheSameArea) {
