@@ -1,6 +1,8 @@
 // The scenario's answers, as docs/protocol.md has them.
 #include <cmath>
+#include <cstdlib>
 #include <filesystem>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -94,6 +96,22 @@ std::pair<float, float> elevation_range(const terrain::Terrain& terrain) {
     return {lowest, highest};
 }
 
+/// With every number that comes from a single-precision one as short as it is read back to that: 4.77, not
+/// 4.769999980926514. For what is measured; values that somebody gave stay as they are.
+json with_short_numbers(json measured) {
+    if (measured.is_structured()) {
+        for (json& child : measured) child = with_short_numbers(std::move(child));
+    } else if (measured.is_number_float()) {
+        const auto value = measured.get<double>();
+        const auto single = static_cast<float>(value);
+        if (static_cast<double>(single) != value) return measured;
+        constexpr std::size_t noticeably = 4;  // digits; a coordinate such as 824347.8125 is left alone
+        const std::string text = fmt::format("{}", single);
+        if (text.size() + noticeably <= fmt::format("{}", value).size()) measured = std::strtod(text.c_str(), nullptr);
+    }
+    return measured;
+}
+
 const report::IntensityGuideline& guideline_of(const scene::Scene& scene) {
     return report::intensity_guideline(scene.spec.outputs.intensity_guideline);
 }
@@ -165,7 +183,7 @@ json Scenario::scene_json() const {
             {"vertical_unit", scene.vertical_unit},
             {"origin", {origin.x, origin.y, origin.z}},
             {"extent_m", {e.x_min, e.y_min, e.x_max, e.y_max}},
-            {"elevation_m", {lowest, highest}},
+            {"elevation_m", with_short_numbers({lowest, highest})},
             {"map",
              {{"x_min_m", map.x_min},
               {"y_min_m", map.y_min},
@@ -217,7 +235,7 @@ json Scenario::state_json(bool with_hash) const {
                      {"frames", frames.size()},
                      {"bytes", run.recording().bytes()}}}};
     if (with_hash) answer["hash"] = to_hex(hash());
-    return answer;
+    return with_short_numbers(std::move(answer));
 }
 
 json Scenario::series_json() const {
@@ -253,7 +271,7 @@ json Scenario::series_json() const {
     front_column("arrival_time_s", &observe::FrontSample::arrival_time);
     front_column("front_velocity_mps", &observe::FrontSample::front_velocity);
     front_column("particle_speed_mps", &observe::FrontSample::particle_speed);
-    return {{"time", time}, {"front", front}};
+    return with_short_numbers({{"time", time}, {"front", front}});
 }
 
 json Scenario::impacts_json(std::optional<double> time) const {
@@ -272,7 +290,7 @@ json Scenario::impacts_json(std::optional<double> time) const {
         row["removed_s"] = gone.impact.removed_time;
         removed.push_back(std::move(row));
     }
-    return {{"buildings", buildings}, {"barriers", barriers}, {"removed", removed}};
+    return with_short_numbers({{"buildings", buildings}, {"barriers", barriers}, {"removed", removed}});
 }
 
 json Scenario::journal_json() const {

@@ -237,5 +237,19 @@ TEST(Scenario, classifies_buildings_by_the_guideline_of_the_scene) {
     EXPECT_EQ(house["intensity"], depth > 1 || depth * speed > 1 ? "high" : depth * speed > 0.2 ? "medium" : "low");
 }
 
+TEST(Answers, have_numbers_as_short_as_they_are_read_back) {
+    scene::Scene scene = channel_scene();
+    Grid<float> raised = scene.terrain.elevation();
+    for (float& z : raised.values) z += 4.77F;
+    scene.terrain = terrain::Terrain(std::move(raised));
+    const auto scenario = open(std::move(scene));
+    act(*scenario, {{"action", "trigger_release"}, {"id", "release-1"}});
+    run_until(*scenario, 1);
+    EXPECT_EQ(scenario->scene_json()["elevation_m"][0].dump(), "4.77");
+    const json state = scenario->state_json();
+    EXPECT_GT(state["largest_speed_mps"], 0);
+    EXPECT_LE(state["largest_speed_mps"].dump().size(), 11U) << state["largest_speed_mps"];
+}
+
 }  // namespace
 }  // namespace talus::twin::test
