@@ -6,6 +6,7 @@
 #include <system_error>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "core/number_or_null.hpp"
 #include "core/try.hpp"
@@ -15,6 +16,7 @@
 #include "products/csv.hpp"
 #include "products/results_json.hpp"
 #include "products/text_file.hpp"
+#include "report/vector_style.hpp"
 
 namespace talus::ensemble {
 
@@ -25,6 +27,8 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr std::array<double, 9> table_percentiles = {1, 5, 10, 25, 50, 75, 90, 95, 99};
+
+constexpr report::Ramp probability_ramp = {300, 0.05, 262, 0.13, 0.94, 0.26};
 
 /// Names shared by all maps of one quantity, and those of a threshold.
 struct QuantityWords {
@@ -55,19 +59,31 @@ std::string run_csv(const EnsembleResult& result) {
     return csv.text();
 }
 
+/// The numbers of a building, by column.
+std::vector<std::string> building_columns(const EnsembleResult& result) {
+    std::vector<std::string> names = {"probability_hit"};
+    for (const double p : result.runs->plan().thresholds.pressure) {
+        names.push_back(fmt::format("probability_above_{}kPa", p));
+    }
+    names.insert(names.end(), {"peak_impact_pressure_p50_kPa", "peak_impact_pressure_p95_kPa", "peak_depth_p50_m",
+                               "peak_depth_p95_m", "first_hit_p05_s", "first_hit_p50_s"});
+    return names;
+}
+
+std::vector<double> building_numbers(const BuildingOdds& b) {
+    std::vector<double> numbers = {b.hit};
+    numbers.insert(numbers.end(), b.over_pressure.begin(), b.over_pressure.end());
+    numbers.insert(numbers.end(), {b.median_pressure / 1e3, b.high_pressure / 1e3, b.median_depth, b.high_depth,
+                                   b.early_hit, b.median_hit});
+    return numbers;
+}
+
 std::string building_csv(const EnsembleResult& result) {
-    std::string header = "name,probability_hit";
-    for (const double p : result.runs->plan().thresholds.pressure) header += fmt::format(",probability_above_{}kPa", p);
-    products::Csv csv(
-        header +
-        ",peak_impact_pressure_p50_kPa,peak_impact_pressure_p95_kPa,peak_depth_p50_m,peak_depth_p95_m,first_hit_"
-        "p05_s,first_hit_"
-        "p50_s");
+    products::Csv csv(fmt::format("name,{}", fmt::join(building_columns(result), ",")));
     for (const BuildingOdds& b : result.reduction.buildings) {
-        csv.word(b.name).number(b.hit);
-        for (const double share : b.over_pressure) csv.number(share);
-        csv.number(b.median_pressure / 1e3).number(b.high_pressure / 1e3).number(b.median_depth).number(b.high_depth);
-        csv.number(b.early_hit).number(b.median_hit).end_row();
+        csv.word(b.name);
+        for (const double number : building_numbers(b)) csv.number(number);
+        csv.end_row();
     }
     return csv.text();
 }
@@ -159,6 +175,40 @@ Status write_zone_polygons(const EnsembleResult& result, const fs::path& folder)
                                   features, result.scene->crs);
 }
 
+/// buildings.gpkg: the footprints with the columns of buildings.csv, coloured by the probability of a hit.
+Status write_building_polygons(const EnsembleResult& result, const fs::path& folder) {
+    const fs::path file = folder / "buildings.gpkg";
+    std::error_code error;
+    fs::remove(file, error);  // layers are added to a file that is there
+    if (result.reduction.buildings.empty()) return {};
+    const report::Colour outline{60, 60, 60};
+    const report::Classes odds = report::fixed_classes({1, 5, 20, 50, 80}, 100, probability_ramp);
+    const auto class_text = [&](std::size_t k) {
+        return k + 1 < odds.breaks.size() ? fmt::format("{} to {} %", odds.breaks[k], odds.breaks[k + 1])
+                                          : fmt::format("{} % and more", odds.breaks[k]);
+    };
+    const std::string rare = fmt::format("below {} %", odds.breaks.front());
+    std::vector<report::VectorClass> classes;
+    for (std::size_t k = 0; k < odds.breaks.size(); ++k) {
+        classes.push_back({class_text(k), class_text(k), {false, odds.colours[k], outline}});
+    }
+    classes.push_back({rare, rare, {false, {217, 217, 217}, outline}});
+
+    std::vector<geo::Field> fields = {{"name", true}, {"probability_class", true}};
+    for (const std::string& name : building_columns(result)) fields.push_back({name});
+    std::vector<geo::OutputFeature> features;
+    for (std::size_t k = 0; k < result.reduction.buildings.size() && k < result.scene->buildings.size(); ++k) {
+        const BuildingOdds& b = result.reduction.buildings[k];
+        const int in = odds.of(100 * b.hit);
+        std::vector<geo::Attribute> values = {b.name, in < 0 ? rare : class_text(static_cast<std::size_t>(in))};
+        for (const double number : building_numbers(b)) values.emplace_back(number);
+        features.push_back({result.scene->buildings[k].footprint, {}, std::move(values)});
+    }
+    TALUS_TRY(write_geopackage_layer(file.string(), "buildings", fields, features, result.scene->crs));
+    return geo::write_geopackage_styles(
+        file.string(), {{"buildings", report::qgis_vector_style("probability_class", classes, "name")}});
+}
+
 Status write_maps(const EnsembleResult& result, const fs::path& folder) {
     std::set<std::string> written;
     for (const EnsembleMap& map : result.reduction.maps) {
@@ -234,7 +284,7 @@ report::HazardMap style_of(const EnsembleMap& map) {
     style.factor = 100;
     style.breaks = {1, 5, 10, 25, 50, 75, 90, 95};
     style.full_scale = 100;
-    style.ramp = {300, 0.05, 262, 0.13, 0.94, 0.26};
+    style.ramp = probability_ramp;
     return style;
 }
 
@@ -248,7 +298,7 @@ report::HazardMap intensity_odds_style(const report::IntensityClass& intensity, 
     style.factor = 100;
     style.breaks = {1, 5, 10, 25, 50, 75, 90, 95};
     style.full_scale = 100;
-    style.ramp = {300, 0.05, 262, 0.13, 0.94, 0.26};
+    style.ramp = probability_ramp;
     return style;
 }
 
@@ -311,6 +361,7 @@ Status write_ensemble(const EnsembleResult& result, const fs::path& folder) {
     TALUS_TRY(write_maps(result, folder));
     TALUS_TRY(products::write_text_file(folder / "runs.csv", run_csv(result)));
     TALUS_TRY(products::write_text_file(folder / "buildings.csv", building_csv(result)));
+    TALUS_TRY(write_building_polygons(result, folder));
     TALUS_TRY(products::write_text_file(folder / "distributions.csv", distribution_csv(result)));
     TALUS_TRY(products::write_text_file(folder / "sensitivity.csv", sensitivity_csv(result)));
     const Json results = ensemble_results(result);

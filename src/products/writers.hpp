@@ -22,9 +22,9 @@ namespace talus::products {
 [[nodiscard]] Status write_tables(const scene::Scene& scene, const run::RunResult& result,
                                   const std::filesystem::path& folder);
 
-/// results.gpkg with the layers buildings, release, intensity (polygons of each class), inundation and deposit (outlines
-/// of what is deeper than outputs.arrival_depth_m), flow_path and chainage (a short line across the path per mark), and
-/// their styles for QGIS.
+/// results.gpkg with the layers buildings, release, intensity (polygons of each class), inundation and deposit
+/// (outlines of what is deeper than outputs.arrival_depth_m), flow_path and chainage (a short line across the path per
+/// mark), and their styles for QGIS.
 [[nodiscard]] Status write_vectors(const scene::Scene& scene, const run::RunResult& result,
                                    const std::filesystem::path& folder);
 

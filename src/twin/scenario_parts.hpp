@@ -40,7 +40,7 @@ struct Scenario::Parts {
     NextNumbers first_next;
     std::vector<JournalEntry> entries;
     std::vector<ChangeOnTheWay> changes;  ///< those without which the run would be that of its setup from time 0
-    std::string fault_note;  ///< at fault, what the reason does not say
+    std::string fault_note;               ///< at fault, what the reason does not say
 
     [[nodiscard]] const Setup& setup() const { return run->setup(); }
     /// Starts, or restarts, with a setup.

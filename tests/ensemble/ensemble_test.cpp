@@ -3,6 +3,7 @@
 #include <atomic>
 #include <optional>
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -240,6 +241,41 @@ TEST_F(EnsembleTest, WeightsOfScenariosAreThoseOfTheRuns) {
     read = read_plan(path("plan.toml"));
     ASSERT_FALSE(read);
     EXPECT_THAT(read.error().message, HasSubstr("1 weights are given for 2 values"));
+}
+
+TEST_F(EnsembleTest, WritesTheOddsOfEachBuildingWithItsFootprint) {
+    run("done", {.runs_at_once = 2});
+    const PlannedRuns runs = planned();
+    auto reduction = reduce({folder / "done"}, 6, identity(), plan.thresholds);
+    ASSERT_TRUE(reduction);
+    const Extent ground = scene->terrain.elevation().geometry.extent();
+    const std::vector<std::pair<double, std::string>> wanted = {
+        {1, "80 % and more"}, {1.0 / 3, "20 to 50 %"}, {0, "below 1 %"}};
+    for (std::size_t k = 0; k < wanted.size(); ++k) {
+        terrain::Building house;
+        house.name = fmt::format("house {}", k);
+        const double x = ground.x_min + 10 * static_cast<double>(k), y = ground.y_min;
+        house.footprint = {{{{x, y}, {x + 5, y}, {x + 5, y + 5}, {x, y + 5}}, {}}};
+        scene->buildings.push_back(house);
+        BuildingOdds odds;
+        odds.name = house.name;
+        odds.hit = wanted[k].first;
+        odds.over_pressure.assign(plan.thresholds.pressure.size(), 0.25);
+        odds.high_depth = 1.5;
+        reduction->buildings.push_back(odds);
+    }
+    const EnsembleResult result = summarise(*scene, runs, *std::move(reduction));
+    ASSERT_TRUE(write_ensemble(result, folder / "done"));
+    const auto polygons = geo::read_polygons(path("done/buildings.gpkg"), "buildings", scene->crs);
+    ASSERT_TRUE(polygons) << polygons.error().message;
+    ASSERT_EQ(polygons->features.size(), wanted.size());
+    for (std::size_t k = 0; k < wanted.size(); ++k) {
+        const auto& attributes = polygons->features[k].attributes;
+        EXPECT_EQ(std::get<std::string>(attributes.at("name")), fmt::format("house {}", k));
+        EXPECT_DOUBLE_EQ(std::get<double>(attributes.at("probability_hit")), wanted[k].first);
+        EXPECT_DOUBLE_EQ(std::get<double>(attributes.at("peak_depth_p95_m")), 1.5);
+        EXPECT_EQ(std::get<std::string>(attributes.at("probability_class")), wanted[k].second);
+    }
 }
 
 TEST_F(EnsembleTest, WritesMapsTablesAndAReport) {
