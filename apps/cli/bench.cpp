@@ -11,6 +11,7 @@
 
 #include "bench/calibration.hpp"
 #include "bench/figure.hpp"
+#include "bench/grid.hpp"
 #include "bench/measure.hpp"
 #include "bench/scenes.hpp"
 #include "bench/table.hpp"
@@ -31,6 +32,7 @@ struct BenchArguments {
     std::vector<std::string> scenes, methods;  ///< empty: all
     std::vector<int> particles, threads;       ///< empty: the standard ones; all cores
     bool full = false;                         ///< particles up to a million
+    bool depth_averaged = false;               ///< that model alone
     int iterations = 4, repeats = 7;
     std::optional<int> steps, warm_up;  ///< absent: depends on the number of particles
     std::string backend = "cpu";
@@ -58,6 +60,7 @@ A row of the table is the median of the repeats:
 
 Examples:
   talus bench --scene slab --particles 20000 --threads 1,2
+  talus bench --depth-averaged --threads 1,2
   talus bench --full --json bench.json      up to a million particles, some minutes and 2 GB of memory
 
 Exit codes:
@@ -129,8 +132,19 @@ Outcome measure_all(const Plan& plan, const fs::path& builtin_scene, const Inter
     return outcome;
 }
 
+int bench_grid(const Plan& plan) {
+    std::vector<bench::GridRow> rows;
+    for (const int threads : plan.threads) {
+        const Result<bench::GridRow> row = bench::measure_grid(threads, plan.task.length.repeats);
+        if (!row) return fail(exit_code::fault, row.error().message);
+        rows.push_back(*row);
+    }
+    return print_result(bench::grid_table_text(rows));
+}
+
 int bench_command(const BenchArguments& arguments) {
     InterruptWatch watch;
+    if (arguments.depth_averaged) return bench_grid(Plan(arguments));
     for (const std::string& file : {arguments.json, arguments.svg}) {
         if (Status s = check_output_file(file); !s) return fail(exit_code::bad_input, s.error().message);
     }
@@ -181,6 +195,8 @@ void add_bench(CLI::App& program, std::vector<Command>& commands) {
     app->add_option("--iterations", bench->iterations, "solver iterations of a step; default: 4")
         ->type_name("N")
         ->check(CLI::Range(1, 1000));
+    app->add_flag("--depth-averaged", bench->depth_averaged, "the depth-averaged model alone, in cell updates")
+        ->excludes(particles);
     add_list("--threads", bench->threads, "numbers of threads; default: all cores")
         ->type_name("N,N")
         ->check(CLI::Range(1, 512));

@@ -74,8 +74,18 @@ struct Job {
 
 Result<Job> open_job(const RunArguments& arguments, ProgressReporter& progress, InterruptWatch& watch) {
     std::vector<std::string> overrides = arguments.overrides;
+    if (!arguments.model.empty()) overrides.push_back("solver.model=" + arguments.model);
     if (arguments.threads) overrides.push_back(fmt::format("solver.thread_count={}", *arguments.threads));
     TALUS_ASSIGN(auto input, open_scene(arguments.scene, overrides, arguments.layers, watch));
+    if (input.scene.spec.solver.model == params::ModelChoice::depth_averaged) {
+        const char* refused = !arguments.layers.empty() ? "--layers"
+                              : arguments.convergence   ? "--convergence"
+                                                        : nullptr;
+        if (refused != nullptr) {
+            return Error{fmt::format(
+                "{} is refused; it needs particles, and solver.model = \"depth_averaged\" has none", refused)};
+        }
+    }
 
     std::unique_ptr<DefaultParent> parent;
     if (arguments.output.empty()) parent = std::make_unique<DefaultParent>();
@@ -196,6 +206,8 @@ void add_run(CLI::App& program, std::vector<Command>& commands) {
     app->add_flag("--force", run->force, "replace the result folder if it exists");
     app->add_option("--threads", run->threads, "number of threads; default: all cores; does not affect the result")
         ->type_name("N");
+    app->add_option("--model", run->model, "particles, or depth_averaged: in seconds, without what happens inside")
+        ->type_name("NAME");
     add_overrides(*app, run->overrides);
     add_layers(*app, run->layers, true);
     app->add_flag("--convergence", run->convergence,

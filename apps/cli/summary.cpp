@@ -107,9 +107,15 @@ std::string summary_text(const scene::Scene& scene, const run::RunResult& result
     if (scene.spec.scene.reconstruction && !said) text += " (reconstruction)";
     text += result.status == run::RunStatus::complete ? "\n" : ", PARTIAL RESULT\n";
     text += line("stopped", result.stop_reason);
-    text += line("simulated", fmt::format("{:.1f} s in {:.1f} s: {:.2f} x real time, {} particles of {:.3g} m",
-                                          result.simulated_time, result.wall_time, result.real_time_factor(),
-                                          result.particles, result.particle_spacing));
+    text += line(
+        "simulated",
+        fmt::format("{:.1f} s in {:.1f} s: {:.2f} x real time, {}", result.simulated_time, result.wall_time,
+                    result.real_time_factor(),
+                    result.depth_averaged()
+                        ? fmt::format("depth-averaged on {} cells of {:.3g} m, {:.3g} million cell updates/s",
+                                      result.grid_cells, result.grid_cell,
+                                      static_cast<double>(result.cell_updates) / 1e6 / std::max(result.wall_time, 1e-9))
+                        : fmt::format("{} particles of {:.3g} m", result.particles, result.particle_spacing)));
     for (const params::ObservationSpec& observed : scene.spec.observations) {
         const observe::FrontSample front = front_at(seen, observed.chainage);
         const std::string computed = std::isnan(front.arrival_time)
@@ -137,8 +143,10 @@ std::string summary_text(const scene::Scene& scene, const run::RunResult& result
         if (b.is_barrier) text += line("barrier", barrier_text(b));
         if (!std::isnan(b.failure_time)) text += line("FAILED", fmt::format("{} at {:.2f} s", b.name, b.failure_time));
     }
-    if (seen.thickness.known()) text += line("layers", layers_text(scene, seen.thickness, result.particle_spacing));
-    text += line("compression", compression_text(seen.compression));
+    if (seen.thickness.known() && !result.depth_averaged()) {
+        text += line("layers", layers_text(scene, seen.thickness, result.particle_spacing));
+    }
+    if (!result.depth_averaged()) text += line("compression", compression_text(seen.compression));
     const run::NumericalVerdict verdict = numerical_verdict(result, comparisons);
     if (verdict.converged == run::Answer::no) {
         const bool squeezed = !seen.compression.within_limits();

@@ -18,6 +18,7 @@ struct RunArguments {
     std::optional<int> threads;
     std::vector<std::string> overrides;  ///< "section.key=value"
     std::string layers;                  ///< of --layers; empty: not given
+    std::string model{};                 ///< of --model; empty: the scene's
     std::string data;                    ///< value of TALUS_DATA; empty: as in the environment
     bool quiet = false, json = false;
     bool convergence = false;             ///< run three refinements too and compare

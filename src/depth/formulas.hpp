@@ -51,6 +51,33 @@ TALUS_INLINE Real surface_beside(const Real& depth, const Real& beside, const Re
     return select(wall_beside(depth, beside, bed_beside) > Real(0), depth, surface);
 }
 
+/// 1 beside a structure whose top debris does not reach with the depth and the kinetic energy that it has, else 0.
+template <class Real>
+TALUS_INLINE Real structure_beside(const Real& depth, const Real& normal, const Real& gravity, const Real& beside,
+                                   const Real& bed_beside, const Real& structure, const Real& structure_beside) {
+    const Real reach = depth + normal * normal / (Real(2) * gravity);
+    return opaque(select(structure < structure_beside, Real(1), Real(0))) *
+           opaque(select(reach < bed_beside + beside, Real(1), Real(0)));
+}
+
+/// Such a neighbour is replaced by ground that goes on as before, under the same debris.
+template <class Real>
+TALUS_INLINE void replace_structures(Line<Real>& l, const Real& before, const Real& after) {
+    const Real one_sided_after = select(after > Real(0), Real(0) - l.bed_before, l.bed_after);
+    const Real one_sided_before = select(before > Real(0), Real(0) - l.bed_after, l.bed_before);
+    l.bed_before = select(before * after > Real(0), Real(0), one_sided_before);
+    l.bed_after = select(before * after > Real(0), Real(0), one_sided_after);
+    const auto take = [](const Real& wall, const Real& own, Real& beside) __attribute__((always_inline)) {
+        beside = select(wall > Real(0), own, beside);
+    };
+    take(before, l.depth, l.before);
+    take(before, l.normal, l.normal_before);
+    take(before, l.across, l.across_before);
+    take(after, l.depth, l.after);
+    take(after, l.normal, l.normal_after);
+    take(after, l.across, l.across_after);
+}
+
 /// Second-order values at the faces: slopes of depth or of surface elevation, whichever changes less over the cell.
 template <class Real>
 TALUS_INLINE Sides<Real> sides_of(const Line<Real>& l) {

@@ -3,11 +3,13 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <span>
 
 #include <fmt/format.h>
 
 #include "core/hash.hpp"
+#include "depth/formulas.hpp"
 
 namespace talus::depth {
 namespace {
@@ -48,8 +50,8 @@ Solver::Solver(const Grid<double>& bed, const Material& material, const GroundVa
     segments_.reserve(tile_count);
     fastest_.assign(tile_count, 0);
     lost_.assign(tile_count, 0);
-    set_bed(bed);
     set_cover(ground);
+    set_bed(bed);
 }
 
 void Solver::set_bed(const Grid<double>& bed) {
@@ -112,13 +114,22 @@ void Solver::set_bed(const Grid<double>& bed) {
                         bed_.begin() + static_cast<std::ptrdiff_t>(to));
         });
     }
+    // Over two cells; beside a structure that of the open side, as debris sees it.
+    const auto slope_at = [&](std::size_t i, std::size_t step) {
+        const auto rise = [&](std::size_t to, std::size_t from) -> std::optional<float> {
+            const bool walled = !structure_.empty() && structure_[to] != structure_[from];
+            return walled ? std::nullopt : std::optional(bed_[to] - bed_[from]);
+        };
+        const auto below = rise(i, i - step), above = rise(i + step, i);
+        return below && above ? *below + *above : 2 * below.value_or(above.value_or(0));
+    };
     const auto half_cell = static_cast<float>(0.5 / geometry_.cell);
     for (int row = -margin; row < geometry_.rows + margin; ++row) {
         for (int column = -margin; column < geometry_.columns + margin; ++column) {
             const std::size_t i = index(column, row);
             if (unknown_[i]) has_unknown_[tile_of(column, row)] = 1;
-            slope_x_[i] = (bed_[i + 1] - bed_[i - 1]) * half_cell;
-            slope_y_[i] = (bed_[i + stride_] - bed_[i - stride_]) * half_cell;
+            slope_x_[i] = slope_at(i, 1) * half_cell;
+            slope_y_[i] = slope_at(i, stride_) * half_cell;
         }
     }
 }
@@ -154,6 +165,8 @@ void Solver::set_cover(const GroundValues& ground) {
     pad(ground.inverse_turbulent_friction, inverse_turbulence_, 1);
     pad(ground.cohesion, strength_, 1 / material_.rest_density);
     pad(ground.stem_drag, stem_drag_, 1);
+    pad(ground.structure, structure_, 1);
+    for (float& s : structure_) s = std::isnan(s) ? 0 : s;
 }
 
 void Solver::add(const Grid<float>& depth) {
@@ -174,9 +187,21 @@ void Solver::inject(int column, int row, double depth, double u, double v) {
     u_[i] = next_u_[i] = mixed(u_[i], u);
     v_[i] = next_v_[i] = mixed(v_[i], v);
     depth_[i] = next_depth_[i] = static_cast<float>(all);
-    changed_[tile_of(column, row)] = 1;
-    const auto wave = 2 * std::sqrt(material_.gravity * all);
-    signal_ = std::max(signal_, std::abs(static_cast<double>(u_[i])) + std::abs(static_cast<double>(v_[i])) + wave);
+    expect_waves_of(i, tile_of(column, row));
+}
+
+void Solver::set_velocity(int column, int row, double u, double v) {
+    const std::size_t i = index(column, row);
+    if (!(depth_[i] > dry_depth)) return;
+    u_[i] = next_u_[i] = static_cast<float>(u);
+    v_[i] = next_v_[i] = static_cast<float>(v);
+    expect_waves_of(i, tile_of(column, row));
+}
+
+void Solver::expect_waves_of(std::size_t cell, std::size_t tile) {
+    changed_[tile] = 1;
+    const double wave = 2 * std::sqrt(material_.gravity * static_cast<double>(depth_[cell]));
+    signal_ = std::max(signal_, static_cast<double>(std::abs(u_[cell]) + std::abs(v_[cell])) + wave);
 }
 
 void Solver::find_active_tiles() {
@@ -246,6 +271,7 @@ double Solver::advance_stage(bool second) {
     if (material_.pore_pressure_decay_time > 0) ratio *= std::exp(-time_ / material_.pore_pressure_decay_time);
     data.effective_share = static_cast<float>(1 - ratio);
     data.cover = {pointer(friction_), pointer(inverse_turbulence_), pointer(strength_), pointer(stem_drag_)};
+    data.structure = pointer(structure_);
 
     simd::parallel_ranges(segments_.size(), 1, [&](std::size_t first, std::size_t last) {
         for (std::size_t s = first; s < last; ++s) {
@@ -304,8 +330,9 @@ double Solver::volume() const {
 
 double Solver::bytes_per_cell() const {
     std::size_t bytes = unknown_.size();
-    for (const std::vector<float>* array : {&bed_, &slope_x_, &slope_y_, &depth_, &u_, &v_, &next_depth_, &next_u_,
-                                            &next_v_, &friction_, &inverse_turbulence_, &strength_, &stem_drag_}) {
+    for (const std::vector<float>* array :
+         {&bed_, &slope_x_, &slope_y_, &depth_, &u_, &v_, &next_depth_, &next_u_, &next_v_, &friction_,
+          &inverse_turbulence_, &strength_, &stem_drag_, &structure_}) {
         bytes += array->size() * sizeof(float);
     }
     return static_cast<double>(bytes) / static_cast<double>(geometry_.size());

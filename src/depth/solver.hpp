@@ -31,6 +31,7 @@ struct Material {
 struct GroundValues {
     std::vector<float> friction_coefficient, inverse_turbulent_friction, cohesion;  ///< 1, s2/m, Pa
     std::vector<float> stem_drag;                                                   ///< 1/m
+    std::vector<float> structure;  ///< 1: a structure, whose top is the bed; debris passes only over that. 0: none
 };
 
 /// What is north and south of the grid.
@@ -62,6 +63,8 @@ class Solver {
     void add(const Grid<float>& depth);
     /// Adds debris with a velocity to a cell of known ground; momenta add up.
     void inject(int column, int row, double depth, double u, double v);
+    /// Gives the debris of a cell a velocity.
+    void set_velocity(int column, int row, double u, double v);
 
     /// Takes a step of at most `longest` s, at most what is stable. Error: a speed that is not finite.
     [[nodiscard]] Status advance(double longest);
@@ -114,6 +117,7 @@ class Solver {
         return static_cast<std::size_t>((row + margin) / tile_edge) * tile_columns_ + (column + margin) / tile_edge;
     }
     [[nodiscard]] ActiveRow active_row(const Segment& segment, int row_of_tile) const;
+    void expect_waves_of(std::size_t cell, std::size_t tile);
     void set_bed(const Grid<double>& bed);
     void set_cover(const GroundValues& ground);
     void find_active_tiles();
@@ -133,9 +137,10 @@ class Solver {
     std::size_t stride_ = 0, origin_ = 0;  ///< origin_: index of the padded grid's south-western cell
     std::vector<float> bed_, slope_x_, slope_y_;
     std::vector<float> depth_, u_, v_, next_depth_, next_u_, next_v_;
-    std::vector<float> friction_, inverse_turbulence_, strength_, stem_drag_;  ///< empty: everywhere the same
-    std::vector<std::uint8_t> unknown_;                                        ///< by cell
-    std::vector<std::uint8_t> has_unknown_, changed_;                          ///< by tile
+    std::vector<float> friction_, inverse_turbulence_, strength_, stem_drag_,
+        structure_;                                    ///< empty: everywhere the same
+    std::vector<std::uint8_t> unknown_;                ///< by cell
+    std::vector<std::uint8_t> has_unknown_, changed_;  ///< by tile
     std::vector<Segment> segments_;
     std::vector<float> fastest_;  ///< by segment
     std::vector<double> lost_;    ///< m, by segment

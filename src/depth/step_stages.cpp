@@ -35,7 +35,7 @@ HWY_INLINE void store(const L& numbers, Numbers& to, int j) {
 struct AxisRow {
     Numbers depth_before, depth_after, rise, normal_before, normal_after, across_before, across_after;
     Numbers limit_before, limit_after, wave;
-    Numbers wall_before, wall_after;  ///< 1: the neighbour there is dry and stands above the surface
+    Numbers wall_before, wall_after;  ///< 1: the neighbour there is dry and stands above the surface; 2: a structure
 };
 struct Row {
     AxisRow x, y;
@@ -77,8 +77,9 @@ HWY_INLINE Resistance<L> resistance_at(const StageData& data, std::ptrdiff_t i, 
     return r;
 }
 
-HWY_INLINE void keep(const Line<L>& line, const Sides<L>& sides, const L& wave, const L& limit_before,
-                     const L& limit_after, AxisRow& row, int j) {
+HWY_INLINE void keep(const Line<L>& line, const L& structure_before, const L& structure_after, const L& wave,
+                     const L& limit_before, const L& limit_after, AxisRow& row, int j) {
+    const Sides<L> sides = sides_of(line);
     store(sides.depth_before, row.depth_before, j);
     store(sides.depth_after, row.depth_after, j);
     store(sides.rise, row.rise, j);
@@ -89,8 +90,8 @@ HWY_INLINE void keep(const Line<L>& line, const Sides<L>& sides, const L& wave, 
     store(limit_before, row.limit_before, j);
     store(limit_after, row.limit_after, j);
     store(wave, row.wave, j);
-    store(wall_beside(line.depth, line.before, line.bed_before), row.wall_before, j);
-    store(wall_beside(line.depth, line.after, line.bed_after), row.wall_after, j);
+    store(wall_beside(line.depth, line.before, line.bed_before) + L(2) * structure_before, row.wall_before, j);
+    store(wall_beside(line.depth, line.after, line.bed_after) + L(2) * structure_after, row.wall_after, j);
 }
 
 /// Reconstructs a row of cells; `i`: index of entry 0.
@@ -108,11 +109,25 @@ HWY_INLINE void reconstruct(const StageData& data, std::ptrdiff_t i, int cells, 
         const L west = at(h, -1), east = at(h, 1), south = at(h, -up), north = at(h, up);
         const L own_u = at(u, 0), own_v = at(v, 0);
         const auto dry = depth <= dry_limit;
-        const Line<L> x{depth, west, east, bed_west, bed_east, own_u, at(u, -1), at(u, 1), own_v, at(v, -1), at(v, 1)};
-        const Line<L> y{depth,      south,     north, bed_south,  bed_north, own_v,
-                        at(v, -up), at(v, up), own_u, at(u, -up), at(u, up)};
-        const L bed_x = (bed_east - bed_west) * (inverse_cell * L(0.5F));
-        const L bed_y = (bed_north - bed_south) * (inverse_cell * L(0.5F));
+        Line<L> x{depth, west, east, bed_west, bed_east, own_u, at(u, -1), at(u, 1), own_v, at(v, -1), at(v, 1)};
+        Line<L> y{depth,      south,     north, bed_south,  bed_north, own_v,
+                  at(v, -up), at(v, up), own_u, at(u, -up), at(u, up)};
+        L wall_west(0), wall_east(0), wall_south(0), wall_north(0);
+        if (data.structure != nullptr) {
+            const L here = at(data.structure, 0);
+            const auto wall = [&](const L& normal, const L& beside, const L& bed_beside,
+                                  std::ptrdiff_t offset) HWY_ATTR {
+                return structure_beside(depth, normal, gravity, beside, bed_beside, here, at(data.structure, offset));
+            };
+            wall_west = wall(own_u, west, bed_west, -1);
+            wall_east = wall(own_u, east, bed_east, 1);
+            wall_south = wall(own_v, south, bed_south, -up);
+            wall_north = wall(own_v, north, bed_north, up);
+            replace_structures(x, wall_west, wall_east);
+            replace_structures(y, wall_south, wall_north);
+        }
+        const L bed_x = (x.bed_after - x.bed_before) * (inverse_cell * L(0.5F));
+        const L bed_y = (y.bed_after - y.bed_before) * (inverse_cell * L(0.5F));
         const L square_stretch = one + bed_x * bed_x + bed_y * bed_y, stretch = sqrt(square_stretch);
         const L flatness = one / square_stretch;
 
@@ -121,9 +136,9 @@ HWY_INLINE void reconstruct(const StageData& data, std::ptrdiff_t i, int cells, 
         const L out_south = larger(zero, twice_wave - own_v), out_north = larger(zero, twice_wave + own_v);
         const L can_flow =
             select(dry, zero, depth * flow_scale / (out_west + out_east + out_south + out_north + L(1e-12F)));
-        keep(x, sides_of(x), gravity * flatness * (one - flatness * bed_x * bed_x), can_flow * out_west,
+        keep(x, wall_west, wall_east, gravity * flatness * (one - flatness * bed_x * bed_x), can_flow * out_west,
              can_flow * out_east, row.x, j);
-        keep(y, sides_of(y), gravity * flatness * (one - flatness * bed_y * bed_y), can_flow * out_south,
+        keep(y, wall_south, wall_north, gravity * flatness * (one - flatness * bed_y * bed_y), can_flow * out_south,
              can_flow * out_north, row.y, j);
 
         const Resistance<L> resistance = resistance_at(data, i + j, depth, stretch);
@@ -145,17 +160,27 @@ HWY_INLINE void cross_faces(const Row& before, int j, const Row& after, int k, b
                      load(b.limit_after, j)};
     FaceSide<L> onto{load(a.depth_before, k), load(a.normal_before, k), load(a.across_before, k), load(a.wave, k),
                      load(a.limit_before, k)};
-    // Beside dry ground that stands above it, debris sees itself.
+    // Beside dry ground that stands above it, debris sees itself; beside a structure, its mirror image.
     const auto mirror = [](const L& wall, const FaceSide<L>& of, FaceSide<L>& in) HWY_ATTR {
         in.depth = select(wall > L(0), of.depth, in.depth);
         in.normal = select(wall > L(0), of.normal, in.normal);
+        in.normal = select(wall > L(1), L(0) - of.normal, in.normal);
         in.across = select(wall > L(0), of.across, in.across);
         in.wave = select(wall > L(0), of.wave, in.wave);
     };
     // Not both: of two neighbours, a wall is the dry one.
+    // Debris on top of a structure falls off, over the debris beside it.
+    const auto falls = [](const L& wall, const FaceSide<L>& top) HWY_ATTR {
+        return opaque(select(wall > L(1), L(1), L(0))) * opaque(select(top.depth > L(0), L(1), L(0)));
+    };
+    const L falls_after = falls(load(a.wall_before, k), from), falls_before = falls(load(b.wall_after, j), onto);
+    const L wall_before = load(a.wall_before, k) * (L(1) - falls_after);
+    const L wall_after = load(b.wall_after, j) * (L(1) - falls_before);
     const FaceSide<L> unchanged = from;
-    mirror(load(a.wall_before, k), onto, from);
-    mirror(load(b.wall_after, j), unchanged, onto);
+    mirror(wall_before, onto, from);
+    mirror(wall_after, unchanged, onto);
+    onto.depth = onto.depth * (L(1) - falls_after);
+    from.depth = from.depth * (L(1) - falls_before);
     Flux<L> flux = face_flux(from, onto);
     const L open = select(load(before.at_rest, j) * load(after.at_rest, k) > L(0), L(0), L(1));
     // Debris that passes has followed the ground of one cell and meets that of the other: half of the change is felt on
@@ -164,12 +189,13 @@ HWY_INLINE void cross_faces(const Row& before, int j, const Row& after, int k, b
             turn_y = load(after.bed_y, k) - load(before.bed_y, j);
     const L turn = along_x ? turn_x * flux.carried_normal + turn_y * flux.carried_across
                            : turn_y * flux.carried_normal + turn_x * flux.carried_across;
-    store(flux.mass * open, faces.mass, to);
+    const L passes = select(wall_before + wall_after > L(1), L(0), open);
     store(flux.normal * open, faces.normal, to);
-    store(flux.across * open, faces.across, to);
-    store(flux.pressure_before * open, faces.pressure_before, to);
-    store(flux.pressure_after * open, faces.pressure_after, to);
-    store(L(0.5F) * flux.mass * turn * open, faces.press, to);
+    store(flux.across * passes, faces.across, to);
+    store(flux.pressure_before * open * (L(1) - falls_before), faces.pressure_before, to);
+    store(flux.pressure_after * open * (L(1) - falls_after), faces.pressure_after, to);
+    store(flux.mass * passes, faces.mass, to);
+    store(L(0.5F) * flux.mass * turn * passes, faces.press, to);
 }
 
 /// Updates lane_count cells at index i, entry j of the row.

@@ -45,15 +45,15 @@ double fitted_velocity(std::span<const double> arrival, std::size_t first, std::
 FrontTracker::FrontTracker(const sim::Model& model, const sim::Ground& ground, const sim::State& state,
                            terrain::FlowPath flow_path, double chainage_interval, double velocity_window)
     : flow_path_(std::move(flow_path)),
-      interval_(chainage_interval),
-      window_(velocity_window),
       head_length_(std::max(2 * model.support_radius, chainage_interval)),
       front_count_(front_particle_count(state)) {
+    record_.interval = chainage_interval;
+    record_.window = velocity_window;
     if (flow_path_.empty()) return;
     candidates_.resize(state.count);
-    const auto bins = static_cast<std::size_t>(flow_path_.length() / interval_) + 1;
-    arrival_.assign(bins, never);
-    head_.assign(bins, {});
+    const auto bins = static_cast<std::size_t>(flow_path_.length() / record_.interval) + 1;
+    record_.arrival.assign(bins, never);
+    record_.head.assign(bins, {});
     held_ = find_front(ground, state);
     farthest_ = current_;
 }
@@ -132,7 +132,7 @@ std::uint32_t FrontTracker::find_front(const sim::Ground& ground, const sim::Sta
     return held;
 }
 
-FrontTracker::Head FrontTracker::head_behind(double front, const sim::State& state) {
+FrontRecord::Head FrontTracker::head_behind(double front, const sim::State& state) {
     const auto from = static_cast<float>(std::max(0.0, front - head_length_));
     // Always in the same order: the sum would depend on it.
     const auto end = candidates_.begin() + candidate_count_;
@@ -163,36 +163,37 @@ void FrontTracker::after_step(const sim::Ground& ground, const sim::State& state
         return;
     }
     const double from = std::isnan(before) ? farthest_ : before;
-    Head head;
-    for (auto bin = static_cast<std::size_t>(farthest_ / interval_) + 1;
-         bin < arrival_.size() && static_cast<double>(bin) * interval_ <= current_; ++bin) {
-        const double share = (static_cast<double>(bin) * interval_ - from) / (current_ - from);
-        arrival_[bin] = state.time - state.time_step * (1 - share);
+    FrontRecord::Head head;
+    const double interval = record_.interval;
+    for (auto bin = static_cast<std::size_t>(farthest_ / interval) + 1;
+         bin < record_.arrival.size() && static_cast<double>(bin) * interval <= current_; ++bin) {
+        const double share = (static_cast<double>(bin) * interval - from) / (current_ - from);
+        record_.arrival[bin] = state.time - state.time_step * (1 - share);
         if (std::isnan(head.mean)) head = head_behind(current_, state);
-        head_[bin] = head;
+        record_.head[bin] = head;
     }
     farthest_ = current_;
 }
 
-bool FrontTracker::jumped_to(std::size_t bin) const {
-    const double fastest = std::max(head_[bin].fastest, head_[bin - 1].fastest);
-    return interval_ > fastest_front * fastest * (arrival_[bin] - arrival_[bin - 1]);  // false without both arrivals
+bool FrontRecord::jumped_to(std::size_t bin) const {
+    const double fastest = std::max(head[bin].fastest, head[bin - 1].fastest);
+    return interval > fastest_front * fastest * (arrival[bin] - arrival[bin - 1]);  // false without both arrivals
 }
 
-double FrontTracker::velocity_at(std::size_t middle) const {
-    const auto half = static_cast<std::size_t>(std::max(1.0, std::floor(window_ / 2 / interval_)));
+double FrontRecord::velocity_at(std::size_t middle) const {
+    const auto half = static_cast<std::size_t>(std::max(1.0, std::floor(window / 2 / interval)));
     // Not across a jump.
     std::size_t first = middle, last = middle;
     while (first > 0 && middle - first < half && !jumped_to(first)) --first;
-    while (last + 1 < arrival_.size() && last - middle < half && !jumped_to(last + 1)) ++last;
-    return fitted_velocity(arrival_, first, last, interval_);
+    while (last + 1 < arrival.size() && last - middle < half && !jumped_to(last + 1)) ++last;
+    return fitted_velocity(arrival, first, last, interval);
 }
 
-std::vector<FrontSample> FrontTracker::samples() const {
+std::vector<FrontSample> FrontRecord::samples() const {
     std::vector<FrontSample> samples;
-    for (std::size_t bin = 0; bin < arrival_.size(); ++bin) {
-        if (std::isnan(arrival_[bin])) continue;
-        samples.push_back({static_cast<double>(bin) * interval_, arrival_[bin], velocity_at(bin), head_[bin].mean});
+    for (std::size_t bin = 0; bin < arrival.size(); ++bin) {
+        if (std::isnan(arrival[bin])) continue;
+        samples.push_back({static_cast<double>(bin) * interval, arrival[bin], velocity_at(bin), head[bin].mean});
     }
     return samples;
 }

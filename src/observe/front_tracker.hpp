@@ -26,10 +26,31 @@ inline constexpr double fastest_front = 1.5;
 [[nodiscard]] double fitted_velocity(std::span<const double> arrival, std::size_t first, std::size_t last,
                                      double interval);
 
+/// When a front reached each chainage, every `interval` m, and how fast debris was there; velocities follow.
+///
+/// A front has no velocity where its chainage outruns the debris: chainage is a projection, and at a corner of the path
+/// it jumps.
+struct FrontRecord {
+    /// Speeds of the debris at the front, m/s.
+    struct Head {
+        double mean = never, fastest = never;
+    };
+    double interval = 1, window = 10;  ///< m of chainage; the window is that of front velocities
+    std::vector<double> arrival{};     ///< s, by chainage / interval; NaN: not yet
+    std::vector<Head> head{};
+
+    [[nodiscard]] std::vector<FrontSample> samples() const;
+
+  private:
+    /// Whether the front went from the previous chainage to this one faster than the debris there moves: at a corner of
+    /// the path, or because other debris entered its corridor.
+    [[nodiscard]] bool jumped_to(std::size_t bin) const;
+    [[nodiscard]] double velocity_at(std::size_t middle) const;
+};
+
 /// The front along the flow path: where it is, when it first reached each chainage and how fast it was there.
 ///
-/// A release covers part of the path when it starts; that is not an arrival. A front also has no velocity where its
-/// chainage outruns the debris: chainage is a projection, and at a corner of the path it jumps.
+/// A release covers part of the path when it starts; that is not an arrival.
 class FrontTracker {
   public:
     /// `flow_path` may be empty: then there is no front. Intervals and window in m of chainage.
@@ -48,7 +69,7 @@ class FrontTracker {
     /// Farthest chainage so far, m; NaN: none yet.
     [[nodiscard]] double farthest() const { return farthest_; }
     /// Arrivals by chainage, with velocities.
-    [[nodiscard]] std::vector<FrontSample> samples() const;
+    [[nodiscard]] std::vector<FrontSample> samples() const { return record_.samples(); }
 
   private:
     /// A particle on the path, not far behind the front.
@@ -61,25 +82,15 @@ class FrontTracker {
     std::uint32_t find_candidates(const sim::Ground& ground, const sim::State& state, double from);
     /// Sets current_ and returns how many particles are held.
     std::uint32_t find_front(const sim::Ground& ground, const sim::State& state);
-    /// Speeds of the debris at the front, m/s.
-    struct Head {
-        double mean = never, fastest = never;
-    };
-    [[nodiscard]] Head head_behind(double front, const sim::State& state);
-    /// Whether the front went from the previous chainage to this one faster than the debris there moves: at a corner of
-    /// the path, or because other debris entered its corridor.
-    [[nodiscard]] bool jumped_to(std::size_t bin) const;
-    [[nodiscard]] double velocity_at(std::size_t middle) const;
-
+    [[nodiscard]] FrontRecord::Head head_behind(double front, const sim::State& state);
     terrain::FlowPath flow_path_;
-    double interval_ = 1, window_ = 10, head_length_ = 0;
+    double head_length_ = 0;
     std::size_t front_count_ = 1;
     std::uint32_t held_ = 0;
     double current_ = never, farthest_ = never;
     std::vector<Candidate> candidates_;  // the first candidate_count_, in any order
     std::uint32_t candidate_count_ = 0;
-    std::vector<double> arrival_;  // by chainage / interval; NaN: not yet
-    std::vector<Head> head_;
+    FrontRecord record_;
 };
 
 }  // namespace talus::observe

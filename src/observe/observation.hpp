@@ -176,6 +176,8 @@ struct Observation {
     std::vector<TimeSample> timeseries;
     double volume_released = 0;  ///< m3, less the removed volume
     Compression compression;
+    /// Share of the volume that rounding may gain or lose: depths in single precision do, whole particles do not.
+    double volume_rounding = 1e-9;
 };
 
 [[nodiscard]] Deposit measure_deposit(const Grid<float>& deposit_depth, double least_depth);

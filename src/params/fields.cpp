@@ -151,6 +151,13 @@ Section declare_solver() {
           "Mean over-density (density over rest density, less 1) above which the run stops as a fault.");
     s.key("thread_count", "", &SolverSpec::thread_count, between(0, 512),
           "Threads to compute with; 0 takes all cores. Results do not depend on it.");
+    s.choice(
+        "model", &SolverSpec::model, {"particles", "depth_averaged"},
+        "particles: in three dimensions. depth_averaged: depth and velocity per cell of a grid, in seconds, without "
+        "what happens inside the flow; buildings and barriers are whole cells (docs/depth-averaged.md).");
+    s.optional_key("grid_cell_m", "m", &SolverSpec::grid_cell, between(1e-3, 1000),
+                   "the terrain's cell, or the largest whole fraction of it up to 2.5 m",
+                   "Cell of the depth-averaged model.");
     s.rule([](const SolverSpec& solver, const SceneSpec&, double) -> std::optional<Violation> {
         const double small = solver.smallest_time_step, large = solver.largest_time_step;
         if (small <= large) return {};

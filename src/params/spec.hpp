@@ -202,6 +202,11 @@ enum class InternalFriction {
     pair,    ///< a correction per pair of particles (Macklin et al. 2014)
 };
 
+enum class ModelChoice {
+    particles,       ///< in three dimensions
+    depth_averaged,  ///< depth and velocity per cell of a grid (src/depth)
+};
+
 /// `[solver]`: an absent optional is chosen by the program and reported.
 struct SolverSpec {
     // At most one of the three; none: usual_particle_count.
@@ -228,6 +233,8 @@ struct SolverSpec {
     double rest_duration = 0.5;          ///< s, debris that has hardly moved for this long falls asleep; 0: never
     double compression_limit = 0.5;      ///< mean of max(0, density/rest density - 1) above which the run is a fault
     int thread_count = 0;                ///< 0: all cores
+    ModelChoice model = ModelChoice::particles;
+    std::optional<double> grid_cell = {};  ///< m, of the depth-averaged model
 };
 
 /// Whose intensity classes are mapped; the tables are in report/intensity.cpp.

@@ -66,7 +66,9 @@ Json resolved(const scene::Scene& scene, const run::RunResult& result) {
                            {"volume_by_the_end_m3", inflow.volume_until(result.simulated_time)}});
         if (inflow.has_density()) inflows.back()["mass_kg"] = inflow.mass_until(inflow.hydrograph.back().time);
     }
-    return {{"particle_spacing_m", result.particle_spacing},
+    return {{"model", result.depth_averaged() ? "depth_averaged" : "particles"},
+            {"grid_cell_m", result.grid_cell},
+            {"particle_spacing_m", result.particle_spacing},
             {"support_radius_m", result.support_radius},
             {"particle_count", result.particles},
             {"viscosity", result.viscosity},

@@ -61,7 +61,7 @@ MassBalance mass_balance(const observe::Observation& observation) {
         m.left = s.volume_left;
     }
     m.residual = observation.volume_released + m.entrained - m.held - m.moving - m.deposited - m.left;
-    m.closes = std::abs(m.residual) <= 1e-9 * std::max(1.0, observation.volume_released);
+    m.closes = std::abs(m.residual) <= observation.volume_rounding * std::max(1.0, observation.volume_released);
     return m;
 }
 
@@ -114,7 +114,7 @@ Json compression(const scene::Scene& scene, const run::RunResult& result) {
 
 Json flow_thickness(const scene::Scene& scene, const run::RunResult& result) {
     const observe::FlowThickness& flow = result.observation.thickness;
-    if (!flow.known()) return nullptr;
+    if (!flow.known() || result.depth_averaged()) return nullptr;
     return {{"median_m", flow.median},
             {"thinnest_tenth_m", flow.thin},
             {"median_layers", flow.median / result.particle_spacing},
@@ -208,7 +208,7 @@ Json quality(const scene::Scene& scene, const run::RunResult& result) {
                                                                        : "partial: stopped by a fault";
     const MassBalance mass = mass_balance(o);
     const observe::Compression& c = o.compression;
-    return {
+    Json all = {
         fact("Status", result.stop_reason.empty() ? state : state + ("; " + result.stop_reason)),
         fact("Simulated time",
              fmt::format("{} s in {} s of wall time, {} steps of {} to {} ms", fixed(result.simulated_time, 1),
@@ -216,9 +216,29 @@ Json quality(const scene::Scene& scene, const run::RunResult& result) {
                          fixed(1e3 * result.smallest_time_step, 2), fixed(1e3 * result.largest_time_step, 2))),
         fact("Real-time factor",
              significant(result.real_time_factor(), 3) + " (simulated over wall time; 1 is real time)"),
-        fact("Particles", fmt::format("{}, spacing {} m", fixed(result.particles, 0), plain(result.particle_spacing))),
-        layers(scene, result),
-        fact("Compression",
+    };
+    const Json balance =
+        fact("Mass balance",
+             fmt::format("released {}{} = held {} + moving {} + deposited {} + left {} m³", fixed(o.volume_released, 2),
+                         scene.bed.empty() ? "" : fmt::format(" + entrained {}", fixed(mass.entrained, 2)),
+                         fixed(mass.held, 2), fixed(mass.moving, 2), fixed(mass.deposited, 2), fixed(mass.left, 2)),
+             mass.closes ? "" : fmt::format("; {} m³ missing", fixed(mass.residual, 3)));
+    if (result.depth_averaged()) {
+        all.push_back(fact(
+            "Model",
+            fmt::format(
+                "depth-averaged, {} cells of {} m; {} million cell updates per second",
+                fixed(static_cast<double>(result.grid_cells), 0), plain(result.grid_cell),
+                significant(static_cast<double>(result.cell_updates) / 1e6 / std::max(result.wall_time, 1e-9), 3))));
+        all.push_back(balance);
+        return all;
+    }
+    all.insert(
+        all.end(),
+        {fact("Particles", fmt::format("{}, spacing {} m", fixed(result.particles, 0), plain(result.particle_spacing))),
+         layers(scene, result),
+         fact(
+             "Compression",
              fmt::format(
                  "worst mean over the debris {} % (at {} s; limit {} %), more than {} % in {} % of the particles "
                  "at worst (limit {} %), worst particle {} %: ",
@@ -229,20 +249,16 @@ Json quality(const scene::Scene& scene, const run::RunResult& result) {
                                : fmt::format("above a limit during {} % of the simulated time",
                                              significant(100 * c.time_share_above, 2)),
              c.within_limits()),
-        fact("Iterations",
-             c.time_share_iterated > 0
-                 ? fmt::format(
-                       "{} per step, up to {} more while debris was squeezed: in {} % of the simulated time, {} on "
-                       "average",
-                       scene.spec.solver.iteration_count, scene.spec.solver.extra_iteration_count,
-                       significant(100 * c.time_share_iterated, 2), fixed(c.mean_iterations, 1))
-                 : fmt::format("{} per step", scene.spec.solver.iteration_count)),
-        fact("Mass balance",
-             fmt::format("released {}{} = held {} + moving {} + deposited {} + left {} m³", fixed(o.volume_released, 2),
-                         scene.bed.empty() ? "" : fmt::format(" + entrained {}", fixed(mass.entrained, 2)),
-                         fixed(mass.held, 2), fixed(mass.moving, 2), fixed(mass.deposited, 2), fixed(mass.left, 2)),
-             mass.closes ? "" : fmt::format("; {} m³ missing", fixed(mass.residual, 3))),
-    };
+         fact("Iterations",
+              c.time_share_iterated > 0
+                  ? fmt::format(
+                        "{} per step, up to {} more while debris was squeezed: in {} % of the simulated time, {} on "
+                        "average",
+                        scene.spec.solver.iteration_count, scene.spec.solver.extra_iteration_count,
+                        significant(100 * c.time_share_iterated, 2), fixed(c.mean_iterations, 1))
+                  : fmt::format("{} per step", scene.spec.solver.iteration_count)),
+         balance});
+    return all;
 }
 
 Json title_block(const params::ReportSpec& report) {

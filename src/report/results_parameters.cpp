@@ -90,6 +90,15 @@ Json chosen_values(const scene::Scene& scene, const run::RunResult& result) {
     const params::MaterialSpec& material = scene.spec.material;
     Json rows = Json::array();
     const auto add = [&](const char* name, const std::string& text) { rows.push_back(fact(name, text)); };
+    if (result.depth_averaged()) {
+        add("Model", "depth-averaged");
+        add("Cell", fmt::format("{} m", plain(result.grid_cell)));
+        add("Time step", fmt::format("{} to {} ms", fixed(1e3 * result.smallest_time_step, 3),
+                                     fixed(1e3 * result.largest_time_step, 3)));
+        add("Rest density", fmt::format("{} kg/m³", fixed(material.rest_density, 0)));
+        add("Friction on the ground", fmt::format("f = {}", plain(material.friction_coefficient)));
+        return rows;
+    }
     add("Particle spacing", fmt::format("{} m", plain(result.particle_spacing)));
     add("Support radius", fmt::format("{} m", plain(result.support_radius)));
     add("Kernel", std::string(kernel_name(solver.kernel)));

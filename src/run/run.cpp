@@ -16,6 +16,9 @@ namespace talus::run {
 
 Result<std::unique_ptr<Run>> Run::start(const scene::Scene& scene, std::optional<double> particle_spacing) {
     const params::SceneSpec& spec = scene.spec;
+    if (spec.solver.model != params::ModelChoice::particles) {
+        return Error{"solver.model = \"depth_averaged\" is refused; this needs particles, talus run has both models"};
+    }
     const double spacing = particle_spacing.value_or(scene::particle_spacing(scene));
     TALUS_TRY(sim::check_particle_count(scene.releases, scene.inflows, spec.solver, spacing));
     return Threads(spec.solver.thread_count).execute([&]() -> Result<std::unique_ptr<Run>> {

@@ -30,8 +30,14 @@ struct RunResult {
     double particle_spacing = 0, support_radius = 0, map_cell = 0;
     double viscosity = 0, kinematic_viscosity = 0;  ///< smoothing per 1/60 s; its equivalent in m2/s
     int thread_count = 0;
-    std::string instruction_set;  ///< used for the sums over neighbours
+    std::string instruction_set;  ///< used for the sums over neighbours, or the cells
 
+    // Of the depth-averaged model: no particles then.
+    double grid_cell = 0;            ///< m; 0: particles
+    std::uint64_t grid_cells = 0;    ///< of the grid
+    std::uint64_t cell_updates = 0;  ///< by all steps
+
+    [[nodiscard]] bool depth_averaged() const { return grid_cell > 0; }
     [[nodiscard]] double real_time_factor() const { return wall_time > 0 ? simulated_time / wall_time : 0; }
 };
 

@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "run/depth_run.hpp"
 #include "run/run.hpp"
 
 namespace talus::run {
@@ -27,6 +28,7 @@ Progress progress_of(const Run& run) {
 }  // namespace
 
 Result<RunResult> run_scene(const scene::Scene& scene, const RunOptions& options) {
+    if (scene.spec.solver.model == params::ModelChoice::depth_averaged) return run_depth_averaged(scene, options);
     const auto started = Run::start(scene);
     if (!started) return Error{scene.file.string() + ": " + started.error().message};
     Run& run = **started;

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "scene/grid_cell.hpp"
 #include "scene/particle_spacing.hpp"
 #include "terrain/map_cell.hpp"
 
@@ -69,10 +70,14 @@ std::string describe_scene(const Scene& scene) {
         out += fmt::format("inflow      \"{}\": {:.4g} m3 between {:.6g} and {:.6g} s\n", inflow.name, inflow.volume(),
                            inflow.hydrograph.front().time, inflow.hydrograph.back().time);
     }
+    const bool particles = scene.spec.solver.model == params::ModelChoice::particles;
     const double spacing = particle_spacing(scene);
-    out += particle_line(scene, volume, spacing);
-    out += fmt::format("map cell    {:.4g} m\n",
-                       scene.spec.outputs.map_cell.value_or(terrain::default_map_cell(scene.terrain.cell(), spacing)));
+    out += particles ? particle_line(scene, volume, spacing)
+                     : fmt::format("model       depth-averaged, on cells of {:.4g} m\n", grid_cell(scene));
+    if (particles)
+        out +=
+            fmt::format("map cell    {:.4g} m\n",
+                        scene.spec.outputs.map_cell.value_or(terrain::default_map_cell(scene.terrain.cell(), spacing)));
     out += buildings_line(scene);
     out += scene.flow_path.empty()
                ? "flow path   none\n"

@@ -10,6 +10,7 @@
 #include "core/hash.hpp"
 #include "core/try.hpp"
 #include "geo/orthophoto.hpp"
+#include "scene/grid_cell.hpp"
 #include "scene/limits.hpp"
 #include "scene/particle_spacing.hpp"
 #include "scene/plausibility.hpp"
@@ -166,9 +167,10 @@ Result<Scene> assemble_scene(const ParsedScene& parsed) {
     TALUS_TRY(load_barriers(parsed, scene));
     TALUS_TRY(load_flow_path(parsed, scene));
     TALUS_TRY(load_observations(parsed, scene));
-    TALUS_TRY(check_limits(parsed, scene));
+    const bool particles = scene.spec.solver.model == params::ModelChoice::particles;
+    TALUS_TRY(particles ? check_limits(parsed, scene) : check_depth_averaged(parsed, scene));
     note_implausible_terrain(scene);
-    note_coarse_particles(scene);
+    if (particles) note_coarse_particles(scene);
     return Result<Scene>(std::move(scene));
 }
 

@@ -128,5 +128,55 @@ TEST(Solver, feels_zones) {
     EXPECT_GT(solver.u_at(35, 32), 3);
 }
 
+/// Debris that slides against a wall across its way; returns the solver after `time`.
+depth::Solver against_a_wall(double height, double time) {
+    depth::GroundValues ground;
+    ground.structure.assign(100, 0);
+    ground.structure[60] = 1;
+    const auto bed =
+        grid_of(100, 1, 1, [&](double x, double) { return 100 - 0.5 * x + (x > 60 && x < 61 ? height : 0); });
+    depth::Material material;
+    material.friction_coefficient = 0.2;
+    depth::Solver solver(bed, material, ground, depth::Edges::continued);
+    solver.add(grid_of<float>(100, 1, 1, [](double x, double) { return x > 10 && x < 30 ? 2 : 0; }));
+    advance_until(solver, time);
+    return solver;
+}
+
+TEST(Structure, stops_debris_that_has_not_the_energy_to_pass_it) {
+    const depth::Solver solver = against_a_wall(20, 20);
+    double before = 0, beyond = 0;
+    for (int column = 0; column < 100; ++column) (column < 60 ? before : beyond) += solver.depth_at(column, 0);
+    EXPECT_EQ(beyond, 0);
+    EXPECT_NEAR(before, 40, 1e-3);
+    EXPECT_GT(solver.depth_at(59, 0), 3) << "it piles up";
+}
+
+TEST(Structure, lets_debris_over_it) {
+    const depth::Solver solver = against_a_wall(0.5, 20);
+    double beyond = solver.volume_left();
+    for (int column = 61; column < 100; ++column) beyond += solver.depth_at(column, 0);
+    EXPECT_GT(beyond, 30);
+}
+
+TEST(Structure, is_no_slope_for_a_lake_beside_it) {
+    depth::GroundValues ground;
+    ground.structure.assign(400, 0);
+    for (int row = 8; row < 12; ++row) {
+        for (int column = 8; column < 12; ++column) ground.structure[static_cast<std::size_t>(row * 20 + column)] = 1;
+    }
+    const auto bed = grid_of(20, 20, 1, [&](double x, double y) {
+        const bool house = std::max(std::abs(x - 10), std::abs(y - 10)) < 2;
+        return house || std::max(std::abs(x - 10), std::abs(y - 10)) > 9 ? 8.0 : std::round(x) / 4;
+    });
+    const auto water = grid_of<float>(20, 20, 1, [&](double x, double y) {
+        return std::max(0.0, 6 - bed.at(static_cast<int>(x), static_cast<int>(y)));
+    });
+    depth::Solver solver(bed, {}, ground);
+    solver.add(water);
+    advance_until(solver, 10);
+    EXPECT_TRUE(as_at_start(solver, water));
+}
+
 }  // namespace
 }  // namespace talus::test

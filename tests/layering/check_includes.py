@@ -18,7 +18,7 @@ BELOW = {
     "sim": ["core", "params", "terrain", "simd"],
     "depth": ["core", "params", "terrain", "simd", "sim"],
     "geo": ["core", "params", "terrain"],
-    "observe": ["core", "params", "terrain", "simd", "sim", "geo"],
+    "observe": ["core", "params", "terrain", "simd", "sim", "depth", "geo"],
     "scene": ["core", "params", "terrain", "simd", "sim", "geo"],
     "run": ["core", "params", "terrain", "simd", "sim", "depth", "geo", "observe", "scene"],
     "report": ["core", "params", "terrain", "simd", "sim", "depth", "geo", "observe", "scene", "run"],

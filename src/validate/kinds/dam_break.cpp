@@ -5,6 +5,7 @@
 
 #include "core/angle.hpp"
 #include "sim/sources/seed.hpp"
+#include "validate/grid_flow.hpp"
 #include "validate/kinds/kinds.hpp"
 #include "validate/laws.hpp"
 #include "validate/measure.hpp"
@@ -15,6 +16,8 @@ namespace dam_break {
 
 constexpr Quantity quantities[] = {
     {"depth_l2", "1", false, Quantity::Site::none, "relative L2 error of the thickness on cells along the slope"},
+    {"front", "m", true, Quantity::Site::none,
+     "of the depth-averaged model: where the thickness falls below a hundredth of the dam's, from the dam"},
     {"depth_max", "1", false, Quantity::Site::none, "largest error of the thickness over the dam's"},
 };
 
@@ -23,10 +26,12 @@ struct DamSpec {
     double depth = 0, time = 0, cell = 0;  // m, s, m
     std::vector<double> spacings;          // m
     int width = 0;                         // spacings
+    std::vector<double> grids;             // cells over what is compared
 };
 
 struct Measured {
     double l2 = not_computed, largest = not_computed;
+    double front = not_computed, exact_front = not_computed;  // m, where the thickness falls below a hundredth
     std::string problem;
     std::uint32_t particles = 0;
     std::vector<double> place, thickness, exact;
@@ -70,6 +75,39 @@ Measured measure(const DamSpec& spec, double spacing, const Setting& setting, co
     return measured;
 }
 
+/// The last place with at least a hundredth of the dam's depth.
+double front_of(const std::vector<double>& place, const std::vector<double>& thickness, double depth) {
+    double front = not_computed;
+    for (std::size_t k = 0; k < place.size(); ++k) {
+        if (thickness[k] >= 0.01 * depth) front = place[k];
+    }
+    return front;
+}
+
+Measured measure_grid(const DamSpec& spec, int cells, const Setting& setting, const Watch& watch) {
+    const DamBreak law(spec.slope, spec.friction_angle, spec.depth, sim::Model{}.gravity);
+    const double margin = 3 * spec.depth, first = law.back(spec.time) - margin;
+    const double cell = (law.front(spec.time) + margin - first) / cells;
+    const double reservoir = 2 * law.wave_speed() * spec.time + 2 * margin;
+    const auto before = static_cast<int>(std::ceil((first + reservoir) / cell));
+    GridIncline flow({spec.slope, first - before * cell, (before + cells) * cell, 0, cell}, setting.material,
+                     std::tan(spec.friction_angle), [&](double s, double) { return s < 0 ? spec.depth : 0; });
+    Measured measured;
+    measured.problem = flow.advance_to(spec.time, watch);
+    if (!measured.problem.empty()) return measured;
+    for (int k = before; k < flow.columns(); ++k) {
+        measured.place.push_back(flow.along(k));
+        measured.thickness.push_back(flow.thickness(k, 0));
+        measured.exact.push_back(law.thickness(flow.along(k), spec.time));
+    }
+    const ErrorNorms norms = error_norms(measured.thickness, measured.exact);
+    measured.l2 = norms.relative_l2;
+    measured.largest = norms.relative_max;
+    measured.front = front_of(measured.place, measured.thickness, spec.depth);
+    measured.exact_front = front_of(measured.place, measured.exact, spec.depth);
+    return measured;
+}
+
 Result<Outcome> compute(const DamSpec& spec, const Setting& setting, const Watch& watch) {
     Outcome outcome;
     Chart profile{"profile",
@@ -97,6 +135,16 @@ Result<Outcome> compute(const DamSpec& spec, const Setting& setting, const Watch
         trend.series[0].x.push_back(spacing);
         trend.series[0].y.push_back(m.l2);
     }
+    for (const double cells : spec.grids) {
+        const std::string name = grid_name(static_cast<int>(cells));
+        watch.say(name);
+        const Measured m = measure_grid(spec, static_cast<int>(cells), setting, watch);
+        if (!m.problem.empty()) outcome.notes.push_back(name + ": " + m.problem);
+        outcome.measurements.push_back({"depth_l2", name, m.l2, {}});
+        outcome.measurements.push_back({"depth_max", name, m.largest, {}});
+        outcome.measurements.push_back({"front", name, m.front, m.exact_front});
+        profile.series.push_back({name, Series::Style::line, m.place, m.thickness});
+    }
     outcome.charts = {profile, trend};
     return outcome;
 }
@@ -112,6 +160,7 @@ Computation prepare(Parameters& parameters, const Setting& setting) {
     spec.cell = parameters.number("cell_m", positive, 0.5);
     spec.spacings = parameters.numbers("spacings_m", positive, {0.1});
     spec.width = parameters.whole_number("width_spacings", {.low = 2, .high = 1000}, 5);
+    spec.grids = parameters.numbers("grid_cells", {.low = 10, .high = 10000}, {200});
     return [spec, setting](const Watch& watch) { return compute(spec, setting, watch); };
 }
 

@@ -5,6 +5,7 @@
 
 #include "core/angle.hpp"
 #include "sim/sources/seed.hpp"
+#include "validate/grid_flow.hpp"
 #include "validate/kinds/kinds.hpp"
 #include "validate/laws.hpp"
 #include "validate/measure.hpp"
@@ -122,6 +123,28 @@ Measured measure(const SheetSpec& spec, double slope, double start_share, const 
     return measured;
 }
 
+/// Mean velocity in the middle of the sheet, and the law's, by the depth-averaged model.
+Measured measure_grid(const SheetSpec& spec, double slope, double start_share, const Setting& setting,
+                      const Watch& watch) {
+    const double thickness = spec.layers * spec.spacing;
+    const SheetFlow sheet{slope, thickness, sim::Model{}.gravity};
+    const sim::Model model = sim::make_model(setting.material, setting.solver, spec.spacing);
+    Measured measured;
+    constexpr int parts = 1000;
+    double law = 0;
+    for (int k = 0; k < parts; ++k) {
+        law += law_velocity(spec, sheet, model, setting.material, (k + 0.5) / parts * thickness) / parts;
+    }
+    measured.law_mean = law;
+    const double travel = law * std::max(1.0, start_share) * spec.end, before = 2 * travel + 4 * spec.length;
+    GridIncline flow({slope, -before, 2 * before, 0, thickness}, setting.material, model.friction_coefficient,
+                     [&](double, double) { return thickness; });
+    flow.set_velocity(start_share * law);
+    measured.problem = flow.advance_to(spec.end, watch);
+    if (measured.problem.empty()) measured.mean = flow.velocity(flow.columns() / 2, 0);
+    return measured;
+}
+
 Result<Outcome> compute(const SheetSpec& spec, const Setting& setting, const Watch& watch) {
     Outcome outcome;
     Chart chart{"profile", "Velocity by height above the ground", "velocity (m/s)", "height (m)", {}};
@@ -144,6 +167,10 @@ Result<Outcome> compute(const SheetSpec& spec, const Setting& setting, const Wat
                                         Series::Style::dashed, m.law, m.height});
             }
             chart.series.push_back({name, Series::Style::marks, m.velocity, m.height});
+            if (spec.law == "bagnold") continue;  // a law of what happens inside
+            const Measured grid = measure_grid(spec, slope, share, setting, watch);
+            if (!grid.problem.empty()) outcome.notes.push_back("depth-averaged, " + name + ": " + grid.problem);
+            outcome.measurements.push_back({"mean_velocity", "depth-averaged, " + name, grid.mean, grid.law_mean});
         }
     }
     outcome.charts.push_back(chart);

@@ -5,6 +5,7 @@
 
 #include "core/angle.hpp"
 #include "sim/sources/seed.hpp"
+#include "validate/grid_flow.hpp"
 #include "validate/kinds/kinds.hpp"
 #include "validate/laws.hpp"
 #include "validate/measure.hpp"
@@ -22,6 +23,7 @@ struct CapSpec {
     double slope = 0, friction_angle = 0;               // rad
     double length = 0, height = 0, time = 0, cell = 0;  // m, m, s, m
     std::vector<double> spacings;                       // m
+    std::vector<double> grids;                          // cells over the length of the spread cap
 };
 
 struct Measured {
@@ -98,6 +100,32 @@ Measured measure(const CapSpec& spec, double spacing, const Setting& setting, co
     return measured;
 }
 
+Measured measure_grid(const CapSpec& spec, int cells, const Setting& setting, const Watch& watch) {
+    const SpreadingCap law(spec.slope, spec.friction_angle, spec.length, spec.height, sim::Model{}.gravity,
+                           spec.time + 1);
+    const double half_length = 1.1 * law.half_length(spec.time), half_width = 1.1 * law.half_width(spec.time);
+    const double from = -1.1 * spec.length, to = law.travelled(spec.time) + half_length;
+    GridIncline flow({spec.slope, from, to - from, 2 * half_width, 2 * half_length / cells}, setting.material,
+                     std::tan(spec.friction_angle), [&](double s, double y) { return law.thickness(s, y, 0); });
+    Measured measured;
+    measured.problem = flow.advance_to(spec.time, watch);
+    if (!measured.problem.empty()) return measured;
+    std::vector<double> thickness, exact;
+    for (int row = 0; row < flow.rows(); ++row) {
+        for (int column = 0; column < flow.columns(); ++column) {
+            thickness.push_back(flow.thickness(column, row));
+            exact.push_back(law.thickness(flow.along(column), flow.across(row), spec.time));
+            if (row != flow.rows() / 2 || exact.back() + thickness.back() <= 0) continue;
+            measured.along_place.push_back(flow.along(column));
+            measured.along.push_back(thickness.back());
+        }
+    }
+    const ErrorNorms norms = error_norms(thickness, exact);
+    measured.l2 = norms.relative_l2;
+    measured.largest = norms.relative_max;
+    return measured;
+}
+
 Result<Outcome> compute(const CapSpec& spec, const Setting& setting, const Watch& watch) {
     Outcome outcome;
     Chart along{"along",
@@ -127,6 +155,15 @@ Result<Outcome> compute(const CapSpec& spec, const Setting& setting, const Watch
         along.series.push_back({name, Series::Style::line, m.along_place, m.along});
         across.series.push_back({name, Series::Style::line, m.across_place, m.across});
     }
+    for (const double cells : spec.grids) {
+        const std::string name = grid_name(static_cast<int>(cells));
+        watch.say(name);
+        const Measured m = measure_grid(spec, static_cast<int>(cells), setting, watch);
+        if (!m.problem.empty()) outcome.notes.push_back(name + ": " + m.problem);
+        outcome.measurements.push_back({"depth_l2", name, m.l2, {}});
+        outcome.measurements.push_back({"depth_max", name, m.largest, {}});
+        along.series.push_back({name, Series::Style::line, m.along_place, m.along});
+    }
     outcome.charts = {along, across};
     return outcome;
 }
@@ -142,6 +179,7 @@ Computation prepare(Parameters& parameters, const Setting& setting) {
     spec.time = parameters.number("time_s", positive, 5);
     spec.cell = parameters.number("cell_m", positive, 5);
     spec.spacings = parameters.numbers("spacings_m", positive, {1});
+    spec.grids = parameters.numbers("grid_cells", {.low = 10, .high = 10000}, {100});
     return [spec, setting](const Watch& watch) { return compute(spec, setting, watch); };
 }
 

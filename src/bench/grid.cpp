@@ -1,0 +1,76 @@
+#include "bench/grid.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "bench/measure.hpp"
+#include "core/hash.hpp"
+#include "core/try.hpp"
+#include "depth/solver.hpp"
+#include "run/threads.hpp"
+
+namespace talus::bench {
+namespace {
+
+constexpr int edge = 512, steps = 50, warm_up = 20;
+
+depth::Solver make_valley() {
+    Grid<double> bed({0, 0, 1, edge, edge});
+    Grid<float> debris(bed.geometry);
+    for (int row = 0; row < edge; ++row) {
+        for (int column = 0; column < edge; ++column) {
+            const PlanPoint p = bed.geometry.centre(column, row);
+            bed.at(column, row) = 0.02 * std::pow(std::hypot(p.x - edge / 2.0, p.y - edge / 2.0), 1.5) +
+                                  0.5 * std::sin(p.x / 9) * std::cos(p.y / 7);
+            debris.at(column, row) = std::hypot(p.x - 160, p.y - 190) < 90 ? 5 : 0;
+        }
+    }
+    depth::Material material;
+    material.friction_coefficient = 0.1;
+    material.turbulent_friction = 500;
+    depth::Solver solver(bed, material);
+    solver.add(debris);
+    return solver;
+}
+
+}  // namespace
+
+Result<GridRow> measure_grid(int threads, int repeats) {
+    return run::Threads(threads).execute([&]() -> Result<GridRow> {
+        depth::Solver solver = make_valley();
+        for (int k = 0; k < warm_up; ++k) TALUS_TRY(solver.advance(1));
+        std::vector<double> rates;
+        const std::uint64_t first = solver.cell_updates();
+        for (int repeat = 0; repeat < repeats; ++repeat) {
+            const std::uint64_t before = solver.cell_updates();
+            const auto start = std::chrono::steady_clock::now();
+            for (int k = 0; k < steps; ++k) TALUS_TRY(solver.advance(1));
+            const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+            rates.push_back(static_cast<double>(solver.cell_updates() - before) / seconds);
+        }
+        GridRow row;
+        row.threads = threads;
+        row.cells = solver.geometry().size();
+        row.cells_per_step = static_cast<double>(solver.cell_updates() - first) / (steps * repeats);
+        row.updates_per_second = median(rates);
+        row.bytes_per_cell = solver.bytes_per_cell();
+        row.hash = solver.hash();
+        row.instruction_set = solver.instruction_set();
+        return row;
+    });
+}
+
+std::string grid_table_text(const std::vector<GridRow>& rows) {
+    std::string text =
+        "depth-averaged model, 512 x 512 cells\nthreads  set    cells/step  Mcells/s  bytes/cell  hash\n";
+    for (const GridRow& row : rows) {
+        text += fmt::format("{:>7}  {:<5}  {:>10.0f}  {:>8.1f}  {:>10.0f}  {}\n", row.threads, row.instruction_set,
+                            row.cells_per_step, row.updates_per_second / 1e6, row.bytes_per_cell, to_hex(row.hash));
+    }
+    return text;
+}
+
+}  // namespace talus::bench

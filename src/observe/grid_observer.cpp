@@ -1,0 +1,319 @@
+#include "observe/grid_observer.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "observe/front_tracker.hpp"
+#include "observe/run_out.hpp"
+
+namespace talus::observe {
+namespace {
+
+/// Debris thinner than this share of the arrival depth does not count as having reached a cell.
+constexpr double thinnest_share = 0.1;
+/// So many parcels of equal volume stand for the debris where its run-out is measured as that of particles.
+constexpr double parcels = 20000;
+
+float speed_of(float u, float v, float slope_x, float slope_y) {
+    const float w = u * slope_x + v * slope_y;
+    return std::sqrt(u * u + v * v + w * w);
+}
+
+/// Debris as parcels of equal volume at the centres of its cells, on the ground.
+sim::State parcels_of(const depth::Solver& solver, const sim::Ground& ground, const Grid<float>& depth, double all,
+                      double left) {
+    const GridGeometry& g = solver.geometry();
+    const double area = g.cell * g.cell, parcel = all / parcels;
+    std::vector<LocalPoint> points;
+    double due = 0;  // of the cells so far, so that rounding loses nothing
+    for (int row = 0; row < g.rows; ++row) {
+        for (int column = 0; column < g.columns; ++column) {
+            due += depth.at(column, row) * area / parcel;
+            if (due < 1) continue;
+            const PlanPoint p = g.centre(column, row);
+            LocalPoint at = ground.terrain.frame().to_local({p.x, p.y, 0});
+            at.z = ground.terrain.sample(at.x, at.y).height;
+            for (; due >= 1; due -= 1) points.push_back(at);
+        }
+    }
+    sim::State state;
+    state.count = static_cast<std::uint32_t>(points.size());
+    state.outflow = static_cast<std::uint32_t>(left / parcel);
+    state.seeded = state.count + state.outflow;
+    state.resize(state.count);
+    for (std::uint32_t i = 0; i < state.count; ++i) state.position.set(i, points[i]);
+    return state;
+}
+
+}  // namespace
+
+GridObserver::GridObserver(const depth::Solver& solver, terrain::FlowPath flow_path, const params::OutputSpec& outputs,
+                           std::vector<StructureCells> structures)
+    : outputs_(outputs),
+      flow_path_(std::move(flow_path)),
+      density_(solver.material().rest_density),
+      peak_depth_(solver.geometry()),
+      peak_speed_(solver.geometry()),
+      arrival_time_(solver.geometry(), std::numeric_limits<float>::quiet_NaN()),
+      arrival_speed_(arrival_time_),
+      released_(solver.geometry()),
+      chainage_(solver.geometry().size(), std::numeric_limits<float>::quiet_NaN()) {
+    const GridGeometry& g = solver.geometry();
+    for (int row = 0; row < g.rows && !flow_path_.empty(); ++row) {
+        for (int column = 0; column < g.columns; ++column) {
+            const auto at = flow_path_.locate(g.centre(column, row));
+            if (at) chainage_[g.index(column, row)] = static_cast<float>(at->chainage);
+        }
+    }
+    for (StructureCells& structure : structures) {
+        Structure s;
+        s.impact.name = structure.name;
+        s.impact.is_barrier = structure.is_barrier;
+        for (const std::size_t cell : structure.cells) {
+            const int column = static_cast<int>(cell % static_cast<std::size_t>(g.columns));
+            const int row = static_cast<int>(cell / static_cast<std::size_t>(g.columns));
+            for (const auto& [dx, dy] : {std::pair{-1, 0}, {1, 0}, {0, -1}, {0, 1}}) {
+                const int c = column + dx, r = row + dy;
+                if (c < 0 || r < 0 || c >= g.columns || r >= g.rows || !solver.known(c, r)) continue;
+                const std::size_t beside = g.index(c, r);
+                if (std::find(structure.cells.begin(), structure.cells.end(), beside) == structure.cells.end()) {
+                    s.beside.push_back(beside);
+                }
+            }
+        }
+        std::sort(s.beside.begin(), s.beside.end());
+        s.beside.erase(std::unique(s.beside.begin(), s.beside.end()), s.beside.end());
+        s.cells = std::move(structure);
+        structures_.push_back(std::move(s));
+    }
+    timeseries_.push_back(sample(solver, 0, 0));
+}
+
+void GridObserver::note_release(const depth::Solver& solver, const Grid<float>& depth, double volume) {
+    volume_released_ += volume;
+    for (std::size_t cell = 0; cell < released_.values.size(); ++cell) released_.values[cell] += depth.values[cell];
+    measure_cells(solver);
+    timeseries_.back() = sample(solver, timeseries_.back().volume_held, timeseries_.back().steps_per_second);
+}
+
+void GridObserver::measure_cells(const depth::Solver& solver) {
+    const auto thinnest = static_cast<float>(thinnest_share * outputs_.arrival_depth);
+    const auto arrives = static_cast<float>(outputs_.arrival_depth);
+    const auto time = static_cast<float>(solver.time());
+    const GridGeometry& g = solver.geometry();
+    const auto measure = [&](std::size_t cell, float depth, float speed) {
+        if (!(depth > thinnest)) return;
+        peak_depth_.values[cell] = std::max(peak_depth_.values[cell], depth);
+        peak_speed_.values[cell] = std::max(peak_speed_.values[cell], speed);
+        if (depth > arrives && std::isnan(arrival_time_.values[cell])) {
+            arrival_time_.values[cell] = time;
+            arrival_speed_.values[cell] = speed;
+        }
+    };
+    if (solver.steps() == 0 || !solver.active()) {
+        for (int row = 0; row < g.rows; ++row) {
+            for (int column = 0; column < g.columns; ++column) {
+                measure(g.index(column, row), solver.depth_at(column, row), 0);
+            }
+        }
+        return;
+    }
+    solver.for_each_active_row([&](const depth::ActiveRow& row) {
+        const std::size_t first = g.index(row.first, row.row);
+        for (int k = 0; k < row.last - row.first; ++k) {
+            measure(first + static_cast<std::size_t>(k), row.depth[k],
+                    speed_of(row.u[k], row.v[k], row.slope_x[k], row.slope_y[k]));
+        }
+    });
+}
+
+void GridObserver::measure_structures(const depth::Solver& solver) {
+    const GridGeometry& g = solver.geometry();
+    for (Structure& structure : structures_) {
+        BuildingImpact& impact = structure.impact;
+        StructureSample now;
+        now.time = solver.time();
+        for (const std::size_t cell : structure.beside) {
+            const int column = static_cast<int>(cell % static_cast<std::size_t>(g.columns));
+            const int row = static_cast<int>(cell / static_cast<std::size_t>(g.columns));
+            const double depth = solver.depth_at(column, row);
+            if (depth <= outputs_.arrival_depth) continue;
+            const double speed = std::hypot(solver.u_at(column, row), solver.v_at(column, row));
+            const double dynamic = density_ * speed * speed;
+            now.depth = std::max(now.depth, depth);
+            now.dynamic_pressure = std::max(now.dynamic_pressure, dynamic);
+            // Momentum flux and weight of the flow on the wall of this cell.
+            const double pressure = dynamic + density_ * solver.material().gravity * depth / 2;
+            now.impact_pressure = std::max(now.impact_pressure, pressure);
+            now.force += pressure * depth * g.cell;
+            impact.peak_speed = std::max(impact.peak_speed, speed);
+        }
+        if (now.depth <= 0) continue;
+        if (!impact.hit) impact.first_hit_time = now.time;
+        impact.hit = true;
+        impact.impulse += now.force * solver.time_step();
+        impact.peak_force = std::max(impact.peak_force, now.force);
+        impact.peak_impact_pressure = std::max(impact.peak_impact_pressure, now.impact_pressure);
+        impact.peak_depth = std::max(impact.peak_depth, now.depth);
+        impact.peak_dynamic_pressure = std::max(impact.peak_dynamic_pressure, now.dynamic_pressure);
+        now.impulse = impact.impulse;
+        if (impact.history.empty() || now.time >= impact.history.back().time + outputs_.sample_interval) {
+            impact.history.push_back(now);
+        }
+    }
+}
+
+void GridObserver::after_step(const depth::Solver& solver, double held, double steps_per_second) {
+    measure_cells(solver);
+    measure_structures(solver);
+    const double next = timeseries_.back().time + outputs_.sample_interval;
+    if (solver.time() < next - 1e-9) return;
+    const GridGeometry& g = solver.geometry();
+    for (std::size_t cell = 0; cell < g.size(); ++cell) {
+        if (!std::isnan(arrival_time_.values[cell]) && !(chainage_[cell] <= front_)) {
+            front_ = std::isnan(chainage_[cell]) ? front_ : double{chainage_[cell]};
+        }
+    }
+    timeseries_.push_back(sample(solver, held, steps_per_second));
+}
+
+TimeSample GridObserver::sample(const depth::Solver& solver, double held, double steps_per_second) const {
+    TimeSample s;
+    const GridGeometry& g = solver.geometry();
+    const double area = g.cell * g.cell;
+    for (int row = 0; row < g.rows; ++row) {
+        for (int column = 0; column < g.columns; ++column) {
+            const double depth = solver.depth_at(column, row);
+            if (!(depth > 0)) continue;
+            const double speed = speed_of(solver.u_at(column, row), solver.v_at(column, row),
+                                          solver.slope_x_at(column, row), solver.slope_y_at(column, row));
+            const double volume = depth * area;
+            (speed < outputs_.deposited_speed ? s.volume_deposited : s.volume_moving) += volume;
+            s.kinetic_energy += density_ * volume * speed * speed / 2;
+            s.potential_energy +=
+                density_ * volume * solver.material().gravity * (solver.bed_at(column, row) + depth / 2);
+            s.largest_speed = std::max(s.largest_speed, speed);
+        }
+    }
+    s.time = solver.time();
+    s.volume_held = held;
+    s.volume_left = solver.volume_left();
+    s.volume_released = volume_released_ + held;
+    s.front_chainage = front_;
+    s.time_step = solver.time_step();
+    s.steps_per_second = steps_per_second;
+    return s;
+}
+
+FrontRecord GridObserver::front_record() const {
+    FrontRecord record;
+    record.interval = outputs_.chainage_interval;
+    record.window = outputs_.front_velocity_window;
+    if (flow_path_.empty()) return record;
+    record.arrival.assign(static_cast<std::size_t>(flow_path_.length() / record.interval) + 1, never);
+    record.head.assign(record.arrival.size(), {});
+    double covered = -1;  // what the release covers is no arrival
+    for (std::size_t cell = 0; cell < chainage_.size(); ++cell) {
+        if (released_.values[cell] > 0 && chainage_[cell] > covered) covered = chainage_[cell];
+    }
+    // How far the front had come at the time of each advance.
+    struct Advance {
+        float time, chainage, speed;
+    };
+    std::vector<Advance> advances;
+    for (std::size_t cell = 0; cell < chainage_.size(); ++cell) {
+        if (!(chainage_[cell] > covered) || std::isnan(arrival_time_.values[cell])) continue;
+        advances.push_back({arrival_time_.values[cell], chainage_[cell], arrival_speed_.values[cell]});
+    }
+    std::sort(advances.begin(), advances.end(), [](const Advance& a, const Advance& b) {
+        return std::pair(a.time, -a.chainage) < std::pair(b.time, -b.chainage);
+    });
+    const Advance* before = nullptr;
+    for (const Advance& now : advances) {
+        if (before != nullptr && now.chainage <= before->chainage) continue;
+        // Cells are farther apart than rows may be: between them the front moved steadily.
+        for (auto bin = before == nullptr ? record.arrival.size()
+                                          : static_cast<std::size_t>(before->chainage / record.interval) + 1;
+             bin < record.arrival.size() && static_cast<double>(bin) * record.interval <= now.chainage; ++bin) {
+            const double share = (static_cast<double>(bin) * record.interval - before->chainage) /
+                                 (static_cast<double>(now.chainage) - before->chainage);
+            record.arrival[bin] = before->time + share * (static_cast<double>(now.time) - before->time);
+            record.head[bin] = {now.speed, std::max(now.speed, before->speed)};
+        }
+        before = &now;
+    }
+    return record;
+}
+
+HazardMaps GridObserver::maps(const depth::Solver& solver) const {
+    const GridGeometry& g = solver.geometry();
+    int west = g.columns, east = -1, south = g.rows, north = -1;
+    for (int row = 0; row < g.rows; ++row) {
+        for (int column = 0; column < g.columns; ++column) {
+            if (!(peak_depth_.at(column, row) > 0)) continue;
+            west = std::min(west, column);
+            east = std::max(east, column);
+            south = std::min(south, row);
+            north = std::max(north, row);
+        }
+    }
+    if (east < 0) west = east = south = north = 0;
+    constexpr int margin = 2;
+    west = std::max(0, west - margin);
+    south = std::max(0, south - margin);
+    east = std::min(g.columns - 1, east + margin);
+    north = std::min(g.rows - 1, north + margin);
+    const GridGeometry part{g.x_min + west * g.cell, g.y_min + south * g.cell, g.cell, east - west + 1,
+                            north - south + 1};
+    const Grid<float> unknown(part, std::numeric_limits<float>::quiet_NaN());
+    HazardMaps maps{unknown, unknown, unknown, unknown, unknown, unknown};
+    for (int row = south; row <= north; ++row) {
+        for (int column = west; column <= east; ++column) {
+            if (!(peak_depth_.at(column, row) > 0)) continue;
+            const int c = column - west, r = row - south;
+            const float speed = peak_speed_.at(column, row);
+            maps.peak_depth.at(c, r) = peak_depth_.at(column, row);
+            maps.peak_speed.at(c, r) = speed;
+            maps.peak_pressure.at(c, r) = static_cast<float>(density_ * speed * speed);
+            maps.arrival_time.at(c, r) = arrival_time_.at(column, row);
+            maps.arrival_speed.at(c, r) = arrival_speed_.at(column, row);
+            maps.deposit_depth.at(c, r) = solver.depth_at(column, row);
+        }
+    }
+    return maps;
+}
+
+Observation GridObserver::finish(const depth::Solver& solver, const sim::Ground& ground, double held) const {
+    Observation o;
+    o.maps = maps(solver);
+    o.thickness = measure_thickness(o.maps.peak_depth, ground.terrain, outputs_.arrival_depth);
+    o.deposit = measure_deposit(o.maps.deposit_depth, outputs_.arrival_depth);
+    const FrontRecord front = front_record();
+    o.front = front.samples();
+    o.timeseries = timeseries_;
+    if (o.timeseries.back().time < solver.time()) o.timeseries.push_back(sample(solver, held, 0));
+    for (const Structure& structure : structures_) o.buildings.push_back(structure.impact);
+    o.volume_released = volume_released_ + held;
+    o.volume_rounding = 1e-6;
+
+    Grid<float> depth(solver.geometry());
+    for (int row = 0; row < depth.geometry.rows; ++row) {
+        for (int column = 0; column < depth.geometry.columns; ++column) {
+            depth.at(column, row) = solver.depth_at(column, row);
+        }
+    }
+    if (!(volume_released_ > 0)) return o;
+    double farthest = front_;
+    for (const FrontSample& s : o.front) farthest = std::isnan(farthest) ? s.chainage : std::max(farthest, s.chainage);
+    double start = 0;
+    for (const float h : released_.values) start += h;
+    start *= depth.geometry.cell * depth.geometry.cell;
+    const ReleasedMass released = measure_release(ground, parcels_of(solver, ground, released_, start, 0));
+    o.run_out = measure_run_out(ground, parcels_of(solver, ground, depth, volume_released_, solver.volume_left()),
+                                o.maps.peak_depth, released, farthest);
+    return o;
+}
+
+}  // namespace talus::observe

@@ -1,0 +1,65 @@
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "core/grid.hpp"
+#include "depth/solver.hpp"
+#include "observe/front_tracker.hpp"
+#include "observe/observation.hpp"
+#include "params/spec.hpp"
+#include "sim/ground.hpp"
+#include "terrain/flow_path.hpp"
+
+namespace talus::observe {
+
+/// What of a structure stands on the cells of the grid.
+struct StructureCells {
+    std::string name;
+    bool is_barrier = false;
+    std::vector<std::size_t> cells{};  ///< of the grid
+};
+
+/// Watches a run of the depth-averaged model, for the same results as those of the particles. Maps have the cells of
+/// the grid. A front is where the map's arrivals are: the path's chainage beyond which no cell was reached earlier.
+class GridObserver {
+  public:
+    GridObserver(const depth::Solver& solver, terrain::FlowPath flow_path, const params::OutputSpec& outputs,
+                 std::vector<StructureCells> structures);
+
+    /// Call after debris was added to the solver: its depth by cell, m, and volume, m3.
+    void note_release(const depth::Solver& solver, const Grid<float>& depth, double volume);
+    /// `held`: volume that is still to come, m3.
+    void after_step(const depth::Solver& solver, double held, double steps_per_second);
+
+    [[nodiscard]] const TimeSample& latest() const { return timeseries_.back(); }
+    [[nodiscard]] double front_chainage() const { return front_; }
+    /// The complete results, with the debris where it is as deposit.
+    [[nodiscard]] Observation finish(const depth::Solver& solver, const sim::Ground& ground, double held) const;
+
+  private:
+    struct Structure {
+        StructureCells cells;
+        std::vector<std::size_t> beside;  ///< cells that touch it
+        BuildingImpact impact;
+    };
+
+    void measure_cells(const depth::Solver& solver);
+    void measure_structures(const depth::Solver& solver);
+    [[nodiscard]] TimeSample sample(const depth::Solver& solver, double held, double steps_per_second) const;
+    [[nodiscard]] FrontRecord front_record() const;
+    [[nodiscard]] HazardMaps maps(const depth::Solver& solver) const;
+
+    params::OutputSpec outputs_;
+    terrain::FlowPath flow_path_;
+    double density_;
+    Grid<float> peak_depth_, peak_speed_, arrival_time_, arrival_speed_;  ///< 0 and NaN: not reached
+    Grid<float> released_;                                                ///< m, by cell
+    std::vector<float> chainage_;                                         ///< by cell; NaN: not on the path
+    std::vector<Structure> structures_;
+    std::vector<TimeSample> timeseries_;
+    double volume_released_ = 0, front_ = never;
+};
+
+}  // namespace talus::observe

@@ -1,0 +1,159 @@
+#include "run/depth_run.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "core/try.hpp"
+#include "depth/material.hpp"
+#include "observe/followed_path.hpp"
+#include "observe/grid_observer.hpp"
+#include "run/depth_grid.hpp"
+#include "run/stop_rule.hpp"
+#include "run/threads.hpp"
+
+namespace talus::run {
+namespace {
+
+/// A run of the depth-averaged model, step by step.
+class GridRun {
+  public:
+    explicit GridRun(const scene::Scene& scene)
+        : scene_(scene),
+          ground_(grid_ground(scene)),
+          solver_(ground_.bed, depth::material_of(scene.spec.material), ground_.values),
+          observer_(solver_, scene.flow_path, scene.spec.outputs, ground_.structures) {
+        for (const terrain::Release& release : scene.releases) held_ += release.volume;
+        release_due();
+    }
+
+    /// False: it is over; see stop_reason().
+    bool advance() {
+        const params::SolverSpec& spec = scene_.spec.solver;
+        const auto start = std::chrono::steady_clock::now();
+        double longest = std::min(scene_.spec.outputs.sample_interval, spec.end_time - solver_.time());
+        for (std::size_t k = 0; k < scene_.releases.size(); ++k) {
+            const double wait = scene_.releases[k].spec.start_time - solver_.time();
+            if (wait > 0) longest = std::min(longest, wait);
+        }
+        const Status stepped = solver_.advance(longest);
+        wall_time_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+        smallest_ = std::min(smallest_, solver_.time_step());
+        largest_ = std::max(largest_, solver_.time_step());
+        observer_.after_step(solver_, held_, wall_time_ > 0 ? static_cast<double>(solver_.steps()) / wall_time_ : 0);
+        release_due();
+        if (!stepped) {
+            fault_ = true;
+            stop_reason_ = stepped.error().message;
+        } else if (solver_.time() >= spec.end_time - 1e-9) {
+            stop_reason_ = fmt::format("reached solver.end_time_s = {:.4g}", spec.end_time);
+        } else if (at_rest()) {
+            stop_reason_ = fmt::format("debris came to rest (less than {:.3g} % of it moving for {:.3g} s)",
+                                       100 * spec.stop_moving_share, spec.stop_duration);
+        }
+        return stop_reason_.empty();
+    }
+
+    [[nodiscard]] Progress progress() const {
+        Progress progress{};
+        progress.time = solver_.time();
+        progress.end_time = scene_.spec.solver.end_time;
+        progress.real_time_factor = wall_time_ > 0 ? solver_.time() / wall_time_ : 0;
+        progress.front_chainage = observer_.front_chainage();
+        progress.share_done = std::min(1.0, progress.time / progress.end_time);
+        progress.wall_remaining =
+            progress.real_time_factor > 0 ? (progress.end_time - progress.time) / progress.real_time_factor : 0;
+        progress.step = solver_.steps();
+        return progress;
+    }
+
+    [[nodiscard]] RunResult result(int threads) const {
+        RunResult result;
+        result.status = fault_ ? RunStatus::fault : stop_reason_.empty() ? RunStatus::interrupted : RunStatus::complete;
+        result.stop_reason =
+            stop_reason_.empty() ? fmt::format("stopped by the user at t = {:.4g} s", solver_.time()) : stop_reason_;
+        const sim::Ground ground(scene_.terrain);
+        result.observation = observer_.finish(solver_, ground, held_);
+        if (follows_debris(scene_)) {
+            observe::follow_debris(ground, scene_.flow_path, scene_.spec.flow_path.corridor_width, scene_.spec.outputs,
+                                   result.observation);
+        }
+        result.hash = solver_.hash();
+        result.steps = solver_.steps();
+        result.simulated_time = solver_.time();
+        result.wall_time = wall_time_;
+        result.smallest_time_step = std::min(smallest_, largest_);
+        result.largest_time_step = largest_;
+        result.map_cell = solver_.geometry().cell;
+        result.thread_count = threads;
+        result.instruction_set = solver_.instruction_set();
+        result.grid_cell = solver_.geometry().cell;
+        result.grid_cells = solver_.geometry().size();
+        result.cell_updates = solver_.cell_updates();
+        return result;
+    }
+
+  private:
+    void release_due() {
+        for (; released_ < order().size(); ++released_) {
+            const terrain::Release& release = scene_.releases[order()[released_]];
+            if (solver_.time() < release.spec.start_time - 1e-9) break;
+            const double before = solver_.volume();
+            const Grid<float> depth = grid_release(scene_, release, ground_);
+            solver_.add(depth);
+            held_ = std::max(0.0, held_ - release.volume);
+            observer_.note_release(solver_, depth, solver_.volume() - before);
+            moved_until_ = solver_.time();
+        }
+    }
+    /// The releases by their start.
+    [[nodiscard]] const std::vector<std::size_t>& order() {
+        if (order_.size() == scene_.releases.size()) return order_;
+        for (std::size_t k = 0; k < scene_.releases.size(); ++k) order_.push_back(k);
+        std::stable_sort(order_.begin(), order_.end(), [&](std::size_t a, std::size_t b) {
+            return scene_.releases[a].spec.start_time < scene_.releases[b].spec.start_time;
+        });
+        return order_;
+    }
+    /// As RestDetector, for volumes, at the samples of the time series.
+    bool at_rest() {
+        const params::SolverSpec& spec = scene_.spec.solver;
+        const observe::TimeSample& now = observer_.latest();
+        const double debris = now.volume_moving + now.volume_deposited;
+        const bool waits =
+            released_ < scene_.releases.size() && std::isfinite(scene_.releases[order()[released_]].spec.start_time);
+        if (waits || spec.stop_moving_share <= 0 || now.volume_moving >= spec.stop_moving_share * debris) {
+            moved_until_ = now.time;
+        }
+        return now.time - moved_until_ >= spec.stop_duration;
+    }
+
+    const scene::Scene& scene_;
+    GridGround ground_;
+    depth::Solver solver_;
+    observe::GridObserver observer_;
+    std::vector<std::size_t> order_;
+    std::size_t released_ = 0;
+    double held_ = 0, moved_until_ = 0;
+    double wall_time_ = 0, smallest_ = 1e9, largest_ = 0;
+    bool fault_ = false;
+    std::string stop_reason_;
+};
+
+}  // namespace
+
+Result<RunResult> run_depth_averaged(const scene::Scene& scene, const RunOptions& options) {
+    const Threads threads(scene.spec.solver.thread_count);
+    return threads.execute([&]() -> Result<RunResult> {
+        GridRun run(scene);
+        const auto stopped = [&] { return options.stop_requested && options.stop_requested->load(); };
+        while (!stopped() && run.advance()) {
+            if (options.on_progress) options.on_progress(run.progress());
+        }
+        return run.result(threads.count());
+    });
+}
+
+}  // namespace talus::run

@@ -1,0 +1,114 @@
+#include "scene/grid_cell.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "core/try.hpp"
+
+namespace talus::scene {
+namespace {
+
+/// Below it a gully 5 m wide has two cells; measured on the terrain of Sham Tseng.
+constexpr double coarsest_default_cell = 2.5;
+constexpr double most_cells = 1e8;
+
+Status refuse(const ParsedScene& parsed, const std::string& key, const std::string& why) {
+    return Error{fmt::format("{}: the depth-averaged model {}; remove it, or use solver.model = \"particles\"",
+                             parsed.at(key), why)};
+}
+
+/// Keys that mean something to particles only: all others of their sections are used.
+constexpr std::array particle_keys = {"material.building_friction_coefficient",
+                                      "material.internal_friction_coefficient",
+                                      "material.viscosity",
+                                      "material.inertial_friction_coefficient",
+                                      "material.inertial_number",
+                                      "material.grain_diameter_m",
+                                      "material.grain_density_kgpm3",
+                                      "solver.particle_spacing_m",
+                                      "solver.target_layers",
+                                      "solver.target_particle_count",
+                                      "solver.particle_limit",
+                                      "solver.time_step_s",
+                                      "solver.displacement_limit",
+                                      "solver.smallest_time_step_s",
+                                      "solver.iteration_count",
+                                      "solver.extra_iteration_count",
+                                      "solver.kernel",
+                                      "solver.internal_friction",
+                                      "solver.support_ratio",
+                                      "solver.under_relaxation",
+                                      "solver.constraint_relaxation",
+                                      "solver.depenetration_speed_mps",
+                                      "solver.rest_duration_s",
+                                      "solver.compression_limit",
+                                      "outputs.map_cell_m",
+                                      "outputs.impact_filter_window_s",
+                                      "outputs.impact_patch_edge_m"};
+
+Status check_structures(const ParsedScene& parsed, const Scene& scene) {
+    for (const terrain::Building& building : scene.buildings) {
+        const std::string key = building.barrier ? "barrier" : "buildings.file";
+        const std::string name = fmt::format("\"{}\" ", building.name);
+        if (building.barrier && building.barrier->passing_share) {
+            return refuse(parsed, key, "has no nets, and " + name + "is one");
+        }
+        if (building.barrier && building.barrier->clearance) {
+            return refuse(parsed, key, "has nothing below a structure, and " + name + "has a clearance");
+        }
+        if (building.resistance != terrain::Resistance{}) {
+            return refuse(parsed, key, "has no structures that fail, and " + name + "has a resistance");
+        }
+    }
+    return {};
+}
+
+}  // namespace
+
+double grid_cell(const Scene& scene) {
+    const double cell = scene.terrain.cell();
+    return scene.spec.solver.grid_cell.value_or(cell / std::ceil(cell / coarsest_default_cell - 1e-9));
+}
+
+Status check_depth_averaged(const ParsedScene& parsed, Scene& scene) {
+    const params::SceneSpec& spec = scene.spec;
+    if (!spec.beds.empty()) return refuse(parsed, "bed[0]", "does not entrain its bed yet");
+    if (!spec.inflows.empty()) return refuse(parsed, "inflow[0]", "has no inflow yet");
+    if (spec.outputs.particle_series_interval > 0) {
+        return refuse(parsed, "outputs.particle_series_interval_s", "has no particles to write");
+    }
+    for (std::size_t k = 0; k < spec.releases.size(); ++k) {
+        if (!spec.releases[k].pore_pressure_ratio) continue;
+        return refuse(parsed, fmt::format("release[{}].pore_pressure_ratio", k),
+                      "has one pore pressure for all debris, that of the material");
+    }
+    TALUS_TRY(check_structures(parsed, scene));
+    const Extent e = scene.terrain.elevation().geometry.extent();
+    const double cell = grid_cell(scene), cells = e.width() * e.height() / (cell * cell);
+    if (cells > most_cells) {
+        return Error{
+            fmt::format("{} = {:.4g} is refused; the grid would have {:.3g} cells, and may have {:.3g}: it must "
+                        "be at least {:.3g} (m)",
+                        parsed.at("solver.grid_cell_m"), cell, cells, most_cells,
+                        std::ceil(1e3 * std::sqrt(e.width() * e.height() / most_cells)) / 1e3)};
+    }
+    std::vector<std::string> unused;
+    for (const char* key : particle_keys) {
+        if (scene.given_keys.contains(key)) unused.emplace_back(key);
+    }
+    if (!unused.empty()) {
+        scene.notes.push_back(fmt::format("the depth-averaged model has no use for {}", fmt::join(unused, ", ")));
+    }
+    scene.notes.push_back(fmt::format(
+        "depth-averaged model on cells of {:.4g} m: one velocity over the depth; buildings and barriers are "
+        "whole cells, forces on them are weight and momentum flux of the flow beside them; no friction inside, no "
+        "falls, no splash",
+        cell));
+    return {};
+}
+
+}  // namespace talus::scene

@@ -1,0 +1,145 @@
+#include <cmath>
+#include <stdexcept>
+
+#include <gmock/gmock.h>
+
+#include "run/depth_grid.hpp"
+#include "run/run.hpp"
+#include "run/run_scene.hpp"
+#include "scene/scene_folder.hpp"
+
+namespace talus::run {
+namespace {
+
+using testing::AllOf;
+using testing::HasSubstr;
+
+class DepthAveragedRun : public scene::SceneFolder {
+  protected:
+    [[nodiscard]] scene::Scene loaded(const std::string& more, const std::vector<std::string>& overrides = {}) const {
+        write_valley(more);
+        std::vector<std::string> all{"solver.model=depth_averaged", "solver.end_time_s=12"};
+        all.insert(all.end(), overrides.begin(), overrides.end());
+        auto scene = scene::load_scene(folder / "scene.toml", all);
+        if (!scene) throw std::runtime_error(scene.error().message);
+        return std::move(*scene);
+    }
+    [[nodiscard]] static std::string dam(const std::string& more) {
+        return fmt::format("[[barrier]]\nname = \"dam\"\nline_m = [[{0}, {1}], [{0}, {2}]]\nthickness_m = 1\n{3}\n",
+                           west + 150, south + 10, south + 190, more);
+    }
+};
+
+TEST_F(DepthAveragedRun, has_the_results_of_a_run) {
+    const scene::Scene scene = loaded("[[observation]]\nchainage_m = 60\nfront_velocity_mps = 5\n");
+    const auto result = run_scene(scene, {});
+    ASSERT_TRUE(result) << result.error().message;
+    EXPECT_EQ(result->status, RunStatus::complete);
+    EXPECT_TRUE(result->depth_averaged());
+    EXPECT_EQ(result->grid_cell, 2.5);
+    EXPECT_EQ(result->particles, 0U);
+    const observe::Observation& o = result->observation;
+    EXPECT_NEAR(o.volume_released, scene.releases[0].volume, 1e-4 * o.volume_released);
+    const observe::TimeSample& end = o.timeseries.back();
+    EXPECT_NEAR(end.volume_moving + end.volume_deposited + end.volume_left, o.volume_released,
+                1e-5 * o.volume_released);
+    EXPECT_GT(o.run_out.along_flow, 60);
+    EXPECT_GT(o.run_out.drop, 25);
+    EXPECT_LT(o.run_out.runout_angle, std::atan(0.55));
+    // On a slope of 0.5 with friction 0.4, from 2 m of debris that spreads while it slides.
+    const double velocity = front_at(o, 60).front_velocity;
+    EXPECT_GT(velocity, 6);
+    EXPECT_LT(velocity, 16);
+}
+
+TEST_F(DepthAveragedRun, differs_little_from_the_particles_where_both_see_a_slab_slide) {
+    const std::string observed = "[[observation]]\nchainage_m = 60\nfront_velocity_mps = 5\n";
+    const auto flat = run_scene(loaded(observed), {});
+    ASSERT_TRUE(flat);
+    const auto particles =
+        run_scene(loaded(observed, {"solver.model=particles", "solver.target_particle_count=1500"}), {});
+    ASSERT_TRUE(particles);
+    EXPECT_NEAR(front_at(flat->observation, 60).front_velocity, front_at(particles->observation, 60).front_velocity, 2);
+}
+
+TEST_F(DepthAveragedRun, stops_at_a_barrier_and_measures_it) {
+    const auto open = run_scene(loaded(""), {});
+    const auto closed = run_scene(loaded(dam("height_m = 25")), {});
+    ASSERT_TRUE(open && closed);
+    // From one side of the valley to the other, twice as high as 16 m/s of kinetic energy reach.
+    EXPECT_LT(closed->observation.run_out.straight, 140);
+    EXPECT_GT(open->observation.run_out.straight, 150);
+    ASSERT_EQ(closed->observation.buildings.size(), 1U);
+    const observe::BuildingImpact& impact = closed->observation.buildings[0];
+    EXPECT_TRUE(impact.is_barrier);
+    EXPECT_TRUE(impact.hit);
+    EXPECT_GT(impact.peak_depth, 0.5);
+    EXPECT_GT(impact.peak_force, 0);
+    EXPECT_GT(impact.first_hit_time, 1);
+}
+
+TEST_F(DepthAveragedRun, holds_a_release_until_its_start) {
+    const auto result = run_scene(loaded("", {"release.start_time_s=5", "solver.end_time_s=8"}), {});
+    ASSERT_TRUE(result) << result.error().message;
+    const auto& series = result->observation.timeseries;
+    EXPECT_GT(series[20].volume_held, 100);
+    EXPECT_EQ(series[20].volume_moving, 0);
+    EXPECT_EQ(series.back().volume_held, 0);
+    EXPECT_GT(series.back().volume_moving, 0);
+}
+
+TEST_F(DepthAveragedRun, gives_the_same_bits_on_any_number_of_threads) {
+    const auto one = run_scene(loaded("", {"solver.thread_count=1"}), {});
+    const auto four = run_scene(loaded("", {"solver.thread_count=4"}), {});
+    ASSERT_TRUE(one && four);
+    EXPECT_EQ(one->hash, four->hash);
+    EXPECT_EQ(one->observation.run_out.along_flow, four->observation.run_out.along_flow);
+}
+
+TEST_F(DepthAveragedRun, refuses_what_it_does_not_have_with_file_and_key) {
+    const auto error = [&](const std::string& more) {
+        write_valley(more);
+        return load_error({"solver.model=depth_averaged"});
+    };
+    EXPECT_THAT(error("[[bed]]\ndepth_m = 0.4\ngrowth_rate_per_m = 0.01\n"),
+                AllOf(HasSubstr("scene.toml"), HasSubstr("bed[0]"), HasSubstr("does not entrain")));
+    EXPECT_THAT(error(dam("height_m = 4\npassing_share = 0.3")), AllOf(HasSubstr("dam"), HasSubstr("no nets")));
+    EXPECT_THAT(error("[outputs]\nparticle_series_interval_s = 1\n"), HasSubstr("no particles to write"));
+    EXPECT_THAT(error("[solver]\ngrid_cell_m = 0.001\n"), AllOf(HasSubstr("grid_cell_m"), HasSubstr("at least")));
+}
+
+TEST_F(DepthAveragedRun, notes_keys_that_mean_nothing_to_it) {
+    const scene::Scene scene = loaded("[material]\nviscosity = 0.2\n");
+    EXPECT_THAT(scene.notes, testing::Contains(HasSubstr("has no use for material.viscosity")));
+}
+
+TEST_F(DepthAveragedRun, is_refused_where_particles_are_needed) {
+    const auto run = Run::start(loaded(""));
+    ASSERT_FALSE(run);
+    EXPECT_THAT(run.error().message, HasSubstr("needs particles"));
+}
+
+TEST_F(DepthAveragedRun, leaves_no_gap_in_an_oblique_barrier) {
+    const scene::Scene scene = loaded(
+        fmt::format("[[barrier]]\nname = \"dam\"\nline_m = [[{}, {}], [{}, {}]]\nthickness_m = 0.5\nheight_m = 5\n",
+                    west + 120, south + 60, west + 180, south + 131));
+    const GridGround ground = grid_ground(scene);
+    const GridGeometry& g = ground.bed.geometry;
+    std::vector<int> first(static_cast<std::size_t>(g.rows), -1), last(first);
+    for (const std::size_t raised : ground.structures[0].cells) {
+        const auto row = raised / static_cast<std::size_t>(g.columns);
+        const int column = static_cast<int>(raised % static_cast<std::size_t>(g.columns));
+        first[row] = first[row] < 0 ? column : std::min(first[row], column);
+        last[row] = std::max(last[row], column);
+    }
+    int pairs = 0;
+    for (std::size_t row = 1; row < first.size(); ++row) {
+        if (first[row] < 0 || first[row - 1] < 0) continue;
+        EXPECT_LE(first[row], last[row - 1]) << "rows share a side";
+        ++pairs;
+    }
+    EXPECT_GT(pairs, 25);
+}
+
+}  // namespace
+}  // namespace talus::run
