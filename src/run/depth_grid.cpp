@@ -121,7 +121,7 @@ GridGround grid_ground(const scene::Scene& scene) {
     }
     if (!scene.buildings.empty()) ground.values.structure.assign(g.size(), 0);
     for (const observe::StructureCells& structure : ground.structures) {
-        for (const std::size_t cell : structure.cells) ground.values.structure[cell] = 1;
+        for (const std::size_t raised : structure.cells) ground.values.structure[raised] = 1;
     }
     return ground;
 }
