@@ -37,8 +37,9 @@ struct Raster {
 /// One band to write.
 struct RasterBand {
     const Grid<float>* grid = nullptr;
-    std::string description;  ///< "peak flow depth"
-    std::string unit;         ///< "m"
+    std::string description;                                      ///< "peak flow depth"
+    std::string unit;                                             ///< "m"
+    std::vector<std::pair<std::string, std::string>> metadata{};  ///< of the file, by key
 };
 
 /// Writes a single-band Cloud-Optimised GeoTIFF: float32, nodata -9999 for NaN, overviews, unit and description.

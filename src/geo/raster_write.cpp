@@ -30,6 +30,7 @@ GDALDatasetUniquePtr to_dataset(const RasterBand& band, const Crs& crs) {
     OGRSpatialReference reference = to_spatial_reference(crs);
     if (reference.IsEmpty() == 0) data->SetSpatialRef(&reference);
     data->SetMetadataItem(GDALMD_AREA_OR_POINT, GDALMD_AOP_AREA);
+    for (const auto& [key, value] : band.metadata) data->SetMetadataItem(key.c_str(), value.c_str());
     GDALRasterBand* target = data->GetRasterBand(1);
     target->SetNoDataValue(nodata_value);
     target->SetDescription(band.description.c_str());

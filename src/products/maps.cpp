@@ -1,3 +1,10 @@
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "core/hash.hpp"
 #include "core/try.hpp"
 #include "geo/raster.hpp"
 #include "products/text_file.hpp"
@@ -8,31 +15,44 @@
 namespace talus::products {
 namespace {
 
-Status write_map(const report::HazardMap& map, const Grid<float>& si, const std::string& caveat, const geo::Crs& crs,
-                 const std::filesystem::path& folder) {
+/// What a map still says of its run when it lies alone in somebody's folder.
+std::vector<std::pair<std::string, std::string>> origin_of(const scene::Scene& scene, const run::RunResult& result) {
+    std::string scene_hash;
+    for (const scene::InputFile& input : scene.inputs) {
+        if (input.role == "scene") scene_hash = input.hash;
+    }
+    return {{"TIFFTAG_SOFTWARE", std::string("talus ") + TALUS_VERSION},
+            {"TITLE", scene.spec.scene.title},
+            {"SCENE_HASH", scene_hash},
+            {"RESULT_HASH", to_hex(result.hash)},
+            {"SIMULATED_TIME_S", fmt::format("{}", result.simulated_time)},
+            {"STATUS", status_text(result.status)}};
+}
+
+Status write_map(const report::HazardMap& map, const Grid<float>& si, const scene::Scene& scene,
+                 const run::RunResult& result, const std::filesystem::path& folder) {
     const Grid<float> grid = report::in_unit(si, map.factor);
-    const geo::RasterBand band{&grid, map.description + caveat, map.unit};
+    const geo::RasterBand band{&grid, map.description + caveat(scene, result), map.unit, origin_of(scene, result)};
     const std::string stem = (folder / map.file).string();
-    TALUS_TRY(write_cog(stem + ".tif", band, crs));
+    TALUS_TRY(write_cog(stem + ".tif", band, scene.crs));
     return write_text_file(stem + ".qml", qgis_style(map, report::greatest(grid)));
 }
 
 }  // namespace
 
 Status write_maps(const scene::Scene& scene, const run::RunResult& result, const std::filesystem::path& folder) {
-    const std::string said = caveat(scene, result);
     for (const report::HazardMap& map : report::hazard_maps()) {
-        TALUS_TRY(write_map(map, result.observation.maps.*map.grid, said, scene.crs, folder));
+        TALUS_TRY(write_map(map, result.observation.maps.*map.grid, scene, result, folder));
     }
     const report::IntensityGuideline& guideline = report::intensity_guideline(scene.spec.outputs.intensity_guideline);
-    TALUS_TRY(write_map(intensity_style(guideline), intensity_map(guideline, result.observation.maps), said, scene.crs,
+    TALUS_TRY(write_map(intensity_style(guideline), intensity_map(guideline, result.observation.maps), scene, result,
                         folder));
     if (scene.spec.outputs.peak_thickness) {
         const Grid<float> thickness = observe::normal_to_slope(result.observation.maps.peak_depth, scene.terrain);
-        TALUS_TRY(write_map(report::thickness_map(), thickness, said, scene.crs, folder));
+        TALUS_TRY(write_map(report::thickness_map(), thickness, scene, result, folder));
     }
     const Grid<float>& erosion = result.observation.erosion.depth;
-    return erosion.values.empty() ? Status() : write_map(report::erosion_map(), erosion, said, scene.crs, folder);
+    return erosion.values.empty() ? Status() : write_map(report::erosion_map(), erosion, scene, result, folder);
 }
 
 }  // namespace talus::products

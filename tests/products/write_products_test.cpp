@@ -11,6 +11,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include "core/hash.hpp"
 #include "geo/raster.hpp"
 #include "geo/vector.hpp"
 #include "params/fields.hpp"
@@ -180,6 +181,20 @@ std::vector<OGRFeatureUniquePtr> read_layer(GDALDataset& data, const char* name)
     if (layer == nullptr) return features;
     for (auto& feature : layer) features.push_back(std::move(feature));
     return features;
+}
+
+TEST_F(Products, MapsSayWhichRunTheyAreOf) {
+    const GDALDatasetUniquePtr data(GDALDataset::Open(folder_->file("peak_depth.tif").c_str()));
+    ASSERT_TRUE(data);
+    const auto item = [&](const char* key) {
+        const char* value = data->GetMetadataItem(key);
+        return std::string(value != nullptr ? value : "");
+    };
+    EXPECT_THAT(item("TIFFTAG_SOFTWARE"), testing::StartsWith("talus "));
+    EXPECT_EQ(item("TITLE"), scene_->spec.scene.title);
+    EXPECT_EQ(item("RESULT_HASH"), to_hex(result_->hash));
+    EXPECT_DOUBLE_EQ(std::stod(item("SIMULATED_TIME_S")), result_->simulated_time);
+    EXPECT_EQ(item("STATUS"), "complete");
 }
 
 TEST_F(Products, OutlinesHoldWhatIsDeepEnough) {
