@@ -232,8 +232,8 @@ FrontRecord GridObserver::front_record() const {
     });
     const Advance* before = nullptr;
     for (const Advance& now : advances) {
-        if (before != nullptr && now.chainage <= before->chainage) continue;
-        // Cells are farther apart than rows may be: between them the front moved steadily.
+        // Cells one after another are reached at uneven times; over two of them the front moves steadily.
+        if (before != nullptr && now.chainage < before->chainage + 2 * released_.geometry.cell) continue;
         for (auto bin = before == nullptr ? record.arrival.size()
                                           : static_cast<std::size_t>(before->chainage / record.interval) + 1;
              bin < record.arrival.size() && static_cast<double>(bin) * record.interval <= now.chainage; ++bin) {
