@@ -14,7 +14,8 @@
 
 namespace talus::run {
 
-Result<std::unique_ptr<Run>> Run::start(const scene::Scene& scene, std::optional<double> particle_spacing) {
+Result<std::unique_ptr<Run>> Run::start(const scene::Scene& scene, std::optional<double> particle_spacing,
+                                        const sim::Progress& progress) {
     const params::SceneSpec& spec = scene.spec;
     if (spec.solver.model != params::ModelChoice::particles) {
         return Error{"solver.model = \"depth_averaged\" is refused; this needs particles, talus run has both models"};
@@ -24,7 +25,7 @@ Result<std::unique_ptr<Run>> Run::start(const scene::Scene& scene, std::optional
     return Threads(spec.solver.thread_count).execute([&]() -> Result<std::unique_ptr<Run>> {
         sim::Model model = sim::make_model(spec.material, spec.solver, spacing, scene.cover);
         sim::Ground ground(scene.terrain, scene.buildings, model.support_radius, scene.bed);
-        TALUS_ASSIGN(sim::State state, seed_releases(model, ground, scene.releases));
+        TALUS_ASSIGN(sim::State state, seed_releases(model, ground, scene.releases, progress));
         sim::InflowFeeder inflow(model, ground.terrain.frame(), scene.inflows);
         RunStart start{std::move(model),  std::move(ground), std::move(state),
                        std::move(inflow), scene.flow_path,   spec.outputs};

@@ -12,6 +12,7 @@
 #include "run/stop_rule.hpp"
 #include "run/threads.hpp"
 #include "scene/scene.hpp"
+#include "sim/relax.hpp"
 #include "sim/simulation.hpp"
 #include "sim/sources/inflow.hpp"
 
@@ -39,9 +40,11 @@ class Run {
     explicit Run(RunStart start);
 
     /// A run of a loaded scene, with its releases seeded. `particle_spacing`, m: absent, the scene's own. Errors: a
-    /// release smaller than a particle, more particles than solver.particle_limit, including those of inflows.
+    /// release smaller than a particle, more particles than solver.particle_limit, including those of inflows;
+    /// `progress` ended it.
     [[nodiscard]] static Result<std::unique_ptr<Run>> start(const scene::Scene& scene,
-                                                            std::optional<double> particle_spacing = {});
+                                                            std::optional<double> particle_spacing = {},
+                                                            const sim::Progress& progress = {});
 
     /// Takes a step and measures it. False: the run was over before, or the step cannot be trusted; see phase().
     bool advance();

@@ -15,8 +15,8 @@ namespace {
 
 constexpr double max_map_cells = 4e8, max_front_rows = 1e6;
 constexpr double max_cells_per_spacing = 50;
-/// Measured with a million particles, and with 20 million cells (docs/performance.md).
-constexpr double bytes_per_particle = 1500, bytes_per_terrain_cell = 20;
+/// Measured with 20 million cells (docs/performance.md).
+constexpr double bytes_per_terrain_cell = 20;
 
 /// A key and the value in force: "scene.toml:12: outputs.map_cell_m = 0.01".
 std::string key_with_value(const ParsedScene& parsed, const char* section, const char* key, double value) {

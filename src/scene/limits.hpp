@@ -9,6 +9,9 @@ namespace talus::scene {
 /// is allowed.
 [[nodiscard]] Status check_limits(const ParsedScene& parsed, const Scene& scene);
 
+/// Measured with a million particles (docs/performance.md).
+inline constexpr double bytes_per_particle = 1500;
+
 /// Of a run with so many particles, bytes, beside what the program needs anyway.
 [[nodiscard]] double memory_needed(const Scene& scene, double particles);
 

@@ -127,12 +127,19 @@ void action(Session& session, const Request& request, const Respond& respond) {
             respond(error_response(400, wanted.error().message));
             return;
         }
-        ask(session, request, respond, [wanted = std::move(*wanted), by](Scenarios& all, int index) {
-            const auto done = all.act(index, wanted, by);
-            if (!done) return error_response(400, done.error().message);
-            return json_response(
-                200, {{"done", done->sentence}, {"created", done->created.empty() ? json() : json(done->created)}});
-        });
+        session.loop().post(
+            [respond, name = request.parameters.at("s"), wanted = std::move(*wanted), by](Scenarios& all) {
+                const auto index = all.find(name);
+                if (!index) {
+                    respond(no_scenario(name));
+                    return;
+                }
+                all.act(*index, wanted, by, [respond](const Result<twin::Done>& done) {
+                    if (!done) return respond(error_response(400, done.error().message));
+                    const json created = done->created.empty() ? json() : json(done->created);
+                    respond(json_response(200, {{"done", done->sentence}, {"created", created}}));
+                });
+            });
     });
 }
 

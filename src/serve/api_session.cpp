@@ -134,15 +134,12 @@ void add_scenario(Session& session, const Request& request, const Respond& respo
                 respond(no_scenario(wanted.of));
                 return;
             }
-            const auto made = all.copy(*index, wanted.action, by);
-            if (!made) {
-                respond(error_response(409, made.error().message));
-                return;
-            }
-            const std::string& object = made->done.created;
-            respond(json_response(200, {{"done", made->done.sentence},
-                                        {"created", made->name},
-                                        {"object", object.empty() ? json() : json(object)}}));
+            all.copy(*index, wanted.action, by, [respond](const Result<Copied>& made) {
+                if (!made) return respond(error_response(409, made.error().message));
+                const json object = made->done.created.empty() ? json() : json(made->done.created);
+                respond(
+                    json_response(200, {{"done", made->done.sentence}, {"created", made->name}, {"object", object}}));
+            });
         });
     });
 }

@@ -19,11 +19,18 @@ Result<std::unique_ptr<Loop>> Loop::start(std::shared_ptr<const scene::Scene> sc
 Loop::Loop(std::unique_ptr<run::Threads> threads, std::unique_ptr<twin::Scenario> first, Watcher& watcher,
            std::function<void(std::string)> failed)
     : threads_(std::move(threads)),
-      scenarios_(std::move(first), watcher),
+      scenarios_(std::move(first), watcher,
+                 [this](Work work, std::function<void()> then) {
+                     preparer_.post([this, work = std::move(work), then = std::move(then)] {
+                         work(stop_);
+                         post([then](Scenarios&) { then(); });
+                     });
+                 }),
       failed_(std::move(failed)),
       thread_([this] { run(); }) {}
 
 Loop::~Loop() {
+    stop_ = true;
     {
         const std::lock_guard lock(mutex_);
         done_ = true;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <atomic>
 #include <condition_variable>
 #include <deque>
 #include <functional>
@@ -11,6 +12,7 @@
 #include "core/result.hpp"
 #include "run/threads.hpp"
 #include "serve/scenarios.hpp"
+#include "serve/worker.hpp"
 
 namespace talus::serve {
 
@@ -40,12 +42,14 @@ class Loop {
     void work_until_done();
 
     std::unique_ptr<run::Threads> threads_;
+    std::atomic<bool> stop_ = false;  // work elsewhere ends soon
     Scenarios scenarios_;
     std::function<void(std::string)> failed_;
     std::mutex mutex_;
     std::condition_variable wake_;
     std::deque<Task> tasks_;
     bool done_ = false;
+    Worker preparer_{"preparer"};
     std::thread thread_;
 };
 

@@ -1,7 +1,9 @@
 #include "serve/scenarios.hpp"
 
 #include <algorithm>
+#include <exception>
 #include <iterator>
+#include <optional>
 
 #include <fmt/format.h>
 
@@ -36,7 +38,8 @@ unsigned stride_for(unsigned cap, std::uint32_t slots) {
 
 }  // namespace
 
-Scenarios::Scenarios(std::unique_ptr<twin::Scenario> first, Watcher& watcher) : watcher_(watcher) {
+Scenarios::Scenarios(std::unique_ptr<twin::Scenario> first, Watcher& watcher, Elsewhere elsewhere)
+    : watcher_(watcher), elsewhere_(std::move(elsewhere)) {
     slots_[0].scenario = std::move(first);
     want_all();
 }
@@ -145,18 +148,99 @@ Result<twin::Done> Scenarios::steer(const std::string& name, const Slots& slots)
     if (std::any_of(slots.begin(), slots.end(), [](const Slot* slot) { return slot->steps(); })) {
         return Error{"step is for a scenario that is paused; pause it first"};
     }
+    if (std::any_of(slots.begin(), slots.end(), [](const Slot* slot) { return slot->job != nullptr; })) {
+        return Error{"step: a change is being prepared; wait for it, or cancel it"};
+    }
     step_all(slots);
     want_all();
     return twin::Done{"one step", ""};
 }
 
-Result<twin::Done> Scenarios::change(Slot& slot, const json& action, const std::string& by) {
-    auto done = slot.scenario->apply(action, by);
-    if (!done) return done;
-    start_clock();
-    tell_setup(index_of(slot));
-    watcher_.done(index_of(slot), by, done->sentence);
-    return done;
+/// One at a time for each scenario; those that come meanwhile wait.
+template <class Made>
+void Scenarios::prepare(Slot& slot, const std::string& what, bool holds,
+                        std::function<Result<Made>(const sim::Progress&)> work,
+                        std::function<void(Result<Made>)> then) {
+    const auto begin = [this, &slot, what, holds, work = std::move(work), then = std::move(then)] {
+        auto job = std::make_shared<Job>();
+        job->what = what;
+        job->holds = holds;
+        slot.job = job;
+        slot.state_wanted = true;
+        const auto made = std::make_shared<std::optional<Result<Made>>>();
+        elsewhere_(
+            [job, made, work](const std::atomic<bool>& stop) {
+                try {
+                    made->emplace(work([&](double share) {
+                        job->share = share;
+                        return !job->cancelled && !stop;
+                    }));
+                } catch (const std::exception& error) {
+                    made->emplace(Error{fmt::format("{}: {}", job->what, error.what())});
+                }
+            },
+            [this, job, made, then] {
+                then(std::move(**made));
+                prepare_next(job.get());
+                start_clock();
+            });
+    };
+    if (slot.job) {
+        slot.waiting.push_back(begin);
+    } else {
+        begin();
+    }
+}
+
+void Scenarios::prepare_next(const Job* ended) {
+    for (Slot& slot : slots_) {
+        if (slot.job.get() != ended) continue;
+        slot.job = nullptr;
+        if (slot.waiting.empty()) continue;
+        const auto next = std::move(slot.waiting.front());
+        slot.waiting.pop_front();
+        next();
+    }
+}
+
+twin::Done Scenarios::cancel(Slot& slot) {
+    if (!slot.job) return twin::Done{"nothing is being prepared", ""};
+    slot.job->cancelled = true;
+    return twin::Done{"cancelled: " + slot.job->what, ""};
+}
+
+void Scenarios::change(Slot& slot, const json& action, const std::string& by, const Answer<twin::Done>& answer) {
+    std::string what = action.value("action", "");
+    std::replace(what.begin(), what.end(), '_', ' ');
+    using Prepared = std::shared_ptr<twin::Scenario::Prepared>;
+    const auto scenario = slot.scenario;
+    prepare<Prepared>(
+        slot, what, true,
+        [scenario, action, by](const sim::Progress& progress) { return scenario->prepare(action, by, progress); },
+        [this, &slot, scenario, by, answer](Result<Prepared> prepared) {
+            if (prepared && slot.scenario != scenario) prepared = Error{"the scenario has ended"};
+            if (!prepared) {
+                answer(prepared.error());
+                return;
+            }
+            const twin::Done done = scenario->commit(**prepared);
+            tell_setup(index_of(slot));
+            watcher_.done(index_of(slot), by, done.sentence);
+            answer(done);
+        });
+}
+
+/// Answers once, when all have started again or one could not.
+void Scenarios::restart(const Slots& slots, const json& action, const std::string& by,
+                        const Answer<twin::Done>& answer) {
+    const auto left = std::make_shared<std::size_t>(slots.size());
+    for (Slot* slot : slots) {
+        change(*slot, action, by, [left, answer](Result<twin::Done> done) {
+            if (*left == 0 || (done && --*left > 0)) return;
+            *left = 0;
+            answer(std::move(done));
+        });
+    }
 }
 
 Result<twin::Done> Scenarios::give_name(Slot& slot, const json& action) {
@@ -167,49 +251,62 @@ Result<twin::Done> Scenarios::give_name(Slot& slot, const json& action) {
     return twin::Done{fmt::format("scenario {} is named \"{}\"", name_of(index_of(slot)), slot.title), ""};
 }
 
-Result<twin::Done> Scenarios::act(int index, const json& action, const std::string& by) {
-    if (!action.is_object()) return Error{"an action is a JSON object with the key action"};
-    const auto named = action.find("action");
-    if (named == action.end() || !named->is_string()) return Error{"an action has the key action, a string"};
+void Scenarios::act(int index, const json& action, const std::string& by, const Answer<twin::Done>& answer) {
+    const auto named = action.is_object() ? action.find("action") : action.end();
+    if (!action.is_object() || named == action.end() || !named->is_string()) {
+        answer(Error{"an action is a JSON object with the key action, a string"});
+        return;
+    }
     const std::string name = named->get<std::string>();
     Slot& slot = slots_[static_cast<std::size_t>(index)];
-    if (name == "set_speed") return set_speed(action);
-    if (name == "name_scenario") return give_name(slot, action);
-    if (name == "run" || name == "pause" || name == "step") {
-        TALUS_ASSIGN(const Slots slots, listed(action, all()));
-        return steer(name, slots);
-    }
-    if (name != "restart") return change(slot, action, by);
-    TALUS_ASSIGN(const Slots slots, listed(action, {&slot}));
+    if (name == "set_speed") return answer(set_speed(action));
+    if (name == "name_scenario") return answer(give_name(slot, action));
+    if (name == "cancel") return answer(cancel(slot));
+    const bool drives = name == "run" || name == "pause" || name == "step";
+    if (!drives && name != "restart") return change(slot, action, by, answer);
+    const Result<Slots> slots = listed(action, drives ? all() : Slots{&slot});
+    if (!slots) return answer(slots.error());
+    if (drives) return answer(steer(name, *slots));
     json alone = action;
     alone.erase("scenarios");
-    twin::Done done;
-    for (Slot* each : slots) {
-        TALUS_ASSIGN(done, change(*each, alone, by));
-    }
-    return done;
+    restart(*slots, alone, by, answer);
 }
 
-Result<Copied> Scenarios::copy(int from, const json& action, const std::string& by) {
-    const auto free = std::find_if(slots_.begin(), slots_.end(), [](const Slot& slot) { return !slot.scenario; });
-    if (free == slots_.end()) {
-        return Error{fmt::format("there are {} scenarios already, the most there can be; end one first", max_count)};
-    }
-    const Slot& origin = slots_[static_cast<std::size_t>(from)];
-    TALUS_ASSIGN(auto made, origin.scenario->copy());
-    const std::string name = name_of(index_of(*free));
-    Copied copied{name, {fmt::format("scenario {}, a copy of {}", name, name_of(from)), ""}};
-    if (!action.is_null()) {
-        TALUS_ASSIGN(copied.done, made->apply(action, by));
-    }
-    *free = Slot();
-    free->scenario = std::move(made);
-    free->running = !action.is_null() && origin.steps();
-    start_clock();
-    tell_names();
-    watcher_.done(index_of(*free), by,
-                  action.is_null() ? copied.done.sentence : "new scenario from the start: " + copied.done.sentence);
-    return copied;
+void Scenarios::copy(int from, const json& action, const std::string& by, const Answer<Copied>& answer) {
+    const auto free_slot = [this] {
+        return std::find_if(slots_.begin(), slots_.end(), [](const Slot& slot) { return !slot.scenario; });
+    };
+    const Error full{fmt::format("there are {} scenarios already, the most there can be; end one first", max_count)};
+    if (free_slot() == slots_.end()) return answer(full);
+    struct Made {
+        std::shared_ptr<twin::Scenario> scenario;
+        twin::Done done;
+    };
+    Slot& origin = slots_[static_cast<std::size_t>(from)];
+    prepare<Made>(
+        origin, "new scenario", false,
+        [copying = origin.scenario->copying(), action, by](const sim::Progress& progress) -> Result<Made> {
+            TALUS_ASSIGN(auto scenario, copying(progress));
+            Made made{std::move(scenario), {}};
+            if (action.is_null()) return made;
+            TALUS_ASSIGN(const auto prepared, made.scenario->prepare(action, by, progress));
+            made.done = made.scenario->commit(*prepared);
+            return made;
+        },
+        [this, &origin, from, action, by, answer, free_slot, full](Result<Made> made) {
+            const auto slot = free_slot();
+            if (!made || slot == slots_.end()) return answer(made ? full : made.error());
+            const std::string name = name_of(index_of(*slot));
+            Copied copied{name, made->done};
+            if (action.is_null()) copied.done.sentence = fmt::format("scenario {}, a copy of {}", name, name_of(from));
+            *slot = Slot();
+            slot->scenario = made->scenario;
+            slot->running = !action.is_null() && origin.steps();
+            tell_names();
+            watcher_.done(index_of(*slot), by,
+                          (action.is_null() ? "" : "new scenario from the start: ") + copied.done.sentence);
+            answer(std::move(copied));
+        });
 }
 
 Status Scenarios::remove(int index) {
@@ -228,7 +325,8 @@ json Scenarios::state(int index) const {
     state["speed_factor"] = pace_.factor() ? json(*pace_.factor()) : json();
     state["real_time_factor"] = steps ? slot.rate.real_time_factor() : 0.0;
     state["steps_per_second"] = steps ? slot.rate.steps_per_second() : 0.0;
-    if (slot.ready()) state["status"] = steps ? "running" : "paused";
+    if (slot.ready()) state["status"] = slot.running ? "running" : "paused";
+    state["preparing"] = slot.job ? json{{"what", slot.job->what}, {"share", slot.job->share.load()}} : json();
     return state;
 }
 
@@ -319,6 +417,10 @@ std::optional<Clock::time_point> Scenarios::work(Clock::time_point now) {
     for (int i = 0; i < max_count; ++i) {
         Slot& slot = slots_[i];
         if (!slot.scenario) continue;
+        if (slot.job) {
+            slot.state_wanted = slot.state_wanted || now >= slot.next_state;
+            wait_for(now + state_interval);
+        }
         if (slot.state_wanted || (stepped && now >= slot.next_state)) tell_state(i, now);
         if (!slot.frame_wanted || slot.audience.caps.empty()) continue;
         if (now >= slot.next_frame) {

@@ -1,6 +1,9 @@
 #pragma once
 
 #include <array>
+#include <atomic>
+#include <deque>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -46,6 +49,14 @@ struct Copied {
     twin::Done done;
 };
 
+/// Work that takes long, for another thread; it ends soon once `stop` is set. `then` is called by the owner of the
+/// scenarios, between two steps.
+using Work = std::function<void(const std::atomic<bool>& stop)>;
+using Elsewhere = std::function<void(Work work, std::function<void()> then)>;
+
+template <class Value>
+using Answer = std::function<void(Result<Value>)>;
+
 /// The scenarios of a session, and the clock that they share: of those that run, the one that is behind in simulated
 /// time steps first. Independent of threads: `work` must be called when it is due, and after any other call.
 class Scenarios {
@@ -55,19 +66,20 @@ class Scenarios {
     static constexpr double highest_rate = 60;
     static constexpr unsigned lowest_cap = 1000;
 
-    Scenarios(std::unique_ptr<twin::Scenario> first, Watcher& watcher);
+    Scenarios(std::unique_ptr<twin::Scenario> first, Watcher& watcher, Elsewhere elsewhere);
 
     /// 0 for "A", 1 for "B", ...; empty if there is none of that name.
     [[nodiscard]] std::optional<int> find(const std::string& name) const;
     [[nodiscard]] std::vector<std::string> names() const;
     [[nodiscard]] twin::Scenario& at(int index) { return *slots_[static_cast<std::size_t>(index)].scenario; }
 
-    /// Any action of docs/protocol.md. Errors name key, value and allowed range; then nothing is changed.
-    [[nodiscard]] Result<twin::Done> act(int index, const nlohmann::json& action, const std::string& by);
+    /// Any action of docs/protocol.md. A change is prepared elsewhere, one at a time; meanwhile its scenario takes no
+    /// step. Errors name key, value and allowed range; then nothing is changed.
+    void act(int index, const nlohmann::json& action, const std::string& by, const Answer<twin::Done>& answer);
     /// Another scenario with the setup that `from` has now, at time 0. `action`: applied to it first, unless null; the
     /// scenario then runs if `from` does, otherwise it is paused. Errors: there are max_count; as of `act`, and then
     /// there is no new scenario.
-    [[nodiscard]] Result<Copied> copy(int from, const nlohmann::json& action, const std::string& by);
+    void copy(int from, const nlohmann::json& action, const std::string& by, const Answer<Copied>& answer);
     /// Error: the first one cannot be removed.
     [[nodiscard]] Status remove(int index);
 
@@ -89,10 +101,18 @@ class Scenarios {
     }
 
   private:
+    struct Job {
+        std::string what;
+        bool holds = true;  ///< the scenario takes no step meanwhile
+        std::atomic<bool> cancelled = false;
+        std::atomic<double> share = 0;
+    };
     /// State of a scenario between two messages to its viewers.
     struct Slot {
-        std::unique_ptr<twin::Scenario> scenario;  // none: this slot is free
-        std::string title;                         // given by people
+        std::shared_ptr<twin::Scenario> scenario;   // none: this slot is free
+        std::shared_ptr<Job> job;                   // what is being prepared for it
+        std::deque<std::function<void()>> waiting;  // what is to be prepared after that
+        std::string title;                          // given by people
         bool running = false;
         RateMeter rate;
         Audience audience;
@@ -102,7 +122,7 @@ class Scenarios {
         std::uint32_t ids = 0;  // particle ids in the newest frame
 
         [[nodiscard]] bool ready() const { return scenario && scenario->phase() == run::RunPhase::ready; }
-        [[nodiscard]] bool steps() const { return running && ready(); }
+        [[nodiscard]] bool steps() const { return running && ready() && !(job && job->holds); }
     };
     using Slots = std::vector<Slot*>;
     static void advance(Slot& slot);
@@ -119,11 +139,19 @@ class Scenarios {
     void tell_setup(int index);
     [[nodiscard]] Result<twin::Done> set_speed(const nlohmann::json& action);
     [[nodiscard]] Result<twin::Done> steer(const std::string& name, const Slots& slots);
-    [[nodiscard]] Result<twin::Done> change(Slot& slot, const nlohmann::json& action, const std::string& by);
+    void change(Slot& slot, const nlohmann::json& action, const std::string& by, const Answer<twin::Done>& answer);
+    void restart(const Slots& slots, const nlohmann::json& action, const std::string& by,
+                 const Answer<twin::Done>& answer);
+    [[nodiscard]] twin::Done cancel(Slot& slot);
+    template <class Made>
+    void prepare(Slot& slot, const std::string& what, bool holds,
+                 std::function<Result<Made>(const sim::Progress&)> work, std::function<void(Result<Made>)> then);
+    void prepare_next(const Job* ended);
     [[nodiscard]] Result<twin::Done> give_name(Slot& slot, const nlohmann::json& action);
     [[nodiscard]] int index_of(const Slot& slot) const { return static_cast<int>(&slot - slots_.data()); }
 
     Watcher& watcher_;
+    Elsewhere elsewhere_;
     std::array<Slot, max_count> slots_;
     Pace pace_;
 };

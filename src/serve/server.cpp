@@ -162,7 +162,9 @@ Status Server::serve(std::shared_ptr<const scene::Scene> scene) {
         options.patience, ConnectionCounts(connections, per_address > 0 ? per_address : connections / 3),
         connections / 2});
     if (options.run) {
-        parts.session->loop().post([](Scenarios& all) { (void)all.act(0, {{"action", "run"}}, ""); });
+        parts.session->loop().post([](Scenarios& all) {
+            all.act(0, {{"action", "run"}}, "", [](const Result<twin::Done>&) {});
+        });
     }
     parts.accept();
     parts.thread = std::thread([&parts] {

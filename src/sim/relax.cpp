@@ -59,15 +59,25 @@ Model without_forces(const Model& model) {
 
 }  // namespace
 
-void relax(const Model& model, const Ground& ground, State& state, const std::vector<float>& overburden) {
+bool relax(const Model& model, const Ground& ground, State& state, const std::vector<float>& overburden,
+           const Progress& progress) {
     constexpr double dense_enough = 0.005;
     constexpr int max_rounds = 400, loading_rounds = 200;
+    int round = 0;
+    bool ended = false;
+    const auto go_on = [&] {
+        ended = progress && !progress(static_cast<double>(++round) / (max_rounds + loading_rounds));
+        return !ended;
+    };
     Model still = without_forces(model);
     Ground closed = ground;
     closed.solids.close_nets();
     for (ReleaseGroup& release : still.releases) release.start_time = 0;
     state.time_step = model.solver.largest_time_step;
-    creep(still, closed, state, max_rounds, [](const State& s) { return s.max_compression < dense_enough; });
+    creep(still, closed, state, max_rounds,
+          [&](const State& s) { return s.max_compression < dense_enough || !go_on(); });
+    if (ended) return false;
+    round = max_rounds;
 
     still.gravity = model.gravity;
     still.internal_friction_coefficient = model.internal_friction_coefficient;
@@ -81,9 +91,11 @@ void relax(const Model& model, const Ground& ground, State& state, const std::ve
     for (std::uint32_t i = 0; i < state.count; ++i) {
         state.multiplier[i] = static_cast<float>(scale * overburden[state.id[i]]);
     }
-    creep(still, closed, state, loading_rounds, LoadWatch());
+    LoadWatch carried;
+    creep(still, closed, state, loading_rounds, [&](const State& s) { return carried(s) || !go_on(); });
     state.time = 0;
     state.step = 0;
+    return !ended;
 }
 
 void push_apart(const Model& model, const Ground& ground, State& state) {

@@ -15,8 +15,8 @@ constexpr std::uint64_t steps_between_good_states = 16;  // a copy costs less th
 }  // namespace
 
 Result<std::unique_ptr<LiveRun>> LiveRun::start(const scene::Scene& scene, const Setup& setup, double spacing,
-                                                const ScenarioOptions& options) {
-    TALUS_ASSIGN(auto run, run::Run::start(scene_of(scene, setup), spacing));
+                                                const ScenarioOptions& options, const sim::Progress& progress) {
+    TALUS_ASSIGN(auto run, run::Run::start(scene_of(scene, setup), spacing, progress));
     return std::unique_ptr<LiveRun>(new LiveRun(std::move(run), setup, options));
 }
 

@@ -23,13 +23,18 @@ class LiveRun {
   public:
     /// `spacing`: of the particles, m. Errors: as of Run::start().
     [[nodiscard]] static Result<std::unique_ptr<LiveRun>> start(const scene::Scene& scene, const Setup& setup,
-                                                                double spacing, const ScenarioOptions& options);
+                                                                double spacing, const ScenarioOptions& options,
+                                                                const sim::Progress& progress = {});
 
     /// Takes a step if ready.
     void advance();
-    /// Applies the differences. A release whose debris has started to move keeps its old shape; beds and inflows remain
-    /// those of the start: see begun_with(). Errors: too many particles, a release smaller than a particle; then
-    /// nothing is changed.
+    /// A change to another setup: everything that can fail or takes long. It holds for the run as it is now.
+    struct Change;
+    [[nodiscard]] Result<std::shared_ptr<Change>> prepare(const Setup& next, const sim::Progress& progress = {}) const;
+    void carry_out(Change& change);
+    /// Both at once: applies the differences. A release whose debris has started to move keeps its old shape; beds and
+    /// inflows remain those of the start: see begun_with(). Errors: too many particles, a release smaller than a
+    /// particle; then nothing is changed.
     [[nodiscard]] Status bring_to(const Setup& next);
 
     [[nodiscard]] const Setup& setup() const { return setup_; }
@@ -89,14 +94,12 @@ class LiveRun {
         std::uint64_t until_step = 0;    ///< of a removed one, like the next
         observe::BuildingImpact last{};  ///< at its removal
     };
-    struct Change;
-
     LiveRun(std::unique_ptr<run::Run> run, Setup setup, const ScenarioOptions& options);
 
-    [[nodiscard]] Result<Change> plan(const Setup& next) const;
     [[nodiscard]] Status plan_obstacles(const Setup& next, Change& change) const;
-    [[nodiscard]] Status plan_releases(const Setup& next, Change& change) const;
-    void carry_out(Change& change, const Setup& next);
+    [[nodiscard]] Status plan_releases(const Setup& next, Change& change, const sim::Progress& progress) const;
+    [[nodiscard]] Status check_room(const ReleaseSetup& release, double particles) const;
+    void put_in_force(Change& change);
     void replace_releases(sim::Model& model, sim::State& state, Change& change);
     void set_start_times(sim::Model& model, const sim::State& state, const Setup& next);
     void note_failed();

@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "core/try.hpp"
+#include "scene/limits.hpp"
 #include "sim/change.hpp"
 #include "sim/sources/seed.hpp"
 #include "terrain/wall_effort.hpp"
@@ -53,6 +54,7 @@ std::array<double, 6> holding_back(const sim::Model& model) {
 
 /// The effects of a change of setup.
 struct LiveRun::Change {
+    Setup next;
     std::vector<Obstacle> obstacles;
     std::optional<std::vector<terrain::Building>> buildings;  ///< of the ground, if any changes
     std::optional<terrain::BuildingSolids> solids;            ///< likewise
@@ -118,7 +120,20 @@ Status LiveRun::plan_obstacles(const Setup& next, Change& change) const {
     return {};
 }
 
-Status LiveRun::plan_releases(const Setup& next, Change& change) const {
+/// particles: in all, with those of the release.
+Status LiveRun::check_room(const ReleaseSetup& release, double particles) const {
+    const int limit = model().solver.particle_limit;
+    if (particles <= std::min(limit, max_live_particles)) return {};
+    const std::string told = fmt::format("release \"{}\": {:.4g} m3 would make {:.0f} particles in all",
+                                         release.body->name, release.body->volume, particles);
+    if (particles > limit) {
+        return Error{fmt::format("{}; solver.particle_limit must be at least that, and is {}", told, limit)};
+    }
+    return Error{fmt::format("{}, which need about {:.2g} GB; a live run may have {}", told,
+                             particles * scene::bytes_per_particle / 1e9, max_live_particles)};
+}
+
+Status LiveRun::plan_releases(const Setup& next, Change& change, const sim::Progress& progress) const {
     change.gone.assign(groups_.size(), false);
     std::vector<const ReleaseSetup*> to_seed;
     for (const ReleaseSetup& release : next.releases) {
@@ -153,12 +168,7 @@ Status LiveRun::plan_releases(const Setup& next, Change& change) const {
     }
     for (const ReleaseSetup* release : to_seed) {  // before any of it is done
         particles += std::round(release->body->volume / model().particle_volume());
-        if (particles > model().solver.particle_limit) {
-            return Error{fmt::format(
-                "release \"{}\": {:.4g} m3 would make {:.0f} particles in all; solver.particle_limit must be at least "
-                "that, and is {}",
-                release->body->name, release->body->volume, particles, model().solver.particle_limit)};
-        }
+        TALUS_TRY(check_room(*release, particles));
     }
     const terrain::WallEffort effort =
         change.effort ? *change.effort : terrain::WallEffort(ground().buildings, model().support_radius);
@@ -175,20 +185,24 @@ Status LiveRun::plan_releases(const Setup& next, Change& change) const {
                         release->body->name, estimate, max_effort)};
     }
     for (const ReleaseSetup* release : to_seed) {
-        TALUS_ASSIGN(sim::State seeded, seed_releases(alone, around, {*release->body}));
+        TALUS_ASSIGN(sim::State seeded, seed_releases(alone, around, {*release->body}, progress));
         change.seeds.push_back({release, std::move(seeded)});
     }
     return {};
 }
 
-Result<LiveRun::Change> LiveRun::plan(const Setup& next) const {
-    Change change;
-    TALUS_TRY(plan_obstacles(next, change));
-    if (!same_shapes(setup_.zones, next.zones)) {
-        change.cover = lay_zones(bodies_of(next.zones), ground().terrain).cover;
-    }
-    TALUS_TRY(plan_releases(next, change));
-    return change;
+Result<std::shared_ptr<LiveRun::Change>> LiveRun::prepare(const Setup& next, const sim::Progress& progress) const {
+    return run_->threads().execute([&]() -> Result<std::shared_ptr<Change>> {
+        auto change = std::make_shared<Change>();
+        change->next = next;
+        const Setup& wanted = change->next;  // lives as long as the change, which refers to it
+        TALUS_TRY(plan_obstacles(wanted, *change));
+        if (!same_shapes(setup_.zones, wanted.zones)) {
+            change->cover = lay_zones(bodies_of(wanted.zones), ground().terrain).cover;
+        }
+        TALUS_TRY(plan_releases(wanted, *change, progress));
+        return change;
+    });
 }
 
 /// Removes the debris of deleted releases and adds that of new ones, held.
@@ -247,7 +261,8 @@ void LiveRun::set_start_times(sim::Model& model, const sim::State& state, const 
     }
 }
 
-void LiveRun::carry_out(Change& change, const Setup& next) {
+void LiveRun::put_in_force(Change& change) {
+    const Setup& next = change.next;
     const auto held_back = holding_back(model());
     const WorldPoint origin = ground().terrain.frame().origin;
     run_->change([&](sim::Model& model, sim::Ground& ground, sim::State& state) {
@@ -275,14 +290,16 @@ void LiveRun::carry_out(Change& change, const Setup& next) {
     }
 }
 
+void LiveRun::carry_out(Change& change) {
+    run_->threads().execute([&] { put_in_force(change); });
+    setup_ = std::move(change.next);
+    good_ = state();
+}
+
 Status LiveRun::bring_to(const Setup& next) {
-    return run_->threads().execute([&]() -> Status {
-        TALUS_ASSIGN(Change change, plan(next));
-        carry_out(change, next);
-        setup_ = next;
-        good_ = state();
-        return {};
-    });
+    TALUS_ASSIGN(const auto change, prepare(next));
+    carry_out(*change);
+    return {};
 }
 
 }  // namespace talus::twin

@@ -74,24 +74,42 @@ std::string_view phase_name(run::RunPhase phase) {
     return "";
 }
 
-Status Scenario::Parts::start(const Setup& setup) {
-    auto started = LiveRun::start(*scene, setup, particle_spacing, options);
+Result<std::unique_ptr<LiveRun>> Scenario::Parts::run_of(const Setup& setup, const sim::Progress& progress) const {
+    auto started = LiveRun::start(*scene, setup, particle_spacing, options, progress);
     if (!started) return Error{scene->file.string() + ": " + started.error().message};
-    run = std::move(*started);
-    first_setup = write_setup(setup);
+    return started;
+}
+
+void Scenario::Parts::take(std::unique_ptr<LiveRun> begun) {
+    run = std::move(begun);
+    first_setup = write_setup(setup());
     first_next = next;
     entries.clear();
     changes.clear();
     ++revision;
+}
+
+Status Scenario::Parts::start(const Setup& setup, const sim::Progress& progress) {
+    TALUS_ASSIGN(auto begun, run_of(setup, progress));
+    take(std::move(begun));
     return {};
 }
 
-Status Scenario::Parts::bring_to(const Setup& next_setup) {
-    if (run->state().step > 0 || begin_alike(next_setup, run->begun_with())) return run->bring_to(next_setup);
-    TALUS_ASSIGN(auto anew, LiveRun::start(*scene, next_setup, particle_spacing, options));
-    TALUS_TRY(anew->bring_to(next_setup));  // releases that were triggered
-    run = std::move(anew);
-    return {};
+Status Scenario::Parts::prepare(const Setup& next_setup, Prepared& prepared, const sim::Progress& progress) const {
+    if (run->state().step > 0 || begin_alike(next_setup, run->begun_with())) {
+        TALUS_ASSIGN(prepared.change, run->prepare(next_setup, progress));
+        return {};
+    }
+    TALUS_ASSIGN(prepared.anew, LiveRun::start(*scene, next_setup, particle_spacing, options, progress));
+    return prepared.anew->bring_to(next_setup);  // releases that were triggered
+}
+
+void Scenario::Parts::carry_out(Prepared& prepared) {
+    if (prepared.anew) {
+        run = std::move(prepared.anew);
+    } else {
+        run->carry_out(*prepared.change);
+    }
 }
 
 Scenario::Scenario(std::unique_ptr<Parts> parts) : parts_(std::move(parts)) {}
@@ -119,13 +137,16 @@ Result<std::unique_ptr<Scenario>> Scenario::open_at(const Journal& journal, std:
     return std::unique_ptr<Scenario>(new Scenario(std::move(parts)));
 }
 
-Result<std::unique_ptr<Scenario>> Scenario::copy() const {
-    auto parts = std::make_unique<Parts>(parts_->scene, parts_->options);
-    parts->next = parts_->next;
-    TALUS_TRY(parts->start(held_again(parts_->setup())));
-    parts->undo = held_again(parts_->undo);
-    parts->redo = held_again(parts_->redo);
-    return std::unique_ptr<Scenario>(new Scenario(std::move(parts)));
+std::function<Result<std::unique_ptr<Scenario>>(const sim::Progress&)> Scenario::copying() const {
+    auto parts = std::make_shared<std::unique_ptr<Parts>>(std::make_unique<Parts>(parts_->scene, parts_->options));
+    (*parts)->next = parts_->next;
+    (*parts)->undo = held_again(parts_->undo);
+    (*parts)->redo = held_again(parts_->redo);
+    return [parts, setup = held_again(parts_->setup())](const sim::Progress& progress) {
+        const Status started = (*parts)->start(setup, progress);
+        using Made = Result<std::unique_ptr<Scenario>>;
+        return started ? Made(std::unique_ptr<Scenario>(new Scenario(std::move(*parts)))) : Made(started.error());
+    };
 }
 
 void Scenario::advance() {
@@ -144,37 +165,6 @@ void Scenario::advance() {
                          : "; nothing is kept of it: " + kept.error().message;
 }
 
-Result<Done> Scenario::Parts::edit(const json& action) {
-    const ActionContext context{*scene, particle_spacing, run->model().viscosity,
-                                [&](const std::string& id) { return run->has_begun(id); }, run->state().step > 0};
-    NextNumbers numbers = next;
-    TALUS_ASSIGN(Edit made, read_action(action, setup(), numbers, context));
-    Setup before = setup();
-    TALUS_TRY(bring_to(made.setup));
-    next = numbers;
-    undo.push_back({std::move(before), made.sentence, action["action"] == "trigger_release"});
-    if (undo.size() > max_undo) undo.erase(undo.begin());
-    redo.clear();
-    return Done{made.sentence, made.created};
-}
-
-Result<Done> Scenario::Parts::step_back(std::vector<Past>& from, std::vector<Past>& to, const char* word) {
-    if (from.empty()) return Error{fmt::format("action = \"{}\": there is nothing to {}", word, word)};
-    Setup before = setup();
-    TALUS_TRY(bring_to(from.back().setup));
-    Past past = std::move(from.back());
-    from.pop_back();
-    to.push_back({std::move(before), past.sentence, past.by_trigger});
-    return Done{fmt::format("{}: {}", word, past.sentence), ""};
-}
-
-Result<Done> Scenario::Parts::restart() {
-    TALUS_TRY(start(held_again(setup())));
-    undo = held_again(std::move(undo));
-    redo = held_again(std::move(redo));
-    return Done{"started again from time 0", ""};
-}
-
 void Scenario::Parts::note_change(const json& action, const std::string& by, const std::string& sentence) {
     const std::uint64_t step = run->state().step;
     if (step == 0 || only_renames(action)) return;
@@ -187,24 +177,77 @@ void Scenario::Parts::note_change(const json& action, const std::string& by, con
     }
 }
 
-Result<Done> Scenario::apply(const json& action, const std::string& by) {
+Result<std::shared_ptr<Scenario::Prepared>> Scenario::prepare(const json& action, const std::string& by,
+                                                              const sim::Progress& progress) const {
     TALUS_ASSIGN(const std::string name, action_name(action));
-    const bool back = name == "undo", forth = name == "redo", again = name == "restart";
-    if (back || forth || again) {
+    const Parts& p = *parts_;
+    auto prepared = std::make_shared<Prepared>();
+    prepared->action = action;
+    prepared->by = by;
+    prepared->next = p.next;
+    if (name == "undo" || name == "redo" || name == "restart") {
         TALUS_TRY(check_keys(action, {"action"}));
     }
+    if (name == "restart") {
+        TALUS_ASSIGN(prepared->anew, p.run_of(held_again(p.setup()), progress));
+        prepared->done = {"started again from time 0", ""};
+        return prepared;
+    }
+    if (name == "undo" || name == "redo") {
+        const std::vector<Parts::Past>& pasts = name == "undo" ? p.undo : p.redo;
+        if (pasts.empty()) return Error{fmt::format("action = \"{}\": there is nothing to {}", name, name)};
+        TALUS_TRY(p.prepare(pasts.back().setup, *prepared, progress));
+        prepared->done = {fmt::format("{}: {}", name, pasts.back().sentence), ""};
+        return prepared;
+    }
+    const ActionContext context{*p.scene, p.particle_spacing, p.run->model().viscosity,
+                                [&](const std::string& id) { return p.run->has_begun(id); }, p.run->state().step > 0};
+    TALUS_ASSIGN(Edit made, read_action(action, p.setup(), prepared->next, context));
+    TALUS_TRY(p.prepare(made.setup, *prepared, progress));
+    prepared->by_trigger = name == "trigger_release";
+    prepared->done = {made.sentence, made.created};
+    return prepared;
+}
+
+/// What can be undone and redone after a change.
+void Scenario::Parts::keep_past(Prepared& prepared) {
+    const json& name = prepared.action["action"];
+    if (name == "undo" || name == "redo") {
+        std::vector<Past>& from = name == "undo" ? undo : redo;
+        std::vector<Past>& to = name == "undo" ? redo : undo;
+        Past past = std::move(from.back());
+        from.pop_back();
+        to.push_back({setup(), past.sentence, past.by_trigger});
+        return;
+    }
+    undo.push_back({setup(), prepared.done.sentence, prepared.by_trigger});
+    if (undo.size() > max_undo) undo.erase(undo.begin());
+    redo.clear();
+}
+
+Done Scenario::commit(Prepared& prepared) {
     Parts& p = *parts_;
-    JournalEntry entry{step(), by, action, nullptr};
-    Result<Done> done = back    ? p.step_back(p.undo, p.redo, "undo")
-                        : forth ? p.step_back(p.redo, p.undo, "redo")
-                        : again ? p.restart()
-                                : p.edit(action);
-    if (!done || again) return done;
-    if (back || forth) entry.setup = write_setup(p.setup());
+    const json& name = prepared.action["action"];
+    if (name == "restart") {
+        p.take(std::move(prepared.anew));
+        p.undo = held_again(std::move(p.undo));
+        p.redo = held_again(std::move(p.redo));
+        return prepared.done;
+    }
+    p.keep_past(prepared);
+    JournalEntry entry{step(), prepared.by, prepared.action, nullptr};
+    p.carry_out(prepared);
+    p.next = prepared.next;
+    if (name == "undo" || name == "redo") entry.setup = write_setup(p.setup());
     p.entries.push_back(std::move(entry));
-    p.note_change(action, by, done->sentence);
+    p.note_change(prepared.action, prepared.by, prepared.done.sentence);
     ++p.revision;
-    return done;
+    return prepared.done;
+}
+
+Result<Done> Scenario::apply(const json& action, const std::string& by) {
+    TALUS_ASSIGN(const auto prepared, prepare(action, by));
+    return commit(*prepared);
 }
 
 Status Scenario::follow(const JournalEntry& entry) {
@@ -213,7 +256,9 @@ Status Scenario::follow(const JournalEntry& entry) {
         return {};
     }
     TALUS_ASSIGN(auto setup, read_setup(entry.setup, *parts_->scene));
-    TALUS_TRY(parts_->bring_to(setup));
+    Prepared prepared;
+    TALUS_TRY(parts_->prepare(setup, prepared, {}));
+    parts_->carry_out(prepared);
     parts_->entries.push_back(entry);
     ++parts_->revision;
     return {};

@@ -18,6 +18,7 @@
 #include "run/run_result.hpp"
 #include "scene/scene.hpp"
 #include "sim/model.hpp"
+#include "sim/relax.hpp"
 #include "sim/state.hpp"
 #include "twin/frame.hpp"
 
@@ -35,6 +36,9 @@ struct ScenarioOptions {
     std::size_t recording_bytes = 512'000'000;  ///< when full, every second frame of the older half is removed
     std::filesystem::path fault_folder{};       ///< a fault is kept in a new folder there; empty: nowhere
 };
+
+/// More are refused in a change of a live run: a scenario file decides for itself.
+inline constexpr int max_live_particles = 1'000'000;
 
 /// The effect of an action.
 struct Done {
@@ -57,7 +61,9 @@ class Scenario {
                                                                    std::shared_ptr<const scene::Scene> scene,
                                                                    ScenarioOptions options);
     /// The same scene and the setup of this one as it is now, at time 0, with what can be undone and redone.
-    [[nodiscard]] Result<std::unique_ptr<Scenario>> copy() const;
+    [[nodiscard]] Result<std::unique_ptr<Scenario>> copy() const { return copying()({}); }
+    /// The work of that, for any thread, while this scenario continues.
+    [[nodiscard]] std::function<Result<std::unique_ptr<Scenario>>(const sim::Progress&)> copying() const;
     ~Scenario();
     Scenario(const Scenario&) = delete;
     Scenario& operator=(const Scenario&) = delete;
@@ -67,6 +73,12 @@ class Scenario {
     /// Any action of docs/protocol.md that changes results: not run, pause, step, set_speed. Errors name key, value and
     /// allowed range; then nothing is changed.
     [[nodiscard]] Result<Done> apply(const nlohmann::json& action, const std::string& by);
+    /// The part of it that can fail or takes long, for any thread. Until commit() the scenario must neither advance nor
+    /// change; reading it is safe.
+    struct Prepared;
+    [[nodiscard]] Result<std::shared_ptr<Prepared>> prepare(const nlohmann::json& action, const std::string& by,
+                                                            const sim::Progress& progress = {}) const;
+    Done commit(Prepared& prepared);
 
     /// Repeats an entry of a journal. Errors: as apply().
     [[nodiscard]] Status follow(const JournalEntry& entry);

@@ -11,6 +11,17 @@
 
 namespace talus::twin {
 
+/// A change that is ready to be carried out: of the present run, or a new one.
+struct Scenario::Prepared {
+    nlohmann::json action;
+    std::string by;
+    Done done;
+    NextNumbers next;
+    bool by_trigger = false;
+    std::shared_ptr<LiveRun::Change> change;
+    std::unique_ptr<LiveRun> anew;
+};
+
 /// Shared by scenario*.cpp.
 struct Scenario::Parts {
     /// A setup that can be restored, and the change from or to it.
@@ -43,13 +54,15 @@ struct Scenario::Parts {
     std::string fault_note;               ///< at fault, what the reason does not say
 
     [[nodiscard]] const Setup& setup() const { return run->setup(); }
-    /// Starts, or restarts, with a setup.
-    [[nodiscard]] Status start(const Setup& setup);
-    /// Changes the run to a setup. Beds and inflows apply immediately only before the first step.
-    [[nodiscard]] Status bring_to(const Setup& next);
-    [[nodiscard]] Result<Done> edit(const nlohmann::json& action);
-    [[nodiscard]] Result<Done> step_back(std::vector<Past>& from, std::vector<Past>& to, const char* word);
-    [[nodiscard]] Result<Done> restart();
+    /// Starts with a setup.
+    [[nodiscard]] Status start(const Setup& setup, const sim::Progress& progress = {});
+    [[nodiscard]] Result<std::unique_ptr<LiveRun>> run_of(const Setup& setup, const sim::Progress& progress) const;
+    /// `run` begins the journal anew.
+    void take(std::unique_ptr<LiveRun> run);
+    /// The change of the run to a setup. Beds and inflows apply immediately only before the first step.
+    [[nodiscard]] Status prepare(const Setup& next, Prepared& prepared, const sim::Progress& progress) const;
+    void carry_out(Prepared& prepared);
+    void keep_past(Prepared& prepared);
     /// The scene with the present setup, and the result of the run so far.
     [[nodiscard]] std::pair<scene::Scene, run::RunResult> outcome() const;
     void note_change(const nlohmann::json& action, const std::string& by, const std::string& sentence);

@@ -24,13 +24,14 @@ struct Column {
 
 /// Columns with their particle counts, adding up to `target`.
 std::vector<Column> fill_columns(const terrain::Terrain& terrain, const terrain::Release& release, double spacing,
-                                 long target) {
+                                 long target, const Progress& progress) {
     std::vector<Column> columns;
     const Extent extent = release.extent();
     const int across = static_cast<int>(std::ceil(extent.width() / spacing)) + 1;
     const int along = static_cast<int>(std::ceil(extent.height() / spacing)) + 1;
     long total = 0;
     for (int row = 0; row < along; ++row) {
+        if (progress && !progress(0)) return {};
         for (int column = 0; column < across; ++column) {
             const PlanPoint centre{extent.x_min + (column + 0.5) * spacing, extent.y_min + (row + 0.5) * spacing};
             constexpr int parts = 3;  // sub-samples per side, so that columns on the outline get their share
@@ -171,7 +172,9 @@ Model make_model(const params::MaterialSpec& material, const params::SolverSpec&
     return model;
 }
 
-Result<State> seed_releases(Model& model, const Ground& ground, const std::vector<terrain::Release>& releases) {
+Result<State> seed_releases(Model& model, const Ground& ground, const std::vector<terrain::Release>& releases,
+                            const Progress& progress) {
+    const Error ended{"cancelled"};
     const double spacing = model.particle_spacing;
     TALUS_TRY(check_particle_count(releases, {}, model.solver, spacing));
     std::vector<long> targets;
@@ -190,7 +193,7 @@ Result<State> seed_releases(Model& model, const Ground& ground, const std::vecto
     std::uint32_t next = 0;
     for (std::size_t r = 0; r < releases.size(); ++r) {
         const std::uint32_t first = next;
-        for (const Column& column : fill_columns(ground.terrain, releases[r], spacing, targets[r])) {
+        for (const Column& column : fill_columns(ground.terrain, releases[r], spacing, targets[r], progress)) {
             const LocalPoint plan = ground.terrain.frame().to_local({column.centre.x, column.centre.y, 0});
             const terrain::GroundSample<float> below = ground.terrain.sample(plan.x, plan.y);
             // The first particle touches the ground: half a spacing along the normal.
@@ -204,10 +207,11 @@ Result<State> seed_releases(Model& model, const Ground& ground, const std::vecto
         model.releases.push_back(
             {releases[r].name, releases[r].spec.start_time, first, next, releases[r].spec.pore_pressure_ratio});
     }
+    if (progress && !progress(0)) return ended;
     state.seeded = state.count = next;
     if (state.count == 0) return state;
     put_out_of_buildings(model, ground, state);
-    relax(model, ground, state, overburden);
+    if (!relax(model, ground, state, overburden, progress)) return ended;
     for (std::uint32_t i = 0; i < state.count; ++i) {
         for (const ReleaseGroup& release : model.releases) {
             const bool own = state.id[i] >= release.first_particle && state.id[i] < release.last_particle;

@@ -6,6 +6,7 @@
 #include "params/spec.hpp"
 #include "sim/ground.hpp"
 #include "sim/model.hpp"
+#include "sim/relax.hpp"
 #include "sim/state.hpp"
 #include "terrain/inflow.hpp"
 #include "terrain/release.hpp"
@@ -30,9 +31,9 @@ void set_material(Model& model, const params::MaterialSpec& material);
 /// Every column of the spacing's lattice gets as many particles as its share of volume, stacked on the ground; each
 /// release gets volume / spacing^3 particles, to the nearest whole one. The mass is then relaxed without gravity until
 /// it is nowhere denser than rest: started over-dense, it would fly apart within a step. Errors: those of
-/// check_particle_count.
+/// check_particle_count; `progress` ended it.
 [[nodiscard]] Result<State> seed_releases(Model& model, const Ground& ground,
-                                          const std::vector<terrain::Release>& releases);
+                                          const std::vector<terrain::Release>& releases, const Progress& progress = {});
 
 /// The multipliers and stresses with which a state, in the order of its ids, would start to move; it is not moved. The
 /// search starts from the state's own.

@@ -208,6 +208,29 @@ export async function testScenarios(run) {
     await until(() => page.textContent(".compression"), (t) => / at [\d.]+ s$/.test(t), "the verdict names its time");
     await page.click(".live");
   });
+
+  await run.check("a large release is prepared beside the session: its size said before, progress shown, cancelled without a trace", async () => {
+    await page.click("[aria-label=Restart]");
+    await until(() => state("A"), (s) => s.time_s === 0, "time 0");
+    const { revision } = await setup("A");
+    await page.click("[data-draw=release]");
+    const thickness = page.locator(".draft:visible input[type=number]").first();
+    await thickness.fill("18");
+    await thickness.press("Enter");
+    for (const [u, v] of [[0.3, 0.4], [0.7, 0.4], [0.7, 0.75], [0.3, 0.75]]) await clickGround(page, u, v);
+    assert.match(await page.textContent(".draft:visible .measure"), /m³, [\d\s]+ particles, [\d.]+\s[kMG]B/);
+    await page.keyboard.press("Enter");
+    const box = page.locator(".preparing:visible");
+    await box.waitFor();
+    assert.match(await box.textContent(), /Preparing: put release/);
+    assert.equal((await state("A")).preparing.what, "put release", "the session answers meanwhile");
+    await run.shot(page, "43-preparing");
+    await box.locator("button").click();
+    await until(() => state("A"), (s) => s.preparing === null, "the end of the preparation");
+    assert.equal((await setup("A")).revision, revision, "nothing was changed");
+    await page.click("[aria-label=Step]");
+    await until(() => state("A"), (s) => s.step === 1, "the run goes on");
+  });
   await page.context().close();
   await server.stop();
 }

@@ -8,6 +8,22 @@ import { parameterFields } from "./parameters";
 import { scenarioList } from "./scenarios";
 import { shapeSection } from "./shapes";
 
+/** A change that takes long: how far it is, and a way out. Laid over what is above it, so that nothing moves. */
+function preparing(twin: Twin): HTMLElement {
+  const bar = h("progress", { max: "1" });
+  const text = h("span", { class: "grow" });
+  const cancel = button("Cancel", { class: "small", onclick: () => void twin.act({ action: "cancel" }) });
+  const whole = h("div", { class: "row preparing", role: "status" }, text, bar, cancel);
+  watchAll([twin.edited, ...twin.every("state"), twin.you, twin.controller, twin.connection], () => {
+    const job = twin.now.state.value?.preparing ?? null;
+    whole.hidden = job === null;
+    if (job) text.textContent = `Preparing: ${job.what}`;
+    bar.value = job?.share ?? 0;
+    cancel.disabled = twin.hindrance !== null;
+  });
+  return whole;
+}
+
 export function controls(twin: Twin, drawing: Drawing): HTMLElement {
   const why = h("div", { class: "why", role: "status" });
   const undo = button("Undo", { icon: "undo", onclick: () => void twin.act({ action: "undo" }), class: "grow" });
@@ -27,7 +43,7 @@ export function controls(twin: Twin, drawing: Drawing): HTMLElement {
   });
 
   return h("aside", { class: "controls", "aria-label": "Controls" },
-    h("div", { class: "group head" }, scenarioList(twin), why, h("div", { class: "row" }, undo, redo), undoName),
+    h("div", { class: "group head" }, scenarioList(twin), why, preparing(twin), h("div", { class: "row" }, undo, redo), undoName),
     shapeSection(twin, drawing, "release"),
     shapeSection(twin, drawing, "barrier"),
     shapeSection(twin, drawing, "building"),

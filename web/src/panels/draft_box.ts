@@ -1,6 +1,6 @@
 // Display options while a new shape is drawn: instructions, sizes, live measures, and input without a mouse.
 import type { Drawing } from "../scene/drawing";
-import { number, quantity } from "../state/format";
+import { bytes, count, number, quantity } from "../state/format";
 import { limitsOf } from "../state/rules";
 import { area, drawnAsLine, fewestPoints, length, releaseVolume } from "../state/shapes";
 import type { Shape, Twin } from "../state/twin";
@@ -52,6 +52,9 @@ function newFields(twin: Twin, shape: Shape, changed: () => void): HTMLElement[]
   }
 }
 
+/** As the server reckons. */
+const bytesPerParticle = 1500;
+
 export function draftBox(twin: Twin, drawing: Drawing, shape: Shape): HTMLElement {
   const measure = h("output", { class: "measure", "aria-live": "polite" });
   const done = button("Finish", { class: "primary small", onclick: () => drawing.finish() });
@@ -62,6 +65,11 @@ export function draftBox(twin: Twin, drawing: Drawing, shape: Shape): HTMLElemen
     if (Number.isFinite(east.valueAsNumber) && Number.isFinite(north.valueAsNumber)) drawing.addPoint([east.valueAsNumber, north.valueAsNumber]);
     else twin.notice("A point needs an east and a north coordinate in metres.", "error");
   } });
+  /** What a release of so many m3 is made of. */
+  const sizeOf = (volume_m3: number): string => {
+    const particles = volume_m3 / twin.scene.particle_spacing_m ** 3;
+    return `, ${count(particles)} particles, ${bytes(particles * bytesPerParticle)}`;
+  };
   const show = (): void => {
     const points = [...drawing.draft.value];
     const byLine = twin.inflowByLine.value;
@@ -72,7 +80,7 @@ export function draftBox(twin: Twin, drawing: Drawing, shape: Shape): HTMLElemen
     const { release, bed } = twin.newShape;
     measure.value = points.length < fewest ? `${points.length} of ${shape === "inflow" && byLine ? "" : "at least "}${fewest} points`
       : drawnAsLine(shape, byLine) ? `${quantity(length(points), "m")} long`
-        : shape === "release" ? `${number(area(points))} m² × ${number(release.thickness_m)} m = ${quantity(releaseVolume(points, release.thickness_m, twin.relief), "m3")}`
+        : shape === "release" ? `${number(area(points))} m² × ${number(release.thickness_m)} m = ${quantity(releaseVolume(points, release.thickness_m, twin.relief), "m3")}${sizeOf(releaseVolume(points, release.thickness_m, twin.relief))}`
           : shape === "bed" ? `${number(area(points))} m² × ${number(bed.depth_m)} m = ${quantity(area(points) * bed.depth_m, "m3")}` : `${quantity(area(points), "m2")}`;
   };
   const fields = newFields(twin, shape, () => show());

@@ -85,6 +85,8 @@ export interface State {
   max_compression: number;
   squeezed_share: number;
   too_compressed: boolean | null;
+  /** A change that is being prepared, and the share of it that is done. */
+  preparing: { what: string; share: number } | null;
   recording: { first_s: number; last_s: number; frames: number; bytes: number };
   hash?: string;
 }
@@ -270,7 +272,7 @@ export type ShownLayer = LayerName | EnsembleLayer;
 
 export type Action =
   | { action: "run" | "pause" | "step" | "restart"; scenarios: ScenarioName[] }
-  | { action: "undo" | "redo" }
+  | { action: "undo" | "redo" | "cancel" }
   | { action: "name_scenario"; name: string }
   | { action: "set_speed"; factor: number | null }
   | { action: "set_parameter"; key: string; value: number }

@@ -164,6 +164,7 @@ export class Twin {
   /** Requests a change; a refusal is shown to the user next to the control used last, and returns null, as does a change of mind. */
   async act(action: Action): Promise<Done | null> {
     try {
+      if (action.action === "cancel") return await this.api.act(this.edited.value, action);
       await this.beginning; // a scenario that is being made is the one to change
       const scenario = this.edited.value;
       const begun = (this.cells[scenario].state.value?.step ?? 0) > 0;
