@@ -15,15 +15,15 @@
 namespace talus::bench {
 namespace {
 
-constexpr int edge = 512, steps = 50, warm_up = 20;
+constexpr int grid_edge = 512, step_count = 50, warm_up_steps = 20;
 
 depth::Solver make_valley() {
-    Grid<double> bed({0, 0, 1, edge, edge});
+    Grid<double> bed({0, 0, 1, grid_edge, grid_edge});
     Grid<float> debris(bed.geometry);
-    for (int row = 0; row < edge; ++row) {
-        for (int column = 0; column < edge; ++column) {
+    for (int row = 0; row < grid_edge; ++row) {
+        for (int column = 0; column < grid_edge; ++column) {
             const PlanPoint p = bed.geometry.centre(column, row);
-            bed.at(column, row) = 0.02 * std::pow(std::hypot(p.x - edge / 2.0, p.y - edge / 2.0), 1.5) +
+            bed.at(column, row) = 0.02 * std::pow(std::hypot(p.x - grid_edge / 2.0, p.y - grid_edge / 2.0), 1.5) +
                                   0.5 * std::sin(p.x / 9) * std::cos(p.y / 7);
             debris.at(column, row) = std::hypot(p.x - 160, p.y - 190) < 90 ? 5 : 0;
         }
@@ -41,20 +41,20 @@ depth::Solver make_valley() {
 Result<GridRow> measure_grid(int threads, int repeats) {
     return run::Threads(threads).execute([&]() -> Result<GridRow> {
         depth::Solver solver = make_valley();
-        for (int k = 0; k < warm_up; ++k) TALUS_TRY(solver.advance(1));
+        for (int k = 0; k < warm_up_steps; ++k) TALUS_TRY(solver.advance(1));
         std::vector<double> rates;
         const std::uint64_t first = solver.cell_updates();
         for (int repeat = 0; repeat < repeats; ++repeat) {
             const std::uint64_t before = solver.cell_updates();
             const auto start = std::chrono::steady_clock::now();
-            for (int k = 0; k < steps; ++k) TALUS_TRY(solver.advance(1));
+            for (int k = 0; k < step_count; ++k) TALUS_TRY(solver.advance(1));
             const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
             rates.push_back(static_cast<double>(solver.cell_updates() - before) / seconds);
         }
         GridRow row;
         row.threads = threads;
         row.cells = solver.geometry().size();
-        row.cells_per_step = static_cast<double>(solver.cell_updates() - first) / (steps * repeats);
+        row.cells_per_step = static_cast<double>(solver.cell_updates() - first) / (step_count * repeats);
         row.updates_per_second = median(rates);
         row.bytes_per_cell = solver.bytes_per_cell();
         row.hash = solver.hash();
