@@ -34,8 +34,8 @@ class GridRun {
         const params::SolverSpec& spec = scene_.spec.solver;
         const auto start = std::chrono::steady_clock::now();
         double longest = std::min(scene_.spec.outputs.sample_interval, spec.end_time - solver_.time());
-        for (std::size_t k = 0; k < scene_.releases.size(); ++k) {
-            const double wait = scene_.releases[k].spec.start_time - solver_.time();
+        for (const terrain::Release& release : scene_.releases) {
+            const double wait = release.spec.start_time - solver_.time();
             if (wait > 0) longest = std::min(longest, wait);
         }
         const Status stepped = solver_.advance(longest);

@@ -208,12 +208,18 @@ struct Lanes {
     }
     TALUS_INLINE friend Lanes opaque(const Lanes& a) {
         Floats v = a.v;
+#ifndef __clang__  // it allows a register of 512 bits here only where the whole file is compiled for AVX-512
         __asm__("" : "+x"(v));
+#endif
         return Lanes(v);
     }
     /// Towards zero; for values that fit an int.
-    TALUS_INLINE friend Ints truncated(const Lanes& a) { return __builtin_convertvector(a.v, Ints); }
-    TALUS_INLINE static Lanes from(const Ints& ints) { return Lanes(Floats(__builtin_convertvector(ints, Floats))); }
+    TALUS_INLINE friend Ints truncated(const Lanes& a) {
+        return __builtin_convertvector(a.v, Ints);
+    }
+    TALUS_INLINE static Lanes from(const Ints& ints) {
+        return Lanes(Floats(__builtin_convertvector(ints, Floats)));
+    }
 };
 
 /// Transposes 4 x 4 numbers within every block of 128 bits; its own inverse.

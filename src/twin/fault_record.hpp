@@ -17,9 +17,9 @@ namespace talus::twin {
 
 /// `good`: a state of a few steps earlier, after which nothing was changed; `bad`: after the step.
 struct FaultRecord {
-    std::string sentence;     ///< for people: the first bad particle, where it was, its neighbours, the last action
-    nlohmann::json content;   ///< the same as data
-    std::string state_table;  ///< the good state, a particle per line, with all digits
+    std::string sentence;  ///< for people: the first bad particle, where it was, its neighbours, the last action
+    nlohmann::json content = nlohmann::json::object();  ///< the same as data
+    std::string state_table;                            ///< the good state, a particle per line, with all digits
 };
 
 [[nodiscard]] FaultRecord record_fault(const sim::Model& model, const sim::Ground& ground, const sim::State& good,

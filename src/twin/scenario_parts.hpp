@@ -13,7 +13,7 @@ namespace talus::twin {
 
 /// A change that is ready to be carried out: of the present run, or a new one.
 struct Scenario::Prepared {
-    nlohmann::json action;
+    nlohmann::json action = nlohmann::json::object();
     std::string by;
     Done done;
     NextNumbers next;

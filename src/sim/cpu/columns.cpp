@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <cmath>
 #include <limits>
 
 #include "simd/parallel.hpp"
@@ -94,7 +95,7 @@ void Columns::count(const VectorArray& points, std::size_t count, double width) 
     simd::parallel_ranges(count, grain, [&](std::size_t first, std::size_t last) {
         for (std::size_t i = first; i < last; ++i) {
             for_each_column(points.x[i], points.y[i], [&](Place place, float share) {
-                const auto units = static_cast<std::uint32_t>(static_cast<double>(share * one) + 0.5);
+                const auto units = static_cast<std::uint32_t>(std::lround(static_cast<double>(share * one)));
                 if (units != 0) sums_[find_or_keep(place)].fetch_add(units, std::memory_order_relaxed);
             });
         }
