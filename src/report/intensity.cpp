@@ -21,13 +21,16 @@ const std::array<IntensityGuideline, 3>& guidelines() {
     static const std::array<IntensityGuideline, 3> all = {{
         {"Swiss debris-flow classes",
          swiss,
-         "Cited from memory. The recommendation has no low class for debris flows: all that debris reached is at least "
-         "medium.",
+         "Limits as the documentation of FLO-2D MapCrafter gives them after Vademecum: Hazard maps and related "
+         "instruments (2005); the recommendation was not at hand. It has no low class for debris flows: all that "
+         "debris "
+         "reached is at least medium.",
          {{"medium", "h ≤ 1 m or v ≤ 1 m/s", {{}}, medium_colour},
           {"high", "h > 1 m and v > 1 m/s", {{.depth = 1, .speed = 1}}, high_colour}}},
         {"Swiss flood classes",
          swiss,
-         "For floods that carry sediment; debris flows have classes of their own.",
+         "For floods that carry sediment; debris flows have classes of their own. Limits from the same source as "
+         "theirs.",
          {{"low", "h ≤ 0.5 m and h v ≤ 0.5 m²/s", {{}}, low_colour},
           {"medium", "h > 0.5 m or h v > 0.5 m²/s", {{.depth = 0.5}, {.depth_speed = 0.5}}, medium_colour},
           {"high", "h > 2 m or h v > 2 m²/s", {{.depth = 2}, {.depth_speed = 2}}, high_colour}}},
