@@ -114,7 +114,7 @@ Section declare_solver() {
     s.key("displacement_limit", "", &SolverSpec::displacement_limit, between(0.001, 1),
           "Share of a spacing that a particle moves at most in an adaptive time step.");
     s.key("largest_time_step_s", "s", &SolverSpec::largest_time_step, between(1e-5, 1),
-          "Upper bound of the adaptive time step.");
+          "Upper bound of the adaptive time step. Fast, squeezed and very viscous debris shortens it.");
     s.key("smallest_time_step_s", "s", &SolverSpec::smallest_time_step, between(1e-5, 1),
           "An adaptive time step below this stops the run as a fault.");
     s.key("iteration_count", "", &SolverSpec::iteration_count, between(1, 1000), "Solver iterations per time step.");

@@ -1,5 +1,6 @@
 #include "scene/viscosity_limit.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include <fmt/format.h>
@@ -10,14 +11,16 @@
 namespace talus::scene {
 namespace {
 
-double longest_step(const params::SolverSpec& solver) {
-    return solver.time_step.value_or(solver.largest_time_step);
+/// The step that is as short as viscosity may make it.
+double shortest_step(const params::SolverSpec& solver) {
+    return solver.time_step.value_or(
+        std::max(solver.largest_time_step / sim::most_viscous_step_ratio, solver.smallest_time_step));
 }
 
 }  // namespace
 
 double highest_viscosity(const params::SolverSpec& solver) {
-    return sim::viscosity_reference_step / longest_step(solver);
+    return sim::viscosity_reference_step / shortest_step(solver);
 }
 
 std::optional<params::Violation> too_viscous(const params::MaterialSpec& material, const params::SolverSpec& solver,
@@ -36,7 +39,7 @@ std::optional<params::Violation> too_viscous(const params::MaterialSpec& materia
         key, fmt::format(" = {:.4g} is refused; with particles of {:.3g} m and solver.{} = {:.3g} it must be at most "
                          "{:.4g}; larger particles or shorter steps allow more",
                          given, particle_spacing, solver.time_step ? "time_step_s" : "largest_time_step_s",
-                         longest_step(solver), std::floor(1e4 * highest) / 1e4)};
+                         solver.time_step.value_or(solver.largest_time_step), std::floor(1e4 * highest) / 1e4)};
 }
 
 }  // namespace talus::scene

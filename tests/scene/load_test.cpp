@@ -107,7 +107,9 @@ TEST_F(LoadScene, ATargetVolumeIsMetByAUniformThickness) {
 TEST_F(LoadScene, AViscosityThatNoStepCanApplyNamesTheMost) {
     write_valley("[material]\nkinematic_viscosity_m2ps = 1e3\n[solver]\nparticle_spacing_m = 1");
     EXPECT_THAT(load_error(), AllOf(StartsWith(line(8) + "material.kinematic_viscosity_m2ps = 1000 is refused"),
-                                    HasSubstr("particles of 1 m"), HasSubstr("at most 9.")));
+                                    HasSubstr("particles of 1 m"), HasSubstr("at most 7")));
+    write_valley("[material]\nkinematic_viscosity_m2ps = 30\n[solver]\nparticle_spacing_m = 1");
+    EXPECT_EQ(load_error(), "(it loaded)") << "the adaptive step is shortened for it";
     write_valley("[material]\nviscosity = 0.9\n[solver]\ntime_step_s = 0.02");
     EXPECT_THAT(load_error(), AllOf(StartsWith(line(8) + "material.viscosity = 0.9"), HasSubstr("at most 0.8333")));
     write_valley("[material]\nviscosity = 0.8\n[solver]\ntime_step_s = 0.02");

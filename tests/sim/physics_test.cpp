@@ -244,6 +244,18 @@ TEST(TimeStep, keeps_a_particle_from_moving_more_than_the_displacement_limit) {
     }
 }
 
+TEST(TimeStep, never_takes_more_than_the_velocity_difference_from_viscous_debris) {
+    const terrain::Terrain terrain = inclined_plane(20, 40, 40);
+    params::MaterialSpec material;
+    material.viscosity = 3;  // as a high kinematic viscosity with fine particles
+    Simulation simulation = simulate(material, {}, terrain, {block(terrain, rectangle(5, 15, 9, 19), 0.8)}, 0.4);
+    while (simulation.state().time < 0.5) {
+        ASSERT_TRUE(simulation.advance());
+        EXPECT_LE(3 * simulation.state().time_step, 1.0 / 60 + 1e-9);
+    }
+    EXPECT_GE(3 * simulation.state().time_step, 0.9 / 60) << "shorter than viscosity needs";
+}
+
 TEST(Fault, names_the_time_and_the_parameter_to_change) {
     Model model = make_model({}, {}, 0.5);
     State state = testing::state_of({{0, 0, 5}});

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <limits>
 
 #include "core/geometry.hpp"
 #include "sim/model.hpp"
@@ -20,6 +21,13 @@ inline constexpr double viscosity_reference_step = 1.0 / 60;
 inline double step_smoothing(double viscosity, double time_step) {
     return std::min(1.0, viscosity * time_step / viscosity_reference_step);
 }
+
+/// The longest step in which the smoothing is at most the whole velocity difference. More would drive neighbours apart.
+inline double longest_viscous_step(double viscosity) {
+    return viscosity > 0 ? viscosity_reference_step / viscosity : std::numeric_limits<double>::infinity();
+}
+/// Viscosity shortens an adaptive step to no less than the largest divided by this.
+inline constexpr double most_viscous_step_ratio = 8;
 
 /// The same smoothing against ground that viscous debris sticks to: the ground moves as if the flow continued below
 /// with reversed velocity, so that the velocity is zero at the surface (Morris, Fox & Zhu 1997, "Modeling low Reynolds
