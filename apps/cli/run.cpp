@@ -106,9 +106,9 @@ Result<Job> open_job(const RunArguments& arguments, ProgressReporter& progress, 
 }
 
 /// Callbacks during the run: progress, Ctrl-C, and the particle series if the scene requests one.
-class Onlooker {
+class RunCallbacks {
   public:
-    Onlooker(const RunArguments& arguments, const Job& job, ProgressReporter& progress, InterruptWatch& watch)
+    RunCallbacks(const RunArguments& arguments, const Job& job, ProgressReporter& progress, InterruptWatch& watch)
         : job_(job), progress_(progress), watch_(watch), notes_said_(arguments.quiet || arguments.json) {
         options_.stop_requested = &watch.stop_requested();
         options_.on_progress = [this](const run::Progress& now) { report(now); };
@@ -119,8 +119,8 @@ class Onlooker {
             if (!series_status_) watch_.request_stop();
         };
     }
-    Onlooker(const Onlooker&) = delete;
-    Onlooker& operator=(const Onlooker&) = delete;
+    RunCallbacks(const RunCallbacks&) = delete;
+    RunCallbacks& operator=(const RunCallbacks&) = delete;
 
     [[nodiscard]] const run::RunOptions& options() const { return options_; }
     /// The run has ended. Errors: the particle series cannot be written.
@@ -167,11 +167,11 @@ int run_command(const RunArguments& arguments) {
     if (watch.stop_requested()) return fail(exit_code::interrupted, "interrupted before the run began");
     const scene::Scene& scene = job->input.scene;
 
-    Onlooker onlooker(arguments, *job, progress, watch);
-    const auto result = run_scene(scene, onlooker.options());  // run; its observer measures every step
+    RunCallbacks callbacks(arguments, *job, progress, watch);
+    const auto result = run_scene(scene, callbacks.options());  // run; its observer measures every step
     progress.clear();
     if (!result) return fail(exit_code::bad_input, result.error().message);
-    if (Status s = onlooker.finish(); !s) return fail(exit_code::failure, s.error().message);
+    if (Status s = callbacks.finish(); !s) return fail(exit_code::failure, s.error().message);
 
     const auto comparisons = job->plan.run(scene, *result, progress, watch.stop_requested());
     const bool interrupted =

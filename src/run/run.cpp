@@ -45,7 +45,7 @@ Run::Run(RunStart start)
       followed_corridor_width_(start.followed_corridor_width),
       endless_(start.endless),
       smallest_time_step_(model().solver.end_time) {
-    observer_.expect(state().seeded + simulation_.inflow().to_come());
+    observer_.expect(state().seeded + simulation_.inflow().remaining());
     if (no_debris()) stop(RunPhase::at_rest, "there is no debris");
 }
 
@@ -86,7 +86,7 @@ void Run::take_step() {
     }
     if (endless_) return;
     if (!observer_.failed_buildings().empty()) rest_.stir(state().time);
-    const bool waiting = still_waiting(model(), state()) || simulation_.inflow().to_come() > 0;
+    const bool waiting = still_waiting(model(), state()) || simulation_.inflow().remaining() > 0;
     if (rest_.at_rest(state(), waiting)) {
         stop(RunPhase::at_rest, rest_.reason());
     } else {

@@ -76,7 +76,7 @@ class Run {
     [[nodiscard]] bool over();
     void take_step();
     void stop(RunPhase phase, std::string why);
-    [[nodiscard]] bool no_debris() const { return state().count == 0 && simulation_.inflow().to_come() == 0; }
+    [[nodiscard]] bool no_debris() const { return state().count == 0 && simulation_.inflow().remaining() == 0; }
 
     Threads threads_;
     sim::Simulation simulation_;

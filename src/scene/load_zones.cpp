@@ -122,9 +122,9 @@ Status load_zones(const ParsedScene& parsed, Scene& scene) {
     for (std::size_t index = 0; index < scene.spec.zones.size(); ++index) {
         TALUS_TRY(load_zone(parsed, index, scene));
     }
-    LaidZones laid = lay_zones(scene.zones, scene.terrain);
-    scene.cover = std::move(laid.cover);
-    scene.zone_at = std::move(laid.zone_at);
+    ZonesOnTerrain on_terrain = zones_on_terrain(scene.zones, scene.terrain);
+    scene.cover = std::move(on_terrain.cover);
+    scene.zone_at = std::move(on_terrain.zone_at);
     return {};
 }
 

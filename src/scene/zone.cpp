@@ -41,21 +41,21 @@ double area_of(const Zone& zone, const GridGeometry& terrain) {
     return area;
 }
 
-LaidZones lay_zones(const std::vector<Zone>& zones, const terrain::Terrain& terrain) {
-    LaidZones laid;
-    if (zones.empty()) return laid;
+ZonesOnTerrain zones_on_terrain(const std::vector<Zone>& zones, const terrain::Terrain& terrain) {
+    ZonesOnTerrain result;
+    if (zones.empty()) return result;
     Grid<terrain::CoverCell> cells(terrain.elevation().geometry, {as_elsewhere, as_elsewhere, as_elsewhere, 0});
-    laid.zone_at.assign(cells.values.size(), 0);
+    result.zone_at.assign(cells.values.size(), 0);
     std::uint16_t number = 0;
     for (const Zone& zone : zones) {
         ++number;
         for_each_cell(zone, cells.geometry, [&](std::size_t cell, float value) {
             lay(zone.spec, value, cells.values[cell]);
-            laid.zone_at[cell] = number;
+            result.zone_at[cell] = number;
         });
     }
-    laid.cover = terrain::GroundCover(cells);
-    return laid;
+    result.cover = terrain::GroundCover(cells);
+    return result;
 }
 
 }  // namespace talus::scene

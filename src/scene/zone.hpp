@@ -36,12 +36,12 @@ void for_each_cell(const Zone& zone, const GridGeometry& terrain,
 [[nodiscard]] double area_of(const Zone& zone, const GridGeometry& terrain);
 
 /// Zones on the cells of the terrain. Where they overlap, the values of the later one apply.
-struct LaidZones {
+struct ZonesOnTerrain {
     terrain::GroundCover cover;
     std::vector<std::uint16_t> zone_at;  ///< by cell of the terrain: 1 + the last zone there; 0: none
 };
 
 /// Empty, and free of cost, without zones.
-[[nodiscard]] LaidZones lay_zones(const std::vector<Zone>& zones, const terrain::Terrain& terrain);
+[[nodiscard]] ZonesOnTerrain zones_on_terrain(const std::vector<Zone>& zones, const terrain::Terrain& terrain);
 
 }  // namespace talus::scene

@@ -44,7 +44,7 @@ Simulation::Simulation(Model model, Ground ground, State state, InflowFeeder inf
       ground_(std::move(ground)),
       state_(std::move(state)),
       inflow_(std::move(inflow)),
-      expected_(inflow_.to_come()),
+      expected_(inflow_.remaining()),
       capacity_(state_.count + expected_),
       highest_energy_head_(std::numeric_limits<double>::lowest()) {
     if (expected_ > 0) state_.resize(capacity_);

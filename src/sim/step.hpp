@@ -10,7 +10,7 @@ namespace talus::sim {
 
 /// The parts of a step other than moving particles (see Simulation). This one has none: particles are moved by the
 /// state's time step.
-struct MotionAlone {
+struct MotionOnly {
     void inject_inflow() {}
     void choose_time_step() {}
     Status check_faults() { return {}; }
@@ -65,7 +65,7 @@ Status step(Backend& backend, const Model& model, const Ground& ground, State& s
 
 template <class Backend, class State>
 void step(Backend& backend, const Model& model, const Ground& ground, State& state, StageTimes& times) {
-    (void)step(backend, model, ground, state, times, MotionAlone{});  // which finds no fault
+    (void)step(backend, model, ground, state, times, MotionOnly{});  // which finds no fault
 }
 
 }  // namespace talus::sim

@@ -198,7 +198,7 @@ Result<std::shared_ptr<LiveRun::Change>> LiveRun::prepare(const Setup& next, con
         const Setup& wanted = change->next;  // lives as long as the change, which refers to it
         TALUS_TRY(plan_obstacles(wanted, *change));
         if (!same_shapes(setup_.zones, wanted.zones)) {
-            change->cover = lay_zones(bodies_of(wanted.zones), ground().terrain).cover;
+            change->cover = zones_on_terrain(bodies_of(wanted.zones), ground().terrain).cover;
         }
         TALUS_TRY(plan_releases(wanted, *change, progress));
         return change;

@@ -67,9 +67,9 @@ scene::Scene scene_of(const scene::Scene& scene, const Setup& setup) {
     for (const BarrierSetup& barrier : setup.barriers) changed.buildings.push_back(*barrier.body);
     changed.inflows = bodies_of(setup.inflows);
     changed.zones = bodies_of(setup.zones);
-    scene::LaidZones laid = lay_zones(changed.zones, changed.terrain);
-    changed.cover = std::move(laid.cover);
-    changed.zone_at = std::move(laid.zone_at);
+    scene::ZonesOnTerrain on_terrain = zones_on_terrain(changed.zones, changed.terrain);
+    changed.cover = std::move(on_terrain.cover);
+    changed.zone_at = std::move(on_terrain.zone_at);
     changed.spec.zones.clear();
     for (const scene::Zone& zone : changed.zones) changed.spec.zones.push_back(zone.spec);
     changed.bed_layers = bodies_of(setup.beds);

@@ -58,7 +58,7 @@ TEST(AreaSource, brings_the_volume_to_the_particle_evenly_over_the_area) {
         const Ground ground = plane();
         const terrain::Inflow source = rain({{0.5, 0, 0}, {1, 8, 1}, {2, 0, 1}, {3, 4, 2}, {3.3, 0, 2}});
         InflowFeeder feeder(model, ground.terrain.frame(), {source});
-        const std::uint32_t all = feeder.to_come();
+        const std::uint32_t all = feeder.remaining();
         EXPECT_EQ(all, std::lround(source.volume() / model.particle_volume()));
         State state;
         state.resize(all);
@@ -88,7 +88,7 @@ TEST(AreaSource, debris_moves_down_the_slope_or_where_it_is_told) {
         InflowFeeder feeder(model, ground.terrain.frame(),
                             {rain({{0, 10, 3}, {1, 10, 3}}, told ? std::optional(0.0) : std::nullopt)});
         State state;
-        state.resize(feeder.to_come());
+        state.resize(feeder.remaining());
         state.time = 0.5;
         feeder.inject(model, ground, state);
         ASSERT_GT(state.count, 50U);
@@ -115,7 +115,7 @@ TEST(AreaSource, does_not_pop_apart_even_where_debris_piles_up) {
         worst = std::max(worst, simulation.state().max_compression);
         fastest = std::max(fastest, simulation.state().max_speed);
     }
-    EXPECT_EQ(simulation.inflow().to_come(), 0U);
+    EXPECT_EQ(simulation.inflow().remaining(), 0U);
     EXPECT_LT(worst, 0.1);
     EXPECT_LT(fastest, std::sqrt(2 * 9.81 * 1.7)) << "a fall from the top of the pile";
 }
@@ -127,7 +127,7 @@ TEST(AreaSource, an_area_smaller_than_a_particle_still_brings_its_volume) {
     const Ground ground = plane();
     InflowFeeder feeder(model, ground.terrain.frame(), {spring});
     State state;
-    state.resize(feeder.to_come());
+    state.resize(feeder.remaining());
     state.time = 3;
     feeder.inject(model, ground, state);
     EXPECT_EQ(state.count, std::lround(4 / model.particle_volume()));
@@ -141,7 +141,7 @@ TEST(InflowFeeder, gives_particles_the_density_of_the_hydrograph) {
         const Ground ground = plane();
         InflowFeeder feeder(model, ground.terrain.frame(), {surge});
         State state;
-        state.resize(feeder.to_come());
+        state.resize(feeder.remaining());
         for (state.time = 0; state.time < 2.5; state.time += 0.01) {
             if (feeder.due(state.time)) feeder.inject(model, ground, state);
         }
@@ -162,7 +162,7 @@ TEST(InflowFeeder, brings_the_volume_to_the_particle_whatever_the_steps) {
         const terrain::Inflow surges =
             inflow({{0.5, 0, 3}, {1, 20, 5}, {2, 0, 4}, {2.5, 0, 0}, {3, 10, 2}, {3.3, 0, 2}});
         InflowFeeder feeder(model, ground.terrain.frame(), {surges});
-        const std::uint32_t all = feeder.to_come();
+        const std::uint32_t all = feeder.remaining();
         EXPECT_EQ(all, std::lround(surges.volume() / model.particle_volume()));
         State state;
         state.resize(all);
@@ -174,7 +174,7 @@ TEST(InflowFeeder, brings_the_volume_to_the_particle_whatever_the_steps) {
             EXPECT_LE(state.count, in + 1);
         }
         EXPECT_EQ(state.count, all) << step;
-        EXPECT_EQ(feeder.to_come(), 0U);
+        EXPECT_EQ(feeder.remaining(), 0U);
     }
 }
 

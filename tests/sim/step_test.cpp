@@ -59,13 +59,13 @@ TEST(Step, brings_inflow_in_tells_its_watcher_and_removes_what_failed) {
     const Ground ground(terrain, buildings, model.support_radius);
     const terrain::Inflow inflow{"gully", {20, 17}, {20, 23}, {{0, 30, 5}, {5, 30, 5}}};
     Simulation simulation(model, ground, State{}, InflowFeeder(model, ground.terrain.frame(), {inflow}));
-    const std::uint32_t all = simulation.inflow().to_come();
+    const std::uint32_t all = simulation.inflow().remaining();
     Notebook notebook;
     for (int k = 0; k < 40; ++k) ASSERT_TRUE(simulation.advance(&notebook));
     EXPECT_EQ(notebook.observed, 40U);
     EXPECT_GT(notebook.came_in, 0U);
     EXPECT_EQ(notebook.came_in, simulation.state().seeded);
-    EXPECT_EQ(notebook.came_in + simulation.inflow().to_come(), all);
+    EXPECT_EQ(notebook.came_in + simulation.inflow().remaining(), all);
     for (std::size_t k = 0; k < 40; ++k) EXPECT_EQ(notebook.solids_empty[k], k >= 3) << k;
     for (std::size_t stage = 0; stage < stage_count; ++stage) {
         EXPECT_GT(simulation.stage_times().seconds[stage], 0) << step_stages[stage].name << " was not run";

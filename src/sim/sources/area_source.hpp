@@ -19,7 +19,7 @@ class AreaSource {
     AreaSource(const Model& model, const LocalFrame& frame, terrain::Inflow inflow);
 
     /// Particles still to be injected.
-    [[nodiscard]] std::uint32_t to_come() const { return total_ - injected_; }
+    [[nodiscard]] std::uint32_t remaining() const { return total_ - injected_; }
     [[nodiscard]] bool due(double time) const;
     /// Injects what is due at the state's time; the state's arrays must have room.
     void inject(const Model& model, const Ground& ground, State& state);

@@ -25,10 +25,10 @@ InflowFeeder::InflowFeeder(const Model& model, const LocalFrame& frame, const st
     }
 }
 
-std::uint32_t InflowFeeder::to_come() const {
+std::uint32_t InflowFeeder::remaining() const {
     std::uint32_t count = 0;
     for (const Source& source : sources_) count += source.total - source.injected;
-    for (const AreaSource& area : areas_) count += area.to_come();
+    for (const AreaSource& area : areas_) count += area.remaining();
     return count;
 }
 
@@ -59,7 +59,7 @@ double InflowFeeder::Source::next_time(double time) const {
 }
 
 void InflowFeeder::inject(const Model& model, const Ground& ground, State& state) {
-    if (state.room() < state.count + to_come()) state.resize(state.count + to_come());
+    if (state.room() < state.count + remaining()) state.resize(state.count + remaining());
     for (Source& source : sources_) {
         source.lead(ground, state);
         while (source.due(state.time)) {

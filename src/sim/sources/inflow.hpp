@@ -29,7 +29,7 @@ class InflowFeeder {
     InflowFeeder(const Model& model, const LocalFrame& frame, const std::vector<terrain::Inflow>& inflows);
 
     /// Particles that all inflows together still have to inject.
-    [[nodiscard]] std::uint32_t to_come() const;
+    [[nodiscard]] std::uint32_t remaining() const;
     /// Whether there is work at a time, s: a row is due, or rows are led.
     [[nodiscard]] bool due(double time) const;
     /// Leads the latest rows and injects those due at the state's time, within Simulation::change(). Allocates nothing

@@ -43,7 +43,7 @@ Result<Outcome> compute(const PlaneSpec& spec, const Setting& setting, const Wat
     const double discharge = spec.thickness * spec.velocity * width;
     inflow.hydrograph = {{0, discharge, spec.velocity}, {spec.time, discharge, spec.velocity}};
     sim::InflowFeeder feeder(model, incline.terrain().frame(), {inflow});
-    watch.say(fmt::format("{} particles", feeder.to_come()));
+    watch.say(fmt::format("{} particles", feeder.remaining()));
     Trial trial({std::move(model), std::move(ground), sim::State{}, std::move(feeder)}, watch);
     const sim::State& state = trial.state();
     double fastest = 0;
