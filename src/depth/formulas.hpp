@@ -173,18 +173,47 @@ struct Resistance {
     Real viscosity;           ///< kinematic, on the ground, m2/s
 };
 
+/// What a plug adds to the stress on the ground, over the yield stress. A sheet that shears below a plug (Bingham 1922)
+/// moves with U = tau h (1 - a)^2 (2 + a) / (6 rho nu), where a = yield stress / tau. With w = laminar drag of a
+/// parabolic profile over yield stress, that is 2 s^3 - (3 + 2 w) s^2 + 1 = 0 for s = 1 / a, and s - 1 - w rises from
+/// 0 to 1/2: 1/2 - 1/2 / (1 + 2 r + 7/3 r^2 + 11/4 r^3) with r = sqrt(2 w / 3) is within 0.15 % of s.
+///
+/// Implicit, by Newton's method, whose function is convex and begins above its root: m (1 + laminar) + yield (1 +
+/// excess) = momentum, where both are what they take in the step: `laminar` of the momentum m that is left, `yield` in
+/// m2/s.
+template <class Real>
+TALUS_INLINE Real plug_excess(const Real& momentum, const Real& yield, const Real& laminar) {
+    using std::sqrt;
+    const Real a = laminar * momentum / larger(yield, Real(1e-12F)), square = Real(1.5F) + Real(1.5F) * laminar;
+    Real r = sqrt(larger(Real(0), a - laminar) / square), inverse = Real(1);
+    for (int k = 0; k < 4; ++k) {
+        inverse = Real(1) / (Real(1) + r * (Real(2) + r * (Real(7.0F / 3) + r * Real(2.75F))));
+        const Real rise = (Real(1) + r * (Real(7.0F / 3) + r * Real(4.125F))) * inverse * inverse;
+        const Real excess = Real(0.5F) - Real(0.5F) * inverse;
+        const Real above = square * r * r + laminar * (Real(1) + excess) - a;
+        r = larger(Real(0), r - above / larger(Real(2) * square * r + laminar * rise, Real(1e-12F)));
+    }
+    return Real(0.5F) - Real(0.5F) * inverse;
+}
+
 /// Momentum along the ground (depth times speed, m2/s) after a step of resistance, implicitly: Coulomb and cohesion,
-/// which stop; laminar drag 3 nu U / h on the ground below a parabolic profile; Voellmy's (1955) rho g U^2 / xi and
-/// stems (see sim/physics/resistance.hpp). `stretch`: area of the ground over its plan area; `normal_force`: over
-/// density and plan area, m2/s2.
+/// which stop, with the plug of cohesive viscous debris; laminar drag 3 nu U / h on the ground below a parabolic
+/// profile; Voellmy's (1955) rho g U^2 / xi and stems (see sim/physics/resistance.hpp). `stretch`: area of the ground
+/// over its plan area; `normal_force`: over density and plan area, m2/s2.
 template <class Real>
 TALUS_INLINE Real resisted(const Resistance<Real>& r, const Real& gravity, const Real& momentum, const Real& depth,
                            const Real& normal_force, const Real& stretch, const Real& time_step) {
     using std::sqrt;
-    const Real left = larger(Real(0), momentum - time_step * stretch * (r.friction * normal_force + r.strength));
     const Real inverse_depth = Real(1) / larger(depth, Real(dry_depth));
     const Real laminar =
         Real(1) + Real(3) * r.viscosity * time_step * (stretch * inverse_depth) * (stretch * inverse_depth);
+    Real strength = r.strength;
+    if (any(r.viscosity > Real(0))) {
+        const Real stopping = time_step * stretch;
+        strength = strength + strength * plug_excess(momentum - stopping * r.friction * normal_force,
+                                                     stopping * strength, laminar - Real(1));
+    }
+    const Real left = larger(Real(0), momentum - time_step * stretch * (r.friction * normal_force + strength));
     const Real square =
         time_step * inverse_depth * (gravity * stretch * r.inverse_turbulence * inverse_depth + r.stem_drag);
     return Real(2) * left / (laminar + sqrt(laminar * laminar + Real(4) * square * left));

@@ -56,6 +56,23 @@ TEST(Sheet, reaches_the_speed_of_viscous_flow) {
     EXPECT_NEAR(sheet_speed(slope, thickness, 6, material), exact, 1e-3 * exact);
 }
 
+TEST(Sheet, reaches_the_speed_of_bingham) {
+    const double slope = 0.3, thickness = 0.5, stress = 2000 * gravity * std::sin(slope) * thickness;
+    for (const double share : {0.2, 0.5, 0.8}) {  // of the stress on the ground
+        depth::Material material;
+        material.rest_density = 2000;
+        material.viscosity = 0.3;
+        material.cohesion = share * stress;
+        const double exact = stress * thickness * (1 - share) * (1 - share) * (2 + share) / (6 * 2000 * 0.3);
+        EXPECT_NEAR(sheet_speed(slope, thickness, 10, material), exact, 0.01 * exact) << share;
+    }
+    depth::Material material;
+    material.rest_density = 2000;
+    material.viscosity = 0.3;
+    material.cohesion = 1.01 * stress;
+    EXPECT_EQ(sheet_speed(slope, thickness, 10, material), 0);
+}
+
 TEST(Sheet, is_relieved_by_pore_pressure) {
     depth::Material material;
     material.friction_coefficient = 0.4;
