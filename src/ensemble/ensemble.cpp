@@ -15,6 +15,7 @@
 
 #include "core/hash.hpp"
 #include "core/try.hpp"
+#include "products/fault_files.hpp"
 #include "run/run_scene.hpp"
 
 namespace talus::ensemble {
@@ -119,6 +120,9 @@ std::optional<std::pair<RunRecord, observe::HazardMaps>> Workers::compute(std::s
     record.hash = to_hex(result->hash);
     if (result->status == run::RunStatus::fault) {
         record.fault = result->stop_reason;
+        const auto kept = folder_.path() / "faults" / fmt::format("run_{}", run);
+        const Status written = result->fault ? products::write_fault(*result->fault, kept) : Status();
+        if (!written) record.fault += "; nothing more is kept of it: " + written.error().message;
         return made;
     }
     record.results = measure(*scene, *result);

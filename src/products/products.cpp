@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "core/try.hpp"
+#include "products/fault_files.hpp"
 #include "products/results_json.hpp"
 #include "products/text_file.hpp"
 #include "products/writers.hpp"
@@ -37,6 +38,7 @@ Status write_report(const scene::Scene& scene, const run::RunResult& result,
 Status write_products(const scene::Scene& scene, const run::RunResult& result, const std::filesystem::path& folder,
                       const std::vector<run::Comparison>& comparisons) {
     TALUS_TRY(write_partial_note(result, folder));
+    if (result.fault) TALUS_TRY(write_fault(*result.fault, folder / "fault"));
     TALUS_TRY(write_maps(scene, result, folder));
     TALUS_TRY(write_tables(scene, result, folder));
     TALUS_TRY(write_vectors(scene, result, folder));

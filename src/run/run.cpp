@@ -13,6 +13,11 @@
 #include "terrain/map_cell.hpp"
 
 namespace talus::run {
+namespace {
+
+constexpr std::uint64_t steps_between_good_states = 16;  // a copy costs less than a hundredth of a step
+
+}  // namespace
 
 Result<std::unique_ptr<Run>> Run::start(const scene::Scene& scene, std::optional<double> particle_spacing,
                                         const sim::Progress& progress) {
@@ -61,6 +66,7 @@ bool Run::advance() {
         return false;
     }
     const auto start = std::chrono::steady_clock::now();
+    if (state().step % steps_between_good_states == 0) good_ = state();
     threads_.execute([&] { take_step(); });
     wall_time_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     return phase_ != RunPhase::fault;
@@ -82,6 +88,7 @@ void Run::take_step() {
     if (!stepped) {
         // A run that continues all the same needs gapless measurements.
         if (endless_) observer_.observe(model(), ground(), state());
+        if (!fault_) fault_ = record_fault(model(), ground(), good_, state(), stepped.error().message);
         return stop(RunPhase::fault, stepped.error().message);
     }
     if (endless_) return;
@@ -99,6 +106,7 @@ void Run::change(const std::function<std::uint32_t(sim::Model&, sim::Ground&, si
     simulation_.change(
         [&](sim::Model& model, sim::Ground& ground, sim::State& state) { first_new_id = edit(model, ground, state); });
     observer_.follow(model(), ground(), state(), first_new_id);
+    good_ = state();
     rest_.stir(state().time);
     if (phase_ == RunPhase::at_rest) stop(RunPhase::ready, "");
 }
@@ -110,6 +118,10 @@ RunResult Run::result(const std::string& unfinished) const {
                                                 : RunStatus::complete;
     result.stop_reason =
         phase_ == RunPhase::ready ? fmt::format("{} at t = {:.4g} s", unfinished, state().time) : stop_reason_;
+    if (phase_ == RunPhase::fault) {
+        result.fault = fault_;
+        result.stop_reason += fault_->sentence;
+    }
     result.observation = threads_.execute([&] { return observer_.finish(model(), ground(), state()); });
     if (followed_corridor_width_ > 0) {
         observe::follow_debris(ground(), observer_.flow_path(), followed_corridor_width_, outputs_, result.observation);

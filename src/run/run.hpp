@@ -8,6 +8,7 @@
 
 #include "core/result.hpp"
 #include "observe/observer.hpp"
+#include "run/fault_record.hpp"
 #include "run/run_result.hpp"
 #include "run/stop_rule.hpp"
 #include "run/threads.hpp"
@@ -65,6 +66,8 @@ class Run {
     [[nodiscard]] const sim::State& state() const { return simulation_.state(); }
     [[nodiscard]] const sim::Simulation& simulation() const { return simulation_; }
     [[nodiscard]] const observe::Observer& observer() const { return observer_; }
+    /// What is known about the first step that cannot be trusted, at fault.
+    [[nodiscard]] const std::optional<FaultRecord>& fault() const { return fault_; }
     /// Parallel work on the run must use them.
     [[nodiscard]] const Threads& threads() const { return threads_; }
     [[nodiscard]] double wall_time() const { return wall_time_; }  ///< s, of the steps alone
@@ -87,6 +90,9 @@ class Run {
     bool endless_;
     RunPhase phase_ = RunPhase::ready;
     std::string stop_reason_;
+    /// A state of a few steps ago, after the last change: a fault is explained with it.
+    sim::State good_;
+    std::optional<FaultRecord> fault_;
     double wall_time_ = 0, smallest_time_step_, largest_time_step_ = 0;
 };
 

@@ -1,9 +1,11 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 
 #include "observe/observation.hpp"
+#include "run/fault_record.hpp"
 #include "sim/stage_times.hpp"
 
 namespace talus::run {
@@ -19,7 +21,8 @@ enum class RunStatus { complete, interrupted, fault };
 
 struct RunResult {
     RunStatus status = RunStatus::complete;
-    std::string stop_reason;  ///< "debris came to rest (less than 0.1 % of it moving for 3 s)", the fault, ...
+    std::string stop_reason;           ///< "debris came to rest (less than 0.1 % of it moving for 3 s)", the fault, ...
+    std::optional<FaultRecord> fault;  ///< of particles, at fault
     observe::Observation observation;
     sim::StageTimes stage_times;
     std::uint64_t hash = 0;       ///< of time, ids, positions and velocities at the end, in id order

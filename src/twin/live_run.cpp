@@ -8,12 +8,6 @@
 #include "sim/compression.hpp"
 
 namespace talus::twin {
-namespace {
-
-constexpr std::uint64_t steps_between_good_states = 16;  // a copy costs less than a hundredth of a step
-
-}  // namespace
-
 Result<std::unique_ptr<LiveRun>> LiveRun::start(const scene::Scene& scene, const Setup& setup, double spacing,
                                                 const ScenarioOptions& options, const sim::Progress& progress) {
     TALUS_ASSIGN(auto run, run::Run::start(scene_of(scene, setup), spacing, progress));
@@ -29,7 +23,6 @@ LiveRun::LiveRun(std::unique_ptr<run::Run> run, Setup setup, const ScenarioOptio
     for (const ReleaseSetup& release : setup_.releases) groups_.push_back({release.id, false});
     for (const BuildingSetup& building : setup_.buildings) obstacles_.push_back({building.id, building.body});
     for (const BarrierSetup& barrier : setup_.barriers) obstacles_.push_back({barrier.id, barrier.body, true});
-    good_ = state();
     record();
 }
 
@@ -73,9 +66,7 @@ void LiveRun::advance() {
     for (std::size_t g = 0; g < groups_.size(); ++g) {
         groups_[g].begun = groups_[g].begun || model().releases[g].start_time <= state().time;
     }
-    if (state().step % steps_between_good_states == 0) good_ = state();
     const bool stepped = run_->advance();
-    if (phase() == run::RunPhase::fault) fault_ = record_fault(model(), ground(), good_, state(), message());
     slots_ = std::max(slots_, state().seeded);  // debris was injected or entrained
     if (!stepped) return;
     note_failed();

@@ -10,7 +10,6 @@
 #include "run/run.hpp"
 #include "scene/scene.hpp"
 #include "twin/erosion_history.hpp"
-#include "twin/fault_record.hpp"
 #include "twin/impact_history.hpp"
 #include "twin/recording.hpp"
 #include "twin/scenario.hpp"
@@ -54,7 +53,7 @@ class LiveRun {
     [[nodiscard]] const Recording& recording() const { return recording_; }
     [[nodiscard]] bool too_compressed() const;
     /// What is known about the step that cannot be trusted, at fault.
-    [[nodiscard]] const std::optional<FaultRecord>& fault() const { return fault_; }
+    [[nodiscard]] const std::optional<run::FaultRecord>& fault() const { return run_->fault(); }
     [[nodiscard]] std::string instruction_set() const {
         return std::string(run_->simulation().backend().instruction_set());
     }
@@ -112,9 +111,6 @@ class LiveRun {
     std::vector<Group> groups_;
     std::vector<Obstacle> obstacles_;
     std::uint32_t slots_ = 0;
-    /// A state of a few steps ago, after the last change: a fault is explained with it.
-    sim::State good_;
-    std::optional<FaultRecord> fault_;
     Recording recording_;
     ImpactHistory impact_history_;
     ErosionHistory erosion_history_;

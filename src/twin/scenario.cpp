@@ -4,6 +4,7 @@
 #include <array>
 #include <filesystem>
 #include <limits>
+#include <system_error>
 #include <utility>
 
 #include <fmt/format.h>
@@ -12,7 +13,9 @@
 #include "core/hash.hpp"
 #include "core/try.hpp"
 #include "observe/erosion.hpp"
+#include "products/fault_files.hpp"
 #include "products/products.hpp"
+#include "products/text_file.hpp"
 #include "report/results.hpp"
 #include "run/run_scene.hpp"
 #include "scene/particle_spacing.hpp"
@@ -51,6 +54,18 @@ Pasts held_again(Pasts pasts) {
     std::erase_if(pasts, [](const auto& past) { return past.by_trigger; });
     for (auto& past : pasts) past.setup = held_again(std::move(past.setup));
     return pasts;
+}
+
+/// Writes a fault and the journal that leads to it into a new folder FOLDER/fault_N, and returns its path.
+Result<std::filesystem::path> keep_fault(const run::FaultRecord& record, const json& journal,
+                                         const std::filesystem::path& folder) {
+    std::error_code error;
+    int number = 1;
+    while (std::filesystem::exists(folder / fmt::format("fault_{}", number), error)) ++number;
+    auto kept = folder / fmt::format("fault_{}", number);
+    TALUS_TRY(products::write_fault(record, kept));
+    TALUS_TRY(products::write_text_file(kept / "journal.json", journal.dump(1) + "\n"));
+    return kept;
 }
 
 /// Whether an action gives a new name and nothing else.
@@ -154,7 +169,7 @@ void Scenario::advance() {
     const bool ready = phase() == run::RunPhase::ready;
     p.run->advance();
     if (!ready || phase() != run::RunPhase::fault) return;
-    FaultRecord record = *p.run->fault();
+    run::FaultRecord record = *p.run->fault();
     const json last = p.entries.empty() ? json() : p.entries.back().action;
     record.content["last_action"] = last;
     p.fault_note = record.sentence;

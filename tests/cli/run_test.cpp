@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <filesystem>
 #include <signal.h>
 #include <string>
@@ -217,7 +218,14 @@ TEST(Run, AFaultWritesWhatThereIsAndSaysWhy) {
     EXPECT_THAT(lines[0], HasSubstr("solver.smallest_time_step_s"));
     EXPECT_THAT(lines[0], HasSubstr("partial"));
     EXPECT_EQ(result_of(outcome).at("status"), "fault");
-    EXPECT_THAT(read_text(scene.input("result/manifest.json")), HasSubstr("partial"));
+    EXPECT_THAT(lines[0], HasSubstr("; particle "));
+    const auto manifest = nlohmann::json::parse(read_text(scene.input("result/manifest.json")));
+    EXPECT_EQ(manifest["partial"], true);
+    EXPECT_THAT(manifest["files"], testing::IsSupersetOf({"fault/fault.json", "fault/last_good_state.csv"}));
+    const auto fault = nlohmann::json::parse(read_text(scene.input("result/fault/fault.json")));
+    const std::string table = read_text(scene.input("result/fault/last_good_state.csv"));
+    EXPECT_EQ(std::count(table.begin(), table.end(), '\n'), fault["last_good"]["particles"].get<int>() + 1);
+    EXPECT_LE(fault["step"].get<int>() - fault["last_good"]["step"].get<int>(), 16);
 }
 
 class Interrupted : public testing::Test {

@@ -140,6 +140,22 @@ TEST_F(EnsembleTest, ARunThatFailsIsRecordedAndTheRestGoOn) {
     EXPECT_EQ(again.resumed, 3u);
 }
 
+TEST_F(EnsembleTest, AFaultOfARunIsKept) {
+    plan.factors.clear();
+    ASSERT_TRUE(add_factor(plan, "solver.compression_limit=0.000001,0.5"));
+    EXPECT_EQ(run("some", {}).failed, 3u);
+    const auto reduction = reduce({folder / "some"}, 6, identity(), plan.thresholds);
+    ASSERT_TRUE(reduction);
+    for (const RunRecord& r : reduction->runs) {
+        const auto kept = folder / "some" / "faults" / fmt::format("run_{}", r.run);
+        EXPECT_EQ(std::filesystem::exists(kept / "fault.json"), !r.complete());
+        EXPECT_EQ(std::filesystem::exists(kept / "last_good_state.csv"), !r.complete());
+        if (!r.complete()) {
+            EXPECT_THAT(r.fault, HasSubstr("; particle "));
+        }
+    }
+}
+
 TEST_F(EnsembleTest, AFolderBelongsToOneEnsembleAndOneProcess) {
     {
         const auto held = opened("mine");

@@ -6,6 +6,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 
 #include "run/run_scene.hpp"
@@ -150,6 +151,28 @@ TEST_F(RunOfAScene, TooManyParticlesAreRefused) {
     EXPECT_THAT(result.error().message, HasSubstr("solver.particle_limit = 100"));
 }
 
+TEST_F(RunOfAScene, AFaultNamesTheFirstBadParticleItsCellAndItsNeighbours) {
+    const auto run = run::Run::start(loaded(""));
+    ASSERT_TRUE(run);
+    const sim::State good = (*run)->state();
+    sim::State bad = good;
+    const std::size_t worst = good.count / 2;
+    bad.position.x[worst] = std::numeric_limits<float>::quiet_NaN();
+    bad.velocity.z[worst + 1] = std::numeric_limits<float>::infinity();
+    const FaultRecord record = record_fault((*run)->model(), (*run)->ground(), good, bad, "not finite");
+    EXPECT_EQ(record.content["particles_not_finite"], 2);
+    const auto& particle = record.content["particle"];
+    EXPECT_EQ(particle["id"], good.id[worst]);
+    const terrain::Terrain& terrain = (*run)->ground().terrain;
+    EXPECT_NEAR(particle["x_m"].get<double>(), terrain.frame().origin.x + good.position.x[worst], 1e-3);
+    const GridGeometry& grid = terrain.elevation().geometry;
+    EXPECT_EQ(particle["terrain_column"], static_cast<int>((particle["x_m"].get<double>() - grid.x_min) / grid.cell));
+    EXPECT_EQ(particle["terrain_row"], static_cast<int>((particle["y_m"].get<double>() - grid.y_min) / grid.cell));
+    EXPECT_GT(particle["neighbours"].size(), 3U);
+    EXPECT_THAT(record.sentence, HasSubstr(fmt::format("; particle {}, the first of 2,", good.id[worst])));
+    EXPECT_THAT(record.sentence, HasSubstr(fmt::format("with {} neighbours", particle["neighbours"].size())));
+}
+
 TEST(EndlessRun, GoesOnBeyondItsEndAndAfterAFault) {
     params::SolverSpec solver;
     solver.end_time = 0.01;
@@ -175,6 +198,8 @@ TEST(EndlessRun, GoesOnBeyondItsEndAndAfterAFault) {
         EXPECT_EQ(faulty.phase(), RunPhase::fault);
         EXPECT_THAT(faulty.stop_reason(), HasSubstr("t = "));
         EXPECT_EQ(faulty.state().step, step);
+        ASSERT_TRUE(faulty.fault());
+        EXPECT_EQ(faulty.fault()->content["step"], 1) << "the first fault is the cause of the others";
     }
 }
 

@@ -1,14 +1,11 @@
 #include <algorithm>
 #include <filesystem>
-#include <limits>
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "run/run.hpp"
 #include "support/fixtures.hpp"
-#include "twin/fault_record.hpp"
 #include "twin/journal.hpp"
 #include "twin_fixtures.hpp"
 
@@ -42,26 +39,6 @@ TEST(Fault, is_kept_with_its_journal_and_the_last_good_state) {
     ASSERT_TRUE(journal) << journal.error().message;
     EXPECT_EQ(journal->steps, scenario->step());
     EXPECT_EQ(journal->hash, fmt::format("{:016x}", scenario->hash()));
-}
-
-TEST(Fault, names_the_first_bad_particle_its_cell_and_its_neighbours) {
-    const auto run = run::Run::start(channel_scene());
-    ASSERT_TRUE(run);
-    const sim::State good = (*run)->state();
-    sim::State bad = good;
-    const std::size_t worst = good.count / 2;
-    bad.position.x[worst] = std::numeric_limits<float>::quiet_NaN();
-    bad.velocity.z[worst + 1] = std::numeric_limits<float>::infinity();
-    const FaultRecord record = record_fault((*run)->model(), (*run)->ground(), good, bad, "not finite");
-    EXPECT_EQ(record.content["particles_not_finite"], 2);
-    const json& particle = record.content["particle"];
-    EXPECT_EQ(particle["id"], good.id[worst]);
-    EXPECT_NEAR(particle["x_m"].get<double>(), west + 12, 5);
-    EXPECT_EQ(particle["terrain_column"], static_cast<int>(particle["x_m"].get<double>() - west));
-    EXPECT_EQ(particle["terrain_row"], static_cast<int>(particle["y_m"].get<double>() - south));
-    EXPECT_GT(particle["neighbours"].size(), 3U);
-    EXPECT_THAT(record.sentence, HasSubstr(fmt::format("; particle {}, the first of 2,", good.id[worst])));
-    EXPECT_THAT(record.sentence, HasSubstr(fmt::format("with {} neighbours", particle["neighbours"].size())));
 }
 
 }  // namespace

@@ -1,20 +1,15 @@
-#include "twin/fault_record.hpp"
+#include "run/fault_record.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <optional>
-#include <system_error>
 
 #include <fmt/format.h>
 
-#include "core/try.hpp"
-#include "products/text_file.hpp"
-
-namespace talus::twin {
+namespace talus::run {
 namespace {
 
 using nlohmann::json;
-namespace fs = std::filesystem;
 
 bool is_finite(const LocalPoint& p) {
     return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z);
@@ -96,20 +91,4 @@ FaultRecord record_fault(const sim::Model& model, const sim::Ground& ground, con
     return record;
 }
 
-Result<fs::path> keep_fault(const FaultRecord& record, const json& journal, const fs::path& folder) {
-    std::error_code error;
-    fs::path kept;
-    for (int number = 1; kept.empty(); ++number) {
-        const fs::path candidate = folder / fmt::format("fault_{}", number);
-        if (fs::exists(candidate, error)) continue;
-        fs::create_directories(candidate, error);
-        if (error) return Error{fmt::format("{}: cannot be made: {}", candidate.string(), error.message())};
-        kept = candidate;
-    }
-    TALUS_TRY(products::write_text_file(kept / "last_good_state.csv", record.state_table));
-    TALUS_TRY(products::write_text_file(kept / "journal.json", journal.dump(1) + "\n"));
-    TALUS_TRY(products::write_text_file(kept / "fault.json", record.content.dump(1) + "\n"));
-    return kept;
-}
-
-}  // namespace talus::twin
+}  // namespace talus::run
