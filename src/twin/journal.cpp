@@ -1,6 +1,8 @@
 #include "twin/journal.hpp"
 
 #include <algorithm>
+#include <initializer_list>
+#include <string_view>
 
 #include <fmt/format.h>
 
@@ -20,6 +22,11 @@ constexpr int version = 1;
 /// Reads keys of known kinds; the first mismatch is kept as the error.
 class JournalReader {
   public:
+    /// Refuses any other key.
+    void keys(const json& object, const char* of, std::initializer_list<std::string_view> known) {
+        const Status s = object.is_object() ? check_keys(object, known) : Status();
+        if (!s) refuse(of + (": " + s.error().message));
+    }
     const json& object(const json& parent, const char* key) {
         return take(parent, key, "an object", [](const json& v) { return v.is_object(); });
     }
@@ -99,8 +106,10 @@ Result<Journal> read_journal(const std::string& text) {
     if (const std::uint64_t found = read.whole(file, "talus_journal"); read.status() && found != version) {
         return Error{fmt::format("talus_journal = {}: this program reads version {}", found, version)};
     }
+    read.keys(file, "journal", {"talus_journal", "scene", "first_setup", "next", "actions", "last"});
     Journal journal;
     const json& scene = read.object(file, "scene");
+    read.keys(scene, "scene", {"file", "overrides", "inputs"});
     journal.scene_file = read.text(scene, "file");
     for (const json& entry : read.list(scene, "overrides")) {
         if (entry.is_string()) {
@@ -110,15 +119,18 @@ Result<Journal> read_journal(const std::string& text) {
         }
     }
     for (const json& input : read.list(scene, "inputs")) {
+        read.keys(input, "scene.inputs", {"role", "path", "fnv1a_64"});
         journal.inputs.push_back({read.text(input, "role"), read.text(input, "path"), 0, read.text(input, "fnv1a_64")});
     }
     journal.first_setup = read.object(file, "first_setup");
     const json& next = read.object(file, "next");
+    read.keys(next, "next", {"release", "barrier", "building", "zone", "bed", "inflow"});
     journal.next = {static_cast<int>(read.whole(next, "release")),  static_cast<int>(read.whole(next, "barrier")),
                     static_cast<int>(read.whole(next, "building")), static_cast<int>(read.whole(next, "zone")),
                     static_cast<int>(read.whole(next, "bed")),      static_cast<int>(read.whole(next, "inflow"))};
     std::uint64_t before = 0;
     for (const json& entry : read.list(file, "actions")) {
+        read.keys(entry, "actions", {"step", "by", "action", "setup"});
         JournalEntry action{read.whole(entry, "step"), read.text(entry, "by"), read.object(entry, "action"), {}};
         if (entry.is_object() && entry.contains("setup")) action.setup = read.object(entry, "setup");
         if (action.step < before) {
@@ -128,6 +140,7 @@ Result<Journal> read_journal(const std::string& text) {
         journal.entries.push_back(std::move(action));
     }
     const json& last = read.object(file, "last");
+    read.keys(last, "last", {"step", "time_s", "hash", "instruction_set"});
     journal.steps = read.whole(last, "step");
     journal.time = read.number(last, "time_s");
     journal.hash = read.text(last, "hash");

@@ -17,12 +17,12 @@ std::string shown(const json& value) {
 
 Status check_keys(const json& object, const std::vector<std::string>& allowed,
                   std::initializer_list<std::string_view> also) {
-    std::vector<std::string_view> names(also.begin(), also.end());
+    std::vector<std::string> names(also.begin(), also.end());
     names.insert(names.end(), allowed.begin(), allowed.end());
     for (const auto& [key, value] : object.items()) {
         if (std::find(names.begin(), names.end(), key) != names.end()) continue;
-        return Error{fmt::format("{} = {}: no such key here; allowed: {}", shown(json(key)), shown(value),
-                                 fmt::join(names, ", "))};
+        return Error{fmt::format("{} = {}: no such key here; nearest known key: {}; allowed: {}", shown(json(key)),
+                                 shown(value), params::nearest_word(key, names), fmt::join(names, ", "))};
     }
     return {};
 }

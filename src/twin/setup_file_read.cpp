@@ -1,6 +1,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <string_view>
 
 #include <fmt/format.h>
 
@@ -14,6 +15,7 @@
 namespace talus::twin {
 namespace {
 
+using namespace std::string_view_literals;
 using nlohmann::json;
 
 /// Older journals have directions in radians. Returns degrees that convert back to exactly the same value, so that a
@@ -57,6 +59,9 @@ class SetupReader {
     static Status read_parts(const json& file, const char* key, const char* number, double Part::*value,
                              std::vector<Part>& parts);
     static Result<std::string> read_name(const json& file);
+    /// Refuses keys other than the id and those of such an entry.
+    template <class Spec>
+    static Status check_entry(const json& file, std::initializer_list<std::string_view> keys);
     /// The id, and its index among `count` entries of the scene; `key`: present only in a changed one.
     template <class Entry>
     static Status read_origin(const json& file, const char* key, std::size_t count, Entry& setup);
@@ -95,10 +100,15 @@ Status SetupReader::read_material(const json& file, params::MaterialSpec& materi
     if (!file.is_object()) return Error{fmt::format("material = {}: must be an object", shown(file))};
     params::SceneSpec spec;
     spec.material = scene_.spec.material;
+    std::vector<std::string> numbers;
+    for (const params::Parameter& parameter : params::find_section("material")->parameters) {
+        if (parameter.kind == params::ParameterKind::number) numbers.push_back(parameter.key);
+    }
     for (const auto& [key, value] : file.items()) {
         const params::Parameter* parameter = params::find_section("material")->find(key);
         if (parameter == nullptr || parameter->kind != params::ParameterKind::number) {
-            return Error{fmt::format("material.{}: no such key", key)};
+            return Error{fmt::format("material.{}: no such key; nearest known key: {}", key,
+                                     params::nearest_word(key, numbers))};
         }
         TALUS_ASSIGN(auto number, read_number(file, key, parameter->range, parameter->unit));
         if (!number && parameter->absent.empty()) return Error{fmt::format("material.{}: must be a number", key)};
@@ -130,6 +140,7 @@ Status SetupReader::read_parts(const json& file, const char* key, const char* nu
     parts.clear();
     if (!file[key].is_array()) return bad(key, file);
     for (const json& entry : file[key]) {
+        if (entry.is_object()) TALUS_TRY(check_keys(entry, {"rings", number}));
         const auto given = read_number(entry.is_object() ? entry : json::object(), number, {}, "m");
         if (!given || !*given || !entry.contains("rings")) return bad(key, file);
         Part& part = parts.emplace_back();
@@ -139,9 +150,14 @@ Status SetupReader::read_parts(const json& file, const char* key, const char* nu
     return {};
 }
 
+template <class Spec>
+Status SetupReader::check_entry(const json& file, std::initializer_list<std::string_view> keys) {
+    if (!file.is_object() || !file.contains("id") || !file["id"].is_string()) return bad("id", file);
+    return check_keys(file, live_keys(params::section_of<Spec>.first), keys);
+}
+
 template <class Entry>
 Status SetupReader::read_origin(const json& file, const char* key, std::size_t count, Entry& setup) {
-    if (!file.is_object() || !file.contains("id") || !file["id"].is_string()) return bad("id", file);
     TALUS_ASSIGN(const int index, read_index(file, count));
     setup.id = file["id"];
     setup.scene_index = index;
@@ -151,6 +167,7 @@ Status SetupReader::read_origin(const json& file, const char* key, std::size_t c
 
 Result<ReleaseSetup> SetupReader::read_release(const json& file) const {
     ReleaseSetup setup;
+    TALUS_TRY(check_entry<params::ReleaseSpec>(file, {"id", "scene", "triggered", "name", "patches", "raster"}));
     TALUS_TRY(read_origin(file, "patches", scene_.releases.size(), setup));
     setup.triggered = file.contains("triggered") && file["triggered"] == true;
     terrain::Release release;
@@ -168,7 +185,7 @@ Result<ReleaseSetup> SetupReader::read_release(const json& file) const {
 }
 
 Result<BarrierSetup> SetupReader::read_barrier(const json& file) const {
-    if (!file.is_object() || !file.contains("id") || !file["id"].is_string()) return bad("id", file);
+    TALUS_TRY(check_entry<params::BarrierSpec>(file, {"id", "name", "line", "openings", "from_scene"}));
     TALUS_ASSIGN(auto line, read_points(file, "line", false, 2, 1'000'000));
     if (!line) return bad("line", file);
     TALUS_ASSIGN(const std::string name, read_name(file));
@@ -190,6 +207,7 @@ Result<BarrierSetup> SetupReader::read_barrier(const json& file) const {
 
 Result<BuildingSetup> SetupReader::read_building(const json& file) const {
     BuildingSetup setup;
+    TALUS_TRY(check_entry<params::BuildingSpec>(file, {"id", "scene", "name", "footprint"}));
     TALUS_TRY(read_origin(file, "footprint", scene_.buildings.size(), setup));
     if (setup.as_in_scene) {
         setup.body =
@@ -210,6 +228,7 @@ Result<BuildingSetup> SetupReader::read_building(const json& file) const {
 
 Result<ZoneSetup> SetupReader::read_zone(const json& file) const {
     ZoneSetup setup;
+    TALUS_TRY(check_entry<params::ZoneSpec>(file, {"id", "scene", "name", "polygons"}));
     TALUS_TRY(read_origin(file, "polygons", scene_.zones.size(), setup));
     scene::Zone zone;
     if (setup.scene_index >= 0) zone = scene_.zones[static_cast<std::size_t>(setup.scene_index)];
@@ -225,6 +244,7 @@ Result<ZoneSetup> SetupReader::read_zone(const json& file) const {
 
 Result<BedSetup> SetupReader::read_bed(const json& file) const {
     BedSetup setup;
+    TALUS_TRY(check_entry<params::BedSpec>(file, {"id", "scene", "name", "parts", "raster"}));
     TALUS_TRY(read_origin(file, "parts", scene_.bed_layers.size(), setup));
     scene::BedLayer layer;
     if (setup.scene_index >= 0) layer = scene_.bed_layers[static_cast<std::size_t>(setup.scene_index)];
@@ -241,6 +261,9 @@ Result<BedSetup> SetupReader::read_bed(const json& file) const {
 
 Result<InflowSetup> SetupReader::read_inflow(const json& file) const {
     InflowSetup setup;
+    // "direction": of older journals, in radians.
+    TALUS_TRY(
+        check_entry<params::InflowSpec>(file, {"id", "scene", "name", "line", "polygons", "hydrograph", "direction"}));
     TALUS_TRY(read_origin(file, "polygons", scene_.inflows.size(), setup));
     if (setup.as_in_scene) {
         setup.body =
@@ -271,12 +294,14 @@ Result<InflowSetup> SetupReader::read_inflow(const json& file) const {
 
 Result<Setup> read_setup(const json& file, const scene::Scene& scene) {
     if (!file.is_object()) return Error{fmt::format("setup = {}: must be an object", shown(file))};
-    for (const char* key : {"material", "releases", "barriers", "buildings", "zones", "beds", "inflows"}) {
+    const auto sections = {"material"sv, "releases"sv, "barriers"sv, "buildings"sv, "zones"sv, "beds"sv, "inflows"sv};
+    for (const std::string_view key : sections) {
         if (!file.contains(key)) return Error{fmt::format("setup.{}: missing", key)};
-        if (std::string_view(key) != "material" && !file[key].is_array()) {
+        if (key != "material" && !file[key].is_array()) {
             return Error{fmt::format("setup.{} = {}: must be a list", key, shown(file[key]))};
         }
     }
+    if (const Status known = check_keys(file, sections); !known) return Error{"setup: " + known.error().message};
     const SetupReader reader(scene);
     Setup setup;
     TALUS_TRY(reader.read_material(file["material"], setup.material));

@@ -1,5 +1,6 @@
 #include "twin/journal.hpp"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 
 #include "core/hash.hpp"
@@ -137,6 +138,42 @@ TEST(Journal, refuses_what_is_none_naming_key_and_value) {
                 HasSubstr("viscosity = 2: must be a number 0 to below 1"));
     EXPECT_THAT(error_of("/actions/1/setup/barriers", {{{"id", "b"}, {"name", "n"}, {"line", 3}}}),
                 HasSubstr("line = 3"));
+}
+
+TEST(Journal, refuses_unknown_keys_and_names_the_nearest) {
+    const auto scenario = open(scene_with_threads(2));
+    act(*scenario, {{"action", "put_release"}, {"id", "release-1"}, {"thickness_m", 1.3}});
+    act(*scenario, {{"action", "put_barrier"},
+                    {"line", {{west + 45, south + 22}, {west + 46, south + 37}}},
+                    {"height_m", 2},
+                    {"thickness_m", 1}});
+    act(*scenario, {{"action", "undo"}});
+    const json good = scenario->journal_json();
+    const auto shared = std::make_shared<const scene::Scene>(scene_with_threads(2));
+    const auto error_of = [&](const std::string& pointer, const char* key) {
+        json bad = good;
+        bad[json::json_pointer(pointer)][key] = 1;
+        const auto journal = read_journal(bad.dump());
+        if (!journal) return journal.error().message;
+        const auto again = replay(*journal, shared);
+        return again ? "" : again.error().message;
+    };
+    const auto names = [](const char* key, const char* nearest) {
+        return HasSubstr(fmt::format("\"{}\" = 1: no such key here; nearest known key: {}; allowed: ", key, nearest));
+    };
+    EXPECT_THAT(error_of("", "action"), names("action", "actions"));
+    EXPECT_THAT(error_of("/scene", "override"), names("override", "overrides"));
+    EXPECT_THAT(error_of("/scene/inputs/0", "hash"), names("hash", "path"));
+    EXPECT_THAT(error_of("/next", "beds"), names("beds", "bed"));
+    EXPECT_THAT(error_of("/actions/0", "steps"), names("steps", "step"));
+    EXPECT_THAT(error_of("/actions/2/setup", "barrier"), names("barrier", "barriers"));
+    EXPECT_THAT(error_of("/last", "time"), names("time", "time_s"));
+    EXPECT_THAT(error_of("/first_setup", "zone"), names("zone", "zones"));
+    EXPECT_THAT(error_of("/first_setup/releases/0", "trigger"), names("trigger", "triggered"));
+    EXPECT_THAT(error_of("/first_setup/buildings/0", "heigth_m"), names("heigth_m", "height_m"));
+    EXPECT_THAT(error_of("/actions/2/setup/releases/0/patches/0", "thickness"), names("thickness", "thickness_m"));
+    EXPECT_THAT(error_of("/first_setup/material", "viscosty"),
+                HasSubstr("material.viscosty: no such key; nearest known key: viscosity"));
 }
 
 }  // namespace
