@@ -4,6 +4,7 @@
 #include <exception>
 #include <iterator>
 #include <optional>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -161,7 +162,8 @@ template <class Made>
 void Scenarios::prepare(Slot& slot, const std::string& what, bool holds,
                         std::function<Result<Made>(const sim::Progress&)> work,
                         std::function<void(Result<Made>)> then) {
-    const auto begin = [this, &slot, what, holds, work = std::move(work), then = std::move(then)] {
+    const auto refuse = [then](const Error& why) { then(why); };
+    const auto begin = [this, &slot, what, holds, work = std::move(work), then] {
         auto job = std::make_shared<Job>();
         job->what = what;
         job->holds = holds;
@@ -185,8 +187,11 @@ void Scenarios::prepare(Slot& slot, const std::string& what, bool holds,
                 start_clock();
             });
     };
-    if (slot.job) {
-        slot.waiting.push_back(begin);
+    if (slot.job && slot.waiting.size() >= max_waiting) {
+        refuse(Error{fmt::format("{}: {} changes of scenario {} wait already, the most there can be; repeat it later",
+                                 what, max_waiting, name_of(index_of(slot)))});
+    } else if (slot.job) {
+        slot.waiting.push_back({begin, refuse});
     } else {
         begin();
     }
@@ -199,7 +204,7 @@ void Scenarios::prepare_next(const Job* ended) {
         if (slot.waiting.empty()) continue;
         const auto next = std::move(slot.waiting.front());
         slot.waiting.pop_front();
-        next();
+        next.begin();
     }
 }
 
@@ -311,7 +316,8 @@ void Scenarios::copy(int from, const json& action, const std::string& by, const 
 
 Status Scenarios::remove(int index) {
     if (index == 0) return Error{"scenario A stays; the others can be ended"};
-    slots_[static_cast<std::size_t>(index)] = Slot();
+    const Slot ended = std::exchange(slots_[static_cast<std::size_t>(index)], Slot());
+    for (const Waiting& change : ended.waiting) change.refuse(Error{"the scenario has ended"});
     start_clock();
     tell_names();
     return {};

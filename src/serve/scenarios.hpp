@@ -65,6 +65,8 @@ class Scenarios {
     /// The highest rate of frames, Hz, and the fewest particles that a viewer can limit frames to.
     static constexpr double highest_rate = 60;
     static constexpr unsigned lowest_cap = 1000;
+    /// Changes of a scenario that wait while another is prepared.
+    static constexpr std::size_t max_waiting = 32;
 
     Scenarios(std::unique_ptr<twin::Scenario> first, Watcher& watcher, Elsewhere elsewhere);
 
@@ -74,7 +76,7 @@ class Scenarios {
     [[nodiscard]] twin::Scenario& at(int index) { return *slots_[static_cast<std::size_t>(index)].scenario; }
 
     /// Any action of docs/protocol.md. A change is prepared elsewhere, one at a time; meanwhile its scenario takes no
-    /// step. Errors name key, value and allowed range; then nothing is changed.
+    /// step. Errors name key, value and allowed range, or say that max_waiting wait already; then nothing is changed.
     void act(int index, const nlohmann::json& action, const std::string& by, const Answer<twin::Done>& answer);
     /// Another scenario with the setup that `from` has now, at time 0. `action`: applied to it first, unless null; the
     /// scenario then runs if `from` does, otherwise it is paused. Errors: there are max_count; as of `act`, and then
@@ -101,6 +103,11 @@ class Scenarios {
     }
 
   private:
+    /// A change that is to be prepared after the present one.
+    struct Waiting {
+        std::function<void()> begin;
+        std::function<void(const Error&)> refuse;  ///< in place of it
+    };
     struct Job {
         std::string what;
         bool holds = true;  ///< the scenario takes no step meanwhile
@@ -109,10 +116,10 @@ class Scenarios {
     };
     /// State of a scenario between two messages to its viewers.
     struct Slot {
-        std::shared_ptr<twin::Scenario> scenario;   // none: this slot is free
-        std::shared_ptr<Job> job;                   // what is being prepared for it
-        std::deque<std::function<void()>> waiting;  // what is to be prepared after that
-        std::string title;                          // given by people
+        std::shared_ptr<twin::Scenario> scenario;  // none: this slot is free
+        std::shared_ptr<Job> job;                  // what is being prepared for it
+        std::deque<Waiting> waiting;               // what is to be prepared after that
+        std::string title;                         // given by people
         bool running = false;
         RateMeter rate;
         Audience audience;
