@@ -9,12 +9,15 @@
 #include "scene/particle_spacing.hpp"
 #include "sim/sources/seed.hpp"
 #include "terrain/map_cell.hpp"
+#include "terrain/wall_effort.hpp"
 
 namespace talus::scene {
 namespace {
 
 constexpr double max_map_cells = 4e8, max_front_rows = 1e6;
 constexpr double max_cells_per_spacing = 50;
+/// Of overlapping buildings and barriers: half a gigabyte, and some 10 s to cut them.
+constexpr double max_wall_pieces = 1e7;
 /// Measured with 20 million cells (docs/performance.md).
 constexpr double bytes_per_terrain_cell = 20;
 
@@ -88,6 +91,15 @@ Status check_outputs(const ParsedScene& parsed, const Scene& scene, double spaci
     return {};
 }
 
+Status check_walls(const ParsedScene& parsed, const Scene& scene) {
+    const double pieces = terrain::WallEffort(scene.buildings, 0).pieces();
+    if (pieces <= max_wall_pieces) return {};
+    return Error{
+        fmt::format("{}: {} buildings and barriers overlap so much that their walls would be cut into {:.2g} pieces, "
+                    "and may be cut into {:.2g}; place them apart",
+                    parsed.file.string(), scene.buildings.size(), pieces, max_wall_pieces)};
+}
+
 Status check_memory(const ParsedScene& parsed, const Scene& scene, double spacing) {
     const double particles = total_volume(scene) / (spacing * spacing * spacing);
     const double needed = memory_needed(scene, particles);
@@ -112,6 +124,7 @@ Status check_limits(const ParsedScene& parsed, const Scene& scene) {
     TALUS_TRY(check_thickness(parsed, scene));
     TALUS_TRY(check_particles(parsed, scene, spacing));
     TALUS_TRY(check_outputs(parsed, scene, spacing));
+    TALUS_TRY(check_walls(parsed, scene));
     return check_memory(parsed, scene, spacing);
 }
 

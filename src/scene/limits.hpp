@@ -5,8 +5,8 @@
 namespace talus::scene {
 
 /// Whether a run of the loaded scene has a size that makes sense: thickness of its releases, particle spacing and
-/// number of particles, cells of the maps, rows of front.csv, memory. Errors name the key to change, its value and what
-/// is allowed.
+/// number of particles, cells of the maps, rows of front.csv, pieces of walls, memory. Errors name the key to change,
+/// its value and what is allowed.
 [[nodiscard]] Status check_limits(const ParsedScene& parsed, const Scene& scene);
 
 /// Measured with a million particles (docs/performance.md).

@@ -173,6 +173,10 @@ void BuildingSolids::split_walls() {
                 near.push_back(o);
             }
         }
+        // Where many overlap, the highest of those that hide a piece are found first, and most of the others need no
+        // test.
+        std::sort(near.begin(), near.end(),
+                  [&](std::uint32_t a, std::uint32_t b) { return solids_[a].roof > solids_[b].roof; });
         solids[s].first_edge = static_cast<std::uint32_t>(pieces.size());
         for (std::uint32_t i = solid.first_edge; i < solid.last_edge; ++i) {
             const Edge& edge = edges_[i];
@@ -195,13 +199,18 @@ void BuildingSolids::split_walls() {
                 const double outside_y = (piece.ay + piece.by) / 2 - 2 * touching * dx / length;
                 for (const std::uint32_t o : near) {
                     const Solid& other = solids_[o];
+                    const bool hides_as_net = other.passing_share > solid.passing_share;
+                    if (other.roof <= (hides_as_net ? piece.hidden_by_nets : piece.hidden_below) &&
+                        !(hides_as_net && other.passing_share > piece.net_share)) {
+                        continue;  // adds nothing
+                    }
                     if (!in_plan(other, outside_x, outside_y)) continue;
                     if (other.floor > solid.floor && solid.floor == -infinity) continue;  // open below it
-                    if (other.passing_share <= solid.passing_share) {
-                        piece.hidden_below = std::max(piece.hidden_below, other.roof);
-                    } else {
+                    if (hides_as_net) {
                         piece.hidden_by_nets = std::max(piece.hidden_by_nets, other.roof);
                         piece.net_share = std::max(piece.net_share, other.passing_share);
+                    } else {
+                        piece.hidden_below = std::max(piece.hidden_below, other.roof);
                     }
                 }
                 pieces.push_back(piece);

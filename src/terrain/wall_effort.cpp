@@ -26,13 +26,18 @@ WallEffort::WallEffort(const std::vector<Building>& buildings, double range) : r
     for (const Part& part : parts_) comparisons_ += part.walls * part.others * part.others;
 }
 
+double WallEffort::pieces() const {
+    double pieces = 0;
+    for (const Part& part : parts_) pieces += part.walls * (1 + part.cuts());
+    return pieces;
+}
+
 double WallEffort::pieces_near(const Extent& extent) const {
     constexpr int samples = 20;
     double pieces = 0;
     for (const Part& part : parts_) {
         const Extent reach = part.extent.grown(range_);
-        // A convex outline meets a wall twice, at most; half of the others' walls lie on either side.
-        const double of_part = part.walls + part.others / 2;
+        const double of_part = part.walls + part.cuts();
         for (int row = 0; row < samples; ++row) {
             for (int column = 0; column < samples; ++column) {
                 const PlanPoint p{extent.x_min + (column + 0.5) / samples * extent.width(),

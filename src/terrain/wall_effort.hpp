@@ -16,6 +16,8 @@ class WallEffort {
 
     /// Comparisons of walls that the constructor of BuildingSolids makes.
     [[nodiscard]] double comparisons() const { return comparisons_; }
+    /// Pieces into which it cuts them.
+    [[nodiscard]] double pieces() const;
     /// Pieces of walls that a look-up goes through, as a mean over an extent, world.
     [[nodiscard]] double pieces_near(const Extent& extent) const;
 
@@ -24,6 +26,9 @@ class WallEffort {
         Extent extent;
         double walls = 0;   ///< edges of the outline
         double others = 0;  ///< edges of the parts that it may overlap
+
+        /// A convex outline meets a wall twice, at most.
+        [[nodiscard]] double cuts() const { return others / 2; }
     };
     std::vector<Part> parts_;
     double range_, comparisons_ = 0;
