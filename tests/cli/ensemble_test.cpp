@@ -76,26 +76,6 @@ TEST(Ensemble, AnInterruptedOneGoesOn) {
     EXPECT_TRUE(fs::exists(scene.folder() / "result/report.html"));
 }
 
-TEST(Ensemble, KilledAgainAndAgainEndsInTheSameResult) {
-    const SmallScene scene;
-    scene.replace("end_time_s = 1", "end_time_s = 2");
-    const ProgramOptions here{.folder = scene.folder()};
-    ASSERT_EQ(run_program(ensemble_command("whole", {"--quiet"}, "6"), here).exit_code, 0);
-    ProgramOptions killed = here;
-    killed.wait_for = "\"event\":\"progress\"";
-    killed.while_running = [](int process) { kill(process, SIGKILL); };
-    for (int k = 0; k < 4; ++k)
-        (void)run_program(ensemble_command("result", {"--json", "--threads", "1"}, "6"), killed);
-    const auto rest = run_program(ensemble_command("result", {"--quiet"}, "6"), here);
-    EXPECT_EQ(rest.exit_code, 0) << rest.error;
-    EXPECT_EQ(rest.error, "") << "a run is there whole or not at all";
-    EXPECT_EQ(read_text(scene.folder() / "result/statistics.json"),
-              read_text(scene.folder() / "whole/statistics.json"));
-    for (const auto& entry : fs::recursive_directory_iterator(scene.folder() / "result")) {
-        EXPECT_THAT(entry.path().filename().string(), testing::Not(HasSubstr("unfinished")));
-    }
-}
-
 TEST(Ensemble, WhicheverFileCannotBeWrittenNothingThatWasFinishedIsLost) {
     const SmallScene scene;
     const ProgramOptions here{.folder = scene.folder()};
