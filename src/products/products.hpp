@@ -39,8 +39,9 @@ class OutputFolder {
 };
 
 /// Writes maps (.tif + .qml), front.csv, buildings.csv, results.gpkg, timeseries.csv, manifest.json, results.json,
-/// report.html; where there are comparisons with variants of the scene, convergence.csv and variants.csv too; PARTIAL.txt where the run did not
-/// end by itself, and the folder fault where a step could not be trusted. Errors name the file and the cause (disk full,
+/// report.html; where there are comparisons with variants of the scene, convergence.csv and variants.csv too;
+/// PARTIAL.txt where the run did not end by itself, and the folder fault where a step could not be trusted. Errors name
+/// the file and the cause (disk full,
 /// ...).
 [[nodiscard]] Status write_products(const scene::Scene& scene, const run::RunResult& result,
                                     const std::filesystem::path& folder,

@@ -16,8 +16,8 @@ namespace {
 
 constexpr double max_map_cells = 4e8, max_front_rows = 1e6;
 constexpr double max_cells_per_spacing = 50;
-/// Of overlapping buildings and barriers: half a gigabyte, and some 10 s to cut them.
-constexpr double max_wall_pieces = 1e7;
+/// Of overlapping buildings and barriers, by an estimate that is some five times too high: half a gigabyte.
+constexpr double max_wall_pieces = 5e7;
 /// Measured with 20 million cells (docs/performance.md).
 constexpr double bytes_per_terrain_cell = 20;
 
@@ -95,8 +95,8 @@ Status check_walls(const ParsedScene& parsed, const Scene& scene) {
     const double pieces = terrain::WallEffort(scene.buildings, 0).pieces();
     if (pieces <= max_wall_pieces) return {};
     return Error{
-        fmt::format("{}: {} buildings and barriers overlap so much that their walls would be cut into {:.2g} pieces, "
-                    "and may be cut into {:.2g}; place them apart",
+        fmt::format("{}: {} buildings and barriers overlap so much that their walls would be cut into up to {:.2g} "
+                    "pieces, and may be cut into {:.2g}; place them apart",
                     parsed.file.string(), scene.buildings.size(), pieces, max_wall_pieces)};
 }
 

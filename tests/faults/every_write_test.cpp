@@ -80,7 +80,7 @@ TEST(EveryAllocation, of_a_run_that_fails_leaves_nothing) {
     };
     ASSERT_EQ(run(0).exit_code, 0);
     const auto whole = contents(scene.folder() / "result");
-    for (const long call : chosen(memory.calls(), 8)) {
+    for (const long call : chosen(memory.calls(), 6)) {
         fs::remove_all(scene.folder() / "result");
         const ProgramOutcome outcome = run(call);
         SCOPED_TRACE(memory.failed() + " (" + std::to_string(call) + "): " + outcome.error);
@@ -165,7 +165,7 @@ TEST(EveryWrite, of_a_calibration_that_fails_loses_nothing) {
     scene.replace("chainage_m = 5", "chainage_m = 24");
     scene.replace("particle_spacing_m = 0.8", "particle_spacing_m = 1.6");
     Resumed({scene,
-             {"calibrate", "slope.toml", "--vary", "material.friction_coefficient=0.1:0.6", "--runs", "5", "--checks",
+             {"calibrate", "slope.toml", "--vary", "material.friction_coefficient=0.1:0.6", "--runs", "6", "--checks",
               "1", "-o", "result", "--quiet", "--threads", "1"},
              {"factors.csv", "observations.csv", "posterior.csv", "calibration.json"}})
         .expect_nothing_lost(3);

@@ -64,7 +64,7 @@ TEST(Killed, an_ensemble_ends_in_the_same_result) {
     const SmallScene scene;
     expect_same_result(scene,
                        {"ensemble", "slope.toml", "--vary", "material.friction_coefficient=0.1:0.5", "--vary",
-                        "release.thickness_m=0.2:0.5", "--depth-m", "0.2", "--runs", "6", "--threads", "1"},
+                        "release.thickness_m=0.2:0.5", "--depth-m", "0.2", "--runs", "4", "--threads", "1"},
                        {"statistics.json", "buildings.csv"});
 }
 

@@ -1,5 +1,6 @@
 #include <unistd.h>
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 
 #include "scene/scene_folder.hpp"
@@ -54,6 +55,22 @@ TEST_F(Limits, MapsAndFrontTableHaveASizeThatCanBeWritten) {
     EXPECT_THAT(load_error(), AllOf(HasSubstr("scene.toml:8: outputs.map_cell_m = 0.01 is refused"),
                                     HasSubstr("6e+08 cells"), HasSubstr("at least 0.013 (m)")));
     EXPECT_EQ(load_error({"outputs.map_cell_m=0.013"}), std::string(loaded));
+}
+
+TEST_F(Limits, HundredsOfStructuresUponEachOtherAreRefusedBeforeTheirWallsAreCut) {
+    const auto barriers = [](int count) {
+        std::string text;
+        for (int k = 0; k < count; ++k) {
+            text += fmt::format("[[barrier]]\nline_m = [[{0}, {1}], [{0}, {2}]]\nheight_m = 2\nthickness_m = 1\n",
+                                west + 150 + 0.001 * k, south + 96, south + 104);
+        }
+        return text;
+    };
+    write_valley(barriers(1500));
+    EXPECT_THAT(load_error(), AllOf(HasSubstr("scene.toml: 1500 buildings and barriers overlap so much"),
+                                    HasSubstr("may be cut into 5e+07; place them apart")));
+    write_valley(barriers(100));
+    EXPECT_EQ(load_error(), std::string(loaded));
 }
 
 TEST_F(Limits, AMapHasNoCellsThatEveryParticleCoversInThousands) {
