@@ -26,7 +26,7 @@ double median(std::vector<double> values) {
 class Measurement {
   public:
     Measurement(int particles, int threads)
-        : program_({"serve", "--quiet", "--port", std::to_string(port), "--token", controller, "--token", viewer,
+        : program_({"serve", "--quiet", "--port", std::to_string(load_port), "--token", controller, "--token", viewer,
                     "--threads", std::to_string(threads), "--set", "solver.end_time_s=5", "--set",
                     fmt::format("solver.target_particle_count={}", particles)}) {
         act({{"action", "set_speed"}, {"factor", nullptr}});
@@ -39,7 +39,7 @@ class Measurement {
     /// The whole run from time 0 to its end, with this number of viewers.
     Run run(std::size_t viewers) {
         act({{"action", "restart"}});
-        WebSocket watch(port, fmt::format("token={}&name=Watch", viewer));
+        WebSocket watch(load_port, fmt::format("token={}&name=Watch", viewer));
         const Viewers looking(viewers);
         while (watch.wait_for("state")["step"] != 0) {
         }
@@ -69,7 +69,7 @@ class Measurement {
 
   private:
     void act(const json& action) {
-        const Answer answer = HttpClient(port, controller).post("/api/scenarios/A/actions", action);
+        const Answer answer = HttpClient(load_port, controller).post("/api/scenarios/A/actions", action);
         if (answer.status != 200) throw std::runtime_error(answer.body);
     }
     Program program_;

@@ -28,8 +28,8 @@ using nlohmann::json;
 
 inline constexpr const char* controller = "controller-token-of-load";
 inline constexpr const char* viewer = "viewer-token-of-the-load";
-inline constexpr std::uint16_t port = 18123;
-inline constexpr double rate_hz = 30;
+inline constexpr std::uint16_t load_port = 18123;
+inline constexpr double load_rate_hz = 30;
 
 /// The program under test, ended with this object.
 class Program {
@@ -44,7 +44,7 @@ class Program {
         }
         for (int i = 0; i < 100; ++i) {
             try {
-                if (HttpClient(port, viewer).get("/api/session").status == 200) return;
+                if (HttpClient(load_port, viewer).get("/api/session").status == 200) return;
             } catch (const std::runtime_error&) {
                 // Not yet.
             }
@@ -98,8 +98,8 @@ class Viewers {
   public:
     explicit Viewers(std::size_t count) {
         for (std::size_t i = 0; i < count; ++i) {
-            sockets_.push_back(std::make_unique<WebSocket>(port, fmt::format("token={}&name=Load", viewer)));
-            sockets_.back()->send(view_message(rate_hz));
+            sockets_.push_back(std::make_unique<WebSocket>(load_port, fmt::format("token={}&name=Load", viewer)));
+            sockets_.back()->send(view_message(load_rate_hz));
         }
         for (std::size_t i = 0; i < count; ++i) threads_.emplace_back([this, i] { read(*sockets_[i]); });
     }

@@ -81,7 +81,7 @@ class Editor {
     double shift() { return static_cast<double>(random_() % 8); }
 
     static constexpr double east = 824295, north = 825816;
-    HttpClient client_{port, controller};
+    HttpClient client_{load_port, controller};
     std::mt19937 random_{1};  // NOLINT(cert-msc51-cpp): the same edits in every soak
     std::string barrier_, last_refusal_;
     int edits_ = 0, done_ = 0, refused_ = 0;
@@ -143,8 +143,8 @@ Line fit(const std::vector<double>& values) {
 }
 
 int soak(double seconds, int particles) {
-    const Program program({"serve", "--quiet", "--port", std::to_string(port), "--token", controller, "--token", viewer,
-                           "--set", fmt::format("solver.target_particle_count={}", particles)});
+    const Program program({"serve", "--quiet", "--port", std::to_string(load_port), "--token", controller, "--token",
+                           viewer, "--set", fmt::format("solver.target_particle_count={}", particles)});
     Editor editor;
     const Viewers honest(1);
     editor.act({{"action", "set_speed"}, {"factor", 1}});
