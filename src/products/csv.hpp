@@ -12,7 +12,10 @@ namespace talus::products {
 /// A table as RFC 4180 has it: comma, point, quotes only where needed, UTF-8.
 class Csv {
   public:
-    explicit Csv(std::string_view header) : text_(std::string(header) + "\n") {}
+    /// `changed`: what was changed during the run, so that its rows are the result of no single setup; a last column
+    /// says so in every row. Empty: nothing, and no such column.
+    explicit Csv(std::string_view header, std::string_view changed = {})
+        : text_(std::string(header) + (changed.empty() ? "\n" : ",changed_on_the_way\n")), changed_(changed) {}
 
     /// A field; empty where the value is not finite.
     Csv& number(double value) {
@@ -32,6 +35,7 @@ class Csv {
         return *this;
     }
     void end_row() {
+        if (!changed_.empty()) word(changed_);
         text_ += '\n';
         first_ = true;
     }
@@ -46,7 +50,7 @@ class Csv {
         if (!first_) text_ += ',';
         first_ = false;
     }
-    std::string text_;
+    std::string text_, changed_;
     bool first_ = true;
 };
 

@@ -36,11 +36,11 @@ Status write_report(const scene::Scene& scene, const run::RunResult& result,
 }  // namespace
 
 Status write_products(const scene::Scene& scene, const run::RunResult& result, const std::filesystem::path& folder,
-                      const std::vector<run::Comparison>& comparisons) {
+                      const std::vector<run::Comparison>& comparisons, std::string_view changed) {
     TALUS_TRY(write_partial_note(result, folder));
     if (result.fault) TALUS_TRY(write_fault(*result.fault, folder / "fault"));
     TALUS_TRY(write_maps(scene, result, folder));
-    TALUS_TRY(write_tables(scene, result, folder));
+    TALUS_TRY(write_tables(scene, result, folder, changed));
     TALUS_TRY(write_vectors(scene, result, folder));
     TALUS_TRY(write_comparisons(comparisons, result, folder));
     TALUS_TRY(write_report(scene, result, comparisons, folder));

@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "core/result.hpp"
@@ -41,10 +42,11 @@ class OutputFolder {
 /// Writes maps (.tif + .qml), front.csv, buildings.csv, results.gpkg, timeseries.csv, manifest.json, results.json,
 /// report.html; where there are comparisons with variants of the scene, convergence.csv and variants.csv too;
 /// PARTIAL.txt where the run did not end by itself, and the folder fault where a step could not be trusted. Errors name
-/// the file and the cause (disk full,
-/// ...).
+/// the file and the cause (disk full, ...). `changed`: what was changed during the run, which the tables then say in a
+/// last column; empty: nothing.
 [[nodiscard]] Status write_products(const scene::Scene& scene, const run::RunResult& result,
                                     const std::filesystem::path& folder,
-                                    const std::vector<run::Comparison>& comparisons = {});
+                                    const std::vector<run::Comparison>& comparisons = {},
+                                    std::string_view changed = {});
 
 }  // namespace talus::products

@@ -1,4 +1,5 @@
 #include <string>
+#include <string_view>
 
 #include "core/angle.hpp"
 #include "core/try.hpp"
@@ -10,18 +11,19 @@ namespace talus::products {
 
 namespace {
 
-std::string front_table(const observe::Observation& observation) {
-    Csv csv("chainage_m,first_arrival_time_s,front_velocity_mps,front_particle_speed_mps");
+std::string front_table(const observe::Observation& observation, std::string_view changed) {
+    Csv csv("chainage_m,first_arrival_time_s,front_velocity_mps,front_particle_speed_mps", changed);
     for (const observe::FrontSample& f : observation.front) {
         csv.row({f.chainage, f.arrival_time, f.front_velocity, f.particle_speed});
     }
     return csv.text();
 }
 
-std::string run_out_table(const observe::RunOut& r) {
+std::string run_out_table(const observe::RunOut& r, std::string_view changed) {
     Csv csv(
         "run_out_along_flow_m,run_out_straight_m,at_least,toe_x_m,toe_y_m,drop_m,runout_angle_deg,travel_angle_deg,"
-        "front_chainage_m");
+        "front_chainage_m",
+        changed);
     csv.number(r.along_flow).number(r.straight).word(r.at_least ? "yes" : "no").number(r.toe.x).number(r.toe.y);
     csv.number(r.drop)
         .number(r.runout_angle * degrees_per_radian)
@@ -31,12 +33,14 @@ std::string run_out_table(const observe::RunOut& r) {
     return csv.text();
 }
 
-std::string building_table(const scene::Scene& scene, const observe::Observation& observation) {
+std::string building_table(const scene::Scene& scene, const observe::Observation& observation,
+                           std::string_view changed) {
     Csv csv(
         "name,hit,first_hit_time_s,peak_force_kN,peak_impact_pressure_kPa,peak_dynamic_pressure_kPa,peak_depth_m,"
         "filter_window_s,patch_edge_m,height_m,height_assumed,kind,impulse_kNs,failed_s,overtopped_m3,first_overtopped_"
         "s,passed_m3,"
-        "held_m3,peak_held_m3,peak_filling_height_m,removed_time_s,peak_speed_mps,intensity");
+        "held_m3,peak_held_m3,peak_filling_height_m,removed_time_s,peak_speed_mps,intensity",
+        changed);
     const report::IntensityGuideline& guideline = report::intensity_guideline(scene.spec.outputs.intensity_guideline);
     for (std::size_t i = 0; i < observation.buildings.size(); ++i) {
         const observe::BuildingImpact& b = observation.buildings[i];
@@ -61,10 +65,11 @@ std::string building_table(const scene::Scene& scene, const observe::Observation
 }
 
 /// A row per structure that was hit and row of the time series from then on.
-std::string structure_table(const observe::Observation& observation) {
+std::string structure_table(const observe::Observation& observation, std::string_view changed) {
     Csv csv(
         "name,time_s,force_kN,impact_pressure_kPa,depth_m,dynamic_pressure_kPa,impulse_kNs,overtopped_m3,passed_m3,"
-        "held_m3,filling_height_m");
+        "held_m3,filling_height_m",
+        changed);
     for (const observe::BuildingImpact& b : observation.buildings) {
         const auto of_barrier = [&](double value) { return b.is_barrier ? value : observe::never; };
         for (const observe::StructureSample& s : b.history) {
@@ -78,13 +83,14 @@ std::string structure_table(const observe::Observation& observation) {
     return csv.text();
 }
 
-std::string time_table(const observe::Observation& observation) {
+std::string time_table(const observe::Observation& observation, std::string_view changed) {
     Csv csv(
         "time_s,front_chainage_m,volume_entrained_m3,volume_held_m3,volume_moving_m3,volume_deposited_m3,volume_left_"
         "m3,"
         "volume_balance_m3,kinetic_energy_J,potential_energy_J,largest_speed_mps,mean_compression,max_compression,"
         "squeezed_share,"
-        "time_step_s,steps_per_second");
+        "time_step_s,steps_per_second",
+        changed);
     for (const observe::TimeSample& s : observation.timeseries) {
         const double balance = s.volume_released + s.volume_entrained -
                                (s.volume_held + s.volume_moving + s.volume_deposited + s.volume_left);
@@ -95,24 +101,25 @@ std::string time_table(const observe::Observation& observation) {
     return csv.text();
 }
 
-std::string erosion_table(const observe::Erosion& erosion) {
-    Csv csv("chainage_m,volume_entrained_upstream_m3");
+std::string erosion_table(const observe::Erosion& erosion, std::string_view changed) {
+    Csv csv("chainage_m,volume_entrained_upstream_m3", changed);
     for (std::size_t k = 0; k < erosion.chainage.size(); ++k) csv.row({erosion.chainage[k], erosion.upstream[k]});
     return csv.text();
 }
 
 }  // namespace
 
-Status write_tables(const scene::Scene& scene, const run::RunResult& result, const std::filesystem::path& folder) {
+Status write_tables(const scene::Scene& scene, const run::RunResult& result, const std::filesystem::path& folder,
+                    std::string_view changed) {
     const observe::Observation& observation = result.observation;
-    TALUS_TRY(write_text_file(folder / "front.csv", front_table(observation)));
-    TALUS_TRY(write_text_file(folder / "run_out.csv", run_out_table(observation.run_out)));
-    TALUS_TRY(write_text_file(folder / "buildings.csv", building_table(scene, observation)));
+    TALUS_TRY(write_text_file(folder / "front.csv", front_table(observation, changed)));
+    TALUS_TRY(write_text_file(folder / "run_out.csv", run_out_table(observation.run_out, changed)));
+    TALUS_TRY(write_text_file(folder / "buildings.csv", building_table(scene, observation, changed)));
     if (!observation.erosion.chainage.empty()) {
-        TALUS_TRY(write_text_file(folder / "erosion.csv", erosion_table(observation.erosion)));
+        TALUS_TRY(write_text_file(folder / "erosion.csv", erosion_table(observation.erosion, changed)));
     }
-    TALUS_TRY(write_text_file(folder / "structures_over_time.csv", structure_table(observation)));
-    return write_text_file(folder / "timeseries.csv", time_table(observation));
+    TALUS_TRY(write_text_file(folder / "structures_over_time.csv", structure_table(observation, changed)));
+    return write_text_file(folder / "timeseries.csv", time_table(observation, changed));
 }
 
 }  // namespace talus::products

@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "core/result.hpp"
@@ -18,9 +19,9 @@ namespace talus::products {
                                 const std::filesystem::path& folder);
 
 /// front.csv, run_out.csv, buildings.csv, structures_over_time.csv, timeseries.csv, and erosion.csv where there is a
-/// bed. A value that does not exist is an empty field.
+/// bed. A value that does not exist is an empty field. `changed`: as for write_products.
 [[nodiscard]] Status write_tables(const scene::Scene& scene, const run::RunResult& result,
-                                  const std::filesystem::path& folder);
+                                  const std::filesystem::path& folder, std::string_view changed = {});
 
 /// results.gpkg with the layers buildings, release, intensity (polygons of each class), inundation and deposit
 /// (outlines of what is deeper than outputs.arrival_depth_m), flow_path and chainage (a short line across the path per

@@ -402,8 +402,12 @@ std::function<json()> Scenario::figures() const {
 }
 
 std::function<Status(const std::filesystem::path&)> Scenario::products() const {
-    return [outcome = parts_->outcome()](const std::filesystem::path& folder) {
-        return products::write_products(outcome.first, outcome.second, folder);
+    std::string changed;
+    for (const Parts::ChangeOnTheWay& change : parts_->changes) {
+        changed += fmt::format("{}{} at {:.1f} s", changed.empty() ? "" : "; ", change.sentence, change.time);
+    }
+    return [outcome = parts_->outcome(), changed = std::move(changed)](const std::filesystem::path& folder) {
+        return products::write_products(outcome.first, outcome.second, folder, {}, changed);
     };
 }
 

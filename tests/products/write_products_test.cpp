@@ -377,6 +377,22 @@ TEST_F(Products, NamesWithCommasAndQuotesAreQuoted) {
     EXPECT_THAT(test::read_text(folder.path() / "buildings.csv"), HasSubstr("\n\"Block \"\"A\"\", 沙田\",yes,"));
 }
 
+TEST_F(Products, TablesOfARunThatWasChangedOnTheWaySaySoInEveryRow) {
+    const TemporaryFolder folder;
+    run::RunResult result = *result_;
+    result.observation.buildings[0].history = {{11, 2000, 900, 0.75, 600, 3000, 1, 0.5, 40, 1.5}};
+    ASSERT_TRUE(write_tables(*scene_, result, folder.path(), "friction 0.4 -> 0.27 at 3.0 s, \"trial\"").ok());
+    for (const char* name : {"front", "run_out", "buildings", "structures_over_time", "timeseries"}) {
+        SCOPED_TRACE(name);
+        const auto rows = rows_of(test::read_text(folder.path() / (std::string(name) + ".csv")));
+        ASSERT_GE(rows.size(), 2U);
+        EXPECT_EQ(rows[0].back(), "changed_on_the_way");
+        for (std::size_t i = 1; i < rows.size(); ++i) EXPECT_THAT(rows[i].back(), HasSubstr("trial"));
+    }
+    ASSERT_TRUE(write_tables(*scene_, result, folder.path()).ok());
+    EXPECT_THAT(test::read_text(folder.path() / "front.csv"), testing::Not(HasSubstr("changed")));
+}
+
 TEST_F(Products, TimeSeriesBalancesItsVolumes) {
     const auto rows = rows_of(test::read_text(folder_->path() / "timeseries.csv"));
     ASSERT_EQ(rows.size(), result_->observation.timeseries.size() + 1);

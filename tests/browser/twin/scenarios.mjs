@@ -158,6 +158,9 @@ export async function testScenarios(run) {
     const ask = async (name) => (await fetch(`${server.base}api/scenarios/A/exports/${name}`, { headers: { Authorization: `Bearer ${server.token}` } })).text();
     assert.match(await ask("report.html"), /changed at 4\.0 s, by Ada: friction coefficient/i);
     assert.match(await ask("manifest.json"), /changed at 4\.0 s, by Ada: barrier/);
+    const [head, ...rows] = (await ask("front.csv")).trim().split("\n");
+    assert.match(head, /,changed_on_the_way$/);
+    for (const line of rows) assert.ok(line.includes(words), line);
     await page.click("[aria-label=Restart]");
     await until(() => setup("A"), (s) => s.changes.length === 0, "nothing is changed on the way any more");
     await until(() => page.locator(".on-the-way:visible").count(), (n) => n === 0, "no mark");
