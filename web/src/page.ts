@@ -33,6 +33,7 @@ import { Playback } from "./state/playback";
 import { Refresher } from "./state/refresher";
 import { Twin } from "./state/twin";
 import { button, h } from "./ui/dom";
+import { sheetHandle } from "./ui/sheet";
 import { tabs } from "./ui/tabs";
 import { watchTyping } from "./ui/typed";
 import { Toasts } from "./ui/toast";
@@ -84,7 +85,12 @@ function buildPage(page: HTMLElement, twin: Twin): void {
   });
   const readOut = marks(twin, stage, layers);
   keys(twin, stage, drawing, bar, playback);
+  // What a viewer cannot do takes no room on a phone.
+  twin.you.watch((you) => page.classList.toggle("viewer", you?.role === "viewer"));
 
+  const setup = button("Setup", { icon: "menu", bare: true, class: "bare setup-switch", title: "Scenarios and their values", "aria-expanded": "false", onclick: () =>
+    setup.setAttribute("aria-expanded", String(page.classList.toggle("setup-open"))) });
+  const handle = sheetHandle("Charts and tables", (open) => page.classList.toggle("sheet-open", open));
   const drawer = button("Readings", { icon: "panel", bare: true, class: "bare drawer-switch", title: "Show or hide the readings", onclick: () => {
     // On a narrow page the readings overlay the view on demand; on a wide one hiding them enlarges the view.
     const open = page.classList.toggle(narrow.matches ? "readings-open" : "readings-closed") === narrow.matches;
@@ -97,16 +103,17 @@ function buildPage(page: HTMLElement, twin: Twin): void {
   const badge = twin.scene.reconstruction ? h("span", { class: "badge", title: twin.scene.assumptions.join(" ") }, "Reconstruction, no survey") : null;
   const key = legends(twin, stage, layers);
   const scale = scaleAndCompass(twin, stage, readOut);
-  stage.covers = [bar.camera, bar.show, key, scale];
-  const middle = h("main", { class: "middle" }, stage.element, bar.camera, bar.show, key, scale);
+  stage.covers = [bar.camera, bar.show, scale];
+  // Legends stand below the picture: over it they would hide debris and houses.
+  const middle = h("main", { class: "middle" }, h("div", { class: "view" }, stage.element, bar.camera, bar.show, scale), key);
   // Names of the two views stand below the bars, which wrap on a narrow page.
   new ResizeObserver(() => middle.style.setProperty("--bars", `${bar.show.offsetTop + bar.show.offsetHeight}px`)).observe(bar.show);
   page.replaceChildren(
-    h("header", { class: "topbar" }, h("span", { class: "wordmark" }, "talus"), h("h1", {}, twin.scene.title), badge, h("span", { class: "spring" }),
-      people(twin), ...exportButtons(twin, picture), button("Help", { icon: "help", bare: true, title: "Help and shortcuts (?)", onclick: help }), drawer),
+    h("header", { class: "topbar" }, setup, h("span", { class: "wordmark" }, "talus"), h("h1", {}, twin.scene.title), badge, h("span", { class: "spring" }),
+      people(twin), ...exportButtons(twin, picture), button("Help", { icon: "help", bare: true, class: "bare help", title: "Help and shortcuts (?)", onclick: help }), drawer),
     controls(twin, drawing),
     middle,
-    h("aside", { class: "readings", "aria-label": "Readings" }, runCard(twin), changedOnTheWay(twin), readings.element, readings.panel),
+    h("aside", { class: "readings", "aria-label": "Readings" }, handle, runCard(twin), changedOnTheWay(twin), readings.element, readings.panel),
     transport(twin, playback),
     toasts.polite, toasts.urgent,
   );

@@ -1,5 +1,6 @@
 import { describe, expect, it } from "vitest";
 import type { Parameter, Setup } from "../src/protocol/messages";
+import { differenceText } from "../src/state/comparison";
 import { changesText, differences } from "../src/state/differences";
 
 const parameter = (key: string, label: string, unit = ""): Parameter =>
@@ -33,5 +34,22 @@ describe("differences of two scenarios", () => {
     expect(changesText(setup("A", 0.4))).toBe("");
     expect(changesText(setup("A", 0.27, { changes: [{ time_s: 30.31, by: "Ada", sentence: "friction coefficient 0.4 -> 0.27" }] })))
       .toBe("friction coefficient 0.4 -> 0.27 at 30.3 s");
+  });
+});
+
+describe("a difference in the table", () => {
+  const text = (a: number | null, b: number | null): string => differenceText({ group: "", name: "", unit: "m", a, b });
+  it("has no more decimals than the values beside it", () => {
+    expect(text(1.2271, 1.22116)).toBe("−0.01");
+    expect(text(227.4, 230.9)).toBe("+4");
+    expect(text(9.871, 10.14)).toBe("+0.3");
+    expect(text(0.205, 0.25)).toBe("+0.045");
+    expect(text(0, 0.00594)).toBe("+0.00594");
+    expect(text(3, 2.5)).toBe("−0.5");
+  });
+  it("is zero where that rounds it away, and missing without a value", () => {
+    expect(text(227.1, 227.2)).toBe("0");
+    expect(text(5, 5)).toBe("0");
+    expect(text(null, 5)).toBe("–");
   });
 });

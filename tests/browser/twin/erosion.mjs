@@ -1,6 +1,6 @@
 // Debris that entrains its bed: the ground sinks under it, on the page too, as far as at the time on display, and a restart
 // brings it back. On a server and a scene of its own: the shipped ones have no bed.
-import { assert, boxOf, inControl, pause, saved, until, viewClip } from "./harness.mjs";
+import { assert, boxOf, inControl, pause, saved, until, unzipped, viewClip } from "./harness.mjs";
 import { writeGully } from "./gully.mjs";
 
 /** Grid message of docs/protocol.md: where the largest value is, and how large. */
@@ -75,8 +75,9 @@ export async function testErosion(run) {
     layer = await run.changed(page, clip, [bare.hash], "the layer");
     await run.shot(page, "45-erosion-layer");
     await page.click("button:has-text('Export')");
-    const tif = await saved(page, () => page.click("[aria-label='Save erosion_depth.tif']"));
-    assert.ok(tif.bytes.length > 300);
+    await page.locator("dialog label:text-is('erosion_depth.tif') input").check();
+    const files = await saved(page, () => page.click("dialog button:has-text('as ZIP')"));
+    assert.ok(unzipped(files.bytes)["erosion_depth.tif"].length > 300);
     await page.keyboard.press("Escape");
   });
 

@@ -82,9 +82,9 @@ export class Run {
       await this.last?.screenshot({ path: join(this.output, `failed-${this.failed}.png`) }).catch(() => {});
     }
   }
-  /** finest: with the whole mesh of the ground; a coarser one is drawn in a fraction of the time. edits: how runs that have begun are edited; null: not chosen yet. */
-  async open(link, { width = 1280, height = 720, reduced = true, name, finest = false, edits = "now" } = {}) {
-    const context = await this.browser.newContext({ viewport: { width, height }, reducedMotion: reduced ? "reduce" : "no-preference", acceptDownloads: true });
+  /** finest: with the whole mesh of the ground; a coarser one is drawn in a fraction of the time. edits: how runs that have begun are edited; null: not chosen yet. touch: as on a phone. */
+  async open(link, { width = 1280, height = 720, reduced = true, name, finest = false, edits = "now", touch = false } = {}) {
+    const context = await this.browser.newContext({ viewport: { width, height }, reducedMotion: reduced ? "reduce" : "no-preference", acceptDownloads: true, hasTouch: touch, isMobile: touch });
     const page = await context.newPage();
     if (name) await page.addInitScript((n) => localStorage.setItem("talus-name", n), name);
     if (edits) await page.addInitScript((habit) => sessionStorage.getItem("talus-edits") ?? sessionStorage.setItem("talus-edits", habit), edits);
@@ -232,5 +232,15 @@ export const shownTime = async (page) => Number((await page.textContent(".clock"
 export async function saved(page, click) {
   const [download] = await Promise.all([page.waitForEvent("download"), click()]);
   return { name: download.suggestedFilename(), bytes: readFileSync(await download.path()) };
+}
+/** The members of a ZIP that stores them as they are, by name. */
+export function unzipped(bytes) {
+  const members = {};
+  for (let at = 0; bytes.readUInt32LE(at) === 0x04034b50; ) {
+    const [size, name] = [bytes.readUInt32LE(at + 18), bytes.readUInt16LE(at + 26)];
+    members[bytes.subarray(at + 30, at + 30 + name).toString()] = bytes.subarray(at + 30 + name, at + 30 + name + size);
+    at += 30 + name + size;
+  }
+  return members;
 }
 export { assert, existsSync };

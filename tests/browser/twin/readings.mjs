@@ -1,7 +1,7 @@
 // What is read from a scenario: layers, camera, charts, probes, sections, impacts, recording, exports, comparison.
 import { writeFileSync } from "node:fs";
 import { join } from "node:path";
-import { assert, boxOf, clickGround, inControl, pause, saved, shownTime, until, viewClip } from "./harness.mjs";
+import { assert, boxOf, clickGround, inControl, pause, saved, shownTime, until, unzipped, viewClip } from "./harness.mjs";
 
 /** While one looks back, charts, mass balance, map layers and impacts are those of the time on display. */
 async function readPast(page, server, last) {
@@ -220,14 +220,22 @@ export async function testReadings(run) {
     await run.back(page, clip, now, "the live view");
   });
 
-  await run.check("exports: a file, the journal, a picture, a video", async () => {
+  await run.check("exports: what is ticked in one ZIP, a picture, a video", async () => {
     await page.click("button:has-text('Export')");
-    const csv = await saved(page, () => page.click("[aria-label='Save front.csv']"));
-    assert.equal(csv.name, "front.csv");
-    assert.ok(csv.bytes.length > 10);
-    const journal = await saved(page, () => page.click("dialog [aria-label^='Save journal']"));
-    assert.ok(journal.bytes.length > 10);
+    const all = page.locator("dialog label:has-text('All files') input");
+    await all.check();
+    await all.uncheck();
+    assert.equal(await page.isDisabled("dialog button:has-text('as ZIP')"), true);
+    for (const name of ["front.csv", "journal.json", "view.png"]) await page.locator(`dialog label:text-is('${name}') input`).check();
     await run.shot(page, "12-export");
+    const files = await saved(page, () => page.click("dialog button:has-text('Save 3 files as ZIP')"));
+    assert.match(files.name, /-A\.zip$/);
+    const members = unzipped(files.bytes);
+    assert.deepEqual(Object.keys(members), ["front.csv", "journal.json", "view.png"]);
+    const told = await fetch(`${server.base}api/scenarios/A/exports/front.csv`, { headers: { Authorization: `Bearer ${server.token}` } });
+    assert.ok(members["front.csv"].equals(Buffer.from(await told.arrayBuffer())), "the file of the server");
+    assert.ok(JSON.parse(members["journal.json"].toString()));
+    assert.equal(members["view.png"].subarray(1, 4).toString(), "PNG");
     await page.keyboard.press("Escape");
     assert.equal(await page.locator("dialog[open]").count(), 0);
     const picture = await saved(page, () => page.click("[aria-label='Picture']"));

@@ -1,4 +1,5 @@
 // Several people in one session, breaks of the connection, sizes of the window, keyboard and names of controls.
+import { testPhone } from "./phone.mjs";
 import { assert, shownTime, until, viewClip } from "./harness.mjs";
 
 export async function testSharing(run) {
@@ -81,6 +82,7 @@ export async function testSharing(run) {
         return r.left < -1 || r.right > innerWidth + 1 || r.top < -1 || r.bottom > innerHeight + 1;
       }).map((e) => e.outerHTML.slice(0, 90)));
       assert.deepEqual(outside, []);
+      assert.ok(await ada.evaluate(() => document.scrollingElement.scrollWidth <= innerWidth), "nothing is wider than the screen");
       const overlaps = await ada.evaluate(() => {
         const boxes = [...document.querySelectorAll(".bar, .legend, .map-marks, .topbar > *, .transport > *")].filter((e) => e.checkVisibility({ visibilityProperty: true }))
           .map((e) => [e.className, e.getBoundingClientRect()]).filter(([, r]) => r.width > 0);
@@ -122,6 +124,8 @@ export async function testSharing(run) {
     await ada.keyboard.press("Escape");
     assert.equal(await ada.locator("dialog[open]").count(), 0);
   });
+
+  await testPhone(run, server);
 
   await run.check("after a break the page comes back by itself and shows the present state", async () => {
     await server.stop();

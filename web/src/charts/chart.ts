@@ -2,6 +2,7 @@
 import uPlot, { type AlignedData, type Options, type Series } from "uplot";
 import { number, tick, unitText } from "../state/format";
 import { h } from "../ui/dom";
+import { chartInk, inkOf, onTheme } from "../ui/theme";
 
 export interface Curve {
   label: string;
@@ -11,6 +12,7 @@ export interface Curve {
   points?: boolean;
   /** Drawn as separate marks without a line. */
   marksOnly?: boolean;
+  /** "ground": the colour of the ground in a section. */
   fill?: string;
   axis?: "left" | "right";
 }
@@ -26,7 +28,6 @@ export interface ChartOptions {
   legend?: boolean;
 }
 
-const ink = "#48525b";
 const font = "11px system-ui, 'Segoe UI', 'DejaVu Sans', sans-serif";
 
 export class Chart {
@@ -38,12 +39,17 @@ export class Chart {
   private curves: Curve[];
   private cursor_s: number | null = null;
   private changes: readonly number[] = [];
+  private readonly unwatch: () => void;
 
   constructor(private readonly options: ChartOptions) {
     this.curves = options.curves;
     this.blank = h("p", { class: "hint" }, options.empty);
     this.element = h("figure", { class: "chart" }, h("figcaption", {}, options.title), this.holder, this.blank);
     new ResizeObserver(() => this.fit()).observe(this.holder);
+    this.unwatch = onTheme(() => {
+      this.drop();
+      this.fit();
+    });
     this.update([[]]);
   }
 
@@ -78,6 +84,7 @@ export class Chart {
 
   /** Must be called when its editor is removed: uPlot has listeners on the window. */
   destroy(): void {
+    this.unwatch();
     this.drop();
   }
   private drop(): void {
@@ -88,16 +95,17 @@ export class Chart {
     const width = this.holder.clientWidth;
     if (width < 40) return;
     const { x, y, right, height } = this.options;
+    const ink = chartInk();
     const axis = (label: string, unit: string, side: 0 | 1 | 2 | 3): NonNullable<Options["axes"]>[number] => ({
-      label: unit === "" ? label : `${label}, ${unitText(unit)}`, labelFont: font, font, stroke: ink, labelSize: 16, size: side === 2 ? 30 : 40, gap: 3, labelGap: 0,
-      side, grid: { show: side !== 1, stroke: "#e4e8eb", width: 1 }, ticks: { stroke: "#c3cad1", size: 4, width: 1 },
+      label: unit === "" ? label : `${label}, ${unitText(unit)}`, labelFont: font, font, stroke: ink.text, labelSize: 16, size: side === 2 ? 30 : 40, gap: 3, labelGap: 0,
+      side, grid: { show: side !== 1, stroke: ink.grid, width: 1 }, ticks: { stroke: ink.ticks, size: 4, width: 1 },
       values: (_, values) => values.map((v) => tick(v)),
     });
     const series: Series[] = [{ label: x.label, value: (_, v) => (v === null ? "–" : `${number(v, 4)} ${unitText(x.unit)}`) },
       ...this.curves.map((c): Series => ({
-        label: c.label, stroke: c.colour, width: c.marksOnly ? 0 : 1.6, scale: c.axis === "right" ? "right" : "y", spanGaps: true,
-        ...(c.dashed ? { dash: [5, 4] } : {}), ...(c.fill ? { fill: c.fill } : {}),
-        points: c.marksOnly ? { show: true, size: 9, fill: "#fff", stroke: c.colour, width: 2 } : { show: c.points ?? false, size: 4, fill: c.colour },
+        label: c.label, stroke: inkOf(c.colour), width: c.marksOnly ? 0 : 1.6, scale: c.axis === "right" ? "right" : "y", spanGaps: true,
+        ...(c.dashed ? { dash: [5, 4] } : {}), ...(c.fill ? { fill: c.fill === "ground" ? ink.ground : c.fill } : {}),
+        points: c.marksOnly ? { show: true, size: 9, fill: ink.paper, stroke: inkOf(c.colour), width: 2 } : { show: c.points ?? false, size: 4, fill: inkOf(c.colour) },
         value: (_, v) => (v === null ? "–" : `${number(v, 3)} ${unitText(c.unit)}`),
       }))];
     const options: Options = {
@@ -112,7 +120,7 @@ export class Chart {
     this.plot = new uPlot(options, this.data, this.holder);
   }
   private drawMarks(plot: uPlot): void {
-    for (const x of this.changes) this.drawMark(plot, x, "#a3262a", [4, 4]);
+    for (const x of this.changes) this.drawMark(plot, x, inkOf("#a3262a"), [4, 4]);
     if (this.cursor_s !== null) this.drawMark(plot, this.cursor_s, "#d98a00", []);
   }
   private drawMark(plot: uPlot, x: number, colour: string, dash: readonly number[]): void {

@@ -85,7 +85,7 @@ export function sectionPanel(twin: Twin, stage: Stage): { element: HTMLElement; 
     const lowest = Math.min(...ground);
     // Heights are plotted above the lowest point of the ground, so that the axis starts at zero.
     heights.update([xs, ground.map((z) => z - lowest), ground.map((z, i) => (now[i] > 0.01 ? z - lowest + now[i] : null)), ground.map((z, i) => (most[i] > 0.01 ? z - lowest + most[i] : null))], [
-      { label: "Ground", unit: "m", colour: "#6a5b41", fill: "#e9e4da" },
+      { label: "Ground", unit: "m", colour: "#6a5b41", fill: "ground" },
       { label: twin.replay_s.value === null ? "Debris now" : "Debris then", unit: "m", colour: "#0b5fa5" },
       { label: "Peak", unit: "m", colour: "#d1640f", dashed: true },
     ]);

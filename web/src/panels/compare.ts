@@ -2,7 +2,7 @@
 import type { ScenarioName } from "../protocol/frame";
 import type { Figure } from "../protocol/messages";
 import { watchAll } from "../state/cell";
-import { comparisonRows, differenceOf, untouched, type PointPeaks, type Row, type Side } from "../state/comparison";
+import { comparisonRows, differenceText, untouched, type PointPeaks, type Row, type Side } from "../state/comparison";
 import { changesText, paneText } from "../state/differences";
 import { fixed, tick, unitText } from "../state/format";
 import type { Probe, Twin } from "../state/twin";
@@ -18,10 +18,6 @@ const peaksOf = (probe: Probe, i: number, name: ScenarioName): PointPeaks => {
     pressure_kPa: series ? peak(series.pressure_kPa) : null };
 };
 export const shownValue = (value: number | string | null): string => (typeof value === "string" ? value : tick(value ?? NaN));
-export function shownDifference(row: Row): string {
-  const by = differenceOf(row);
-  return by === null ? "–" : `${by > 0 ? "+" : ""}${tick(by)}`;
-}
 /** "End reached, 30.0 s"; and what was changed on the way. */
 export function standing(twin: Twin, name: ScenarioName): string {
   const { state, setup } = twin.cells[name];
@@ -98,7 +94,7 @@ export class ComparePanel {
       if (row.group !== group) lines.push(h("tr", { class: "group-row" }, h("th", { colspan: "4", scope: "rowgroup" }, row.group)));
       group = row.group;
       lines.push(h("tr", {}, h("th", { scope: "row" }, row.name, row.unit ? h("small", {}, ` ${unitText(row.unit)}`) : null),
-        h("td", {}, shownValue(row.a)), h("td", {}, shownValue(row.b)), h("td", { class: (differenceOf(row) ?? 0) === 0 ? "muted" : "" }, shownDifference(row))));
+        h("td", {}, shownValue(row.a)), h("td", {}, shownValue(row.b)), h("td", { class: differenceText(row) === "0" ? "muted" : "" }, differenceText(row))));
     }
     this.body.replaceChildren(...lines);
   }

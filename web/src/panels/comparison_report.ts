@@ -1,11 +1,11 @@
 // One page that compares two scenarios: views, values, front velocity. It needs nothing but itself.
 import type { Series } from "../protocol/messages";
-import type { Row } from "../state/comparison";
+import { differenceText, type Row } from "../state/comparison";
 import { paneText } from "../state/differences";
 import { tick, unitText } from "../state/format";
 import { roundStep } from "../scene/colour";
 import type { Twin } from "../state/twin";
-import { shownDifference, shownValue, standing } from "./compare";
+import { shownValue, standing } from "./compare";
 
 const escape = (text: string): string => text.replace(/[&<>"]/g, (c) => `&#${c.charCodeAt(0)};`);
 const colours = ["#0b5fa5", "#d1640f"];
@@ -39,7 +39,7 @@ export function comparisonReport(twin: Twin, rows: readonly Row[], rest: string,
   const body = rows.map((row) => {
     const head = row.group === group ? "" : `<tr class="g"><th colspan="4">${escape(row.group)}</th></tr>`;
     group = row.group;
-    return `${head}<tr><th>${escape(row.name)}${row.unit ? `, ${escape(unitText(row.unit))}` : ""}</th><td>${escape(shownValue(row.a))}</td><td>${escape(shownValue(row.b))}</td><td>${shownDifference(row)}</td></tr>`;
+    return `${head}<tr><th>${escape(row.name)}${row.unit ? `, ${escape(unitText(row.unit))}` : ""}</th><td>${escape(shownValue(row.a))}</td><td>${escape(shownValue(row.b))}</td><td>${differenceText(row)}</td></tr>`;
   });
   const front = chart("Front velocity along the flow path", "Chainage, m", "m/s", series.map((s) => ({ x: s?.front.chainage_m ?? [], y: s?.front.front_velocity_mps ?? [] })));
   const moving = chart("Volume in motion", "Time, s", "m³", series.map((s) => ({ x: s?.time["time_s"] ?? [], y: s?.time["volume_moving_m3"] ?? [] })));

@@ -1,6 +1,8 @@
 // Display options while a new shape is drawn: instructions, sizes, live measures, and input without a mouse.
+import { CrestProfile } from "../charts/crest";
 import type { Drawing } from "../scene/drawing";
 import { bytes, count, number, quantity } from "../state/format";
+import { groundMeasures } from "../state/measures";
 import { limitsOf } from "../state/rules";
 import { area, drawnAsLine, fewestPoints, length, releaseVolume } from "../state/shapes";
 import type { Shape, Twin } from "../state/twin";
@@ -57,6 +59,10 @@ const bytesPerParticle = 1500;
 
 export function draftBox(twin: Twin, drawing: Drawing, shape: Shape): HTMLElement {
   const measure = h("output", { class: "measure", "aria-live": "polite" });
+  const lie = h("output", { class: "hint lie" });
+  const profile = shape === "barrier" ? new CrestProfile() : null;
+  const path = twin.scene.flow_path;
+  const across = shape === "barrier" && path ? button("Across the flow path", { class: "small", title: "At the place nearest to the pointer, or to the middle of the view (X)", onclick: () => drawing.snap() }) : null;
   const done = button("Finish", { class: "primary small", onclick: () => drawing.finish() });
   const how = h("p", { class: "hint" });
   const east = h("input", { type: "number", step: "any", "aria-label": "East of the next point, m", placeholder: "E, m" });
@@ -74,7 +80,7 @@ export function draftBox(twin: Twin, drawing: Drawing, shape: Shape): HTMLElemen
     const points = [...drawing.draft.value];
     const byLine = twin.inflowByLine.value;
     const fewest = fewestPoints(shape, byLine);
-    how.textContent = `${howTo(shape, byLine)} Backspace takes the last one back, Escape cancels.`;
+    how.textContent = `${howTo(shape, byLine)}${across ? " X lays it across the flow path." : ""} Backspace takes the last one back, Escape cancels.`;
     done.disabled = points.length < fewest;
     if (drawing.shape !== shape) return;
     const { release, bed } = twin.newShape;
@@ -83,10 +89,25 @@ export function draftBox(twin: Twin, drawing: Drawing, shape: Shape): HTMLElemen
         : shape === "release" ? `${number(area(points))} m² × ${number(release.thickness_m)} m = ${quantity(releaseVolume(points, release.thickness_m, twin.relief), "m3")}${sizeOf(releaseVolume(points, release.thickness_m, twin.relief))}`
           : shape === "bed" ? `${number(area(points))} m² × ${number(bed.depth_m)} m = ${quantity(area(points) * bed.depth_m, "m3")}` : `${quantity(area(points), "m2")}`;
   };
-  const fields = newFields(twin, shape, () => show());
+  /** Of what is drawn, with the place of the pointer as the next corner. */
+  const showLie = (): void => {
+    if (drawing.shape !== shape) return;
+    const outline = drawing.outline;
+    const { value: pointer } = drawing.pointer;
+    const relief = twin.relief;
+    lie.value = outline.length > 1 ? groundMeasures(outline, !drawnAsLine(shape, twin.inflowByLine.value), relief, path)
+      : pointer ? groundMeasures([pointer], false, relief, path) : "";
+    profile?.show({ ...twin.newShape.barrier, height_m: twin.newShape.barrier.height_m ?? 0 }, outline, relief);
+  };
+  const fields = newFields(twin, shape, () => {
+    show();
+    showLie();
+  });
   drawing.draft.watch(show);
+  drawing.draft.watch(showLie);
+  drawing.pointer.watch(showLie);
   twin.inflowByLine.watch(show);
-  return h("div", { class: "draft" }, how, ...fields, measure,
+  return h("div", { class: "draft" }, how, ...fields, measure, lie, profile?.element,
     h("details", {}, h("summary", {}, "By coordinates"), h("div", { class: "row coordinates" }, east, north, add)),
-    h("div", { class: "row" }, done, button("Cancel", { class: "small", onclick: () => drawing.cancel() })));
+    h("div", { class: "row" }, done, across, button("Cancel", { class: "small", onclick: () => drawing.cancel() })));
 }

@@ -1,9 +1,11 @@
 // Impact on houses and barriers: a sortable table whose rows lead to the place.
 import type { BarrierImpact, Impact, Impacts, SceneInfo } from "../protocol/messages";
 import { css, rampAt, ramps } from "../scene/colour";
+import { hitSide } from "../scene/hit_side";
 import type { Stage } from "../scene/stage";
 import { watchAll } from "../state/cell";
 import { fixed, quantity, unitText } from "../state/format";
+import { itemOf, lineOf, pointsOf } from "../state/shapes";
 import type { HouseColour, Twin } from "../state/twin";
 import { h } from "../ui/dom";
 
@@ -30,7 +32,7 @@ const barrierColumns: Column<BarrierImpact>[] = [
 export function impactColour(impact: Impact | undefined, by: HouseColour, scene: SceneInfo, most_kPa: number): string | null {
   if (!impact?.hit) return null;
   if (by === "intensity") return scene.intensity.classes.find((c) => c.name === impact.intensity)?.colour ?? null;
-  return css(rampAt(ramps.peak_pressure, (impact.peak_impact_pressure_kPa ?? 0) / Math.max(most_kPa, 1e-6)));
+  return css(rampAt(ramps.impact_pressure, (impact.peak_impact_pressure_kPa ?? 0) / Math.max(most_kPa, 1e-6)));
 }
 export const largestPressure = (impacts: Impacts | null): number =>
   (impacts?.buildings ?? []).reduce((most, b) => Math.max(most, b.peak_impact_pressure_kPa ?? 0), 0);
@@ -67,7 +69,7 @@ class SortedTable<Row extends Impact> {
   private line(first: Row): { element: HTMLElement; show(row: Row): void } {
     let now = first;
     const dot = h("i", { class: "dot" });
-    const name = h("button", { type: "button", title: "Show in the view" });
+    const name = h("button", { type: "button" });
     const values = this.columns.slice(1).map(() => h("td"));
     const element = h("tr", { onclick: () => this.go(now) }, h("th", { scope: "row" }, dot, name), ...values);
     return { element, show: (row) => {
@@ -79,6 +81,7 @@ class SortedTable<Row extends Impact> {
         return { text: typeof v === "number" ? fixed(v, c.digits ?? 1) : (v ?? "–"), word: typeof v !== "number" };
       });
       name.textContent = texts[0].text;
+      name.title = `${texts[0].text}: show it from the side that is hit`;
       values.forEach((cell, i) => {
         cell.textContent = texts[i + 1].text;
         cell.className = texts[i + 1].word ? "word" : "";
@@ -122,8 +125,14 @@ class SortedTable<Row extends Impact> {
 export function impactsPanel(twin: Twin, stage: Stage): HTMLElement {
   const go = (shape: "building" | "barrier") => (row: Impact): void => {
     twin.selection.value = { shape, id: row.id };
-    const at = stage.views.get(twin.edited.value)?.solidAt(row.id);
-    if (at) stage.rig.visit(at.toArray(), 70);
+    const name = twin.edited.value;
+    const at = stage.views.get(name)?.solidAt(row.id);
+    const item = itemOf(twin.now.setup.value, { shape, id: row.id });
+    if (!at || !item) return;
+    void twin.attempt(async () => {
+      const depth = row.hit ? await twin.api.layer(name, "peak_depth", twin.replay_s.value) : null;
+      stage.rig.visit(at.toArray(), 70, hitSide(pointsOf(item), lineOf(item) === null, depth, stage.reliefOf(name)));
+    });
   };
   const selected = (): string | null => twin.selection.value?.id ?? null;
   const houses = new SortedTable(houseColumns, go("building"),

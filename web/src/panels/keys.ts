@@ -15,7 +15,7 @@ const shortcuts: [string, [string, string][]][] = [
   ["View (focus it with V)", [["Arrow keys", "Turn and tilt"], ["Shift + arrow keys", "Move"], ["+ and −", "Zoom"], ["1, 2, 3", "Orbit, fly, follow the front"],
     ["W A S D, Q E", "Fly"], ["T", "Top view"], ["F", "Whole scene"], ["Alt + 1 … 9", "Saved view"]]],
   ["Drawing", [["Space", "Point in the middle of the view"], ["Enter", "Finish"], ["Backspace", "Remove the last point"], ["Escape", "Cancel, or clear the selection"],
-    ["Delete", "Remove the selection"], ["Arrow keys on a corner", "Move it by 1 m"]]],
+    ["X", "Barrier: across the flow path, nearest to the pointer"], ["Delete", "Remove the selection"], ["Arrow keys on a corner", "Move it by 1 m"]]],
   ["Everywhere", [["Ctrl + Z", "Undo; in a field with text that is not sent yet, undo typing"], ["Ctrl + Shift + Z", "Redo"], ["?", "This help"]]],
 ];
 
@@ -62,6 +62,7 @@ export function keys(twin: Twin, stage: Stage, drawing: Drawing, bar: ViewBar, t
       case "3": bar.setMode("follow"); break;
       case "t": stage.rig.top(); break;
       case "f": stage.rig.fit(); break;
+      case "x": drawing.snap(); break;
       case "?": help(); break;
       case "Delete": {
         const item = itemOf(twin.now.setup.value, twin.selection.value);

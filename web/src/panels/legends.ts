@@ -24,11 +24,11 @@ export function presentLegends(twin: Twin, stage: Stage, layers: ShownLayers): L
     list.push({ title: "Speed of debris", unit: "m/s", low: 0, high: stage.fastest_mps.value, at: (s) => rampAt(ramps.speed, s) });
   }
   if (twin.surface.value === "depth") {
-    list.push({ title: "Flow depth", unit: "m", low: 0, high: layers.surfaceTop, at: (s) => rampAt(ramps.depth, s) });
+    list.push({ title: "Flow depth", unit: "m", low: 0, high: layers.surfaceTop, at: (s) => rampAt(ramps.surface_depth, s) });
   }
   const most = Math.max(...twin.shown.value.map((s) => largestPressure(twin.cells[s].impacts.value)));
   if (twin.houseColour.value === "pressure" && most > 0) {
-    list.push({ title: "Houses, impact pressure", unit: "kPa", low: 0, high: most, at: (s) => rampAt(ramps.peak_pressure, s) });
+    list.push({ title: "Houses, impact pressure", unit: "kPa", low: 0, high: most, at: (s) => rampAt(ramps.impact_pressure, s) });
   }
   const name = twin.layer.value;
   if (name !== "none") {
@@ -66,12 +66,14 @@ export function legends(twin: Twin, stage: Stage, layers: ShownLayers): HTMLElem
   classes.title = twin.scene.intensity.rule;
   watchAll([twin.particles, twin.surface, twin.layer, twin.difference, layers.range, layers.shown_s, stage.fastest_mps, twin.houseColour, twin.shown, ...twin.every("impacts"), ...twin.every("setup")], () => {
     const anyHit = twin.shown.value.some((s) => twin.cells[s].impacts.value?.buildings.some((b) => b.hit));
+    const present = presentLegends(twin, stage, layers);
     classes.hidden = twin.houseColour.value !== "intensity" || !anyHit;
     const changed = twin.shown.value.filter((s) => (twin.cells[s].setup.value?.changes.length ?? 0) > 0);
     const note = h("div", { class: "legend on-the-way" }, `${twin.shown.value.length > 1 ? `${changed.join(", ")} c` : "C"}hanged on the way: not the results of one setup`);
     note.title = changed.map((s) => changesText(twin.cells[s].setup.value)).join("; ");
     note.hidden = changed.length === 0;
-    holder.replaceChildren(note, classes, ...presentLegends(twin, stage, layers).map((legend) => {
+    holder.hidden = classes.hidden && note.hidden && present.length === 0;
+    holder.replaceChildren(note, classes, ...present.map((legend) => {
       const from = legend.from ? h("div", { class: "legend-from" }, legend.from) : null;
       if (legend.categories) {
         const list = legend.categories.map((c) => {
@@ -105,16 +107,15 @@ export function scaleAndCompass(twin: Twin, stage: Stage, readOut: HTMLElement):
     onclick: () => stage.rig.top() }, needle);
   const bar = h("div", { class: "scale-bar" });
   const text = h("span", {});
+  const scale = h("div", { class: "scale" }, text, bar);
   stage.onCamera(() => {
-    const away = stage.rig.camera.position.clone().sub(stage.rig.controls.target);
-    const turn = Math.atan2(away.x, -away.y);
-    needle.style.transform = `rotate(${turn}rad)`;
+    needle.style.transform = `rotate(${stage.rig.turn}rad)`;
+    scale.title = stage.rig.mode === "plan" ? "Scale of the plan" : "Scale at the middle of the view";
     const perPixel = stage.metresPerPixel;
     const length = roundStep(perPixel * 60);
     bar.style.width = `${Math.round(length / perPixel)}px`;
     text.textContent = length >= 1000 ? `${tick(length / 1000)}\u202fkm` : `${tick(length)}\u202fm`;
   });
-  return h("div", { class: "map-marks" }, compass,
-    h("div", { class: "scale", title: "Scale at the middle of the view" }, text, bar), readOut,
+  return h("div", { class: "map-marks" }, compass, scale, readOut,
     h("div", { class: "map-note" }, `Contours every ${tick(contourInterval(stage.relief))}\u202fm · ${twin.scene.crs}`));
 }

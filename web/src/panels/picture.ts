@@ -1,13 +1,12 @@
 // Pictures and video of the view, with title, time, legends and scale drawn in, so that they can be used in a report.
 import type { ShownLayers } from "../scene/shown_layers";
 import type { Stage } from "../scene/stage";
-import { css, roundStep } from "../scene/colour";
+import { roundStep } from "../scene/colour";
 import { changesText } from "../state/differences";
-import { fixed, tick, unitText } from "../state/format";
+import { fixed, tick } from "../state/format";
 import type { Twin } from "../state/twin";
+import { font, LegendStrip } from "./legend_strip";
 import { presentLegends } from "./legends";
-
-const font = "system-ui, 'Segoe UI', 'DejaVu Sans', sans-serif";
 
 export function save(name: string, content: Blob): void {
   const link = document.createElement("a");
@@ -27,7 +26,7 @@ export class Picture {
       if (this.recorder?.state === "recording") this.compose(this.stage.canvas);
     });
   }
-  private get fileName(): string {
+  get fileName(): string {
     return this.twin.scene.title.toLowerCase().replace(/[^a-z0-9]+/g, "-").replace(/^-|-$/g, "");
   }
 
@@ -35,16 +34,21 @@ export class Picture {
   private compose(source: HTMLCanvasElement): HTMLCanvasElement {
     const { canvas, twin, stage } = this;
     const scale = source.width / Math.max(1, stage.element.clientWidth);
-    if (canvas.width !== source.width || canvas.height !== source.height) {
+    const strip = new LegendStrip(presentLegends(twin, stage, this.layers), source.width / scale);
+    // A video keeps its size while legends come and go.
+    const tall = this.recorder ? canvas.height : Math.round(source.height + strip.height * scale);
+    if (canvas.width !== source.width || canvas.height !== tall) {
       canvas.width = source.width;
-      canvas.height = source.height;
+      canvas.height = tall;
     }
     const c = canvas.getContext("2d");
     if (!c) return canvas;
     c.setTransform(1, 0, 0, 1, 0, 0);
+    c.fillStyle = "#fff";
+    c.fillRect(0, 0, canvas.width, canvas.height);
     c.drawImage(source, 0, 0);
     c.setTransform(scale, 0, 0, scale, 0, 0);
-    const [width, height] = [canvas.width / scale, canvas.height / scale];
+    const [width, height] = [source.width / scale, source.height / scale];
     c.textBaseline = "middle";
     const plate = (x: number, y: number, w: number, hh: number): void => {
       c.fillStyle = "rgb(255 255 255 / 0.9)";
@@ -61,59 +65,52 @@ export class Picture {
     c.font = `12px ${font}`;
     changed.forEach((line, i) => c.fillText(line, 20, 58 + 15 * i, width - 60));
     c.fillText(time + (stage.views.size > 1 ? `   ${twin.shown.value[0]} left, ${twin.shown.value[1]} right` : ""), 20, 43);
-    let bottom = height - 10;
-    for (const legend of presentLegends(twin, stage, this.layers)) {
-      if (legend.from) bottom -= 15;
-      if (legend.categories) {
-        const rows = legend.categories.length;
-        plate(10, bottom - 16 - 16 * rows, 208, 16 + 16 * rows + (legend.from ? 15 : 0));
-        c.font = `600 12px ${font}`;
-        c.fillText(legend.title, 20, bottom - 5 - 16 * rows, 188);
-        c.font = `11px ${font}`;
-        legend.categories.forEach((category, k) => {
-          c.fillStyle = category.colour;
-          c.fillRect(20, bottom - 14 - 16 * k, 11, 11);
-          c.fillStyle = "#48525b";
-          c.fillText(category.name, 38, bottom - 8 - 16 * k, 170);
-        });
-        if (legend.from) c.fillText(legend.from, 20, bottom + 6, 188);
-        bottom -= 22 + 16 * rows;
-        continue;
-      }
-      plate(10, bottom - 48, 208, legend.from ? 63 : 48);
-      c.font = `600 12px ${font}`;
-      c.fillText(`${legend.title}, ${unitText(legend.unit)}`, 20, bottom - 37, 188);
-      for (let i = 0; i < 188; ++i) {
-        c.fillStyle = css(legend.at(i / 187));
-        c.fillRect(20 + i, bottom - 28, 1.5, 9);
-      }
-      c.fillStyle = "#48525b";
-      c.font = `11px ${font}`;
-      const step = roundStep((legend.high - legend.low) / 4.5);
-      c.textAlign = "center";
-      for (let v = Math.ceil(legend.low / step) * step; v <= legend.high + 1e-9; v += step) {
-        c.fillText(tick(v), 20 + (188 * (v - legend.low)) / (legend.high - legend.low), bottom - 9);
-      }
-      c.textAlign = "left";
-      if (legend.from) c.fillText(legend.from, 20, bottom + 6, 188);
-      bottom -= 54;
-    }
+    strip.draw(c, height);
     const perPixel = stage.metresPerPixel;
     const length = roundStep(perPixel * 60);
     plate(width - 30 - length / perPixel, height - 40, length / perPixel + 20, 30);
     c.font = `11px ${font}`;
     c.fillText(`${tick(length)}\u202fm`, width - 20 - length / perPixel, height - 31);
     c.fillRect(width - 20 - length / perPixel, height - 19, length / perPixel, 2);
+    this.drawNorth(c, width - 28, height - 66);
     c.fillStyle = "#5a646e";
     c.font = `10px ${font}`;
     c.fillText("talus", width - 36, 16);
     return canvas;
   }
 
-  async png(): Promise<void> {
+  private drawNorth(c: CanvasRenderingContext2D, x: number, y: number): void {
+    c.save();
+    c.fillStyle = "rgb(255 255 255 / 0.9)";
+    c.beginPath();
+    c.arc(x, y, 20, 0, 2 * Math.PI);
+    c.fill();
+    c.fillStyle = "#0e4a5f";
+    c.translate(x, y);
+    c.rotate(this.stage.rig.turn);
+    c.beginPath();
+    c.moveTo(0, -8);
+    c.lineTo(5, 14);
+    c.lineTo(-5, 14);
+    c.fill();
+    c.font = `600 10px ${font}`;
+    c.textAlign = "center";
+    c.fillText("N", 0, -13);
+    c.restore();
+  }
+
+  /** The view with its title, legends and scale. */
+  async file(): Promise<{ name: string; content: Blob }> {
     const canvas = this.compose(this.stage.drawNow());
-    const blob = await new Promise<Blob | null>((resolve) => canvas.toBlob(resolve, "image/png"));
-    if (blob) save(`${this.fileName}-${fixed(this.stage.stats.shownTime_s, 1)}s.png`, blob);
+    const content = await new Promise<Blob | null>((resolve) => canvas.toBlob(resolve, "image/png"));
+    if (!content) throw new Error("The browser could not make the picture.");
+    return { name: `${this.fileName}-${fixed(this.stage.stats.shownTime_s, 1)}s.png`, content };
+  }
+  png(): void {
+    void this.twin.attempt(async () => {
+      const { name, content } = await this.file();
+      save(name, content);
+    });
   }
   /** The view as it is, for another document. */
   still(): string {

@@ -5,6 +5,8 @@ import type { Change } from "../state/edits";
 import { downhill_deg } from "../state/inflows";
 import type { Twin } from "../state/twin";
 import { valueField, type ValueField } from "../ui/value_field";
+import { CrestProfile } from "../charts/crest";
+import { h } from "../ui/dom";
 import { barrierFields } from "./barrier_fields";
 import { bedFields } from "./bed_fields";
 import { inflowFields } from "./inflow_fields";
@@ -29,7 +31,12 @@ export function shapeFields(twin: Twin, item: Item, now: () => Item, onset: (wha
       return one(valueField(described.buildings.height_m, item.height_m, (height_m) => onset({ height_m })), (fresh) => (fresh.shape === "building" ? fresh.height_m : null));
     case "barrier": {
       const fields = barrierFields(item, twin.scene, onset);
-      return { ...fields, show: (fresh) => fresh.shape === "barrier" && fields.show(fresh, fresh.crest_length_m) };
+      const profile = new CrestProfile();
+      return { ...fields, element: h("div", {}, fields.element, profile.element), end: () => profile.end(), show: (fresh) => {
+        if (fresh.shape !== "barrier") return;
+        fields.show(fresh, fresh.crest_length_m);
+        profile.show(fresh, fresh.line, twin.relief);
+      } };
     }
     case "zone": {
       const fields = zoneFields(twin.scene, onset);

@@ -16,14 +16,19 @@ export function viewBar(twin: Twin, stage: Stage): ViewBar {
     ["orbit", "Orbit", "orbit", "Orbit: drag to turn, right drag to move, wheel to zoom (1)"],
     ["fly", "Fly", "fly", "Fly: W A S D, Q and E to sink and rise, drag to look (2)"],
     ["follow", "Follow the front", "follow", "Follow the front of the debris (3)"],
+    ["plan", "Top view", "top", "Top view: a plan of one scale, north up (T)"],
   ];
   const buttons = modes.map(([mode, label, icon, title]) =>
     button(label, { icon, bare: true, title, "data-mode": mode, onclick: () => setMode(mode) }));
   const setMode = (mode: CameraMode): void => {
-    stage.rig.setMode(mode);
-    modes.forEach(([name], i) => buttons[i].setAttribute("aria-pressed", String(name === mode)));
+    if (mode === "plan") stage.rig.top();
+    else stage.rig.setMode(mode);
     if (mode === "fly") stage.canvas.focus();
   };
+
+  const press = (mode: CameraMode): void => modes.forEach(([name], i) => buttons[i].setAttribute("aria-pressed", String(name === mode)));
+  stage.rig.onMode = press;
+  press(stage.rig.mode);
 
   const views = (): Viewpoint[] => JSON.parse(localStorage.getItem(savedKey + twin.scene.title) ?? "[]") as Viewpoint[];
   const saved = h("select", { "aria-label": "Saved views", class: "saved", onchange: () => {
@@ -40,7 +45,7 @@ export function viewBar(twin: Twin, stage: Stage): ViewBar {
   const recall = (number: number): void => {
     const view = views()[number - 1];
     if (view) {
-      setMode("orbit");
+      if (stage.rig.mode !== "plan") setMode("orbit");
       stage.rig.go(view, true);
     }
   };
@@ -95,12 +100,12 @@ export function viewBar(twin: Twin, stage: Stage): ViewBar {
     names.checked = twin.names.value;
   });
 
+  const open = button("Display options", { icon: "layers", bare: true, class: "bare options-switch", title: "Particles, layers, names", "aria-expanded": "false", onclick: () =>
+    open.setAttribute("aria-expanded", String(show.classList.toggle("open"))) });
   const camera = h("div", { class: "bar camera", role: "toolbar", "aria-label": "Camera" }, ...buttons,
-    button("Top view", { icon: "top", bare: true, title: "Top view, north up (T)", onclick: () => stage.rig.top() }),
-    button("Fit", { icon: "fit", bare: true, title: "Whole scene (F)", onclick: () => stage.rig.fit() }), save, saved);
+    button("Fit", { icon: "fit", bare: true, title: "Whole scene (F)", onclick: () => stage.rig.fit() }), save, saved, open);
   const show = h("div", { class: "bar show", role: "toolbar", "aria-label": "Display options" },
     h("label", { class: "check" }, particles, "Particles"), surface, layer, opacity, differenceLabel,
     photoLabel, h("label", { class: "check" }, contours, "Contours"), h("label", { class: "check" }, names, "Names"));
-  setMode("orbit");
   return { camera, show, setMode, recall };
 }

@@ -19,7 +19,8 @@ const vertex = /* glsl */ `
     vShare = mix(particle0.w * uSpeedUnit0, particle1.w * uSpeedUnit1, share) / uFastest;
     vec4 seen = modelViewMatrix * vec4(mix(at0, at1, share), 1.0);
     gl_Position = shown ? projectionMatrix * seen : vec4(2.0, 2.0, 2.0, 1.0);
-    gl_PointSize = shown ? max(2.5, uDiameter * uPixels / -seen.z) : 0.0;
+    // In a plan (the last row of its projection is 0 0 0 1) size does not depend on distance.
+    gl_PointSize = shown ? max(2.5, uDiameter * uPixels / (projectionMatrix[3][3] > 0.5 ? 1.0 : -seen.z)) : 0.0;
     vRim = 0.4 * smoothstep(3.0, 12.0, gl_PointSize);
   }
 `;
@@ -109,7 +110,7 @@ export class Debris {
   mix(fraction: number): void {
     this.uniforms.uMix.value = this.newest === 1 ? fraction : 1 - fraction;
   }
-  /** pixels: height of the view in pixels divided by twice the tangent of half the field of view. */
+  /** pixels: of a metre, in a perspective at a distance of 1 m. */
   prepare(pixels: number, sunInView: Vector3, fastest_mps: number): void {
     this.uniforms.uPixels.value = pixels;
     this.uniforms.uSun.value.copy(sunInView);

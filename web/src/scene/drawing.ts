@@ -5,6 +5,7 @@ import type { Point } from "../protocol/messages";
 import { Cell, watchAll } from "../state/cell";
 import { change, create } from "../state/edits";
 import { arrowsOf } from "../state/inflows";
+import { acrossPath } from "../state/measures";
 import { groundUnder } from "../state/picking";
 import { canReshape, crossesItself, drawnAsLine, fewestPoints, hasOutline, inside, itemOf, lineOf, mostPoints, pointsOf } from "../state/shapes";
 import { probeColours, type Selection, type Shape, type Twin } from "../state/twin";
@@ -18,8 +19,11 @@ const drawColour = "#d98a00";
 export class Drawing {
   /** Corners set so far of what is being drawn, or those of the selected shape while it is dragged. */
   readonly draft = new Cell<readonly Point[]>([]);
-  private pointer: Point | null = null;
+  /** Where the pointer is on the ground while something is drawn. */
+  readonly pointer = new Cell<Point | null>(null);
   private lines: Line2[] = [];
+  /** The line was laid across the flow path: it is whole, another point begins a new one. */
+  private snapped = false;
   private readonly handles: Handles;
   private readonly crosshair = h("div", { class: "crosshair", hidden: true, "aria-hidden": "true" });
 
@@ -28,8 +32,9 @@ export class Drawing {
     stage.element.append(this.crosshair);
     this.listen();
     twin.tool.watch((tool) => {
+      this.snapped = false;
       this.draft.value = [];
-      this.pointer = null;
+      this.pointer.value = null;
       stage.element.classList.toggle("drawing", tool.kind !== "none");
       this.crosshair.hidden = tool.kind === "none" || document.activeElement !== stage.canvas;
       if (tool.kind !== "none") twin.selection.value = null;
@@ -66,12 +71,33 @@ export class Drawing {
     if (this.twin.tool.value.kind !== "none") this.twin.tool.value = { kind: "none" };
     else this.twin.selection.value = null;
   }
+  /** Lays the barrier that is drawn across the flow path, where the pointer is nearest to it; else at the middle of the view. */
+  snap(): void {
+    const { twin, stage } = this;
+    const path = twin.scene.flow_path;
+    if (this.shape !== "barrier" || !path) return;
+    const { target } = stage.rig.controls;
+    const [ox, oy] = stage.relief.origin;
+    const line = acrossPath(path, this.pointer.value ?? this.draft.value.at(-1) ?? [target.x + ox, target.y + oy], twin.newShape.barrier.height_m ?? 0, stage.reliefOf(twin.edited.value));
+    if (!line) return;
+    this.snapped = true;
+    this.draft.value = line;
+    this.redraw();
+  }
+  /** Corners set so far, and where the pointer would set the next one. */
+  get outline(): readonly Point[] {
+    const { value: draft } = this.draft;
+    const { value: next } = this.pointer;
+    return draft.length > 0 && next && !this.snapped ? [...draft, next] : draft;
+  }
   removeLast(): void {
+    this.snapped = false;
     this.draft.value = this.draft.value.slice(0, -1);
     this.redraw();
   }
   addPoint(point: Point): void {
-    this.draft.value = [...this.draft.value, point];
+    this.draft.value = [...(this.snapped ? [] : this.draft.value), point];
+    this.snapped = false;
     this.redraw();
     // A section and an inflow's line are straight: two points define them.
     const { shape } = this;
@@ -90,10 +116,10 @@ export class Drawing {
       if (still) this.click(event);
     });
     canvas.addEventListener("pointermove", (event) => {
-      if (this.shape === null || this.draft.value.length === 0) return;
+      if (this.shape === null) return;
       const hit = this.stage.hit(event.clientX, event.clientY);
-      this.pointer = hit ? [hit.world[0], hit.world[1]] : null;
-      this.redraw();
+      this.pointer.value = hit ? [hit.world[0], hit.world[1]] : null;
+      if (this.draft.value.length > 0) this.redraw();
     });
     canvas.addEventListener("dblclick", () => {
       if (this.shape === null) return;
@@ -114,7 +140,8 @@ export class Drawing {
         const column = [...this.stage.views.keys()].indexOf(this.twin.edited.value);
         this.crosshair.hidden = false;
         this.put(this.stage.hit(box.left + (column + 0.5) * wide, box.top + box.height / 2));
-      } else if (event.key === "Enter") this.finish();
+      } else if (event.key === "x" && !event.ctrlKey && !event.metaKey) this.snap();
+      else if (event.key === "Enter") this.finish();
       else if (event.key === "Backspace") this.removeLast();
       else return;
       event.preventDefault();
@@ -196,7 +223,7 @@ export class Drawing {
     this.lines = [];
     const points = [...this.draft.value];
     const { shape } = this;
-    if (shape !== null && this.pointer && points.length > 0) points.push(this.pointer);
+    if (shape !== null && this.pointer.value && points.length > 0 && !this.snapped) points.push(this.pointer.value);
     const view = this.stage.views.get(this.twin.edited.value);
     if (view && points.length > 1) {
       const byLine = this.twin.inflowByLine.value;

@@ -1,8 +1,9 @@
 // Text at places of the scene, as HTML over the view. Of overlapping labels the more important one is kept.
-import { Vector3, type PerspectiveCamera } from "three";
+import { Vector3 } from "three";
 import { h } from "../ui/dom";
 import type { Place } from "../protocol/messages";
 import type { Relief } from "./relief";
+import type { Rig } from "./rig";
 
 export interface Label {
   /** Local place. */
@@ -39,9 +40,10 @@ export class Labels {
   }
 
   /** reserved: boxes (left, top, right, bottom) of the view that are covered by something else. */
-  place(camera: PerspectiveCamera, width: number, height: number, reserved: readonly Box[]): void {
+  place(rig: Rig, width: number, height: number, reserved: readonly Box[]): void {
     const taken: Box[] = [...reserved];
     const seen = new Vector3();
+    const { camera } = rig;
     for (const label of this.shown) {
       seen.set(...label.at).project(camera);
       const x = ((seen.x + 1) / 2) * width;
@@ -51,19 +53,15 @@ export class Labels {
       const visible =
         seen.z < 1 && box[0] > 2 && box[1] > 2 && box[2] < width - 2 && box[3] < height - 2 &&
         !taken.some((t) => box[0] < t[2] + 3 && box[2] > t[0] - 3 && box[1] < t[3] + 2 && box[3] > t[1] - 2) &&
-        this.near(label, camera) && !this.hidden(label.at, camera);
+        (label.farthest === undefined || rig.distanceTo(seen.set(...label.at)) < label.farthest) && (rig.mode === "plan" || !this.hidden(label.at, camera.position));
       label.element.classList.toggle("off", !visible);
       if (!visible) continue;
       taken.push(box);
       label.element.style.transform = `translate(${Math.round(box[0])}px, ${Math.round(box[1])}px)`;
     }
   }
-  private near(label: Label, camera: PerspectiveCamera): boolean {
-    return label.farthest === undefined || camera.position.distanceTo(new Vector3(...label.at)) < label.farthest;
-  }
   /** Whether the ground hides the place from the camera. */
-  private hidden(at: Place, camera: PerspectiveCamera): boolean {
-    const from = camera.position;
+  private hidden(at: Place, from: Vector3): boolean {
     const [ox, oy, oz] = this.relief.origin;
     const steps = 40;
     for (let k = 1; k < steps - 1; ++k) {

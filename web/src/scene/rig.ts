@@ -1,21 +1,31 @@
-// The camera: orbit by mouse, touch and keys; fly; follow the front; top view; saved views. z is up.
-import { MOUSE, PerspectiveCamera, Spherical, Vector3 } from "three";
+// The camera: orbit by mouse, touch and keys; fly; follow the front; the plan, which has one scale everywhere; saved views. z is up.
+import { MOUSE, OrthographicCamera, PerspectiveCamera, Spherical, TOUCH, Vector3 } from "three";
 import { OrbitControls } from "three/examples/jsm/controls/OrbitControls.js";
 import type { Place } from "../protocol/messages";
 import type { Relief } from "./relief";
 
-export type CameraMode = "orbit" | "fly" | "follow";
-export interface Viewpoint { position: Place; target: Place }
+export type CameraMode = "orbit" | "fly" | "follow" | "plan";
+/** plan_m: of a plan, from its lower to its upper edge. */
+export interface Viewpoint { position: Place; target: Place; plan_m?: number }
+
+/** Of a view of a house, above the horizon. */
+const visitTilt = (35 * Math.PI) / 180;
 
 const flyKeys = new Set(["KeyW", "KeyA", "KeyS", "KeyD", "KeyQ", "KeyE"]);
 
 export class Rig {
-  readonly camera = new PerspectiveCamera(38, 1, 0.5, 20000);
   readonly controls: OrbitControls;
   mode: CameraMode = "orbit";
+  /** Called when the mode changes by itself, as by a saved view. */
+  onMode: (mode: CameraMode) => void = () => {};
+  private readonly perspective = new PerspectiveCamera(38, 1, 0.5, 20000);
+  /** Its zoom is 1 / (metres from the lower to the upper edge). */
+  private readonly flat = new OrthographicCamera(-0.5, 0.5, 0.5, -0.5);
   private readonly held = new Set<string>();
   private flight: { from: Viewpoint; to: Viewpoint; begun_ms: number; lasts_ms: number } | null = null;
   private followed: Vector3 | null = null;
+  /** What the perspective looked at before the plan. */
+  private readonly before = new Vector3();
   private last_ms = 0;
   private readonly changed: () => void;
 
@@ -25,14 +35,16 @@ export class Rig {
       this.camera.updateMatrixWorld();
       changed();
     };
-    this.camera.up.set(0, 0, 1);
-    this.controls = new OrbitControls(this.camera, canvas);
+    for (const camera of [this.perspective, this.flat]) camera.up.set(0, 0, 1);
+    this.controls = new OrbitControls(this.perspective, canvas);
     this.controls.enableDamping = !matchMedia("(prefers-reduced-motion: reduce)").matches;
     this.controls.dampingFactor = 0.14;
     this.controls.zoomToCursor = true;
     this.controls.maxPolarAngle = 0.49 * Math.PI;
     this.controls.minDistance = 4;
     this.controls.maxDistance = 6 * Math.max(relief.width, relief.height);
+    this.controls.minZoom = 1 / this.controls.maxDistance;
+    this.controls.maxZoom = 0.25;
     this.controls.mouseButtons = { LEFT: MOUSE.ROTATE, MIDDLE: MOUSE.DOLLY, RIGHT: MOUSE.PAN };
     this.controls.addEventListener("change", this.changed);
     this.controls.addEventListener("start", () => (this.flight = null));
@@ -40,19 +52,56 @@ export class Rig {
     canvas.addEventListener("keyup", (event) => void this.held.delete(event.code));
     canvas.addEventListener("blur", () => this.held.clear());
     const reach = 2.2 * (relief.width + relief.height);
-    this.camera.far = 12 * reach;
+    this.perspective.far = this.flat.far = 12 * reach;
+    this.flat.near = -this.flat.far;
     this.fit(false);
   }
 
+  get camera(): PerspectiveCamera | OrthographicCamera {
+    return this.mode === "plan" ? this.flat : this.perspective;
+  }
+  set aspect(ratio: number) {
+    this.perspective.aspect = ratio;
+    this.flat.left = -ratio / 2;
+    this.flat.right = ratio / 2;
+    this.perspective.updateProjectionMatrix();
+    this.flat.updateProjectionMatrix();
+  }
   get viewpoint(): Viewpoint {
-    return { position: this.camera.position.toArray(), target: this.controls.target.toArray() };
+    return { position: this.camera.position.toArray(), target: this.controls.target.toArray(), ...(this.mode === "plan" ? { plan_m: this.visible_m } : {}) };
+  }
+  /** Metres from the lower to the upper edge of the view, at its middle. */
+  get visible_m(): number {
+    return this.mode === "plan" ? 1 / this.flat.zoom : 2 * this.perspective.position.distanceTo(this.controls.target) * this.halfTangent;
+  }
+  /** Share of the view's height that a metre takes; in a perspective one at a distance of 1 m. */
+  get magnification(): number {
+    return this.mode === "plan" ? this.flat.zoom : 1 / (2 * this.halfTangent);
+  }
+  /** Distance from which a perspective shows as much. */
+  distanceTo(at: Vector3): number {
+    return this.mode === "plan" ? this.visible_m / (2 * this.halfTangent) : this.perspective.position.distanceTo(at);
+  }
+  /** How far north is turned from the upper edge, in radians. */
+  get turn(): number {
+    const away = this.camera.position.clone().sub(this.controls.target);
+    return Math.atan2(away.x, -away.y);
+  }
+  /** The line of sight through a place of the view, -1 to 1 to the right and upwards. */
+  sight(x: number, y: number): { from: Place; direction: Place } {
+    const { camera } = this;
+    if (this.mode === "plan") return { from: new Vector3(x, y, 0).unproject(camera).toArray(), direction: [0, 0, -1] };
+    return { from: camera.position.toArray(), direction: new Vector3(x, y, 0.5).unproject(camera).sub(camera.position).normalize().toArray() };
+  }
+  private get halfTangent(): number {
+    return Math.tan((this.perspective.fov * Math.PI) / 360);
   }
   /** The whole ground in view, seen from its lower side. */
   fit(animated = true, towards = 0.15): void {
     const [x, y] = this.relief.middle;
     const target = new Vector3(...this.relief.local(x, y));
     const size = Math.hypot(this.relief.width, this.relief.height);
-    const distance = (0.40 * size) / Math.tan((this.camera.fov * Math.PI) / 360) / Math.min(1.3, Math.max(0.6, this.camera.aspect));
+    const distance = (0.40 * size) / this.halfTangent / Math.min(1.3, Math.max(0.6, this.perspective.aspect));
     const { down } = this;
     const angle = Math.atan2(down[1], down[0]) + towards;
     const offset = new Vector3().setFromSpherical(new Spherical(distance, 1, 0));
@@ -79,20 +128,36 @@ export class Rig {
     }
     return u === 0 && v === 0 ? [0, -1] : [u, v];
   }
+  /** The whole ground as a plan, north up. */
   top(): void {
     const [x, y] = this.relief.middle;
-    const target = this.relief.local(x, y);
-    const tan = Math.tan((this.camera.fov * Math.PI) / 360);
-    const distance = (0.54 * Math.max(this.relief.height, this.relief.width / this.camera.aspect)) / tan;
-    // Looking straight down, "up" is undefined: a slight offset to the south keeps north at the top.
-    this.go({ position: [target[0], target[1] - 0.001 * distance, target[2] + distance], target }, true);
+    this.plan(this.relief.local(x, y), 1.08 * Math.max(this.relief.height, this.relief.width / this.perspective.aspect));
   }
-  /** Brings a local place near the centre, from the current direction. */
-  visit(place: Place, distance: number): void {
-    const away = this.camera.position.clone().sub(this.controls.target).setLength(distance);
-    this.go({ position: [place[0] + away.x, place[1] + away.y, place[2] + away.z], target: place }, true);
+  private plan(target: Place, visible_m: number): void {
+    this.setMode("plan");
+    const height = this.relief.highest - this.relief.origin[2] + 100;
+    // Looking straight down, "up" is undefined: a slight offset to the south keeps north at the top.
+    this.flat.position.set(target[0], target[1] - 1e-5 * (height - target[2]), height);
+    this.flat.zoom = 1 / visible_m;
+    this.flat.updateProjectionMatrix();
+    this.controls.target.set(...target);
+    this.controls.update();
+    this.changed();
+  }
+  /** Brings a local place near the centre, seen from `side`, a direction in the plan, or from the current direction. */
+  visit(place: Place, distance: number, side: readonly [number, number] | null = null): void {
+    if (this.mode === "plan") return this.plan(place, 2 * distance * this.halfTangent);
+    const away = side === null ? this.camera.position.clone().sub(this.controls.target) : new Vector3(side[0], side[1], Math.tan(visitTilt));
+    away.setLength(distance);
+    const position: Place = [place[0] + away.x, place[1] + away.y, place[2] + away.z];
+    const [ox, oy, oz] = this.relief.origin;
+    // A slope behind the camera does not hide the view.
+    position[2] = Math.max(position[2], this.relief.at(position[0] + ox, position[1] + oy) - oz + 0.2 * distance);
+    this.go({ position, target: place }, true);
   }
   go(to: Viewpoint, animated: boolean): void {
+    if (to.plan_m !== undefined) return this.plan(to.target, to.plan_m);
+    if (this.mode === "plan") this.setMode("orbit");
     if (!animated || matchMedia("(prefers-reduced-motion: reduce)").matches) {
       this.flight = null;
       this.camera.position.set(...to.position);
@@ -105,11 +170,29 @@ export class Rig {
     this.changed();
   }
   setMode(mode: CameraMode): void {
-    if (mode === "fly" || this.mode === "fly") this.setPivot(mode === "fly");
+    if (this.mode === "fly") this.setPivot(false);
+    if ((mode === "plan") !== (this.mode === "plan")) this.flatten(mode === "plan");
     this.mode = mode;
+    if (mode === "fly") this.setPivot(true);
+    this.onMode(mode);
     this.followed = null;
     this.held.clear();
     this.changed();
+  }
+  /** A plan is moved by a drag; what follows it shows the same place from the direction before. */
+  private flatten(on: boolean): void {
+    const { controls, perspective, relief } = this;
+    this.flight = null;
+    if (!on) {
+      const away = perspective.position.clone().sub(this.before);
+      const distance = this.distanceTo(perspective.position);
+      controls.target.set(...relief.local(controls.target.x + relief.origin[0], controls.target.y + relief.origin[1]));
+      perspective.position.copy(controls.target).add(away.setLength(distance));
+    } else this.before.copy(controls.target);
+    controls.object = on ? this.flat : perspective;
+    controls.enableRotate = !on;
+    controls.mouseButtons.LEFT = on ? MOUSE.PAN : MOUSE.ROTATE;
+    controls.touches.ONE = on ? TOUCH.PAN : TOUCH.ROTATE;
   }
   /** While flying, a drag turns the camera on the spot: the pivot is close ahead. Otherwise it is on the ground. */
   private setPivot(close: boolean): void {
@@ -139,9 +222,9 @@ export class Rig {
     }
     const away = this.camera.position.clone().sub(this.controls.target);
     const angle = 0.09;
-    if (event.key.startsWith("Arrow") && event.shiftKey) {
-      const step = 0.06 * away.length();
-      const ahead = new Vector3(-away.x, -away.y, 0).normalize();
+    if (event.key.startsWith("Arrow") && (event.shiftKey || this.mode === "plan")) {
+      const step = 0.09 * this.visible_m;
+      const ahead = this.mode === "plan" ? new Vector3(0, 1, 0) : new Vector3(-away.x, -away.y, 0).normalize();
       const side = new Vector3(ahead.y, -ahead.x, 0);
       const sign = event.key === "ArrowUp" || event.key === "ArrowRight" ? 1 : -1;
       const move = (event.key === "ArrowUp" || event.key === "ArrowDown" ? ahead : side).multiplyScalar(sign * step);
@@ -158,8 +241,10 @@ export class Rig {
       away.set(Math.cos(turn) * Math.cos(tilt), Math.sin(turn) * Math.cos(tilt), Math.sin(tilt)).multiplyScalar(length);
       this.camera.position.copy(this.controls.target).add(away);
     } else if (event.key === "+" || event.key === "=" || event.key === "-") {
-      away.multiplyScalar(event.key === "-" ? 1.12 : 1 / 1.12);
-      this.camera.position.copy(this.controls.target).add(away);
+      const by = event.key === "-" ? 1.12 : 1 / 1.12;
+      this.camera.position.copy(this.controls.target).add(this.mode === "plan" ? away : away.multiplyScalar(by));
+      if (this.mode === "plan") this.flat.zoom /= by;
+      this.flat.updateProjectionMatrix();
     } else return;
     event.preventDefault();
     this.flight = null;

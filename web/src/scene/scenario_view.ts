@@ -1,6 +1,6 @@
 // All graphics of one scenario.
 import {
-  Box3, Color, Group, Scene, Vector3, type BufferGeometry, type Mesh, type MeshLambertMaterial, type PerspectiveCamera, type Raycaster, type Texture,
+  Box3, Color, Group, Scene, Vector3, type BufferGeometry, type Camera, type Mesh, type MeshLambertMaterial, type Raycaster, type Texture,
 } from "three";
 import type { Line2 } from "three/examples/jsm/lines/Line2.js";
 import type { Frame, ScenarioName } from "../protocol/frame";
@@ -215,7 +215,7 @@ export class ScenarioView {
   }
 
   /** Interpolates the two frames for `now_ms`; true while something moves. */
-  update(now_ms: number, camera: PerspectiveCamera, pixels: number, fastest_mps: number): boolean {
+  update(now_ms: number, camera: Camera, pixels: number, fastest_mps: number): boolean {
     const fraction = this.clock.fraction(now_ms);
     this.debris.mix(fraction);
     this.depths.mix(fraction);

@@ -206,7 +206,7 @@ export class ShownLayers {
   private surfaceRamp(): Texture {
     let texture = this.rampTextures.get("surface");
     if (!texture) {
-      texture = rampTexture((s) => rampAt(ramps.depth, s));
+      texture = rampTexture((s) => rampAt(ramps.surface_depth, s));
       this.rampTextures.set("surface", texture);
     }
     return texture;

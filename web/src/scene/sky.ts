@@ -9,7 +9,8 @@ const vertex = /* glsl */ `
   void main() {
     vDirection = position;
     vec4 at = projectionMatrix * vec4(mat3(viewMatrix) * position, 1.0);
-    gl_Position = at.xyww;
+    // Around a plan there is no sky.
+    gl_Position = projectionMatrix[3][3] > 0.5 ? vec4(2.0, 2.0, 2.0, 1.0) : at.xyww;
   }
 `;
 const fragment = /* glsl */ `

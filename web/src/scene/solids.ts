@@ -81,6 +81,13 @@ function stations(line: Point[], openings: readonly BarrierOpening[], step: numb
 
 type BarrierForm = Pick<Barrier, "id" | "line" | "height_m" | "thickness_m"> & Partial<Pick<Barrier, "crest_elevation_m" | "openings" | "passing_share" | "clearance_m">>;
 
+/** Height of the crest at a distance along the line, over ground of height `z`; in an opening that of its sill. */
+export function crestAt(barrier: Partial<Pick<Barrier, "crest_elevation_m" | "openings">> & Pick<Barrier, "height_m">, along_m: number, z: number): number {
+  const crest = typeof barrier.crest_elevation_m === "number" ? barrier.crest_elevation_m : z + barrier.height_m;
+  const opening = barrier.openings?.find((o) => Math.abs(along_m - o.position_m) < o.width_m / 2);
+  return opening ? Math.min(crest, z + (opening.sill_height_m ?? 0)) : crest;
+}
+
 /**
  * A wall, or a translucent net, whose crest is `height_m` above the ground along its line, or level; openings are left
  * out down to their sills.
@@ -102,8 +109,7 @@ export function barrierSolid(barrier: BarrierForm, relief: Relief, colour: strin
     for (const end of [k, k + 1]) {
       const [x, y] = places[end].at;
       const z = relief.at(x, y) - relief.origin[2];
-      const crest = typeof barrier.crest_elevation_m === "number" ? barrier.crest_elevation_m - relief.origin[2] : z + barrier.height_m;
-      const top = opening ? Math.min(crest, z + opening.sill_height_m) : crest;
+      const top = crestAt(barrier, middle, z + relief.origin[2]) - relief.origin[2];
       for (const [px, py] of [left[end], right[end]]) {
         const foot = typeof barrier.clearance_m === "number" ? Math.min(z + barrier.clearance_m, top) : Math.min(z, relief.at(px, py) - relief.origin[2]) - 0.5;
         corner.push(px - relief.origin[0], py - relief.origin[1], foot, px - relief.origin[0], py - relief.origin[1], top);

@@ -40,6 +40,9 @@ declare global {
   }
 }
 
+/** What is around the ground in a plan. */
+const aroundPlan = 0xdfe7ea;
+
 export interface Hit { scenario: ScenarioName; world: Place; x: number; y: number }
 
 export class Stage {
@@ -66,6 +69,7 @@ export class Stage {
   private readonly resolution = new Resolution();
   private width = 1;
   private height = 1;
+  private fitted = false;
 
   constructor(readonly twin: Twin, readonly relief: Relief) {
     this.stats = { frames: 0, script_ms: 0, draw_ms: 0, decode_ms: 0, unfold_ms: 0, upload_ms: 0, particles: 0, shownTime_s: 0, pixelRatio: 1, sunk_m: {},
@@ -74,6 +78,7 @@ export class Stage {
     this.renderer.shadowMap.enabled = true;
     this.renderer.shadowMap.autoUpdate = false;
     this.renderer.autoClear = false;
+    this.renderer.setClearColor(aroundPlan, 1);
     this.geometry = groundGeometry(relief);
     this.element.append(this.canvas);
     this.rig = new Rig(this.canvas, relief, () => {
@@ -160,8 +165,12 @@ export class Stage {
     this.height = Math.max(1, this.element.clientHeight);
     this.setSharpness(1);
     this.renderer.setSize(this.width, this.height, false);
-    this.rig.camera.aspect = this.width / Math.max(1, this.views.size) / this.height;
-    this.rig.camera.updateProjectionMatrix();
+    this.rig.aspect = this.width / Math.max(1, this.views.size) / this.height;
+    // A view that is higher than wide, as on a phone, would cut off the sides.
+    if (!this.fitted && this.element.clientWidth > 0) {
+      this.fitted = true;
+      if (this.width < this.height) this.rig.fit(false);
+    }
     this.cameraMoved = true;
     this.invalidate();
   }
@@ -196,14 +205,14 @@ export class Stage {
     const camera = this.rig.camera;
     camera.updateMatrixWorld();
     const wide = this.width / Math.max(1, this.views.size);
-    const pixels = (this.height * this.renderer.getPixelRatio()) / (2 * Math.tan((camera.fov * Math.PI) / 360));
+    const pixels = this.height * this.renderer.getPixelRatio() * this.rig.magnification;
     this.renderer.setScissorTest(true);
     let column = 0;
     let more = false;
     for (const view of this.views.values()) {
       if (view.update(now, camera, pixels, this.fastest_mps.value)) more = true;
       if (this.cameraMoved || view.labels.layer.dataset["stale"] !== "no") {
-        view.labels.place(camera, wide, this.height, this.covered(column * wide));
+        view.labels.place(this.rig, wide, this.height, this.covered(column * wide));
         view.labels.layer.dataset["stale"] = "no";
       }
       this.renderer.setViewport(column * wide, 0, wide, this.height);
@@ -252,9 +261,8 @@ export class Stage {
     if (name === undefined || clientY < box.top || clientY > box.bottom) return null;
     const x = ((clientX - box.left - column * wide) / wide) * 2 - 1;
     const y = 1 - ((clientY - box.top) / box.height) * 2;
-    const camera = this.rig.camera;
-    const direction = new Vector3(x, y, 0.5).unproject(camera).sub(camera.position).normalize();
-    const world = this.reliefOf(name).meet(camera.position.toArray(), direction.toArray());
+    const { from, direction } = this.rig.sight(x, y);
+    const world = this.reliefOf(name).meet(from, direction);
     return world ? { scenario: name, world, x: clientX, y: clientY } : null;
   }
   /** Position of a local place in pixels of the page; null behind the camera. */
@@ -266,10 +274,9 @@ export class Stage {
     if (seen.z > 1 || column < 0) return null;
     return { x: box.left + column * wide + ((seen.x + 1) / 2) * wide, y: box.top + ((1 - seen.y) / 2) * box.height };
   }
-  /** Metres per pixel at the camera's target. */
+  /** Metres per pixel at the camera's target; in a plan everywhere. */
   get metresPerPixel(): number {
-    const { camera, controls } = this.rig;
-    return (2 * camera.position.distanceTo(controls.target) * Math.tan((camera.fov * Math.PI) / 360)) / this.height;
+    return this.rig.visible_m / this.height;
   }
   /** Draws now, so that the canvas can be read in the same task. */
   drawNow(): HTMLCanvasElement {

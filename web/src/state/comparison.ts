@@ -1,6 +1,7 @@
 // What two scenarios have come to, side by side: figures, houses, barriers, points.
 import type { Figure, Impact, BarrierImpact, Impacts, Parameter, Setup } from "../protocol/messages";
 import { differingKeys } from "./differences";
+import { fixed, number } from "./format";
 
 export interface Row { group: string; name: string; unit: string; a: number | string | null; b: number | string | null }
 export interface Side { setup: Setup | null; figures: readonly Figure[]; impacts: Impacts | null; points: readonly PointPeaks[] }
@@ -9,6 +10,16 @@ export interface PointPeaks { name: string; depth_m: number | null; speed_mps: n
 
 /** b − a; null where one of them is no number. */
 export const differenceOf = (row: Row): number | null => (typeof row.a === "number" && typeof row.b === "number" ? row.b - row.a : null);
+
+const decimals = (value: number): number => number(value).split(".")[1]?.length ?? 0;
+/** The difference with no more decimals than the value beside it that has the fewest; a zero has none to count. */
+export function differenceText(row: Row): string {
+  const by = differenceOf(row);
+  if (by === null) return "–";
+  const counted = [row.a, row.b].filter((v): v is number => typeof v === "number" && v !== 0).map(decimals);
+  const text = fixed(by, counted.length > 0 ? Math.min(...counted) : 0).replace(/(\.\d*?)0+$/, "$1").replace(/\.$/, "");
+  return /[1-9]/.test(text) ? `${by > 0 ? "+" : ""}${text}` : "0";
+}
 
 type Measure<T> = readonly [string, string, (of: T) => number | null];
 const atHouses: readonly Measure<Impact>[] = [["impact pressure", "kPa", (i) => i.peak_impact_pressure_kPa], ["force", "kN", (i) => i.peak_force_kN],
