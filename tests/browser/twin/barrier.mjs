@@ -45,6 +45,25 @@ export async function testBarrier(run) {
     return Object.fromEntries(heads.map((head, k) => [head.replace(/ [▾▴]/, ""), Number(texts[k].replace(/[^\d.]/g, "") || NaN)]));
   };
 
+  await run.check("X lays a barrier across the flow path near the pointer; length, heights, slope, chainage and its crest are told", async () => {
+    await page.click("[data-draw=barrier]");
+    const canvas = await page.locator(".stage canvas").boundingBox();
+    await page.mouse.move(canvas.x + 0.5 * canvas.width, canvas.y + 0.55 * canvas.height);
+    const lie = page.locator(".draft:visible .lie");
+    const at = await until(() => lie.textContent(), (t) => /^ground [\d.]+\sm, slope \d+°, chainage \d+\sm/.test(t), "where the pointer is");
+    await page.keyboard.press("x");
+    const met = Number(/chainage (\d+)/.exec(at)[1]);
+    await until(() => lie.textContent(), (t) => /^[\d.]+\sm long, ground [\d.]+ to [\d.]+\sm, slope/.test(t) && Math.abs(Number(/path at (\d+)/.exec(t)?.[1]) - met) <= 1, "a line across the path");
+    assert.match(await page.getAttribute(".draft:visible .chart-plot", "aria-label"), /Ground from 0.*Crest from/);
+    await run.shot(page, "29-across");
+    await page.keyboard.press("Enter");
+    const [laid] = (await until(setup, (s) => s.barriers.length === 1, "the barrier")).barriers;
+    assert.equal(laid.line.length, 2);
+    await page.locator(".editor:visible .chart-plot").waitFor();
+    await page.keyboard.press("Control+z");
+    await until(setup, (s) => s.barriers.length === 0, "none again");
+  });
+
   await run.check("a barrier across the path, by coordinates, holds the debris: impact and what it holds are told", async () => {
     await restart();
     await page.click("[data-draw=barrier]");

@@ -8,7 +8,7 @@ import { button, h } from "../ui/dom";
 import { Chart, joined, type Curve } from "./chart";
 
 type Quantity = "depth_m" | "speed_mps" | "pressure_kPa";
-const kinds: [Quantity, string, string][] = [["depth_m", "Depth", "m"], ["speed_mps", "Speed", "m/s"], ["pressure_kPa", "Pressure", "kPa"]];
+const kinds: [Quantity, string, string][] = [["depth_m", "Depth", "m"], ["speed_mps", "Speed", "m/s"], ["pressure_kPa", "Dynamic pressure", "kPa"]];
 
 export class Probes {
   readonly element: HTMLElement;

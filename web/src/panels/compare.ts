@@ -5,6 +5,7 @@ import { watchAll } from "../state/cell";
 import { comparisonRows, differenceText, untouched, type PointPeaks, type Row, type Side } from "../state/comparison";
 import { changesText, paneText } from "../state/differences";
 import { fixed, tick, unitText } from "../state/format";
+import { pressures } from "../state/pressures";
 import type { Probe, Twin } from "../state/twin";
 import { button, h } from "../ui/dom";
 import { comparisonReport } from "./comparison_report";
@@ -44,7 +45,7 @@ export class ComparePanel {
     const none = h("p", { class: "hint" }, "Choose “Compare” in the list of scenarios to see two side by side.");
     const table = h("table", { class: "comparison plain" }, this.head, this.body);
     const shown = h("div", {}, h("div", { class: "row" }, report), this.notEqual, table, this.rest,
-      h("p", { class: "hint" }, "Impact pressure is the highest force on a patch of a wall over its area; peak dynamic pressure is density times speed squared of the free flow. Figures are those of the runs as far as they have come."));
+      h("p", { class: "hint" }, `${pressures} Figures are those of the runs as far as they have come.`));
     this.element = h("div", {}, none, shown);
     watchAll([twin.shown, ...twin.every("impacts"), ...twin.every("setup"), ...twin.every("state"), twin.probes], () => {
       shown.hidden = twin.shown.value.length < 2;

@@ -3,6 +3,7 @@ import type { Series } from "../protocol/messages";
 import { differenceText, type Row } from "../state/comparison";
 import { paneText } from "../state/differences";
 import { tick, unitText } from "../state/format";
+import { pressures } from "../state/pressures";
 import { roundStep } from "../scene/colour";
 import type { Twin } from "../state/twin";
 import { shownValue, standing } from "./compare";
@@ -50,6 +51,6 @@ table { border-collapse: collapse; width: 100%; font-size: 8pt; font-variant-num
 tr { border-bottom: 1px solid #e4e8eb } thead th, .g th { font-weight: 600 } thead th + th { text-align: right } figure { margin: 0 0 4mm } figcaption { font-weight: 600 } svg { width: 100%; font-size: 8px } small { color: #5a646e }
 </style><h1>${escape(scene.title)}: comparison of ${shown.join(" and ")}</h1>${heads.join("")}
 <img alt="Both views" src="${picture}"><div class="two"><div><table><thead><tr><th></th><th>${shown[0]}</th><th>${shown[1]}</th><th>${escape(twin.differenceName)}</th></tr></thead><tbody>${body.join("")}</tbody></table><p><small>${escape(rest)}</small></p></div>
-<div>${front}${moving}<p><small>${shown[0]} solid, ${shown[1]} dashed. Impact pressure is the highest force on a patch of a wall over its area; peak dynamic pressure is density times speed squared of the free flow. Compared on ${new Date().toISOString().slice(0, 16).replace("T", " ")} UTC.</small></p></div></div></html>
+<div>${front}${moving}<p><small>${shown[0]} solid, ${shown[1]} dashed. ${escape(pressures)} Compared on ${new Date().toISOString().slice(0, 16).replace("T", " ")} UTC.</small></p></div></div></html>
 `;
 }

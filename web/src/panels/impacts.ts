@@ -5,6 +5,7 @@ import { hitSide } from "../scene/hit_side";
 import type { Stage } from "../scene/stage";
 import { watchAll } from "../state/cell";
 import { fixed, quantity, unitText } from "../state/format";
+import { pressures } from "../state/pressures";
 import { itemOf, lineOf, pointsOf } from "../state/shapes";
 import type { HouseColour, Twin } from "../state/twin";
 import { h } from "../ui/dom";
@@ -147,7 +148,7 @@ export function impactsPanel(twin: Twin, stage: Stage): HTMLElement {
     return h("li", {}, dot, h("b", {}, c.name), h("span", { class: "muted" }, ` ${c.criterion}`));
   }));
   const none = h("p", { class: "hint" }, "Nothing has been hit yet. Rows fill as debris reaches houses and barriers.");
-  const measured = h("p", { class: "hint" }, "Impact is the highest force on a patch of the walls over its area (1 m x 1 m unless the scene says otherwise); Force is that on all walls; Depth is that of the debris in front of them. The map's dynamic pressure, density times speed squared, is that of the free flow.");
+  const measured = h("p", { class: "hint" }, `${pressures} Depth is that of the debris in front of the walls.`);
   const barrierTitle = h("h3", {}, "Barriers");
   const goneTitle = h("h3", {}, "Taken away");
   const gone = h("ul", { class: "removed" });

@@ -26,7 +26,7 @@ const atHouses: readonly Measure<Impact>[] = [["impact pressure", "kPa", (i) => 
   ["depth", "m", (i) => i.peak_depth_m], ["hit at", "s", (i) => i.first_hit_s]];
 const atBarriers: readonly Measure<BarrierImpact>[] = [["force", "kN", (i) => i.peak_force_kN], ["held", "m3", (i) => i.held_m3], ["over", "m3", (i) => i.overtopped_m3],
   ["through", "m3", (i) => i.passed_m3], ["failed at", "s", (i) => i.failed_s]];
-const atPoints: readonly Measure<PointPeaks>[] = [["peak depth", "m", (p) => p.depth_m], ["peak speed", "m/s", (p) => p.speed_mps], ["peak pressure", "kPa", (p) => p.pressure_kPa]];
+const atPoints: readonly Measure<PointPeaks>[] = [["peak depth", "m", (p) => p.depth_m], ["peak speed", "m/s", (p) => p.speed_mps], ["peak dynamic pressure", "kPa", (p) => p.pressure_kPa]];
 
 /** Rows of what is in either list; values that neither has are left out. */
 function paired<T extends { name: string }>(group: string, key: (of: T) => string, a: readonly T[], b: readonly T[], measures: readonly Measure<T>[]): Row[] {
