@@ -83,6 +83,8 @@ export class Drawing {
     this.snapped = true;
     this.draft.value = line;
     this.redraw();
+    // Enter finishes it, in place of pressing the button that began the drawing.
+    stage.canvas.focus();
   }
   /** Corners set so far, and where the pointer would set the next one. */
   get outline(): readonly Point[] {
