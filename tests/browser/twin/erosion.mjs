@@ -27,9 +27,12 @@ export async function testErosion(run) {
   const state = () => own.ask("scenarios/A/state");
   const sunk = () => page.evaluate(() => window.talusStats.sunk_m.A ?? 0);
   const offered = () => page.locator("option[value=erosion_depth]").evaluate((option) => !option.disabled);
+  // Without a legend the view has its whole height.
+  for (const name of ["Names", "Particles"]) await page.locator(`label:has-text('${name}') input`).uncheck();
+  await page.locator(".legends").waitFor({ state: "hidden" });
   // Downstream of the release, whose outline tells whether it is held: nothing but the ground is there.
   const box = await boxOf(page.locator(".stage canvas"));
-  const clip = { x: box.x + 0.15 * box.width, y: box.y + 0.25 * box.height, width: 0.7 * box.width, height: 0.45 * box.height };
+  const clip = { x: box.x + 0.2 * box.width, y: box.y + 0.25 * box.height, width: 0.65 * box.width, height: 0.45 * box.height };
   let deepest, before, layer;
 
   /** The read-out's height of the ground right below a share of the view. */
@@ -45,7 +48,6 @@ export async function testErosion(run) {
 
   await run.check("the ground sinks where debris entrains its bed, as far as the server says", async () => {
     await page.click("[aria-label='Top view']");
-    for (const name of ["Names", "Particles"]) await page.locator(`label:has-text('${name}') input`).uncheck();
     assert.equal(await offered(), false, "nothing was entrained, so there is no map of it");
     before = { ...await run.still(page, clip), path: await path(), height: await heightAt(0.5, 0.5) };
     // No faster than in reality, so that it is still under way when it is paused: a scenario B does not run then.
