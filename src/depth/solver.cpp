@@ -17,10 +17,9 @@ namespace {
 /// Share of the stable time step of a scheme whose waves may cross a cell in it. Mass leaves no cell in more than one.
 constexpr double courant_number = 0.6;
 
-/// A multiple of the float spacing of `range`.
-float on_common_spacing(double value, double range) {
-    const double spacing = std::ldexp(1.0, std::ilogb(std::max(range, 1.0)) - std::numeric_limits<float>::digits + 1);
-    return static_cast<float>(std::round(value / spacing) * spacing);
+/// Of the floats at `range`.
+double float_spacing(double range) {
+    return std::ldexp(1.0, std::ilogb(std::max(range, 1.0)) - std::numeric_limits<float>::digits + 1);
 }
 
 float greater_or_unknown(float a, float b) {
@@ -61,11 +60,15 @@ void Solver::set_bed(const Grid<double>& bed) {
         lowest = std::min(lowest, z);
         highest = std::max(highest, z);
     }
+    elevation_spacing_ = float_spacing(highest - lowest);
+    const auto rounded = [&](double z) {
+        return static_cast<float>(std::round(z / elevation_spacing_) * elevation_spacing_);
+    };
     for (int row = 0; row < geometry_.rows; ++row) {
         for (int column = 0; column < geometry_.columns; ++column) {
             const double z = bed.at(column, row);
             if (std::isnan(z)) continue;
-            bed_[index(column, row)] = on_common_spacing(z - lowest, highest - lowest);
+            bed_[index(column, row)] = rounded(z - lowest);
             unknown_[index(column, row)] = 0;
         }
     }
@@ -100,7 +103,7 @@ void Solver::set_bed(const Grid<double>& bed) {
                 }
                 if (count + flat_count == 0) continue;
                 const double z = count > 0 ? sum / count : flat_sum / flat_count;
-                found.emplace_back(i, on_common_spacing(z, highest - lowest));
+                found.emplace_back(i, rounded(z));
             }
         }
         for (const auto& [i, z] : found) {
@@ -114,24 +117,28 @@ void Solver::set_bed(const Grid<double>& bed) {
                         bed_.begin() + static_cast<std::ptrdiff_t>(to));
         });
     }
-    // Over two cells; beside a structure that of the open side, as debris sees it.
-    const auto slope_at = [&](std::size_t i, std::size_t step) {
-        const auto rise = [&](std::size_t to, std::size_t from) -> std::optional<float> {
-            const bool walled = !structure_.empty() && structure_[to] != structure_[from];
-            return walled ? std::nullopt : std::optional(bed_[to] - bed_[from]);
-        };
-        const auto below = rise(i, i - step), above = rise(i + step, i);
-        return below && above ? *below + *above : 2 * below.value_or(above.value_or(0));
-    };
-    const auto half_cell = static_cast<float>(0.5 / geometry_.cell);
     for (int row = -margin; row < geometry_.rows + margin; ++row) {
         for (int column = -margin; column < geometry_.columns + margin; ++column) {
             const std::size_t i = index(column, row);
             if (unknown_[i]) has_unknown_[tile_of(column, row)] = 1;
-            slope_x_[i] = slope_at(i, 1) * half_cell;
-            slope_y_[i] = slope_at(i, stride_) * half_cell;
+            find_slopes(i);
         }
     }
+}
+
+/// Over two cells; beside a structure that of the open side, as debris sees it.
+void Solver::find_slopes(std::size_t cell) {
+    const auto over_two = [&](std::size_t step) {
+        const auto rise = [&](std::size_t to, std::size_t from) -> std::optional<float> {
+            const bool walled = !structure_.empty() && structure_[to] != structure_[from];
+            return walled ? std::nullopt : std::optional(bed_[to] - bed_[from]);
+        };
+        const auto below = rise(cell, cell - step), above = rise(cell + step, cell);
+        return below && above ? *below + *above : 2 * below.value_or(above.value_or(0));
+    };
+    const auto half_cell = static_cast<float>(0.5 / geometry_.cell);
+    slope_x_[cell] = over_two(1) * half_cell;
+    slope_y_[cell] = over_two(stride_) * half_cell;
 }
 
 /// Calls f with the first index of a row of the margin and of the row that it repeats.
@@ -188,6 +195,20 @@ void Solver::inject(int column, int row, double depth, double u, double v) {
     v_[i] = next_v_[i] = mixed(v_[i], v);
     depth_[i] = next_depth_[i] = static_cast<float>(all);
     expect_waves_of(i, tile_of(column, row));
+}
+
+double Solver::erode(int column, int row, double depth) {
+    const double eroded = std::floor(depth / elevation_spacing_) * elevation_spacing_;
+    const std::size_t i = index(column, row);
+    if (unknown_[i] || !(eroded > 0)) return 0;
+    bed_[i] -= static_cast<float>(eroded);
+    for (int k = 1; edges_ == Edges::continued && k <= margin; ++k) {
+        if (row == 0) bed_[index(column, -k)] = bed_[i];
+        if (row == geometry_.rows - 1) bed_[index(column, row + k)] = bed_[i];
+    }
+    for (const std::size_t at : {i, i - 1, i + 1, i - stride_, i + stride_}) find_slopes(at);
+    inject(column, row, eroded, 0, 0);
+    return eroded;
 }
 
 void Solver::set_velocity(int column, int row, double u, double v) {
@@ -290,7 +311,7 @@ double Solver::advance_stage(bool second) {
 
 Status Solver::advance(double longest) {
     find_active_tiles();
-    if (steps_ == 0 && edges_ == Edges::continued) {
+    if (edges_ == Edges::continued) {  // what was added since, too
         continue_rows({depth_.data() + origin_, u_.data() + origin_, v_.data() + origin_});
         continue_rows({next_depth_.data() + origin_, next_u_.data() + origin_, next_v_.data() + origin_});
     }

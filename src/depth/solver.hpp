@@ -63,6 +63,9 @@ class Solver {
     void add(const Grid<float>& depth);
     /// Adds debris with a velocity to a cell of known ground; momenta add up.
     void inject(int column, int row, double depth, double u, double v);
+    /// Turns ground of a cell into debris at rest above it: as much of `depth`, m, as elevations are rounded to.
+    /// Returns that.
+    double erode(int column, int row, double depth);
     /// Gives the debris of a cell a velocity.
     void set_velocity(int column, int row, double u, double v);
 
@@ -106,6 +109,17 @@ class Solver {
         });
     }
 
+    /// The same, one row after the other.
+    template <class F>
+    void for_each_active_row_in_turn(const F& f) const {
+        for (const Segment& segment : segments_) {
+            for (int k = 0; k < tile_edge; ++k) {
+                const ActiveRow row = active_row(segment, k);
+                if (row.first < row.last) f(row);
+            }
+        }
+    }
+
     /// Hash of time, depths and velocities of all cells.
     [[nodiscard]] std::uint64_t hash() const;
 
@@ -119,6 +133,7 @@ class Solver {
     [[nodiscard]] ActiveRow active_row(const Segment& segment, int row_of_tile) const;
     void expect_waves_of(std::size_t cell, std::size_t tile);
     void set_bed(const Grid<double>& bed);
+    void find_slopes(std::size_t cell);
     void set_cover(const GroundValues& ground);
     void find_active_tiles();
     [[nodiscard]] double advance_stage(bool second);
@@ -130,6 +145,7 @@ class Solver {
     static constexpr int margin = 2;  ///< cells of unknown ground around the grid
 
     GridGeometry geometry_;
+    double elevation_spacing_ = 1;  ///< m, to which elevations are rounded
     Material material_;
     Edges edges_;
     Stages stages_;

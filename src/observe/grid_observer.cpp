@@ -5,6 +5,7 @@
 #include <limits>
 #include <utility>
 
+#include "observe/erosion.hpp"
 #include "observe/front_tracker.hpp"
 #include "observe/run_out.hpp"
 
@@ -201,6 +202,7 @@ TimeSample GridObserver::sample(const depth::Solver& solver, double held, double
     s.volume_held = held;
     s.volume_left = solver.volume_left();
     s.volume_released = volume_released_ + held;
+    s.volume_entrained = volume_entrained_;
     s.front_chainage = front_;
     s.time_step = solver.time_step();
     s.steps_per_second = steps_per_second;
@@ -296,6 +298,7 @@ Observation GridObserver::finish(const depth::Solver& solver, const sim::Ground&
     if (o.timeseries.back().time < solver.time()) o.timeseries.push_back(sample(solver, held, 0));
     for (const Structure& structure : structures_) o.buildings.push_back(structure.impact);
     o.volume_released = volume_released_ + held;
+    o.erosion = measure_erosion(ground, flow_path_, outputs_.chainage_interval);
     o.volume_rounding = 1e-6;
 
     Grid<float> depth(solver.geometry());
@@ -311,8 +314,9 @@ Observation GridObserver::finish(const depth::Solver& solver, const sim::Ground&
     for (const float h : released_.values) start += h;
     start *= depth.geometry.cell * depth.geometry.cell;
     const ReleasedMass released = measure_release(ground, parcels_of(solver, ground, released_, start, 0));
-    o.run_out = measure_run_out(ground, parcels_of(solver, ground, depth, volume_released_, solver.volume_left()),
-                                o.maps.peak_depth, released, farthest);
+    o.run_out = measure_run_out(
+        ground, parcels_of(solver, ground, depth, volume_released_ + volume_entrained_, solver.volume_left()),
+        o.maps.peak_depth, released, farthest);
     return o;
 }
 

@@ -30,7 +30,9 @@ class GridObserver {
 
     /// Call after debris was added to the solver: its depth by cell, m, and volume, m3.
     void note_release(const depth::Solver& solver, const Grid<float>& depth, double volume);
-    /// `held`: volume that is still to come, m3.
+    /// What was entrained in the last step, m3; call it before after_step().
+    void note_entrainment(double volume) { volume_entrained_ += volume; }
+    /// `held`: volume in releases that are still to start, m3.
     void after_step(const depth::Solver& solver, double held, double steps_per_second);
 
     [[nodiscard]] const TimeSample& latest() const { return timeseries_.back(); }
@@ -59,7 +61,7 @@ class GridObserver {
     std::vector<float> chainage_;                                         ///< by cell; NaN: not on the path
     std::vector<Structure> structures_;
     std::vector<TimeSample> timeseries_;
-    double volume_released_ = 0, front_ = never;
+    double volume_released_ = 0, volume_entrained_ = 0, front_ = never;
 };
 
 }  // namespace talus::observe

@@ -126,6 +126,50 @@ GridGround grid_ground(const scene::Scene& scene) {
     return ground;
 }
 
+namespace {
+
+/// The cell of the terrain at the centre of one of the grid, for each whose ground is known.
+template <class F>
+void for_each_terrain_cell(const scene::Scene& scene, const GridGeometry& grid, const F& f) {
+    for (int row = 0; row < grid.rows; ++row) {
+        for (int column = 0; column < grid.columns; ++column) {
+            const PlanPoint p = grid.centre(column, row);
+            const LocalPoint at = scene.terrain.frame().to_local({p.x, p.y, 0});
+            if (scene.terrain.covers(at.x, at.y)) f(grid.index(column, row), scene.terrain.cell_at(at.x, at.y));
+        }
+    }
+}
+
+}  // namespace
+
+terrain::Bed grid_bed(const scene::Scene& scene, const GridGround& ground) {
+    terrain::Bed bed;
+    if (scene.bed.empty()) return bed;
+    const std::size_t cells = ground.bed.geometry.size();
+    bed.materials = scene.bed.materials;
+    bed.material_at.assign(cells, 0);
+    bed.depth.assign(cells, 0);
+    bed.eroded.assign(cells, 0);
+    for_each_terrain_cell(scene, ground.bed.geometry, [&](std::size_t cell, std::size_t of_terrain) {
+        if (!ground.values.structure.empty() && ground.values.structure[cell] > 0) return;
+        bed.material_at[cell] = scene.bed.material_at[of_terrain];
+        bed.depth[cell] = scene.bed.depth[of_terrain];
+    });
+    return bed;
+}
+
+terrain::Bed terrain_bed(const scene::Scene& scene, const GridGeometry& grid, const terrain::Bed& eroded) {
+    terrain::Bed bed = scene.bed;
+    if (bed.empty()) return bed;
+    const double share = grid.cell * grid.cell / (scene.terrain.cell() * scene.terrain.cell());
+    std::vector<double> sum(bed.eroded.size());
+    for_each_terrain_cell(scene, grid, [&](std::size_t cell, std::size_t of_terrain) {
+        sum[of_terrain] += share * double{eroded.eroded[cell]};
+    });
+    for (std::size_t k = 0; k < sum.size(); ++k) bed.eroded[k] = static_cast<float>(sum[k]);
+    return bed;
+}
+
 Grid<float> grid_release(const scene::Scene& scene, const terrain::Release& release, const GridGround& ground) {
     const GridGeometry& g = ground.bed.geometry;
     std::vector<std::uint8_t> built(g.size(), 0);

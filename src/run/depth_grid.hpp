@@ -18,6 +18,10 @@ struct GridGround {
 };
 [[nodiscard]] GridGround grid_ground(const scene::Scene& scene);
 
+/// The scene's bed on the cells of the grid; none under structures. And what was eroded of it, on those of the terrain.
+[[nodiscard]] terrain::Bed grid_bed(const scene::Scene& scene, const GridGround& ground);
+[[nodiscard]] terrain::Bed terrain_bed(const scene::Scene& scene, const GridGeometry& grid, const terrain::Bed& eroded);
+
 /// Vertical depth of a release, m, of its volume to rounding; none on structures.
 [[nodiscard]] Grid<float> grid_release(const scene::Scene& scene, const terrain::Release& release,
                                        const GridGround& ground);

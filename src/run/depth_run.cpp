@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "core/try.hpp"
+#include "depth/entrainment.hpp"
 #include "depth/material.hpp"
 #include "observe/followed_path.hpp"
 #include "observe/grid_observer.hpp"
@@ -24,6 +25,7 @@ class GridRun {
         : scene_(scene),
           ground_(grid_ground(scene)),
           solver_(ground_.bed, depth::material_of(scene.spec.material), ground_.values),
+          bed_(grid_bed(scene, ground_)),
           observer_(solver_, scene.flow_path, scene.spec.outputs, ground_.structures) {
         for (const terrain::Release& release : scene.releases) held_ += release.volume;
         release_due();
@@ -42,6 +44,7 @@ class GridRun {
         wall_time_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
         smallest_ = std::min(smallest_, solver_.time_step());
         largest_ = std::max(largest_, solver_.time_step());
+        observer_.note_entrainment(bed_.entrain(solver_));
         observer_.after_step(solver_, held_, wall_time_ > 0 ? static_cast<double>(solver_.steps()) / wall_time_ : 0);
         release_due();
         if (!stepped) {
@@ -74,7 +77,8 @@ class GridRun {
         result.status = fault_ ? RunStatus::fault : stop_reason_.empty() ? RunStatus::interrupted : RunStatus::complete;
         result.stop_reason =
             stop_reason_.empty() ? fmt::format("stopped by the user at t = {:.4g} s", solver_.time()) : stop_reason_;
-        const sim::Ground ground(scene_.terrain);
+        sim::Ground ground(scene_.terrain);
+        ground.bed = terrain_bed(scene_, solver_.geometry(), bed_.bed());
         result.observation = observer_.finish(solver_, ground, held_);
         if (follows_debris(scene_)) {
             observe::follow_debris(ground, scene_.flow_path, scene_.spec.flow_path.corridor_width, scene_.spec.outputs,
@@ -133,6 +137,7 @@ class GridRun {
     const scene::Scene& scene_;
     GridGround ground_;
     depth::Solver solver_;
+    depth::Entrainment bed_;
     observe::GridObserver observer_;
     std::vector<std::size_t> order_;
     std::size_t released_ = 0;

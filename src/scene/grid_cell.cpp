@@ -35,6 +35,7 @@ constexpr std::array particle_keys = {"material.building_friction_coefficient",
                                       "solver.particle_limit",
                                       "solver.time_step_s",
                                       "solver.displacement_limit",
+                                      "solver.largest_time_step_s",
                                       "solver.smallest_time_step_s",
                                       "solver.iteration_count",
                                       "solver.extra_iteration_count",
@@ -46,6 +47,7 @@ constexpr std::array particle_keys = {"material.building_friction_coefficient",
                                       "solver.depenetration_speed_mps",
                                       "solver.rest_duration_s",
                                       "solver.compression_limit",
+                                      "outputs.particle_series_interval_s",
                                       "outputs.map_cell_m",
                                       "outputs.impact_filter_window_s",
                                       "outputs.impact_patch_edge_m"};
@@ -69,6 +71,10 @@ Status check_structures(const ParsedScene& parsed, const Scene& scene) {
 
 }  // namespace
 
+bool for_particles_only(std::string_view key) {
+    return std::find(particle_keys.begin(), particle_keys.end(), key) != particle_keys.end();
+}
+
 double grid_cell(const Scene& scene) {
     const double cell = scene.terrain.cell();
     return scene.spec.solver.grid_cell.value_or(cell / std::ceil(cell / coarsest_default_cell - 1e-9));
@@ -76,7 +82,6 @@ double grid_cell(const Scene& scene) {
 
 Status check_depth_averaged(const ParsedScene& parsed, Scene& scene) {
     const params::SceneSpec& spec = scene.spec;
-    if (!spec.beds.empty()) return refuse(parsed, "bed[0]", "does not entrain its bed yet");
     if (!spec.inflows.empty()) return refuse(parsed, "inflow[0]", "has no inflow yet");
     if (spec.outputs.particle_series_interval > 0) {
         return refuse(parsed, "outputs.particle_series_interval_s", "has no particles to write");
@@ -99,6 +104,9 @@ Status check_depth_averaged(const ParsedScene& parsed, Scene& scene) {
     std::vector<std::string> unused;
     for (const char* key : particle_keys) {
         if (scene.given_keys.contains(key)) unused.emplace_back(key);
+    }
+    if (spec.material.kinematic_viscosity && !spec.material.viscosity_on_ground) {
+        unused.emplace_back("material.kinematic_viscosity_m2ps without viscosity_on_ground");
     }
     if (!unused.empty()) {
         scene.notes.push_back(fmt::format("the depth-averaged model has no use for {}", fmt::join(unused, ", ")));

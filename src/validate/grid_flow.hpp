@@ -31,6 +31,8 @@ class GridIncline {
     /// Steps until then. Returns the problem; empty: none.
     [[nodiscard]] std::string advance_to(double time, const Watch& watch);
 
+    /// For what else happens to the debris.
+    [[nodiscard]] depth::Solver& solver() { return solver_; }
     [[nodiscard]] int columns() const { return solver_.geometry().columns; }
     [[nodiscard]] int rows() const { return solver_.geometry().rows; }
     [[nodiscard]] double along(int column) const;

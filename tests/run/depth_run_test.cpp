@@ -96,15 +96,30 @@ TEST_F(DepthAveragedRun, gives_the_same_bits_on_any_number_of_threads) {
     EXPECT_EQ(one->observation.run_out.along_flow, four->observation.run_out.along_flow);
 }
 
+TEST_F(DepthAveragedRun, entrains_its_bed_down_to_its_depth) {
+    const std::string bed = "[[bed]]\ndepth_m = 0.4\ngrowth_rate_per_m = 0.02\n";
+    const auto bare = run_scene(loaded(""), {}), with_bed = run_scene(loaded(bed), {}),
+               threaded = run_scene(loaded(bed, {"solver.thread_count=3"}), {});
+    ASSERT_TRUE(bare && with_bed && threaded);
+    const observe::Observation& o = with_bed->observation;
+    const observe::TimeSample& end = o.timeseries.back();
+    EXPECT_GT(end.volume_entrained, 0.5 * end.volume_released);
+    EXPECT_NEAR(end.volume_released + end.volume_entrained, end.volume_moving + end.volume_deposited + end.volume_left,
+                1e-5 * end.volume_released);
+    EXPECT_NEAR(o.erosion.volume, end.volume_entrained, 1e-4 * end.volume_entrained);
+    for (const float depth : o.erosion.depth.values) EXPECT_FALSE(depth > 0.4001F);
+    EXPECT_EQ(bare->observation.timeseries.back().volume_entrained, 0);
+    EXPECT_EQ(with_bed->hash, threaded->hash);
+}
+
 TEST_F(DepthAveragedRun, refuses_what_it_does_not_have_with_file_and_key) {
     const auto error = [&](const std::string& more) {
         write_valley(more);
         return load_error({"solver.model=depth_averaged"});
     };
-    EXPECT_THAT(error("[[bed]]\ndepth_m = 0.4\ngrowth_rate_per_m = 0.01\n"),
-                AllOf(HasSubstr("scene.toml"), HasSubstr("bed[0]"), HasSubstr("does not entrain")));
+    EXPECT_THAT(error("[outputs]\nparticle_series_interval_s = 1\n"),
+                AllOf(HasSubstr("scene.toml"), HasSubstr("particle_series_interval_s")));
     EXPECT_THAT(error(dam("height_m = 4\npassing_share = 0.3")), AllOf(HasSubstr("dam"), HasSubstr("no nets")));
-    EXPECT_THAT(error("[outputs]\nparticle_series_interval_s = 1\n"), HasSubstr("no particles to write"));
     EXPECT_THAT(error("[solver]\ngrid_cell_m = 0.001\n"), AllOf(HasSubstr("grid_cell_m"), HasSubstr("at least")));
 }
 

@@ -5,6 +5,8 @@
 
 #include "core/angle.hpp"
 #include "core/try.hpp"
+#include "depth/material.hpp"
+#include "run/depth_grid.hpp"
 #include "scene/scene.hpp"
 #include "sim/sources/seed.hpp"
 #include "terrain/release.hpp"
@@ -125,6 +127,95 @@ class Ways {
     std::vector<Way> ways_;
 };
 
+/// The same means of the debris of the depth-averaged model.
+class GridWays {
+  public:
+    explicit GridWays(const depth::Solver& solver) : solver_(solver) {}
+
+    void after_step() {
+        const Ways::Means now = means();
+        way_ += now.way * solver_.time_step();
+        loaded_way_ += now.loaded_way * solver_.time_step();
+    }
+    /// Now, with the ways so far.
+    [[nodiscard]] Ways::Means now() const {
+        Ways::Means m = means();
+        m.way = way_;
+        m.loaded_way = loaded_way_;
+        return m;
+    }
+
+  private:
+    /// With rates of the ways, m/s.
+    [[nodiscard]] Ways::Means means() const {
+        const GridGeometry& g = solver_.geometry();
+        const double gravity = solver_.material().gravity;
+        Ways::Means m;
+        double all = 0;
+        for (int row = 1; row + 1 < g.rows; ++row) {
+            for (int column = 1; column + 1 < g.columns; ++column) {
+                const double depth = solver_.depth_at(column, row);
+                if (!(depth > 0)) continue;
+                const double u = solver_.u_at(column, row), v = solver_.v_at(column, row);
+                const double slope_x = solver_.slope_x_at(column, row), slope_y = solver_.slope_y_at(column, row);
+                const double w = u * slope_x + v * slope_y, square = u * u + v * v + w * w;
+                const double turn_x = solver_.slope_x_at(column + 1, row) - solver_.slope_x_at(column - 1, row);
+                const double turn_y = solver_.slope_y_at(column, row + 1) - solver_.slope_y_at(column, row - 1);
+                const double turn_xy = solver_.slope_x_at(column, row + 1) - solver_.slope_x_at(column, row - 1);
+                const double bent = (u * u * turn_x + 2 * u * v * turn_xy + v * v * turn_y) / (2 * g.cell);
+                const double stretch = std::sqrt(1 + slope_x * slope_x + slope_y * slope_y);
+                all += depth;
+                m.elevation += depth * (solver_.bed_at(column, row) + depth / 2);
+                m.head += depth * square / (2 * gravity);
+                m.way += depth * std::hypot(u, v);
+                m.loaded_way += depth * std::max(0.0, 1 + bent / gravity) / stretch * std::sqrt(square);
+            }
+        }
+        return {m.elevation / all, m.head / all, m.way / all, m.loaded_way / all};
+    }
+
+    const depth::Solver& solver_;
+    double way_ = 0, loaded_way_ = 0;
+};
+
+void compute_grid(const EnergySpec& spec, const World& world, const Setting& setting, const Watch& watch,
+                  Outcome& outcome) {
+    const std::string name = "depth-averaged";
+    watch.say(name);
+    scene::Scene scene;
+    scene.terrain = world.terrain;
+    scene.spec.solver.grid_cell = world.terrain.cell() / std::ceil(world.terrain.cell() / (2 * spec.spacing));
+    const run::GridGround ground = run::grid_ground(scene);
+    depth::Solver solver(ground.bed, depth::material_of(setting.material));
+    for (const terrain::Release& release : world.releases) solver.add(run::grid_release(scene, release, ground));
+    GridWays ways(solver);
+    const Ways::Means first = ways.now();
+    double drop = 0, worst = 0, worst_loaded = 0;
+    Series line{"depth-averaged", Series::Style::line, {}, {}};
+    while (solver.time() < spec.time - 1e-9 && !(solver.volume_left() > 0)) {
+        const Status stepped = solver.advance(spec.time - solver.time());
+        if (!stepped || watch.stopped()) {
+            outcome.notes.push_back(name + ": " + (stepped ? "stopped by the user" : stepped.error().message));
+            return;
+        }
+        ways.after_step();
+        const Ways::Means now = ways.now();
+        const double friction = setting.material.friction_coefficient;
+        const double plain = now.elevation + now.head + friction * now.way - first.elevation;
+        const double whole = now.elevation + now.head + friction * now.loaded_way - first.elevation;
+        drop = std::max(drop, first.elevation - now.elevation);
+        if (std::abs(plain) > std::abs(worst)) worst = plain;
+        if (std::abs(whole) > std::abs(worst_loaded)) worst_loaded = whole;
+        if (solver.time() < spec.time / 200 * static_cast<double>(line.x.size())) continue;
+        line.x.push_back(solver.time());
+        line.y.push_back(whole);
+    }
+    if (solver.volume_left() > 0) outcome.notes.push_back(name + ": counted until debris left the terrain");
+    outcome.measurements.push_back({"energy_line", name, worst / drop, {}});
+    outcome.measurements.push_back({"energy_line_with_curvature", name, worst_loaded / drop, {}});
+    outcome.charts.back().series.push_back(std::move(line));
+}
+
 Result<Outcome> compute(const EnergySpec& spec, const Setting& setting, const Watch& watch) {
     TALUS_ASSIGN(World world, make_world(spec));
     sim::Model model = sim::make_model(setting.material, setting.solver, spec.spacing);
@@ -166,6 +257,7 @@ Result<Outcome> compute(const EnergySpec& spec, const Setting& setting, const Wa
                             {"energy_line_with_curvature", "", trusted ? worst_loaded / drop : not_computed, {}}};
     outcome.charts.push_back(
         {"energy", "Energy line of the mass, above its start", "time, s", "m", {start, line, loaded, elevation}});
+    compute_grid(spec, world, setting, watch, outcome);
     return outcome;
 }
 

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "sim/sources/seed.hpp"
+#include "validate/grid_flow.hpp"
 #include "validate/kinds/kinds.hpp"
 #include "validate/laws.hpp"
 #include "validate/measure.hpp"
@@ -132,6 +133,51 @@ Measured measure(const ColumnSpec& spec, double aspect, double resolution, const
     return measured;
 }
 
+/// The same by the depth-averaged model, on cells as wide as the finest particles.
+Measured measure_grid(const ColumnSpec& spec, double aspect, const Setting& setting, const Watch& watch) {
+    const double resolution = *std::max_element(spec.resolutions.begin(), spec.resolutions.end());
+    const double cell = spec.extent / resolution, height = aspect * spec.extent;
+    const double reach = spec.extent * (1 + 2 * run_out_law(spec, aspect)) + 2 * cell;
+    const auto distance = [&](double along, double across) {
+        return spec.planar ? std::abs(along) : std::hypot(along, across);
+    };
+    GridIncline flat({0, -reach, 2 * reach, spec.planar ? 0 : 2 * reach, cell}, setting.material,
+                     setting.material.friction_coefficient,
+                     [&](double along, double across) { return distance(along, across) < spec.extent ? height : 0; });
+    Measured measured;
+    const double unit_time = std::sqrt(height / sim::Model{}.gravity);
+    measured.problem = flat.advance_to(spec.duration * unit_time, watch);
+    if (!measured.problem.empty()) return measured;
+    const auto cells = static_cast<std::size_t>(std::ceil(1.5 * reach / cell));
+    std::vector<double> volume(cells), count(cells), profile(cells);
+    double highest = 0, all = 0, speeds = 0;
+    for (int row = 0; row < flat.rows(); ++row) {
+        for (int column = 0; column < flat.columns(); ++column) {
+            const double depth = flat.thickness(column, row);
+            const auto ring = static_cast<std::size_t>(distance(flat.along(column), flat.across(row)) / cell);
+            volume.at(ring) += depth;
+            count.at(ring) += 1;
+            all += depth;
+            speeds += depth * std::hypot(flat.solver().u_at(column, row), flat.solver().v_at(column, row));
+            highest = std::max(highest, depth);
+        }
+    }
+    double inside = 0;
+    std::size_t ring = 0;
+    for (; ring + 1 < cells && inside + volume[ring] < front_percentile * all; ++ring) inside += volume[ring];
+    const double front = cell * (static_cast<double>(ring) + (front_percentile * all - inside) / volume[ring]);
+    for (std::size_t k = 0; k < cells; ++k) {
+        profile[k] = count[k] > 0 ? volume[k] / count[k] / spec.extent : 0;
+        measured.distance.push_back((static_cast<double>(k) + 0.5) * cell / spec.extent);
+    }
+    measured.thickness = profile;
+    measured.run_out = front / spec.extent - 1;
+    measured.run_out_edge = edge_of(profile, cell, covered * cell / spec.extent) / spec.extent - 1;
+    measured.height = highest / spec.extent;
+    measured.residual_speed = speeds / all / std::sqrt(sim::Model{}.gravity * height);
+    return measured;
+}
+
 Series law_curve(const ColumnSpec& spec, double (*law)(const ColumnSpec&, double)) {
     Series curve{"law", Series::Style::dashed, {}, {}};
     const double last = *std::max_element(spec.aspects.begin(), spec.aspects.end()) * 1.1;
@@ -199,6 +245,25 @@ Result<Outcome> compute(const ColumnSpec& spec, const Setting& setting, const Wa
         run_outs.series.push_back(run_out);
         heights.series.push_back(height);
     }
+    Series by_grid{"depth-averaged", Series::Style::marks, {}, {}}, grid_height = by_grid;
+    for (const double aspect : spec.aspects) {
+        const std::string name = fmt::format("depth-averaged, a = {:g}", aspect);
+        watch.say(name);
+        const Measured m = measure_grid(spec, aspect, setting, watch);
+        if (!m.problem.empty()) outcome.notes.push_back(name + ": " + m.problem);
+        const double law = run_out_law(spec, aspect);
+        outcome.measurements.push_back({"run_out", name, m.run_out, law});
+        outcome.measurements.push_back({"run_out_edge", name, m.run_out_edge, law});
+        outcome.measurements.push_back({"height", name, m.height, expected_height(spec, aspect, m.height)});
+        outcome.measurements.push_back({"residual_speed", name, m.residual_speed, {}});
+        by_grid.x.push_back(aspect);
+        by_grid.y.push_back(m.run_out);
+        grid_height.x.push_back(aspect);
+        grid_height.y.push_back(m.height);
+        profiles.series.push_back({name, Series::Style::dashed, m.distance, m.thickness});
+    }
+    run_outs.series.push_back(by_grid);
+    heights.series.push_back(grid_height);
     trend.series = trends;
     outcome.charts = {run_outs, heights, trend, profiles, fronts};
     return outcome;

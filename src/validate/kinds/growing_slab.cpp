@@ -4,7 +4,9 @@
 
 #include <fmt/format.h>
 
+#include "depth/entrainment.hpp"
 #include "sim/sources/seed.hpp"
+#include "validate/grid_flow.hpp"
 #include "validate/kinds/kinds.hpp"
 #include "validate/set_up.hpp"
 
@@ -37,14 +39,15 @@ struct GrowthLaw {
     }
 };
 
-void lay_bed(sim::Ground& ground, const GrowthSpec& spec) {
-    const std::size_t cells = ground.terrain.elevation().values.size();
+terrain::Bed bed_of(const GrowthSpec& spec, std::size_t cells) {
+    terrain::Bed bed;
     terrain::BedMaterial material;
     material.growth_rate = spec.growth_rate;
-    ground.bed.materials = {material};
-    ground.bed.material_at.assign(cells, 1);
-    ground.bed.depth.assign(cells, static_cast<float>(spec.depth));
-    ground.bed.eroded.assign(cells, 0);
+    bed.materials = {material};
+    bed.material_at.assign(cells, 1);
+    bed.depth.assign(cells, static_cast<float>(spec.depth));
+    bed.eroded.assign(cells, 0);
+    return bed;
 }
 
 void compute_one(const GrowthSpec& spec, double spacing, const Setting& setting, const Watch& watch, Outcome& outcome) {
@@ -60,7 +63,7 @@ void compute_one(const GrowthSpec& spec, double spacing, const Setting& setting,
     sim::Model model = sim::make_model(material, setting.solver, spacing);
     sim::Ground ground(incline.terrain(), make_slice(incline.terrain(), spec.width, 3 * spec.thickness),
                        model.support_radius);
-    lay_bed(ground, spec);
+    ground.bed = bed_of(spec, ground.terrain.elevation().values.size());
     const auto columns = static_cast<int>(std::lround(spec.length / spacing));
     const auto across = static_cast<int>(std::lround(spec.width / spacing));
     const auto points = fill_lattice(incline, spacing, -columns * spacing / 2, columns, -spec.width / 2, across,
@@ -97,6 +100,51 @@ void compute_one(const GrowthSpec& spec, double spacing, const Setting& setting,
     outcome.charts[1].series.push_back(std::move(grown));
 }
 
+/// The same by the depth-averaged model, on a strip of the plane.
+void compute_grid(const GrowthSpec& spec, double cell, const Setting& setting, const Watch& watch, Outcome& outcome) {
+    const std::string name = "depth-averaged";
+    watch.say(name);
+    const double acceleration = sim::Model{}.gravity * (std::sin(spec.slope) - spec.friction * std::cos(spec.slope));
+    const GrowthLaw law{acceleration, spec.growth_rate};
+    const double furthest = 0.5 * acceleration * spec.end * spec.end;
+    GridIncline incline({spec.slope, -2 * spec.length, 4 * spec.length + 2 * furthest, 0, cell}, setting.material,
+                        spec.friction,
+                        [&](double along, double) { return std::abs(along) < spec.length / 2 ? spec.thickness : 0; });
+    depth::Solver& solver = incline.solver();
+    depth::Entrainment bed(bed_of(spec, solver.geometry().size()));
+    const double before = solver.volume();
+    double entrained = 0, jolt = 0;
+    const auto speed = [&] {
+        double mass = 0, momentum = 0;
+        for (int column = 0; column < incline.columns(); ++column) {
+            mass += incline.thickness(column, 0);
+            momentum += incline.thickness(column, 0) * incline.velocity(column, 0);
+        }
+        return momentum / mass;
+    };
+    Series computed{name, Series::Style::line, {}, {}}, grown = computed;
+    while (solver.time() < spec.end - 1e-9) {
+        const Status stepped = solver.advance(spec.end - solver.time());
+        if (!stepped || watch.stopped()) {
+            outcome.notes.push_back(name + ": " + (stepped ? "stopped by the user" : stepped.error().message));
+            return;
+        }
+        entrained += bed.entrain(solver);
+        computed.x.push_back(solver.time());
+        computed.y.push_back(speed());
+        grown.x.push_back(solver.time());
+        grown.y.push_back(solver.volume() / before);
+        jolt = std::max(jolt, law.speed(solver.time()) - computed.y.back());
+    }
+    const double gained = solver.volume() - before;
+    outcome.measurements.push_back({"volume", name, grown.y.back(), law.volume(spec.end)});
+    outcome.measurements.push_back({"speed", name, computed.y.back(), law.speed(spec.end)});
+    outcome.measurements.push_back({"missing", name, gained > 0 ? entrained / gained - 1 : not_computed, {}});
+    outcome.measurements.push_back({"jolt", name, jolt, {}});
+    outcome.charts[0].series.push_back(std::move(computed));
+    outcome.charts[1].series.push_back(std::move(grown));
+}
+
 Result<Outcome> compute(const GrowthSpec& spec, const Setting& setting, const Watch& watch) {
     Outcome outcome;
     outcome.charts.push_back({"speed", "Mean speed of a slab that entrains its bed", "time, s", "m/s", {}});
@@ -114,6 +162,7 @@ Result<Outcome> compute(const GrowthSpec& spec, const Setting& setting, const Wa
     outcome.charts[0].series.push_back(speed);
     outcome.charts[1].series.push_back(volume);
     for (const double spacing : spec.spacings) compute_one(spec, spacing, setting, watch, outcome);
+    compute_grid(spec, spec.spacings.back(), setting, watch, outcome);
     return outcome;
 }
 
