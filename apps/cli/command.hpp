@@ -19,6 +19,7 @@ struct Command {
 
 // Each adds its command to `program`, and to `commands` with its subcommands before it.
 void add_run(CLI::App& program, std::vector<Command>& commands);
+void add_compare(CLI::App& program, std::vector<Command>& commands);
 void add_serve(CLI::App& program, std::vector<Command>& commands);
 void add_replay(CLI::App& program, std::vector<Command>& commands);
 void add_scene(CLI::App& program, std::vector<Command>& commands);

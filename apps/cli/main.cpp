@@ -31,6 +31,7 @@ Examples:
   talus run my_scene.toml --convergence     check convergence: four runs, about nine times as long
   talus run my_scene.toml --vary material.friction_coefficient=0.3,0.5 --vary solver.target_particle_count=3000
                                             sensitivity to inputs: a run per value, one at a time
+  talus compare my_scene.toml               a second opinion: particles beside the depth-averaged model
   talus scene new --dem dem.tif --release scar.geojson --thickness-m 1.5 -o my_scene
                                             a commented scene from your own terrain, ready to run
   talus scene check my_scene/scene.toml     reads and checks a scene without running it
@@ -88,8 +89,8 @@ int talus_main(int argc, char** argv) {
     app.require_subcommand(0, 1);
 
     std::vector<Command> commands;
-    for (const auto add : {add_run, add_serve, add_replay, add_scene, add_validate, add_ensemble, add_calibrate,
-                           add_bench, add_manual}) {
+    for (const auto add : {add_run, add_compare, add_serve, add_replay, add_scene, add_validate, add_ensemble,
+                           add_calibrate, add_bench, add_manual}) {
         add(app, commands);
     }
     app.footer(program_help);  // last: commands made after it would inherit it

@@ -4,7 +4,6 @@
 #include <memory>
 #include <optional>
 #include <string>
-#include <system_error>
 #include <utility>
 #include <vector>
 
@@ -12,6 +11,7 @@
 
 #include "command.hpp"
 #include "core/try.hpp"
+#include "default_parent.hpp"
 #include "exit_code.hpp"
 #include "interrupt.hpp"
 #include "layers.hpp"
@@ -44,24 +44,6 @@ hit, force and impact pressure on each; on the terminal, in convergence.csv and 
 and --json. --convergence passes if none changes by more than its limit: 5 % of velocity, arrival and run-out, 10 % of
 the deposit, 15 % of force and pressure, and the same buildings.
 )";
-
-/// talus_out in the current folder, created when needed and removed again if it remains empty.
-class DefaultParent {
-  public:
-    DefaultParent() : made_(fs::create_directory(name, error_)) {}
-    ~DefaultParent() {
-        std::error_code not_empty;
-        if (made_) fs::remove(name, not_empty);
-    }
-    DefaultParent(const DefaultParent&) = delete;
-    DefaultParent& operator=(const DefaultParent&) = delete;
-
-    static constexpr const char* name = "talus_out";
-
-  private:
-    std::error_code error_;  // ignored: creating the output folder gives the better error message
-    bool made_;
-};
 
 /// Everything that is checked before a run: the scene, its variants, the output folder.
 struct Job {

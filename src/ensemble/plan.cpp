@@ -171,6 +171,7 @@ Result<PlannedRuns> PlannedRuns::make(const EnsemblePlan& plan, const run::Scene
         return Error{fmt::format("runs = {} is refused; it must be 1 to {}", plan.runs, max_runs)};
     }
     bool own_spacing = false;
+    const bool on_grid = base.spec.solver.model == params::ModelChoice::depth_averaged;
     for (Factor& factor : runs.plan_.factors) {
         const params::Parameter* parameter = find_parameter(factor.key);
         const bool number = parameter != nullptr && (parameter->kind == params::ParameterKind::number ||
@@ -185,6 +186,9 @@ Result<PlannedRuns> PlannedRuns::make(const EnsemblePlan& plan, const run::Scene
         runs.whole_.push_back(parameter != nullptr && parameter->kind == params::ParameterKind::integer);
         if (parameter != nullptr && number) cut_to_range(factor.distribution, parameter->range);
         TALUS_TRY(check_factor(factor, runs.whole_.back(), source));
+        if (factor.key == "solver.model" || (on_grid && factor.key == "solver.grid_cell_m")) {
+            return Error{fmt::format("factor {}: is refused; maps of all runs need the same cells", factor.key)};
+        }
         own_spacing = own_spacing || factor.key == "solver.particle_spacing_m" ||
                       factor.key == "solver.target_layers" || factor.key == "solver.target_particle_count";
         runs.levels_.push_back(factor.distribution.kind == stats::DistributionKind::list
@@ -196,6 +200,7 @@ Result<PlannedRuns> PlannedRuns::make(const EnsemblePlan& plan, const run::Scene
     }
     TALUS_ASSIGN(runs.points_, make_points(plan, runs.levels_));
 
+    if (on_grid) return runs;  // its cells are those of the terrain, or as the scene says
     const double spacing = particle_spacing(base);
     const double cell = base.spec.outputs.map_cell.value_or(terrain::default_map_cell(base.terrain.cell(), spacing));
     if (!own_spacing) runs.fixed_.push_back(fmt::format("solver.particle_spacing_m={:.9g}", spacing));

@@ -34,15 +34,8 @@ Peak peak_of(const Grid<float>& map) {
     return peak;
 }
 
-/// "at chainage 88 m", or the coordinates where the path does not pass.
-std::string place(const scene::Scene& scene, const Peak& peak) {
-    if (std::isnan(peak.value)) return "no debris mapped";
-    if (!scene.flow_path.empty()) {
-        if (const auto on_path = scene.flow_path.locate(peak.at)) {
-            return fmt::format("at chainage {} m", fixed(on_path->chainage, 0));
-        }
-    }
-    return fmt::format("at {} E {} N", fixed(peak.at.x, 0), fixed(peak.at.y, 0));
+std::string place_of(const scene::Scene& scene, const Peak& peak) {
+    return std::isnan(peak.value) ? "no debris mapped" : place(scene, peak.at);
 }
 
 struct MassBalance {
@@ -66,6 +59,15 @@ MassBalance mass_balance(const observe::Observation& observation) {
 }
 
 }  // namespace
+
+std::string place(const scene::Scene& scene, const PlanPoint& at) {
+    if (!scene.flow_path.empty()) {
+        if (const auto on_path = scene.flow_path.locate(at)) {
+            return fmt::format("at chainage {} m", fixed(on_path->chainage, 0));
+        }
+    }
+    return fmt::format("at {} E {} N", fixed(at.x, 0), fixed(at.y, 0));
+}
 
 std::string plural(std::size_t n, std::string_view word) {
     return fmt::format("{} {}{}", n, word, n == 1 ? "" : "s");
@@ -91,6 +93,7 @@ Json verdict(const run::RunResult& result, const std::vector<run::Comparison>& c
 }
 
 Json compression(const scene::Scene& scene, const run::RunResult& result) {
+    if (result.depth_averaged()) return nullptr;
     const observe::Compression& c = result.observation.compression;
     const params::SolverSpec& solver = scene.spec.solver;
     return {{"within_limits", c.within_limits()},
@@ -168,10 +171,10 @@ Json key_figures(const scene::Scene& scene, const run::RunResult& result) {
                              hits_note, hits.hit > 0));
     const Peak depth = peak_of(o.maps.peak_depth), speed = peak_of(o.maps.peak_speed),
                pressure = peak_of(o.maps.peak_pressure);
-    add("peak_depth_m", "Peak flow depth", depth.value, "f1", "m", place(scene, depth));
-    add("peak_speed_mps", "Peak speed", speed.value, "f1", "m/s", place(scene, speed));
+    add("peak_depth_m", "Peak flow depth", depth.value, "f1", "m", place_of(scene, depth));
+    add("peak_speed_mps", "Peak speed", speed.value, "f1", "m/s", place_of(scene, speed));
     add("peak_dynamic_pressure_kPa", "Peak dynamic pressure", pressure.value / 1e3, "s3", "kPa",
-        "ρv² of the free flow, " + place(scene, pressure));
+        "ρv² of the free flow, " + place_of(scene, pressure));
     add("mass_balance", "Mass balance", mass.closes ? Json("closed") : Json(mass.residual), "f3",
         mass.closes ? "" : "m³ missing",
         fmt::format("deposited\u00a0{} · moving\u00a0{} · left\u00a0{}\u00a0m³{}", fixed(mass.deposited, 1),
@@ -276,14 +279,15 @@ Json title_block(const params::ReportSpec& report) {
 
 Json observations(const scene::Scene& scene, const run::RunResult& result) {
     if (scene.spec.observations.empty()) return {};
-    Json rows = table({{"observation", "Observation", ""},
-                       {"chainage_m", "Chainage", "m", "f0"},
-                       {"observed_mps", "Observed", "m/s", "f1"},
-                       {"computed_mps", "Computed front", "m/s", "f1", "", "not reached", true},
-                       {"difference_percent", "Difference", "%", "d0"},
-                       {"particle_speed_mps", "Particle speed", "m/s", "f1"},
-                       {"arrival_s", "Arrival", "s", "f1"},
-                       {"source", "Source", "", "", "source"}});
+    Json rows =
+        table({{"observation", "Observation", ""},
+               {"chainage_m", "Chainage", "m", "f0"},
+               {"observed_mps", "Observed", "m/s", "f1"},
+               {"computed_mps", "Computed front", "m/s", "f1", "", "not reached", true},
+               {"difference_percent", "Difference", "%", "d0"},
+               {"particle_speed_mps", result.depth_averaged() ? "Speed of the flow" : "Particle speed", "m/s", "f1"},
+               {"arrival_s", "Arrival", "s", "f1"},
+               {"source", "Source", "", "", "source"}});
     for (const params::ObservationSpec& observed : scene.spec.observations) {
         const observe::FrontSample computed = front_at(result.observation, observed.chainage);
         rows["rows"].push_back({{"observation", observed.name},
@@ -325,6 +329,7 @@ Json run_results(const scene::Scene& scene, const run::RunResult& result,
     Json all = results_head("talus results", scene);
     all.update({{"status", status(result)},
                 {"verdict", verdict(result, comparisons)},
+                {"depth_averaged", result.depth_averaged() ? Json{{"grid_cell_m", result.grid_cell}} : Json()},
                 {"compression", compression(scene, result)},
                 {"flow_thickness", flow_thickness(scene, result)},
                 {"key_figures", key_figures(scene, result)},

@@ -24,7 +24,7 @@ constexpr int results_version = 2;
 /// What `[report]` says: client, reference, ...; null where it says nothing.
 [[nodiscard]] Json title_block(const params::ReportSpec& report);
 [[nodiscard]] Json status(const run::RunResult& result);
-/// Compression of the debris, and what to change if it was too high.
+/// Compression of the debris, and what to change if it was too high; null in the depth-averaged model.
 [[nodiscard]] Json compression(const scene::Scene& scene, const run::RunResult& result);
 [[nodiscard]] Json key_figures(const scene::Scene& scene, const run::RunResult& result);
 [[nodiscard]] Json quality(const scene::Scene& scene, const run::RunResult& result);
@@ -42,22 +42,33 @@ constexpr int results_version = 2;
 void include_observations(const scene::Scene& scene, ValueRange& chainages, ValueRange& speeds);
 /// Draws these velocities with one standard deviation to either side.
 void mark_observations(const scene::Scene& scene, Plot& velocity);
-/// Energy, volumes, largest speed and compression over time.
+/// Energy, volumes, largest speed and, of particles, compression over time.
 [[nodiscard]] Json time_chart(const run::RunResult& result);
 [[nodiscard]] Json zones(const scene::Scene& scene);
 [[nodiscard]] Json inflow(const scene::Scene& scene, const run::RunResult& result);
 [[nodiscard]] Json erosion(const scene::Scene& scene, const run::RunResult& result);
 [[nodiscard]] Json comparison(const run::Comparison& comparison, const scene::Scene& scene, const run::RunResult& base);
+/// A run as a curve among others.
+struct NamedRun {
+    std::string name;
+    const run::RunResult* result = nullptr;
+};
+/// Front velocity and arrival time against chainage, all runs in one plot: the first as a broad line.
+[[nodiscard]] Json fronts_chart(const scene::Scene& scene, const std::vector<NamedRun>& runs);
 /// Which laws the scene uses.
 [[nodiscard]] Json method(const scene::Scene& scene);
 [[nodiscard]] Json chosen_values(const scene::Scene& scene, const run::RunResult& result);
-/// The keys that the scene sets, and those at their defaults with their number.
+/// The keys that the scene sets, and those at their defaults with their number. The depth-averaged model is not shown
+/// the defaults of particles.
 [[nodiscard]] Json parameters(const scene::Scene& scene);
 [[nodiscard]] Json defaults(const scene::Scene& scene);
 /// The defaults on which the result rests, for each that the scene does not set, with their number.
 [[nodiscard]] Json not_set(const scene::Scene& scene, const run::RunResult& result);
 [[nodiscard]] Json inputs(const scene::Scene& scene);
 [[nodiscard]] Json computation(const scene::Scene& scene, const run::RunResult& result);
+
+/// "at chainage 88 m", or the coordinates where the path does not pass.
+[[nodiscard]] std::string place(const scene::Scene& scene, const PlanPoint& at);
 
 /// "1 building", "2 buildings"
 [[nodiscard]] std::string plural(std::size_t n, std::string_view word);

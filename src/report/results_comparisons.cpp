@@ -140,13 +140,7 @@ Front front_of(std::string style, std::string name, const observe::Observation& 
     return front;
 }
 
-/// Front velocity and arrival time against chainage, all runs in one plot: the base first, as a broad line.
-Json chart(const run::Comparison& comparison, const scene::Scene& scene, const run::RunResult& base) {
-    std::vector<Front> fronts{front_of(base_style, base_name, base.observation)};
-    for (std::size_t i = 0; i < comparison.rows.size(); ++i) {
-        const run::VariantRun& run = comparison.rows[i].run;
-        if (run.result) fronts.push_back(front_of(variant_style(i), run.variant.name, run.result->observation));
-    }
+Json chart(const scene::Scene& scene, const std::vector<Front>& fronts) {
     ValueRange x{0, 0}, speeds{0, 1}, times{0, 1};
     for (const Front& front : fronts) {
         for (const double c : front.chainage) x.include(c);
@@ -179,6 +173,15 @@ Json chart(const run::Comparison& comparison, const scene::Scene& scene, const r
 
 }  // namespace
 
+Json fronts_chart(const scene::Scene& scene, const std::vector<NamedRun>& runs) {
+    std::vector<Front> fronts;
+    for (const NamedRun& run : runs) {
+        const std::string style = fronts.empty() ? base_style : variant_style(fronts.size() - 1);
+        fronts.push_back(front_of(style, run.name, run.result->observation));
+    }
+    return chart(scene, fronts);
+}
+
 Json comparison(const run::Comparison& comparison, const scene::Scene& scene, const run::RunResult& base) {
     const bool judged = comparison.kind == run::ComparisonKind::convergence;
     const bool converged = judged && comparison.converged() == run::Answer::yes;
@@ -198,6 +201,11 @@ Json comparison(const run::Comparison& comparison, const scene::Scene& scene, co
     for (const run::Comparison::Row& row : comparison.rows) {
         if (!row.run.result) missing.push_back({{"name", row.run.variant.name}, {"why", row.run.missing}});
     }
+    std::vector<Front> fronts{front_of(base_style, base_name, base.observation)};
+    for (std::size_t i = 0; i < comparison.rows.size(); ++i) {
+        const run::VariantRun& run = comparison.rows[i].run;
+        if (run.result) fronts.push_back(front_of(variant_style(i), run.variant.name, run.result->observation));
+    }
     return {{"kind_of_comparison", judged ? "convergence" : "sensitivity"},
             {"convergence", judged},
             {"converged", converged},
@@ -211,7 +219,7 @@ Json comparison(const run::Comparison& comparison, const scene::Scene& scene, co
             {"named", std::move(named)},
             {"without_velocities", !velocities},
             {"with_observations", !scene.spec.observations.empty()},
-            {"chart", chart(comparison, scene, base)}};
+            {"chart", chart(scene, fronts)}};
 }
 
 }  // namespace talus::report

@@ -164,7 +164,8 @@ Json front_chart(const scene::Scene& scene, const run::RunResult& result) {
     Plot velocity(left, 34, width, 270, x, speeds);
     velocity.axes("", "front velocity, m/s");
     velocity.line(front.chainage, front.velocity, "series blue", "front velocity d(chainage)/dt");
-    velocity.line(front.chainage, front.speed, "series orange", "mean particle speed at the front");
+    velocity.line(front.chainage, front.speed, "series orange",
+                  result.depth_averaged() ? "speed of the flow at the front" : "mean particle speed at the front");
     std::vector<double> row_ends;  // SVG x up to which each row of labels is taken
     for (const params::ObservationSpec& o : scene.spec.observations) {
         velocity.vertical(o.chainage, "observation-line");
@@ -257,7 +258,10 @@ Json time_chart(const run::RunResult& result) {
 
     Plot fastest(first, below, width, height, time, speeds);
     fastest.axes("time, s", "speed, m/s");
-    fastest.line(t, speed, "series blue", "largest particle speed");
+    fastest.line(t, speed, "series blue", result.depth_averaged() ? "largest speed" : "largest particle speed");
+    Chart chart{"Energy, volumes and largest speed over time", 1000, 600, {}};
+    chart.plots = {std::move(energy), std::move(volume), std::move(fastest)};
+    if (result.depth_averaged()) return chart_json(chart);
 
     Plot compressed(second, below, width, height, time, compressions);
     compressed.axes("time, s", "compression and squeezed share, %");
@@ -265,10 +269,9 @@ Json time_chart(const run::RunResult& result) {
     compressed.line(t, squeezed, "series purple", "squeezed share");
     static_assert(sim::mean_compression_limit == sim::squeezed_share_limit);  // one line for both
     compressed.horizontal(100 * sim::mean_compression_limit, "limit blue", "limit of both");
-    return chart_json({"Energy, volumes, largest speed and compression over time",
-                       1000,
-                       600,
-                       {std::move(energy), std::move(volume), std::move(fastest), std::move(compressed)}});
+    chart.title = "Energy, volumes, largest speed and compression over time";
+    chart.plots.push_back(std::move(compressed));
+    return chart_json(chart);
 }
 
 }  // namespace talus::report

@@ -9,6 +9,7 @@
 #include "report/hardware.hpp"
 #include "report/number_text.hpp"
 #include "report/results.hpp"
+#include "scene/grid_cell.hpp"
 #include "sim/stage_times.hpp"
 
 namespace talus::report {
@@ -33,11 +34,20 @@ std::string bytes_text(std::uint64_t bytes) {
     return bytes < 10'000'000 ? fmt::format("{} kB", bytes / 1000) : fmt::format("{} MB", bytes / 1'000'000);
 }
 
+bool uses_particles(const scene::Scene& scene) {
+    return scene.spec.solver.model == params::ModelChoice::particles;
+}
+
 /// Resistance other than friction and viscosity, if any.
 void add_resistances(Json& rows, const scene::Scene& scene) {
     const params::MaterialSpec& material = scene.spec.material;
     const auto add = [&](const std::string& name, const std::string& text) { rows.push_back(fact(name, text)); };
-    if (material.viscosity_on_ground) add("Viscosity on the ground", "the debris sticks to it");
+    const bool particles = uses_particles(scene);
+    if (material.viscosity_on_ground) {
+        add("Viscosity on the ground",
+            particles ? "the debris sticks to it"
+                      : fmt::format("{} m²/s, laminar", plain(material.kinematic_viscosity.value_or(0))));
+    }
     if (material.turbulent_friction) {
         const std::string at = material.turbulent_friction_thickness
                                    ? fmt::format(" where {} m thick", plain(*material.turbulent_friction_thickness))
@@ -53,7 +63,7 @@ void add_resistances(Json& rows, const scene::Scene& scene) {
                                       : ", stays";
         add(fmt::format("Pore pressure, {}", release.name), fmt::format("ratio {}{}", plain(ratio), decay));
     }
-    if (material.inertial_friction_coefficient) {
+    if (particles && material.inertial_friction_coefficient) {
         add("Friction inside, fast shear",
             fmt::format("f = {}, half way at I = {}, grains of {} m", plain(*material.inertial_friction_coefficient),
                         plain(material.inertial_number), plain(material.grain_diameter)));
@@ -97,6 +107,7 @@ Json chosen_values(const scene::Scene& scene, const run::RunResult& result) {
                                      fixed(1e3 * result.largest_time_step, 3)));
         add("Rest density", fmt::format("{} kg/m³", fixed(material.rest_density, 0)));
         add("Friction on the ground", fmt::format("f = {}", plain(material.friction_coefficient)));
+        add_resistances(rows, scene);
         return rows;
     }
     add("Particle spacing", fmt::format("{} m", plain(result.particle_spacing)));
@@ -153,10 +164,12 @@ Json parameter_table(const scene::Scene& scene, bool set) {
         // Printed in full elsewhere: at the top, under Assumptions, beside the computed front velocities.
         if (section.name == "scene" || section.name == "report" || section.name == "observation") return;
         if (is_set(scene, section, index, parameter, value) != set) return;
+        const bool unused = !uses_particles(scene) && scene::for_particles_only(key_path(section, index, parameter));
+        if (unused && !set) return;
         Json row = {{"key", parameter.key},
                     {"value", shown(parameter, value)},
                     {"unit", parameter.unit},
-                    {"help", parameter.help}};
+                    {"help", unused ? "Not used by the depth-averaged model." : parameter.help}};
         if (const std::string heading = heading_of(section, index); heading != open) {
             row["heading"] = open = heading;
             row["heading_note"] = index == 0 ? section.help : "";
@@ -212,6 +225,7 @@ Json not_set(const scene::Scene& scene, const run::RunResult& result) {
                                    const params::Parameter& parameter, const params::ParameterValue& value) {
         if (parameter.assumption.empty() || is_set(scene, section, index, parameter, value)) return;
         if (!matters(scene, result, section, index, parameter)) return;
+        if (result.depth_averaged() && scene::for_particles_only(key_path(section, index, parameter))) return;
         add(parameter.assumption, shown(parameter, value), parameter.unit, key_path(section, index, parameter));
     });
     for (std::size_t i = 0; i < scene.releases.size(); ++i) {
@@ -269,7 +283,8 @@ Json computation(const scene::Scene& scene, const run::RunResult& result) {
     const Hardware machine = this_machine();
     const GridGeometry& grid = scene.terrain.elevation().geometry;
     Json rows = {
-        fact("Result hash", fmt::format("{:016x}, of time, positions and velocities at the end", result.hash)),
+        fact("Result hash", fmt::format("{:016x}, of time, {} and velocities at the end", result.hash,
+                                        result.depth_averaged() ? "depths" : "positions")),
         fact("Program", fmt::format("talus {}, GDAL {}, PROJ {}, compiled with {}", TALUS_VERSION, geo::gdal_version(),
                                     geo::proj_version(), compiler_version())),
         fact("Hardware",

@@ -112,20 +112,22 @@ Json net_chart(const run::RunResult& result) {
     return chart_json(chart);
 }
 
-Json building_rows(const scene::Scene& scene, const std::vector<observe::BuildingImpact>& impacts,
-                   std::vector<std::size_t> hit) {
+Json building_rows(const scene::Scene& scene, const run::RunResult& result, std::vector<std::size_t> hit) {
+    const auto& impacts = result.observation.buildings;
+    const bool flat = result.depth_averaged();
     std::stable_sort(hit.begin(), hit.end(), [&](std::size_t a, std::size_t b) {
         return impacts[a].peak_impact_pressure > impacts[b].peak_impact_pressure;
     });
     const IntensityGuideline& guideline = intensity_guideline(scene.spec.outputs.intensity_guideline);
-    Json rows = table({{"name", "Building", ""},
-                       {"first_hit_s", "First hit", "s", "f1"},
-                       {"peak_force_kN", "Peak force", "kN", "s3"},
-                       {"peak_impact_pressure_kPa", "Impact pressure", "kPa, highest patch", "s3", "", "–", true},
-                       {"peak_dynamic_pressure_kPa", "Dynamic pressure", "kPa, ρv² to the wall", "s3"},
-                       {"peak_depth_m", "Depth at walls", "m", "f2"},
-                       {"intensity", "Intensity", guideline.name},
-                       {"height_m", "Height", "m", "f1"}});
+    Json rows = table(
+        {{"name", "Building", ""},
+         {"first_hit_s", "First hit", "s", "f1"},
+         {"peak_force_kN", "Peak force", "kN", "s3"},
+         {"peak_impact_pressure_kPa", "Impact pressure", flat ? "kPa" : "kPa, highest patch", "s3", "", "–", true},
+         {"peak_dynamic_pressure_kPa", "Dynamic pressure", flat ? "kPa, ρv²" : "kPa, ρv² to the wall", "s3"},
+         {"peak_depth_m", "Depth at walls", "m", "f2"},
+         {"intensity", "Intensity", guideline.name},
+         {"height_m", "Height", "m", "f1"}});
     for (std::size_t k = 0; k < std::min(max_rows, hit.size()); ++k) {
         const observe::BuildingImpact& b = impacts[hit[k]];
         const IntensityClass* intensity = guideline.class_of(b);
@@ -163,7 +165,7 @@ Json buildings(const scene::Scene& scene, const run::RunResult& result) {
     return {{"count", plural(count, "building")},
             {"hit", hit.size()},
             {"none_hit", hit.empty()},
-            {"table", hit.empty() ? Json() : building_rows(scene, impacts, hit)},
+            {"table", hit.empty() ? Json() : building_rows(scene, result, hit)},
             {"shown", hit.size() > max_rows ? Json(max_rows) : Json()},
             {"removed", removed(impacts, false)},
             {"assumed_heights", assumed > 0 ? Json(assumed) : Json()}};
@@ -173,30 +175,40 @@ Json barriers(const run::RunResult& result) {
     const auto& impacts = result.observation.buildings;
     Json rows;
     if (std::any_of(impacts.begin(), impacts.end(), [](const auto& b) { return b.is_barrier; })) {
-        rows = table({{"name", "Barrier", ""},
-                      {"first_hit_s", "First hit", "s", "f1"},
-                      {"peak_force_kN", "Peak force", "kN", "s3"},
-                      {"peak_impact_pressure_kPa", "Impact pressure", "kPa", "s3"},
-                      {"impulse_kNs", "Impulse", "kN s", "s3"},
-                      {"overtopped_m3", "Over the crest", "m³", "f1", "", "–", true},
-                      {"first_overtopped_s", "First over", "s", "f1"},
-                      {"passed_m3", "Through openings and meshes", "m³", "f1"},
-                      {"held_m3", "Held at the end", "m³", "f1"},
-                      {"peak_held_m3", "Held at most", "m³", "f1"},
-                      {"peak_filling_height_m", "Filled at most", "m", "f2"}});
+        std::vector<Column> columns = {{"name", "Barrier", ""},
+                                       {"first_hit_s", "First hit", "s", "f1"},
+                                       {"peak_force_kN", "Peak force", "kN", "s3"},
+                                       {"peak_impact_pressure_kPa", "Impact pressure", "kPa", "s3"},
+                                       {"impulse_kNs", "Impulse", "kN s", "s3"}};
+        if (result.depth_averaged()) {  // which does not measure what passes a barrier
+            columns.push_back({"peak_depth_m", "Depth at the barrier", "m", "f2"});
+        } else {
+            columns.insert(columns.end(), {{"overtopped_m3", "Over the crest", "m³", "f1", "", "–", true},
+                                           {"first_overtopped_s", "First over", "s", "f1"},
+                                           {"passed_m3", "Through openings and meshes", "m³", "f1"},
+                                           {"held_m3", "Held at the end", "m³", "f1"},
+                                           {"peak_held_m3", "Held at most", "m³", "f1"},
+                                           {"peak_filling_height_m", "Filled at most", "m", "f2"}});
+        }
+        rows = table(columns);
         for (const observe::BuildingImpact& b : impacts) {
             if (!b.is_barrier) continue;
             rows["rows"].push_back({{"name", name_of(b)},
                                     {"first_hit_s", seconds(b.first_hit_time)},
                                     {"peak_force_kN", b.peak_force / 1e3},
                                     {"peak_impact_pressure_kPa", b.peak_impact_pressure / 1e3},
-                                    {"impulse_kNs", b.impulse / 1e3},
-                                    {"overtopped_m3", b.overtopped_volume},
-                                    {"first_overtopped_s", seconds(b.first_overtopping_time)},
-                                    {"passed_m3", b.passed_volume},
-                                    {"held_m3", b.held_volume},
-                                    {"peak_held_m3", b.peak_held_volume},
-                                    {"peak_filling_height_m", b.peak_filling_height}});
+                                    {"impulse_kNs", b.impulse / 1e3}});
+            Json& row = rows["rows"].back();
+            if (result.depth_averaged()) {
+                row["peak_depth_m"] = b.peak_depth;
+                continue;
+            }
+            row.update({{"overtopped_m3", b.overtopped_volume},
+                        {"first_overtopped_s", seconds(b.first_overtopping_time)},
+                        {"passed_m3", b.passed_volume},
+                        {"held_m3", b.held_volume},
+                        {"peak_held_m3", b.peak_held_volume},
+                        {"peak_filling_height_m", b.peak_filling_height}});
         }
     }
     return {{"failures", events(impacts, &observe::BuildingImpact::failure_time)},

@@ -63,6 +63,28 @@ TEST(Calibrate, WritesWhatItFoundAndASceneThatRunsIt) {
     EXPECT_EQ(manifest.at("result_hash"), event.at("best_hash"));
 }
 
+TEST(Calibrate, RecoversTheFrictionOfARunOfTheDepthAveragedModel) {
+    const FlowingScene scene;
+    const ProgramOptions here{.folder = scene.folder()};
+    scene.replace("[solver]\n", "[solver]\nmodel = \"depth_averaged\"\ngrid_cell_m = 2.5\n");
+    const auto truth = run_program(
+        {"run", "slope.toml", "-o", "truth", "--json", "--set", "material.friction_coefficient=0.25"}, here);
+    ASSERT_EQ(truth.exit_code, 0) << truth.error;
+    const double velocity =
+        nlohmann::json::parse(lines_of(truth.out).back()).at("observations")[0].at("front_velocity_mps");
+    scene.replace("front_velocity_mps = 3\n",
+                  "front_velocity_mps = " + std::to_string(velocity) + "\nuncertainty_mps = 0.1\n");
+    const auto outcome = run_program({"calibrate", "slope.toml", "--vary", "material.friction_coefficient=0.1:0.45",
+                                      "--runs", "14", "--checks", "2", "-o", "result", "--json"},
+                                     here);
+    ASSERT_EQ(outcome.exit_code, 0) << outcome.error;
+    const auto friction = nlohmann::json::parse(lines_of(outcome.out).back()).at("factors")[0];
+    EXPECT_NEAR(friction.at("median").get<double>(), 0.25, 0.03);
+    const auto best = run_program({"run", "result/best_fit/scene.toml", "-o", "again", "--quiet"}, here);
+    ASSERT_EQ(best.exit_code, 0) << best.error;
+    EXPECT_THAT(read_text(scene.folder() / "again/manifest.json"), HasSubstr("\"model\": \"depth_averaged\""));
+}
+
 /// Where debris started follows from when it came to two places, even if the drawing is 9 m off.
 TEST(Calibrate, RecoversHowFarTheReleaseWasMoved) {
     const FlowingScene scene;

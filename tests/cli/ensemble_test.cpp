@@ -46,6 +46,25 @@ TEST(Ensemble, ShardsPutTogetherAreTheWholeByteForByte) {
     }
 }
 
+TEST(Ensemble, RunsTheDepthAveragedModel) {
+    const SmallScene scene;
+    const ProgramOptions here{.folder = scene.folder()};
+    const std::string model = "solver.model=depth_averaged";
+    const auto outcome = run_program(ensemble_command("result", {"--json", "--set", model}, "6"), here);
+    ASSERT_EQ(outcome.exit_code, 0) << outcome.error;
+    const auto event = nlohmann::json::parse(lines_of(outcome.out).back());
+    EXPECT_EQ(event.at("complete"), 6);
+    EXPECT_TRUE(fs::exists(scene.folder() / "result/probability_depth_0.2m.tif"));
+    EXPECT_TRUE(fs::exists(scene.folder() / "result/report.html"));
+    // A number of its own for each hash: six different runs.
+    const auto runs = lines_of(read_text(scene.folder() / "result/runs.csv"));
+    ASSERT_EQ(runs.size(), 7u);
+    const auto cell =
+        run_program(ensemble_command("cells", {"--set", model, "--vary", "solver.grid_cell_m=1:2"}), here);
+    EXPECT_EQ(cell.exit_code, 2);
+    EXPECT_THAT(cell.error, HasSubstr("solver.grid_cell_m: is refused; maps of all runs need the same cells"));
+}
+
 TEST(Ensemble, CountsAgainWithOtherThresholds) {
     const SmallScene scene;
     const ProgramOptions here{.folder = scene.folder()};

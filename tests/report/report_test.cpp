@@ -121,6 +121,59 @@ TEST(Report, HasOneVerdictOnTheNumerics) {
     EXPECT_TRUE(has(s.html(), "lower <code>solver.time_step_s</code>"));
 }
 
+/// What the page says, without its style and script, its maps' numbers and the titles of columns' keys.
+std::string words_of(const std::string& html) {
+    std::string text;
+    bool tag = false;
+    for (std::size_t i = 0; i < html.size(); ++i) {
+        for (const char* skipped : {"style", "script"}) {
+            if (html.compare(i, 1 + std::string(skipped).size(), std::string("<") + skipped) != 0) continue;
+            i = html.find(std::string("</") + skipped, i);
+        }
+        if (html[i] == '<') tag = true;
+        if (!tag) text += html[i];
+        if (html[i] == '>') tag = false;
+    }
+    return text;
+}
+
+TEST(Report, OfADepthAveragedRunSaysNothingThatOnlyParticlesHave) {
+    Sample s;
+    s.scene.spec.observations[0].source = s.scene.spec.observations[1].source = "";
+    const std::string particles = words_of(s.html());
+    for (const char* part : {"particle", "ompression", "position-based", "squeezed", "averaged over 0.2"}) {
+        EXPECT_TRUE(has(particles, part)) << part;
+    }
+    s.scene.spec.solver.model = params::ModelChoice::depth_averaged;
+    s.scene.spec.solver.particle_spacing.reset();
+    s.scene.spec.material.turbulent_friction = 470;
+    s.result.grid_cell = 2.5;
+    s.result.observation.compression = {};
+    s.result.stage_times = {};
+    terrain::Building dam = s.scene.buildings.back();
+    dam.barrier.emplace();
+    s.scene.buildings.push_back(dam);
+    s.result.observation.buildings.push_back(s.result.observation.buildings[0]);
+    s.result.observation.buildings.back().is_barrier = true;
+    std::string words = words_of(s.html());
+    // Keys keep the help that they have for either model.
+    const std::size_t keys = words.find("The keys that were set"), rest = words.find("Inputs and computation");
+    ASSERT_TRUE(keys < rest && rest != std::string::npos);
+    words.erase(keys, rest - keys);
+    for (const char* named : {"solver.model = \"particles\"", "the particle model"}) {
+        for (std::size_t at = 0; (at = words.find(named)) != std::string::npos;)
+            words.erase(at, std::string(named).size());
+    }
+    for (const char* part : {"article", "ompression", "position-based", "squeezed", "averaged over 0.2", "iteration",
+                             "kernel", "Kernel", "Friction inside", "Over the crest"}) {
+        const std::size_t at = words.find(part);
+        EXPECT_EQ(at, std::string::npos) << (at == std::string::npos ? "" : words.substr(at < 80 ? 0 : at - 80, 160));
+    }
+    for (const char* part : {"cells are 2.5 m wide", "Speed of the flow", "ξ = 470 m/s²", "HLL", "Voellmy 1955"}) {
+        EXPECT_TRUE(has(words, part)) << part;
+    }
+}
+
 TEST(Report, MissingVolumeIsNotCalledClosed) {
     Sample s;
     EXPECT_TRUE(has(s.html(), "<strong>closed</strong>"));

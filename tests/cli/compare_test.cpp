@@ -1,0 +1,72 @@
+#include <filesystem>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "cli/program.hpp"
+#include "cli/small_scene.hpp"
+
+namespace talus::test {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::HasSubstr;
+
+TEST(Compare, RunsBothModelsOfTheBuiltInSceneAndSaysWhereTheyPart) {
+    const TemporaryFolder folder;
+    const auto outcome = run_program({"compare", "-o", "both", "--set", "solver.target_particle_count=500", "--set",
+                                      "solver.end_time_s=30", "--set", "solver.grid_cell_m=2.5"},
+                                     {.folder = folder.path()});
+    ASSERT_EQ(outcome.exit_code, 0) << outcome.error;
+    EXPECT_THAT(outcome.out, HasSubstr("% of what either covers"));
+    EXPECT_THAT(outcome.out, HasSubstr("both/report.html"));
+    for (const char* file : {"report.html", "results.json", "particles/manifest.json", "particles/report.html",
+                             "depth_averaged/manifest.json", "depth_averaged/peak_depth.tif"}) {
+        EXPECT_TRUE(fs::exists(folder.path() / "both" / file)) << file;
+    }
+    const auto results = nlohmann::json::parse(read_text(folder.path() / "both/results.json"));
+    EXPECT_EQ(results.at("format"), "talus comparison");
+    const auto& agreement = results.at("agreement");
+    const double both = agreement.at("both_m2"), particles = agreement.at("particles_only_m2"),
+                 grid = agreement.at("depth_averaged_only_m2");
+    EXPECT_GT(both, 1000);
+    EXPECT_NEAR(agreement.at("intersection_over_union").get<double>(), both / (both + particles + grid), 1e-9);
+    EXPECT_GT(agreement.at("intersection_over_union"), 0.3);
+    for (const auto& row : results.at("quantities").at("rows")) {
+        if (row.at("quantity") != "Front velocity at 121 m") continue;
+        EXPECT_EQ(row.at("observed").at("value"), 11);
+        EXPECT_GT(row.at("particles").at("value"), 3);
+        EXPECT_GT(row.at("depth_averaged").at("value"), 3);
+    }
+    EXPECT_GE(results.at("partings").size(), 4U);
+    const std::string page = read_text(folder.path() / "both/report.html");
+    for (const char* part : {"data-layer=\"difference\"", "data-layer=\"affected_area\"", "Where the models part",
+                             "What each model leaves out", "intersection over union"}) {
+        EXPECT_TRUE(page.find(part) != std::string::npos) << part;
+    }
+    EXPECT_EQ(page.find("{{"), std::string::npos);
+}
+
+TEST(Compare, RefusesASceneThatTheDepthAveragedModelCannotHave) {
+    const SmallScene scene;
+    scene.write(SmallScene::text() + "[outputs]\nparticle_series_interval_s = 1\n");
+    const auto outcome = run_program({"compare", "slope.toml"}, {.folder = scene.folder()});
+    EXPECT_EQ(outcome.exit_code, 2);
+    EXPECT_THAT(outcome.error, HasSubstr("particle_series_interval_s"));
+    EXPECT_FALSE(fs::exists(scene.folder() / "talus_out"));
+}
+
+TEST(Compare, IgnoresTheModelOfTheScene) {
+    const SmallScene scene;
+    scene.replace("[solver]\n", "[solver]\nmodel = \"depth_averaged\"\n");
+    const auto outcome = run_program({"compare", "slope.toml", "--json", "-o", "both"}, {.folder = scene.folder()});
+    ASSERT_EQ(outcome.exit_code, 0) << outcome.error;
+    const auto event = nlohmann::json::parse(lines_of(outcome.out).back());
+    EXPECT_EQ(event.at("event"), "result");
+    EXPECT_NE(event.at("particles").at("hash"), event.at("depth_averaged").at("hash"));
+    EXPECT_GT(event.at("agreement").at("both_m2"), 300);
+}
+
+}  // namespace
+}  // namespace talus::test
