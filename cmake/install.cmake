@@ -39,6 +39,13 @@ install(FILES ${shared}/zsh/_talus DESTINATION ${CMAKE_INSTALL_DATADIR}/zsh/site
 # Where Debian's Python looks; elsewhere PYTHONPATH names it. The package finds the library from where it lies itself.
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/python/talus DESTINATION lib/python3/dist-packages PATTERN "__pycache__" EXCLUDE)
 
+# Where Debian's QGIS looks; elsewhere QGIS_PLUGINPATH names the folder above it.
+set(plugin_folder ${CMAKE_INSTALL_DATADIR}/qgis/python/plugins/talus_processing)
+install(DIRECTORY ${PROJECT_SOURCE_DIR}/qgis/talus_processing/ DESTINATION ${plugin_folder}
+        PATTERN "__pycache__" EXCLUDE PATTERN "icon.svg" EXCLUDE)
+install(FILES ${PROJECT_SOURCE_DIR}/web/src/style/mark.svg DESTINATION ${plugin_folder} RENAME icon.svg)
+install(FILES ${PROJECT_SOURCE_DIR}/LICENSE DESTINATION ${plugin_folder})
+
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/scenes DESTINATION ${CMAKE_INSTALL_DATADIR}/talus PATTERN "*.py" EXCLUDE)
 install(FILES ${PROJECT_SOURCE_DIR}/examples/embed.c DESTINATION ${CMAKE_INSTALL_DOCDIR}/examples)
 install(FILES ${PROJECT_SOURCE_DIR}/README.md ${PROJECT_SOURCE_DIR}/LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR})

@@ -39,6 +39,7 @@ inside talus --version
 inside talus run --quiet -o /result --set solver.target_particle_count=1000 --set solver.end_time_s=5
 inside test -s /result/report.html
 inside talus scene check /usr/share/talus/scenes/sham_tseng/scene.toml >/dev/null
+inside test -s /usr/share/qgis/python/plugins/talus_processing/icon.svg
 inside test -s /usr/share/man/man1/talus-run.1.gz -o -s /usr/share/man/man1/talus-run.1
 # The library, for a program in C.
 inside apt-get install --yes --no-install-recommends gcc libc6-dev pkg-config

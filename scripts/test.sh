@@ -7,6 +7,7 @@
 #   scripts/test.sh tsan      what runs in parallel, under the thread sanitizer
 #   scripts/test.sh style     format, clang-tidy, layers, files; with TALUS_CHANGED_SINCE=<revision> clang-tidy looks only
 #                             at the modules that have changed since
+#   scripts/test.sh qgis      the plugin for QGIS, in QGIS without a window; installs QGIS
 #   scripts/test.sh dev       all tests with assertions, every file compiled by itself
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
@@ -70,8 +71,16 @@ for name in "$@"; do
             cmake --build --preset release --target generated_sources --parallel "$(nproc)"
             run_tests release --label-regex style
             ;;
+        qgis)
+            step "qgis"
+            scripts/install_packages.sh qgis
+            cmake --preset release
+            cmake --build --preset release --target talus --parallel "$(nproc)"
+            # Debian's Python, for which its QGIS is made.
+            PATH=$PWD/build/release/bin:$PATH /usr/bin/python3 -m unittest discover --start-directory tests/qgis --verbose
+            ;;
         *)
-            echo "scripts/test.sh: $name is none of release, asan, tsan, style, dev" >&2
+            echo "scripts/test.sh: $name is none of release, asan, tsan, style, qgis, dev" >&2
             exit 2
             ;;
     esac

@@ -33,7 +33,8 @@ namespace fs = std::filesystem;
 
 constexpr const char* run_help = R"(
 Every value of the scene can be set with --set section.key=value. The result folder holds maps (GeoTIFF with QGIS
-styles), front.csv, timeseries.csv, buildings.csv, results.gpkg, results.json, manifest.json and report.html.
+styles), front.csv, timeseries.csv, buildings.csv, results.gpkg, results.qlr (opens all layers in QGIS), results.json,
+manifest.json and report.html.
 
 --layers N chooses the particle spacing from the thickness of the debris, and says what it costs before it starts;
 --layers real-time takes the most layers that this machine runs in real time, and says how to repeat that elsewhere.

@@ -14,6 +14,7 @@
 #include "geo/raster_outline.hpp"
 #include "geo/vector.hpp"
 #include "products/csv.hpp"
+#include "products/layer_definition.hpp"
 #include "products/results_json.hpp"
 #include "products/text_file.hpp"
 #include "report/vector_style.hpp"
@@ -144,7 +145,7 @@ void remove_old_maps(const fs::path& folder, const std::set<std::string>& wanted
 }
 
 Status write_one(const EnsembleResult& result, const report::HazardMap& style, const Grid<float>& si,
-                 const fs::path& folder) {
+                 const fs::path& folder, products::LayerDefinition& layers) {
     if (si.values.empty()) return {};  // no run came anywhere
     const Grid<float> grid = report::in_unit(si, style.factor);
     const std::string note = result.scene->spec.scene.reconstruction ? " (reconstruction)" : "";
@@ -154,11 +155,13 @@ Status write_one(const EnsembleResult& result, const report::HazardMap& style, c
     const geo::RasterBand band{&grid, fmt::format("{}; {} runs{}", what, result.reduction.complete, note), style.unit};
     const std::string stem = (folder / style.file).string();
     TALUS_TRY(write_cog(stem + ".tif", band, result.scene->crs));
-    return products::write_text_file(stem + ".qml", qgis_style(style, report::greatest(grid)));
+    const std::string qml = qgis_style(style, report::greatest(grid));
+    layers.add_raster(style.title, style.file + ".tif", qml, style.file.starts_with("probability_depth"));
+    return products::write_text_file(stem + ".qml", qml);
 }
 
-/// hazard_zones.gpkg: a feature per zone that occurs.
-Status write_zone_polygons(const EnsembleResult& result, const fs::path& folder) {
+/// hazard_zones.gpkg: a feature per zone that occurs, in the zone's colour.
+Status write_zone_polygons(const EnsembleResult& result, const fs::path& folder, products::LayerDefinition& layers) {
     const fs::path file = folder / "hazard_zones.gpkg";
     std::error_code error;
     fs::remove(file, error);  // layers are added to a file that is there
@@ -170,13 +173,21 @@ Status write_zone_polygons(const EnsembleResult& result, const fs::path& folder)
                             {static_cast<double>(zone.number), result.matrix->zones[zone.number - 1].name,
                              result.matrix->name, *result.runs->plan().return_period, zone.area}});
     }
-    return write_geopackage_layer(file.string(), "hazard_zones",
-                                  {{"zone"}, {"name", true}, {"matrix", true}, {"return_period_years"}, {"area_m2"}},
-                                  features, result.scene->crs);
+    TALUS_TRY(write_geopackage_layer(file.string(), "hazard_zones",
+                                     {{"zone"}, {"name", true}, {"matrix", true}, {"return_period_years"}, {"area_m2"}},
+                                     features, result.scene->crs));
+    std::vector<report::VectorClass> drawn;
+    for (const report::Category& zone : result.matrix->zones) {
+        drawn.push_back({zone.name, zone.name, {false, zone.colour, zone.colour, 170, 0.1}});
+    }
+    const std::string style = report::qgis_vector_style("name", drawn);
+    layers.add_vector("Hazard zones", "hazard_zones.gpkg", "hazard_zones", style, false);
+    return geo::write_geopackage_styles(file.string(), {{"hazard_zones", style}});
 }
 
 /// buildings.gpkg: the footprints with the columns of buildings.csv, coloured by the probability of a hit.
-Status write_building_polygons(const EnsembleResult& result, const fs::path& folder) {
+Status write_building_polygons(const EnsembleResult& result, const fs::path& folder,
+                               products::LayerDefinition& layers) {
     const fs::path file = folder / "buildings.gpkg";
     std::error_code error;
     fs::remove(file, error);  // layers are added to a file that is there
@@ -205,28 +216,29 @@ Status write_building_polygons(const EnsembleResult& result, const fs::path& fol
         features.push_back({result.scene->buildings[k].footprint, {}, std::move(values)});
     }
     TALUS_TRY(write_geopackage_layer(file.string(), "buildings", fields, features, result.scene->crs));
-    return geo::write_geopackage_styles(
-        file.string(), {{"buildings", report::qgis_vector_style("probability_class", classes, "name")}});
+    const std::string style = report::qgis_vector_style("probability_class", classes, "name");
+    layers.add_vector("Buildings, probability of a hit", "buildings.gpkg", "buildings", style, true);
+    return geo::write_geopackage_styles(file.string(), {{"buildings", style}});
 }
 
-Status write_maps(const EnsembleResult& result, const fs::path& folder) {
+Status write_maps(const EnsembleResult& result, const fs::path& folder, products::LayerDefinition& layers) {
     std::set<std::string> written;
     for (const EnsembleMap& map : result.reduction.maps) {
         const report::HazardMap style = style_of(map);
         written.insert(style.file);
-        TALUS_TRY(write_one(result, style, map.grid, folder));
+        TALUS_TRY(write_one(result, style, map.grid, folder, layers));
     }
     for (std::size_t k = 0; k < result.reduction.intensity.size(); ++k) {
         const report::HazardMap style =
             intensity_odds_style(result.guideline->classes[k], k + 1 == result.guideline->classes.size());
         written.insert(style.file);
-        TALUS_TRY(write_one(result, style, result.reduction.intensity[k], folder));
+        TALUS_TRY(write_one(result, style, result.reduction.intensity[k], folder, layers));
     }
     if (result.matrix != nullptr) {
         const report::HazardMap style = zone_style(*result.matrix);
         written.insert(style.file);
-        TALUS_TRY(write_one(result, style, result.zones, folder));
-        TALUS_TRY(write_zone_polygons(result, folder));
+        TALUS_TRY(write_one(result, style, result.zones, folder, layers));
+        TALUS_TRY(write_zone_polygons(result, folder, layers));
     }
     remove_old_maps(folder, written);
     return {};
@@ -358,10 +370,12 @@ Json statistics_json(const EnsembleResult& result) {
 }
 
 Status write_ensemble(const EnsembleResult& result, const fs::path& folder) {
-    TALUS_TRY(write_maps(result, folder));
+    products::LayerDefinition layers(result.scene->spec.scene.title, result.scene->crs.wkt);
+    TALUS_TRY(write_building_polygons(result, folder, layers));
+    TALUS_TRY(write_maps(result, folder, layers));
+    TALUS_TRY(layers.write(folder));
     TALUS_TRY(products::write_text_file(folder / "runs.csv", run_csv(result)));
     TALUS_TRY(products::write_text_file(folder / "buildings.csv", building_csv(result)));
-    TALUS_TRY(write_building_polygons(result, folder));
     TALUS_TRY(products::write_text_file(folder / "distributions.csv", distribution_csv(result)));
     TALUS_TRY(products::write_text_file(folder / "sensitivity.csv", sensitivity_csv(result)));
     const Json results = ensemble_results(result);

@@ -40,9 +40,9 @@ struct EnsembleResult {
 /// How the map of an intensity class's probability is called and coloured: "probability_intensity_high".
 [[nodiscard]] report::HazardMap intensity_odds_style(const report::IntensityClass& intensity, bool most_severe);
 
-/// Maps (.tif + .qml), hazard_zones.gpkg where there are zones, runs.csv, buildings.csv, distributions.csv,
-/// sensitivity.csv, statistics.json, results.json and report.html into the folder, over those of an earlier call.
-/// Errors name the file and the cause.
+/// Maps (.tif + .qml), hazard_zones.gpkg where there are zones, results.qlr, runs.csv, buildings.csv,
+/// distributions.csv, sensitivity.csv, statistics.json, results.json and report.html into the folder, over those of an
+/// earlier call. Errors name the file and the cause.
 [[nodiscard]] Status write_ensemble(const EnsembleResult& result, const std::filesystem::path& folder);
 
 /// A factor's effect on a result as statistics.json and results.json have it.

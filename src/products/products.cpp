@@ -39,9 +39,11 @@ Status write_products(const scene::Scene& scene, const run::RunResult& result, c
                       const std::vector<run::Comparison>& comparisons, std::string_view changed) {
     TALUS_TRY(write_partial_note(result, folder));
     if (result.fault) TALUS_TRY(write_fault(*result.fault, folder / "fault"));
-    TALUS_TRY(write_maps(scene, result, folder));
+    LayerDefinition layers(scene.spec.scene.title + caveat(scene, result), scene.crs.wkt);
+    TALUS_TRY(write_maps(scene, result, folder, layers));
     TALUS_TRY(write_tables(scene, result, folder, changed));
-    TALUS_TRY(write_vectors(scene, result, folder));
+    TALUS_TRY(write_vectors(scene, result, folder, layers));
+    TALUS_TRY(layers.write(folder));
     TALUS_TRY(write_comparisons(comparisons, result, folder));
     TALUS_TRY(write_report(scene, result, comparisons, folder));
     // Last, as it lists the files; a folder that has one is complete.

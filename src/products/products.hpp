@@ -39,11 +39,11 @@ class OutputFolder {
     int lock_ = -1;  ///< held on the temporary folder while it is written; -1: the file system has no locks
 };
 
-/// Writes maps (.tif + .qml), front.csv, buildings.csv, results.gpkg, timeseries.csv, manifest.json, results.json,
-/// report.html; where there are comparisons with variants of the scene, convergence.csv and variants.csv too;
-/// PARTIAL.txt where the run did not end by itself, and the folder fault where a step could not be trusted. Errors name
-/// the file and the cause (disk full, ...). `changed`: what was changed during the run, which the tables then say in a
-/// last column; empty: nothing.
+/// Writes maps (.tif + .qml), front.csv, buildings.csv, results.gpkg, results.qlr, timeseries.csv, manifest.json,
+/// results.json, report.html; where there are comparisons with variants of the scene, convergence.csv and variants.csv
+/// too; PARTIAL.txt where the run did not end by itself, and the folder fault where a step could not be trusted. Errors
+/// name the file and the cause (disk full, ...). `changed`: what was changed during the run, which the tables then say
+/// in a last column; empty: nothing.
 [[nodiscard]] Status write_products(const scene::Scene& scene, const run::RunResult& result,
                                     const std::filesystem::path& folder,
                                     const std::vector<run::Comparison>& comparisons = {},

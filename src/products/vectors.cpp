@@ -158,9 +158,16 @@ Status write_outline(const scene::Scene& scene, const Grid<float>& map, double l
     return write_geopackage_layer(file, layer, {{"above_m"}, {"area_m2"}}, features, scene.crs);
 }
 
-/// How QGIS draws the layers when it opens the file.
-std::vector<geo::LayerStyle> styles(const scene::Scene& scene) {
+struct DrawnLayer {
+    const char *table, *title;
+    bool shown;  ///< where all are opened at once
+    std::string style;
+};
+
+/// How QGIS draws the layers, those on top first.
+std::vector<DrawnLayer> drawn_layers(const scene::Scene& scene) {
     using report::Colour;
+    using report::qgis_vector_style;
     using report::VectorClass;
     using report::VectorSymbol;
     const Colour dark{60, 60, 60}, red{179, 32, 43}, blue{20, 80, 140}, brown{122, 84, 48};
@@ -171,18 +178,25 @@ std::vector<geo::LayerStyle> styles(const scene::Scene& scene) {
         buildings.push_back({c.name, "intensity " + c.name, VectorSymbol{false, c.colour, dark}});
     }
     buildings.push_back({"", "no intensity class", VectorSymbol{false, {217, 217, 217}, dark}});
-    return {{"buildings", report::qgis_vector_style("intensity", buildings, "name")},
-            {"intensity", report::qgis_vector_style("intensity", intensities)},
-            {"release", report::qgis_vector_style(VectorSymbol{false, red, red, 40, 0.5})},
-            {"inundation", report::qgis_vector_style(VectorSymbol{false, blue, blue, 0, 0.5})},
-            {"deposit", report::qgis_vector_style(VectorSymbol{false, brown, brown, 60, 0.4})},
-            {"flow_path", report::qgis_vector_style(VectorSymbol{true, {}, blue, 255, 0.5})},
-            {"chainage", report::qgis_vector_style(VectorSymbol{true, {}, dark, 255, 0.2}, "chainage_m")}};
+    std::vector<DrawnLayer> layers;
+    if (!scene.flow_path.empty()) {
+        const VectorSymbol mark{true, {}, dark, 255, 0.2}, path{true, {}, blue, 255, 0.5};
+        layers = {{"chainage", "Chainage, m", false, qgis_vector_style(mark, "chainage_m")},
+                  {"flow_path", "Flow path", true, qgis_vector_style(path)}};
+    }
+    layers.insert(layers.end(),
+                  {{"buildings", "Buildings", true, qgis_vector_style("intensity", buildings, "name")},
+                   {"release", "Release", true, qgis_vector_style(VectorSymbol{false, red, red, 40, 0.5})},
+                   {"deposit", "Deposit", false, qgis_vector_style(VectorSymbol{false, brown, brown, 60, 0.4})},
+                   {"inundation", "Inundation", true, qgis_vector_style(VectorSymbol{false, blue, blue, 0, 0.5})},
+                   {"intensity", "Intensity zones", false, qgis_vector_style("intensity", intensities)}});
+    return layers;
 }
 
 }  // namespace
 
-Status write_vectors(const scene::Scene& scene, const run::RunResult& result, const std::filesystem::path& folder) {
+Status write_vectors(const scene::Scene& scene, const run::RunResult& result, const std::filesystem::path& folder,
+                     LayerDefinition& layers) {
     const std::string file = (folder / "results.gpkg").string();
     const observe::Observation& observation = result.observation;
     TALUS_TRY(write_buildings(scene, observation, file));
@@ -191,7 +205,12 @@ Status write_vectors(const scene::Scene& scene, const run::RunResult& result, co
     const double least = scene.spec.outputs.arrival_depth;
     TALUS_TRY(write_outline(scene, observation.maps.peak_depth, least, "inundation", file));
     TALUS_TRY(write_outline(scene, observation.maps.deposit_depth, least, "deposit", file));
-    TALUS_TRY(geo::write_geopackage_styles(file, styles(scene)));
+    std::vector<geo::LayerStyle> styles;
+    for (const DrawnLayer& layer : drawn_layers(scene)) {
+        styles.push_back({layer.table, layer.style});
+        layers.add_vector(layer.title, "results.gpkg", layer.table, layer.style, layer.shown);
+    }
+    TALUS_TRY(geo::write_geopackage_styles(file, styles));
     if (scene.flow_path.empty()) return {};
     const geo::OutputFeature line{
         {}, scene.flow_path.points(), {scene.flow_path.length(), std::string(origin_text(scene.flow_path_origin))}};

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/result.hpp"
+#include "products/layer_definition.hpp"
 #include "run/comparison.hpp"
 #include "run/run_result.hpp"
 #include "scene/scene.hpp"
@@ -14,9 +15,9 @@
 namespace talus::products {
 
 /// peak_depth.tif, ..., intensity.tif, and erosion_depth.tif where anything was eroded, each with a QGIS style beside
-/// it.
+/// it. They are added to `layers`.
 [[nodiscard]] Status write_maps(const scene::Scene& scene, const run::RunResult& result,
-                                const std::filesystem::path& folder);
+                                const std::filesystem::path& folder, LayerDefinition& layers);
 
 /// front.csv, run_out.csv, buildings.csv, structures_over_time.csv, timeseries.csv, and erosion.csv where there is a
 /// bed. A value that does not exist is an empty field. `changed`: as for write_products.
@@ -25,9 +26,9 @@ namespace talus::products {
 
 /// results.gpkg with the layers buildings, release, intensity (polygons of each class), inundation and deposit
 /// (outlines of what is deeper than outputs.arrival_depth_m), flow_path and chainage (a short line across the path per
-/// mark), and their styles for QGIS.
+/// mark), and their styles for QGIS. They are added to `layers`.
 [[nodiscard]] Status write_vectors(const scene::Scene& scene, const run::RunResult& result,
-                                   const std::filesystem::path& folder);
+                                   const std::filesystem::path& folder, LayerDefinition& layers);
 
 /// convergence.csv, variants.csv: a row for the base and one per variant, with values, changes in percent and cost.
 [[nodiscard]] Status write_comparisons(const std::vector<run::Comparison>& comparisons, const run::RunResult& base,

@@ -283,6 +283,7 @@ TEST_F(EnsembleTest, WritesTheOddsOfEachBuildingWithItsFootprint) {
     }
     const EnsembleResult result = summarise(*scene, runs, *std::move(reduction));
     ASSERT_TRUE(write_ensemble(result, folder / "done"));
+    EXPECT_THAT(test::read_text(folder / "done/results.qlr"), HasSubstr("./buildings.gpkg|layername=buildings"));
     const auto polygons = geo::read_polygons(path("done/buildings.gpkg"), "buildings", scene->crs);
     ASSERT_TRUE(polygons) << polygons.error().message;
     ASSERT_EQ(polygons->features.size(), wanted.size());
@@ -310,7 +311,7 @@ TEST_F(EnsembleTest, WritesMapsTablesAndAReport) {
     EXPECT_EQ(most, 100);  // in percent; all runs cover the release
     for (const char* file :
          {"peak_depth_p95.tif", "peak_depth_p95.qml", "probability_pressure_15kPa.qml", "runs.csv", "buildings.csv",
-          "distributions.csv", "sensitivity.csv", "statistics.json", "report.html"}) {
+          "distributions.csv", "sensitivity.csv", "statistics.json", "report.html", "results.qlr"}) {
         EXPECT_TRUE(std::filesystem::exists(folder / "done" / file)) << file;
     }
     const auto results = nlohmann::ordered_json::parse(test::read_text(folder / "done/results.json"));

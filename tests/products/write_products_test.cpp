@@ -84,12 +84,12 @@ TEST_F(Products, FolderHoldsWhatItShouldAndNothingElse) {
     for (const auto& entry : std::filesystem::directory_iterator(folder_->path())) {
         names.push_back(entry.path().filename());
     }
-    EXPECT_THAT(names,
-                testing::UnorderedElementsAre(
-                    "arrival_time.qml", "arrival_time.tif", "buildings.csv", "deposit_depth.qml", "deposit_depth.tif",
-                    "front.csv", "intensity.qml", "intensity.tif", "manifest.json", "peak_depth.qml", "peak_depth.tif",
-                    "peak_pressure.qml", "peak_pressure.tif", "peak_speed.qml", "peak_speed.tif", "report.html",
-                    "results.gpkg", "results.json", "run_out.csv", "structures_over_time.csv", "timeseries.csv"));
+    EXPECT_THAT(names, testing::UnorderedElementsAre(
+                           "arrival_time.qml", "arrival_time.tif", "buildings.csv", "deposit_depth.qml",
+                           "deposit_depth.tif", "front.csv", "intensity.qml", "intensity.tif", "manifest.json",
+                           "peak_depth.qml", "peak_depth.tif", "peak_pressure.qml", "peak_pressure.tif",
+                           "peak_speed.qml", "peak_speed.tif", "report.html", "results.gpkg", "results.json",
+                           "results.qlr", "run_out.csv", "structures_over_time.csv", "timeseries.csv"));
 }
 
 TEST_F(Products, MapsReadBackInTheirUnits) {
@@ -238,6 +238,42 @@ TEST_F(Products, EveryLayerHasAStyleForQgisInTheFile) {
         }
         CPLDestroyXMLNode(tree);
     }
+}
+
+TEST_F(Products, OneFileOpensAllLayersInQgis) {
+    const TemporaryFolder folder;
+    scene::Scene scene = *scene_;
+    scene.spec.scene.title = "Slope <A> & \"B\"";
+    ASSERT_TRUE(write_products(scene, *result_, folder.path()).ok());
+    CPLXMLNode* tree = CPLParseXMLString(test::read_text(folder.path() / "results.qlr").c_str());
+    ASSERT_NE(tree, nullptr);
+    EXPECT_STREQ(CPLGetXMLValue(tree, "=qlr.layer-tree-group.layer-tree-group.name", ""),
+                 "Slope <A> & \"B\" (reconstruction)");
+    std::vector<std::string> in_tree, names;
+    for (CPLXMLNode* node = CPLGetXMLNode(tree, "=qlr.layer-tree-group.layer-tree-group")->psChild; node != nullptr;
+         node = node->psNext) {
+        if (std::string(node->pszValue) == "layer-tree-layer") in_tree.emplace_back(CPLGetXMLValue(node, "id", ""));
+    }
+    std::vector<std::string> ids;
+    for (CPLXMLNode* layer = CPLGetXMLNode(tree, "=qlr.maplayers")->psChild; layer != nullptr; layer = layer->psNext) {
+        ids.emplace_back(CPLGetXMLValue(layer, "id", ""));
+        names.emplace_back(CPLGetXMLValue(layer, "layername", ""));
+        const std::string source = CPLGetXMLValue(layer, "datasource", "");
+        ASSERT_THAT(source, StartsWith("./"));
+        const std::size_t bar = source.find("|layername=");
+        const std::string file = folder.file(source.substr(2, bar == std::string::npos ? bar : bar - 2));
+        const GDALDatasetUniquePtr data(GDALDataset::Open(file.c_str()));
+        ASSERT_TRUE(data) << source;
+        const bool is_vector = bar != std::string::npos;
+        EXPECT_EQ(std::string(CPLGetXMLValue(layer, "type", "")), is_vector ? "vector" : "raster");
+        if (is_vector) EXPECT_NE(data->GetLayerByName(source.substr(bar + 11).c_str()), nullptr) << source;
+        EXPECT_NE(CPLGetXMLNode(layer, is_vector ? "renderer-v2" : "pipe.rasterrenderer"), nullptr) << source;
+        EXPECT_EQ(CPLGetXMLValue(layer, "srs.spatialrefsys.wkt", ""), scene.crs.wkt);
+    }
+    CPLDestroyXMLNode(tree);
+    EXPECT_EQ(ids, in_tree);
+    EXPECT_THAT(names, testing::Contains("Buildings"));
+    EXPECT_THAT(names, testing::Contains("Intensity"));
 }
 
 TEST_F(Products, IntensityIsARasterOfClassesWithAStyleAndPolygonsOfTheSameArea) {

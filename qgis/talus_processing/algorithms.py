@@ -1,0 +1,167 @@
+"""The commands of talus as algorithms."""
+
+import os
+
+from qgis.core import (
+    QgsProcessingException,
+    QgsProcessingOutputFile,
+    QgsProcessingOutputRasterLayer,
+    QgsProcessingOutputString,
+    QgsProcessingOutputVectorLayer,
+    QgsProcessingParameterEnum,
+    QgsProcessingParameterFolderDestination,
+    QgsProcessingParameterString,
+)
+
+from .program import run_program
+from .scene_input import TalusAlgorithm, lines_of, number
+
+SCENE_HELP = (
+    "The scene is a scene file, or is made of layers: a terrain in a projected reference system in metres, polygons of "
+    "the release areas with their thickness or volume, and buildings. Without either it is the one that comes with "
+    "talus. Values that are left empty are those of the scene."
+)
+
+
+class Run(TalusAlgorithm):
+    NAME, TITLE = "run", "Run"
+    HELP = (
+        "Runs a scene and opens maps of peak depth, speed and pressure, arrival time, deposit and intensity, outlines, "
+        "and buildings coloured by intensity. Cancelling keeps the results so far.\n\n" + SCENE_HELP
+    )
+    MODELS = ["", "particles", "depth_averaged"]
+    MAPS = ["peak_depth", "peak_speed", "peak_pressure", "arrival_time", "deposit_depth", "intensity"]
+
+    def initAlgorithm(self, configuration=None):
+        self.add_scene()
+        models = ["as the scene says", "particles", "depth-averaged: in seconds, without what happens inside"]
+        self.addParameter(QgsProcessingParameterEnum("MODEL", "Model", models, defaultValue=0))
+        self.add_output("Results")
+        for name in self.MAPS:
+            title = name.replace("_", " ").capitalize()
+            self.addOutput(QgsProcessingOutputRasterLayer(name.upper(), title))
+        self.addOutput(QgsProcessingOutputVectorLayer("BUILDING_IMPACT", "Impact on buildings"))
+
+    def processAlgorithm(self, parameters, context, feedback):
+        arguments = self.scene_arguments(parameters, context, feedback)
+        folder = self.output_folder(parameters, context)
+        model = self.MODELS[self.parameterAsEnum(parameters, "MODEL", context)]
+        if model:
+            arguments += ["--model", model]
+        # talus replaces no folder but one of its own results.
+        run_program(["run", *arguments, "--json", "--force", "-o", folder], feedback)
+        if self.parameterAsBool(parameters, "LOAD", context):
+            self.definition = os.path.join(folder, "results.qlr")
+        results = {"OUTPUT": folder, "REPORT": os.path.join(folder, "report.html")}
+        for name in self.MAPS:
+            results[name.upper()] = os.path.join(folder, name + ".tif")
+        results["BUILDING_IMPACT"] = os.path.join(folder, "results.gpkg") + "|layername=buildings"
+        return results
+
+
+class Check(TalusAlgorithm):
+    NAME, TITLE = "check", "Check"
+    HELP = "Reads a scene with all its inputs and summarises it, without running it.\n\n" + SCENE_HELP
+
+    def initAlgorithm(self, configuration=None):
+        self.add_scene()
+        self.addOutput(QgsProcessingOutputString("SUMMARY", "Summary"))
+
+    def processAlgorithm(self, parameters, context, feedback):
+        arguments = self.scene_arguments(parameters, context, feedback)
+        if not arguments or arguments[0] == "--set":
+            raise QgsProcessingException("give a scene file, or a terrain and release areas")
+        return {"SUMMARY": run_program(["scene", "check", *arguments], feedback)}
+
+
+class NewScene(TalusAlgorithm):
+    NAME, TITLE = "newscene", "New scene"
+    HELP = (
+        "Makes a scene of layers, to be edited, run, varied and calibrated: a folder with the commented scene file, and "
+        "one with the layers beside it. The folder must not be there yet."
+    )
+
+    def initAlgorithm(self, configuration=None):
+        self.add_layers(optional=False)
+        self.addParameter(QgsProcessingParameterFolderDestination("OUTPUT", "Folder for the scene"))
+        self.addOutput(QgsProcessingOutputFile("SCENE", "Scene file"))
+
+    def processAlgorithm(self, parameters, context, feedback):
+        folder = self.output_folder(parameters, context)
+        return {"OUTPUT": folder, "SCENE": self.new_scene(parameters, folder, context, feedback)}
+
+
+class ManyRuns(TalusAlgorithm):
+    """An algorithm over values that vary."""
+
+    def add_factors(self, title, runs):
+        self.addParameter(QgsProcessingParameterString("VARY", title, multiLine=True))
+        self.addParameter(number("RUNS", f"Runs at most (default: {runs})", whole=True, least=1))
+
+    def factor_arguments(self, parameters, context):
+        arguments = []
+        for factor in lines_of(self.parameterAsString(parameters, "VARY", context)):
+            arguments += ["--vary", factor]
+        return arguments + self.option(parameters, "RUNS", context)
+
+    def run_many(self, command, arguments, folder, feedback):
+        run_program([command, *arguments, "--json", "-o", folder], feedback)
+        return {"OUTPUT": folder, "REPORT": os.path.join(folder, "report.html")}
+
+
+class Ensemble(ManyRuns):
+    NAME, TITLE = "ensemble", "Ensemble"
+    HELP = (
+        "Runs a scene many times with varied values and opens maps of probabilities and percentiles, and buildings "
+        "coloured by the probability of a hit. What varies is a line each, such as\n"
+        "material.friction_coefficient=0.2:0.5\nrelease.volume_m3=log:300:1200\nmaterial.viscosity=normal:0.1:0.02\n"
+        "The same folder resumes where an earlier call stopped.\n\n" + SCENE_HELP
+    )
+    DESIGNS = ["latin_hypercube", "monte_carlo", "sobol", "grid", "saltelli", "morris"]
+
+    def initAlgorithm(self, configuration=None):
+        self.add_scene()
+        self.add_factors("What varies, a line each: section.key=low:high", 64)
+        self.addParameter(QgsProcessingParameterEnum("DESIGN", "Design", self.DESIGNS, defaultValue=0))
+        self.addParameter(number("RETURN_PERIOD", "Return period of the event, years: maps hazard zones"))
+        self.add_advanced(number("SEED", "Seed of the design", whole=True))
+        self.add_output("Results")
+
+    def processAlgorithm(self, parameters, context, feedback):
+        arguments = self.scene_arguments(parameters, context, feedback) + self.factor_arguments(parameters, context)
+        arguments += ["--design", self.DESIGNS[self.parameterAsEnum(parameters, "DESIGN", context)]]
+        for name in ("RETURN_PERIOD", "SEED"):
+            arguments += self.option(parameters, name, context)
+        folder = self.output_folder(parameters, context)
+        results = self.run_many("ensemble", arguments, folder, feedback)
+        if self.parameterAsBool(parameters, "LOAD", context):
+            self.definition = os.path.join(folder, "results.qlr")
+        return results
+
+
+class Calibrate(ManyRuns):
+    NAME, TITLE = "calibrate", "Calibrate"
+    HELP = (
+        "Finds the values of a scene that explain field observations, with their uncertainty. The scene file states the "
+        "observations; without one it is the scene that comes with talus. Free values are a line each, such as\n"
+        "material.friction_coefficient=0.1:0.6\nrelease.volume_m3=normal:600:60\n"
+        "The report shows the result; the scene with the best values is an output, for the algorithm Run."
+    )
+
+    def initAlgorithm(self, configuration=None):
+        self.add_scene()
+        self.add_factors("Free values, a line each: section.key=low:high", 100)
+        self.add_advanced(number("DESIGN", "Runs of the design (default: ten per value)", whole=True, least=3))
+        self.add_advanced(number("CHECKS", "Runs that check the result (default: 10)", whole=True))
+        self.add_advanced(number("SEED", "Seed of the design and the chains", whole=True))
+        self.add_output("Results", layers=False)
+        self.addOutput(QgsProcessingOutputFile("BEST_FIT", "Scene with the best values"))
+
+    def processAlgorithm(self, parameters, context, feedback):
+        arguments = self.scene_arguments(parameters, context, feedback) + self.factor_arguments(parameters, context)
+        for name in ("DESIGN", "CHECKS", "SEED"):
+            arguments += self.option(parameters, name, context)
+        folder = self.output_folder(parameters, context)
+        results = self.run_many("calibrate", arguments, folder, feedback)
+        results["BEST_FIT"] = os.path.join(folder, "best_fit", "scene.toml")
+        return results

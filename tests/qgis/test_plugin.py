@@ -1,0 +1,260 @@
+"""The plugin for QGIS on the program that was built: by qgis_process, as QGIS itself runs it, and inside this process
+where a project is looked at. PATH has talus; scripts/test.sh qgis sets what else is needed."""
+
+import json
+import os
+import pathlib
+import shutil
+import subprocess
+import tempfile
+import threading
+import unittest
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+PLUGINS = ROOT / "qgis"
+FOLDER = pathlib.Path(tempfile.mkdtemp(prefix="talus_qgis_"))
+os.environ.update(
+    QT_QPA_PLATFORM="offscreen", QGIS_CUSTOM_CONFIG_PATH=str(FOLDER / "profile"), QGIS_PLUGINPATH=str(PLUGINS),
+    HOME=str(FOLDER), XDG_RUNTIME_DIR=str(FOLDER),
+)  # fmt: skip
+os.chmod(FOLDER, 0o700)
+
+import sys
+
+sys.path += [str(PLUGINS), "/usr/share/qgis/python/plugins"]
+
+import numpy as np
+from osgeo import gdal, ogr, osr
+from qgis.core import (
+    QgsApplication,
+    QgsLayerDefinition,
+    QgsProcessingContext,
+    QgsProcessingException,
+    QgsProcessingFeedback,
+    QgsProcessingFeatureSourceDefinition,
+    QgsProject,
+    QgsRasterLayer,
+    QgsVectorLayer,
+)
+
+gdal.UseExceptions()
+application = QgsApplication([], False)
+application.initQgis()
+import processing
+from processing.core.Processing import Processing
+from processing.core.ProcessingConfig import ProcessingConfig
+from talus_processing import classFactory
+from talus_processing.program import SETTING
+
+Processing.initialize()
+plugin = classFactory(None)
+plugin.initProcessing()
+
+QUICK = "solver.end_time_s=6\nsolver.thread_count=2"
+
+
+def tearDownModule():
+    shutil.rmtree(FOLDER)
+
+
+def write_slope():
+    """A slope of 1 : 2 that falls to the east, release areas of which the second is not to be used, and a house."""
+    rows, columns = 30, 60
+    raster = gdal.GetDriverByName("GTiff").Create(str(FOLDER / "dem.tif"), columns, rows, 1, gdal.GDT_Float32)
+    raster.SetGeoTransform((800000, 1, 0, 820000 + rows, 0, -1))
+    reference = osr.SpatialReference()
+    reference.ImportFromEPSG(32650)
+    raster.SetProjection(reference.ExportToWkt())
+    elevation = np.tile(200 - 0.5 * np.arange(columns), (rows, 1))
+    raster.GetRasterBand(1).WriteArray(elevation)
+    raster = None
+    boxes = {"scars": [(5, 10, 15, 20), (5, 1, 8, 3)], "houses": [(40, 12, 46, 18)]}
+    for name, places in boxes.items():
+        data = ogr.GetDriverByName("GPKG").CreateDataSource(str(FOLDER / f"{name}.gpkg"))
+        layer = data.CreateLayer(name, reference, ogr.wkbPolygon)
+        layer.CreateField(ogr.FieldDefn("name", ogr.OFTString))
+        for left, below, right, above in places:
+            feature = ogr.Feature(layer.GetLayerDefn())
+            feature.SetField("name", f"{name} & {left}")
+            corners = [(left, below), (right, below), (right, above), (left, above), (left, below)]
+            text = ", ".join(f"{800000 + x} {820000 + y}" for x, y in corners)
+            feature.SetGeometry(ogr.CreateGeometryFromWkt(f"POLYGON (({text}))"))
+            layer.CreateFeature(feature)
+        data = None
+
+
+write_slope()
+
+
+def layers(**more):
+    return {
+        "TERRAIN": str(FOLDER / "dem.tif"), "RELEASE": str(FOLDER / "scars.gpkg"),
+        "BUILDINGS": str(FOLDER / "houses.gpkg"), "THICKNESS": 1, "FRICTION": 0.2, "PARTICLES": 500,
+        "SETTINGS": QUICK, **more,
+    }  # fmt: skip
+
+
+def new_output(name):
+    folder = FOLDER / name
+    shutil.rmtree(folder, ignore_errors=True)
+    return str(folder)
+
+
+class Log(QgsProcessingFeedback):
+    def __init__(self):
+        super().__init__(False)
+        self.lines, self.shares = [], []
+        self.progressChanged.connect(self.shares.append)
+
+    def pushInfo(self, text):
+        self.lines.append(text)
+
+    pushCommandInfo = pushInfo
+
+
+def run(algorithm, parameters, project=None, log=None):
+    context = QgsProcessingContext()
+    if project is not None:
+        context.setProject(project)
+    return processing.run("talus:" + algorithm, parameters, context=context, feedback=log or Log())
+
+
+def qgis_process(*arguments):
+    # Debian's wrapper passes an option of QGIS that qgis_process does not know.
+    program = shutil.which("qgis_process.bin") or shutil.which("qgis_process")
+    return subprocess.run([program, *arguments], capture_output=True, text=True, timeout=300)
+
+
+class Command(unittest.TestCase):
+    """As QGIS runs it, without a window."""
+
+    @classmethod
+    def setUpClass(cls):
+        qgis_process("plugins", "enable", "talus_processing")
+
+    def test_runs_layers_and_names_its_results(self):
+        parameters = [f"--{name}={value}" for name, value in layers().items() if name != "SETTINGS"]
+        output = new_output("by_command")
+        ended = qgis_process("--json", "run", "talus:run", *parameters, f"--SETTINGS={QUICK}", f"--OUTPUT={output}")
+        self.assertEqual(ended.returncode, 0, ended.stdout + ended.stderr)
+        results = json.loads(ended.stdout)["results"]
+        self.assertTrue(QgsRasterLayer(results["PEAK_DEPTH"]).isValid())
+        impacts = QgsVectorLayer(results["BUILDING_IMPACT"])
+        self.assertEqual([f["hit"] for f in impacts.getFeatures()], ["yes"])
+        self.assertTrue(os.path.getsize(results["REPORT"]) > 0)
+
+    def test_passes_on_what_the_program_says(self):
+        parameters = [f"--{name}={value}" for name, value in layers(SETTINGS="material.viscosity=-1").items()]
+        ended = qgis_process("run", "talus:run", *parameters, "--OUTPUT=" + new_output("refused"))
+        self.assertNotEqual(ended.returncode, 0)
+        self.assertIn("material.viscosity=-1", ended.stdout + ended.stderr)
+
+
+class Plugin(unittest.TestCase):
+    def test_opens_results_as_a_styled_group_on_top(self):
+        project, log = QgsProject(), Log()
+        dem = QgsRasterLayer(str(FOLDER / "dem.tif"), "dem")
+        project.addMapLayer(dem)
+        scars = QgsVectorLayer(str(FOLDER / "scars.gpkg"), "scars")
+        project.addMapLayer(scars)
+        scars.selectByExpression("\"name\" = 'scars & 5'", QgsVectorLayer.SetSelection)
+        chosen = QgsProcessingFeatureSourceDefinition(scars.id(), selectedFeaturesOnly=True)
+        output = new_output("group")
+        run("run", layers(TERRAIN=dem, RELEASE=chosen, OUTPUT=output), project, log)
+        group = project.layerTreeRoot().children()[0]
+        self.assertEqual(group.name(), "scars")
+        names = [node.name() for node in group.children()]
+        self.assertEqual(
+            names,
+            ["Chainage, m", "Flow path", "Buildings", "Release", "Deposit", "Inundation", "Intensity zones",
+             "Peak depth", "Peak speed", "Peak dynamic pressure", "Arrival time", "Deposit depth", "Intensity"],
+        )  # fmt: skip
+        opened = {node.name(): node.layer() for node in group.children()}
+        self.assertTrue(all(layer.isValid() for layer in opened.values()))
+        self.assertEqual({layer.crs().authid() for layer in opened.values()}, {"EPSG:32650"})
+        self.assertEqual(opened["Peak depth"].renderer().type(), "singlebandpseudocolor")
+        self.assertEqual(opened["Intensity"].renderer().type(), "paletted")
+        self.assertEqual(opened["Buildings"].renderer().classAttribute(), "intensity")
+        self.assertTrue(opened["Buildings"].labelsEnabled())
+        self.assertGreater(len(set(log.shares)), 1)
+        self.assertLessEqual(max(log.shares), 100)
+
+    def test_definition_opens_where_the_folder_was_moved_to(self):
+        output = new_output("here")
+        run("run", layers(MODEL=2, OUTPUT=output))
+        moved = new_output("there")
+        shutil.move(output, moved)
+        project = QgsProject()
+        loaded, message = QgsLayerDefinition.loadLayerDefinition(moved + "/results.qlr", project, project.layerTreeRoot())
+        self.assertTrue(loaded, message)
+        for layer in project.mapLayers().values():
+            self.assertTrue(layer.isValid() and layer.source().startswith(moved), layer.source())
+
+    def test_cancelling_keeps_the_results_so_far(self):
+        log, output = Log(), new_output("cancelled")
+        log.progressChanged.connect(lambda share: log.cancel())
+        late = threading.Timer(120, log.cancel)
+        late.start()
+        run("run", {"SETTINGS": "solver.thread_count=2", "PARTICLES": 3000, "OUTPUT": output}, log=log)
+        self.assertTrue(late.is_alive())
+        late.cancel()
+        self.assertLess(max(log.shares), 90)
+        self.assertTrue(os.path.exists(output + "/PARTIAL.txt"))
+
+    def test_makes_a_scene_to_keep_and_checks_it(self):
+        scene = run("newscene", {**layers(), "OUTPUT": new_output("scene")})["SCENE"]
+        self.assertIn("buildings   1", run("check", {"SCENE": scene})["SUMMARY"])
+        with self.assertRaisesRegex(QgsProcessingException, "already there"):
+            run("newscene", {**layers(), "OUTPUT": str(FOLDER / "scene")})
+
+    def test_ensemble_opens_odds(self):
+        project, output = QgsProject(), new_output("ensemble")
+        vary = "material.friction_coefficient=0.15:0.5\n\nmaterial.viscosity=0.05:0.2"
+        given = layers(VARY=vary, RUNS=4, RETURN_PERIOD=100, OUTPUT=output)
+        given.pop("FRICTION")
+        results = run("ensemble", given, project)
+        opened = {layer.name(): layer for layer in project.mapLayers().values()}
+        self.assertTrue(all(layer.isValid() for layer in opened.values()))
+        self.assertEqual(opened["Buildings, probability of a hit"].renderer().classAttribute(), "probability_class")
+        self.assertEqual(opened["Hazard zones"].renderer().type(), "categorizedSymbol")
+        self.assertTrue(os.path.getsize(results["REPORT"]) > 0)
+
+    def test_calibrates_and_runs_the_best_fit(self):
+        settings = QUICK.replace("end_time_s=6", "end_time_s=12")
+        given = {"VARY": "material.friction_coefficient=0.15:0.4", "RUNS": 8, "DESIGN": 5, "CHECKS": 2, "PARTICLES": 400}
+        log = Log()
+        results = run("calibrate", {**given, "SETTINGS": settings, "OUTPUT": new_output("calibration")}, log=log)
+        self.assertIn("friction_coefficient", pathlib.Path(results["BEST_FIT"]).read_text())
+        self.assertTrue(os.path.getsize(results["REPORT"]) > 0)
+
+    def test_says_what_is_wrong(self):
+        output = {"OUTPUT": new_output("wrong")}
+        for given, sentence in (
+            ({"TERRAIN": str(FOLDER / "dem.tif")}, "needs a terrain and release areas"),
+            (layers(SCENE=str(FOLDER / "scene.toml")), "give one or the other"),
+            (layers(SETTINGS="material.colour=1"), "unknown key \"colour\""),
+        ):
+            with self.assertRaisesRegex(QgsProcessingException, sentence):
+                run("run", {**given, **output})
+        with self.assertRaisesRegex(QgsProcessingException, "give a scene file"):
+            run("check", {})
+
+    def test_says_where_the_program_is_missing(self):
+        path = os.environ["PATH"]
+        try:
+            ProcessingConfig.settings[SETTING].value = "/nowhere/talus"  # what was there when it was set
+            with self.assertRaisesRegex(QgsProcessingException, "/nowhere/talus: is not a program; Settings"):
+                run("check", {"SCENE": "scene.toml"})
+            ProcessingConfig.setSettingValue(SETTING, "")
+            os.environ["PATH"] = "/nowhere"
+            with self.assertRaisesRegex(QgsProcessingException, "was not found"):
+                run("check", {"SCENE": "scene.toml"})
+            ProcessingConfig.setSettingValue(SETTING, shutil.which("talus", path=path))
+            self.assertRaisesRegex(QgsProcessingException, "nowhere.toml", run, "check", {"SCENE": "nowhere.toml"})
+        finally:
+            os.environ["PATH"] = path
+            ProcessingConfig.setSettingValue(SETTING, "")
+
+
+if __name__ == "__main__":
+    unittest.main()
