@@ -266,7 +266,8 @@ TEST_F(Products, OneFileOpensAllLayersInQgis) {
         ASSERT_TRUE(data) << source;
         const bool is_vector = bar != std::string::npos;
         EXPECT_EQ(std::string(CPLGetXMLValue(layer, "type", "")), is_vector ? "vector" : "raster");
-        if (is_vector) EXPECT_NE(data->GetLayerByName(source.substr(bar + 11).c_str()), nullptr) << source;
+        const std::string layer_name = is_vector ? source.substr(bar + 11) : std::string();
+        EXPECT_EQ(is_vector, data->GetLayerByName(layer_name.c_str()) != nullptr) << source;
         EXPECT_NE(CPLGetXMLNode(layer, is_vector ? "renderer-v2" : "pipe.rasterrenderer"), nullptr) << source;
         EXPECT_EQ(CPLGetXMLValue(layer, "srs.spatialrefsys.wkt", ""), scene.crs.wkt);
     }
