@@ -53,7 +53,7 @@ class Program {
         throw std::runtime_error("talus serve does not answer");
     }
     ~Program() {
-        kill(process_, SIGINT);
+        kill(process_, SIGTERM);
         waitpid(process_, nullptr, 0);
     }
     Program(const Program&) = delete;
