@@ -60,7 +60,11 @@ std::uint64_t hash_of_run(int threads) {
     }
     hash.add(std::span<const FrontSample>(o.front));
     hash.add(std::span<const TimeSample>(o.timeseries));
-    hash.add(&o.run_out, sizeof(o.run_out));
+    const RunOut& r = o.run_out;  // member by member: it has padding
+    for (const double number : {r.front_chainage, r.along_flow, r.straight, r.at_least ? 1.0 : 0.0, r.crown.x,
+                                r.crown.y, r.toe.x, r.toe.y, r.drop, r.runout_angle, r.travel_angle}) {
+        hash.add(&number, sizeof(number));
+    }
     hash.add(&o.buildings[0].peak_force, sizeof(double));
     hash.add(&o.buildings[0].peak_dynamic_pressure, sizeof(double));
     EXPECT_GT(o.front.size(), 3U);
