@@ -21,7 +21,7 @@ namespace {
 constexpr Colour deep_orange{168, 74, 4}, orange{222, 135, 45}, pale_orange{247, 208, 150}, same{226, 226, 226},
     pale_blue{166, 206, 232}, blue{72, 144, 196}, deep_blue{14, 76, 138}, shared{92, 92, 100};
 
-/// How often a structure is hit: by neither model, the depth-averaged one alone, particles alone, both.
+/// In which models a structure is hit.
 enum HitBy { neither, depth_averaged_only, particles_only, both };
 constexpr std::array<const char*, 4> hit_by_names = {"neither", "depth-averaged only", "particles only", "both"};
 
@@ -107,10 +107,10 @@ Json quantity_rows(const BothModels& models, const run::SecondOpinion& opinion) 
     const bool observed = !models.scene.spec.observations.empty();
     std::vector<Column> columns = {{"quantity", "Quantity", ""},
                                    {"unit", "Unit", "", "", ""},
-                                   {"particles", "Particles", ""},
-                                   {"depth_averaged", "Depth-averaged", ""},
+                                   {"particles", "Particles", "", "", "n"},
+                                   {"depth_averaged", "Depth-averaged", "", "", "n"},
                                    {"difference_percent", "Difference", "%", "d0"}};
-    if (observed) columns.push_back({"observed", "Observed", ""});
+    if (observed) columns.push_back({"observed", "Observed", "", "", "n"});
     Json rows = table(columns, "comparison");
     const auto shown = [](double value, const std::string& format) {
         return std::isfinite(value) ? Json{{"value", value}, {"format", format}} : Json();

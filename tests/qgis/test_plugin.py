@@ -219,7 +219,7 @@ class Plugin(unittest.TestCase):
         self.assertEqual(opened["Hazard zones"].renderer().type(), "categorizedSymbol")
         self.assertTrue(os.path.getsize(results["REPORT"]) > 0)
 
-    def test_calibrates_and_runs_the_best_fit(self):
+    def test_calibrates_and_writes_the_best_fit(self):
         settings = QUICK.replace("end_time_s=6", "end_time_s=12")
         given = {"VARY": "material.friction_coefficient=0.15:0.4", "RUNS": 8, "DESIGN": 5, "CHECKS": 2, "PARTICLES": 400}
         log = Log()

@@ -1,6 +1,3 @@
-#include <algorithm>
-#include <cmath>
-#include <map>
 #include <regex>
 #include <string>
 
@@ -9,10 +6,6 @@
 
 #include "params/fields.hpp"
 #include "report/chart.hpp"
-#include "report/colour.hpp"
-#include "report/map.hpp"
-#include "report/number_text.hpp"
-#include "report/relief.hpp"
 #include "report/report_fixture.hpp"
 #include "report/results.hpp"
 
@@ -333,141 +326,6 @@ TEST(Report, RendersARunInWhichNothingMoved) {
     for (const char* nan : {">nan", " nan", "\"nan", "Lnan", "Mnan"}) EXPECT_FALSE(has(html, nan)) << nan;
 }
 
-TEST(ReportMap, ShowsWhereDebrisCameTheReleaseAndTheBuildingsHit) {
-    const Sample s;
-    const report::MapFrame frame = report::map_frame(s.scene, report::map_content(s.scene, s.result));
-    const Extent terrain = s.scene.terrain.elevation().geometry.extent();
-    EXPECT_GE(frame.area.x_min, terrain.x_min);
-    EXPECT_LE(frame.area.y_max, terrain.y_max);
-    const Extent release = s.scene.releases[0].extent();
-    EXPECT_TRUE(frame.area.contains({release.x_min, release.y_min}));
-    EXPECT_TRUE(frame.area.contains(s.scene.flow_path.point_at(test::SampleValley::toe)));
-    EXPECT_NEAR(frame.x(frame.area.x_max) - frame.x(frame.area.x_min), frame.width(), 1e-9);
-    EXPECT_LT(frame.y(frame.area.y_max), frame.y(frame.area.y_min));  // north is up
-}
-
-TEST(ReportMap, AWideTerrainIsCroppedToTheEvent) {
-    Sample s;
-    Grid<float> wide(GridGeometry{test::SampleValley::east - 2000, test::SampleValley::north - 2000, 20, 220, 220},
-                     50.0F);
-    for (std::size_t i = 0; i < wide.values.size(); ++i) wide.values[i] += static_cast<float>(i % 220);
-    s.scene.terrain = terrain::Terrain(wide);
-    const report::MapFrame frame = report::map_frame(s.scene, report::map_content(s.scene, s.result));
-    EXPECT_LT(frame.area.width(), 600);
-    EXPECT_LT(frame.area.height(), 400);
-}
-
-TEST(ReportMap, CallsImpactsByTheirPressure) {
-    observe::BuildingImpact b;
-    b.peak_impact_pressure = 50e3;
-    EXPECT_EQ(report::impact_class(b), 0);  // not hit
-    b.hit = true;
-    EXPECT_EQ(report::impact_class(b), 3);
-    b.peak_impact_pressure = 29e3;
-    EXPECT_EQ(report::impact_class(b), 2);
-    b.peak_impact_pressure = 14e3;
-    EXPECT_EQ(report::impact_class(b), 1);
-}
-
-TEST(ReportRelief, SlopesFacingNorthWestAreBrighterThanThoseFacingSouthEast) {
-    Grid<float> ridge(GridGeometry{0, 0, 1, 40, 40});
-    for (int r = 0; r < 40; ++r) {
-        for (int c = 0; c < 40; ++c) ridge.at(c, r) = static_cast<float>(20 - 0.5 * std::abs(c - r));
-    }
-    const report::GreyImage image = report::hillshade(ridge, ridge.geometry.extent(), 1);
-    const auto grey = [&](int x, int y) { return image.pixels[2 * static_cast<std::size_t>(y * image.width + x)]; };
-    EXPECT_GT(grey(10, 10), grey(30, 30) + 40);  // picture rows run from north to south
-}
-
-TEST(ReportRelief, NothingIsInterpolatedFarFromData) {
-    Grid<float> grid(GridGeometry{0, 0, 1, 4, 4}, std::numeric_limits<float>::quiet_NaN());
-    grid.at(1, 1) = 3;
-    EXPECT_NEAR(report::interpolate(grid, {1.6, 1.6}), 3, 1e-6);
-    EXPECT_TRUE(std::isnan(report::interpolate(grid, {2.1, 2.1})));
-    EXPECT_TRUE(std::isnan(report::interpolate(grid, {-50, 2})));
-}
-
-TEST(ReportColour, RampsFallEvenlyInLightness) {
-    const report::Ramp ramp{205, 0.05, 268, 0.15, 0.90, 0.28};
-    for (int k = 0; k <= 10; ++k) {
-        EXPECT_NEAR(report::lightness(ramp.at(k / 10.0)), 0.90 - 0.062 * k, 0.01) << k;
-    }
-}
-
-TEST(ReportColour, ClassesEndAboveTheLargestValue) {
-    const report::Ramp ramp{205, 0.05, 268, 0.15};
-    EXPECT_THAT(report::fixed_classes({0, 0.5, 1, 2, 5}, 1.5, ramp).breaks, ElementsAre(0, 0.5, 1));
-    EXPECT_THAT(report::even_classes(38, ramp).breaks, ElementsAre(0, 5, 10, 15, 20, 25, 30, 35));
-    const report::Classes classes = report::fixed_classes({0.05, 0.5, 1}, 3, ramp);
-    EXPECT_EQ(classes.of(0.01), -1);
-    EXPECT_EQ(classes.of(0.5), 1);
-    EXPECT_EQ(classes.of(99), 2);
-    EXPECT_EQ(classes.of(std::numeric_limits<double>::quiet_NaN()), -1);
-}
-
-TEST(ReportText, NumbersReadAsAnEngineerPrintsThem) {
-    EXPECT_EQ(report::fixed(824262.04, 1), "824\u202f262.0");
-    EXPECT_EQ(report::fixed(1999, 0), "1999");
-    EXPECT_EQ(report::fixed(-0.26, 1), "−0.3");
-    EXPECT_EQ(report::fixed(-0.001, 1), "0.0");
-    EXPECT_EQ(report::fixed(observe::never, 1), "–");
-    EXPECT_EQ(report::significant(38.44, 3), "38.4");
-    EXPECT_EQ(report::significant(0.0123, 2), "0.012");
-    EXPECT_EQ(report::coordinate(12.50), "12.5");
-}
-
-TEST(ReportText, ShortenedNamesKeepWholeCharacters) {
-    EXPECT_EQ(report::shortened("Zürich", 9), "Zürich");
-    EXPECT_EQ(report::shortened("Zürich", 2), "Z…");
-}
-
-TEST(ReportPlot, LinesLeaveGapsWhereThereIsNoValue) {
-    report::Plot plot(0, 0, 100, 100, {0, 4}, {0, 1});
-    const std::vector<double> x = {0, 1, 2, 3, 4}, y = {0, 1, observe::never, 1, 0};
-    plot.line(x, y, "series");
-    report::Svg svg;
-    plot.draw(svg);
-    EXPECT_TRUE(has(svg.str(), "d=\"M0 100L25 0M75 0L100 100\""));
-}
-
-TEST(ReportChart, IsTheSameAfterItWasWrittenAndRead) {
-    report::Plot plot(66, 20, 400, 200, {0, 4}, {-1, 1});
-    plot.axes("time, s", "height <m>");
-    const std::vector<double> x = {0, 1, 2, 3, 4}, y = {0, 1, observe::never, 1, 0}, zero(5, 0);
-    plot.band(x, zero, y, "area", "a & b");
-    plot.dots(x, y, 2.5, "run-dot", "runs");
-    plot.mark(1, 0.5, "observation");
-    plot.horizontal(0.1, "limit", "limit");
-    plot.label(1, 1, 4, -2, "end", "note", "here");
-    plot.cells = {{0, 2, 4}, {-1, 1}, {0.5, 7}, {0, 1}, {"#fff", "#000"}, "misfit"};
-    plot.key = report::Plot::Key::beside;
-    const report::Chart chart{"A \"chart\"", 640, 300, {plot, plot}};
-    const std::string written = report::chart_json(chart).dump();
-    const report::Chart read = report::chart_from(report::Json::parse(written));
-    EXPECT_EQ(report::chart_svg(read), report::chart_svg(chart));
-    EXPECT_EQ(report::chart_json(read).dump(), written);
-    EXPECT_TRUE(has(report::chart_svg(read), "height &lt;m&gt;"));
-}
-
-/// Every kind of object that the report shows, by its "kind".
-void expect_documented(const report::Json& json, int& tables, int& charts) {
-    if (json.is_array()) {
-        for (const auto& entry : json) expect_documented(entry, tables, charts);
-    }
-    if (!json.is_object()) return;
-    const std::string kind = json.value("kind", "");
-    if (kind == "chart") ++charts;
-    if (kind == "table") {
-        ++tables;
-        for (const auto& row : json["rows"]) {
-            for (const auto& column : json["columns"]) {
-                EXPECT_TRUE(row.contains(column["key"]) || row.contains("fills")) << column << row;
-            }
-        }
-    }
-    for (const auto& entry : json) expect_documented(entry, tables, charts);
-}
-
 TEST(Results, HoldAllThatTheReportShows) {
     Sample s;
     const report::Json results = report::run_results(s.scene, s.result, test::sample_comparisons(s.scene, s.result));
@@ -484,39 +342,6 @@ TEST(Results, HoldAllThatTheReportShows) {
     const auto again = report::run_report(s.scene, s.result, report::Json::parse(results.dump()));
     ASSERT_TRUE(page.ok() && again.ok());
     EXPECT_TRUE(*page == *again) << "the page shows what results.json holds, also after it was written and read";
-}
-
-TEST(Page, FillsTemplatesWithTextNumbersAndFigures) {
-    const report::Json data = {{"name", "<a & b>"},  {"width", 1234.5678}, {"none", nullptr},      {"empty", ""},
-                               {"list", {"x", "y"}}, {"large", 12345.6},   {"nan", observe::never}};
-    EXPECT_EQ(report::render("{{name}}|{{{name}}}", data), "&lt;a &amp; b&gt;|<a & b>");
-    EXPECT_EQ(report::render("{{width|f1}} {{width|s2}} {{width|p}} {{none|f1}} {{nan|f1}}{{nan}} {{large|d0}}", data),
-              "1234.6 1235 1234.57 – – +12\u202f346");
-    EXPECT_EQ(report::render("{{#list}}{{.}},{{/list}}{{#none}}no{{/none}}{{^empty}}empty{{/empty}}", data),
-              "x,y,empty");
-    EXPECT_EQ(report::render("{{figure}} {{figure}}", data), "1 2");
-}
-
-TEST(Page, DrawsTablesWithTheirMarksAndGaps) {
-    report::Json rows = report::table({{"name", "Name <b>", ""}, {"depth_m", "Depth", "m", "f2", "", "none"}}, "odds");
-    rows["rows"].push_back(
-        {{"name", {{"value", "a&b"}, {"mark", "hit-2"}, {"note", "until 3 s"}}}, {"depth_m", 1.234}});
-    rows["rows"].push_back({{"name", "c"}, {"depth_m", nullptr}, {"heading", "[part]"}, {"heading_note", "two"}});
-    rows["rows"].push_back({{"name", "d"}, {"depth_m", "missing"}, {"fills", "depth_m"}});
-    const std::string html = report::render("{{#t}}{{> table}}{{/t}}", {{"t", rows}});
-    for (const char* part :
-         {"<table class=\"data odds\">", "<th>Name &lt;b&gt;</th>", "<th class=\"n\">Depth<br><small>m</small></th>",
-          "<td><i class=\"dot hit-2\"></i>a&amp;b<br><small>until 3 s</small></td><td class=\"n\">1.23</td>",
-          "<td class=\"n\">none</td>", "<th colspan=\"2\" scope=\"colgroup\">[part] <small>two</small></th>",
-          "<td class=\"missing\" colspan=\"1\">missing</td>"}) {
-        EXPECT_TRUE(has(html, part)) << part << "\n" << html;
-    }
-}
-
-TEST(ReportPlot, TicksAreRound) {
-    const report::Ticks ticks = report::round_ticks({0, 12.2}, 5);
-    EXPECT_THAT(ticks.values, ElementsAre(0, 2.5, 5, 7.5, 10));
-    EXPECT_EQ(ticks.digits, 1);
 }
 
 }  // namespace

@@ -1,0 +1,128 @@
+#include <algorithm>
+#include <map>
+
+#include <cpl_minixml.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "geo/raster.hpp"
+#include "geo/vector.hpp"
+#include "products_fixture.hpp"
+#include "report/hazard_map.hpp"
+
+namespace talus::products {
+namespace {
+
+using test::TemporaryFolder;
+using testing::StartsWith;
+
+TEST_F(Products, OutlinesHoldWhatIsDeepEnough) {
+    const GDALDatasetUniquePtr data(GDALDataset::Open(folder_->file("results.gpkg").c_str(), GDAL_OF_VECTOR));
+    ASSERT_TRUE(data);
+    const double level = scene_->spec.outputs.arrival_depth;
+    const observe::HazardMaps& maps = result_->observation.maps;
+    for (const auto& [name, map] :
+         {std::pair{"inundation", &maps.peak_depth}, std::pair{"deposit", &maps.deposit_depth}}) {
+        const auto cells = std::count_if(map->values.begin(), map->values.end(),
+                                         [&](float depth) { return depth >= static_cast<float>(level); });
+        const auto features = read_layer(*data, name);
+        ASSERT_EQ(features.size(), 1U) << name;
+        EXPECT_DOUBLE_EQ(features[0]->GetFieldAsDouble("above_m"), level);
+        const double area = static_cast<double>(cells) * map->geometry.cell * map->geometry.cell;
+        EXPECT_GT(area, 0) << name;
+        EXPECT_NEAR(features[0]->GetFieldAsDouble("area_m2"), area, 1e-6) << name;
+        EXPECT_NEAR(features[0]->GetGeometryRef()->toMultiPolygon()->get_Area(), area, 1e-6) << name;
+    }
+}
+
+TEST_F(Products, EveryLayerHasAStyleForQgisInTheFile) {
+    const GDALDatasetUniquePtr data(GDALDataset::Open(folder_->file("results.gpkg").c_str(), GDAL_OF_VECTOR));
+    ASSERT_TRUE(data);
+    std::map<std::string, std::string> styles;
+    for (const auto& style : read_layer(*data, "layer_styles")) {
+        EXPECT_EQ(style->GetFieldAsInteger("useAsDefault"), 1);
+        styles[style->GetFieldAsString("f_table_name")] = style->GetFieldAsString("styleQML");
+    }
+    for (int k = 0; k < data->GetLayerCount(); ++k) {
+        OGRLayer& layer = *data->GetLayer(k);
+        const std::string name = layer.GetName();
+        if (name == "layer_styles") continue;
+        ASSERT_EQ(styles.count(name), 1U) << name;
+        CPLXMLNode* tree = CPLParseXMLString(styles[name].c_str());
+        CPLXMLNode* renderer = tree != nullptr ? CPLGetXMLNode(tree, "=qgis.renderer-v2") : nullptr;
+        ASSERT_NE(renderer, nullptr) << name;
+        if (const char* attribute = CPLGetXMLValue(renderer, "attr", nullptr)) {
+            EXPECT_GE(layer.GetLayerDefn()->GetFieldIndex(attribute), 0)
+                << name << ": its classes are of a field that it has";
+        }
+        CPLDestroyXMLNode(tree);
+    }
+}
+
+TEST_F(Products, OneFileOpensAllLayersInQgis) {
+    const TemporaryFolder folder;
+    scene::Scene scene = *scene_;
+    scene.spec.scene.title = "Slope <A> & \"B\"";
+    ASSERT_TRUE(write_products(scene, *result_, folder.path()).ok());
+    CPLXMLNode* tree = CPLParseXMLString(test::read_text(folder.path() / "results.qlr").c_str());
+    ASSERT_NE(tree, nullptr);
+    EXPECT_STREQ(CPLGetXMLValue(tree, "=qlr.layer-tree-group.layer-tree-group.name", ""),
+                 "Slope <A> & \"B\" (reconstruction)");
+    std::vector<std::string> in_tree, names;
+    for (CPLXMLNode* node = CPLGetXMLNode(tree, "=qlr.layer-tree-group.layer-tree-group")->psChild; node != nullptr;
+         node = node->psNext) {
+        if (std::string(node->pszValue) == "layer-tree-layer") in_tree.emplace_back(CPLGetXMLValue(node, "id", ""));
+    }
+    std::vector<std::string> ids;
+    for (CPLXMLNode* layer = CPLGetXMLNode(tree, "=qlr.maplayers")->psChild; layer != nullptr; layer = layer->psNext) {
+        ids.emplace_back(CPLGetXMLValue(layer, "id", ""));
+        names.emplace_back(CPLGetXMLValue(layer, "layername", ""));
+        const std::string source = CPLGetXMLValue(layer, "datasource", "");
+        ASSERT_THAT(source, StartsWith("./"));
+        const std::size_t bar = source.find("|layername=");
+        const std::string file = folder.file(source.substr(2, bar == std::string::npos ? bar : bar - 2));
+        const GDALDatasetUniquePtr data(GDALDataset::Open(file.c_str()));
+        ASSERT_TRUE(data) << source;
+        const bool is_vector = bar != std::string::npos;
+        EXPECT_EQ(std::string(CPLGetXMLValue(layer, "type", "")), is_vector ? "vector" : "raster");
+        const std::string layer_name = is_vector ? source.substr(bar + 11) : std::string();
+        EXPECT_EQ(is_vector, data->GetLayerByName(layer_name.c_str()) != nullptr) << source;
+        EXPECT_NE(CPLGetXMLNode(layer, is_vector ? "renderer-v2" : "pipe.rasterrenderer"), nullptr) << source;
+        EXPECT_EQ(CPLGetXMLValue(layer, "srs.spatialrefsys.wkt", ""), scene.crs.wkt);
+    }
+    CPLDestroyXMLNode(tree);
+    EXPECT_EQ(ids, in_tree);
+    EXPECT_THAT(names, testing::Contains("Buildings"));
+    EXPECT_THAT(names, testing::Contains("Intensity"));
+}
+
+TEST_F(Products, GeoPackageHoldsBuildingsReleasesPathAndMarks) {
+    const std::string file = folder_->file("results.gpkg");
+    const auto buildings = read_polygons(file, "buildings", scene_->crs);
+    ASSERT_TRUE(buildings.ok()) << buildings.error().message;
+    ASSERT_EQ(buildings->features.size(), 5U);
+    EXPECT_EQ(buildings->features[0].attributes.at("peak_force_kN"), geo::Attribute(412.0));
+    EXPECT_EQ(buildings->features[0].attributes.at("name"), geo::Attribute("House 38"));
+    EXPECT_EQ(buildings->features[4].attributes.at("first_hit_time_s"), geo::Attribute());
+    EXPECT_NEAR(plan_area(buildings->features[0].parts[0]), 12 * 9, 1e-6);
+
+    const auto releases = read_polygons(file, "release", scene_->crs);
+    ASSERT_TRUE(releases.ok()) << releases.error().message;
+    EXPECT_EQ(releases->features[0].attributes.at("thickness_m"), geo::Attribute(1.4));
+
+    const auto path = read_line(file, "flow_path", scene_->crs);
+    ASSERT_TRUE(path.ok()) << path.error().message;
+    EXPECT_EQ(path->points.size(), scene_->flow_path.points().size());
+
+    const GDALDatasetUniquePtr data(GDALDataset::Open(file.c_str(), GDAL_OF_VECTOR));
+    OGRLayer* marks = data->GetLayerByName("chainage");
+    ASSERT_NE(marks, nullptr);
+    EXPECT_EQ(marks->GetFeatureCount(), static_cast<GIntBig>(scene_->flow_path.length() / 10) + 1);
+    marks->SetAttributeFilter("chainage_m = 100");
+    const OGRFeatureUniquePtr mark(marks->GetNextFeature());
+    ASSERT_TRUE(mark);
+    EXPECT_NEAR(mark->GetFieldAsDouble("front_velocity_mps"), test::SampleValley::velocity_at(100), 1e-9);
+}
+
+}  // namespace
+}  // namespace talus::products

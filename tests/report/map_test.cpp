@@ -1,0 +1,70 @@
+#include "report/map.hpp"
+
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "report/relief.hpp"
+#include "report/report_fixture.hpp"
+
+namespace talus::report {
+namespace {
+
+using test::Sample;
+
+TEST(ReportMap, ShowsWhereDebrisCameTheReleaseAndTheBuildingsHit) {
+    const Sample s;
+    const report::MapFrame frame = report::map_frame(s.scene, report::map_content(s.scene, s.result));
+    const Extent terrain = s.scene.terrain.elevation().geometry.extent();
+    EXPECT_GE(frame.area.x_min, terrain.x_min);
+    EXPECT_LE(frame.area.y_max, terrain.y_max);
+    const Extent release = s.scene.releases[0].extent();
+    EXPECT_TRUE(frame.area.contains({release.x_min, release.y_min}));
+    EXPECT_TRUE(frame.area.contains(s.scene.flow_path.point_at(test::SampleValley::toe)));
+    EXPECT_NEAR(frame.x(frame.area.x_max) - frame.x(frame.area.x_min), frame.width(), 1e-9);
+    EXPECT_LT(frame.y(frame.area.y_max), frame.y(frame.area.y_min));  // north is up
+}
+
+TEST(ReportMap, AWideTerrainIsCroppedToTheEvent) {
+    Sample s;
+    Grid<float> wide(GridGeometry{test::SampleValley::east - 2000, test::SampleValley::north - 2000, 20, 220, 220},
+                     50.0F);
+    for (std::size_t i = 0; i < wide.values.size(); ++i) wide.values[i] += static_cast<float>(i % 220);
+    s.scene.terrain = terrain::Terrain(wide);
+    const report::MapFrame frame = report::map_frame(s.scene, report::map_content(s.scene, s.result));
+    EXPECT_LT(frame.area.width(), 600);
+    EXPECT_LT(frame.area.height(), 400);
+}
+
+TEST(ReportMap, CallsImpactsByTheirPressure) {
+    observe::BuildingImpact b;
+    b.peak_impact_pressure = 50e3;
+    EXPECT_EQ(report::impact_class(b), 0);  // not hit
+    b.hit = true;
+    EXPECT_EQ(report::impact_class(b), 3);
+    b.peak_impact_pressure = 29e3;
+    EXPECT_EQ(report::impact_class(b), 2);
+    b.peak_impact_pressure = 14e3;
+    EXPECT_EQ(report::impact_class(b), 1);
+}
+
+TEST(ReportRelief, SlopesFacingNorthWestAreBrighterThanThoseFacingSouthEast) {
+    Grid<float> ridge(GridGeometry{0, 0, 1, 40, 40});
+    for (int r = 0; r < 40; ++r) {
+        for (int c = 0; c < 40; ++c) ridge.at(c, r) = static_cast<float>(20 - 0.5 * std::abs(c - r));
+    }
+    const report::GreyImage image = report::hillshade(ridge, ridge.geometry.extent(), 1);
+    const auto grey = [&](int x, int y) { return image.pixels[2 * static_cast<std::size_t>(y * image.width + x)]; };
+    EXPECT_GT(grey(10, 10), grey(30, 30) + 40);  // picture rows run from north to south
+}
+
+TEST(ReportRelief, NothingIsInterpolatedFarFromData) {
+    Grid<float> grid(GridGeometry{0, 0, 1, 4, 4}, std::numeric_limits<float>::quiet_NaN());
+    grid.at(1, 1) = 3;
+    EXPECT_NEAR(report::interpolate(grid, {1.6, 1.6}), 3, 1e-6);
+    EXPECT_TRUE(std::isnan(report::interpolate(grid, {2.1, 2.1})));
+    EXPECT_TRUE(std::isnan(report::interpolate(grid, {-50, 2})));
+}
+
+}  // namespace
+}  // namespace talus::report
