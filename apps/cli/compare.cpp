@@ -33,7 +33,7 @@ namespace fs = std::filesystem;
 constexpr const char* compare_help = R"(
 Runs the scene with particles and with the depth-averaged model, a second opinion that costs seconds. The result folder
 holds one page, report.html, with maps of both and their difference, front and run-out, the agreement of the affected
-area, the structures hit and where the models part; results.json has the same as data. The folders particles and
+area, the structures hit and where the models differ; results.json has the same as data. The folders particles and
 depth_averaged hold the whole result of each run.
 )";
 
@@ -91,9 +91,10 @@ Status write_all(Job& job, const report::BothModels& models, const run::SecondOp
     return job.output.commit();
 }
 
-std::string text_of(const report::BothModels& models, const std::vector<std::string>& partings, const fs::path& shown) {
+std::string text_of(const report::BothModels& models, const std::vector<std::string>& differences,
+                    const fs::path& shown) {
     std::string text = models.scene.spec.scene.title + "\n";
-    for (const std::string& sentence : partings) text += "  " + sentence + "\n";
+    for (const std::string& sentence : differences) text += "  " + sentence + "\n";
     return text + fmt::format("  particles {:.1f} s, depth-averaged {:.1f} s of wall time\n  report {}\n",
                               models.particles.wall_time, models.depth_averaged.wall_time,
                               (shown / "report.html").string());
@@ -110,7 +111,7 @@ std::string json_of(const report::BothModels& models, const report::Json& result
     const report::Json event = {{"event", "result"},
                                 {"output", output.string()},
                                 {"agreement", results["agreement"]},
-                                {"partings", results["partings"]},
+                                {"differences", results["differences"]},
                                 {"particles", run(models.particles)},
                                 {"depth_averaged", run(models.depth_averaged)}};
     return event.dump(-1, ' ', false, report::Json::error_handler_t::replace) + "\n";
@@ -151,7 +152,7 @@ int compare_command(const CompareArguments& arguments) {
     if (arguments.json) {
         summary = json_of(models, results, job->output.final_path());
     } else if (!arguments.quiet) {
-        summary = text_of(models, partings(models, opinion), job->shown);
+        summary = text_of(models, differences(models, opinion), job->shown);
     }
     const auto any = [&](run::RunStatus status) { return particles->status == status || grid->status == status; };
     const int printed =
@@ -165,7 +166,7 @@ int compare_command(const CompareArguments& arguments) {
 }  // namespace
 
 void add_compare(CLI::App& program, std::vector<Command>& commands) {
-    CLI::App* app = program.add_subcommand("compare", "run a scene with both models and write where they part");
+    CLI::App* app = program.add_subcommand("compare", "run a scene with both models and write where they differ");
     const auto compare = std::make_shared<CompareArguments>();
     app->add_option("scene", compare->scene, "scene file; default: the built-in scene")->type_name("SCENE");
     app->add_option("-o,--output", compare->output, "result folder; default: talus_out/<scene name>_compared")

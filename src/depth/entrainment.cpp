@@ -10,7 +10,7 @@ double Entrainment::loosened(const Solver& solver, const terrain::BedMaterial& m
                              double speed, double square_slope) const {
     const double step = solver.time_step(), gravity = solver.material().gravity;
     if (material.law == params::EntrainmentLaw::growth) return material.growth_rate * depth * speed * step;
-    // Slower debris than a tenth of the speed of a fall through its own depth wears nothing off.
+    // Slower debris than a tenth of the speed of a fall through its own depth erodes nothing.
     if (!(speed > 0.1 * std::sqrt(gravity * depth))) return 0;
     const double cosine_sine = std::sqrt(square_slope) / (1 + square_slope);
     const double shear_stress = solver.material().rest_density * gravity * depth * cosine_sine;

@@ -222,7 +222,7 @@ Grid<float> classes_of_area(const run::SecondOpinion& opinion, double least) {
 
 }  // namespace
 
-std::vector<std::string> partings(const BothModels& models, const run::SecondOpinion& opinion) {
+std::vector<std::string> differences(const BothModels& models, const run::SecondOpinion& opinion) {
     std::vector<std::string> all;
     const auto add = [&](std::string text) {
         if (!text.empty()) all.push_back(std::move(text));
@@ -266,7 +266,7 @@ Json second_opinion_results(const BothModels& models, const run::SecondOpinion& 
                   {"depth_averaged_only_m2", opinion.area.only_second},
                   {"cell_m", opinion.difference.geometry.cell},
                   {"arrival_depth_m", models.scene.spec.outputs.arrival_depth}}},
-                {"partings", partings(models, opinion)},
+                {"differences", differences(models, opinion)},
                 {"key_figures", cards(models, opinion)},
                 {"quantities", quantity_rows(models, opinion)},
                 {"structures", structure_rows(models)},
@@ -287,7 +287,7 @@ Result<std::string> second_opinion_report(const BothModels& models, const run::S
     const observe::HazardMaps &p = models.particles.observation.maps, &d = models.depth_averaged.observation.maps;
     HazardMap depth = hazard_maps().front();
     depth.full_scale = std::max(greatest(p.peak_depth), greatest(d.peak_depth));
-    const Grid<float> differences = classes_of_difference(opinion.difference);
+    const Grid<float> difference_classes = classes_of_difference(opinion.difference);
     const Grid<float> areas = classes_of_area(opinion, models.scene.spec.outputs.arrival_depth);
 
     MapContent content = map_content(models.scene, models.particles);
@@ -321,7 +321,7 @@ Result<std::string> second_opinion_report(const BothModels& models, const run::S
                    {"0.1 – 0.5 m", pale_blue},
                    {"0.5 – 1 m", blue},
                    {"over 1 m", deep_blue}}),
-         &differences, "Difference",
+         &difference_classes, "Difference",
          "Peak depth of the depth-averaged model less that of the particles, as means over the same cells; blue where "
          "the depth-averaged model is deeper, orange where the particles are.",
          0, "depth-averaged less particles"});

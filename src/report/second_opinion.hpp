@@ -20,8 +20,8 @@ struct BothModels {
     const run::RunResult& depth_averaged;
 };
 
-/// Where the models part, in sentences, the most important first.
-[[nodiscard]] std::vector<std::string> partings(const BothModels& models, const run::SecondOpinion& opinion);
+/// Where the models differ, in sentences, the most important first.
+[[nodiscard]] std::vector<std::string> differences(const BothModels& models, const run::SecondOpinion& opinion);
 
 /// results.json of `talus compare` (docs/results.md).
 [[nodiscard]] Json second_opinion_results(const BothModels& models, const run::SecondOpinion& opinion);

@@ -39,9 +39,9 @@ TEST(Compare, RunsBothModelsOfTheBuiltInSceneAndSaysWhereTheyPart) {
         EXPECT_GT(row.at("particles").at("value"), 3);
         EXPECT_GT(row.at("depth_averaged").at("value"), 3);
     }
-    EXPECT_GE(results.at("partings").size(), 4U);
+    EXPECT_GE(results.at("differences").size(), 4U);
     const std::string page = read_text(folder.path() / "both/report.html");
-    for (const char* part : {"data-layer=\"difference\"", "data-layer=\"affected_area\"", "Where the models part",
+    for (const char* part : {"data-layer=\"difference\"", "data-layer=\"affected_area\"", "Where the models differ",
                              "What each model leaves out", "intersection over union"}) {
         EXPECT_TRUE(page.find(part) != std::string::npos) << part;
     }
