@@ -226,6 +226,7 @@ TEST(Run, AFaultWritesWhatThereIsAndSaysWhy) {
     const std::string table = read_text(scene.input("result/fault/last_good_state.csv"));
     EXPECT_EQ(std::count(table.begin(), table.end(), '\n'), fault["last_good"]["particles"].get<int>() + 1);
     EXPECT_LE(fault["step"].get<int>() - fault["last_good"]["step"].get<int>(), 16);
+    EXPECT_GT(fault["step"].get<int>(), fault["last_good"]["step"].get<int>());
 }
 
 class Interrupted : public testing::Test {
