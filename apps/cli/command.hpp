@@ -21,8 +21,10 @@ struct Command {
 void add_run(CLI::App& program, std::vector<Command>& commands);
 void add_compare(CLI::App& program, std::vector<Command>& commands);
 void add_serve(CLI::App& program, std::vector<Command>& commands);
+void add_start(CLI::App& program, std::vector<Command>& commands);
 void add_replay(CLI::App& program, std::vector<Command>& commands);
 void add_scene(CLI::App& program, std::vector<Command>& commands);
+void add_bundle(CLI::App& program, std::vector<Command>& commands);
 void add_validate(CLI::App& program, std::vector<Command>& commands);
 void add_ensemble(CLI::App& program, std::vector<Command>& commands);
 void add_calibrate(CLI::App& program, std::vector<Command>& commands);

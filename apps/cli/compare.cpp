@@ -61,8 +61,8 @@ Result<Job> open_job(const CompareArguments& arguments, InterruptWatch& watch) {
     of_grid.emplace_back("solver.model=depth_averaged");
     TALUS_ASSIGN(auto grid_scene, scene::load_scene(input.source.file, of_grid));
     if (input.unpacked) {
-        name_builtin_files(input.scene, input.unpacked->path());
-        name_builtin_files(grid_scene, input.unpacked->path());
+        name_unpacked_files(input.scene, input.unpacked->path(), input.name);
+        name_unpacked_files(grid_scene, input.unpacked->path(), input.name);
     }
     std::unique_ptr<DefaultParent> parent;
     if (arguments.output.empty()) parent = std::make_unique<DefaultParent>();

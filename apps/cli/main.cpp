@@ -18,12 +18,14 @@
 #include "command.hpp"
 #include "exit_code.hpp"
 #include "simd/dispatch.hpp"
+#include "start.hpp"
 
 namespace talus::cli {
 namespace {
 
 constexpr const char* program_help = R"(
 Examples:
+  talus                                     at a desktop: the start page in the browser
   talus run                                 the built-in scene, into talus_out/sham_tseng
   talus run my_scene.toml -o result         your scene, into the folder result
   talus run my_scene.toml --set material.friction_coefficient=0.3
@@ -35,6 +37,8 @@ Examples:
   talus scene new --dem dem.tif --release scar.geojson --thickness-m 1.5 -o my_scene
                                             a commented scene from your own terrain, ready to run
   talus scene check my_scene/scene.toml     reads and checks a scene without running it
+  talus bundle my_scene/scene.toml -o my_scene.zip
+                                            the scene with its files in one archive; talus run takes that too
   talus replay session.json                 repeats a saved live session and compares its result
   talus validate --quick                    computes cases with known results, and prints one table
   talus serve                               the built-in scene live in the browser: watch, control and share it
@@ -89,8 +93,8 @@ int talus_main(int argc, char** argv) {
     app.require_subcommand(0, 1);
 
     std::vector<Command> commands;
-    for (const auto add : {add_run, add_compare, add_serve, add_replay, add_scene, add_validate, add_ensemble,
-                           add_calibrate, add_bench, add_manual}) {
+    for (const auto add : {add_start, add_run, add_compare, add_serve, add_replay, add_scene, add_bundle, add_validate,
+                           add_ensemble, add_calibrate, add_bench, add_manual}) {
         add(app, commands);
     }
     app.footer(program_help);  // last: commands made after it would inherit it
@@ -111,7 +115,8 @@ int talus_main(int argc, char** argv) {
     for (const Command& command : commands) {
         if (*command.app) return command.run();
     }
-    return print_result(app.help());
+    // Scripts, and terminals without a display, read what there is.
+    return at_a_desktop() ? start_page() : print_result(app.help());
 }
 
 }  // namespace

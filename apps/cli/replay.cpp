@@ -54,14 +54,15 @@ Result<std::string> read_file(const std::string& path) {
 }
 
 /// The scene that a journal names, or the one that the user names instead.
-Result<scene::Scene> load_scene_of(const ReplayArguments& arguments, const twin::Journal& journal) {
+Result<scene::Scene> load_scene_of(const ReplayArguments& arguments, const twin::Journal& journal,
+                                   InterruptWatch& watch) {
     std::vector<std::string> overrides = journal.overrides;
     if (arguments.threads) overrides.push_back(fmt::format("solver.thread_count={}", *arguments.threads));
     const std::string file = arguments.scene.empty() ? journal.scene_file : arguments.scene;
-    if (!file.starts_with(builtin_prefix)) return scene::load_scene(file, overrides);
-    const TemporaryFolder unpacked;
-    if (unpacked.path().empty()) return Error{"cannot make a temporary folder for the built-in scene; set TMPDIR"};
-    return scene::load_builtin_scene(unpacked.path(), overrides);
+    TALUS_ASSIGN(const SceneFile found, find_scene(file, watch));
+    TALUS_ASSIGN(scene::Scene scene, scene::load_scene(found.file, overrides));
+    if (found.unpacked) name_unpacked_files(scene, found.unpacked->path(), found.name);
+    return scene;
 }
 
 int replay_command(const ReplayArguments& arguments) {
@@ -71,7 +72,7 @@ int replay_command(const ReplayArguments& arguments) {
     if (!text) return fail(exit_code::bad_input, text.error().message);
     const auto journal = twin::read_journal(*text);
     if (!journal) return fail(exit_code::bad_input, arguments.journal + ": " + journal.error().message);
-    auto scene = load_scene_of(arguments, *journal);
+    auto scene = load_scene_of(arguments, *journal, watch);
     if (!scene) {
         return fail(exit_code::bad_input,
                     scene.error().message + " (the scene of this journal; give its present path with --scene)");

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "command.hpp"
 #include "core/try.hpp"
@@ -16,11 +17,13 @@
 #include "interrupt.hpp"
 #include "layers.hpp"
 #include "params/scene_text.hpp"
-#include "products/particle_series.hpp"
 #include "products/products.hpp"
+#include "products/series.hpp"
 #include "progress.hpp"
 #include "run/run_scene.hpp"
+#include "run/zoom.hpp"
 #include "scene/builtin.hpp"
+#include "scene/particle_spacing.hpp"
 #include "scene/scene.hpp"
 #include "scene_input.hpp"
 #include "summary.hpp"
@@ -33,7 +36,7 @@ namespace fs = std::filesystem;
 
 constexpr const char* run_help = R"(
 Every value of the scene can be set with --set section.key=value. The result folder holds maps (GeoTIFF with QGIS
-styles), front.csv, timeseries.csv, buildings.csv, results.gpkg, results.qlr (opens all layers in QGIS), results.json,
+styles), front.csv, timeseries.csv, buildings.csv, results.gpkg, results.qlr (opens all layers in QGIS), results.kml, results.json,
 manifest.json and report.html.
 
 --layers N chooses the particle spacing from the thickness of the debris, and says what it costs before it starts;
@@ -44,6 +47,10 @@ building hit; if there is none, the front at 90 % of its chainage), run-out, dep
 hit, force and impact pressure on each; on the terminal, in convergence.csv and variants.csv, in the report, the manifest
 and --json. --convergence passes if none changes by more than its limit: 5 % of velocity, arrival and run-out, 10 % of
 the deposit, 15 % of force and pressure, and the same buildings.
+
+--zoom NAME runs the event with the depth-averaged model, and with particles only what comes near a building or barrier:
+what crosses a rectangle --zoom-margin metres around it becomes inflow there. With a finer solver.particle_spacing_m it
+costs a fraction of the whole event. What leaves the rectangle is not fed back.
 )";
 
 /// Everything that is checked before a run: the scene, its variants, the output folder.
@@ -55,10 +62,30 @@ struct Job {
     products::OutputFolder output;
 };
 
+/// Errors: a zoom beside what it cannot be together with.
+Status check_zoom_options(const RunArguments& arguments, const scene::Scene& scene) {
+    if (arguments.zoom.empty()) return {};
+    const char* refused = scene.spec.solver.model == params::ModelChoice::depth_averaged ? "--model depth_averaged"
+                          : arguments.layers == "real-time"                              ? "--layers real-time"
+                          : arguments.convergence                                        ? "--convergence"
+                          : arguments.named_variants                                     ? "--variants"
+                          : !arguments.variations.empty()                                ? "--vary"
+                                                                                         : nullptr;
+    if (refused != nullptr) return Error{fmt::format("{} is refused beside --zoom", refused)};
+    if (!(arguments.zoom_margin > 0 && arguments.zoom_margin <= 1e4)) {
+        return Error{fmt::format("--zoom-margin = {:.4g} is refused; it must be above 0 and at most 10000 (m)",
+                                 arguments.zoom_margin)};
+    }
+    return {};
+}
+
 Result<Job> open_job(const RunArguments& arguments, ProgressReporter& progress, InterruptWatch& watch) {
     std::vector<std::string> overrides = arguments.overrides;
     if (!arguments.model.empty()) overrides.push_back("solver.model=" + arguments.model);
     if (arguments.threads) overrides.push_back(fmt::format("solver.thread_count={}", *arguments.threads));
+    if (!arguments.series.empty()) {
+        overrides.push_back(fmt::format("outputs.series=[\"{}\"]", fmt::join(arguments.series, "\", \"")));
+    }
     TALUS_ASSIGN(auto input, open_scene(arguments.scene, overrides, arguments.layers, watch));
     if (input.scene.spec.solver.model == params::ModelChoice::depth_averaged) {
         const char* refused = !arguments.layers.empty() ? "--layers"
@@ -70,6 +97,7 @@ Result<Job> open_job(const RunArguments& arguments, ProgressReporter& progress, 
         }
     }
 
+    TALUS_TRY(check_zoom_options(arguments, input.scene));
     std::unique_ptr<DefaultParent> parent;
     if (arguments.output.empty()) parent = std::make_unique<DefaultParent>();
     const fs::path shown = parent ? fs::path(DefaultParent::name) / input.short_name : fs::path(arguments.output);
@@ -81,24 +109,24 @@ Result<Job> open_job(const RunArguments& arguments, ProgressReporter& progress, 
     TALUS_ASSIGN(const auto settled, settle_layers(input.source.file, input.source.overrides, arguments.layers,
                                                    input.scene, say, watch.stop_requested()));
     TALUS_ASSIGN(auto plan, VariantPlan::make(arguments, input.source, input.scene));
-    if (input.unpacked) name_builtin_files(input.scene, input.unpacked->path());
+    if (input.unpacked) name_unpacked_files(input.scene, input.unpacked->path(), input.name);
     progress.clear();
     if (settled && arguments.json) (void)print(cost_json(*settled) + "\n");
     if (settled && !arguments.json && !arguments.quiet) (void)std::fputs((cost_text(*settled) + "\n").c_str(), stderr);
     return Job{std::move(input), std::move(plan), std::move(parent), shown, std::move(output)};
 }
 
-/// Callbacks during the run: progress, Ctrl-C, and the particle series if the scene requests one.
+/// Callbacks during the run: progress, Ctrl-C, and the run over time if the scene requests it.
 class RunCallbacks {
   public:
     RunCallbacks(const RunArguments& arguments, const Job& job, ProgressReporter& progress, InterruptWatch& watch)
         : job_(job), progress_(progress), watch_(watch), notes_said_(arguments.quiet || arguments.json) {
         options_.stop_requested = &watch.stop_requested();
         options_.on_progress = [this](const run::Progress& now) { report(now); };
-        if (job.input.scene.spec.outputs.particle_series_interval <= 0) return;
-        series_.emplace(job.output.path() / "particles");
-        options_.on_frame = [this](const LocalFrame& frame, const sim::State& state) {
-            if (series_status_) series_status_ = series_->write_frame(frame, state);
+        if (!products::Series::wanted(job.input.scene)) return;
+        series_.emplace(job.input.scene, job.output.path() / "series");
+        options_.on_frame = [this](const run::Frame& frame) {
+            if (series_status_) series_status_ = series_->add(frame);
             if (!series_status_) watch_.request_stop();
         };
     }
@@ -106,9 +134,9 @@ class RunCallbacks {
     RunCallbacks& operator=(const RunCallbacks&) = delete;
 
     [[nodiscard]] const run::RunOptions& options() const { return options_; }
-    /// The run has ended. Errors: the particle series cannot be written.
-    [[nodiscard]] Status finish() {
-        if (series_ && series_status_) series_status_ = series_->finish();
+    /// The run has ended. Errors: the run over time cannot be written.
+    [[nodiscard]] Status finish(const run::RunResult& result) {
+        if (series_ && series_status_) series_status_ = series_->finish(result);
         return series_status_;
     }
 
@@ -126,7 +154,7 @@ class RunCallbacks {
     InterruptWatch& watch_;
     bool notes_said_;
     run::RunOptions options_;
-    std::optional<products::ParticleSeries> series_;
+    std::optional<products::Series> series_;
     Status series_status_;
 };
 
@@ -136,6 +164,23 @@ Status write_report(Job& job, const run::RunResult& result, const std::vector<ru
     // Replacing an earlier result takes two renames; a second Ctrl-C must not fall between them.
     const auto lock = watch.hold();
     return job.output.commit();
+}
+
+/// The event by the depth-averaged model, up to the boundary of the zoom. False: the user interrupted it.
+Result<bool> zoom_in(const RunArguments& arguments, Job& job, ProgressReporter& progress, InterruptWatch& watch) {
+    std::vector<std::string> overrides = job.input.source.overrides;
+    overrides.emplace_back("solver.model=depth_averaged");
+    TALUS_ASSIGN(const auto grid_scene, scene::load_scene(job.input.source.file, overrides));
+    TALUS_ASSIGN(const auto area, run::zoom_around(grid_scene, arguments.zoom, arguments.zoom_margin));
+    const double spacing = scene::particle_spacing(job.input.scene);
+    run::RunOptions options;
+    options.stop_requested = &watch.stop_requested();
+    options.on_progress = [&](const run::Progress& now) { progress.report(now); };
+    TALUS_ASSIGN(const auto zoom, run::record_zoom(grid_scene, area, spacing, options));
+    progress.clear();
+    if (zoom.interrupted) return false;
+    run::zoom_in(job.input.scene, zoom, spacing);
+    return true;
 }
 
 /// From scene file to report.
@@ -148,13 +193,19 @@ int run_command(const RunArguments& arguments) {
     progress.clear();
     if (!job) return fail(exit_code::bad_input, job.error().message);
     if (watch.stop_requested()) return fail(exit_code::interrupted, "interrupted before the run began");
+    if (!arguments.zoom.empty()) {
+        const auto zoomed = zoom_in(arguments, *job, progress, watch);
+        progress.clear();
+        if (!zoomed) return fail(exit_code::bad_input, zoomed.error().message);
+        if (!*zoomed) return fail(exit_code::interrupted, "interrupted before the particles began");
+    }
     const scene::Scene& scene = job->input.scene;
 
     RunCallbacks callbacks(arguments, *job, progress, watch);
     const auto result = run_scene(scene, callbacks.options());  // run; its observer measures every step
     progress.clear();
     if (!result) return fail(exit_code::bad_input, result.error().message);
-    if (Status s = callbacks.finish(); !s) return fail(exit_code::failure, s.error().message);
+    if (Status s = callbacks.finish(*result); !s) return fail(exit_code::failure, s.error().message);
 
     const auto comparisons = job->plan.run(scene, *result, progress, watch.stop_requested());
     const bool interrupted =
@@ -191,6 +242,11 @@ void add_run(CLI::App& program, std::vector<Command>& commands) {
         ->type_name("N");
     app->add_option("--model", run->model, "particles, or depth_averaged: in seconds, without what happens inside")
         ->type_name("NAME");
+    app->add_option("--series", run->series,
+                    "also write the run over time: netcdf, geotiff, paraview; separated by commas; frames are "
+                    "outputs.series_interval_s apart")
+        ->delimiter(',')
+        ->type_name("FORMAT,...");
     add_overrides(*app, run->overrides);
     add_layers(*app, run->layers, true);
     app->add_flag("--convergence", run->convergence,
@@ -200,6 +256,10 @@ void add_run(CLI::App& program, std::vector<Command>& commands) {
     app->add_option("--vary", run->variations, "run again with each of the values; compare; may be repeated")
         ->type_name("SECTION.KEY=VALUE,VALUE")
         ->allow_extra_args(false);
+    app->add_option("--zoom", run->zoom, "particles around one building or barrier, the rest depth-averaged")
+        ->type_name("NAME");
+    app->add_option("--zoom-margin", run->zoom_margin, "m, from it to the boundary of the zoom; default: 15")
+        ->type_name("M");
     add_data_folder(*app, run->data);
     CLI::Option* quiet = app->add_flag("--quiet", run->quiet, "print only errors");
     app->add_flag("--json", run->json, "progress and result as one JSON object per line on stdout")->excludes(quiet);

@@ -15,6 +15,7 @@
 #include "scene/builtin.hpp"
 #include "scene/check.hpp"
 #include "scene/new_scene.hpp"
+#include "scene_input.hpp"
 
 namespace talus::cli {
 namespace {
@@ -36,11 +37,12 @@ int check_command(const CheckArguments& arguments) {
     InterruptWatch watch;
     auto overrides = with_layers(arguments.overrides, arguments.layers);
     if (!overrides) return fail(exit_code::bad_input, overrides.error().message);
-    auto scene = load_layered(arguments.scene, *overrides, arguments.layers);
+    const auto found = find_scene(arguments.scene, watch);
+    if (!found) return fail(exit_code::bad_input, found.error().message);
+    auto scene = load_layered(found->file, *overrides, arguments.layers);
     if (!scene) return fail(exit_code::bad_input, scene.error().message);
     const auto say = [](const std::string& what) { (void)std::fputs((what + "\n").c_str(), stderr); };
-    const auto settled =
-        settle_layers(arguments.scene, *overrides, arguments.layers, *scene, say, watch.stop_requested());
+    const auto settled = settle_layers(found->file, *overrides, arguments.layers, *scene, say, watch.stop_requested());
     if (!settled) return fail(exit_code::bad_input, settled.error().message);
     return print_result(describe_scene(*scene) + (*settled ? "cost        " + cost_text(**settled) + "\n" : ""));
 }

@@ -21,6 +21,7 @@
 #include "scene/builtin.hpp"
 #include "scene/scene.hpp"
 #include "serve/server.hpp"
+#include "tokens.hpp"
 
 namespace talus::cli {
 namespace {
@@ -70,19 +71,6 @@ bool is_address(const std::string& text) {
            inet_pton(AF_INET6, text.c_str(), &ignored) == 1;
 }
 
-/// The given tokens, or new ones.
-Result<serve::Tokens> choose_tokens(const std::vector<std::string>& given) {
-    if (given.size() > 2) return Error{"--token is given more than twice; it is for controllers, then for viewers"};
-    serve::Tokens tokens;
-    std::string* const wanted[] = {&tokens.controller, &tokens.viewer};
-    for (std::size_t i = 0; i < 2; ++i) {
-        TALUS_ASSIGN(auto token, i < given.size() ? Result<std::string>(given[i]) : serve::random_token());
-        *wanted[i] = std::move(token);
-    }
-    if (Status good = serve::check_tokens(tokens); !good) return Error{"--token: " + good.error().message};
-    return tokens;
-}
-
 int print_links(const ServeArguments& arguments, const scene::Scene& scene, const serve::Server& server) {
     if (arguments.quiet) return exit_code::success;
     const std::string control = server.link(serve::Role::controller), view = server.link(serve::Role::viewer);
@@ -116,13 +104,9 @@ int serve_command(const ServeArguments& arguments) {
     TemporaryFolder folder;
     if (folder.path().empty()) return fail(exit_code::failure, "cannot make a temporary folder; set TMPDIR");
     watch.remove_at_once(folder.path());
-    fs::path file = arguments.scene;
-    const fs::path unpacked = folder.path() / "scene";
-    if (arguments.scene.empty()) {
-        auto scene_file = scene::unpack_builtin_scene(unpacked);
-        if (!scene_file) return fail(exit_code::failure, scene_file.error().message);
-        file = *scene_file;
-    }
+    const auto found = find_scene(arguments.scene, watch);
+    if (!found) return fail(exit_code::bad_input, found.error().message);
+    const fs::path& file = found->file;
     auto overrides = with_layers(arguments.overrides, arguments.layers);
     if (!overrides) return fail(exit_code::bad_input, overrides.error().message);
     if (arguments.threads) overrides->push_back(fmt::format("solver.thread_count={}", *arguments.threads));
@@ -133,7 +117,7 @@ int serve_command(const ServeArguments& arguments) {
     const auto settled = settle_layers(file, *overrides, arguments.layers, *loaded, say, watch.stop_requested());
     if (!settled) return fail(exit_code::bad_input, settled.error().message);
     if (*settled && say) say(cost_text(**settled));
-    if (arguments.scene.empty()) name_builtin_files(*loaded, unpacked);
+    if (found->unpacked) name_unpacked_files(*loaded, found->unpacked->path(), found->name);
     if (watch.stop_requested()) return exit_code::success;
     const auto scene = std::make_shared<const scene::Scene>(std::move(*loaded));
 
@@ -150,9 +134,8 @@ int serve_command(const ServeArguments& arguments) {
     options.run = arguments.run;
     options.ensembles.assign(arguments.ensembles.begin(), arguments.ensembles.end());
     options.calibration.source = {file, *overrides};
-    options.calibration.own_files = arguments.scene.empty();
-    options.calibration.scene_name =
-        arguments.scene.empty() ? std::string("built-in") : fs::absolute(file).lexically_normal().string();
+    options.calibration.own_files = found->unpacked != nullptr;
+    options.calibration.scene_name = arguments.scene.empty() ? std::string("built-in") : found->name;
     options.calibration.keep = !arguments.calibrations.empty();
     options.calibration.folder = options.calibration.keep ? fs::path(arguments.calibrations) : folder.path();
     if (options.calibration.keep) {
@@ -185,6 +168,18 @@ int serve_command(const ServeArguments& arguments) {
 }
 
 }  // namespace
+
+Result<serve::Tokens> choose_tokens(const std::vector<std::string>& given) {
+    if (given.size() > 2) return Error{"--token is given more than twice; it is for controllers, then for viewers"};
+    serve::Tokens tokens;
+    std::string* const wanted[] = {&tokens.controller, &tokens.viewer};
+    for (std::size_t i = 0; i < 2; ++i) {
+        TALUS_ASSIGN(auto token, i < given.size() ? Result<std::string>(given[i]) : serve::random_token());
+        *wanted[i] = std::move(token);
+    }
+    if (Status good = serve::check_tokens(tokens); !good) return Error{"--token: " + good.error().message};
+    return tokens;
+}
 
 void add_serve(CLI::App& program, std::vector<Command>& commands) {
     CLI::App* app = program.add_subcommand("serve", "open a scene live in the browser: watch, control and share it");

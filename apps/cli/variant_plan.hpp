@@ -19,6 +19,9 @@ struct RunArguments {
     std::vector<std::string> overrides;  ///< "section.key=value"
     std::string layers;                  ///< of --layers; empty: not given
     std::string model{};                 ///< of --model; empty: the scene's
+    std::vector<std::string> series{};   ///< of --series; empty: the scene's
+    std::string zoom{};                  ///< of --zoom: a structure; empty: not given
+    double zoom_margin = 15;             ///< m
     std::string data;                    ///< value of TALUS_DATA; empty: as in the environment
     bool quiet = false, json = false;
     bool convergence = false;             ///< run three refinements too and compare

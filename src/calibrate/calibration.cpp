@@ -209,7 +209,7 @@ Result<Calibration> calibrate(const CalibrationPlan& plan, ensemble::PlannedRuns
     made.result = *std::move(found);
     if (made.result.best) {
         for (const std::string& value : runs.at(*made.result.best).overrides) {
-            if (!value.starts_with("outputs.particle_series_interval_s=")) made.best_overrides.push_back(value);
+            if (!value.starts_with("outputs.series=")) made.best_overrides.push_back(value);
         }
     }
     made.wall_time = std::chrono::duration<double>(Clock::now() - start).count();

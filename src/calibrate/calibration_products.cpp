@@ -12,7 +12,6 @@
 #include "products/csv.hpp"
 #include "products/results_json.hpp"
 #include "products/text_file.hpp"
-#include "scene/builtin.hpp"
 
 namespace talus::calibrate {
 
@@ -104,7 +103,10 @@ Status write_best_scene(const Calibration& c, const run::SceneSource& source, bo
     if (error) return Error{fmt::format("{}: cannot be made: {}", to.string(), error.message())};
     fs::path file = source.file;
     if (own_files) {
-        TALUS_ASSIGN(file, scene::unpack_builtin_scene(to));
+        fs::copy(source.file.parent_path(), to, fs::copy_options::recursive | fs::copy_options::overwrite_existing,
+                 error);
+        if (error) return Error{fmt::format("{}: the scene cannot be copied: {}", to.string(), error.message())};
+        file = to / source.file.filename();
     }
     std::vector<std::string> overrides = source.overrides;
     const std::vector<std::string>& best = c.best_overrides;

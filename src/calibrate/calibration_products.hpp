@@ -57,7 +57,7 @@ struct MisfitMap {
 
 /// runs.csv, factors.csv, observations.csv, misfit_map.csv, posterior.csv, calibration.json, results.json, report.html,
 /// misfit_map.svg and best_fit/scene.toml, the scene of the best fit, into the folder. `own_files`: the scene's files
-/// are unpacked into best_fit too (the built-in scene). Errors name the file and the cause.
+/// are copied to best_fit too (of the built-in scene or a bundle). Errors name the file and the cause.
 [[nodiscard]] Status write_calibration(const Calibration& calibration, const run::SceneSource& source, bool own_files,
                                        const std::filesystem::path& folder);
 

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sim/physics/erosion.hpp"
+
 namespace talus::depth {
 
 /// m of ground that comes loose in a step.
@@ -12,10 +14,9 @@ double Entrainment::loosened(const Solver& solver, const terrain::BedMaterial& m
     if (material.law == params::EntrainmentLaw::growth) return material.growth_rate * depth * speed * step;
     // Slower debris than a tenth of the speed of a fall through its own depth erodes nothing.
     if (!(speed > 0.1 * std::sqrt(gravity * depth))) return 0;
-    const double cosine_sine = std::sqrt(square_slope) / (1 + square_slope);
-    const double shear_stress = solver.material().rest_density * gravity * depth * cosine_sine;
-    const double deepest = material.depth_per_shear * (shear_stress - material.critical_shear_stress);
-    return std::clamp(deepest - bed_.eroded[cell] - loose_[cell], 0.0, material.erosion_rate * step);
+    const double cosine = 1 / std::sqrt(1 + square_slope), sine = std::sqrt(square_slope) * cosine;
+    return sim::loosened_by_shear(material, solver.material().rest_density, gravity, depth, cosine, sine,
+                                  bed_.eroded[cell] + loose_[cell], step);
 }
 
 double Entrainment::entrain(Solver& solver) {

@@ -60,15 +60,11 @@ TALUS_INLINE Real structure_beside(const Real& depth, const Real& normal, const 
            opaque(select(reach < bed_beside + beside, Real(1), Real(0)));
 }
 
-/// Such a neighbour is replaced by ground that goes on as before, under the same debris.
+/// Gives neighbours the debris of the cell itself, on their own ground.
 template <class Real>
-TALUS_INLINE void replace_structures(Line<Real>& l, const Real& before, const Real& after) {
-    const Real one_sided_after = select(after > Real(0), Real(0) - l.bed_before, l.bed_after);
-    const Real one_sided_before = select(before > Real(0), Real(0) - l.bed_after, l.bed_before);
-    l.bed_before = select(before * after > Real(0), Real(0), one_sided_before);
-    l.bed_after = select(before * after > Real(0), Real(0), one_sided_after);
-    const auto take = [](const Real& wall, const Real& own, Real& beside) __attribute__((always_inline)) {
-        beside = select(wall > Real(0), own, beside);
+TALUS_INLINE void continue_stream(Line<Real>& l, const Real& before, const Real& after) {
+    const auto take = [](const Real& stream, const Real& own, Real& beside) __attribute__((always_inline)) {
+        beside = select(stream > Real(0), own, beside);
     };
     take(before, l.depth, l.before);
     take(before, l.normal, l.normal_before);
@@ -76,6 +72,23 @@ TALUS_INLINE void replace_structures(Line<Real>& l, const Real& before, const Re
     take(after, l.depth, l.after);
     take(after, l.normal, l.normal_after);
     take(after, l.across, l.across_after);
+}
+
+/// Such a neighbour is replaced by ground that goes on as before, under the same debris.
+template <class Real>
+TALUS_INLINE void replace_structures(Line<Real>& l, const Real& before, const Real& after) {
+    const Real one_sided_after = select(after > Real(0), Real(0) - l.bed_before, l.bed_after);
+    const Real one_sided_before = select(before > Real(0), Real(0) - l.bed_after, l.bed_before);
+    l.bed_before = select(before * after > Real(0), Real(0), one_sided_before);
+    l.bed_after = select(before * after > Real(0), Real(0), one_sided_after);
+    continue_stream(l, before, after);
+}
+
+/// 1 beside shallower debris on the side that an inflow comes from, else 0. `from`: 1 there. The stream goes on behind
+/// its line, and holds against the debris that it brought.
+template <class Real>
+TALUS_INLINE Real inflow_beside(const Real& from, const Real& depth, const Real& beside) {
+    return opaque(select(from > Real(0), Real(1), Real(0))) * opaque(select(beside < depth, Real(1), Real(0)));
 }
 
 /// Second-order values at the faces: slopes of depth or of surface elevation, whichever changes less over the cell.

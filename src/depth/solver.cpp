@@ -197,6 +197,25 @@ void Solver::inject(int column, int row, double depth, double u, double v) {
     expect_waves_of(i, tile_of(column, row));
 }
 
+void Solver::add_inflow(int column, int row, const CellInflow& comes) {
+    if (inflow_.depth.empty()) {
+        for (std::vector<float>* array : inflow_.all()) array->assign(depth_.size(), 0);
+    }
+    const std::size_t i = index(column, row);
+    inflow_.depth[i] += static_cast<float>(comes.rate);
+    inflow_.momentum_x[i] += static_cast<float>(comes.rate * comes.u);
+    inflow_.momentum_y[i] += static_cast<float>(comes.rate * comes.v);
+    inflow_.from_x[i] = static_cast<float>(comes.from_x);
+    inflow_.from_y[i] = static_cast<float>(comes.from_y);
+    changed_[tile_of(column, row)] = 1;
+}
+
+void Solver::end_inflow(int column, int row) {
+    if (inflow_.depth.empty()) return;
+    for (std::vector<float>* array : inflow_.all()) (*array)[index(column, row)] = 0;
+    changed_[tile_of(column, row)] = 1;
+}
+
 double Solver::erode(int column, int row, double depth) {
     const double eroded = std::floor(depth / elevation_spacing_) * elevation_spacing_;
     const std::size_t i = index(column, row);
@@ -293,6 +312,8 @@ double Solver::advance_stage(bool second) {
     data.effective_share = static_cast<float>(1 - ratio);
     data.cover = {pointer(friction_), pointer(inverse_turbulence_), pointer(strength_), pointer(stem_drag_)};
     data.structure = pointer(structure_);
+    data.inflow = {pointer(inflow_.depth), pointer(inflow_.momentum_x), pointer(inflow_.momentum_y),
+                   pointer(inflow_.from_x), pointer(inflow_.from_y)};
 
     simd::parallel_ranges(segments_.size(), 1, [&](std::size_t first, std::size_t last) {
         for (std::size_t s = first; s < last; ++s) {
@@ -309,16 +330,21 @@ double Solver::advance_stage(bool second) {
     return lost * geometry_.cell * geometry_.cell;
 }
 
+double Solver::stable_step(double wave) const {
+    return courant_number * geometry_.cell / wave;
+}
+
+double Solver::next_step(double longest) const {
+    return signal_ > 0 ? std::min(longest, stable_step(signal_)) : longest;
+}
+
 Status Solver::advance(double longest) {
     find_active_tiles();
     if (edges_ == Edges::continued) {  // what was added since, too
         continue_rows({depth_.data() + origin_, u_.data() + origin_, v_.data() + origin_});
         continue_rows({next_depth_.data() + origin_, next_u_.data() + origin_, next_v_.data() + origin_});
     }
-    time_step_ = longest;
-    if (signal_ > 0 && !segments_.empty()) {
-        time_step_ = std::min(longest, courant_number * geometry_.cell / signal_);
-    }
+    time_step_ = next_step(longest);
     if (!segments_.empty()) {
         // Heun's method takes the mean of what leaves in either stage.
         left_ += advance_stage(false) / 2;
@@ -353,7 +379,8 @@ double Solver::bytes_per_cell() const {
     std::size_t bytes = unknown_.size();
     for (const std::vector<float>* array :
          {&bed_, &slope_x_, &slope_y_, &depth_, &u_, &v_, &next_depth_, &next_u_, &next_v_, &friction_,
-          &inverse_turbulence_, &strength_, &stem_drag_, &structure_}) {
+          &inverse_turbulence_, &strength_, &stem_drag_, &structure_, &inflow_.depth, &inflow_.momentum_x,
+          &inflow_.momentum_y, &inflow_.from_x, &inflow_.from_y}) {
         bytes += array->size() * sizeof(float);
     }
     return static_cast<double>(bytes) / static_cast<double>(geometry_.size());

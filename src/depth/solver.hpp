@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <string_view>
@@ -63,12 +64,24 @@ class Solver {
     void add(const Grid<float>& depth);
     /// Adds debris with a velocity to a cell of known ground; momenta add up.
     void inject(int column, int row, double depth, double u, double v);
+    /// What comes in to a cell from the next step on, besides what comes already.
+    struct CellInflow {
+        double rate = 0;             ///< m of depth per s
+        double u = 0, v = 0;         ///< its velocity
+        int from_x = 0, from_y = 0;  ///< where its stream stands: -1 west or south, 1 east or north, 0 neither. What
+                                     ///< lies shallower there is not in its way, nor that of the debris in the cell.
+    };
+    void add_inflow(int column, int row, const CellInflow& comes);
+    void end_inflow(int column, int row);
     /// Turns ground of a cell into debris at rest above it: as much of `depth`, m, as elevations are rounded to.
     /// Returns that.
     double erode(int column, int row, double depth);
     /// Gives the debris of a cell a velocity.
     void set_velocity(int column, int row, double u, double v);
 
+    /// The longest stable step, s, with waves of a speed, m/s; and the next step of at most `longest`.
+    [[nodiscard]] double stable_step(double wave) const;
+    [[nodiscard]] double next_step(double longest) const;
     /// Takes a step of at most `longest` s, at most what is stable. Error: a speed that is not finite.
     [[nodiscard]] Status advance(double longest);
 
@@ -95,6 +108,9 @@ class Solver {
     [[nodiscard]] float slope_x_at(int column, int row) const { return slope_x_[index(column, row)]; }
     [[nodiscard]] float slope_y_at(int column, int row) const { return slope_y_[index(column, row)]; }
     [[nodiscard]] bool known(int column, int row) const { return !unknown_[index(column, row)]; }
+    [[nodiscard]] bool built(int column, int row) const {
+        return !structure_.empty() && structure_[index(column, row)] > 0;
+    }
 
     /// Calls f(const ActiveRow&) in parallel for the rows of what the last step may have changed.
     template <class F>
@@ -154,7 +170,11 @@ class Solver {
     std::vector<float> bed_, slope_x_, slope_y_;
     std::vector<float> depth_, u_, v_, next_depth_, next_u_, next_v_;
     std::vector<float> friction_, inverse_turbulence_, strength_, stem_drag_,
-        structure_;                                    ///< empty: everywhere the same
+        structure_;  ///< empty: everywhere the same
+    struct {
+        std::vector<float> depth, momentum_x, momentum_y, from_x, from_y;
+        [[nodiscard]] auto all() { return std::array{&depth, &momentum_x, &momentum_y, &from_x, &from_y}; }
+    } inflow_;                                         ///< see Inflow; empty: none so far
     std::vector<std::uint8_t> unknown_;                ///< by cell
     std::vector<std::uint8_t> has_unknown_, changed_;  ///< by tile
     std::vector<Segment> segments_;

@@ -23,6 +23,13 @@ struct Cover {
     const float *friction, *inverse_turbulence, *strength, *stem_drag;
 };
 
+/// What comes in, per cell; null: nothing anywhere.
+struct Inflow {
+    const float* depth;                    ///< m/s
+    const float *momentum_x, *momentum_y;  ///< m2/s2
+    const float *from_x, *from_y;          ///< where its stream stands: -1 west or south, 1 east or north, 0 neither
+};
+
 /// One stage of Heun's method: `to` = `from` + dt F(`from`); in the second stage `to` is its mean with what it holds.
 struct StageData {
     int stride = 0;
@@ -34,6 +41,7 @@ struct StageData {
     float effective_share = 1;  ///< of the normal stress, borne by the grains
     Cover cover{};
     const float* structure = nullptr;  ///< by cell, 1: a structure stands there; null: none anywhere
+    Inflow inflow{};
 };
 
 struct Stages {

@@ -35,7 +35,8 @@ HWY_INLINE void store(const L& numbers, Numbers& to, int j) {
 struct AxisRow {
     Numbers depth_before, depth_after, rise, normal_before, normal_after, across_before, across_after;
     Numbers limit_before, limit_after, wave;
-    Numbers wall_before, wall_after;  ///< 1: the neighbour there is dry and stands above the surface; 2: a structure
+    /// 1: the neighbour there is dry and stands above the surface, or is the stream of an inflow; 2: a structure.
+    Numbers wall_before, wall_after;
 };
 struct Row {
     AxisRow x, y;
@@ -77,7 +78,7 @@ HWY_INLINE Resistance<L> resistance_at(const StageData& data, std::ptrdiff_t i, 
     return r;
 }
 
-HWY_INLINE void keep(const Line<L>& line, const L& structure_before, const L& structure_after, const L& wave,
+HWY_INLINE void keep(const Line<L>& line, const L& wall_before, const L& wall_after, const L& wave,
                      const L& limit_before, const L& limit_after, AxisRow& row, int j) {
     const Sides<L> sides = sides_of(line);
     store(sides.depth_before, row.depth_before, j);
@@ -90,8 +91,8 @@ HWY_INLINE void keep(const Line<L>& line, const L& structure_before, const L& st
     store(limit_before, row.limit_before, j);
     store(limit_after, row.limit_after, j);
     store(wave, row.wave, j);
-    store(wall_beside(line.depth, line.before, line.bed_before) + L(2) * structure_before, row.wall_before, j);
-    store(wall_beside(line.depth, line.after, line.bed_after) + L(2) * structure_after, row.wall_after, j);
+    store(wall_beside(line.depth, line.before, line.bed_before) + wall_before, row.wall_before, j);
+    store(wall_beside(line.depth, line.after, line.bed_after) + wall_after, row.wall_after, j);
 }
 
 /// Reconstructs a row of cells; `i`: index of entry 0.
@@ -125,6 +126,23 @@ HWY_INLINE void reconstruct(const StageData& data, std::ptrdiff_t i, int cells, 
             wall_north = wall(own_v, north, bed_north, up);
             replace_structures(x, wall_west, wall_east);
             replace_structures(y, wall_south, wall_north);
+            wall_west = wall_west + wall_west;
+            wall_east = wall_east + wall_east;
+            wall_south = wall_south + wall_south;
+            wall_north = wall_north + wall_north;
+        }
+        if (data.inflow.depth != nullptr) {
+            const L from_x = at(data.inflow.from_x, 0), from_y = at(data.inflow.from_y, 0);
+            const L from_west = inflow_beside(zero - from_x, depth, x.before);
+            const L from_east = inflow_beside(from_x, depth, x.after);
+            const L from_south = inflow_beside(zero - from_y, depth, y.before);
+            const L from_north = inflow_beside(from_y, depth, y.after);
+            continue_stream(x, from_west, from_east);
+            continue_stream(y, from_south, from_north);
+            wall_west = wall_west + from_west;
+            wall_east = wall_east + from_east;
+            wall_south = wall_south + from_south;
+            wall_north = wall_north + from_north;
         }
         const L bed_x = (x.bed_after - x.bed_before) * (inverse_cell * L(0.5F));
         const L bed_y = (y.bed_after - y.bed_before) * (inverse_cell * L(0.5F));
@@ -223,12 +241,21 @@ HWY_INLINE void update(const StageData& data, Scratch& scratch, int r, std::ptrd
         (load(x.press, j - 1) + load(x.press, j) + load(south.press, j) + load(north.press, j)) * inverse_cell;
     const L curvature = free * larger(press, zero - gravity * depth) / square_stretch;
 
-    const L new_depth = larger(
+    L new_depth = larger(
         zero, depth - per_cell * (load(x.mass, j) - load(x.mass, j - 1) + (load(north.mass, j) - load(south.mass, j))));
     const L out_x = load(x.normal, j) - load(x.normal, j - 1) + (load(north.across, j) - load(south.across, j));
     const L out_y = load(x.across, j) - load(x.across, j - 1) + (load(north.normal, j) - load(south.normal, j));
-    const L m_x = depth * u - per_cell * out_x + dt * (pull * force_x - curvature * bed_x);
-    const L m_y = depth * v - per_cell * out_y + dt * (pull * force_y - curvature * bed_y);
+    L m_x = depth * u - per_cell * out_x + dt * (pull * force_x - curvature * bed_x);
+    L m_y = depth * v - per_cell * out_y + dt * (pull * force_y - curvature * bed_y);
+    L bound = zero;
+    if (data.inflow.depth != nullptr) {
+        const L comes = L::load(data.inflow.depth + i);
+        const L comes_x = L::load(data.inflow.momentum_x + i), comes_y = L::load(data.inflow.momentum_y + i);
+        new_depth = new_depth + dt * comes;
+        m_x = m_x + dt * comes_x;
+        m_y = m_y + dt * comes_y;
+        bound = sqrt(comes_x * comes_x + comes_y * comes_y) / larger(comes, L(1e-12F));
+    }
 
     const L m_up = bed_x * m_x + bed_y * m_y, momentum = sqrt(m_x * m_x + m_y * m_y + m_up * m_up);
     const L normal_force = larger(zero, gravity * depth / (one + tilt) + curvature);
@@ -239,7 +266,7 @@ HWY_INLINE void update(const StageData& data, Scratch& scratch, int r, std::ptrd
         select(moves > zero, left / (larger(momentum, L(1e-30F)) * larger(new_depth, L(dry_depth))), zero);
     L new_u = m_x * to_speed, new_v = m_y * to_speed;
     // Emptied cells keep no momentum without mass: no faster than the fastest around, its front and free fall.
-    L bound = load(scratch.speed[static_cast<std::size_t>(r % 3)], j);
+    bound = larger(bound, load(scratch.speed[static_cast<std::size_t>(r % 3)], j));
     bound = larger(bound, larger(load(scratch.speed[static_cast<std::size_t>(r % 3)], j - 1),
                                  load(scratch.speed[static_cast<std::size_t>(r % 3)], j + 1)));
     bound = larger(bound, larger(load(scratch.speed[static_cast<std::size_t>((r + 1) % 3)], j),

@@ -211,7 +211,7 @@ Result<PlannedRuns> PlannedRuns::make(const EnsemblePlan& plan, const run::Scene
 PlannedRun PlannedRuns::at(std::size_t run) const {
     PlannedRun planned;
     planned.overrides = fixed_;
-    planned.overrides.emplace_back("outputs.particle_series_interval_s=0");  // runs do not write result folders
+    planned.overrides.emplace_back("outputs.series=[]");  // runs do not write result folders
     for (std::size_t k = 0; k < plan_.factors.size(); ++k) {
         const Factor& factor = plan_.factors[k];
         double share = points_[run][k];

@@ -8,6 +8,7 @@
 #include <cpl_vsi.h>
 #include <fmt/format.h>
 
+#include "geo/cog.hpp"
 #include "geo/gdal.hpp"
 #include "geo/raster.hpp"
 #include "geo/spatial_reference.hpp"
@@ -15,8 +16,6 @@
 namespace talus::geo {
 
 namespace {
-
-constexpr double nodata_value = -9999;
 
 /// A dataset in memory: north first, nodata instead of NaN.
 GDALDatasetUniquePtr to_dataset(const RasterBand& band, const Crs& crs) {
@@ -69,12 +68,7 @@ Status write_bytes(const std::string& file, const GByte* bytes, std::size_t coun
 
 }  // namespace
 
-Status write_cog(const std::string& file, const RasterBand& band, const Crs& crs) {
-    if (band.grid->values.empty()) return Error{fmt::format("{}: cannot be made: the map has no cells", file)};
-    GdalMessages messages;
-    const GDALDatasetUniquePtr source = to_dataset(band, crs);
-    if (!source) return Error{fmt::format("{}: cannot be made: {}", file, messages.failure_or("out of memory"))};
-
+Status copy_to_cog(const std::string& file, GDALDataset& source, GdalMessages& messages, int block) {
     // The file is made in memory and written at once: GDAL's TIFF writer does not report a full disk reliably.
     static std::atomic<unsigned> serial = 0;
     const std::string memory_file = fmt::format("/vsimem/talus_cog_{}.tif", serial++);
@@ -83,10 +77,11 @@ Status write_cog(const std::string& file, const RasterBand& band, const Crs& crs
     options.SetNameValue("PREDICTOR", "YES");
     // Cubic, the default, would put values into the overviews that no run produced.
     options.SetNameValue("OVERVIEW_RESAMPLING", "AVERAGE");
+    options.SetNameValue("BLOCKSIZE", std::to_string(block).c_str());
     GDALDriver* driver = GetGDALDriverManager()->GetDriverByName("COG");
     if (driver == nullptr) return Error{fmt::format("{}: this GDAL has no COG driver (3.1 or later needed)", file)};
     GDALDatasetUniquePtr made(
-        driver->CreateCopy(memory_file.c_str(), source.get(), FALSE, options.List(), nullptr, nullptr));
+        driver->CreateCopy(memory_file.c_str(), &source, FALSE, options.List(), nullptr, nullptr));
     const bool created = made != nullptr;
     made.reset();  // the last bytes are written here
     const bool complete = created && !messages.has_failure();
@@ -100,6 +95,14 @@ Status write_cog(const std::string& file, const RasterBand& band, const Crs& crs
     }
     VSIUnlink(memory_file.c_str());
     return status;
+}
+
+Status write_cog(const std::string& file, const RasterBand& band, const Crs& crs) {
+    if (band.grid->values.empty()) return Error{fmt::format("{}: cannot be made: the map has no cells", file)};
+    GdalMessages messages;
+    const GDALDatasetUniquePtr source = to_dataset(band, crs);
+    if (!source) return Error{fmt::format("{}: cannot be made: {}", file, messages.failure_or("out of memory"))};
+    return copy_to_cog(file, *source, messages);
 }
 
 }  // namespace talus::geo

@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "geo/gdal.hpp"
+#include "geo/latitude.hpp"
 
 namespace talus::geo {
 
@@ -116,6 +117,13 @@ std::optional<PlanPoint> to_longitude_latitude(const OGRSpatialReference& refere
     }
     if (!(std::abs(q.y) <= 90) || !(std::abs(q.x) <= 540)) return std::nullopt;
     return q;
+}
+
+std::optional<double> latitude_deg(const Crs& crs, const PlanPoint& p) {
+    if (crs.wkt.empty()) return std::nullopt;
+    const auto place = to_longitude_latitude(to_spatial_reference(crs), p);
+    if (!place) return std::nullopt;
+    return place->y;
 }
 
 std::string metric_crs_for(const std::optional<PlanPoint>& place) {

@@ -100,7 +100,7 @@ void GridObserver::note_release(const depth::Solver& solver, const Grid<float>& 
 }
 
 void GridObserver::measure_cells(const depth::Solver& solver) {
-    const auto thinnest = static_cast<float>(thinnest_share * outputs_.arrival_depth);
+    const auto thinnest = static_cast<float>(thinnest_depth());
     const auto arrives = static_cast<float>(outputs_.arrival_depth);
     const auto time = static_cast<float>(solver.time());
     const GridGeometry& g = solver.geometry();
@@ -178,6 +178,43 @@ void GridObserver::after_step(const depth::Solver& solver, double held, double s
         }
     }
     timeseries_.push_back(sample(solver, held, steps_per_second));
+}
+
+double GridObserver::thinnest_depth() const {
+    return thinnest_share * outputs_.arrival_depth;
+}
+
+MapAccumulator::Present GridObserver::present(const depth::Solver& solver) const {
+    const GridGeometry& g = solver.geometry();
+    int west = g.columns, east = -1, south = g.rows, north = -1;
+    for (int row = 0; row < g.rows; ++row) {
+        for (int column = 0; column < g.columns; ++column) {
+            if (!(solver.depth_at(column, row) > 0)) continue;
+            west = std::min(west, column);
+            east = std::max(east, column);
+            south = std::min(south, row);
+            north = row;
+        }
+    }
+    MapAccumulator::Present present;
+    if (east < 0) return present;
+    present.first_column = west;
+    present.first_row = south;
+    const GridGeometry part{g.x_min + west * g.cell, g.y_min + south * g.cell, g.cell, east - west + 1,
+                            north - south + 1};
+    present.depth = present.speed = Grid<float>(part);
+    for (int row = south; row <= north; ++row) {
+        for (int column = west; column <= east; ++column) {
+            const float depth = solver.depth_at(column, row);
+            if (!(depth > 0)) continue;
+            present.depth.at(column - west, row - south) = depth;
+            if (depth < thinnest_depth()) continue;
+            present.speed.at(column - west, row - south) =
+                speed_of(solver.u_at(column, row), solver.v_at(column, row), solver.slope_x_at(column, row),
+                         solver.slope_y_at(column, row));
+        }
+    }
+    return present;
 }
 
 TimeSample GridObserver::sample(const depth::Solver& solver, double held, double steps_per_second) const {

@@ -7,6 +7,7 @@
 #include "core/grid.hpp"
 #include "depth/solver.hpp"
 #include "observe/front_tracker.hpp"
+#include "observe/map_accumulator.hpp"
 #include "observe/observation.hpp"
 #include "params/spec.hpp"
 #include "sim/ground.hpp"
@@ -30,12 +31,19 @@ class GridObserver {
 
     /// Call after debris was added to the solver: its depth by cell, m, and volume, m3.
     void note_release(const depth::Solver& solver, const Grid<float>& depth, double volume);
-    /// What was entrained in the last step, m3; call it before after_step().
+    /// What came in or was entrained in the last step, m3; call it before after_step().
+    void note_inflow(double volume) { volume_released_ += volume; }
     void note_entrainment(double volume) { volume_entrained_ += volume; }
     /// `held`: volume in releases that are still to start, m3.
     void after_step(const depth::Solver& solver, double held, double steps_per_second);
 
+    /// Depth of releases and inflows by cell, m, to which that of an inflow is to be added.
+    [[nodiscard]] Grid<float>& released() { return released_; }
     [[nodiscard]] const TimeSample& latest() const { return timeseries_.back(); }
+    /// Debris now, over the part of the grid that contains any.
+    [[nodiscard]] MapAccumulator::Present present(const depth::Solver& solver) const;
+    /// Debris thinner than this does not count as having reached a cell, m.
+    [[nodiscard]] double thinnest_depth() const;
     [[nodiscard]] double front_chainage() const { return front_; }
     /// The complete results, with the debris where it is as deposit.
     [[nodiscard]] Observation finish(const depth::Solver& solver, const sim::Ground& ground, double held) const;

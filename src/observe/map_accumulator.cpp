@@ -39,7 +39,7 @@ struct AxisShares {
         const L half(one / 2);
         const L after = select(here < last_cell, from_index<L>(truncated(half * low * low)), L(0));
         const L before = select(here > L(0), from_index<L>(truncated(half * high * high)), L(0));
-        std::memcpy(cell.data() + at, &whole, sizeof whole);
+        std::memcpy(cell.data() + at, &whole.v, sizeof whole.v);
         before.store(weight[0].data() + at);
         (L(one) - before - after).store(weight[1].data() + at);
         after.store(weight[2].data() + at);

@@ -9,6 +9,7 @@
 #include <fmt/ranges.h>
 
 #include "params/declaration.hpp"
+#include "params/time_step.hpp"
 
 namespace talus::params {
 namespace {
@@ -113,8 +114,9 @@ Section declare_solver() {
                    "adaptive: a particle moves at most displacement_limit of a spacing per step", "Fixed time step.");
     s.key("displacement_limit", "", &SolverSpec::displacement_limit, between(0.001, 1),
           "Share of a spacing that a particle moves at most in an adaptive time step.");
-    s.key("largest_time_step_s", "s", &SolverSpec::largest_time_step, between(1e-5, 1),
-          "Upper bound of the adaptive time step. Fast, squeezed and very viscous debris shortens it.");
+    s.optional_key("largest_time_step_s", "s", &SolverSpec::largest_time_step, between(1e-5, 1),
+                   "sqrt(particle spacing / g) / 6, at least 1/60 and at most 1/30 s",
+                   "Upper bound of the adaptive time step. Fast, squeezed and very viscous debris shortens it.");
     s.key("smallest_time_step_s", "s", &SolverSpec::smallest_time_step, between(1e-5, 1),
           "An adaptive time step below this stops the run as a fault.");
     s.key("iteration_count", "", &SolverSpec::iteration_count, between(1, 1000), "Solver iterations per time step.");
@@ -158,8 +160,8 @@ Section declare_solver() {
     s.optional_key("grid_cell_m", "m", &SolverSpec::grid_cell, between(1e-3, 1000),
                    "the terrain's cell, or the largest whole fraction of it up to 2.5 m",
                    "Cell of the depth-averaged model.");
-    s.rule([](const SolverSpec& solver, const SceneSpec&, double) -> std::optional<Violation> {
-        const double small = solver.smallest_time_step, large = solver.largest_time_step;
+    s.rule([](const SolverSpec& solver, const SceneSpec&, double spacing) -> std::optional<Violation> {
+        const double small = solver.smallest_time_step, large = largest_time_step(solver, spacing);
         if (small <= large) return {};
         const bool small_given = small != SolverSpec{}.smallest_time_step;
         return Violation{
@@ -192,14 +194,24 @@ Section declare_outputs() {
         .assumes("Reference area of impact pressure, edge of the square");
     s.key("deposited_speed_mps", "m/s", &OutputSpec::deposited_speed, above_to(0, 100),
           "Slower debris counts as deposited.");
-    s.key("particle_series_interval_s", "s", &OutputSpec::particle_series_interval, between(0, 1e7),
-          "Simulated time between particle frames for ParaView; 0 writes none.");
+    s.key("series", "", &OutputSpec::series, anything(),
+          fmt::format("Formats in which the run over time is also written: {}.", fmt::join(series_formats, ", ")));
+    s.key("series_interval_s", "s", &OutputSpec::series_interval, between(0.001, 1e7),
+          "Simulated time between the frames of the run over time.");
     s.choice("intensity_guideline", &OutputSpec::intensity_guideline,
              {"swiss_debris_flow", "swiss_flood", "garcia_2003"},
              "Whose classes of intensity are mapped from peak depth and peak speed: debris flows or floods after the "
              "Swiss recommendation (BWW, BRP & BUWAL 1997), or debris flows after García et al. (2003).");
     s.key("peak_thickness", "", &OutputSpec::peak_thickness, anything(),
           "Also writes peak_thickness.tif, the peak depth normal to the slope.");
+    s.rule([](const OutputSpec& outputs, const SceneSpec&, double) -> std::optional<Violation> {
+        for (const std::string& format : outputs.series) {
+            if (std::find(series_formats.begin(), series_formats.end(), format) != series_formats.end()) continue;
+            return Violation{"series", fmt::format(": \"{}\" is refused; each must be one of \"{}\"", format,
+                                                   fmt::join(series_formats, "\", \""))};
+        }
+        return {};
+    });
     return s.take();
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <optional>
 #include <string>
 #include <vector>
@@ -215,10 +216,10 @@ struct SolverSpec {
     std::optional<int> target_particle_count;  ///< of the volume of releases and inflows
     static constexpr int usual_particle_count = 10000;
     int particle_limit = 2000000;
-    std::optional<double> time_step;         ///< s, fixed; absent: adaptive, see displacement_limit
-    double displacement_limit = 0.5;         ///< maximum displacement of a particle in an adaptive step, in spacings
-    double largest_time_step = 1.0 / 60;     ///< s, upper bound of the adaptive step
-    double smallest_time_step = 1.0 / 3840;  ///< s, an adaptive step below it stops the run as a fault
+    std::optional<double> time_step;  ///< s, fixed; absent: adaptive, see displacement_limit
+    double displacement_limit = 0.5;  ///< maximum displacement of a particle in an adaptive step, in spacings
+    std::optional<double> largest_time_step = {};  ///< s, upper bound of the adaptive step; see largest_time_step()
+    double smallest_time_step = 1.0 / 3840;        ///< s, an adaptive step below it stops the run as a fault
     int iteration_count = 4;
     int extra_iteration_count = 12;  ///< maximum extra iterations of a step while debris is squeezed
     KernelChoice kernel = KernelChoice::wendland_c2;
@@ -240,17 +241,21 @@ struct SolverSpec {
 /// Whose intensity classes are mapped; the tables are in report/intensity.cpp.
 enum class GuidelineChoice { swiss_debris_flow, swiss_flood, garcia_2003 };
 
+/// Formats of the run over time.
+inline constexpr std::array series_formats = {"netcdf", "geotiff", "paraview"};
+
 /// `[outputs]`
 struct OutputSpec {
-    std::optional<double> map_cell;       ///< m; absent: a whole fraction of the terrain's cell, near 2.5 spacings
-    double sample_interval = 0.1;         ///< s, rows of timeseries.csv
-    double chainage_interval = 1;         ///< m, rows of front.csv
-    double front_velocity_window = 10;    ///< m of chainage over which d(chainage)/dt is fitted
-    double arrival_depth = 0.1;           ///< m, debris has arrived in a map cell above this depth
-    double impact_filter_window = 0.2;    ///< s, averaging window of force and pressure on buildings
-    double impact_patch_edge = 1;         ///< m, of the squares of a wall over which impact pressure is averaged
-    double deposited_speed = 0.1;         ///< m/s, slower debris counts as deposited
-    double particle_series_interval = 0;  ///< s between ParaView frames; 0: none
+    std::optional<double> map_cell;     ///< m; absent: a whole fraction of the terrain's cell, near 2.5 spacings
+    double sample_interval = 0.1;       ///< s, rows of timeseries.csv
+    double chainage_interval = 1;       ///< m, rows of front.csv
+    double front_velocity_window = 10;  ///< m of chainage over which d(chainage)/dt is fitted
+    double arrival_depth = 0.1;         ///< m, debris has arrived in a map cell above this depth
+    double impact_filter_window = 0.2;  ///< s, averaging window of force and pressure on buildings
+    double impact_patch_edge = 1;       ///< m, of the squares of a wall over which impact pressure is averaged
+    double deposited_speed = 0.1;       ///< m/s, slower debris counts as deposited
+    std::vector<std::string> series;    ///< formats in which the run over time is written, of series_formats
+    double series_interval = 1;         ///< s between its frames
     GuidelineChoice intensity_guideline = GuidelineChoice::swiss_debris_flow;
     bool peak_thickness = false;  ///< also a map of the peak thickness normal to the slope
 };

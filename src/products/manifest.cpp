@@ -137,7 +137,7 @@ Json results(const run::RunResult& result) {
             {"barriers", barriers.all},
             {"barriers_hit", barriers.hit},
             {"structures", structures_json(o)},
-            {"compression", compression_json(o)}};
+            {"compression", result.depth_averaged() ? Json() : compression_json(o)}};
 }
 
 Json performance(const run::RunResult& result) {
@@ -223,6 +223,13 @@ const char* status_text(run::RunStatus status) {
             return "interrupted";
         case run::RunStatus::fault:
             return "fault";
+    }
+    return "";
+}
+
+std::string scene_hash(const scene::Scene& scene) {
+    for (const scene::InputFile& input : scene.inputs) {
+        if (input.role == "scene") return input.hash;
     }
     return "";
 }

@@ -15,20 +15,6 @@
 namespace talus::products {
 namespace {
 
-/// What a map still says of its run when it lies alone in somebody's folder.
-std::vector<std::pair<std::string, std::string>> origin_of(const scene::Scene& scene, const run::RunResult& result) {
-    std::string scene_hash;
-    for (const scene::InputFile& input : scene.inputs) {
-        if (input.role == "scene") scene_hash = input.hash;
-    }
-    return {{"TIFFTAG_SOFTWARE", std::string("talus ") + TALUS_VERSION},
-            {"TITLE", scene.spec.scene.title},
-            {"SCENE_HASH", scene_hash},
-            {"RESULT_HASH", to_hex(result.hash)},
-            {"SIMULATED_TIME_S", fmt::format("{}", result.simulated_time)},
-            {"STATUS", status_text(result.status)}};
-}
-
 Status write_map(const report::HazardMap& map, const Grid<float>& si, const scene::Scene& scene,
                  const run::RunResult& result, const std::filesystem::path& folder, LayerDefinition& layers) {
     const Grid<float> grid = report::in_unit(si, map.factor);
@@ -41,6 +27,15 @@ Status write_map(const report::HazardMap& map, const Grid<float>& si, const scen
 }
 
 }  // namespace
+
+std::vector<std::pair<std::string, std::string>> origin_of(const scene::Scene& scene, const run::RunResult& result) {
+    return {{"TIFFTAG_SOFTWARE", std::string("talus ") + TALUS_VERSION},
+            {"TITLE", scene.spec.scene.title},
+            {"SCENE_HASH", scene_hash(scene)},
+            {"RESULT_HASH", to_hex(result.hash)},
+            {"SIMULATED_TIME_S", fmt::format("{}", result.simulated_time)},
+            {"STATUS", status_text(result.status)}};
+}
 
 Status write_maps(const scene::Scene& scene, const run::RunResult& result, const std::filesystem::path& folder,
                   LayerDefinition& layers) {

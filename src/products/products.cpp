@@ -44,8 +44,10 @@ Status write_products(const scene::Scene& scene, const run::RunResult& result, c
     TALUS_TRY(write_tables(scene, result, folder, changed));
     TALUS_TRY(write_vectors(scene, result, folder, layers));
     TALUS_TRY(layers.write(folder));
+    TALUS_TRY(write_kml(scene, result, folder));
     TALUS_TRY(write_comparisons(comparisons, result, folder));
     TALUS_TRY(write_report(scene, result, comparisons, folder));
+    TALUS_TRY(write_stac_item(scene, result, folder));
     // Last, as it lists the files; a folder that has one is complete.
     return write_manifest(scene, result, comparisons, folder);
 }

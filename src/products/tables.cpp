@@ -6,6 +6,7 @@
 #include "products/csv.hpp"
 #include "products/text_file.hpp"
 #include "products/writers.hpp"
+#include "report/intensity.hpp"
 
 namespace talus::products {
 

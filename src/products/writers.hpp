@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "core/result.hpp"
@@ -30,6 +31,16 @@ namespace talus::products {
 [[nodiscard]] Status write_vectors(const scene::Scene& scene, const run::RunResult& result,
                                    const std::filesystem::path& folder, LayerDefinition& layers);
 
+/// results.kml, for Google Earth and phones: structures that were hit, with when and how hard, the outline of
+/// inundation and bands of arrival time. None where the reference system is local.
+[[nodiscard]] Status write_kml(const scene::Scene& scene, const run::RunResult& result,
+                               const std::filesystem::path& folder);
+
+/// stac_item.json: place, time, software and files of the run, as a catalogue of geodata reads them (SpatioTemporal
+/// Asset Catalog 1.0.0). Lists the files in the folder: call it after they are written.
+[[nodiscard]] Status write_stac_item(const scene::Scene& scene, const run::RunResult& result,
+                                     const std::filesystem::path& folder);
+
 /// convergence.csv, variants.csv: a row for the base and one per variant, with values, changes in percent and cost.
 [[nodiscard]] Status write_comparisons(const std::vector<run::Comparison>& comparisons, const run::RunResult& base,
                                        const std::filesystem::path& folder);
@@ -44,6 +55,13 @@ namespace talus::products {
 
 /// "complete", "interrupted" or "fault".
 [[nodiscard]] const char* status_text(run::RunStatus status);
+
+/// What a map still says of its run when it lies alone in somebody's folder, by key of a GeoTIFF.
+[[nodiscard]] std::vector<std::pair<std::string, std::string>> origin_of(const scene::Scene& scene,
+                                                                         const run::RunResult& result);
+
+/// The hash of the scene file.
+[[nodiscard]] std::string scene_hash(const scene::Scene& scene);
 
 /// The caveat that every product carries: " (reconstruction, partial: interrupted)", or nothing.
 [[nodiscard]] std::string caveat(const scene::Scene& scene, const run::RunResult& result);

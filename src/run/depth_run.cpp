@@ -3,20 +3,27 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <optional>
 
 #include <fmt/format.h>
 
 #include "core/try.hpp"
 #include "depth/entrainment.hpp"
+#include "depth/inflow.hpp"
 #include "depth/material.hpp"
 #include "observe/followed_path.hpp"
 #include "observe/grid_observer.hpp"
 #include "run/depth_grid.hpp"
+#include "run/forecast.hpp"
+#include "run/grid_fault.hpp"
 #include "run/stop_rule.hpp"
 #include "run/threads.hpp"
+#include "sim/sources/seed.hpp"
 
 namespace talus::run {
 namespace {
+
+constexpr std::uint64_t steps_between_good_grids = 64;  // a look at all cells takes less than a step
 
 /// A run of the depth-averaged model, step by step.
 class GridRun {
@@ -25,31 +32,44 @@ class GridRun {
         : scene_(scene),
           ground_(grid_ground(scene)),
           solver_(ground_.bed, depth::material_of(scene.spec.material), ground_.values),
+          inflows_(solver_, scene.inflows),
           bed_(grid_bed(scene, ground_)),
-          observer_(solver_, scene.flow_path, scene.spec.outputs, ground_.structures) {
+          observer_(solver_, scene.flow_path, scene.spec.outputs, ground_.structures),
+          clock_(scene.spec.solver) {
         for (const terrain::Release& release : scene.releases) held_ += release.volume;
         release_due();
     }
 
+    /// Errors: an inflow that no cell takes.
+    [[nodiscard]] Status check_inflows() const {
+        const std::size_t k = inflows_.first_unplaced();
+        if (k == scene_.inflows.size()) return {};
+        return Error{
+            fmt::format("{}: inflow \"{}\" is refused; it lies on no cell of the depth-averaged model whose ground is "
+                        "known and free of structures (cells of {:.4g} m)",
+                        scene_.file.string(), scene_.inflows[k].name, solver_.geometry().cell)};
+    }
     /// False: it is over; see stop_reason().
     bool advance() {
         const params::SolverSpec& spec = scene_.spec.solver;
+        keep_good_state();
         const auto start = std::chrono::steady_clock::now();
         double longest = std::min(scene_.spec.outputs.sample_interval, spec.end_time - solver_.time());
         for (const terrain::Release& release : scene_.releases) {
             const double wait = release.spec.start_time - solver_.time();
             if (wait > 0) longest = std::min(longest, wait);
         }
-        const Status stepped = solver_.advance(longest);
+        const Result<double> stepped = inflows_.advance(solver_, longest, observer_.released());
         wall_time_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
         smallest_ = std::min(smallest_, solver_.time_step());
         largest_ = std::max(largest_, solver_.time_step());
+        observer_.note_inflow(stepped ? *stepped : 0);
         observer_.note_entrainment(bed_.entrain(solver_));
         observer_.after_step(solver_, held_, wall_time_ > 0 ? static_cast<double>(solver_.steps()) / wall_time_ : 0);
         release_due();
         if (!stepped) {
-            fault_ = true;
-            stop_reason_ = stepped.error().message;
+            fault_ = record_grid_fault(ground_.bed, good_, solver_, stepped.error().message);
+            stop_reason_ = stepped.error().message + fault_->sentence;
         } else if (solver_.time() >= spec.end_time - 1e-9) {
             stop_reason_ = fmt::format("reached solver.end_time_s = {:.4g}", spec.end_time);
         } else if (at_rest()) {
@@ -59,15 +79,21 @@ class GridRun {
         return stop_reason_.empty();
     }
 
-    [[nodiscard]] Progress progress() const {
+    [[nodiscard]] double time() const { return solver_.time(); }
+    [[nodiscard]] bool fault() const { return fault_.has_value(); }
+    [[nodiscard]] Frame frame() const {
+        return {solver_.time(), observer_.present(solver_), observer_.thinnest_depth()};
+    }
+    [[nodiscard]] const depth::Solver& solver() const { return solver_; }
+    [[nodiscard]] Progress progress() {
+        clock_.tick(wall_time_, solver_.time(), [&] { return outlook(); });
         Progress progress{};
         progress.time = solver_.time();
         progress.end_time = scene_.spec.solver.end_time;
         progress.real_time_factor = wall_time_ > 0 ? solver_.time() / wall_time_ : 0;
         progress.front_chainage = observer_.front_chainage();
-        progress.share_done = std::min(1.0, progress.time / progress.end_time);
-        progress.wall_remaining =
-            progress.real_time_factor > 0 ? (progress.end_time - progress.time) / progress.real_time_factor : 0;
+        progress.share_done = clock_.share_done();
+        progress.wall_remaining = clock_.wall_remaining();
         progress.step = solver_.steps();
         return progress;
     }
@@ -77,6 +103,7 @@ class GridRun {
         result.status = fault_ ? RunStatus::fault : stop_reason_.empty() ? RunStatus::interrupted : RunStatus::complete;
         result.stop_reason =
             stop_reason_.empty() ? fmt::format("stopped by the user at t = {:.4g} s", solver_.time()) : stop_reason_;
+        result.fault = fault_;
         sim::Ground ground(scene_.terrain);
         ground.bed = terrain_bed(scene_, solver_.geometry(), bed_.bed());
         result.observation = observer_.finish(solver_, ground, held_);
@@ -100,6 +127,11 @@ class GridRun {
     }
 
   private:
+    void keep_good_state() {
+        if (solver_.steps() % steps_between_good_grids != 0 && released_ == good_released_) return;
+        good_ = GridState(solver_);
+        good_released_ = released_;
+    }
     void release_due() {
         for (; released_ < order().size(); ++released_) {
             const terrain::Release& release = scene_.releases[order()[released_]];
@@ -126,25 +158,46 @@ class GridRun {
         const params::SolverSpec& spec = scene_.spec.solver;
         const observe::TimeSample& now = observer_.latest();
         const double debris = now.volume_moving + now.volume_deposited;
-        const bool waits =
-            released_ < scene_.releases.size() && std::isfinite(scene_.releases[order()[released_]].spec.start_time);
+        const bool waits = inflows_.to_come() || (released_ < scene_.releases.size() &&
+                                                  std::isfinite(scene_.releases[order()[released_]].spec.start_time));
         if (waits || spec.stop_moving_share <= 0 || now.volume_moving >= spec.stop_moving_share * debris) {
             moved_until_ = now.time;
         }
         return now.time - moved_until_ >= spec.stop_duration;
     }
 
+    [[nodiscard]] Outlook outlook() {
+        if (!sliding_) {
+            const double cell = solver_.geometry().cell;
+            sliding_ = sim::make_model(scene_.spec.material, scene_.spec.solver, cell, scene_.cover);
+            sliding_ground_ = sim::Ground(scene_.terrain, scene_.buildings, cell);
+        }
+        Outlook outlook = outlook_of(solver_, *sliding_, sliding_ground_, scene_.spec.outputs.deposited_speed);
+        for (const terrain::Release& release : scene_.releases) {
+            const double wait = release.spec.start_time - solver_.time();
+            if (std::isfinite(wait)) outlook.wait = std::max(outlook.wait, wait);
+        }
+        return outlook;
+    }
+
     const scene::Scene& scene_;
     GridGround ground_;
     depth::Solver solver_;
+    depth::Inflows inflows_;
     depth::Entrainment bed_;
     observe::GridObserver observer_;
     std::vector<std::size_t> order_;
     std::size_t released_ = 0;
     double held_ = 0, moved_until_ = 0;
     double wall_time_ = 0, smallest_ = 1e9, largest_ = 0;
-    bool fault_ = false;
+    /// Of a few steps ago, after the last release: a fault is explained with it.
+    GridState good_;
+    std::size_t good_released_ = 0;
+    std::optional<FaultRecord> fault_;
     std::string stop_reason_;
+    RunClock clock_;
+    std::optional<sim::Model> sliding_;  ///< what the clock's blocks slide by; made when it is asked
+    sim::Ground sliding_ground_;
 };
 
 }  // namespace
@@ -153,10 +206,21 @@ Result<RunResult> run_depth_averaged(const scene::Scene& scene, const RunOptions
     const Threads threads(scene.spec.solver.thread_count);
     return threads.execute([&]() -> Result<RunResult> {
         GridRun run(scene);
+        TALUS_TRY(run.check_inflows());
         const auto stopped = [&] { return options.stop_requested && options.stop_requested->load(); };
-        while (!stopped() && run.advance()) {
+        FrameClock clock(scene, options);
+        const auto show_frame = [&](bool at_end = false) {
+            if (clock.due(run.time(), at_end)) options.on_frame(run.frame());
+        };
+        show_frame();
+        for (bool goes_on = true; goes_on && !stopped();) {
+            goes_on = run.advance();
+            if (options.on_grid_step) options.on_grid_step(run.solver());
+            if (!goes_on) break;
+            show_frame();
             if (options.on_progress) options.on_progress(run.progress());
         }
+        if (!run.fault()) show_frame(true);
         return run.result(threads.count());
     });
 }

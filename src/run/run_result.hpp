@@ -22,7 +22,7 @@ enum class RunStatus { complete, interrupted, fault };
 struct RunResult {
     RunStatus status = RunStatus::complete;
     std::string stop_reason;           ///< "debris came to rest (less than 0.1 % of it moving for 3 s)", the fault, ...
-    std::optional<FaultRecord> fault;  ///< of particles, at fault
+    std::optional<FaultRecord> fault;  ///< at fault
     observe::Observation observation;
     sim::StageTimes stage_times;
     std::uint64_t hash = 0;       ///< of time, ids, positions and velocities at the end, in id order

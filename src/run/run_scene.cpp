@@ -5,21 +5,29 @@
 #include <fmt/format.h>
 
 #include "run/depth_run.hpp"
+#include "run/forecast.hpp"
 #include "run/run.hpp"
 
 namespace talus::run {
 namespace {
 
-Progress progress_of(const Run& run) {
+Outlook look_at(const scene::Scene& scene, const Run& run) {
+    Outlook outlook = outlook_of(run.simulation(), scene.spec.outputs.deposited_speed);
+    for (const terrain::Inflow& inflow : scene.inflows) {
+        outlook.wait = std::max(outlook.wait, inflow.hydrograph.back().time - run.state().time);
+    }
+    return outlook;
+}
+
+Progress progress_of(const Run& run, const RunClock& clock) {
     const sim::State& state = run.state();
     Progress progress{};
     progress.time = state.time;
     progress.end_time = run.model().solver.end_time;
     progress.real_time_factor = run.wall_time() > 0 ? state.time / run.wall_time() : 0;
     progress.front_chainage = run.observer().front_chainage();
-    progress.share_done = std::min(1.0, state.time / progress.end_time);
-    progress.wall_remaining =
-        progress.real_time_factor > 0 ? (progress.end_time - state.time) / progress.real_time_factor : 0;
+    progress.share_done = clock.share_done();
+    progress.wall_remaining = clock.wall_remaining();
     progress.step = state.step;
     progress.particles = state.count;
     return progress;
@@ -32,19 +40,23 @@ Result<RunResult> run_scene(const scene::Scene& scene, const RunOptions& options
     const auto started = Run::start(scene);
     if (!started) return Error{scene.file.string() + ": " + started.error().message};
     Run& run = **started;
-    const double frame_interval = scene.spec.outputs.particle_series_interval;
-    double next_frame = 0;
-    const auto show_frame = [&] {
-        if (!options.on_frame || frame_interval <= 0 || run.state().time < next_frame - 1e-9) return;
-        options.on_frame(run.ground().terrain.frame(), run.state());
-        next_frame += frame_interval;
+    FrameClock clock(scene, options);
+    const auto show_frame = [&](bool at_end = false) {
+        if (!clock.due(run.state().time, at_end)) return;
+        const observe::MapAccumulator& maps = run.observer().maps();
+        options.on_frame(
+            {run.state().time, maps.present(), maps.thinnest_depth(), &run.ground().terrain.frame(), &run.state()});
     };
     const auto stopped = [&] { return options.stop_requested && options.stop_requested->load(); };
+    RunClock run_clock(scene.spec.solver);
     show_frame();
     while (!stopped() && run.advance()) {
         show_frame();
-        if (options.on_progress) options.on_progress(progress_of(run));
+        if (!options.on_progress) continue;
+        run_clock.tick(run.wall_time(), run.state().time, [&] { return look_at(scene, run); });
+        options.on_progress(progress_of(run, run_clock));
     }
+    if (run.phase() != RunPhase::fault) show_frame(true);
     return run.result();
 }
 

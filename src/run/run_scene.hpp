@@ -5,6 +5,8 @@
 #include <functional>
 
 #include "core/result.hpp"
+#include "depth/solver.hpp"
+#include "observe/map_accumulator.hpp"
 #include "run/run_result.hpp"
 #include "scene/scene.hpp"
 #include "sim/model.hpp"
@@ -23,10 +25,40 @@ struct Progress {
     std::uint32_t particles;
 };
 
+/// The debris at one moment.
+struct Frame {
+    double time = 0;                          ///< s
+    observe::MapAccumulator::Present debris;  ///< over the map's cells
+    double thinnest_depth = 0;                ///< m; thinner debris has no speed
+    const LocalFrame* frame = nullptr;        ///< of the particles
+    const sim::State* particles = nullptr;    ///< null: depth-averaged
+};
+
 struct RunOptions {
-    std::function<void(const Progress&)> on_progress;                    ///< called after every step
-    std::function<void(const LocalFrame&, const sim::State&)> on_frame;  ///< called every particle_series_interval
-    const std::atomic<bool>* stop_requested = nullptr;                   ///< ends the run as interrupted
+    std::function<void(const Progress&)> on_progress;  ///< called after every step
+    /// Called at the start, every outputs.series_interval_s and at the end, unless that is a fault.
+    std::function<void(const Frame&)> on_frame;
+    std::function<void(const depth::Solver&)> on_grid_step = {};  ///< called after every step of that model
+    const std::atomic<bool>* stop_requested = nullptr;            ///< ends the run as interrupted
+};
+
+/// Says when a frame is due.
+class FrameClock {
+  public:
+    FrameClock(const scene::Scene& scene, const RunOptions& options)
+        : interval_(scene.spec.outputs.series_interval), wanted_(options.on_frame != nullptr) {}
+
+    /// Whether one is due at `time`, s; at the end of the run, whether there is none at that time.
+    [[nodiscard]] bool due(double time, bool at_end = false) {
+        if (!wanted_ || time <= latest_ || (!at_end && time < next_ - 1e-9)) return false;
+        while (next_ <= time + 1e-9) next_ += interval_;
+        latest_ = time;
+        return true;
+    }
+
+  private:
+    double interval_, next_ = 0, latest_ = -1;
+    bool wanted_;
 };
 
 /// Runs a scene from beginning to end: until debris rests, end_time, a fault, or stop_requested.

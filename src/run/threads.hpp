@@ -1,5 +1,6 @@
 #pragma once
 
+#include <memory>
 #include <optional>
 
 #include <tbb/global_control.h>
@@ -18,15 +19,23 @@ class Threads {
     /// Executes the work on these threads, including the caller's, and returns its result.
     template <class Work>
     decltype(auto) execute(Work&& work) const {
-        return arena_.execute(work);
+        return arena_->execute(work);
     }
 
   private:
+    /// Keeps the arena for the next piece of work with as many threads: oneTBB (2021.8) holds on to some 4 KiB per
+    /// thread of each arena that ends, and a session has a new run with every restart.
+    struct Keep {
+        void operator()(tbb::task_arena* arena) const;
+    };
+    using Arena = std::unique_ptr<tbb::task_arena, Keep>;
+    static Arena arena_of(int count);
+
     int count_;
     // More threads than the processor has need more than an arena. The smallest of several such limits applies to the
     // whole program, so none is set for fewer threads: it would slow all other computation.
     std::optional<tbb::global_control> limit_;
-    mutable tbb::task_arena arena_;
+    Arena arena_;
 };
 
 }  // namespace talus::run

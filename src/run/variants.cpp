@@ -8,6 +8,7 @@
 
 #include "core/try.hpp"
 #include "observe/observer.hpp"
+#include "params/time_step.hpp"
 #include "scene/particle_spacing.hpp"
 #include "sim/physics/viscosity.hpp"
 #include "terrain/map_cell.hpp"
@@ -21,13 +22,17 @@ double particles_of(const scene::Scene& scene) {
     return total_volume(scene) / std::pow(particle_spacing(scene), 3);
 }
 
+double largest_step(const scene::Scene& scene) {
+    return params::largest_time_step(scene.spec.solver, particle_spacing(scene));
+}
+
 /// What a run costs, in arbitrary units: particles times iterations, over the time step at a speed that debris has.
 double effort_of(const scene::Scene& scene) {
     constexpr double usual_speed = 10;         // m/s
     constexpr double beside_iterations = 2.2;  // cost of neighbours, contacts and observation, in iterations
     const params::SolverSpec& solver = scene.spec.solver;
     const double adaptive =
-        std::min(solver.largest_time_step, solver.displacement_limit * particle_spacing(scene) / usual_speed);
+        std::min(largest_step(scene), solver.displacement_limit * particle_spacing(scene) / usual_speed);
     return particles_of(scene) * (solver.iteration_count + beside_iterations) / solver.time_step.value_or(adaptive);
 }
 
@@ -86,7 +91,7 @@ std::vector<Variant> refinements(const scene::Scene& base) {
     if (solver.time_step) {
         step.overrides = {fmt::format("solver.time_step_s={}", *solver.time_step / 2)};
     } else {
-        step.overrides = {fmt::format("solver.largest_time_step_s={}", solver.largest_time_step / 2),
+        step.overrides = {fmt::format("solver.largest_time_step_s={}", largest_step(base) / 2),
                           fmt::format("solver.smallest_time_step_s={}", solver.smallest_time_step / 2),
                           fmt::format("solver.displacement_limit={}", solver.displacement_limit / 2)};
     }

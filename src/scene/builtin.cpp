@@ -25,11 +25,11 @@ Result<std::filesystem::path> unpack_builtin_scene(const std::filesystem::path& 
     return folder / "scene.toml";
 }
 
-void name_builtin_files(Scene& scene, const std::filesystem::path& folder) {
+void name_unpacked_files(Scene& scene, const std::filesystem::path& folder, const std::string& name) {
     const std::string prefix = (folder / "").string();
     const auto named = [&](const std::string& path) {
         if (!path.starts_with(prefix)) return path;
-        return fmt::format("built-in:{}/{}", builtin_scene_name, path.substr(prefix.size()));
+        return fmt::format("{}/{}", name, path.substr(prefix.size()));
     };
     scene.file = named(scene.file.string());
     for (InputFile& input : scene.inputs) input.path = named(input.path);
@@ -48,7 +48,7 @@ void name_builtin_files(Scene& scene, const std::filesystem::path& folder) {
 Result<Scene> load_builtin_scene(const std::filesystem::path& folder, const std::vector<std::string>& overrides) {
     TALUS_ASSIGN(const auto file, unpack_builtin_scene(folder));
     TALUS_ASSIGN(auto scene, load_scene(file, overrides));
-    name_builtin_files(scene, folder);
+    name_unpacked_files(scene, folder, fmt::format("built-in:{}", builtin_scene_name));
     return scene;
 }
 

@@ -8,6 +8,7 @@
 #include <fmt/ranges.h>
 
 #include "core/try.hpp"
+#include "scene/limits.hpp"
 
 namespace talus::scene {
 namespace {
@@ -47,7 +48,6 @@ constexpr std::array particle_keys = {"material.building_friction_coefficient",
                                       "solver.depenetration_speed_mps",
                                       "solver.rest_duration_s",
                                       "solver.compression_limit",
-                                      "outputs.particle_series_interval_s",
                                       "outputs.map_cell_m",
                                       "outputs.impact_filter_window_s",
                                       "outputs.impact_patch_edge_m"};
@@ -82,10 +82,6 @@ double grid_cell(const Scene& scene) {
 
 Status check_depth_averaged(const ParsedScene& parsed, Scene& scene) {
     const params::SceneSpec& spec = scene.spec;
-    if (!spec.inflows.empty()) return refuse(parsed, "inflow[0]", "has no inflow yet");
-    if (spec.outputs.particle_series_interval > 0) {
-        return refuse(parsed, "outputs.particle_series_interval_s", "has no particles to write");
-    }
     for (std::size_t k = 0; k < spec.releases.size(); ++k) {
         if (!spec.releases[k].pore_pressure_ratio) continue;
         return refuse(parsed, fmt::format("release[{}].pore_pressure_ratio", k),
@@ -101,7 +97,12 @@ Status check_depth_averaged(const ParsedScene& parsed, Scene& scene) {
                         parsed.at("solver.grid_cell_m"), cell, cells, most_cells,
                         std::ceil(1e3 * std::sqrt(e.width() * e.height() / most_cells)) / 1e3)};
     }
+    TALUS_TRY(check_series(parsed, scene, cell, 0));
     std::vector<std::string> unused;
+    const auto dense = [](const terrain::Inflow& inflow) { return inflow.has_density(); };
+    if (std::any_of(scene.inflows.begin(), scene.inflows.end(), dense)) {
+        unused.emplace_back("the density of hydrographs");
+    }
     for (const char* key : particle_keys) {
         if (scene.given_keys.contains(key)) unused.emplace_back(key);
     }

@@ -1,5 +1,6 @@
 #include "scene/limits.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <unistd.h>
 
@@ -15,6 +16,7 @@ namespace talus::scene {
 namespace {
 
 constexpr double max_map_cells = 4e8, max_front_rows = 1e6;
+constexpr double max_series_frames = 10000, max_series_values = 1e10;
 constexpr double max_cells_per_spacing = 50;
 /// Of overlapping buildings and barriers, by an estimate that is some five times too high: half a gigabyte.
 constexpr double max_wall_pieces = 5e7;
@@ -88,7 +90,7 @@ Status check_outputs(const ParsedScene& parsed, const Scene& scene, double spaci
                                  key_with_value(parsed, "outputs", "chainage_interval_m", outputs.chainage_interval),
                                  length, length / max_front_rows)};
     }
-    return {};
+    return check_series(parsed, scene, cell, total_volume(scene) / (spacing * spacing * spacing));
 }
 
 Status check_walls(const ParsedScene& parsed, const Scene& scene) {
@@ -117,6 +119,22 @@ Status check_memory(const ParsedScene& parsed, const Scene& scene, double spacin
 double memory_needed(const Scene& scene, double particles) {
     return particles * bytes_per_particle +
            static_cast<double>(scene.terrain.elevation().geometry.size()) * bytes_per_terrain_cell;
+}
+
+Status check_series(const ParsedScene& parsed, const Scene& scene, double cell, double particles) {
+    const params::OutputSpec& outputs = scene.spec.outputs;
+    if (outputs.series.empty()) return {};
+    const Extent extent = scene.terrain.elevation().geometry.extent();
+    const double cells = extent.width() * extent.height() / (cell * cell);
+    const double end = scene.spec.solver.end_time, frames = end / outputs.series_interval + 1;
+    const double most = std::min(max_series_frames, max_series_values / std::max(cells, particles));
+    if (frames <= most) return {};
+    return Error{fmt::format(
+        "{} is refused; up to solver.end_time_s = {:.6g} these are {:.0f} frames of up to {:.3g} map cells{}, "
+        "and there may be {:.0f}: it must be at least {:.3g} (s)",
+        key_with_value(parsed, "outputs", "series_interval_s", outputs.series_interval), end, std::floor(frames), cells,
+        particles > 0 ? fmt::format(" and {:.3g} particles", particles) : "", std::floor(most),
+        std::ceil(1e3 * end / std::max(1.0, most - 1)) / 1e3)};
 }
 
 Status check_limits(const ParsedScene& parsed, const Scene& scene) {

@@ -9,6 +9,10 @@ namespace talus::scene {
 /// its value and what is allowed.
 [[nodiscard]] Status check_limits(const ParsedScene& parsed, const Scene& scene);
 
+/// Whether the run over time, if asked for, has a number of frames that makes sense. `cell`: m, of the maps;
+/// `particles`: of the run, 0 for the depth-averaged model. Part of check_limits() and check_depth_averaged().
+[[nodiscard]] Status check_series(const ParsedScene& parsed, const Scene& scene, double cell, double particles);
+
 /// Measured with a million particles (docs/performance.md).
 inline constexpr double bytes_per_particle = 1500;
 

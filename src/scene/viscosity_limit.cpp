@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "params/time_step.hpp"
 #include "sim/physics/kernel.hpp"
 #include "sim/physics/viscosity.hpp"
 
@@ -13,8 +14,8 @@ namespace {
 
 /// The step that is as short as viscosity may make it.
 double shortest_step(const params::SolverSpec& solver) {
-    return solver.time_step.value_or(
-        std::max(solver.largest_time_step / sim::most_viscous_step_ratio, solver.smallest_time_step));
+    const double largest = solver.largest_time_step.value_or(sim::viscosity_reference_step);
+    return solver.time_step.value_or(std::max(sim::shortest_viscous_step(largest), solver.smallest_time_step));
 }
 
 }  // namespace
@@ -39,7 +40,8 @@ std::optional<params::Violation> too_viscous(const params::MaterialSpec& materia
         key, fmt::format(" = {:.4g} is refused; with particles of {:.3g} m and solver.{} = {:.3g} it must be at most "
                          "{:.4g}; larger particles or shorter steps allow more",
                          given, particle_spacing, solver.time_step ? "time_step_s" : "largest_time_step_s",
-                         solver.time_step.value_or(solver.largest_time_step), std::floor(1e4 * highest) / 1e4)};
+                         solver.time_step.value_or(params::largest_time_step(solver, particle_spacing)),
+                         std::floor(1e4 * highest) / 1e4)};
 }
 
 }  // namespace talus::scene

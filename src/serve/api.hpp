@@ -12,7 +12,12 @@ namespace talus::serve {
 [[nodiscard]] Router make_api(Session& session, Exports& exports, const Ensembles& ensembles,
                               Calibrations& calibrations);
 
+class Start;
+/// The routes that need no open session. nullptr: a server of one scene, without a start page.
+[[nodiscard]] Router make_start_api(Start* start);
+
 // The parts of it.
+void add_session_file_route(Router& router, Session& session);
 void add_session_routes(Router& router, Session& session);
 void add_scenario_routes(Router& router, Session& session, Exports& exports);
 void add_ensemble_routes(Router& router, const Ensembles& ensembles);

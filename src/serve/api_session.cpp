@@ -9,7 +9,6 @@
 #include "geo/orthophoto.hpp"
 #include "serve/api.hpp"
 #include "serve/json_text.hpp"
-#include "serve/openapi.hpp"
 #include "twin/json_keys.hpp"
 
 namespace talus::serve {
@@ -195,11 +194,6 @@ void control(Session& session, const Request& request, const Respond& respond) {
 }  // namespace
 
 void add_session_routes(Router& router, Session& session) {
-    router.add({"GET", "/api/openapi.json", Role::nobody, [](const Request&, const Respond& respond) {
-                    Response response;
-                    response.body = std::make_shared<const std::string>(openapi_document());
-                    respond(response);
-                }});
     router.add({"GET", "/api/session", Role::viewer, [&session](const Request& request, const Respond& respond) {
                     respond(json_response(200, session.describe(request.role)));
                 }});

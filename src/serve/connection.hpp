@@ -9,8 +9,8 @@
 
 #include "serve/access.hpp"
 #include "serve/connection_counts.hpp"
+#include "serve/open_session.hpp"
 #include "serve/router.hpp"
-#include "serve/session.hpp"
 #include "serve/site.hpp"
 
 /// Shared by the files for HTTP and WebSocket.
@@ -23,8 +23,8 @@ namespace http = boost::beast::http;
 /// Data that connections need for answers. One for all; outlives them.
 struct ServerContext {
     Access access;
-    Router router;
-    Session& session;
+    Router router;        ///< what there is without a session
+    OpenSessionPtr open;  ///< none: no scene has been chosen yet
     Site site;
     std::chrono::milliseconds patience;  ///< timeout of a silent connection, or of one that sends its header slowly
     ConnectionCounts connections;
@@ -45,8 +45,11 @@ using HttpRequest = http::request<http::string_body>;
 /// Serves HTTP on a new connection until it ends or becomes a WebSocket.
 void serve_http(asio::ip::tcp::socket socket, ServerContext& context);
 
-/// Continues with `request`, which requests a WebSocket and has passed all checks.
+/// Continues with `request`, which requests a WebSocket to the open session and has passed all checks.
 void serve_websocket(beast::tcp_stream stream, HttpRequest request, ServerContext& context, Role role,
                      const std::string& name, const std::string& former);
+
+/// To requests about a session while there is none.
+inline constexpr const char* no_session_open = "no scene is open; choose one on the start page";
 
 }  // namespace talus::serve

@@ -61,6 +61,7 @@ class HttpConnection : public std::enable_shared_from_this<HttpConnection> {
     std::optional<http::request_parser<http::string_body>> parser_;
     Request request_;
     const Route* route_ = nullptr;
+    OpenSessionPtr asked_;  // the session that route_ belongs to
     // Of the answer that is being written.
     Bytes body_;
     std::optional<http::response<http::span_body<const char>>> message_;
@@ -74,6 +75,7 @@ void HttpConnection::read_header() {
     parser_->body_limit(largest_body);
     request_ = {};
     route_ = nullptr;
+    asked_ = nullptr;
     close_ = false;
     stream_.expires_after(context_.patience);
     http::async_read_header(
@@ -146,7 +148,12 @@ std::optional<Response> HttpConnection::refusal() {
     const std::vector<std::string>* keys = &websocket_keys;
     if (!websocket) {
         auto match = context_.router.find(request_.method, request_.path);
+        if (match.route == nullptr && match.allow.empty() && context_.open) {
+            asked_ = context_.open;
+            match = asked_->router.find(request_.method, request_.path);
+        }
         if (match.route == nullptr) {
+            if (match.allow.empty() && !context_.open) return error_response(409, no_session_open);
             if (match.allow.empty()) return error_response(404, "there is no such route; see /api/openapi.json");
             Response wrong =
                 error_response(405, "this route has no method " + request_.method + "; it has " + match.allow);
@@ -198,6 +205,8 @@ void HttpConnection::handle() {
         upgrade();
     } else if (route_ == nullptr) {
         give_file();
+    } else if (asked_ && asked_ != context_.open) {
+        respond(error_response(409, "another scene has been opened; reload the page"));  // while the body came
     } else {
         stream_.expires_never();
         request_.body = std::move(parser_->get().body());
@@ -219,7 +228,11 @@ void HttpConnection::upgrade() {
         respond(error_response(400, "/ws speaks WebSocket; this was an ordinary request"));
         return;
     }
-    if (context_.session.people().count() >= context_.people_limit) {
+    if (!context_.open) {
+        respond(error_response(409, no_session_open));
+        return;
+    }
+    if (context_.open->session.people().count() >= context_.people_limit) {
         respond(error_response(503, fmt::format("{} people are here, the most there can be", context_.people_limit)));
         return;
     }

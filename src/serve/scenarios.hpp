@@ -82,6 +82,8 @@ class Scenarios {
     /// scenario then runs if `from` does, otherwise it is paused. Errors: there are max_count; as of `act`, and then
     /// there is no new scenario.
     void copy(int from, const nlohmann::json& action, const std::string& by, const Answer<Copied>& answer);
+    /// Another scenario, paused, in the place of the one of that index, if there is one.
+    void put(int index, std::unique_ptr<twin::Scenario> scenario, const std::string& title);
     /// Error: the first one cannot be removed.
     [[nodiscard]] Status remove(int index);
 

@@ -18,7 +18,8 @@
 #include "core/try.hpp"
 #include "serve/api.hpp"
 #include "serve/connection.hpp"
-#include "serve/ensembles.hpp"
+#include "serve/open_session.hpp"
+#include "serve/start.hpp"
 
 namespace talus::serve {
 namespace {
@@ -59,13 +60,11 @@ struct Server::Parts {
     [[nodiscard]] Status bind(const std::string& host, std::uint16_t port);
     void accept();
     [[nodiscard]] Thread thread_of_session();
+    void listen_for(OpenSessionPtr open);
 
     // Connections end with `io`, and so before the objects that they use.
     ServerOptions options;
-    Ensembles ensembles;
-    std::optional<Session> session;
-    std::optional<Exports> exports;
-    std::optional<Calibrations> calibrations;
+    std::optional<Start> start;
     std::optional<ServerContext> context;
     asio::io_context io{1};
     tcp::acceptor acceptor;
@@ -78,10 +77,8 @@ struct Server::Parts {
 Server::Parts::~Parts() {
     io.stop();
     if (thread.joinable()) thread.join();
-    // Threads end while everything that they notify still exists.
-    if (calibrations) calibrations->close();
-    if (session) session->close();
-    if (exports) exports->close();
+    if (start) start->close();
+    if (context && context->open) context->open->close();
 }
 
 Status Server::Parts::bind(const std::string& host, std::uint16_t port) {
@@ -126,7 +123,7 @@ Thread Server::Parts::thread_of_session() {
     made.tick_after = [this](std::chrono::milliseconds wait) {
         ticker.expires_after(wait);
         ticker.async_wait([this](boost::system::error_code error) {
-            if (!error) session->tick();
+            if (!error && context->open) context->open->session.tick();
         });
     };
     return made;
@@ -143,35 +140,37 @@ Result<std::unique_ptr<Server>> Server::listen(ServerOptions options) {
     return std::unique_ptr<Server>(new Server(std::move(parts)));
 }
 
-Status Server::serve(std::shared_ptr<const scene::Scene> scene) {
+Status Server::serve(const std::shared_ptr<const scene::Scene>& scene) {
     Parts& parts = *parts_;
-    const ServerOptions& options = parts.options;
-    TALUS_ASSIGN(parts.ensembles, Ensembles::read(options.ensembles, *scene));
-    parts.session.emplace(parts.thread_of_session(), scene, options.tokens);
-    const auto on_failure = options.on_failure ? options.on_failure : [](const std::string&) {};
-    TALUS_TRY(parts.session->open(options.scenario, on_failure));
-    parts.exports.emplace(*parts.session, options.export_folder);
-    parts.calibrations.emplace(std::move(scene), options.calibration,
-                               [&parts](nlohmann::json status) { parts.session->calibration(std::move(status)); });
-    parts.session->calibration(parts.calibrations->describe());
+    TALUS_ASSIGN(auto open, OpenSession::open(parts.thread_of_session(), scene, parts.options));
+    parts.listen_for(std::move(open));
+    return {};
+}
+
+void Server::start(StartSettings settings) {
+    Parts& parts = *parts_;
+    const std::filesystem::path file = settings.file;
+    parts.start.emplace(std::move(settings), parts.options,
+                        Start::Host{parts.thread_of_session(), [&parts] { return parts.context->open; },
+                                    [&parts](OpenSessionPtr open) { parts.context->open = std::move(open); }});
+    if (!file.empty()) {
+        asio::post(parts.io, [&parts, file] { parts.start->open_file(file); });
+    }
+    parts.listen_for(nullptr);
+}
+
+void Server::Parts::listen_for(OpenSessionPtr open) {
     const std::size_t connections = raise_connection_limit();
     const std::size_t per_address = options.connections_per_address;
-    parts.context.emplace(ServerContext{
-        Access(options.tokens, bracketed(parts.bound.address()), parts.bound.port(), options.allowed_hosts),
-        make_api(*parts.session, *parts.exports, parts.ensembles, *parts.calibrations), *parts.session, Site(),
-        options.patience, ConnectionCounts(connections, per_address > 0 ? per_address : connections / 3),
-        connections / 2});
-    if (options.run) {
-        parts.session->loop().post([](Scenarios& all) {
-            all.act(0, {{"action", "run"}}, "", [](const Result<twin::Done>&) {});
-        });
-    }
-    parts.accept();
-    parts.thread = std::thread([&parts] {
+    context.emplace(
+        ServerContext{Access(options.tokens, bracketed(bound.address()), bound.port(), options.allowed_hosts),
+                      make_start_api(start ? &*start : nullptr), std::move(open), Site(), options.patience,
+                      ConnectionCounts(connections, per_address > 0 ? per_address : connections / 3), connections / 2});
+    accept();
+    thread = std::thread([this] {
         pthread_setname_np(pthread_self(), "server");
-        parts.io.run();
+        io.run();
     });
-    return {};
 }
 
 std::uint16_t Server::port() const {
@@ -184,8 +183,13 @@ std::string Server::link(Role role) const {
                        role == Role::controller ? tokens.controller : tokens.viewer);
 }
 
-const std::vector<Route>& Server::routes() const {
-    return parts_->context->router.routes();
+std::vector<Route> Server::routes() const {
+    std::vector<Route> all = parts_->context->router.routes();
+    if (parts_->context->open) {
+        const std::vector<Route>& more = parts_->context->open->router.routes();
+        all.insert(all.end(), more.begin(), more.end());
+    }
+    return all;
 }
 
 }  // namespace talus::serve

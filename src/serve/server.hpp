@@ -32,6 +32,13 @@ struct ServerOptions {
     std::size_t connections_per_address = 0;       ///< at once; 0: a third of what the system allows in all
 };
 
+/// Of a server with a start page.
+struct StartSettings {
+    std::filesystem::path folder;   ///< keeps the list of recent scenes, own scenes and saved sessions
+    std::filesystem::path file;     ///< a scene or a saved session to open at once; empty: none
+    std::function<void()> on_quit;  ///< the user ends the program in the page
+};
+
 /// A session that users and programs access over HTTP and WebSocket, as described in docs/protocol.md. Runs on its own
 /// threads until it is destroyed.
 class Server {
@@ -39,7 +46,9 @@ class Server {
     /// Binds the port. Errors: bad address, port in use, bad tokens.
     [[nodiscard]] static Result<std::unique_ptr<Server>> listen(ServerOptions options);
     /// Opens the scene and starts answering; once. Errors: the scene cannot be run, an ensemble cannot be shown on it.
-    [[nodiscard]] Status serve(std::shared_ptr<const scene::Scene> scene);
+    [[nodiscard]] Status serve(const std::shared_ptr<const scene::Scene>& scene);
+    /// Starts answering with the start page, on which a scene is chosen; once, in place of serve().
+    void start(StartSettings settings);
     ~Server();
     Server(const Server&) = delete;
     Server& operator=(const Server&) = delete;
@@ -47,7 +56,8 @@ class Server {
     [[nodiscard]] std::uint16_t port() const;
     /// The address with a token, for a browser.
     [[nodiscard]] std::string link(Role role) const;
-    [[nodiscard]] const std::vector<Route>& routes() const;
+    /// Of the server and of the open session.
+    [[nodiscard]] std::vector<Route> routes() const;
 
   private:
     struct Parts;

@@ -94,6 +94,11 @@ void Session::leave(Viewer& viewer) {
     people_changed();
 }
 
+void Session::dismiss_all() {
+    const auto viewers = std::exchange(viewers_, {});
+    for (const auto& [viewer, view] : viewers) viewer->dismiss(message_text("ended", json::object()));
+}
+
 bool Session::receive(Viewer& viewer, std::string_view text) {
     const auto parsed = parse_json(text);
     if (!parsed || !parsed->is_object()) return false;

@@ -27,6 +27,8 @@ class Viewer {
     virtual void offer(int scenario, Bytes frame) = 0;
     /// Frames per second and scenario, at most.
     virtual void set_rate(double rate_hz) = 0;
+    /// Ends the connection once `last` is sent; it does not call the session any more.
+    virtual void dismiss(Bytes last) = 0;
 };
 
 /// Access of the session to the server's thread.
@@ -50,6 +52,8 @@ class Session final : public Watcher {
     /// Sends the current state to a new viewer. Until `leave`, `viewer` receives every change.
     void join(Viewer& viewer, Role role, const std::string& name, const std::string& former);
     void leave(Viewer& viewer);
+    /// Tells all viewers that the session has ended, and lets them go.
+    void dismiss_all();
     /// Handles a message from a viewer. False: it violates the protocol, and the connection must be closed.
     [[nodiscard]] bool receive(Viewer& viewer, std::string_view text);
     void tick();

@@ -29,6 +29,7 @@ class WebSocketViewer final : public Viewer, public std::enable_shared_from_this
   public:
     WebSocketViewer(beast::tcp_stream stream, ServerContext& context, Role role, std::string name, std::string former)
         : context_(context),
+          open_(context.open),
           count_(context.connections, address_of(stream.socket())),
           socket_(std::move(stream)),
           timer_(socket_.get_executor()),
@@ -41,6 +42,7 @@ class WebSocketViewer final : public Viewer, public std::enable_shared_from_this
     void send(Bytes text) override;
     void offer(int scenario, Bytes frame) override;
     void set_rate(double rate_hz) override;
+    void dismiss(Bytes last) override;
 
   private:
     /// The newest frame of a scenario that has not been sent, and when it may be.
@@ -58,6 +60,7 @@ class WebSocketViewer final : public Viewer, public std::enable_shared_from_this
     void end_politely(websocket::close_code code);
 
     ServerContext& context_;
+    const OpenSessionPtr open_;
     ConnectionCounts::Counted count_;
     websocket::stream<beast::tcp_stream> socket_;
     asio::steady_timer timer_;
@@ -69,7 +72,7 @@ class WebSocketViewer final : public Viewer, public std::enable_shared_from_this
     std::array<Slot, Scenarios::max_count> slots_;
     Clock::duration interval_{};
     Bytes writing_;
-    bool joined_ = false, ended_ = false, waiting_ = false, closing_ = false;
+    bool joined_ = false, ended_ = false, waiting_ = false, closing_ = false, dismissed_ = false;
     Clock::time_point second_began_{};
     int messages_ = 0;  // in this second
 };
@@ -88,9 +91,9 @@ void WebSocketViewer::accept(HttpRequest request) {
     setsockopt(raw.native_handle(), IPPROTO_TCP, TCP_NOTSENT_LOWAT, &unsent_bytes, sizeof unsent_bytes);
     const auto kept = std::make_shared<HttpRequest>(std::move(request));
     socket_.async_accept(*kept, [self = shared_from_this(), kept](beast::error_code error) {
-        if (error) return;
+        if (error || self->open_ != self->context_.open) return;
         self->joined_ = true;
-        self->context_.session.join(*self, self->role_, self->name_, self->former_);
+        self->open_->session.join(*self, self->role_, self->name_, self->former_);
         self->read();
     });
 }
@@ -112,8 +115,8 @@ void WebSocketViewer::on_message() {
         messages_ = 0;
     }
     const auto data = buffer_.cdata();
-    const bool welcome = ++messages_ <= max_messages && socket_.got_text() &&
-                         context_.session.receive(*this, {static_cast<const char*>(data.data()), data.size()});
+    const bool welcome = !dismissed_ && ++messages_ <= max_messages && socket_.got_text() &&
+                         open_->session.receive(*this, {static_cast<const char*>(data.data()), data.size()});
     buffer_.consume(buffer_.size());
     if (!welcome) {
         end_politely(websocket::close_code::policy_error);
@@ -132,6 +135,14 @@ void WebSocketViewer::send(Bytes text) {
         return;
     }
     pump();
+}
+
+void WebSocketViewer::dismiss(Bytes last) {
+    joined_ = false;
+    if (ended_) return;
+    dismissed_ = true;
+    slots_ = {};
+    send(std::move(last));
 }
 
 void WebSocketViewer::offer(int scenario, Bytes frame) {
@@ -161,6 +172,10 @@ void WebSocketViewer::pump() {
         texts_.pop_front();
         text_bytes_ -= text->size();
         write(std::move(text), true);
+        return;
+    }
+    if (dismissed_) {
+        end_politely(websocket::close_code::going_away);
         return;
     }
     const auto now = Clock::now();
@@ -215,7 +230,7 @@ void WebSocketViewer::end() {
     timer_.cancel();
     texts_.clear();
     slots_ = {};
-    if (std::exchange(joined_, false)) context_.session.leave(*this);
+    if (std::exchange(joined_, false)) open_->session.leave(*this);
     beast::error_code ignored;
     beast::get_lowest_layer(socket_).socket().close(ignored);
 }

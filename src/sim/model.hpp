@@ -7,6 +7,7 @@
 
 #include "core/geometry.hpp"
 #include "params/spec.hpp"
+#include "params/time_step.hpp"
 #include "sim/physics/boundary_table.hpp"
 #include "sim/physics/kernel.hpp"
 #include "terrain/ground_cover.hpp"
@@ -59,6 +60,8 @@ struct Model {
 
     /// The distance, m, at which a particle touches ground and walls: half its own size.
     [[nodiscard]] double contact_distance() const { return particle_spacing / 2; }
+    /// s, upper bound of the adaptive step.
+    [[nodiscard]] double largest_time_step() const { return params::largest_time_step(solver, particle_spacing); }
     [[nodiscard]] double particle_volume() const { return particle_spacing * particle_spacing * particle_spacing; }
     /// kg, of a particle at rest density; see density_of().
     [[nodiscard]] double particle_mass() const { return rest_density * particle_volume(); }

@@ -73,7 +73,7 @@ bool relax(const Model& model, const Ground& ground, State& state, const std::ve
     Ground closed = ground;
     closed.solids.close_nets();
     for (ReleaseGroup& release : still.releases) release.start_time = 0;
-    state.time_step = model.solver.largest_time_step;
+    state.time_step = model.largest_time_step();
     creep(still, closed, state, max_rounds,
           [&](const State& s) { return s.max_compression < dense_enough || !go_on(); });
     if (ended) return false;
@@ -86,7 +86,7 @@ bool relax(const Model& model, const Ground& ground, State& state, const std::ve
     still.building_friction_coefficient = model.building_friction_coefficient;
     still.cohesion = model.cohesion;
     still.cover = model.cover;
-    state.time_step = state.previous_time_step = model.solver.largest_time_step / 4;
+    state.time_step = state.previous_time_step = model.largest_time_step() / 4;
     const double scale = -model.gravity * state.time_step * state.time_step;
     for (std::uint32_t i = 0; i < state.count; ++i) {
         state.multiplier[i] = static_cast<float>(scale * overburden[state.id[i]]);
@@ -103,7 +103,7 @@ void push_apart(const Model& model, const Ground& ground, State& state) {
     constexpr int max_rounds = 100;
     Model still = without_forces(model);
     still.releases = {{"", std::numeric_limits<double>::infinity(), 0, std::numeric_limits<std::uint32_t>::max()}};
-    state.time_step = model.solver.largest_time_step;
+    state.time_step = model.largest_time_step();
     creep(still, ground, state, max_rounds, [](const State& s) { return s.max_compression < dense_enough; });
 }
 

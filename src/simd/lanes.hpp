@@ -153,6 +153,25 @@ struct LaneMask {
     }
 };
 
+/// Whole numbers side by side, such as the indices of cells.
+template <int count>
+struct LaneInts {
+    using Ints = typename LaneTypes<count>::Ints;
+    Ints v{};
+
+    LaneInts() = default;
+    TALUS_INLINE LaneInts(const Ints& ints) : v(ints) {}
+    TALUS_INLINE LaneInts(const LaneInts& o) : v(o.v) {}
+    TALUS_INLINE LaneInts& operator=(const LaneInts& o) {
+        v = o.v;
+        return *this;
+    }
+
+    TALUS_INLINE friend LaneInts operator+(const LaneInts& a, const LaneInts& b) { return {a.v + b.v}; }
+    TALUS_INLINE friend LaneInts operator*(const LaneInts& a, std::int32_t b) { return {a.v * b}; }
+    TALUS_INLINE std::int32_t operator[](int lane) const { return v[lane]; }
+};
+
 /// `count` floats side by side. Not for arrays: GCC 12 fails over an array of vectors that the baseline lacks.
 template <int count>
 struct Lanes {
@@ -214,11 +233,11 @@ struct Lanes {
         return Lanes(v);
     }
     /// Towards zero; for values that fit an int.
-    TALUS_INLINE friend Ints truncated(const Lanes& a) {
-        return __builtin_convertvector(a.v, Ints);
+    TALUS_INLINE friend LaneInts<count> truncated(const Lanes& a) {
+        return {__builtin_convertvector(a.v, Ints)};
     }
-    TALUS_INLINE static Lanes from(const Ints& ints) {
-        return Lanes(Floats(__builtin_convertvector(ints, Floats)));
+    TALUS_INLINE static Lanes from(const LaneInts<count>& ints) {
+        return Lanes(Floats(__builtin_convertvector(ints.v, Floats)));
     }
 };
 
@@ -320,15 +339,13 @@ TALUS_INLINE void store_quads(const Quads<Lanes<count>>& quads, Oct* rows) {
 namespace talus {
 
 /// rows[index] for every lane.
-template <class Ints>
-requires(!std::is_integral_v<Ints>) TALUS_INLINE auto quads_at(const Quad* rows, const Ints& index) {
-    return simd::quads_from<static_cast<int>(sizeof(Ints) / sizeof(std::int32_t))>([&](
-        int lane) __attribute__((always_inline)) { return rows[index[lane]].data(); });
+template <int count>
+TALUS_INLINE auto quads_at(const Quad* rows, const simd::LaneInts<count>& index) {
+    return simd::quads_from<count>([&](int lane) __attribute__((always_inline)) { return rows[index[lane]].data(); });
 }
 /// rows[index] and rows[index + 1].
-template <class Ints>
-requires(!std::is_integral_v<Ints>) TALUS_INLINE auto quad_pairs_at(const Quad* rows, const Ints& index) {
-    constexpr int count = static_cast<int>(sizeof(Ints) / sizeof(std::int32_t));
+template <int count>
+TALUS_INLINE auto quad_pairs_at(const Quad* rows, const simd::LaneInts<count>& index) {
     return simd::octs_from<count>([&](int lane) __attribute__((always_inline)) { return rows[index[lane]].data(); });
 }
 

@@ -169,9 +169,9 @@ std::vector<std::string> changed_inputs(const Journal& journal, const scene::Sce
 }
 
 Result<Replayed> replay(const Journal& journal, std::shared_ptr<const scene::Scene> scene,
-                        const std::function<bool(std::uint64_t)>& on_step) {
-    // A replay needs no frames.
-    TALUS_ASSIGN(auto opened, Scenario::open_at(journal, std::move(scene), {journal.overrides, 1e9, 0}));
+                        const std::function<bool(std::uint64_t)>& on_step, std::optional<ScenarioOptions> options) {
+    if (!options) options = ScenarioOptions{journal.overrides, 1e9, 0};
+    TALUS_ASSIGN(auto opened, Scenario::open_at(journal, std::move(scene), std::move(*options)));
     Scenario& scenario = *opened;
     bool stopped = false;
     const auto go_to = [&](std::uint64_t step) -> Status {

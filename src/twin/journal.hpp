@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -53,9 +54,10 @@ struct Replayed {
     std::unique_ptr<Scenario> scenario = {};  ///< as it is then
 };
 
-/// Runs a journal on its scene. `on_step` gets the number of each step; false stops. Errors: the setup does not fit the
-/// scene, an action fails, the run ends before the journal does.
+/// Runs a journal on its scene. `on_step` gets the number of each step; false stops. `options`: nothing is recorded
+/// without them. Errors: the setup does not fit the scene, an action fails, the run ends before the journal does.
 [[nodiscard]] Result<Replayed> replay(const Journal& journal, std::shared_ptr<const scene::Scene> scene,
-                                      const std::function<bool(std::uint64_t step)>& on_step = {});
+                                      const std::function<bool(std::uint64_t step)>& on_step = {},
+                                      std::optional<ScenarioOptions> options = {});
 
 }  // namespace talus::twin

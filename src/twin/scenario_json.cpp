@@ -8,6 +8,7 @@
 
 #include "core/hash.hpp"
 #include "core/number_or_null.hpp"
+#include "geo/latitude.hpp"
 #include "report/intensity.hpp"
 #include "scene/viscosity_limit.hpp"
 #include "twin/json_keys.hpp"
@@ -166,6 +167,7 @@ json Scenario::scene_json() const {
     const Extent e = scene.terrain.elevation().geometry.extent();
     const auto [lowest, highest] = elevation_range(scene.terrain);
     const GridGeometry& map = run.observer().maps().geometry();
+    const auto latitude = geo::latitude_deg(scene.crs, {0.5 * (e.x_min + e.x_max), 0.5 * (e.y_min + e.y_max)});
     json observations = json::array();
     for (const params::ObservationSpec& o : scene.spec.observations) {
         observations.push_back({{"name", o.name},
@@ -181,6 +183,7 @@ json Scenario::scene_json() const {
             {"crs", scene.crs.epsg != 0 ? fmt::format("EPSG:{}", scene.crs.epsg) : scene.crs.name},
             {"crs_name", scene.crs.name},
             {"vertical_unit", scene.vertical_unit},
+            {"latitude_deg", latitude ? json(*latitude) : json(nullptr)},
             {"origin", {origin.x, origin.y, origin.z}},
             {"extent_m", {e.x_min, e.y_min, e.x_max, e.y_max}},
             {"elevation_m", with_short_numbers({lowest, highest})},

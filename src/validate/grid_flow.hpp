@@ -31,8 +31,9 @@ class GridIncline {
     /// Steps until then. Returns the problem; empty: none.
     [[nodiscard]] std::string advance_to(double time, const Watch& watch);
 
-    /// For what else happens to the debris.
+    /// For what else happens to the debris. Its rows begin at y = 0; x of a place along the slope is x_at().
     [[nodiscard]] depth::Solver& solver() { return solver_; }
+    [[nodiscard]] double x_at(double along) const { return (along - from_) * cosine_; }
     [[nodiscard]] int columns() const { return solver_.geometry().columns; }
     [[nodiscard]] int rows() const { return solver_.geometry().rows; }
     [[nodiscard]] double along(int column) const;

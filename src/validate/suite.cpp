@@ -77,10 +77,12 @@ Row skipped_row(const Case& validation_case, const Expectation& e) {
 }  // namespace
 
 std::string place_text(const Expectation& e) {
-    if (e.chainage) return fmt::format("at chainage {:.6g} m", *e.chainage);
-    if (!e.building.empty()) return e.building;
-    if (e.x && e.y && e.radius) return fmt::format("within {:.6g} m of ({:.8g}, {:.8g})", *e.radius, *e.x, *e.y);
-    return e.where;
+    std::string place;
+    if (e.chainage) place = fmt::format("at chainage {:.6g} m", *e.chainage);
+    if (!e.building.empty()) place = e.building;
+    if (e.x && e.y && e.radius) place = fmt::format("within {:.6g} m of ({:.8g}, {:.8g})", *e.radius, *e.x, *e.y);
+    if (place.empty()) return e.where;
+    return with_place(place, e.where);
 }
 
 std::vector<Row> judge(const Case& validation_case, const std::vector<Measurement>& measurements) {

@@ -47,7 +47,7 @@ TEST(Measure, FillsARow) {
     EXPECT_GT(row->neighbours, 5);
     EXPECT_LT(row->neighbours, 60);
     EXPECT_GT(row->time_step, 0);
-    EXPECT_LE(row->time_step, start.model.solver.largest_time_step * 1.0001);
+    EXPECT_LE(row->time_step, start.model.largest_time_step() * 1.0001);
     EXPECT_GT(row->relative_rate, 0);
     EXPECT_GT(row->stage_seconds[static_cast<std::size_t>(sim::Stage::solve_density)], 0);
 }

@@ -8,6 +8,7 @@ import { existsSync, Run } from "./twin/harness.mjs";
 import { testBackanalysis } from "./twin/backanalysis.mjs";
 import { testBarrier } from "./twin/barrier.mjs";
 import { testErosion } from "./twin/erosion.mjs";
+import { testLook } from "./twin/look.mjs";
 import { testGround } from "./twin/ground.mjs";
 import { testControls } from "./twin/controls.mjs";
 import { testParts } from "./twin/parts.mjs";
@@ -15,6 +16,7 @@ import { testPhoto } from "./twin/photo.mjs";
 import { testReadings } from "./twin/readings.mjs";
 import { testScenarios } from "./twin/scenarios.mjs";
 import { testSharing } from "./twin/sharing.mjs";
+import { testStart } from "./twin/start.mjs";
 
 const [, , output, ...command] = process.argv;
 const browserPath = process.env.TALUS_BROWSER ?? "/usr/bin/chromium";
@@ -35,8 +37,8 @@ const browser = await chromium.launch({ executablePath: browserPath, args: ["--h
   "--enable-unsafe-swiftshader", "--ignore-gpu-blocklist", "--webgl-msaa-sample-count=0", "--disable-background-networking",
   "--disable-component-update", "--no-first-run"] });
 const run = new Run(browser, resolve(output), command, process.env.TALUS_ONLY);
-const parts = { controls: testControls, readings: testReadings, scenarios: testScenarios, barrier: testBarrier, parts: testParts, erosion: testErosion, ground: testGround, photo: testPhoto,
-  backanalysis: testBackanalysis, sharing: testSharing };
+const parts = { controls: testControls, readings: testReadings, scenarios: testScenarios, barrier: testBarrier, parts: testParts, erosion: testErosion, ground: testGround, look: testLook, photo: testPhoto,
+  backanalysis: testBackanalysis, sharing: testSharing, start: testStart };
 try {
   for (const part of (process.env.TALUS_PARTS ?? Object.keys(parts).join()).split(",")) {
     if (!parts[part]) throw new Error(`TALUS_PARTS names ${part}; there are ${Object.keys(parts).join(", ")}`);

@@ -50,10 +50,10 @@ TEST(Compare, RunsBothModelsOfTheBuiltInSceneAndSaysWhereTheyPart) {
 
 TEST(Compare, RefusesASceneThatTheDepthAveragedModelCannotHave) {
     const SmallScene scene;
-    scene.write(SmallScene::text() + "[outputs]\nparticle_series_interval_s = 1\n");
+    scene.replace("thickness_m = 0.3", "thickness_m = 0.3\npore_pressure_ratio = 0.5");
     const auto outcome = run_program({"compare", "slope.toml"}, {.folder = scene.folder()});
     EXPECT_EQ(outcome.exit_code, 2);
-    EXPECT_THAT(outcome.error, HasSubstr("particle_series_interval_s"));
+    EXPECT_THAT(outcome.error, HasSubstr("pore_pressure_ratio"));
     EXPECT_FALSE(fs::exists(scene.folder() / "talus_out"));
 }
 

@@ -87,7 +87,8 @@ TEST(Convergence, WorksWithoutObservationsAndWhereDebrisHitsNothing) {
 
 TEST(Vary, RunsOncePerValueOneAtATime) {
     const SmallScene scene;
-    const auto outcome = run_program({"run", "slope.toml", "--json", "--vary", "material.friction_coefficient=0.1,0.2",
+    scene.replace("end_time_s = 1", "end_time_s = 3");  // until they are a few particles apart
+    const auto outcome = run_program({"run", "slope.toml", "--json", "--vary", "material.friction_coefficient=0.1,0.3",
                                       "--vary", "release.thickness_m=0.6", "-o", "result"},
                                      {.folder = scene.folder()});
     ASSERT_EQ(outcome.exit_code, 0) << outcome.error;

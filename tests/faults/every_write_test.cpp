@@ -45,7 +45,9 @@ void expect_told(const ProgramOutcome& outcome, const std::string& place) {
 TEST(EveryWrite, of_a_run_that_fails_leaves_nothing) {
     const SmallScene scene;
     scene.replace("end_time_s = 1", "end_time_s = 0.1");
-    scene.replace("[[observation]]", "[outputs]\nparticle_series_interval_s = 0.05\n[[observation]]");
+    scene.replace(
+        "[[observation]]",
+        "[outputs]\nseries = [\"netcdf\", \"geotiff\", \"paraview\"]\nseries_interval_s = 0.05\n[[observation]]");
     FailingFiles files(scene.folder());
     const auto before = scene.files();
     const auto run = [&](long failing) {

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "geo/latitude.hpp"
 #include "geo/raster.hpp"
 #include "geo/rasters.hpp"
 #include "support/fixtures.hpp"
@@ -32,6 +33,15 @@ TEST(TerrainRaster, GivesCellsCountedFromTheSouthWest) {
     EXPECT_EQ(raster->vertical_unit, "not stated");
     EXPECT_EQ(raster->nodata_share, 0);
     EXPECT_FALSE(raster->nodata_value.has_value());
+}
+
+TEST(TerrainRaster, TellsTheLatitudeOfAPlace) {
+    const TemporaryFolder folder;
+    const auto raster = read_terrain_raster(test::write_raster(folder.file("dem.tif"), {}, pattern), 1, std::nullopt);
+    ASSERT_TRUE(raster.ok()) << raster.error().message;
+    // The false origin of the Hong Kong 1980 grid: 22 degrees 18 minutes 43.68 seconds north.
+    EXPECT_NEAR(latitude_deg(raster->crs, {836694.05, 819069.80}).value_or(0), 22.312133, 1e-5);
+    EXPECT_EQ(latitude_deg({}, {0, 0}), std::nullopt);
 }
 
 TEST(TerrainRaster, TurnsASouthUpRaster) {

@@ -22,12 +22,13 @@ TEST_F(Products, FolderHoldsWhatItShouldAndNothingElse) {
     for (const auto& entry : std::filesystem::directory_iterator(folder_->path())) {
         names.push_back(entry.path().filename());
     }
-    EXPECT_THAT(names, testing::UnorderedElementsAre(
-                           "arrival_time.qml", "arrival_time.tif", "buildings.csv", "deposit_depth.qml",
-                           "deposit_depth.tif", "front.csv", "intensity.qml", "intensity.tif", "manifest.json",
-                           "peak_depth.qml", "peak_depth.tif", "peak_pressure.qml", "peak_pressure.tif",
-                           "peak_speed.qml", "peak_speed.tif", "report.html", "results.gpkg", "results.json",
-                           "results.qlr", "run_out.csv", "structures_over_time.csv", "timeseries.csv"));
+    EXPECT_THAT(names,
+                testing::UnorderedElementsAre(
+                    "arrival_time.qml", "arrival_time.tif", "buildings.csv", "deposit_depth.qml", "deposit_depth.tif",
+                    "front.csv", "intensity.qml", "intensity.tif", "manifest.json", "peak_depth.qml", "peak_depth.tif",
+                    "peak_pressure.qml", "peak_pressure.tif", "peak_speed.qml", "peak_speed.tif", "report.html",
+                    "results.gpkg", "results.json", "results.kml", "results.qlr", "run_out.csv", "stac_item.json",
+                    "structures_over_time.csv", "timeseries.csv"));
 }
 
 TEST_F(Products, PartialResultSaysSoEverywhere) {

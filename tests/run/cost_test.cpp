@@ -13,7 +13,10 @@ namespace {
 
 class CostOfRun : public scene::SceneFolder {
   protected:
-    void SetUp() override { write_valley("[solver]\ntarget_particle_count = 400\nend_time_s = 3\n"); }
+    void SetUp() override {
+        write_valley(
+            "[solver]\ntarget_particle_count = 400\nend_time_s = 3\nlargest_time_step_s = 0.016666666666666666\n");
+    }
     [[nodiscard]] scene::Scene loaded(const std::vector<std::string>& overrides = {}) const {
         return *scene::load_scene(folder / "scene.toml", overrides);
     }

@@ -96,6 +96,26 @@ TEST_F(DepthAveragedRun, gives_the_same_bits_on_any_number_of_threads) {
     EXPECT_EQ(one->observation.run_out.along_flow, four->observation.run_out.along_flow);
 }
 
+TEST_F(DepthAveragedRun, takes_the_volume_of_an_inflow_while_it_runs) {
+    write("flow.csv", "time_s,discharge_m3ps,velocity_mps\n0,0,3\n2,60,6\n6,0,3\n");
+    const std::string inflow =
+        fmt::format("[[inflow]]\nname = \"channel\"\nline_m = [[{0}, {1}], [{0}, {2}]]\nhydrograph = \"flow.csv\"\n",
+                    west + 60, south + 80, south + 120);
+    for (const char* threads : {"solver.thread_count=1", "solver.thread_count=3"}) {
+        const scene::Scene scene = loaded(inflow, {threads, "release.thickness_m=0.01"});
+        const auto result = run_scene(scene, {});
+        ASSERT_TRUE(result) << result.error().message;
+        const observe::Observation& o = result->observation;
+        const observe::TimeSample &early = o.timeseries[10], &end = o.timeseries.back();
+        EXPECT_NEAR(scene.inflows[0].volume(), 180, 1e-9);
+        const double all = scene.releases[0].volume + 180;
+        EXPECT_NEAR(end.volume_released, all, 1e-4 * all);
+        EXPECT_NEAR(end.volume_moving + end.volume_deposited + end.volume_left, end.volume_released, 1e-5 * all);
+        EXPECT_NEAR(early.volume_released, scene.releases[0].volume + 15, 0.2) << "after one second";
+        EXPECT_GT(o.run_out.straight, 40);
+    }
+}
+
 TEST_F(DepthAveragedRun, entrains_its_bed_down_to_its_depth) {
     const std::string bed = "[[bed]]\ndepth_m = 0.4\ngrowth_rate_per_m = 0.02\n";
     const auto bare = run_scene(loaded(""), {}), with_bed = run_scene(loaded(bed), {}),
@@ -117,10 +137,32 @@ TEST_F(DepthAveragedRun, refuses_what_it_does_not_have_with_file_and_key) {
         write_valley(more);
         return load_error({"solver.model=depth_averaged"});
     };
-    EXPECT_THAT(error("[outputs]\nparticle_series_interval_s = 1\n"),
-                AllOf(HasSubstr("scene.toml"), HasSubstr("particle_series_interval_s")));
+    EXPECT_THAT(error("pore_pressure_ratio = 0.4\n"),
+                AllOf(HasSubstr("scene.toml"), HasSubstr("release[0].pore_pressure_ratio")));
     EXPECT_THAT(error(dam("height_m = 4\npassing_share = 0.3")), AllOf(HasSubstr("dam"), HasSubstr("no nets")));
     EXPECT_THAT(error("[solver]\ngrid_cell_m = 0.001\n"), AllOf(HasSubstr("grid_cell_m"), HasSubstr("at least")));
+}
+
+TEST_F(DepthAveragedRun, shows_its_debris_over_time) {
+    const scene::Scene scene = loaded("[outputs]\nseries = [\"netcdf\"]\nseries_interval_s = 0.7\n");
+    std::vector<double> times, volumes;
+    RunOptions options;
+    options.on_frame = [&](const Frame& frame) {
+        EXPECT_EQ(frame.particles, nullptr);
+        times.push_back(frame.time);
+        const Grid<float>& depth = frame.debris.depth;
+        double sum = 0;
+        for (const float value : depth.values) sum += value;
+        volumes.push_back(sum * depth.geometry.cell * depth.geometry.cell);
+    };
+    const auto result = run_scene(scene, options);
+    ASSERT_TRUE(result);
+    EXPECT_EQ(times.front(), 0);
+    EXPECT_EQ(times.back(), result->simulated_time) << "the end is a frame";
+    ASSERT_GE(times.size(), static_cast<std::size_t>(result->simulated_time / 0.7));
+    for (std::size_t k = 0; k + 1 < times.size(); ++k) EXPECT_LT(times[k], times[k + 1]);
+    EXPECT_NEAR(times[1], 0.7, 0.1);
+    EXPECT_NEAR(volumes[2], result->observation.volume_released, 1e-4 * result->observation.volume_released);
 }
 
 TEST_F(DepthAveragedRun, notes_keys_that_mean_nothing_to_it) {

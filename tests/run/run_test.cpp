@@ -54,6 +54,30 @@ TEST_F(RunOfAScene, StepByStepIsTheWholeOne) {
     EXPECT_EQ(result.observation.timeseries.size(), whole->observation.timeseries.size());
 }
 
+TEST_F(RunOfAScene, ShowsItsDebrisOverTimeAndTheSameResult) {
+    const scene::Scene scene = loaded("[outputs]\nseries_interval_s = 0.25\n");
+    std::vector<double> times, volumes;
+    RunOptions options;
+    options.on_frame = [&](const Frame& frame) {
+        EXPECT_EQ(frame.particles->time, frame.time);
+        times.push_back(frame.time);
+        const Grid<float>& depth = frame.debris.depth;
+        double sum = 0;
+        for (const float value : depth.values) sum += value;
+        volumes.push_back(sum * depth.geometry.cell * depth.geometry.cell);
+    };
+    const auto result = run_scene(scene, options);
+    ASSERT_TRUE(result);
+    EXPECT_EQ(result->hash, run_scene(scene, {})->hash);
+    EXPECT_EQ(times.size(), 13U);
+    EXPECT_EQ(times.front(), 0);
+    EXPECT_EQ(times.back(), result->simulated_time);
+    for (std::size_t k = 0; k < times.size(); ++k) {
+        EXPECT_NEAR(times[k], 0.25 * static_cast<double>(k), 0.02);
+        EXPECT_NEAR(volumes[k], result->observation.volume_released, 1e-5 * result->observation.volume_released);
+    }
+}
+
 TEST_F(RunOfAScene, TakesThePathOfTheDebrisInPlaceOfATracedOne) {
     scene::Scene scene = loaded("", {"solver.end_time_s=12"});
     const std::vector<PlanPoint> traced = scene.flow_path.points();
@@ -124,7 +148,7 @@ TEST_F(RunOfAScene, StopsWhenAsked) {
     ASSERT_TRUE(result);
     EXPECT_EQ(result->status, RunStatus::interrupted);
     EXPECT_EQ(result->steps, 3U);
-    EXPECT_THAT(result->stop_reason, StartsWith("stopped by the user at t = 0.0"));
+    EXPECT_THAT(result->stop_reason, StartsWith("stopped by the user at t = 0.1 s"));
 }
 
 TEST_F(RunOfAScene, AChangeBringsItBackFromRest) {

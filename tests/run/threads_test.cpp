@@ -1,9 +1,12 @@
 #include "run/threads.hpp"
 
+#include <fstream>
 #include <thread>
+#include <unistd.h>
 
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
+#include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 
 namespace talus::run {
@@ -35,6 +38,25 @@ TEST(Threads, LeaveOthersTheirs) {
     EXPECT_EQ(allowed_in_all(), before);
     EXPECT_EQ(Threads(processor_threads()).execute([] { return tbb::this_task_arena::max_concurrency(); }),
               processor_threads());
+}
+
+/// Resident memory, bytes.
+double resident() {
+    double pages = 0, skipped = 0;
+    std::ifstream("/proc/self/statm") >> skipped >> pages;
+    return pages * static_cast<double>(sysconf(_SC_PAGESIZE));
+}
+
+TEST(Threads, LeaveNothingBehind) {
+    const auto work = [](int times) {
+        for (int k = 0; k < times; ++k) {
+            Threads(2).execute([] { tbb::parallel_for(0, 100, [](int) {}); });
+        }
+    };
+    work(100);
+    const double before = resident();
+    work(1000);
+    EXPECT_LT(resident() - before, 1e6);
 }
 
 TEST(Threads, CanBeMoreThanTheProcessorHas) {

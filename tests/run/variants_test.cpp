@@ -5,6 +5,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "params/time_step.hpp"
 #include "scene/particle_spacing.hpp"
 #include "scene/scene_folder.hpp"
 
@@ -66,7 +67,7 @@ TEST_F(Variants, RefinementsHalveTheStepDoubleTheIterationsAndTripleTheParticles
                 ElementsAre("half the time step", "double the iterations", "three times the particles"));
     const params::SolverSpec& given = scene.spec.solver;
     const params::SolverSpec half = with(refined[0]).spec.solver;
-    EXPECT_EQ(half.largest_time_step, given.largest_time_step / 2);
+    EXPECT_EQ(half.largest_time_step, params::largest_time_step(given, 2) / 2);
     EXPECT_EQ(half.smallest_time_step, given.smallest_time_step / 2);
     EXPECT_EQ(half.displacement_limit, given.displacement_limit / 2);
     EXPECT_EQ(half.iteration_count, given.iteration_count);

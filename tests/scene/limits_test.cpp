@@ -57,6 +57,18 @@ TEST_F(Limits, MapsAndFrontTableHaveASizeThatCanBeWritten) {
     EXPECT_EQ(load_error({"outputs.map_cell_m=0.013"}), std::string(loaded));
 }
 
+TEST_F(Limits, TheRunOverTimeHasASizeThatCanBeWritten) {
+    write_valley("[outputs]\nseries = [\"netcdf\"]\nseries_interval_s = 0.01\n");
+    EXPECT_THAT(load_error(),
+                AllOf(HasSubstr("scene.toml:9: outputs.series_interval_s = 0.01 is refused"), HasSubstr("12001 frames"),
+                      HasSubstr("there may be 10000: it must be at least 0.013 (s)")));
+    EXPECT_EQ(load_error({"outputs.series_interval_s=0.013"}), std::string(loaded));
+    EXPECT_EQ(load_error({"outputs.series=[]"}), std::string(loaded));
+    EXPECT_THAT(load_error({"solver.model=depth_averaged"}), HasSubstr("12001 frames"));
+    EXPECT_THAT(load_error({"outputs.series=[\"netcdf\", \"avi\"]"}),
+                AllOf(HasSubstr("outputs.series: \"avi\" is refused"), HasSubstr("\"netcdf\", \"geotiff\"")));
+}
+
 TEST_F(Limits, HundredsOfStructuresUponEachOtherAreRefusedBeforeTheirWallsAreCut) {
     const auto barriers = [](int count) {
         std::string text;

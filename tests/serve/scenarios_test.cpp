@@ -70,5 +70,22 @@ TEST_F(WaitingChanges, of_a_scenario_that_ends_are_refused) {
     EXPECT_THAT(answers_, testing::ElementsAre("the scenario has ended", "the scenario has ended"));
 }
 
+using ActionKeys = WaitingChanges;
+
+TEST_F(ActionKeys, that_are_not_known_are_refused) {
+    const auto answer_to = [this](const json& action) {
+        std::string text;
+        scenarios_.act(0, action, "Ann",
+                       [&](const Result<twin::Done>& done) { text = done ? "" : done.error().message; });
+        return text;
+    };
+    for (const char* name : {"run", "pause", "step", "cancel", "name_scenario", "set_speed"}) {
+        EXPECT_THAT(answer_to({{"action", name}, {"factr", 2}}), HasSubstr("\"factr\" = 2: no such key here")) << name;
+    }
+    EXPECT_THAT(answer_to({{"action", "set_speed"}, {"factr", 2}}), HasSubstr("nearest known key: factor"));
+    EXPECT_EQ(answer_to({{"action", "set_speed"}, {"factor", 2}}), "");
+    EXPECT_EQ(answer_to({{"action", "run"}, {"scenarios", {"A"}}}), "");
+}
+
 }  // namespace
 }  // namespace talus::serve

@@ -135,6 +135,7 @@ void expect_agreement(params::InternalFriction friction, params::KernelChoice ke
     params::SolverSpec solver;
     solver.internal_friction = friction;
     solver.kernel = kernel;
+    solver.largest_time_step = 1.0 / 60;  // rounding errors grow with the step where iterations do not converge
     terrain::Building house;
     house.footprint = {testing::rectangle(20.6, 18, 24, 22)};
     house.height = 3;

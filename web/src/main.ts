@@ -16,11 +16,17 @@ async function begin(page: HTMLElement): Promise<void> {
   }
   const api = new Api(token);
   try {
+    const place = await api.start();
+    if (place.available && (place.open === null || location.hash === "#start")) {
+      const { openStart } = await import("./start/start");
+      openStart(page, api, place);
+      return;
+    }
     // The scene is fetched while the browser reads the larger part of the script.
     const [scene, terrain, { openPage }] = await Promise.all([api.scene(), api.terrain(meshCells), import("./page")]);
     document.title = `${scene.title} · talus`;
     page.classList.remove("starting");
-    openPage(page, token, scene, terrain, api);
+    openPage(page, token, scene, terrain, api, place);
   } catch (error) {
     console.error(error);
     if (error instanceof Refused && (error.status === 401 || error.status === 403)) {
@@ -40,5 +46,5 @@ const page = document.getElementById("page");
 if (page) void begin(page);
 // A link opened in a tab that already shows the page only changes the fragment.
 window.addEventListener("hashchange", () => {
-  if (location.hash.includes("token=")) location.reload();
+  if (location.hash.includes("token=") || location.hash === "#start") location.reload();
 });

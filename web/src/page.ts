@@ -15,17 +15,20 @@ import { people } from "./panels/people";
 import { Picture } from "./panels/picture";
 import { balance, runCard } from "./panels/run_card";
 import { changedOnTheWay } from "./panels/scenarios";
+import { sessionButton } from "./panels/session";
 import { transport } from "./panels/transport";
 import { viewBar } from "./panels/view_bar";
 import type { Api } from "./protocol/api";
 import type { Grid } from "./protocol/grid";
 import type { SceneInfo } from "./protocol/messages";
+import type { StartPage } from "./protocol/start";
 import { Drawing } from "./scene/drawing";
 import { marks } from "./scene/marks";
 import { Relief } from "./scene/relief";
 import { placeOnPath } from "./scene/scenario_view";
 import { ShownLayers } from "./scene/shown_layers";
 import { Sinking } from "./scene/sinking";
+import { Trails } from "./scene/natural/trails";
 import { Stage } from "./scene/stage";
 import { watchAll } from "./state/cell";
 import { paneText } from "./state/differences";
@@ -38,9 +41,10 @@ import { tabs } from "./ui/tabs";
 import { watchTyping } from "./ui/typed";
 import { Toasts } from "./ui/toast";
 
-export function openPage(page: HTMLElement, token: string, info: SceneInfo, terrain: Grid, api: Api): void {
-  const twin = new Twin(token, info, new Relief(terrain, info.origin), api);
+export function openPage(page: HTMLElement, token: string, info: SceneInfo, terrain: Grid, api: Api, place: StartPage): void {
+  const twin = new Twin(token, info, new Relief(terrain, info.origin), api, place);
   buildPage(page, twin);
+  for (const note of place.notes ?? []) twin.notice(note, "error");
   twin.live.start();
 }
 
@@ -50,6 +54,7 @@ function buildPage(page: HTMLElement, twin: Twin): void {
   const drawing = new Drawing(twin, stage);
   const layers = new ShownLayers(twin, stage);
   new Sinking(twin, stage);
+  new Trails(twin, stage);
   const playback = new Playback(twin);
   const bar = viewBar(twin, stage);
   const picture = new Picture(twin, stage, layers);
@@ -101,6 +106,8 @@ function buildPage(page: HTMLElement, twin: Twin): void {
   narrow.addEventListener("change", expanded);
   expanded();
   const badge = twin.scene.reconstruction ? h("span", { class: "badge", title: twin.scene.assumptions.join(" ") }, "Reconstruction, no survey") : null;
+  const wordmark = twin.place.available && twin.place.role === "controller" ? h("button", { type: "button", class: "wordmark", title: "Start page: other scenes and saved sessions", onclick: () => (location.hash = "start") }, "talus")
+    : h("span", { class: "wordmark" }, "talus");
   const key = legends(twin, stage, layers);
   const scale = scaleAndCompass(twin, stage, readOut);
   stage.covers = [bar.camera, bar.show, scale];
@@ -109,8 +116,8 @@ function buildPage(page: HTMLElement, twin: Twin): void {
   // Names of the two views stand below the bars, which wrap on a narrow page.
   new ResizeObserver(() => middle.style.setProperty("--bars", `${bar.show.offsetTop + bar.show.offsetHeight}px`)).observe(bar.show);
   page.replaceChildren(
-    h("header", { class: "topbar" }, setup, h("span", { class: "wordmark" }, "talus"), h("h1", {}, twin.scene.title), badge, h("span", { class: "spring" }),
-      people(twin), ...exportButtons(twin, picture), button("Help", { icon: "help", bare: true, class: "bare help", title: "Help and shortcuts (?)", onclick: help }), drawer),
+    h("header", { class: "topbar" }, setup, wordmark, h("h1", {}, twin.scene.title), badge, h("span", { class: "spring" }),
+      people(twin), sessionButton(twin), ...exportButtons(twin, stage, picture), button("Help", { icon: "help", bare: true, class: "bare help", title: "Help and shortcuts (?)", onclick: help }), drawer),
     controls(twin, drawing),
     middle,
     h("aside", { class: "readings", "aria-label": "Readings" }, handle, runCard(twin), changedOnTheWay(twin), readings.element, readings.panel),

@@ -18,6 +18,14 @@ describe("resolution", () => {
     expect(draw(resolution, 12, 80)).toBeLessThan(0.8);
     expect(draw(resolution, 500, 80)).toBe(0.35);
   });
+  it("leaves out detail as it falls", () => {
+    const resolution = new Resolution();
+    expect(resolution.detail).toBe(2);
+    draw(resolution, 12, 80);
+    expect(resolution.detail).toBe(1);
+    draw(resolution, 500, 80);
+    expect(resolution.detail).toBe(0);
+  });
   it("rises again, slowly, when pictures come fast", () => {
     const resolution = new Resolution();
     draw(resolution, 100, 80);

@@ -253,7 +253,7 @@ void Backend::remove_outflow(const Model&, const Ground& ground, State& state) {
 double choose_time_step(const Model& model, const State& state) {
     if (model.solver.time_step) return *model.solver.time_step;
     const double reach = model.solver.displacement_limit * model.particle_spacing;
-    double dt = std::min(model.solver.largest_time_step, longest_viscous_step(model.viscosity));
+    double dt = std::min(model.largest_time_step(), longest_viscous_step(model.viscosity));
     // Pressure spreads by a few layers per step. Debris that becomes denser is too deep for that; if nothing is done,
     // particles end up at the same place, where no gradient separates them.
     constexpr double too_compressed = 0.01, recovered = 0.005;

@@ -26,8 +26,11 @@ inline double step_smoothing(double viscosity, double time_step) {
 inline double longest_viscous_step(double viscosity) {
     return viscosity > 0 ? viscosity_reference_step / viscosity : std::numeric_limits<double>::infinity();
 }
-/// Viscosity shortens an adaptive step to no less than the largest divided by this.
-inline constexpr double most_viscous_step_ratio = 8;
+
+/// Viscosity shortens an adaptive step of at most `largest_time_step` to no less than this, s.
+inline double shortest_viscous_step(double largest_time_step) {
+    return std::min(largest_time_step, viscosity_reference_step) / 8;
+}
 
 /// The same smoothing against ground that viscous debris sticks to: the ground moves as if the flow continued below
 /// with reversed velocity, so that the velocity is zero at the surface (Morris, Fox & Zhu 1997, "Modeling low Reynolds

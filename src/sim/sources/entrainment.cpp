@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "sim/change.hpp"
+#include "sim/physics/erosion.hpp"
 #include "sim/physics/net.hpp"
 #include "sim/relax.hpp"
 
@@ -74,11 +75,9 @@ void Entrainment::find_shear_rates(const Model& model, const Ground& ground, con
         const double depth = count_[cell] * model.particle_volume() / area;
         const double cosine = ground.terrain.slope_cosine_of(cell);
         const double sine = std::sqrt(std::max(0.0, 1 - cosine * cosine));
-        const double shear_stress = model.rest_density * model.gravity * depth * cosine * sine;
-        const double max_depth = material.depth_per_shear * (shear_stress - material.critical_shear_stress);
-        const double remaining = max_depth - bed.eroded[cell] - loose_[cell] / area;
-        const double loose = std::clamp(remaining, 0.0, material.erosion_rate * state.time_step) * area;
-        rate_[cell] = static_cast<float>(loose / count_[cell]);
+        const double loose = loosened_by_shear(material, model.rest_density, model.gravity, depth, cosine, sine,
+                                               bed.eroded[cell] + loose_[cell] / area, state.time_step);
+        rate_[cell] = static_cast<float>(loose * area / count_[cell]);
         count_[cell] = 0;
     }
     touched_.clear();

@@ -142,7 +142,7 @@ void InflowFeeder::Source::add_row(const Model& model, const Ground& ground, Sta
     // Particles that do not fill a layer are distributed evenly over the columns, to different ones in every row.
     const double shift = std::modf(static_cast<double>(rows) * 0.6180339887498949, &whole);
     const std::uint32_t full = count / columns, odd = count % columns;
-    const double previous = state.previous_time_step > 0 ? state.previous_time_step : model.solver.largest_time_step;
+    const double previous = state.previous_time_step > 0 ? state.previous_time_step : model.largest_time_step();
     state.previous_time_step = previous;
     for (std::uint32_t c = 0; c < columns; ++c) {
         const double share = static_cast<double>(odd) / columns;

@@ -96,7 +96,7 @@ void find_pressures(const Model& model, const Ground& ground, State& state) {
     awake.solver.rest_duration = 0;
     cpu::Backend backend(awake, state.count);
     StageTimes times;
-    state.time_step = model.solver.largest_time_step / 4;
+    state.time_step = model.largest_time_step() / 4;
     for (int round = 0; round < rounds; ++round) {
         step(backend, awake, ground, state, times);
         for (std::uint32_t i = 0; i < state.count; ++i) {

@@ -4,6 +4,8 @@
 #include <fmt/format.h>
 
 #include "core/angle.hpp"
+#include "depth/material.hpp"
+#include "depth/solver.hpp"
 #include "sim/sources/seed.hpp"
 #include "validate/kinds/kinds.hpp"
 #include "validate/measure.hpp"
@@ -177,13 +179,85 @@ Measured measure(const FlumeSpec& spec, Obstacle obstacle, double spacing, const
     return measured;
 }
 
+/// The same by the depth-averaged model on a strip of cells of so many m in plan.
+Measured measure_grid(const FlumeSpec& spec, Obstacle obstacle, double cell, const Setting& setting,
+                      const Watch& watch) {
+    const Bed bed(spec, obstacle);
+    Grid<double> ground({-bed.length() / 2, 0, cell, static_cast<int>(bed.length() / cell) - 1, 1});
+    const GridGeometry& g = ground.geometry;
+    const double deepest = std::sqrt(2 * spec.volume / spec.width * std::tan(spec.slope));
+    const double level = bed.at(0).y + deepest * std::cos(spec.slope);
+    std::vector<double> places;
+    Grid<float> depth(g);
+    depth::GroundValues values;
+    double sum = 0;
+    for (int column = 0; column < g.columns; ++column) {
+        const double x = g.centre(column, 0).x, s = bed.along(x), z = bed.at(s).y;
+        places.push_back(s);
+        const bool wall = obstacle == Obstacle::wall && s > spec.obstacle;
+        ground.at(column, 0) = wall ? z + 5 : z;
+        values.structure.push_back(wall ? 1.0F : 0.0F);
+        // Level behind a gate at right angles to the bed, which leans over what lies before its foot.
+        const double beyond = x - bed.at(0).x;
+        const double below_gate = beyond > 0 ? beyond / std::tan(spec.slope) : 0;
+        depth.at(column, 0) = static_cast<float>(std::max(0.0, level - std::max(z, bed.at(0).y + below_gate)));
+        sum += depth.at(column, 0) * cell * spec.width;
+    }
+    for (float& h : depth.values) h *= static_cast<float>(spec.volume / sum);
+    depth::Solver solver(ground, depth::material_of(setting.material), values, depth::Edges::continued);
+    solver.add(depth);
+
+    Measured measured;
+    measured.arrivals.assign(spec.stations.size(), not_computed);
+    measured.thicknesses.assign(spec.samples.size(), not_computed);
+    measured.time.resize(spec.stations.size());
+    measured.depth.resize(spec.stations.size());
+    constexpr double window = 0.5, arrived = 0.02, interval = 0.05;
+    const auto column_of = [&](double s) { return static_cast<int>((bed.at(s).x - g.x_min) / cell); };
+    const auto thickness_at = [&](double s) {
+        const int first = column_of(s - window / 2), last = column_of(s + window / 2);
+        double volume = 0;
+        for (int column = first; column < last; ++column) volume += double{solver.depth_at(column, 0)} * cell;
+        return volume / (places[static_cast<std::size_t>(last)] - places[static_cast<std::size_t>(first)]);
+    };
+    double highest = 0;
+    for (double t = 0; t <= spec.end + 1e-9; t += interval) {
+        while (solver.time() < t - spec.gate_time / 2 - 1e-9) {
+            const Status stepped = solver.advance(t - spec.gate_time / 2 - solver.time());
+            if (!stepped) measured.problem = stepped.error().message;
+            if (!stepped || watch.stopped()) return measured;
+        }
+        for (std::size_t k = 0; k < spec.stations.size(); ++k) {
+            const double thickness = thickness_at(spec.stations[k]);
+            if (thickness >= arrived && std::isnan(measured.arrivals[k])) measured.arrivals[k] = t;
+            measured.time[k].push_back(t);
+            measured.depth[k].push_back(thickness);
+        }
+        for (std::size_t k = 0; k < spec.samples.size(); ++k) {
+            if (std::abs(spec.samples[k][1] - t) < interval / 2)
+                measured.thicknesses[k] = thickness_at(spec.samples[k][0]);
+        }
+        if (obstacle == Obstacle::wall) {
+            highest = std::max(highest, double{solver.depth_at(column_of(spec.obstacle) - 1, 0)});
+        }
+        for (double s = spec.obstacle + window / 2; obstacle == Obstacle::ramp && s < spec.obstacle + 8; s += window) {
+            if (thickness_at(s) >= arrived) highest = std::max(highest, bed.at(s).y - bed.at(spec.obstacle).y);
+        }
+    }
+    if (obstacle != Obstacle::none) measured.run_up = highest;
+    return measured;
+}
+
 Result<Outcome> compute(const FlumeSpec& spec, const Setting& setting, const Watch& watch) {
     Outcome outcome;
     Chart chart{"thickness", "Thickness at the stations", "time since the gate began to open (s)", "thickness (m)", {}};
     const double finest = *std::min_element(spec.spacings.begin(), spec.spacings.end());
-    for (const double spacing : spec.spacings) {
+    constexpr double grid_cell = 0.1;
+    std::vector<double> spacings = spec.spacings;
+    spacings.push_back(0);  // the depth-averaged model
+    for (const double spacing : spacings) {
         const bool coarse = spacing > finest;
-        const std::string end = fmt::format(", spacing {:g} m", spacing);
+        const std::string end = spacing > 0 ? fmt::format(", spacing {:g} m", spacing) : ", depth-averaged";
         for (const Obstacle obstacle : {Obstacle::none, Obstacle::wall, Obstacle::ramp}) {
             // The coarse channel shows the effect of the spacing; its obstacles would add little for twice the time.
             if (coarse && obstacle != Obstacle::none) continue;
@@ -191,13 +265,14 @@ Result<Outcome> compute(const FlumeSpec& spec, const Setting& setting, const Wat
                                      : obstacle == Obstacle::wall ? "wall"
                                                                   : "ramp";
             watch.say(kind + end);
-            const Measured m = measure(spec, obstacle, spacing, setting, watch);
+            const Measured m = spacing > 0 ? measure(spec, obstacle, spacing, setting, watch)
+                                           : measure_grid(spec, obstacle, grid_cell, setting, watch);
             if (!m.problem.empty()) outcome.notes.push_back(kind + end + ": " + m.problem);
             if (obstacle != Obstacle::none) {
                 outcome.measurements.push_back({"run_up", kind + end, m.run_up, std::nullopt, coarse});
                 continue;
             }
-            outcome.notes.push_back(fmt::format("spacing {:g} m: {} particles", spacing, m.particles));
+            if (spacing > 0) outcome.notes.push_back(fmt::format("spacing {:g} m: {} particles", spacing, m.particles));
             for (std::size_t k = 0; k < spec.stations.size(); ++k) {
                 const std::string station = fmt::format("{:g} m", spec.stations[k]);
                 outcome.measurements.push_back({"arrival_time", station + end, m.arrivals[k], std::nullopt, coarse});

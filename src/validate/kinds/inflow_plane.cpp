@@ -3,8 +3,10 @@
 
 #include <fmt/format.h>
 
+#include "depth/inflow.hpp"
 #include "sim/sources/inflow.hpp"
 #include "sim/sources/seed.hpp"
+#include "validate/grid_flow.hpp"
 #include "validate/kinds/kinds.hpp"
 #include "validate/measure.hpp"
 #include "validate/set_up.hpp"
@@ -19,12 +21,90 @@ constexpr Quantity quantities[] = {
     {"particles", "1", true, Quantity::Site::none, "that came in, over the volume of the hydrograph"},
     {"speed_excess", "m/s", false, Quantity::Site::none,
      "greatest speed of a particle near the line, over the inflow's"},
+    {"volume", "m3", true, Quantity::Site::none,
+     "that came in and is there or beyond the edge, by the depth-averaged model"},
+    {"normal_depth", "m", true, Quantity::Site::none,
+     "thickness far below the line with Voellmy's law, by the depth-averaged model"},
 };
 
 struct PlaneSpec {
     double slope = 0, thickness = 0, velocity = 0, spacing = 0, time = 0;
-    int width = 0;  // spacings
+    int width = 0;                                  // spacings
+    double voellmy_friction = 0, voellmy_drag = 0;  // 1, m/s2
 };
+
+/// A strip of the plane into which debris flows at place 0, by the depth-averaged model.
+struct GridStream {
+    GridIncline incline;
+    depth::Inflows inflows;
+    double volume = 0, law_volume = 0;  // m3, that came in
+    std::string problem;
+};
+
+GridStream grid_stream(const PlaneSpec& spec, const params::MaterialSpec& material, double friction, double cell,
+                       double length, double time, const Watch& watch) {
+    GridIncline incline({spec.slope, -10 * cell, length + 10 * cell, 0, cell}, material, friction,
+                        [](double, double) { return 0.0; });
+    const double width = incline.solver().geometry().cell, discharge = spec.thickness * spec.velocity * width;
+    terrain::Inflow inflow;
+    inflow.from = {incline.x_at(0), 0};
+    inflow.to = {incline.x_at(0), width};
+    inflow.hydrograph = {{0, discharge, spec.velocity}, {time, discharge, spec.velocity}};
+    GridStream stream{incline, depth::Inflows(incline.solver(), {inflow}), 0, inflow.volume(), ""};
+    depth::Solver& solver = stream.incline.solver();
+    Grid<float> added(solver.geometry());
+    while (stream.problem.empty() && solver.time() < time - 1e-9) {
+        const Result<double> came = stream.inflows.advance(solver, time - solver.time(), added);
+        stream.problem = !came ? came.error().message : watch.stopped() ? "stopped by the user" : "";
+    }
+    stream.volume = solver.volume() + solver.volume_left();
+    return stream;
+}
+
+/// Means over the columns between two places along the slope.
+struct StreamMeans {
+    double thickness = 0, velocity = 0;
+};
+StreamMeans means_between(const GridIncline& incline, double first, double last) {
+    StreamMeans means;
+    int count = 0;
+    for (int column = 0; column < incline.columns(); ++column) {
+        if (incline.along(column) < first || incline.along(column) >= last) continue;
+        means.thickness += incline.thickness(column, 0);
+        means.velocity += incline.velocity(column, 0);
+        ++count;
+    }
+    return {means.thickness / count, means.velocity / count};
+}
+
+void compute_grid(const PlaneSpec& spec, const Setting& setting, const Watch& watch, double first, double last,
+                  Outcome& outcome) {
+    const char* name = "depth-averaged";
+    watch.say(name);
+    const GridStream stream = grid_stream(spec, setting.material, std::tan(spec.slope), spec.spacing,
+                                          1.6 * spec.velocity * spec.time, spec.time, watch);
+    if (!stream.problem.empty()) outcome.notes.push_back(std::string(name) + ": " + stream.problem);
+    const StreamMeans means = means_between(stream.incline, first, last);
+    const double width = spec.width * spec.spacing;
+    outcome.measurements.push_back({"volume", name, stream.volume, stream.law_volume});
+    outcome.measurements.push_back({"thickness", name, means.thickness, spec.thickness});
+    outcome.measurements.push_back({"velocity", name, means.velocity, spec.velocity});
+    outcome.measurements.push_back(
+        {"discharge", name, means.thickness * means.velocity * width, spec.thickness * spec.velocity * width});
+
+    // v^2 = xi h (sin - f cos) and q = v h.
+    const double discharge = spec.thickness * spec.velocity;
+    const double drive = std::sin(spec.slope) - spec.voellmy_friction * std::cos(spec.slope);
+    if (!(drive > 0)) return;
+    const double law = std::cbrt(discharge * discharge / (spec.voellmy_drag * drive)), time = 5 * spec.time;
+    params::MaterialSpec voellmy = setting.material;
+    voellmy.turbulent_friction = spec.voellmy_drag;
+    const double length = 0.8 * discharge / law * time;
+    const GridStream far = grid_stream(spec, voellmy, spec.voellmy_friction, 5 * spec.spacing, length, time, watch);
+    if (!far.problem.empty()) outcome.notes.push_back("depth-averaged, Voellmy: " + far.problem);
+    outcome.measurements.push_back(
+        {"normal_depth", name, means_between(far.incline, 0.6 * length, 0.8 * length).thickness, law});
+}
 
 Result<Outcome> compute(const PlaneSpec& spec, const Setting& setting, const Watch& watch) {
     const double width = spec.width * spec.spacing, reach = 1.6 * spec.velocity * spec.time;
@@ -75,6 +155,7 @@ Result<Outcome> compute(const PlaneSpec& spec, const Setting& setting, const Wat
     outcome.measurements.push_back({"velocity", "", velocity, spec.velocity});
     outcome.measurements.push_back({"discharge", "", thickness * velocity * width, discharge});
     outcome.measurements.push_back({"speed_excess", "", fastest - spec.velocity, std::nullopt});
+    compute_grid(spec, setting, watch, first, last, outcome);
     const double cell = 5 * spec.spacing;
     const int cells = static_cast<int>(1.2 * spec.velocity * spec.time / cell);
     Series profile{"computed", Series::Style::line, {}, {}}, law{"discharge / velocity", Series::Style::dashed, {}, {}};
@@ -104,6 +185,8 @@ Computation prepare(Parameters& parameters, const Setting& setting) {
     spec.spacing = parameters.number("particle_spacing_m", positive, 0.1);
     spec.time = parameters.number("time_s", positive, 4);
     spec.width = parameters.whole_number("width_spacings", {.low = 2, .high = 1000}, 8);
+    spec.voellmy_friction = parameters.number("voellmy_friction_coefficient", {.low = 0, .high = 10}, 0.2);
+    spec.voellmy_drag = parameters.number("voellmy_turbulent_friction_mps2", {.low = 1, .high = 1e6}, 500);
     return [spec, setting](const Watch& watch) { return compute(spec, setting, watch); };
 }
 

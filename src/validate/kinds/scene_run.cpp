@@ -85,6 +85,8 @@ double measure(const Expectation& e, const scene::Scene& scene, const observe::O
     return e.quantity == "mean_compression" ? observation.compression.worst_mean : observation.compression.worst_max;
 }
 
+constexpr const char* grid_model = "depth-averaged";  // `where` of expectations of that model
+
 /// `variant`: of the scene; empty: the scene as given.
 Result<Outcome> compute(const std::filesystem::path& file, const std::string& variant, const Setting& setting,
                         const Watch& watch) {
@@ -111,14 +113,32 @@ Result<Outcome> compute(const std::filesystem::path& file, const std::string& va
     }
     const bool trusted = run.status != run::RunStatus::fault;
     for (const Expectation& e : setting.expectations) {
+        if (e.where == grid_model) continue;
         outcome.measurements.push_back(
             {e.quantity, place_text(e), trusted ? measure(e, scene, observation) : not_computed, {}});
         if (e.quantity != "front_velocity") continue;
         observed.x.push_back(*e.chainage);
         observed.y.push_back(*e.expected);
     }
+    std::vector<Series> curves{front, observed};
+    if (std::any_of(setting.expectations.begin(), setting.expectations.end(),
+                    [](const Expectation& e) { return e.where == grid_model; })) {
+        overrides.emplace_back("solver.model=depth_averaged");
+        TALUS_ASSIGN(const scene::Scene grid_scene, scene::load_scene(file, overrides));
+        TALUS_ASSIGN(const run::RunResult grid, run_scene(grid_scene, options));
+        for (const Expectation& e : setting.expectations) {
+            if (e.where != grid_model) continue;
+            outcome.measurements.push_back({e.quantity, place_text(e), measure(e, grid_scene, grid.observation), {}});
+        }
+        Series by_grid{grid_model, Series::Style::dashed, {}, {}};
+        for (const observe::FrontSample& sample : grid.observation.front) {
+            by_grid.x.push_back(sample.chainage);
+            by_grid.y.push_back(sample.front_velocity);
+        }
+        curves.push_back(std::move(by_grid));
+    }
     outcome.charts.push_back(
-        {"front", "Front velocity along the flow path", "chainage, m", "front velocity, m/s", {front, observed}});
+        {"front", "Front velocity along the flow path", "chainage, m", "front velocity, m/s", std::move(curves)});
     return outcome;
 }
 

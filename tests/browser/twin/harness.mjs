@@ -82,11 +82,12 @@ export class Run {
       await this.last?.screenshot({ path: join(this.output, `failed-${this.failed}.png`) }).catch(() => {});
     }
   }
-  /** finest: with the whole mesh of the ground; a coarser one is drawn in a fraction of the time. edits: how runs that have begun are edited; null: not chosen yet. touch: as on a phone. */
-  async open(link, { width = 1280, height = 720, reduced = true, name, finest = false, edits = "now", touch = false } = {}) {
+  /** finest: with the whole mesh of the ground; a coarser one is drawn in a fraction of the time. look: natural ones take far longer to draw without a graphics card. edits: how runs that have begun are edited; null: not chosen yet. touch: as on a phone. */
+  async open(link, { width = 1280, height = 720, reduced = true, name, finest = false, edits = "now", look = "scientific", touch = false } = {}) {
     const context = await this.browser.newContext({ viewport: { width, height }, reducedMotion: reduced ? "reduce" : "no-preference", acceptDownloads: true, hasTouch: touch, isMobile: touch });
     const page = await context.newPage();
     if (name) await page.addInitScript((n) => localStorage.setItem("talus-name", n), name);
+    await page.addInitScript((l) => localStorage.getItem("talus-look") ?? localStorage.setItem("talus-look", l), look);
     if (edits) await page.addInitScript((habit) => sessionStorage.getItem("talus-edits") ?? sessionStorage.setItem("talus-edits", habit), edits);
     page.on("console", (message) => {
       if (["error", "warning"].includes(message.type()) && !/WebSocket connection|ERR_CONNECTION|GPU stall|GL Driver|Failed to load resource|does not answer|software WebGL/i.test(message.text())) {

@@ -6,9 +6,11 @@ import { mostZipped_bytes, zip, type Member } from "../state/zip";
 import type { Twin } from "../state/twin";
 import { button, h } from "../ui/dom";
 import { dialog, openDialog } from "../ui/dialog";
+import type { Stage } from "../scene/stage";
+import { briefingButton } from "./briefing";
 import { save, type Picture } from "./picture";
 
-export function exportButtons(twin: Twin, picture: Picture): HTMLElement[] {
+export function exportButtons(twin: Twin, stage: Stage, picture: Picture): HTMLElement[] {
   const video = button("Record a video", { icon: "video", bare: true, title: "Record a video of the view (WebM)", onclick: () => picture.video(() => {
     video.setAttribute("aria-pressed", String(picture.recording));
     video.title = picture.recording ? "End the video and save it" : "Record a video of the view (WebM)";
@@ -18,6 +20,7 @@ export function exportButtons(twin: Twin, picture: Picture): HTMLElement[] {
   return [
     button("Picture", { icon: "picture", bare: true, title: "Save a picture of the view (PNG)", onclick: () => picture.png() }),
     video,
+    briefingButton(twin, stage, picture),
     button("Export", { icon: "download", onclick: () => void open(twin, picture) }),
   ];
 }

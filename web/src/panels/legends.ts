@@ -20,7 +20,7 @@ const pastNote = "Rebuilt from the recording: peaks between recorded frames are 
 /** Legends of the current display, also for pictures of the view. */
 export function presentLegends(twin: Twin, stage: Stage, layers: ShownLayers): Legend[] {
   const list: Legend[] = [];
-  if (twin.particles.value || twin.surface.value === "speed") {
+  if ((twin.particles.value && !twin.natural) || twin.surface.value === "speed") {
     list.push({ title: "Speed of debris", unit: "m/s", low: 0, high: stage.fastest_mps.value, at: (s) => rampAt(ramps.speed, s) });
   }
   if (twin.surface.value === "depth") {
@@ -64,7 +64,7 @@ export function legends(twin: Twin, stage: Stage, layers: ShownLayers): HTMLElem
       return h("span", {}, dot, c.name);
     }));
   classes.title = twin.scene.intensity.rule;
-  watchAll([twin.particles, twin.surface, twin.layer, twin.difference, layers.range, layers.shown_s, stage.fastest_mps, twin.houseColour, twin.shown, ...twin.every("impacts"), ...twin.every("setup")], () => {
+  watchAll([twin.look, twin.particles, twin.surface, twin.layer, twin.difference, layers.range, layers.shown_s, stage.fastest_mps, twin.houseColour, twin.shown, ...twin.every("impacts"), ...twin.every("setup")], () => {
     const anyHit = twin.shown.value.some((s) => twin.cells[s].impacts.value?.buildings.some((b) => b.hit));
     const present = presentLegends(twin, stage, layers);
     classes.hidden = twin.houseColour.value !== "intensity" || !anyHit;

@@ -6,6 +6,7 @@ import type { Stage } from "../scene/stage";
 import { watchAll } from "../state/cell";
 import type { SurfaceColour, Twin } from "../state/twin";
 import { button, h, type IconName } from "../ui/dom";
+import { momentOf, textOf } from "../scene/natural/sun";
 
 const savedKey = "talus-views";
 
@@ -56,6 +57,13 @@ export function viewBar(twin: Twin, stage: Stage): ViewBar {
   } });
   listViews();
 
+  const natural = h("input", { type: "checkbox", onchange: () => twin.setLook(natural.checked ? "natural" : "scientific") });
+  const sun = h("input", { type: "datetime-local", class: "sun", "aria-label": "Date and solar time of the light", title: "Date and solar time of the light: the sun is highest at 12:00",
+    onchange: () => {
+      const moment = momentOf(sun.value);
+      if (moment) twin.moment.value = moment;
+    } });
+  twin.moment.watch((moment) => (sun.value = textOf(moment)));
   const particles = h("input", { type: "checkbox", onchange: () => (twin.particles.value = particles.checked) });
   const surface = h("select", { "aria-label": "Debris as a surface", onchange: () => (twin.surface.value = surface.value as SurfaceColour) },
     h("option", { value: "off" }, "no surface"), h("option", { value: "depth" }, "surface by depth"), h("option", { value: "speed" }, "surface by speed"));
@@ -83,8 +91,13 @@ export function viewBar(twin: Twin, stage: Stage): ViewBar {
   const photo = h("input", { type: "checkbox", onchange: () => (twin.photo.value = photo.checked) });
   const photoLabel = h("label", { class: "check", title: "The scene's orthophoto, draped over the terrain" }, photo, "Photo");
   photoLabel.hidden = !twin.scene.orthophoto;
+  const particlesLabel = h("label", { class: "check" }, particles, "Particles");
+  const contoursLabel = h("label", { class: "check" }, contours, "Contours");
   const names = h("input", { type: "checkbox", onchange: () => (twin.names.value = names.checked) });
-  watchAll([twin.particles, twin.surface, twin.layer, twin.layerOpacity, twin.difference, twin.shown, twin.contours, twin.names, twin.photo], () => {
+  watchAll([twin.look, twin.particles, twin.surface, twin.layer, twin.layerOpacity, twin.difference, twin.shown, twin.contours, twin.names, twin.photo], () => {
+    natural.checked = twin.natural;
+    for (const label of [particlesLabel, contoursLabel]) label.hidden = twin.natural;
+    sun.hidden = !twin.natural;
     photo.checked = twin.photo.value;
     particles.checked = twin.particles.value;
     surface.value = twin.surface.value;
@@ -105,7 +118,7 @@ export function viewBar(twin: Twin, stage: Stage): ViewBar {
   const camera = h("div", { class: "bar camera", role: "toolbar", "aria-label": "Camera" }, ...buttons,
     button("Fit", { icon: "fit", bare: true, title: "Whole scene (F)", onclick: () => stage.rig.fit() }), save, saved, open);
   const show = h("div", { class: "bar show", role: "toolbar", "aria-label": "Display options" },
-    h("label", { class: "check" }, particles, "Particles"), surface, layer, opacity, differenceLabel,
-    photoLabel, h("label", { class: "check" }, contours, "Contours"), h("label", { class: "check" }, names, "Names"));
+    h("label", { class: "check", title: "Debris and ground as they would look, or by colours of a legend (N)" }, natural, "Natural"), sun, particlesLabel, surface, layer, opacity, differenceLabel,
+    photoLabel, contoursLabel, h("label", { class: "check" }, names, "Names"));
   return { camera, show, setMode, recall };
 }

@@ -2,6 +2,7 @@
 import { decodeFrame, type Frame, type ScenarioName } from "./frame";
 import { decodeGrid, type Grid } from "./grid";
 import type { Action, Done, Ensemble, ExportFile, Figure, Impacts, LayerName, NewScenario, ProbeSeries, Recording, SceneInfo, Series, Session } from "./messages";
+import type { StartPage } from "./start";
 
 /** The server's answer to a request that it refused. */
 export class Refused extends Error {
@@ -84,6 +85,15 @@ export class Api {
   calibrate = async (parameters: { key: string; low: number; high: number }[], runs: number): Promise<void> =>
     void (await this.ask("POST", "calibration", { parameters, runs }));
   cancelCalibration = async (): Promise<void> => void (await this.ask("DELETE", "calibration"));
+  start = (): Promise<StartPage> => this.json("start");
+  openScene = async (what: { scene?: string; session?: string; replace: boolean }): Promise<void> => void (await this.ask("POST", "open", what));
+  cancelOpening = async (): Promise<void> => void (await this.ask("DELETE", "open"));
+  forgetScene = async (id: string): Promise<void> => void (await this.ask("DELETE", `recent/${id}`));
+  /** The open session, or the content of a file of one. */
+  saveSession = async (name: string, file?: unknown): Promise<void> => void (await this.ask("POST", "sessions", { name, ...(file === undefined ? {} : { file }) }));
+  removeSession = async (id: string): Promise<void> => void (await this.ask("DELETE", `sessions/${id}`));
+  sessionFile = (): Promise<Blob> => this.blob("session/file");
+  quit = async (): Promise<void> => void (await this.ask("POST", "quit"));
   control = async (what: "request" | "release" | "grant" | "decline"): Promise<void> =>
     void (await this.ask("POST", "control", { do: what }));
 }

@@ -43,6 +43,8 @@ export interface SceneInfo {
   crs: string;
   crs_name: string;
   vertical_unit: string;
+  /** null: its reference system does not say. */
+  latitude_deg: number | null;
   origin: Place;
   extent_m: [number, number, number, number];
   elevation_m: [number, number];
@@ -296,4 +298,5 @@ export type ServerMessage =
   | { type: "people"; people: Person[]; controller: string | null; request: { id: string; name: string } | null }
   | ({ type: "calibration" } & CalibrationStatus)
   | { type: "scenarios"; scenarios: ScenarioName[] }
+  | { type: "ended" }
   | { type: "done"; scenario: ScenarioName; by: string; done: string };

@@ -3,21 +3,31 @@
 import { BufferAttribute, BufferGeometry, DynamicDrawUsage, NormalBlending, Points, ShaderMaterial, Vector3, type Texture } from "three";
 import type { Frame } from "../protocol/frame";
 
-const vertex = /* glsl */ `
+/** Of all shaders that draw particles: their buffers, and with `particlePlace` the place and speed between the two frames. */
+export const particleHead = /* glsl */ `
   attribute vec4 particle0;
   attribute vec4 particle1;
   uniform vec3 uOrigin0, uOrigin1, uScale0, uScale1;
   uniform float uSpeedUnit0, uSpeedUnit1, uMix, uFastest, uDiameter, uPixels;
-  varying float vShare, vRim;
-  void main() {
+`;
+export const particlePlace = /* glsl */ `
     bool there0 = particle0.x < 65534.5 || particle0.y < 65534.5 || particle0.z < 65534.5;
     bool there1 = particle1.x < 65534.5 || particle1.y < 65534.5 || particle1.z < 65534.5;
     vec3 at0 = uOrigin0 + uScale0 * particle0.xyz;
     vec3 at1 = uOrigin1 + uScale1 * particle1.xyz;
     float share = there0 && there1 ? uMix : (there1 ? 1.0 : 0.0);
     bool shown = (there0 && there1) || (there1 && uMix > 0.5) || (there0 && uMix <= 0.5);
-    vShare = mix(particle0.w * uSpeedUnit0, particle1.w * uSpeedUnit1, share) / uFastest;
-    vec4 seen = modelViewMatrix * vec4(mix(at0, at1, share), 1.0);
+    vec3 place = mix(at0, at1, share);
+    float speed = mix(particle0.w * uSpeedUnit0, particle1.w * uSpeedUnit1, share);
+`;
+
+const vertex = /* glsl */ `
+  ${particleHead}
+  varying float vShare, vRim;
+  void main() {
+    ${particlePlace}
+    vShare = speed / uFastest;
+    vec4 seen = modelViewMatrix * vec4(place, 1.0);
     gl_Position = shown ? projectionMatrix * seen : vec4(2.0, 2.0, 2.0, 1.0);
     // In a plan (the last row of its projection is 0 0 0 1) size does not depend on distance.
     gl_PointSize = shown ? max(2.5, uDiameter * uPixels / (projectionMatrix[3][3] > 0.5 ? 1.0 : -seen.z)) : 0.0;
@@ -45,10 +55,10 @@ const fragment = /* glsl */ `
 
 export class Debris {
   readonly points: Points;
-  private readonly geometry = new BufferGeometry();
+  readonly geometry = new BufferGeometry();
   private readonly attributes: [BufferAttribute, BufferAttribute];
   private newest = 0;
-  private readonly uniforms;
+  readonly uniforms;
 
   constructor(diameter_m: number, ramp: Texture) {
     this.uniforms = {

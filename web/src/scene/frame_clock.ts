@@ -7,6 +7,8 @@ const longestGap_s = 1.5;
 export class FrameClock {
   previous: Frame | null = null;
   next: Frame | null = null;
+  /** Share of the way from the previous frame to the next that is shown, whatever the time; null: by time. */
+  hold: number | null = null;
   private arrived_ms = 0;
   private interval_ms = 33;
 
@@ -27,6 +29,7 @@ export class FrameClock {
   /** 0: the previous frame, 1: the next one. */
   fraction(now_ms: number): number {
     if (this.previous === this.next) return 1;
+    if (this.hold !== null) return this.hold;
     return Math.min(1, Math.max(0, (now_ms - this.arrived_ms) / this.interval_ms));
   }
   /** Displayed simulated time. */
@@ -35,6 +38,6 @@ export class FrameClock {
     return this.previous.time_s + (this.next.time_s - this.previous.time_s) * this.fraction(now_ms);
   }
   moving(now_ms: number): boolean {
-    return this.fraction(now_ms) < 1;
+    return this.hold === null && this.fraction(now_ms) < 1;
   }
 }

@@ -8,6 +8,7 @@ import type { Grid } from "../protocol/grid";
 import { rampAt, roundStep, table, type Rgb } from "./colour";
 import type { Relief } from "./relief";
 import { groundFragment, groundNormal, groundVertex, sharedHead } from "./ground_shader";
+import { naturalGround } from "./natural/ground_natural";
 
 export function rampTexture(at: (share: number) => Rgb): DataTexture {
   const texture = new DataTexture(table(at), 256, 1, RGBAFormat);
@@ -101,6 +102,8 @@ export interface Draped {
   texture: Texture;
   placing: Vector4;
 }
+/** gain: makes its mean as bright as ground is in the mean. */
+export interface Photo extends Draped { gain: number }
 
 const groundRamp = rampTexture(groundColour);
 const nothing = new DataTexture(new Uint8Array(4), 1, 1, RGBAFormat);
@@ -123,13 +126,13 @@ export function contourInterval(relief: Relief): number {
 export class Ground {
   readonly mesh: Mesh;
   readonly uniforms: Record<string, IUniform> & {
-    uSurface: IUniform<number>; uContour: IUniform<number>; uLayerOpacity: IUniform<number>;
+    uSurface: IUniform<number>; uFlowTime: IUniform<number>; uContour: IUniform<number>; uLayerOpacity: IUniform<number>;
   };
 
-  constructor(geometry: BufferGeometry, private readonly relief: Relief, depthUniforms: Record<string, IUniform>) {
+  constructor(geometry: BufferGeometry, private readonly relief: Relief, further: Record<string, IUniform>) {
     const low = relief.lowest - relief.origin[2];
     this.uniforms = {
-      ...depthUniforms,
+      ...further,
       uGroundRamp: { value: groundRamp },
       uElevation: { value: new Vector2(low, Math.max(1, relief.highest - relief.lowest)) },
       uOriginZ: { value: relief.origin[2] },
@@ -154,6 +157,12 @@ export class Ground {
       uDrawnPlacing: { value: new Vector4() },
       uWide: { value: nothing },
       uWidePlacing: { value: new Vector4() },
+      uTrail: { value: nothing },
+      uTrailPlacing: { value: new Vector4() },
+      uShade: { value: nothing },
+      uShadePlacing: { value: new Vector4() },
+      uFlowTime: { value: 0 },
+      uPhotoGain: { value: 1 },
     };
     const material = new MeshLambertMaterial();
     material.onBeforeCompile = (shader) => {
@@ -163,9 +172,10 @@ export class Ground {
         .replace("#include <beginnormal_vertex>", `#include <beginnormal_vertex>\n${groundVertex.normal}`)
         .replace("#include <begin_vertex>", `#include <begin_vertex>\n${groundVertex.place}`);
       shader.fragmentShader = shader.fragmentShader
-        .replace("#include <common>", `#include <common>\n${sharedHead}\n${groundFragment.head}`)
-        .replace("#include <color_fragment>", groundFragment.colour)
-        .replace("#include <normal_fragment_begin>", `#include <normal_fragment_begin>\n${groundNormal}`);
+        .replace("#include <common>", `#include <common>\n${sharedHead}\n${groundFragment.head}\n${naturalGround.head}`)
+        .replace("#include <color_fragment>", `${groundFragment.colour}\n${naturalGround.colour}`)
+        .replace("#include <normal_fragment_begin>", `#include <normal_fragment_begin>\n${groundNormal}\n${naturalGround.normal}`)
+        .replace("#include <opaque_fragment>", `${naturalGround.light}\n#include <opaque_fragment>`);
     };
     this.mesh = new Mesh(geometry, material);
     this.mesh.receiveShadow = true;
@@ -184,10 +194,23 @@ export class Ground {
     this.set("uWidePlacing", wide.placing);
   }
   /** An orthophoto instead of the elevation colours; null: none. */
-  showPhoto(photo: Draped | null): void {
+  showPhoto(photo: Photo | null): void {
     this.set("uPhoto", photo?.texture ?? nothing);
-    if (photo) this.set("uPhotoPlacing", photo.placing);
+    if (photo) {
+      this.set("uPhotoPlacing", photo.placing);
+      this.set("uPhotoGain", photo.gain);
+    }
     this.set("uPhotoShown", photo ? 1 : 0);
+  }
+  /** Where debris has been. */
+  layTrail({ texture, placing }: Draped): void {
+    this.set("uTrail", texture);
+    this.set("uTrailPlacing", placing);
+  }
+  /** Shade of hills. */
+  shadeBy({ texture, placing }: Draped): void {
+    this.set("uShade", texture);
+    this.set("uShadePlacing", placing);
   }
   /** Lowers the ground by `depth`, NaN: unchanged; null: the scene's ground. */
   sink(depth: Grid | null): void {

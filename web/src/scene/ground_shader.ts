@@ -19,7 +19,7 @@ const vertexHead = /* glsl */ `
   attribute float shade;
   uniform sampler2D uSunk;
   uniform vec4 uSunkPlacing;
-  uniform float uCell;
+  uniform float uCell, uNatural;
   varying float vShade;
   varying vec3 vLocal;
   varying vec3 vGroundNormal;
@@ -44,7 +44,7 @@ const vertexPlace = /* glsl */ `
   vShade = shade;
   vLocal = transformed;
   vGroundNormal = objectNormal;
-  if (uSurface > 0.5) transformed.z += flowAt(position.xy).x * step(0.0, shade);
+  if (uSurface > 0.5 || uNatural > 0.5) transformed.z += flowAt(position.xy).x * step(0.0, shade);
 `;
 
 export const groundVertex = { head: vertexHead, normal: vertexNormal, place: vertexPlace };
@@ -72,7 +72,9 @@ const head = /* glsl */ `
 `;
 
 const colour = /* glsl */ `
-  if (vShade < 0.0) {
+  if (uNatural > 0.5) {
+    // See natural/ground_natural.ts.
+  } else if (vShade < 0.0) {
     // Side walls: faint layers, darker towards the floor.
     float down = clamp((vLocal.z - uElevation.x) / uElevation.y, -0.3, 1.0);
     diffuseColor.rgb = mix(vec3(0.36, 0.34, 0.32), vec3(0.50, 0.475, 0.44), down + 0.3) * 0.9;
@@ -119,7 +121,7 @@ export const groundFragment = { head, colour };
 
 // Where debris lies as a surface, its own slope is shaded; `normal` is in view space.
 export const groundNormal = /* glsl */ `
-  if (uSurface > 0.5 && vShade >= 0.0) {
+  if (uNatural < 0.5 && uSurface > 0.5 && vShade >= 0.0) {
     float e = 0.7;
     vec2 slope = vec2(flowAt(vLocal.xy + vec2(e, 0.0)).x - flowAt(vLocal.xy - vec2(e, 0.0)).x,
                       flowAt(vLocal.xy + vec2(0.0, e)).x - flowAt(vLocal.xy - vec2(0.0, e)).x) / (2.0 * e);

@@ -14,6 +14,10 @@ export class Resolution {
   private mean_ms = 0;
   private pictures = 0;
 
+  /** Of moving pictures: 2 all, 1 and 0 less. */
+  get detail(): number {
+    return this.share === 1 ? 2 : this.share > 0.5 ? 1 : 0;
+  }
   /**
    * The browser is ready for a picture at `now_ms`: the time for the previous one, if any, measures the speed of the
    * graphics.

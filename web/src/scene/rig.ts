@@ -112,6 +112,10 @@ export class Rig {
     ];
     this.go({ position, target: target.toArray() }, animated);
   }
+  /** Angle of the overall downhill direction, from east. */
+  get downhill(): number {
+    return Math.atan2(this.down[1], this.down[0]);
+  }
   /** Overall downhill direction of the ground. */
   private get down(): [number, number] {
     const { relief } = this;

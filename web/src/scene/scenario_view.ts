@@ -13,9 +13,14 @@ import { FrameClock } from "./frame_clock";
 import { Ground } from "./ground";
 import { groundAreas, groundLabels, groundLines } from "./ground_marks";
 import { Labels, type Label } from "./labels";
+import type { Daylight } from "./natural/daylight";
+import { Houses } from "./natural/houses";
+import { Rocks } from "./natural/rocks";
+import { Trail } from "./natural/trail";
+import { Trees } from "./natural/trees";
 import { disposeLine, pixelLine } from "./lines";
 import type { Relief } from "./relief";
-import { Sky, towardsSun } from "./sky";
+import { Sky } from "./sky";
 import { barrierSolid, disposeSolid, houseSolid, plainHouse } from "./solids";
 import { quantity } from "../state/format";
 
@@ -28,6 +33,7 @@ export interface Shared {
   relief: Relief;
   geometry: BufferGeometry;
   speedRamp: Texture;
+  daylight: Daylight;
 }
 
 export class ScenarioView {
@@ -45,8 +51,12 @@ export class ScenarioView {
   relief: Relief;
   /** Id of the shape being edited: its handles replace its name. */
   selected: string | null = null;
+  readonly trail: Trail;
   private readonly depths: DepthField;
   private readonly solids = new Group();
+  private readonly houses: Houses;
+  private readonly rocks: Rocks;
+  private readonly trees: Trees;
   private readonly outlines = new Group();
   private readonly path = new Group();
   private readonly areas: DrawnAreas;
@@ -58,17 +68,34 @@ export class ScenarioView {
   constructor(readonly name: ScenarioName, private readonly shared: Shared) {
     const { scene, relief } = shared;
     this.relief = relief;
-    this.sky = new Sky(this.three);
+    this.sky = new Sky(this.three, shared.daylight);
     this.depths = new DepthField(scene);
-    this.ground = new Ground(shared.geometry, relief, this.depths.uniforms);
+    this.ground = new Ground(shared.geometry, relief, { ...this.depths.uniforms, ...shared.daylight.uniforms });
+    this.trail = new Trail(scene.map, scene.origin);
+    this.ground.layTrail(this.trail);
+    this.houses = new Houses(shared.daylight.uniforms);
+    this.trees = new Trees(shared.daylight.uniforms);
     this.debris = new Debris(1.25 * scene.particle_spacing_m, shared.speedRamp);
+    this.rocks = new Rocks(this.debris.geometry, this.debris.uniforms, this.ground.uniforms);
     this.labels = new Labels(relief);
     this.areas = new DrawnAreas(relief);
     this.wideAreas = new DrawnAreas(relief);
-    this.three.add(this.ground.mesh, this.debris.points, this.solids, this.outlines, this.path, this.overlay);
+    this.three.add(this.ground.mesh, this.debris.points, this.rocks.rocks, this.rocks.spray, this.solids, this.houses.mesh, this.trees.mesh, this.outlines, this.path, this.overlay);
     this.drawPath();
   }
 
+  /** Shadows are due after it. */
+  showLook(natural: boolean): void {
+    this.sky.shine(natural);
+    this.houses.mesh.visible = natural;
+    this.hideHouses();
+    this.shadowsDue = true;
+  }
+  /** Plain solids of houses, where there are others in their place. */
+  private hideHouses(): void {
+    const barriers = new Set(this.setup?.barriers.map((b) => b.id));
+    for (const group of this.solids.children) group.visible = !this.houses.mesh.visible || barriers.has(group.userData["id"] as string);
+  }
   private drawPath(): void {
     const { relief } = this;
     for (const child of [...this.path.children]) disposeLine(child as Line2);
@@ -110,7 +137,10 @@ export class ScenarioView {
     const { relief } = this.shared;
     for (const child of [...this.solids.children]) disposeSolid(child as Group);
     for (const building of setup.buildings) this.solids.add(houseSolid(building, relief, plainHouse));
-    for (const barrier of setup.barriers) this.solids.add(barrierSolid(barrier, relief, barrierColour));
+    for (const barrier of setup.barriers) this.solids.add(barrierSolid(barrier, relief, barrierColour, this.shared.daylight));
+    this.houses.build(setup.buildings, relief);
+    this.trees.plant(setup.zones, relief);
+    this.hideHouses();
     const areas: Area[] = [];
     for (const release of setup.releases) {
       // The thicker the release, the stronger its tint.
@@ -153,6 +183,7 @@ export class ScenarioView {
       const mesh = group.children[0] as Mesh;
       const material = mesh.material as MeshLambertMaterial;
       const colour = impacts === null || isBarrier ? null : colourOf(id);
+      if (!isBarrier) this.houses.colour(id, colour, id === selected);
       material.color.set(colour ?? (isBarrier ? barrierColour : plainHouse));
       material.emissive.set(id === selected ? new Color("#1d86ab") : new Color(0));
       material.emissiveIntensity = 0.6;
@@ -219,15 +250,23 @@ export class ScenarioView {
     const fraction = this.clock.fraction(now_ms);
     this.debris.mix(fraction);
     this.depths.mix(fraction);
-    this.sunInView.copy(towardsSun).transformDirection(camera.matrixWorldInverse);
+    const { uNatural, uDetail } = this.shared.daylight.uniforms;
+    this.rocks.show(uNatural.value > 0, uNatural.value > 0 && uDetail.value > 0);
+    this.trees.show(uNatural.value > 0, uDetail.value);
+    this.ground.uniforms.uFlowTime.value = this.clock.time_s(now_ms) ?? 0;
+    this.sunInView.copy(this.sky.towards).transformDirection(camera.matrixWorldInverse);
     this.debris.prepare(pixels, this.sunInView, fastest_mps);
     return fraction < 1;
   }
   dispose(): void {
     for (const child of [...this.solids.children]) disposeSolid(child as Group);
+    this.houses.dispose();
+    this.trees.dispose();
+    this.rocks.dispose();
     this.ground.dispose();
     this.debris.dispose();
     this.depths.dispose();
+    this.trail.dispose();
     this.areas.dispose();
     this.wideAreas.dispose();
     this.labels.layer.remove();

@@ -6,7 +6,7 @@ import type { EnsembleLayer, LayerName, ShownLayer } from "../protocol/messages"
 import { Cell, watchAll } from "../state/cell";
 import type { Twin } from "../state/twin";
 import { divergingAt, rampAt, ramps, roundStep } from "./colour";
-import { rampTexture, type Draped } from "./ground";
+import { rampTexture, type Photo } from "./ground";
 import { photoTexture } from "./photo";
 import { colourOf, differenceOf, drapedFrom, findMap, infoOf, inUnit, isEnsembleLayer, rangeOfMap, scaleEnd, shownOfMap, shownValues } from "./layers";
 import type { Stage } from "./stage";
@@ -25,14 +25,14 @@ export class ShownLayers {
   private readonly ofEnsembles = new Map<EnsembleLayer, Grid>();
   private readonly rampTextures = new Map<string, Texture>();
   private readonly held = new Map<ScenarioName, Texture>();
-  private photo: Draped | null = null;
+  private photo: Photo | null = null;
   private busy = false;
   private again = false;
 
   constructor(private readonly twin: Twin, private readonly stage: Stage) {
     watchAll([twin.layer, twin.difference, twin.shown, twin.replay_s], () => void this.load());
     twin.layerOpacity.watch(() => this.put());
-    watchAll([twin.surface, twin.particles, twin.contours, twin.shown, stage.fastest_mps], () => this.putSurface());
+    watchAll([twin.look, twin.layer, twin.surface, twin.particles, twin.contours, twin.shown, stage.fastest_mps], () => this.putSurface());
     watchAll([twin.photo, twin.shown], () => void this.putPhoto());
     setInterval(() => {
       const running = twin.shown.value.some((s) => twin.cells[s].state.value?.status === "running");
@@ -184,7 +184,7 @@ export class ShownLayers {
     const spacing = twin.scene.particle_spacing_m;
     this.surfaceTop = roundStep(Math.max(1, 5 * spacing));
     for (const view of stage.views.values()) {
-      view.debris.points.visible = twin.particles.value;
+      view.debris.points.visible = twin.particles.value && !twin.natural;
       const bySpeed = twin.surface.value === "speed";
       view.ground.showSurface(twin.surface.value !== "off", bySpeed, bySpeed ? this.rampFor("speed") : this.surfaceRamp(),
         bySpeed ? stage.fastest_mps.value : this.surfaceTop);

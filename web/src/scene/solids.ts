@@ -4,14 +4,17 @@ import {
   Path, Shape, Vector2,
 } from "three";
 import type { Barrier, BarrierOpening, Building, Point } from "../protocol/messages";
+import type { Daylight } from "./natural/daylight";
+import { lit } from "./natural/lit";
 import type { Relief } from "./relief";
 
 export const plainHouse = "#f4f1ea";
 const edge = new LineBasicMaterial({ color: 0x3a3f45, transparent: true, opacity: 0.55 });
 
-function solid(geometry: BufferGeometry, colour: string, id: string, opacity = 1): Group {
+function solid(geometry: BufferGeometry, colour: string, id: string, daylight: Daylight | null, opacity = 1): Group {
   const group = new Group();
-  const mesh = new Mesh(geometry, new MeshLambertMaterial({ color: colour, transparent: opacity < 1, opacity, depthWrite: opacity === 1 }));
+  const material = new MeshLambertMaterial({ color: colour, transparent: opacity < 1, opacity, depthWrite: opacity === 1 });
+  const mesh = new Mesh(geometry, daylight ? lit(material, daylight.uniforms) : material);
   mesh.castShadow = opacity === 1;
   mesh.receiveShadow = true;
   group.add(mesh, new LineSegments(new EdgesGeometry(geometry, 25), edge));
@@ -31,7 +34,7 @@ export function houseSolid(building: Building, relief: Relief, colour: string): 
   const base = Math.min(building.base_m, ...building.footprint.flatMap((polygon) => polygon[0] ?? []).map(([x, y]) => relief.at(x, y))) - 0.5;
   const geometry = new ExtrudeGeometry(shapes, { depth: building.roof_m - base, bevelEnabled: false });
   geometry.translate(0, 0, base - oz);
-  return solid(geometry, colour, building.id);
+  return solid(geometry, colour, building.id, null);
 }
 
 /** Left and right edge of a band along a line, joined at the corners. */
@@ -92,7 +95,7 @@ export function crestAt(barrier: Partial<Pick<Barrier, "crest_elevation_m" | "op
  * A wall, or a translucent net, whose crest is `height_m` above the ground along its line, or level; openings are left
  * out down to their sills.
  */
-export function barrierSolid(barrier: BarrierForm, relief: Relief, colour: string): Group {
+export function barrierSolid(barrier: BarrierForm, relief: Relief, colour: string, daylight: Daylight): Group {
   const openings = barrier.openings ?? [];
   const places = stations(barrier.line, openings, Math.max(1, relief.grid.cell));
   const [left, right] = band(places.map((p) => p.at), Math.max(barrier.thickness_m, 0.3));
@@ -126,7 +129,7 @@ export function barrierSolid(barrier: BarrierForm, relief: Relief, colour: strin
   joined.setIndex(index);
   const geometry = joined.toNonIndexed();
   geometry.computeVertexNormals();
-  return solid(geometry, colour, barrier.id, typeof barrier.passing_share === "number" ? 0.4 : 1);
+  return solid(geometry, colour, barrier.id, daylight, typeof barrier.passing_share === "number" ? 0.4 : 1);
 }
 
 export function disposeSolid(group: Group): void {

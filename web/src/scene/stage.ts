@@ -2,13 +2,15 @@
 import { Vector3, WebGLRenderer, type BufferGeometry } from "three";
 import { lastDecode, scenarioNames, type Frame, type ScenarioName } from "../protocol/frame";
 import type { Grid } from "../protocol/grid";
-import type { Place } from "../protocol/messages";
+import type { Place, SceneInfo } from "../protocol/messages";
 import type { Twin } from "../state/twin";
 import { h } from "../ui/dom";
-import { Cell } from "../state/cell";
+import { Cell, watchAll } from "../state/cell";
 import { ramps, roundStep } from "./colour";
-import { groundGeometry, rampTextureOf } from "./ground";
+import { groundGeometry, rampTextureOf, type Draped } from "./ground";
 import type { Box } from "./labels";
+import { Daylight } from "./natural/daylight";
+import { hillShade } from "./natural/hill_shade";
 import type { Relief } from "./relief";
 import { Resolution } from "./resolution";
 import { Rig } from "./rig";
@@ -26,6 +28,10 @@ export interface Stats {
   unfold_ms: number;
   upload_ms: number;
   particles: number;
+  /** Of the last picture. */
+  drawCalls: number;
+  /** Of the natural look: 2 all, 1 and 0 less where graphics are slow. */
+  detail: number;
   shownTime_s: number;
   /** Pixels of the canvas per pixel of the page: lower while slow graphics draw a moving picture. */
   pixelRatio: number;
@@ -43,6 +49,9 @@ declare global {
 /** What is around the ground in a plan. */
 const aroundPlan = 0xdfe7ea;
 
+/** Where the scene has none, that of temperate hills. */
+const latitudeOf = (scene: SceneInfo): number => scene.latitude_deg ?? 45;
+
 export interface Hit { scenario: ScenarioName; world: Place; x: number; y: number }
 
 export class Stage {
@@ -56,9 +65,13 @@ export class Stage {
   readonly fastest_mps = new Cell(10);
   /** Counts changes of the ground. */
   readonly sinkings = new Cell(0);
+  /** Pictures are asked for one by one: none is drawn between. */
+  filming = false;
   /** Elements that lie over the view; labels keep clear of them. */
   covers: readonly HTMLElement[] = [];
   private readonly renderer: WebGLRenderer;
+  readonly daylight: Daylight;
+  private hills: Draped | null = null;
   private readonly geometry: BufferGeometry;
   private readonly panes = new Map<ScenarioName, HTMLElement>();
   private readonly speedRamp = rampTextureOf(ramps.speed);
@@ -72,7 +85,7 @@ export class Stage {
   private fitted = false;
 
   constructor(readonly twin: Twin, readonly relief: Relief) {
-    this.stats = { frames: 0, script_ms: 0, draw_ms: 0, decode_ms: 0, unfold_ms: 0, upload_ms: 0, particles: 0, shownTime_s: 0, pixelRatio: 1, sunk_m: {},
+    this.stats = { frames: 0, script_ms: 0, draw_ms: 0, decode_ms: 0, unfold_ms: 0, upload_ms: 0, particles: 0, drawCalls: 0, detail: 2, shownTime_s: 0, pixelRatio: 1, sunk_m: {},
       reads: twin.api.reads };
     this.renderer = new WebGLRenderer({ canvas: this.canvas, antialias: true, preserveDrawingBuffer: false, powerPreference: "high-performance" });
     this.renderer.shadowMap.enabled = true;
@@ -80,6 +93,7 @@ export class Stage {
     this.renderer.autoClear = false;
     this.renderer.setClearColor(aroundPlan, 1);
     this.geometry = groundGeometry(relief);
+    this.daylight = new Daylight(relief, latitudeOf(twin.scene));
     this.element.append(this.canvas);
     this.rig = new Rig(this.canvas, relief, () => {
       this.cameraMoved = true;
@@ -93,6 +107,14 @@ export class Stage {
       });
     }
     twin.shown.watch((names) => this.arrange(names));
+    watchAll([twin.look, twin.layer, twin.surface, twin.shown], () => this.shine());
+    twin.moment.watch((moment) => {
+      if (moment === this.daylight.moment) return;
+      this.daylight.set(moment);
+      this.hills?.texture.dispose();
+      this.hills = null;
+      this.shine();
+    });
     twin.onFrame((frame) => this.push(frame));
     requestAnimationFrame((now) => this.tick(now));
   }
@@ -125,6 +147,16 @@ export class Stage {
     this.relabel(view);
   }
 
+  /** Light of the present look, in all views. */
+  private shine(): void {
+    const { natural } = this.twin;
+    if (natural) this.hills ??= hillShade(this.relief, this.daylight.towards);
+    for (const view of this.views.values()) {
+      view.showLook(natural);
+      if (this.hills) view.ground.shadeBy(this.hills);
+    }
+    this.invalidate();
+  }
   private arrange(names: readonly ScenarioName[]): void {
     for (const [name, view] of this.views) {
       if (names.includes(name)) continue;
@@ -135,7 +167,8 @@ export class Stage {
     }
     for (const name of names) {
       if (this.views.has(name)) continue;
-      const view = new ScenarioView(name, { scene: this.twin.scene, relief: this.relief, geometry: this.geometry, speedRamp: this.speedRamp });
+      const view = new ScenarioView(name, { scene: this.twin.scene, relief: this.relief, geometry: this.geometry, speedRamp: this.speedRamp,
+        daylight: this.daylight });
       this.views.set(name, view);
       const pane = h("div", { class: "pane", "data-scenario": name }, view.labels.layer);
       this.panes.set(name, pane);
@@ -183,6 +216,7 @@ export class Stage {
   }
   private tick(now_ms: number): void {
     requestAnimationFrame((next) => this.tick(next));
+    if (this.filming) return;
     // Frames from the server are timed by the same clock.
     const now = Math.max(now_ms, 0);
     this.resolution.tick(now);
@@ -207,6 +241,9 @@ export class Stage {
     const wide = this.width / Math.max(1, this.views.size);
     const pixels = this.height * this.renderer.getPixelRatio() * this.rig.magnification;
     this.renderer.setScissorTest(true);
+    this.stats.detail = this.renderer.getPixelRatio() >= Math.min(2, devicePixelRatio) ? 2 : this.resolution.detail;
+    this.daylight.prepare(this.twin.natural, this.rig.mode === "plan", this.stats.detail);
+    this.stats.drawCalls = 0;
     let column = 0;
     let more = false;
     for (const view of this.views.values()) {
@@ -225,6 +262,7 @@ export class Stage {
       this.renderer.clear();
       this.renderer.render(view.three, camera);
       this.stats.draw_ms = performance.now() - drawn;
+      this.stats.drawCalls += this.renderer.info.render.calls;
       ++column;
       if (view.name === this.twin.edited.value) this.stats.shownTime_s = view.clock.time_s(now) ?? 0;
     }

@@ -3,6 +3,8 @@ import { Api, Refused } from "../protocol/api";
 import { scenarioNames, type Frame, type ScenarioName } from "../protocol/frame";
 import { Live, type Connection } from "../protocol/live";
 import type { Action, CalibrationStatus, Done, Ensemble, Impacts, Person, Place, Point, ProbeSeries, SceneInfo, Series, ServerMessage, Session, Setup, ShownLayer, State, You } from "../protocol/messages";
+import { usualMoment, type Moment } from "../scene/natural/sun";
+import type { StartPage } from "../protocol/start";
 import type { Relief } from "../scene/relief";
 import { Cell } from "./cell";
 import { fields } from "../protocol/schema";
@@ -23,6 +25,8 @@ export type Tool = { kind: "none" } | { kind: "draw"; shape: Shape } | { kind: "
 export interface Selection { shape: Shape; id: string }
 export interface Probe { at: Point; colour: string; series: Partial<Record<ScenarioName, ProbeSeries>> }
 export type SurfaceColour = "off" | "depth" | "speed";
+/** As it would look, or by colours that stand for values. */
+export type Look = "natural" | "scientific";
 /** How a run that has begun is edited: by a new scenario from the start, or on the way. */
 export type Habit = "new" | "now";
 export type HouseColour = "intensity" | "pressure";
@@ -31,6 +35,7 @@ export const probeColours = ["#0072b2", "#d55e00", "#009e73", "#b8428c", "#c7850
 
 const nameKey = "talus-name";
 const habitKey = "talus-edits";
+const lookKey = "talus-look";
 
 /** Whether an action changes results. Starting a release is part of running. */
 function isEdit(action: Action): boolean {
@@ -65,6 +70,9 @@ export class Twin {
   readonly ensembles = new Cell<readonly Ensemble[]>([]);
   readonly difference = new Cell(false);
   readonly layerOpacity = new Cell(0.85);
+  readonly look = new Cell<Look>(localStorage.getItem(lookKey) === "scientific" ? "scientific" : "natural");
+  /** Date and hour of the natural look's light. */
+  readonly moment = new Cell<Moment>(usualMoment);
   readonly particles = new Cell(true);
   readonly surface = new Cell<SurfaceColour>("off");
   readonly contours = new Cell(true);
@@ -89,7 +97,7 @@ export class Twin {
   private readonly frameReaders: ((frame: Frame) => void)[] = [];
   private readonly noticeHandlers: ((sentence: string, kind: "error" | "done") => void)[] = [];
 
-  constructor(token: string, readonly scene: SceneInfo, readonly relief: Relief, api: Api) {
+  constructor(token: string, readonly scene: SceneInfo, readonly relief: Relief, api: Api, readonly place: StartPage) {
     this.api = api;
     this.live = new Live(token, localStorage.getItem(nameKey) ?? "", {
       message: (message) => this.hear(message),
@@ -101,6 +109,18 @@ export class Twin {
         if (state !== "open") this.api.secret = null;
       },
     });
+  }
+  /** A map layer and a surface by depth or speed are always drawn in the colours of their legends. */
+  get natural(): boolean {
+    return this.look.value === "natural" && this.layer.value === "none" && this.surface.value === "off";
+  }
+  setLook(look: Look): void {
+    localStorage.setItem(lookKey, look);
+    if (look === "natural") {
+      this.layer.value = "none";
+      this.surface.value = "off";
+    }
+    this.look.value = look;
   }
   onFrame(reader: (frame: Frame) => void): void {
     this.frameReaders.push(reader);
@@ -259,6 +279,9 @@ export class Twin {
       case "scenarios":
         this.setScenarios(message.scenarios);
         this.askForFrames();
+        break;
+      case "ended":
+        location.reload();  // another scene has been opened in place of this one
         break;
       case "done":
         this.notice((message.by === this.you.value?.name ? "" : `${message.by}: `) + message.done +

@@ -1,0 +1,37 @@
+#pragma once
+
+#include <filesystem>
+#include <optional>
+
+#include "core/result.hpp"
+#include "products/particle_series.hpp"
+#include "products/series_frames.hpp"
+#include "run/run_result.hpp"
+#include "run/run_scene.hpp"
+#include "scene/scene.hpp"
+
+namespace talus::products {
+
+/// The run over time, in the formats that outputs.series names: takes the frames of a run and writes them when it has
+/// ended, as files of `folder`.
+class Series {
+  public:
+    Series(const scene::Scene& scene, std::filesystem::path folder);
+
+    /// Whether the scene asks for any.
+    [[nodiscard]] static bool wanted(const scene::Scene& scene) { return !scene.spec.outputs.series.empty(); }
+
+    [[nodiscard]] Status add(const run::Frame& frame);
+    /// On the cells of the result's maps.
+    [[nodiscard]] Status finish(const run::RunResult& result);
+
+  private:
+    [[nodiscard]] bool wants(const char* format) const;
+
+    const scene::Scene& scene_;
+    std::filesystem::path folder_;
+    std::optional<SeriesFrames> frames_;
+    std::optional<ParticleSeries> particles_;
+};
+
+}  // namespace talus::products

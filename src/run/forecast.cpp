@@ -1,0 +1,227 @@
+#include "run/forecast.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <unordered_map>
+
+#include "run/stop_rule.hpp"
+#include "sim/physics/resistance.hpp"
+
+namespace talus::run {
+namespace {
+
+constexpr std::size_t sample_size = 100;
+constexpr double longest_step = 0.1;  // s
+constexpr double pace_window = 0.25;  // of the wall time so far
+// Measured on hillsides, valleys, bowls and both scenes of Sham Tseng, with both models.
+constexpr double straggling_share = 0.9;  // of the debris: so much of it moves while it coasts together
+constexpr double decay_window = 0.4;      // of the simulated time so far
+constexpr double falls_before_decay = 3;  // in times that it took to become fastest
+constexpr double straggling_weight = 0.8;
+
+/// Takes a step along the ground; returns the new speed. No step passes more than a cell.
+double slide(const sim::Model& model, const sim::Ground& ground, SlidingBlock& block, double effective_share,
+             double time_step) {
+    const auto below = ground.terrain.sample(block.position.x, block.position.y);
+    const auto resistance = sim::ground_resistance(model, block.position);
+    const Vec3<double>& n = below.normal;
+    const double speed = length(block.velocity);
+    // Along the slope of the new place, at the speed of the old one.
+    Vec3<double> v = block.velocity - n * dot(block.velocity, n);
+    v = v * (speed / std::max(length(v), 1e-9));
+    v = v + (n * n.z - Vec3<double>{0, 0, 1}) * (model.gravity * time_step);
+    v = sim::slowed_by_drag(model, resistance, below, 0.0, block.thickness, v, time_step);
+    const double friction = resistance.friction_coefficient * effective_share * model.gravity * n.z +
+                            resistance.cohesion / (model.rest_density * block.thickness);
+    const double before = length(v), after = std::max(0.0, before - friction * time_step);
+    block.velocity = before > 0 ? v * (after / before) : Vec3<double>{};
+    block.position.x += block.velocity.x * time_step;
+    block.position.y += block.velocity.y * time_step;
+    block.position.z = ground.terrain.sample(block.position.x, block.position.y).height + model.contact_distance();
+    return after;
+}
+
+double stop_time(const sim::Model& model, const sim::Ground& ground, SlidingBlock block, double deposited_speed,
+                 double horizon) {
+    const double effective_share = 1 - (model.pore_pressure_decay_time > 0 ? 0 : model.pore_pressure_ratio);
+    double time = block.start, moved = block.start;
+    while (time < horizon) {
+        const double time_step = std::min(longest_step, ground.terrain.cell() / std::max(length(block.velocity), 1.0));
+        const double speed = slide(model, ground, block, effective_share, time_step);
+        time += time_step;
+        if (speed >= deposited_speed) moved = time;
+        if (speed <= 0 || !ground.terrain.covers(block.position.x, block.position.y)) break;
+        if (!ground.solids.empty() && ground.solids.inside(block.position)) break;
+    }
+    return std::min(moved, horizon);
+}
+
+/// When less than `enough` of the debris still moves. `stops` stand for `moving` of it.
+double rest_time(const std::vector<double>& stops, double moving, double enough) {
+    if (stops.empty() || moving <= enough) return 0;
+    const double last = static_cast<double>(stops.size()) * (1 - enough / moving);
+    return stops[std::min(stops.size() - 1, static_cast<std::size_t>(last))];
+}
+
+double start_of(const sim::Model& model, std::uint32_t id) {
+    for (const sim::ReleaseGroup& release : model.releases) {
+        if (id >= release.first_particle && id < release.last_particle) return release.start_time;
+    }
+    return 0;
+}
+
+/// Particles per column of the flow, of which slowed_by_drag takes the thickness.
+class Columns {
+  public:
+    Columns(const sim::Model& model, const sim::State& state) : width_(sim::column_width(model)) {
+        counts_.reserve(state.count / 4);
+        for (std::size_t i = 0; i < state.count; ++i) ++counts_[key(state.position.x[i], state.position.y[i])];
+    }
+    [[nodiscard]] double at(double x, double y) const {
+        const auto found = counts_.find(key(x, y));
+        return found == counts_.end() ? 1 : found->second;
+    }
+
+  private:
+    [[nodiscard]] std::uint64_t key(double x, double y) const {
+        const auto cell = [&](double v) {
+            return static_cast<std::uint64_t>(
+                static_cast<std::uint32_t>(static_cast<std::int64_t>(std::floor(v / width_))));
+        };
+        return cell(x) << 32 | cell(y);
+    }
+
+    double width_;
+    std::unordered_map<std::uint64_t, std::uint32_t> counts_;
+};
+
+}  // namespace
+
+std::vector<double> stop_times(const sim::Model& model, const sim::Ground& ground, std::vector<SlidingBlock> blocks,
+                               double deposited_speed, double horizon) {
+    std::vector<double> stops(blocks.size());
+    for (std::size_t k = 0; k < blocks.size(); ++k) {
+        stops[k] = stop_time(model, ground, blocks[k], deposited_speed, horizon);
+    }
+    std::sort(stops.begin(), stops.end());
+    return stops;
+}
+
+Outlook outlook_of(const sim::Simulation& simulation, double deposited_speed) {
+    const sim::Model& model = simulation.model();
+    const sim::State& state = simulation.state();
+    const double debris = std::max<double>(state.count, 1);
+    Outlook outlook;
+    outlook.enough_share = std::clamp(model.solver.stop_moving_share, std::min(1.0, 5 / debris), 1.0);
+    outlook.moving_share = motion_of(state, deposited_speed).moving / debris;
+    for (std::size_t i = 0; i < state.awake; ++i) {
+        const LocalPoint v = state.velocity.at(i);
+        outlook.energy += v.x * v.x + v.y * v.y + v.z * v.z;
+    }
+
+    // What sleeps is deposit.
+    std::vector<SlidingBlock> blocks;
+    const Columns columns(model, state);
+    const double every = std::max(1.0, static_cast<double>(state.awake) / sample_size);
+    for (double place = every / 2; place < state.awake; place += every) {
+        const auto i = static_cast<std::size_t>(place);
+        const LocalPoint p = state.position.at(i), v = state.velocity.at(i);
+        const auto below = simulation.ground().terrain.sample<double>(p.x, p.y);
+        SlidingBlock block{{p.x, p.y, p.z}, {v.x, v.y, v.z}, sim::flow_thickness(model, below, columns.at(p.x, p.y))};
+        if (state.held[i] != 0) {
+            block.start = start_of(model, state.id[i]) - state.time;
+            if (!std::isfinite(block.start)) continue;  // until somebody triggers it
+            outlook.moving_share += every / debris;     // as it will
+        }
+        blocks.push_back(block);
+    }
+    const auto stops =
+        stop_times(model, simulation.ground(), std::move(blocks), deposited_speed, model.solver.end_time - state.time);
+    outlook.coasting = rest_time(stops, state.awake, outlook.enough_share * debris);
+    return outlook;
+}
+
+Outlook outlook_of(const depth::Solver& solver, const sim::Model& model, const sim::Ground& ground,
+                   double deposited_speed) {
+    struct Cell {
+        PlanPoint place;
+        float depth, u, v;
+    };
+    std::vector<Cell> cells;
+    Outlook outlook;
+    double awake = 0, moving = 0;  // m, of all cells
+    const GridGeometry& geometry = solver.geometry();
+    solver.for_each_active_row_in_turn([&](const depth::ActiveRow& row) {
+        for (int k = 0; k < row.last - row.first; ++k) {
+            if (row.depth[k] <= 0) continue;
+            cells.push_back({geometry.centre(row.first + k, row.row), row.depth[k], row.u[k], row.v[k]});
+            awake += row.depth[k];
+            const double speed = std::hypot(row.u[k], row.v[k]);
+            outlook.energy += row.depth[k] * speed * speed;
+            if (speed >= deposited_speed) moving += row.depth[k];
+        }
+    });
+    // A block for each equal part of the volume.
+    std::vector<SlidingBlock> blocks;
+    double sum = 0;
+    for (const Cell& cell : cells) {
+        sum += cell.depth;
+        if (sum < (static_cast<double>(blocks.size()) + 0.5) * awake / sample_size) continue;
+        const LocalPoint p = ground.terrain.frame().to_local({cell.place.x, cell.place.y, 0});
+        const auto below = ground.terrain.sample<double>(p.x, p.y);
+        const double rise = -(below.normal.x * cell.u + below.normal.y * cell.v) / below.normal.z;
+        blocks.push_back({{p.x, p.y, below.height + model.contact_distance()},
+                          {cell.u, cell.v, rise},
+                          std::max(cell.depth * below.normal.z, 0.01)});
+    }
+    const double debris = std::max(solver.volume() / (geometry.cell * geometry.cell), 1e-9);
+    outlook.enough_share = model.solver.stop_moving_share;
+    outlook.moving_share = std::min(1.0, moving / debris);
+    const auto stops =
+        stop_times(model, ground, std::move(blocks), deposited_speed, model.solver.end_time - solver.time());
+    outlook.coasting = rest_time(stops, awake, outlook.enough_share * debris);
+    return outlook;
+}
+
+template <class Accepts>
+RunClock::Mark RunClock::latest_mark(const Accepts& accepts) const {
+    const auto found = std::find_if(marks_.rbegin(), marks_.rend(), accepts);
+    return found == marks_.rend() ? Mark{} : *found;
+}
+
+double RunClock::end_after(const Outlook& now, double time) const {
+    if (solver_.stop_moving_share <= 0) return solver_.end_time;
+    double left = now.coasting;
+    if (now.moving_share < straggling_share && now.moving_share > now.enough_share) {
+        // The decay of the moving share over the latest part of the run, and that since debris was fastest.
+        const Mark before = latest_mark([&](const Mark& mark) { return mark.time <= (1 - decay_window) * time; });
+        const double fallen = std::max(0.0, std::log(std::max(before.moving_share, 1e-9) / now.moving_share));
+        const double fastest = std::max_element(marks_.begin(), marks_.end(), [](const Mark& x, const Mark& y) {
+                                   return x.energy < y.energy;
+                               })->time;
+        const double long_decay = (time + falls_before_decay * fastest) / -std::log(now.moving_share);
+        const double decay = (time - before.time + long_decay) / (fallen + 1);
+        const double straggling = decay * std::log(now.moving_share / now.enough_share);
+        left = std::pow(std::max(left, 0.1), 1 - straggling_weight) * std::pow(straggling, straggling_weight);
+    }
+    return std::min(solver_.end_time, time + now.wait + left + solver_.stop_duration);
+}
+
+void RunClock::tick(double wall_time, double time, const std::function<Outlook()>& look) {
+    using Clock = std::chrono::steady_clock;
+    if (wall_time >= next_look_) {
+        const auto start = Clock::now();
+        const Outlook now = look();
+        marks_.push_back({wall_time, time, now.moving_share, now.energy});
+        end_ = end_after(now, time);
+        const double cost = std::chrono::duration<double>(Clock::now() - start).count();
+        next_look_ = std::max(1.03 * wall_time, wall_time + 20 * cost);
+    }
+    const Mark before = latest_mark([&](const Mark& mark) { return mark.wall_time <= (1 - pace_window) * wall_time; });
+    if (time <= before.time) return;
+    remaining_ = std::max(0.0, end_ - time) * (wall_time - before.wall_time) / (time - before.time);
+    share_done_ = std::max(share_done_, wall_time / std::max(wall_time + remaining_, 1e-9));
+}
+
+}  // namespace talus::run

@@ -1,0 +1,66 @@
+#include <fmt/format.h>
+
+#include "serve/api.hpp"
+#include "serve/openapi.hpp"
+#include "serve/session_file.hpp"
+#include "serve/start.hpp"
+
+namespace talus::serve {
+namespace {
+
+using Handle = void (*)(Start&, const Request&, const Respond&);
+
+/// The routes exist on every server; one of a single scene refuses them.
+Handler on_start(Start* start, Handle handle) {
+    return [start, handle](const Request& request, const Respond& respond) {
+        if (start == nullptr) {
+            respond(error_response(409, "this server shows one scene; talus start has a start page"));
+        } else {
+            handle(*start, request, respond);
+        }
+    };
+}
+
+}  // namespace
+
+Router make_start_api(Start* start) {
+    Router router;
+    router.add({"GET", "/api/openapi.json", Role::nobody, [](const Request&, const Respond& respond) {
+                    Response response;
+                    response.body = std::make_shared<const std::string>(openapi_document());
+                    respond(response);
+                }});
+    router.add({"GET", "/api/start", Role::viewer, [start](const Request& request, const Respond& respond) {
+                    if (start == nullptr) return respond(json_response(200, {{"available", false}}));
+                    start->describe(request.role, respond);
+                }});
+    const auto add = [&](const char* method, const char* pattern, Handle handle) {
+        router.add({method, pattern, Role::controller, on_start(start, handle)});
+    };
+    add("POST", "/api/open",
+        [](Start& s, const Request& request, const Respond& respond) { s.open(request, respond); });
+    add("DELETE", "/api/open", [](Start& s, const Request&, const Respond& respond) { s.cancel(respond); });
+    add("DELETE", "/api/recent/{id}", [](Start& s, const Request& request, const Respond& respond) {
+        s.forget(request.parameters.at("id"), respond);
+    });
+    add("POST", "/api/sessions",
+        [](Start& s, const Request& request, const Respond& respond) { s.save(request, respond); });
+    add("DELETE", "/api/sessions/{id}", [](Start& s, const Request& request, const Respond& respond) {
+        s.remove_saved(request.parameters.at("id"), respond);
+    });
+    add("POST", "/api/quit", [](Start& s, const Request&, const Respond& respond) { s.quit(respond); });
+    return router;
+}
+
+void add_session_file_route(Router& router, Session& session) {
+    router.add({"GET", "/api/session/file", Role::viewer, [&session](const Request&, const Respond& respond) {
+                    const std::string title = session.scene()->spec.scene.title;
+                    session.loop().post([respond, title](Scenarios& all) {
+                        Response response = json_response(200, write_session(all, title, title));
+                        response.file_name = "session.json";
+                        respond(response);
+                    });
+                }});
+}
+
+}  // namespace talus::serve

@@ -1,0 +1,40 @@
+#include "serve/open_session.hpp"
+
+#include <utility>
+
+#include "core/try.hpp"
+#include "serve/api.hpp"
+#include "serve/server.hpp"
+
+namespace talus::serve {
+
+OpenSession::OpenSession(Thread thread, std::shared_ptr<const scene::Scene> scene, const ServerOptions& options)
+    : session(std::move(thread), scene, options.tokens),
+      exports(session, options.export_folder),
+      calibrations(std::move(scene), options.calibration,
+                   [this](nlohmann::json status) { session.calibration(std::move(status)); }) {}
+
+Result<OpenSessionPtr> OpenSession::open(Thread thread, const std::shared_ptr<const scene::Scene>& scene,
+                                         const ServerOptions& options, std::vector<OpeningScenario> scenarios) {
+    auto made = std::make_shared<OpenSession>(std::move(thread), scene, options);
+    TALUS_ASSIGN(made->ensembles, Ensembles::read(options.ensembles, *scene));
+    const auto on_failure = options.on_failure ? options.on_failure : [](const std::string&) {};
+    TALUS_TRY(made->session.open(options.scenario, on_failure));
+    made->session.calibration(made->calibrations.describe());
+    made->router = make_api(made->session, made->exports, made->ensembles, made->calibrations);
+    const auto shared = std::make_shared<std::vector<OpeningScenario>>(std::move(scenarios));
+    made->session.loop().post([shared, run = options.run](Scenarios& all) {
+        for (OpeningScenario& one : *shared) all.put(one.index, std::move(one.scenario), one.title);
+        if (run) all.act(0, {{"action", "run"}}, "", [](const Result<twin::Done>&) {});
+    });
+    return made;
+}
+
+void OpenSession::close() {
+    // Threads end while everything that they notify still exists.
+    calibrations.close();
+    session.close();
+    exports.close();
+}
+
+}  // namespace talus::serve

@@ -1,0 +1,49 @@
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "serve/calibrations.hpp"
+#include "serve/ensembles.hpp"
+#include "serve/exports.hpp"
+#include "serve/router.hpp"
+#include "serve/session.hpp"
+
+namespace talus::serve {
+
+struct ServerOptions;
+
+/// A scenario that is there when a session opens.
+struct OpeningScenario {
+    int index = 0;      ///< 0 for "A", ...
+    std::string title;  ///< given by people; empty: none
+    std::unique_ptr<twin::Scenario> scenario;
+};
+
+/// A session with all that belongs to it, and the routes to it.
+struct OpenSession {
+    OpenSession(Thread thread, std::shared_ptr<const scene::Scene> scene, const ServerOptions& options);
+    ~OpenSession() { close(); }
+    OpenSession(const OpenSession&) = delete;
+    OpenSession& operator=(const OpenSession&) = delete;
+
+    /// From any thread. `scenarios`: in place of one at time 0. Errors: the scene cannot be run, an ensemble cannot be
+    /// shown on it.
+    [[nodiscard]] static Result<std::shared_ptr<OpenSession>> open(Thread thread,
+                                                                   const std::shared_ptr<const scene::Scene>& scene,
+                                                                   const ServerOptions& options,
+                                                                   std::vector<OpeningScenario> scenarios = {});
+    /// Ends the threads; requests that wait are not answered. Nobody may use the session any more.
+    void close();
+
+    Ensembles ensembles;
+    Session session;
+    Exports exports;
+    Calibrations calibrations;
+    Router router;
+};
+
+using OpenSessionPtr = std::shared_ptr<OpenSession>;
+
+}  // namespace talus::serve

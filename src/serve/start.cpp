@@ -1,0 +1,323 @@
+#include "serve/start.hpp"
+
+#include <algorithm>
+#include <system_error>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "core/try.hpp"
+#include "scene/builtin.hpp"
+#include "serve/api.hpp"
+#include "serve/json_text.hpp"
+#include "twin/json_keys.hpp"
+
+namespace talus::serve {
+namespace {
+
+using nlohmann::json;
+namespace fs = std::filesystem;
+
+constexpr std::string_view builtin_prefix = "built-in:";
+
+const char* name_of(KnownScene::Kind kind) {
+    return kind == KnownScene::Kind::recent ? "recent" : kind == KnownScene::Kind::own ? "own" : "builtin";
+}
+
+json to_json(const KnownScene& scene) {
+    return {{"id", scene.id},
+            {"title", scene.title},
+            {"kind", name_of(scene.kind)},
+            {"file", scene.file.empty() ? json() : json(scene.file.string())},
+            {"opened_at", scene.opened_at.empty() ? json() : json(scene.opened_at)},
+            {"missing", scene.missing}};
+}
+
+json to_json(const SavedSession& saved) {
+    return {{"id", saved.id},
+            {"name", saved.name},
+            {"title", saved.title},
+            {"saved_at", saved.saved_at},
+            {"scenarios", saved.scenarios}};
+}
+
+Response done(const std::string& sentence, const json& created = nullptr) {
+    return json_response(200, {{"done", sentence}, {"created", created}});
+}
+
+Response of(const Status& status, const std::string& sentence) {
+    return status ? done(sentence) : error_response(404, status.error().message);
+}
+
+}  // namespace
+
+Start::Start(StartSettings settings, ServerOptions options, Host host)
+    : settings_(std::move(settings)),
+      options_(std::move(options)),
+      host_(std::move(host)),
+      library_(settings_.folder) {}
+
+Start::~Start() {
+    close();
+}
+
+void Start::close() {
+    files_.reset();
+    stop_ = true;
+    opener_.reset();
+    if (made_) made_->close();
+    made_ = nullptr;
+}
+
+void Start::describe(Role role, const Respond& respond) {
+    const OpenSessionPtr open = host_.open();
+    const std::lock_guard lock(mutex_);
+    json page = {{"available", true},
+                 {"open", open ? json{{"title", open->session.scene()->spec.scene.title}} : json()},
+                 {"opening", state_.busy ? json{{"what", state_.what}, {"share", state_.share}} : json()},
+                 {"error", state_.error.empty() ? json() : json(state_.error)},
+                 {"count", state_.count},
+                 {"notes", state_.notes},
+                 {"program", "talus " TALUS_VERSION},
+                 {"role", role_name(role)}};
+    if (role < Role::controller) {  // paths and names of files are not for viewers
+        respond(json_response(200, page));
+        return;
+    }
+    files_->post([this, respond, page]() mutable {
+        page["folder"] = library_.folder().string();
+        page["scenes"] = page["sessions"] = json::array();
+        for (const KnownScene& scene : library_.scenes()) page["scenes"].push_back(to_json(scene));
+        for (const SavedSession& saved : library_.sessions()) page["sessions"].push_back(to_json(saved));
+        respond(json_response(200, page));
+    });
+}
+
+void Start::open(const Request& request, const Respond& respond) {
+    const auto wanted = parse_json(request.body);
+    const auto text_of = [&](const char* key) -> std::string {
+        const auto found = wanted->find(key);
+        return found != wanted->end() && found->is_string() ? found->get<std::string>() : "";
+    };
+    const Status keys = !wanted               ? Status(wanted.error())
+                        : wanted->is_object() ? twin::check_keys(*wanted, {"scene", "session", "replace"})
+                                              : Status(Error{"the body is an object with scene or session"});
+    if (!keys) return respond(error_response(400, keys.error().message));
+    const std::string scene = text_of("scene"), session = text_of("session");
+    if (scene.empty() == session.empty()) {
+        return respond(error_response(400, "the body names a scene or a session, one of them, by its id"));
+    }
+    if (const OpenSessionPtr open = host_.open()) {
+        if (wanted->value("replace", json()) != true) {
+            return respond(error_response(409, "a session is open; say \"replace\": true to end it"));
+        }
+        const Person* who = open->session.people().whose(request.secret);
+        if (const Status allowed = open->session.people().may_act(who ? who->id : ""); !allowed) {
+            return respond(error_response(409, allowed.error().message));
+        }
+    }
+    files_->post([this, scene, session, respond] {
+        Wanted found;
+        for (const KnownScene& known : library_.scenes()) {
+            if (!scene.empty() && known.id == scene) found = {known, {}, false, known.title};
+        }
+        for (const SavedSession& saved : library_.sessions()) {
+            if (!session.empty() && saved.id == session) found = {{}, saved.file, false, saved.name};
+        }
+        if (!found.scene && found.session.empty()) {
+            respond(error_response(404, "there is nothing of this id; reload the page"));
+            return;
+        }
+        begin(std::move(found), respond);
+    });
+}
+
+void Start::open_file(const fs::path& file) {
+    Wanted wanted;
+    wanted.what = file.filename().string();
+    wanted.any_scene = true;
+    if (file.extension() == ".json") {
+        wanted.session = file;
+    } else {
+        wanted.scene = KnownScene{"", wanted.what, KnownScene::Kind::recent, fs::absolute(file), "", false};
+    }
+    begin(std::move(wanted), [](const Response&) {});
+}
+
+void Start::begin(Wanted wanted, const Respond& respond) {
+    {
+        const std::lock_guard lock(mutex_);
+        if (state_.busy) {
+            respond(error_response(409, fmt::format("{} is being opened; wait for it, or cancel it", state_.what)));
+            return;
+        }
+        state_.busy = true;
+        state_.what = wanted.what;
+        state_.error.clear();
+        state_.share = 0;
+        stop_ = false;
+    }
+    respond(json_response(202, {{"done", "opening " + wanted.what}, {"created", nullptr}}));
+    opener_->post([this, wanted = std::move(wanted)] { work(wanted); });
+}
+
+bool Start::say(const std::string& what, double share) {
+    const std::lock_guard lock(mutex_);
+    state_.what = what;
+    state_.share = share;
+    return !stop_;
+}
+
+void Start::end(const std::string& error) {
+    const std::lock_guard lock(mutex_);
+    state_.busy = false;
+    state_.error = error;
+}
+
+void Start::work(const Wanted& wanted) {
+    try {
+        auto loaded = load(wanted);
+        if (!loaded) return end(loaded.error().message);
+        auto made = OpenSession::open(host_.thread, loaded->scene, loaded->options, std::move(loaded->scenarios));
+        if (!made) return end(made.error().message);
+        if (stop_) {
+            (*made)->close();
+            return end("cancelled");
+        }
+        // A list of recent scenes that cannot be written is no reason not to open one.
+        if (!loaded->options.calibration.own_files) {
+            (void)library_.remember(loaded->scene->file, loaded->scene->spec.scene.title).ok();
+        }
+        {
+            const std::lock_guard lock(mutex_);
+            made_ = *made;
+            state_.notes = std::move(loaded->notes);
+        }
+        host_.thread.post([this] { put_in_place(); });
+    } catch (const std::exception& error) {
+        end(fmt::format("{} cannot be opened: {}", wanted.what, error.what()));
+    }
+}
+
+void Start::put_in_place() {
+    const OpenSessionPtr former = host_.open();
+    {
+        const std::lock_guard lock(mutex_);
+        host_.take(std::exchange(made_, nullptr));
+        state_.busy = false;
+        ++state_.count;
+    }
+    if (!former) return;
+    former->session.dismiss_all();
+    opener_->post([post = host_.thread.post, former] {
+        former->close();
+        post([former] {});  // what it posted before comes first
+    });
+}
+
+Result<Start::Loaded> Start::load(const Wanted& wanted) {
+    if (wanted.scene) return load_scene(*wanted.scene, {});
+    TALUS_ASSIGN(const auto text, read_whole(wanted.session, Library::longest_session));
+    const auto file = read_session(text);
+    if (!file) return Error{fmt::format("{}: {}", wanted.session.filename().string(), file.error().message)};
+    TALUS_ASSIGN(const auto known, scene_of(*file, wanted.any_scene));
+    TALUS_ASSIGN(auto loaded, load_scene(known, file->scenarios[0].journal.overrides));
+    TALUS_ASSIGN(loaded.scenarios,
+                 replay_session(
+                     *file, loaded.scene, [this](const std::string& what, double share) { return say(what, share); },
+                     loaded.notes));
+    return Result<Loaded>(std::move(loaded));
+}
+
+/// Only a scene that this page could open anyway: a session file may come from a browser.
+Result<KnownScene> Start::scene_of(const SessionFile& file, bool any) const {
+    const std::string& wanted = file.scenarios[0].journal.scene_file;
+    const bool builtin = wanted.starts_with(builtin_prefix);
+    for (const KnownScene& known : library_.scenes()) {
+        if (builtin ? known.file.empty() : known.file == wanted) return known;
+    }
+    if (any) return KnownScene{"", file.title, KnownScene::Kind::recent, wanted, "", false};
+    return Error{fmt::format("the scene of this session, {}, is not known here; open it once with: talus start {}",
+                             wanted, wanted)};
+}
+
+Result<Start::Loaded> Start::load_scene(const KnownScene& known, const std::vector<std::string>& overrides) {
+    Loaded loaded;
+    loaded.options = options_;
+    ServerOptions& options = loaded.options;
+    options.export_folder = options_.export_folder / fmt::format("session_{}", ++folders_);
+    std::error_code error;
+    fs::create_directories(options.export_folder, error);
+    if (error) return Error{fmt::format("{}: {}", options.export_folder.string(), error.message())};
+    const bool builtin = known.file.empty();
+    fs::path file = known.file;
+    const fs::path unpacked = options.export_folder / "scene";
+    if (builtin) {
+        TALUS_ASSIGN(file, scene::unpack_builtin_scene(unpacked));
+    }
+    TALUS_ASSIGN(auto scene, scene::load_scene(file, overrides));
+    if (builtin)
+        scene::name_unpacked_files(scene, unpacked, fmt::format("{}{}", builtin_prefix, scene::builtin_scene_name));
+    options.scenario.overrides = overrides;
+    options.calibration.source = {file, overrides};
+    options.calibration.own_files = builtin;
+    options.calibration.scene_name = builtin ? std::string("built-in") : fs::absolute(file).lexically_normal().string();
+    options.calibration.folder = options.export_folder;
+    loaded.scene = std::make_shared<const scene::Scene>(std::move(scene));
+    return Result<Loaded>(std::move(loaded));
+}
+
+void Start::cancel(const Respond& respond) {
+    const std::lock_guard lock(mutex_);
+    stop_ = true;
+    respond(state_.busy ? done("cancelled: " + state_.what) : error_response(409, "nothing is being opened"));
+}
+
+void Start::forget(const std::string& id, const Respond& respond) {
+    files_->post([this, id, respond] { respond(of(library_.forget(id), "taken out of the recent scenes")); });
+}
+
+void Start::save(const Request& request, const Respond& respond) {
+    auto wanted = parse_json(request.body);
+    const Status keys = !wanted               ? Status(wanted.error())
+                        : wanted->is_object() ? twin::check_keys(*wanted, {"name", "file"})
+                                              : Status(Error{"the body is an object with name"});
+    if (!keys) return respond(error_response(400, keys.error().message));
+    const auto named = wanted->find("name");
+    const std::string name =
+        named != wanted->end() && named->is_string() ? tidy_name(named->get<std::string>(), 60) : "";
+    if (file_name_of(name).empty()) {
+        return respond(error_response(400, "a session needs a name with letters or digits"));
+    }
+    const auto keep = [this, name, respond](const json& session) {
+        files_->post([this, name, respond, text = to_text(session) + "\n"] {
+            const auto saved = library_.save_session(name, text);
+            respond(saved ? done(fmt::format("saved as \"{}\"", name), *saved)
+                          : error_response(500, saved.error().message));
+        });
+    };
+    if (wanted->contains("file")) {
+        json file = (*wanted)["file"];
+        if (const auto read = read_session(file.dump()); !read) {
+            return respond(error_response(400, read.error().message));
+        }
+        file["name"] = name;
+        return keep(file);
+    }
+    const OpenSessionPtr open = host_.open();
+    if (!open) return respond(error_response(409, "no scene is open; there is nothing to save"));
+    open->session.loop().post([keep, name, title = open->session.scene()->spec.scene.title](Scenarios& all) {
+        keep(write_session(all, name, title));
+    });
+}
+
+void Start::remove_saved(const std::string& id, const Respond& respond) {
+    files_->post([this, id, respond] { respond(of(library_.remove_session(id), "removed")); });
+}
+
+void Start::quit(const Respond& respond) {
+    respond(done("talus has ended"));
+    if (settings_.on_quit) settings_.on_quit();
+}
+
+}  // namespace talus::serve

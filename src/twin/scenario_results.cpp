@@ -1,0 +1,126 @@
+#include <algorithm>
+#include <array>
+#include <filesystem>
+#include <limits>
+#include <utility>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "observe/erosion.hpp"
+#include "products/products.hpp"
+#include "report/results.hpp"
+#include "run/run_scene.hpp"
+#include "twin/json_keys.hpp"
+#include "twin/past_maps.hpp"
+#include "twin/scenario_parts.hpp"
+
+// What a scenario has to show: layers of the map, figures, the products of a run.
+
+namespace talus::twin {
+namespace {
+
+using nlohmann::json;
+
+constexpr std::array layer_names{"depth",        "peak_depth",    "peak_speed",   "peak_pressure",
+                                 "arrival_time", "deposit_depth", "erosion_depth"};
+
+Grid<float> present_layer(const observe::MapAccumulator& maps, const std::string& name) {
+    if (name == "depth") {
+        Grid<float> depth = maps.present().depth;
+        for (float& value : depth.values) {
+            if (value == 0) value = std::numeric_limits<float>::quiet_NaN();
+        }
+        return depth;
+    }
+    observe::HazardMaps peaks = maps.maps();
+    if (name == "peak_depth") return std::move(peaks.peak_depth);
+    if (name == "peak_speed") return std::move(peaks.peak_speed);
+    if (name == "peak_pressure") return std::move(peaks.peak_pressure);
+    if (name == "arrival_time") return std::move(peaks.arrival_time);
+    return std::move(peaks.deposit_depth);
+}
+
+Grid<float> erosion_layer(const GridGeometry& terrain, const std::vector<float>& eroded) {
+    Grid<float> depth = observe::erosion_depth(terrain, eroded);
+    if (!depth.values.empty()) return depth;
+    return Grid<float>({terrain.x_min, terrain.y_min, terrain.cell, 1, 1}, std::numeric_limits<float>::quiet_NaN());
+}
+
+/// Notes that the tables of a plain run do not contain: removed obstacles.
+std::vector<std::string> obstacle_notes(const LiveRun& run) {
+    std::vector<std::string> notes;
+    for (const LiveRun::Removed& gone : run.removed()) {
+        notes.push_back(fmt::format("{} \"{}\": removed at {:.2f} s", gone.barrier ? "barrier" : "building",
+                                    gone.body->name, gone.impact.removed_time));
+    }
+    return notes;
+}
+
+}  // namespace
+
+Result<std::function<Grid<float>()>> Scenario::layer(const std::string& name, std::optional<double> time) const {
+    if (std::find(layer_names.begin(), layer_names.end(), name) == layer_names.end()) {
+        return Error{fmt::format("layer = {}: must be one of {}", shown(json(name)), fmt::join(layer_names, ", "))};
+    }
+    const LiveRun& run = *parts_->run;
+    const observe::MapAccumulator& maps = run.observer().maps();
+    std::vector<FramePtr> frames;
+    if (time) frames = run.recording().until(*time);
+    if (time && frames.empty()) return Error{fmt::format("nothing is recorded at or before time_s = {}", *time)};
+    if (name == "erosion_depth") {
+        const auto then = time ? std::optional(frames.back()->time) : std::nullopt;
+        return std::function<Grid<float>()>([terrain = run.ground().terrain.elevation().geometry,
+                                             eroded = run.eroded(then)] { return erosion_layer(terrain, eroded); });
+    }
+    if (!time) return std::function<Grid<float>()>([grid = present_layer(maps, name)] { return grid; });
+    MapFrame frame{maps.geometry(), maps.thinnest_depth(), {}};
+    if (name == "arrival_time") frame.arrival_now = maps.maps().arrival_time;
+    return std::function<Grid<float>()>(
+        [name, frames = std::move(frames), frame = std::move(frame)] { return past_layer(name, frames, frame); });
+}
+
+bool Scenario::has_erosion() const {
+    return parts_->run->state().entrained > 0;
+}
+
+std::pair<scene::Scene, run::RunResult> Scenario::Parts::outcome() const {
+    // Beds and inflows of the start of the run, the rest of the current setup.
+    Setup wanted = setup();
+    wanted.beds = run->begun_with().beds;
+    wanted.inflows = run->begun_with().inflows;
+    scene::Scene told = scene_of(*scene, wanted);
+    for (std::size_t k = 0; k < wanted.releases.size(); ++k) {
+        told.releases[k].spec.start_time = run->start_time_of(wanted.releases[k].id);
+    }
+    for (const LiveRun::Removed& removed : run->removed()) told.buildings.push_back(*removed.body);
+    for (std::string& note : obstacle_notes(*run)) told.notes.push_back(std::move(note));
+    for (const JournalEntry& entry : entries) {
+        if (entry.step > 0) break;
+        told.notes.push_back(fmt::format("before step 0, by {}: {}", entry.by, entry.action.dump()));
+    }
+    for (const ChangeOnTheWay& change : changes) {
+        told.notes.push_back(fmt::format("changed at {:.1f} s, by {}: {}", change.time, change.by, change.sentence));
+    }
+    run::RunResult result = run->result();
+    run::take_followed_path(told, result);
+    return {std::move(told), std::move(result)};
+}
+
+std::function<json()> Scenario::figures() const {
+    return [outcome = parts_->outcome()] {
+        return json{{"figures", json::parse(report::key_figures(outcome.first, outcome.second).dump())}};
+    };
+}
+
+std::function<Status(const std::filesystem::path&)> Scenario::products() const {
+    std::string changed;
+    for (const Parts::ChangeOnTheWay& change : parts_->changes) {
+        changed += fmt::format("{}{} at {:.1f} s", changed.empty() ? "" : "; ", change.sentence, change.time);
+    }
+    return [outcome = parts_->outcome(), changed = std::move(changed)](const std::filesystem::path& folder) {
+        return products::write_products(outcome.first, outcome.second, folder, {}, changed);
+    };
+}
+
+}  // namespace talus::twin

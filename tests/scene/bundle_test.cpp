@@ -1,0 +1,144 @@
+#include "scene/bundle.hpp"
+
+#include <fstream>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include <gmock/gmock.h>
+
+#include "scene/scene_folder.hpp"
+
+namespace talus::scene {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::HasSubstr;
+
+std::string text_of(const fs::path& file) {
+    std::ifstream in(file, std::ios::binary);
+    std::ostringstream text;
+    text << in.rdbuf();
+    return text.str();
+}
+
+class Bundle : public SceneFolder {
+  protected:
+    [[nodiscard]] fs::path archive() const { return folder / "scene.zip"; }
+    [[nodiscard]] fs::path unpacked() const { return folder / "unpacked"; }
+
+    /// The archive with a name in it replaced by another of the same length, as no writer would make it.
+    void rename_in_archive(const std::string& name, const std::string& by) const {
+        std::string bytes = text_of(archive());
+        ASSERT_EQ(name.size(), by.size());
+        std::size_t count = 0;
+        for (std::size_t at = bytes.find(name); at != std::string::npos; at = bytes.find(name, at + 1), ++count) {
+            bytes.replace(at, name.size(), by);
+        }
+        ASSERT_EQ(count, 2U) << "once beside the file, once in the list";
+        write("scene.zip", bytes);
+    }
+    [[nodiscard]] std::string refusal(const geo::ZipLimits& limits = {}) const {
+        const auto scene = unpack_bundle(archive(), unpacked(), limits);
+        return scene ? "(it was unpacked)" : scene.error().message;
+    }
+    void pack(const std::vector<geo::ZipEntry>& entries) const {
+        const Status written = geo::write_zip(archive(), entries);
+        ASSERT_TRUE(written) << written.error().message;
+    }
+};
+
+TEST_F(Bundle, HoldsTheSceneAndItsFilesWithOtherPaths) {
+    write_valley("[scene]\ntitle = \"Schön\"  # a remark\n");
+    const auto packed = write_bundle(folder / "scene.toml", archive());
+    ASSERT_TRUE(packed) << packed.error().message;
+    EXPECT_EQ(packed->files, 2U);
+    const auto scene = unpack_bundle(archive(), unpacked());
+    ASSERT_TRUE(scene) << scene.error().message;
+    const std::string text = text_of(*scene);
+    EXPECT_THAT(text, HasSubstr("file = \"data/dem.tif\""));
+    EXPECT_THAT(text, HasSubstr("file = \"data/release.geojson\""));
+    EXPECT_THAT(text, HasSubstr("title = \"Schön\"  # a remark"));
+
+    const auto before = load_scene(folder / "scene.toml"), after = load_scene(*scene);
+    ASSERT_TRUE(before && after);
+    ASSERT_EQ(before->inputs.size(), after->inputs.size());
+    for (std::size_t k = 0; k < before->inputs.size(); ++k) {
+        if (before->inputs[k].role == "scene") continue;
+        EXPECT_EQ(before->inputs[k].hash, after->inputs[k].hash);
+    }
+}
+
+TEST_F(Bundle, KeepsFilesOfOneNameApart) {
+    write_valley();
+    fs::create_directories(folder / "a");
+    fs::create_directories(folder / "b");
+    fs::rename(folder / "dem.tif", folder / "a" / "data.tif");
+    fs::copy(folder / "a" / "data.tif", folder / "b" / "data.tif");
+    write(
+        "scene.toml",
+        "[terrain]\nfile = \"a/data.tif\"\n[[release]]\nname = \"scar\"\nfile = 'release.geojson'\nthickness_raster = "
+        "\"b/data.tif\"\n");
+    const auto packed = write_bundle(folder / "scene.toml", archive());
+    ASSERT_TRUE(packed) << packed.error().message;
+    const auto scene = unpack_bundle(archive(), unpacked());
+    ASSERT_TRUE(scene) << scene.error().message;
+    EXPECT_THAT(text_of(*scene), HasSubstr("thickness_raster = \"data/2/data.tif\""));
+    EXPECT_TRUE(fs::exists(unpacked() / "data" / "2" / "data.tif"));
+}
+
+TEST_F(Bundle, RefusesAVirtualRaster) {
+    write_valley();
+    write("dem.vrt",
+          "<VRTDataset rasterXSize=\"2\" rasterYSize=\"2\"><VRTRasterBand dataType=\"Float32\" "
+          "band=\"1\"/></VRTDataset>");
+    const auto files = geo::files_of(folder / "dem.vrt");
+    ASSERT_FALSE(files);
+    EXPECT_THAT(files.error().message, HasSubstr("may name other files"));
+}
+
+TEST_F(Bundle, WritesNothingOutsideItsFolder) {
+    pack({{"scene.toml", {}, "[terrain]\n"}, {"aa/evil.txt", {}, "evil"}});
+    rename_in_archive("aa/evil.txt", "../evil.txt");
+    const std::string said = refusal();
+    EXPECT_THAT(said, testing::Not(HasSubstr("it was unpacked")));
+    EXPECT_FALSE(fs::exists(folder / "evil.txt"));
+    EXPECT_FALSE(fs::exists(folder.parent_path() / "evil.txt"));
+
+    pack({{"scene.toml", {}, "[terrain]\n"}, {"aaaaaaa/evil.txt", {}, "evil"}});
+    rename_in_archive("aaaaaaa/evil.txt", "/tmp/xx/evil.txt");
+    EXPECT_THAT(refusal(), testing::Not(HasSubstr("it was unpacked")));
+    EXPECT_FALSE(fs::exists("/tmp/xx/evil.txt"));
+}
+
+TEST_F(Bundle, RefusesMoreThanItsLimits) {
+    pack({{"scene.toml", {}, "[terrain]\n"}, {"zeros.txt", {}, std::string(4'000'000, '0')}});
+    EXPECT_LT(fs::file_size(archive()), 20'000U);
+    EXPECT_THAT(refusal({.bytes = 1'000'000}), HasSubstr("holds more than 0.001 GB unpacked"));
+    EXPECT_FALSE(fs::exists(unpacked())) << "something remains";
+    EXPECT_THAT(refusal({.files = 1}), HasSubstr("holds more than 1 files"));
+}
+
+TEST_F(Bundle, NeedsOneScene) {
+    pack({{"readme.txt", {}, "nothing"}});
+    EXPECT_THAT(refusal(), HasSubstr("there is no scene in it"));
+    pack({{"a.toml", {}, ""}, {"b.toml", {}, ""}});
+    EXPECT_THAT(refusal(), HasSubstr("there are 2 scenes in it, a.toml and b.toml"));
+    write("scene.zip", "not an archive");
+    EXPECT_THAT(refusal(), HasSubstr("is not a ZIP archive"));
+}
+
+TEST_F(Bundle, RefusesASceneThatNamesFilesOutside) {
+    write_valley();
+    const std::string dem = (folder / "dem.tif").string();
+    pack({{"scene.toml",
+           {},
+           "[terrain]\nfile = \"" + dem + "\"\n[[release]]\nfile = \"r.geojson\"\nthickness_m = 1\n"}});
+    EXPECT_THAT(refusal(), HasSubstr("terrain.file in its scene names a file outside the archive"));
+    pack(
+        {{"scene.toml", {}, "[terrain]\nfile = \"../dem.tif\"\n[[release]]\nfile = \"r.geojson\"\nthickness_m = 1\n"}});
+    EXPECT_THAT(refusal(), HasSubstr("names a file outside the archive"));
+}
+
+}  // namespace
+}  // namespace talus::scene

@@ -1,0 +1,217 @@
+#include <chrono>
+#include <filesystem>
+#include <fstream>
+#include <thread>
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "cli/small_scene.hpp"
+#include "serve/client.hpp"
+#include "serve/library.hpp"
+#include "serve/server.hpp"
+#include "serve/session_file.hpp"
+
+namespace talus::test {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+using ::testing::HasSubstr;
+
+/// A server with a start page whose list of recent scenes has a small scene.
+class StartPage : public ::testing::Test {
+  protected:
+    static constexpr const char* controller = "controller-token-of-tests";
+    static constexpr const char* viewer = "viewer-token-of-the-tests";
+
+    void SetUp() override {
+        ASSERT_TRUE(serve::Library(folder()).remember(scene_.scene_file(), "Plane"));
+        start();
+    }
+    void start(const fs::path& file = {}) {
+        server_.reset();
+        fs::create_directories(scene_.folder() / "exports");
+        serve::ServerOptions options;
+        options.port = 0;
+        options.tokens = {controller, viewer};
+        options.export_folder = scene_.folder() / "exports";
+        auto server = serve::Server::listen(std::move(options));
+        ASSERT_TRUE(server) << server.error().message;
+        (*server)->start({folder(), file, [this] { quit_ = true; }});
+        server_ = std::move(*server);
+    }
+    [[nodiscard]] fs::path folder() const { return scene_.folder() / "data"; }
+    [[nodiscard]] HttpClient hand() const { return HttpClient(server_->port(), controller); }
+    [[nodiscard]] json page() const { return hand().get("/api/start").json(); }
+    [[nodiscard]] std::string id() const { return page()["scenes"][0]["id"]; }
+    /// The page once nothing is being opened.
+    json opened() {
+        json now = page();
+        for (int i = 0; i < 400 && !now["opening"].is_null(); ++i) {
+            std::this_thread::sleep_for(std::chrono::milliseconds(25));
+            now = page();
+        }
+        return now;
+    }
+    json open(const json& what) {
+        const Answer answer = hand().post("/api/open", what);
+        EXPECT_EQ(answer.status, 202) << answer.body;
+        return opened();
+    }
+    Answer act(const json& action) { return hand().post("/api/scenarios/A/actions", action); }
+
+    SmallScene scene_;
+    bool quit_ = false;
+    std::unique_ptr<serve::Server> server_;
+};
+
+TEST_F(StartPage, opens_a_recent_scene_and_nothing_before) {
+    EXPECT_EQ(hand().get("/api/scene").status, 409);
+    EXPECT_EQ(WebSocket(server_->port(), std::string("token=") + viewer).status(), 409);
+    const json before = page();
+    EXPECT_TRUE(before["open"].is_null());
+    EXPECT_EQ(before["scenes"][0]["title"], "Plane");
+    EXPECT_EQ(before["scenes"].back()["kind"], "builtin");
+    const json after = open({{"scene", id()}});
+    EXPECT_TRUE(after["error"].is_null()) << after["error"];
+    EXPECT_EQ(after["open"]["title"], "Plane");
+    EXPECT_EQ(hand().get("/api/scene").json()["title"], "Plane");
+}
+
+TEST_F(StartPage, viewers_see_no_files_and_change_nothing) {
+    HttpClient eye(server_->port(), viewer);
+    const json seen = eye.get("/api/start").json();
+    EXPECT_FALSE(seen.contains("scenes") || seen.contains("sessions") || seen.contains("folder"));
+    EXPECT_EQ(eye.post("/api/open", {{"scene", "sham_tseng"}}).status, 403);
+    EXPECT_EQ(eye.post("/api/sessions", {{"name", "mine"}}).status, 403);
+    EXPECT_EQ(eye.ask("DELETE", "/api/recent/" + id()).status, 403);
+    EXPECT_EQ(eye.ask("POST", "/api/quit").status, 403);
+    EXPECT_FALSE(quit_);
+}
+
+TEST_F(StartPage, opens_no_path_of_a_request) {
+    for (const std::string& name :
+         {std::string(scene_.scene_file()), std::string("../slope.toml"), std::string("slope")}) {
+        EXPECT_EQ(hand().post("/api/open", {{"scene", name}}).status, 404) << name;
+        EXPECT_EQ(hand().post("/api/open", {{"session", name}}).status, 404) << name;
+    }
+    EXPECT_EQ(hand().post("/api/open", {{"file", std::string(scene_.scene_file())}}).status, 400);
+    EXPECT_EQ(hand().post("/api/open", json::object()).status, 400);
+}
+
+TEST_F(StartPage, a_session_is_replaced_only_after_asking_and_its_viewers_are_told) {
+    open({{"scene", id()}});
+    EXPECT_EQ(hand().post("/api/open", {{"scene", id()}}).status, 409);
+    WebSocket ada(server_->port(), std::string("token=") + controller + "&name=Ada");
+    ASSERT_FALSE(ada.wait_for("hello").is_null());
+    const Answer held = hand().post("/api/open", {{"scene", id()}, {"replace", true}});
+    EXPECT_EQ(held.status, 409);
+    EXPECT_THAT(held.body, HasSubstr("Ada"));
+    WebSocket eve(server_->port(), std::string("token=") + viewer + "&name=Eve");
+    ASSERT_FALSE(eve.wait_for("hello").is_null());
+    ada.socket().kill();
+    // Ada keeps control for a while after her connection broke.
+    const json wanted = {{"scene", id()}, {"replace", true}};
+    int status = 0;
+    for (int i = 0; i < 200 && status != 202; ++i) {
+        std::this_thread::sleep_for(std::chrono::milliseconds(50));
+        status = hand().post("/api/open", wanted).status;
+    }
+    EXPECT_EQ(status, 202);
+    EXPECT_EQ(opened()["count"], 2);
+    EXPECT_FALSE(eve.wait_for("ended").is_null());
+    EXPECT_EQ(act({{"action", "step"}}).status, 200);
+}
+
+TEST_F(StartPage, a_scene_that_cannot_be_opened_leaves_the_open_one) {
+    open({{"scene", id()}});
+    std::ofstream(scene_.input("broken.toml"))
+        << "[terrain]\nfile = \"none.tif\"\n[[release]]\nfile = \"none.geojson\"\nthickness_m = 1\n";
+    ASSERT_TRUE(serve::Library(folder()).remember(scene_.input("broken.toml"), "Broken"));
+    const json after = open({{"scene", id()}, {"replace", true}});
+    EXPECT_THAT(after["error"].dump(), HasSubstr("none.tif"));
+    EXPECT_EQ(after["open"]["title"], "Plane");
+    EXPECT_EQ(act({{"action", "step"}}).status, 200);
+}
+
+TEST_F(StartPage, a_saved_session_opens_bit_for_bit) {
+    open({{"scene", id()}});
+    for (int i = 0; i < 30; ++i) act({{"action", "step"}});
+    act({{"action", "set_parameter"}, {"key", "material.friction_coefficient"}, {"value", 0.2}});
+    act({{"action", "name_scenario"}, {"name", "slippery"}});
+    EXPECT_EQ(hand().post("/api/scenarios", {{"copy_of", "A"}}).status, 200);
+    EXPECT_EQ(hand().ask("DELETE", "/api/scenarios/B").status, 200);
+    for (int i = 0; i < 2; ++i) EXPECT_EQ(hand().post("/api/scenarios", {{"copy_of", "A"}}).status, 200);
+    EXPECT_EQ(hand().ask("DELETE", "/api/scenarios/B").status, 200);
+    for (int i = 0; i < 30; ++i) act({{"action", "step"}, {"scenarios", {"A", "C"}}});
+    const json before = hand().get("/api/session/file").json();
+    EXPECT_EQ(before["scenarios"].size(), 2U);
+    EXPECT_EQ(hand().post("/api/sessions", {{"name", "Two runs!"}}).json()["created"], "two-runs");
+
+    const json after = open({{"session", "two-runs"}, {"replace", true}});
+    EXPECT_TRUE(after["error"].is_null()) << after["error"];
+    EXPECT_EQ(after["notes"], json::array());
+    const json again = hand().get("/api/session/file").json();
+    EXPECT_EQ(again["scenarios"], before["scenarios"]);
+    EXPECT_EQ(again["scenarios"][1]["name"], "C");
+    EXPECT_EQ(again["scenarios"][0]["title"], "slippery");
+    EXPECT_GT(hand().get("/api/scenarios/A/recording").json()["times_s"].size(), 5U);
+
+    // A hash that is not that of the replay is said.
+    json other = before;
+    other["scenarios"][0]["journal"]["last"]["hash"] = "0000000000000000";
+    EXPECT_EQ(hand().post("/api/sessions", {{"name", "other"}, {"file", other}}).status, 200);
+    EXPECT_THAT(open({{"session", "other"}, {"replace", true}})["notes"].dump(),
+                HasSubstr("Scenario A: the result differs"));
+}
+
+TEST_F(StartPage, a_session_file_from_a_browser_opens_only_a_known_scene) {
+    open({{"scene", id()}});
+    json file = hand().get("/api/session/file").json();
+    file["scenarios"][0]["journal"]["scene"]["file"] = "/etc/passwd";
+    EXPECT_EQ(hand().post("/api/sessions", {{"name", "foreign"}, {"file", file}}).status, 200);
+    const json after = open({{"session", "foreign"}, {"replace", true}});
+    EXPECT_THAT(after["error"].dump(), HasSubstr("is not known here"));
+    file["more"] = 1;
+    EXPECT_EQ(hand().post("/api/sessions", {{"name", "foreign"}, {"file", file}}).status, 400);
+    EXPECT_EQ(hand().post("/api/sessions", {{"name", "../.."}}).status, 400);
+}
+
+TEST_F(StartPage, a_file_of_the_command_line_opens_at_once_and_quit_is_told) {
+    start(scene_.scene_file());
+    json now = page();
+    for (int i = 0; i < 400 && now["open"].is_null(); ++i) {
+        std::this_thread::sleep_for(std::chrono::milliseconds(25));
+        now = page();
+    }
+    EXPECT_EQ(now["open"]["title"], "Plane");
+    EXPECT_EQ(hand().ask("DELETE", "/api/recent/" + id()).status, 200);
+    EXPECT_EQ(page()["scenes"][0]["kind"], "builtin");
+    EXPECT_EQ(hand().ask("POST", "/api/quit").status, 200);
+    EXPECT_TRUE(quit_);
+}
+
+TEST(Library, names_of_files_have_no_path) {
+    EXPECT_EQ(serve::file_name_of("../../etc/Passwd"), "etc-passwd");
+    EXPECT_EQ(serve::file_name_of("  A b  "), "a-b");
+    EXPECT_EQ(serve::file_name_of("..."), "");
+    EXPECT_EQ(serve::file_name_of(std::string(300, 'x')).size(), 60U);
+}
+
+TEST(SessionFile, says_what_is_wrong) {
+    const auto error = [](const std::string& text) {
+        const auto read = serve::read_session(text);
+        return read ? std::string() : read.error().message;
+    };
+    EXPECT_THAT(error("{"), HasSubstr("JSON"));
+    EXPECT_THAT(error("{}"), HasSubstr("no saved session"));
+    EXPECT_THAT(error(R"({"talus_session": 2})"), HasSubstr("talus_session = 2"));
+    EXPECT_THAT(error(R"({"talus_session": 1, "name": "", "title": "", "scenarios": []})"), HasSubstr("1 to 6"));
+    EXPECT_THAT(error(R"({"talus_session": 1, "name": "", "title": "", "scenarios": [{"name": "Z", "title": ""}]})"),
+                HasSubstr("scenarios[0]: name = \"Z\""));
+}
+
+}  // namespace
+}  // namespace talus::test

@@ -1,0 +1,160 @@
+// Natural look of the ground: rock, soil and plants by slope, the wet trail of the debris, and the debris itself as lit mud.
+// Inserted into three.js's Lambert shader after the code of ground_shader.ts.
+import { airHead } from "./daylight";
+
+const head = /* glsl */ `
+  ${airHead}
+  uniform sampler2D uTrail, uShade;
+  uniform vec4 uTrailPlacing, uShadePlacing;
+  uniform float uFlowTime, uPhotoGain;
+  struct Surface {
+    vec3 albedo;
+    vec2 slope;   // of what is finer than the mesh
+    float wet;
+  };
+  Surface natural = Surface(vec3(0.0), vec2(0.0), 0.0);
+  float naturalOpen = 1.0;
+
+  // Noise of a size in metres: slope in xy, value (0 to 1) in z, distance to the nearest of scattered points in w.
+  vec4 noiseAt(vec2 at, float size) {
+    vec4 n = texture2D(uNoise, at / size);
+    return vec4((n.xy - 0.5) * 25.6 / size, n.zw);
+  }
+
+  // Smooth between cells: a cubic B-spline from four filtered readings (Sigg and Hadwiger 2005).
+  vec2 smoothIn(sampler2D map, vec4 placing, vec2 at) {
+    vec2 size = vec2(textureSize(map, 0));
+    vec2 cell = (at - placing.xy) * placing.zw * size - 0.5;
+    if (placing.z <= 0.0 || any(lessThan(cell, vec2(-1.5))) || any(greaterThan(cell, size + 0.5))) return vec2(0.0);
+    vec2 i = floor(cell), f = cell - i, g = 1.0 - f;
+    vec2 w0 = g * g * g / 6.0, w1 = (4.0 - 6.0 * f * f + 3.0 * f * f * f) / 6.0, w3 = f * f * f / 6.0;
+    vec2 low = w0 + w1, high = 1.0 - low;
+    vec2 a = (i - 0.5 + w1 / low) / size, b = (i + 1.5 + w3 / high) / size;
+    return low.y * (low.x * texture2D(map, a).rg + high.x * texture2D(map, vec2(b.x, a.y)).rg)
+         + high.y * (low.x * texture2D(map, vec2(a.x, b.y)).rg + high.x * texture2D(map, b).rg);
+  }
+  vec2 smoothFlowAt(vec2 at) {
+    if (uDetail < 0.5) return flowAt(at);
+    return mix(smoothIn(uDepth0, uPlacing0, at), smoothIn(uDepth1, uPlacing1, at), uDepthMix);
+  }
+
+  void lay(inout Surface under, vec3 albedo, vec2 slope, float wet, float share) {
+    under.albedo = mix(under.albedo, albedo, share);
+    under.slope = mix(under.slope, slope, share);
+    under.wet = mix(under.wet, wet, share);
+  }
+
+  Surface bareGround(vec3 at, vec3 n) {
+    vec4 wide = noiseAt(at.xy, 173.0), middle = noiseAt(at.yx + 17.0, 37.0), fine = noiseAt(at.xy + 5.0, 7.3);
+    vec4 grain = uDetail > 1.5 ? noiseAt(at.yx, 1.9) : vec4(0.0, 0.0, 0.5, 0.5);
+    vec2 rough = 0.35 * fine.xy + 0.12 * grain.yx;
+    float steep = 1.0 - n.z + 0.10 * (middle.z - 0.5) + 0.06 * (fine.z - 0.5);
+    vec3 grass = mix(vec3(0.066, 0.088, 0.032), vec3(0.165, 0.148, 0.072), smoothstep(0.35, 0.72, wide.z + 0.5 * (fine.z - 0.5)));
+    Surface s = Surface(grass * (0.75 + 0.5 * grain.z), rough, 0.0);
+    // Shrubs in the shelter of hollows and where the slope holds them.
+    float shrub = smoothstep(0.40, 0.24, middle.w + 0.55 * (fine.z - 0.5) + 0.9 * (0.46 - wide.z));
+    lay(s, vec3(0.024, 0.040, 0.015) * (0.5 + fine.z + 0.5 * grain.z), 1.3 * rough, 0.0, 0.9 * shrub * smoothstep(0.30, 0.2, steep));
+    float soil = smoothstep(0.17, 0.25, steep + 0.10 * (wide.z - 0.5)) * smoothstep(0.40, 0.62, fine.z + 0.6 * (middle.z - 0.35));
+    lay(s, mix(vec3(0.20, 0.128, 0.070), vec3(0.27, 0.20, 0.13), grain.z), 1.4 * rough, 0.0, 0.85 * soil);
+    float rock = smoothstep(0.27, 0.34, steep);
+    if (rock > 0.0 && uDetail > 0.5) {
+      vec4 beds = texture2D(uNoise, vec2(at.x + at.y, 2.2 * at.z) / 23.0);
+      lay(s, mix(vec3(0.11, 0.105, 0.095), vec3(0.30, 0.285, 0.255), beds.z * 0.7 + grain.z * 0.3), 2.2 * rough + (beds.xy - 0.5), 0.0, rock);
+    }
+    return s;
+  }
+
+  // Earth that debris has run over: scoured, dark and wet, strewn with what it left.
+  void layTrail(inout Surface s, vec2 at) {
+    vec2 uv = (at - uTrailPlacing.xy) * uTrailPlacing.zw;
+    if (uTrailPlacing.z <= 0.0 || any(lessThan(uv, vec2(0.0))) || any(greaterThan(uv, vec2(1.0)))) return;
+    float peak = 5.0 * texture2D(uTrail, uv).r;
+    if (peak <= 0.0) return;
+    vec4 middle = noiseAt(at, 9.0), fine = noiseAt(at.yx, 2.3);
+    float share = smoothstep(0.03, 0.22, peak + 0.22 * (middle.z - 0.5));
+    vec3 earth = mix(vec3(0.062, 0.043, 0.028), vec3(0.105, 0.075, 0.050), smoothstep(0.35, 0.7, fine.z));
+    float stones = smoothstep(0.26, 0.18, fine.w) * smoothstep(0.45, 0.6, middle.z);
+    earth = mix(earth, vec3(0.19, 0.175, 0.155), 0.6 * stones);
+    lay(s, earth, 0.5 * middle.xy + 0.35 * fine.yx, 0.35 + 0.3 * smoothstep(0.5, 0.3, middle.z), 0.94 * share);
+  }
+
+  // The debris: thin and light at its edges, dark where it is thick, rougher and paler where it is fast. Its ripples move with it.
+  float layMud(inout Surface s, vec2 at, vec3 n) {
+    vec2 flow = smoothFlowAt(at);
+    if (flow.x <= 0.004) return 0.0;
+    float e = 0.5;
+    vec2 slope = vec2(smoothFlowAt(at + vec2(e, 0.0)).x - smoothFlowAt(at - vec2(e, 0.0)).x,
+                      smoothFlowAt(at + vec2(0.0, e)).x - smoothFlowAt(at - vec2(0.0, e)).x) / (2.0 * e);
+    vec2 down = n.xy / max(length(n.xy), 0.08);
+    float turn = uFlowTime / 1.4, lasts = 1.4;
+    float first = fract(turn), second = fract(turn + 0.5);
+    vec2 shift = down * flow.y * lasts;
+    vec4 a = noiseAt(at - shift * (first - 0.5), 6.1), b = noiseAt(at - shift * (second - 0.5) + 3.3, 6.1);
+    vec4 lumps = mix(a, b, abs(2.0 * first - 1.0));
+    vec4 c = noiseAt(at.yx - shift.yx * (first - 0.5), 1.7), d = noiseAt(at.yx - shift.yx * (second - 0.5) + 1.1, 1.7);
+    vec4 fine = mix(c, d, abs(2.0 * first - 1.0));
+    float fast = smoothstep(1.5, 9.0, flow.y);
+    float thick = 1.0 - exp(-flow.x / 0.7);
+    vec3 mud = mix(vec3(0.098, 0.070, 0.046), vec3(0.032, 0.023, 0.015), thick);
+    mud = mix(mud, vec3(0.17, 0.130, 0.092), 0.6 * fast * smoothstep(0.42, 0.72, 0.6 * lumps.z + 0.4 * fine.z));
+    mud *= 0.8 + 0.4 * fine.z;
+    float share = smoothstep(0.02, 0.16, flow.x + 0.10 * (fine.z - 0.5));
+    lay(s, mud, slope + (0.22 + 0.5 * fast) * lumps.xy + (0.06 + 0.22 * fast) * fine.yx, 0.95 - 0.45 * fast, share);
+    return share;
+  }
+`;
+
+/** Before the lights: what the ground is made of here. */
+const colour = /* glsl */ `
+  if (uNatural > 0.5) {
+    vec3 n = normalize(vGroundNormal);
+    if (vShade < 0.0) {
+      float bed = texture2D(uNoise, vec2(vLocal.x + vLocal.y, 3.0 * vLocal.z) / 60.0).z;
+      natural.albedo = mix(vec3(0.10, 0.075, 0.052), vec3(0.19, 0.155, 0.12), bed);
+      naturalOpen = 0.75;
+    } else {
+      natural = bareGround(vLocal, n);
+      naturalOpen = 0.25 + 0.75 * smoothstep(0.30, 0.95, vShade);
+      if (uPhotoShown > 0.5) {
+        vec4 photo = texture2D(uPhoto, (vLocal.xy - uPhotoPlacing.xy) * uPhotoPlacing.zw);
+        lay(natural, photo.rgb * uPhotoGain, vec2(0.0), 0.0, photo.a);
+      }
+      layTrail(natural, vLocal.xy);
+      layMud(natural, vLocal.xy, n);
+    }
+    diffuseColor.rgb = natural.albedo;
+  }
+`;
+
+const normal = /* glsl */ `
+  if (uNatural > 0.5 && vShade >= 0.0) {
+    vec3 ground = normalize(vGroundNormal);
+    normal = normalize((viewMatrix * vec4(normalize(vec3(ground.xy / max(ground.z, 0.05) - natural.slope, 1.0)), 0.0)).xyz);
+  }
+`;
+
+/** After the lights: shade of the hills, open sky, gloss of what is wet, air. */
+const light = /* glsl */ `
+  if (uNatural > 0.5) {
+    vec2 shadeAt = (vLocal.xy - uShadePlacing.xy) * uShadePlacing.zw;
+    float sunny = uShadePlacing.z > 0.0 ? texture2D(uShade, shadeAt).r : 1.0;
+    vec3 worldNormal = normalize((vec4(normal, 0.0) * viewMatrix).xyz);
+    vec3 sight = vLocal - cameraPosition;
+    vec3 towards = isOrthographic ? vec3(0.0, 0.0, 1.0) : -normalize(sight);
+    float facing = max(dot(worldNormal, uSunWorld), 0.0);
+    vec3 expected = natural.albedo * uSunLight * facing * RECIPROCAL_PI;
+    float lit = sunny * clamp(dot(reflectedLight.directDiffuse, vec3(1.0)) / max(dot(expected, vec3(1.0)), 1e-5), 0.0, 1.0);
+    outgoingLight = reflectedLight.directDiffuse * sunny + reflectedLight.indirectDiffuse * naturalOpen;
+    if (natural.wet > 0.02) {
+      vec3 middle = normalize(uSunWorld + towards);
+      float gloss = 90.0;
+      float grazing = pow(1.0 - max(dot(worldNormal, towards), 0.0), 5.0);
+      float mirror = 0.05 + 0.6 * grazing;
+      float spot = pow(max(dot(worldNormal, middle), 0.0), gloss) * (gloss + 8.0) / 25.0;
+      outgoingLight += natural.wet * (lit * facing * uSunLight * spot * 0.06 + naturalOpen * mirror * skyTowards(reflect(-towards, worldNormal)));
+    }
+    outgoingLight = developed(throughAir(outgoingLight, sight));
+  }
+`;
+
+export const naturalGround = { head, colour, normal, light };

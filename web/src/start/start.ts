@@ -1,0 +1,170 @@
+// The start page: choose a scene, or a saved session, and wait until it is open.
+import "../style/start.css";
+import mark from "../style/mark.svg";
+import { Refused, type Api } from "../protocol/api";
+import type { KnownScene, SavedSession, StartPage } from "../protocol/start";
+import { askFor } from "../ui/dialog";
+import { button, h, icon } from "../ui/dom";
+import { Toasts } from "../ui/toast";
+
+const opening_ms = 250;
+const idle_ms = 2000;
+
+export function openStart(page: HTMLElement, api: Api, first: StartPage): void {
+  document.title = "talus";
+  page.classList.remove("starting");
+  page.classList.add("start");
+  new Start(page, api, first);
+}
+
+/** To the session that is open. */
+export function toTwin(): void {
+  history.replaceState(null, "", location.pathname);
+  location.reload();
+}
+
+const day = new Intl.DateTimeFormat("en-GB", { day: "numeric", month: "short", year: "numeric", hour: "2-digit", minute: "2-digit" });
+const dateText = (iso: string): string => day.format(new Date(iso));
+
+class Start {
+  private readonly toasts = new Toasts();
+  private readonly state = h("div", { class: "start-state", "aria-live": "polite" });
+  private readonly lists = h("div", { class: "start-lists" });
+  private readonly back = h("div", { class: "start-back" });
+  private readonly foot = h("footer", { class: "start-foot muted" });
+  /** What the lists show, as text: they are made again only if it is another. */
+  private told = "";
+
+  constructor(page: HTMLElement, private readonly api: Api, private now: StartPage) {
+    const home = h("div", { class: "start-page" },
+      h("header", { class: "start-head" }, h("img", { src: mark, alt: "", width: 44, height: 44 }),
+        h("div", {}, h("h1", {}, "talus"), h("p", { class: "muted" }, "Landslides and debris flows on real terrain, live in the browser")), this.back),
+      this.state, this.lists, this.foot);
+    page.replaceChildren(h("main", { class: "start-scroll" }, home), this.toasts.polite, this.toasts.urgent);
+    this.show(now);
+    void this.watch();
+  }
+
+  private async watch(): Promise<void> {
+    for (;;) {
+      await new Promise((resolve) => setTimeout(resolve, this.now.opening ? opening_ms : idle_ms));
+      let next: StartPage;
+      try {
+        next = await this.api.start();
+      } catch {
+        this.lost();
+        continue;
+      }
+      // A scene that somebody has opened is where everybody goes.
+      if (next.count > this.now.count && next.open) return toTwin();
+      this.show(next);
+    }
+  }
+
+  private lost(): void {
+    this.state.replaceChildren(h("div", { class: "card bad", role: "alert" }, h("b", {}, "talus does not answer"),
+      h("p", {}, "It has ended, or it is busy. Start it again with talus, or from the menu.")));
+  }
+
+  private show(next: StartPage): void {
+    this.now = next;
+    const busy = next.opening !== null;
+    if (next.opening) {
+      const bar = h("progress", { max: 1, "aria-label": "Share done" });
+      if (next.opening.share > 0) bar.value = next.opening.share;
+      this.state.replaceChildren(h("div", { class: "card opening" }, h("div", { class: "grow" }, h("b", {}, `Opening ${next.opening.what} …`), bar),
+        next.role === "controller" ? button("Cancel", { onclick: () => void this.attempt(() => this.api.cancelOpening()) }) : null));
+    } else if (next.error !== null && next.error !== "cancelled") {
+      this.state.replaceChildren(h("div", { class: "card bad", role: "alert" }, h("b", {}, "That could not be opened"), h("p", {}, next.error)));
+    } else this.state.replaceChildren();
+    const told = JSON.stringify([next.open, next.scenes, next.sessions, busy]);
+    if (told === this.told) return;
+    this.told = told;
+    this.back.replaceChildren(next.open ? button(`Back to ${next.open.title}`, { icon: "run", class: "primary", onclick: toTwin }) : "");
+    if (next.role === "viewer") {
+      this.lists.replaceChildren(h("p", { class: "empty" }, next.open ? "You can watch the session that is open." : "No scene is open yet. The session appears here by itself."));
+      return;
+    }
+    this.lists.replaceChildren(this.scenes(next.scenes ?? [], busy), this.sessions(next.sessions ?? [], busy));
+    this.foot.replaceChildren(h("span", {}, `${next.program} · kept in ${next.folder ?? ""}`),
+      button("End talus", { class: "quiet", onclick: () => void this.quit() }));
+  }
+
+  private scenes(list: KnownScene[], busy: boolean): HTMLElement {
+    return h("section", { "aria-labelledby": "start-scenes" }, h("h2", { id: "start-scenes" }, "Scenes"),
+      h("ul", { class: "start-list" }, ...list.map((scene) => {
+        const where = scene.kind === "builtin" ? "Built in: Hong Kong, 600 m³ through a village" : (scene.file ?? "");
+        const open = h("button", { type: "button", class: "start-row", disabled: busy || scene.missing, "data-scene": scene.id, onclick: () => void this.open({ scene: scene.id }, scene.title) },
+          icon("layers"), h("span", { class: "grow" }, h("b", {}, scene.title || "Scene without a title"), h("span", { class: "muted path" }, scene.missing ? `${where} is no longer there` : where)),
+          scene.opened_at ? h("span", { class: "muted date" }, dateText(scene.opened_at)) : null);
+        const forget = scene.kind === "recent" ? button(`Take ${scene.title} off this list`, { icon: "close", bare: true, class: "bare quiet", onclick: () => void this.attempt(() => this.api.forgetScene(scene.id)) }) : null;
+        return h("li", {}, open, forget);
+      })));
+  }
+
+  private sessions(list: SavedSession[], busy: boolean): HTMLElement {
+    const file = h("input", { type: "file", accept: ".json,application/json", class: "unseen", tabindex: -1, "aria-label": "Saved session file", onchange: () => void this.upload(file) });
+    return h("section", { "aria-labelledby": "start-sessions" },
+      h("div", { class: "start-title" }, h("h2", { id: "start-sessions" }, "Saved sessions"), file, button("Add a file", { class: "quiet", onclick: () => file.click() })),
+      list.length === 0 ? h("p", { class: "empty" }, "A session is saved on its page: its scenarios with all edits. Opened again, each is computed to the same result.") : null,
+      h("ul", { class: "start-list" }, ...list.map((saved) => h("li", {},
+        h("button", { type: "button", class: "start-row", disabled: busy, "data-session": saved.id, onclick: () => void this.open({ session: saved.id }, saved.name) },
+          icon("save"), h("span", { class: "grow" }, h("b", {}, saved.name), h("span", { class: "muted path" }, `${saved.title} · ${saved.scenarios} ${saved.scenarios === 1 ? "scenario" : "scenarios"}`)),
+          h("span", { class: "muted date" }, dateText(saved.saved_at))),
+        button(`Remove ${saved.name}`, { icon: "remove", bare: true, class: "bare quiet", onclick: () => void this.remove(saved) })))));
+  }
+
+  private async open(what: { scene: string } | { session: string }, name: string): Promise<void> {
+    if (this.now.open) {
+      const answer = await askFor(`Open ${name}?`, [`“${this.now.open.title}” is open. It ends for everybody who watches it, and what is not saved is lost.`], [["open", "End it and open this"]] as const);
+      if (answer === null) return;
+    }
+    await this.attempt(async () => {
+      for (let tries = 0; ; ++tries) {
+        try {
+          return await this.api.openScene({ ...what, replace: this.now.open !== null });
+        } catch (error) {
+          // Whoever comes here from the session keeps its control for some seconds.
+          if (tries >= 10 || !(error instanceof Refused && error.status === 409 && /was here just now/.test(error.message))) throw error;
+          await new Promise((resolve) => setTimeout(resolve, 500));
+        }
+      }
+    });
+  }
+  private async remove(saved: SavedSession): Promise<void> {
+    const answer = await askFor(`Remove ${saved.name}?`, ["The saved session is deleted. Its scene stays."], [["remove", "Remove it"]] as const);
+    if (answer !== null) await this.attempt(() => this.api.removeSession(saved.id));
+  }
+  private async upload(input: HTMLInputElement): Promise<void> {
+    const file = input.files?.[0];
+    input.value = "";
+    if (!file) return;
+    await this.attempt(async () => {
+      let content: unknown;
+      try {
+        content = JSON.parse(await file.text());
+      } catch {
+        throw new Refused(0, `${file.name} is no saved session: it is not JSON.`);
+      }
+      await this.api.saveSession(file.name.replace(/\.json$/i, ""), content);
+    });
+  }
+  private async quit(): Promise<void> {
+    const answer = await askFor("End talus?", [this.now.open ? "The session that is open ends for everybody, and what is not saved is lost." : "This page closes its connection."], [["end", "End talus"]] as const);
+    if (answer === null) return;
+    if (await this.attempt(() => this.api.quit())) {
+      document.getElementById("page")?.replaceChildren(h("div", { class: "boot", role: "status" }, h("h1", {}, "talus has ended"), h("p", {}, "This tab can be closed.")));
+    }
+  }
+  /** Shows why something was refused. */
+  private async attempt(act: () => Promise<void>): Promise<boolean> {
+    try {
+      await act();
+      this.show(await this.api.start().catch(() => this.now));
+      return true;
+    } catch (error) {
+      this.toasts.show(error instanceof Error ? error.message : String(error), "error");
+      return false;
+    }
+  }
+}
