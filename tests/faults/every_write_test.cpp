@@ -28,7 +28,7 @@ std::map<std::string, std::string> contents(const fs::path& folder) {
         if (!entry.is_regular_file()) continue;
         const std::string name = entry.path().lexically_relative(folder).string();
         const bool dated = name == "manifest.json" || name == "results.json" || name == "report.html" ||
-                           name == "timeseries.csv" || name == "results.gpkg";
+                           name == "timeseries.csv" || name == "results.gpkg" || name == "stac_item.json";
         found[name] = dated ? "" : read_text(entry.path());
     }
     return found;

@@ -70,8 +70,7 @@ export async function testStart(run) {
     assert.equal(await eye.locator(".wordmark").evaluate((e) => e.tagName), "SPAN");
     await eye.close();
     await page.setViewportSize({ width: 390, height: 844 });
-    await page.goto(`http://127.0.0.1:${server.port}/#start`);
-    await page.reload();
+    await page.goto(`http://127.0.0.1:${server.port}/#start`);  // the page loads itself anew
     await page.locator(".start-list").first().waitFor();
     assert.ok(await page.evaluate(() => [...document.querySelectorAll("button, p, h1, li")].every((e) => e.getBoundingClientRect().right <= innerWidth + 1)), "nothing is cut off");
     await page.screenshot({ path: join(run.output, "start-390.png") });
