@@ -124,7 +124,7 @@ class RunCallbacks {
         options_.stop_requested = &watch.stop_requested();
         options_.on_progress = [this](const run::Progress& now) { report(now); };
         if (!products::Series::wanted(job.input.scene)) return;
-        series_.emplace(job.input.scene, job.output.path() / "series");
+        series_.emplace(job.input.scene, job.output.path() / "series", job.output.final_path() / "series");
         options_.on_frame = [this](const run::Frame& frame) {
             if (series_status_) series_status_ = series_->add(frame);
             if (!series_status_) watch_.request_stop();
@@ -243,8 +243,9 @@ void add_run(CLI::App& program, std::vector<Command>& commands) {
     app->add_option("--model", run->model, "particles, or depth_averaged: in seconds, without what happens inside")
         ->type_name("NAME");
     app->add_option("--series", run->series,
-                    "also write the run over time: netcdf, geotiff, paraview; separated by commas; frames are "
-                    "outputs.series_interval_s apart")
+                    fmt::format("also write the run over time: {}; separated by commas; frames are "
+                                "outputs.series_interval_s apart",
+                                fmt::join(params::series_formats, ", ")))
         ->delimiter(',')
         ->type_name("FORMAT,...");
     add_overrides(*app, run->overrides);

@@ -242,7 +242,7 @@ struct SolverSpec {
 enum class GuidelineChoice { swiss_debris_flow, swiss_flood, garcia_2003 };
 
 /// Formats of the run over time.
-inline constexpr std::array series_formats = {"netcdf", "geotiff", "paraview"};
+inline constexpr std::array series_formats = {"netcdf", "geotiff", "paraview", "gltf", "3dtiles", "usd"};
 
 /// `[outputs]`
 struct OutputSpec {
@@ -256,6 +256,7 @@ struct OutputSpec {
     double deposited_speed = 0.1;       ///< m/s, slower debris counts as deposited
     std::vector<std::string> series;    ///< formats in which the run over time is written, of series_formats
     double series_interval = 1;         ///< s between its frames
+    double geoid_height = 0;            ///< m, of the zero of the terrain's heights above the ellipsoid of WGS 84
     GuidelineChoice intensity_guideline = GuidelineChoice::swiss_debris_flow;
     bool peak_thickness = false;  ///< also a map of the peak thickness normal to the slope
 };

@@ -159,8 +159,8 @@ Status write_kml(const scene::Scene& scene, const run::RunResult& result, const 
         fmt::format(
             "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<kml xmlns=\"http://www.opengis.net/kml/2.2\"><Document>\n"
             "<name>{}</name>\n<description>{}</description>\n{}{}{}{}{}{}</Document></kml>\n",
-            escape(scene.spec.scene.title + caveat(scene, result)), escape(scene.spec.scene.description),
-            outline.styles, bands.styles, hit.styles, hit.folder, outline.folder, bands.folder));
+            escape(title_of(scene, result)), escape(scene.spec.scene.description), outline.styles, bands.styles,
+            hit.styles, hit.folder, outline.folder, bands.folder));
 }
 
 }  // namespace talus::products

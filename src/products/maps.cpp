@@ -1,3 +1,5 @@
+#include <algorithm>
+#include <cctype>
 #include <string>
 #include <utility>
 #include <vector>
@@ -35,6 +37,17 @@ std::vector<std::pair<std::string, std::string>> origin_of(const scene::Scene& s
             {"RESULT_HASH", to_hex(result.hash)},
             {"SIMULATED_TIME_S", fmt::format("{}", result.simulated_time)},
             {"STATUS", status_text(result.status)}};
+}
+
+std::vector<std::pair<std::string, std::string>> plain_origin_of(const scene::Scene& scene,
+                                                                 const run::RunResult& result) {
+    auto all = origin_of(scene, result);
+    for (auto& [key, value] : all) {
+        if (key == "TIFFTAG_SOFTWARE") key = "source";
+        std::transform(key.begin(), key.end(), key.begin(),
+                       [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    }
+    return all;
 }
 
 Status write_maps(const scene::Scene& scene, const run::RunResult& result, const std::filesystem::path& folder,

@@ -39,7 +39,7 @@ Status write_products(const scene::Scene& scene, const run::RunResult& result, c
                       const std::vector<run::Comparison>& comparisons, std::string_view changed) {
     TALUS_TRY(write_partial_note(result, folder));
     if (result.fault) TALUS_TRY(write_fault(*result.fault, folder / "fault"));
-    LayerDefinition layers(scene.spec.scene.title + caveat(scene, result), scene.crs.wkt);
+    LayerDefinition layers(title_of(scene, result), scene.crs.wkt);
     TALUS_TRY(write_maps(scene, result, folder, layers));
     TALUS_TRY(write_tables(scene, result, folder, changed));
     TALUS_TRY(write_vectors(scene, result, folder, layers));

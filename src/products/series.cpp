@@ -9,6 +9,7 @@
 
 #include "core/try.hpp"
 #include "geo/raster_series.hpp"
+#include "products/view.hpp"
 #include "products/writers.hpp"
 
 namespace talus::products {
@@ -35,9 +36,12 @@ geo::RasterSeries quantity_of(const SeriesFrames& frames, std::size_t k, const G
 
 }  // namespace
 
-Series::Series(const scene::Scene& scene, std::filesystem::path folder) : scene_(scene), folder_(std::move(folder)) {}
+Series::Series(const scene::Scene& scene, std::filesystem::path folder, std::filesystem::path final_folder)
+    : scene_(scene),
+      folder_(std::move(folder)),
+      final_folder_(final_folder.empty() ? folder_ : std::move(final_folder)) {}
 
-bool Series::wants(const char* format) const {
+bool Series::wants(std::string_view format) const {
     const auto& formats = scene_.spec.outputs.series;
     return std::find(formats.begin(), formats.end(), format) != formats.end();
 }
@@ -49,14 +53,25 @@ Status Series::add(const run::Frame& frame) {
         if (failed) return Error{fmt::format("{}: cannot be made: {}", folder_.string(), failed.message())};
         frames_.emplace(folder_ / ".frames");
         if (wants("paraview") && frame.particles != nullptr) particles_.emplace(folder_ / "paraview");
+        if (wants("usd") && frame.particles != nullptr) points_.emplace(folder_ / ".points");
     }
     if (particles_) TALUS_TRY(particles_->write_frame(*frame.frame, *frame.particles));
+    if (points_) TALUS_TRY(points_->add(*frame.particles));
     return frames_->add(frame, scene_.spec.material.rest_density);
 }
 
 Status Series::finish(const run::RunResult& result) {
     if (!frames_) return {};
     if (particles_) TALUS_TRY(particles_->finish());
+    TALUS_TRY(write_maps(result));
+    TALUS_TRY(write_views(result));
+    points_.reset();
+    frames_.reset();
+    return {};
+}
+
+Status Series::write_maps(const run::RunResult& result) const {
+    if (!wants("geotiff") && !wants("netcdf")) return {};
     const GridGeometry& grid = result.observation.maps.peak_depth.geometry;
     std::vector<geo::RasterSeries> quantities;
     for (std::size_t k = 0; k < series_quantities.size(); ++k) quantities.push_back(quantity_of(*frames_, k, grid));
@@ -66,18 +81,20 @@ Status Series::finish(const run::RunResult& result) {
             TALUS_TRY(write_cog_series((folder_ / (quantity.name + ".tif")).string(), file, quantity));
         }
     }
-    if (wants("netcdf")) {
-        // Names of the conventions, for programs that show where a file is from.
-        for (auto& [key, value] : file.metadata) {
-            if (key == "TIFFTAG_SOFTWARE") key = "source";
-            std::transform(key.begin(), key.end(), key.begin(),
-                           [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-        }
-        TALUS_TRY(
-            write_netcdf_series((folder_ / "maps.nc").string(), file, terrain_on(grid, scene_.terrain), quantities));
-    }
-    frames_.reset();
-    return {};
+    if (!wants("netcdf")) return {};
+    file.metadata = plain_origin_of(scene_, result);
+    return write_netcdf_series((folder_ / "maps.nc").string(), file, terrain_on(grid, scene_.terrain), quantities);
+}
+
+Status Series::write_views(const run::RunResult& result) const {
+    if (!wants("gltf") && !wants("3dtiles") && !wants("usd") && !wants("paraview")) return {};
+    TALUS_ASSIGN(const DebrisSurface surface,
+                 DebrisSurface::make(scene_.terrain, result.observation.maps.peak_depth, *frames_));
+    const View view{scene_, result, surface, frames_->times()};
+    if (wants("gltf") || wants("3dtiles")) TALUS_TRY(write_glb(view, folder_ / "run.glb"));
+    if (wants("3dtiles")) TALUS_TRY(write_tileset(view, folder_ / "tileset.json", "run.glb"));
+    if (wants("usd")) TALUS_TRY(write_usda(view, points_ ? &*points_ : nullptr, folder_ / "run.usda"));
+    return wants("paraview") ? write_paraview_view(view, folder_ / "paraview", final_folder_ / "paraview") : Status();
 }
 
 }  // namespace talus::products

@@ -2,8 +2,10 @@
 
 #include <filesystem>
 #include <optional>
+#include <string_view>
 
 #include "core/result.hpp"
+#include "products/particle_frames.hpp"
 #include "products/particle_series.hpp"
 #include "products/series_frames.hpp"
 #include "run/run_result.hpp"
@@ -16,7 +18,8 @@ namespace talus::products {
 /// ended, as files of `folder`.
 class Series {
   public:
-    Series(const scene::Scene& scene, std::filesystem::path folder);
+    /// `final_folder`: where the files will be in the end, if that is another.
+    Series(const scene::Scene& scene, std::filesystem::path folder, std::filesystem::path final_folder = {});
 
     /// Whether the scene asks for any.
     [[nodiscard]] static bool wanted(const scene::Scene& scene) { return !scene.spec.outputs.series.empty(); }
@@ -26,12 +29,15 @@ class Series {
     [[nodiscard]] Status finish(const run::RunResult& result);
 
   private:
-    [[nodiscard]] bool wants(const char* format) const;
+    [[nodiscard]] bool wants(std::string_view format) const;
+    [[nodiscard]] Status write_maps(const run::RunResult& result) const;
+    [[nodiscard]] Status write_views(const run::RunResult& result) const;
 
     const scene::Scene& scene_;
-    std::filesystem::path folder_;
+    std::filesystem::path folder_, final_folder_;
     std::optional<SeriesFrames> frames_;
     std::optional<ParticleSeries> particles_;
+    std::optional<ParticleFrames> points_;
 };
 
 }  // namespace talus::products

@@ -84,7 +84,7 @@ Status write_stac_item(const scene::Scene& scene, const run::RunResult& result, 
     set_place(item, scene.crs, result.observation.maps.peak_depth.geometry.extent());
     item["properties"] = {
         {"datetime", now},  // of the run: when debris flows like this, nobody knows
-        {"title", scene.spec.scene.title + caveat(scene, result)},
+        {"title", title_of(scene, result)},
         {"description", scene.spec.scene.description.empty() ? scene.spec.scene.title : scene.spec.scene.description},
         {"proj:code", scene.crs.epsg > 0 ? Json(fmt::format("EPSG:{}", scene.crs.epsg)) : Json()},
         {"proj:wkt2", scene.crs.wkt},

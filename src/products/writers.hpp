@@ -60,10 +60,17 @@ namespace talus::products {
 [[nodiscard]] std::vector<std::pair<std::string, std::string>> origin_of(const scene::Scene& scene,
                                                                          const run::RunResult& result);
 
+/// The same by the names that other formats use: "source", "title", "scene_hash", ...
+[[nodiscard]] std::vector<std::pair<std::string, std::string>> plain_origin_of(const scene::Scene& scene,
+                                                                               const run::RunResult& result);
+
 /// The hash of the scene file.
 [[nodiscard]] std::string scene_hash(const scene::Scene& scene);
 
 /// The caveat that every product carries: " (reconstruction, partial: interrupted)", or nothing.
 [[nodiscard]] std::string caveat(const scene::Scene& scene, const run::RunResult& result);
+
+/// The scene's title and the caveat, which says nothing that the title says already.
+[[nodiscard]] std::string title_of(const scene::Scene& scene, const run::RunResult& result);
 
 }  // namespace talus::products

@@ -72,6 +72,16 @@ mustache::data converted(const Json& json) {
     }
 }
 
+/// Text between the quotes of a string of CSS, in a style element of HTML, which reads no entities.
+std::string css_text(const std::string& text) {
+    std::string all;
+    for (const char c : text) {
+        const bool escaped = c == '"' || c == '\\' || c == '<' || static_cast<unsigned char>(c) < ' ';
+        all += escaped ? fmt::format("\\{:06x}", static_cast<unsigned char>(c)) : std::string(1, c);
+    }
+    return all;
+}
+
 /// Data as templates see them, with what every page has.
 class Context : public mustache::context<std::string> {
   public:
@@ -86,6 +96,7 @@ class Context : public mustache::context<std::string> {
         const mustache::data* found = mustache::context<std::string>::get(name.substr(0, bar));
         assert(found != nullptr && "a template names what its data lack");
         if (bar == std::string::npos || found == nullptr) return found;
+        if (name.substr(bar) == "|css") return made(found->is_string() ? css_text(found->string_value()) : "");
         const bool number = found->is_string();
         return made(formatted(
             number ? std::strtod(found->string_value().c_str(), nullptr) : std::numeric_limits<double>::quiet_NaN(),

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "core/try.hpp"
+#include "geo/earth_fixed.hpp"
 #include "scene/particle_spacing.hpp"
 #include "sim/sources/seed.hpp"
 #include "terrain/map_cell.hpp"
@@ -124,6 +125,12 @@ double memory_needed(const Scene& scene, double particles) {
 Status check_series(const ParsedScene& parsed, const Scene& scene, double cell, double particles) {
     const params::OutputSpec& outputs = scene.spec.outputs;
     if (outputs.series.empty()) return {};
+    const bool on_globe = std::find(outputs.series.begin(), outputs.series.end(), "3dtiles") != outputs.series.end();
+    if (on_globe && !geo::earth_fixed(scene.crs, scene.terrain.frame().origin)) {
+        return Error{fmt::format(
+            "{}: \"3dtiles\" is refused; where on the globe the terrain's reference system ({}) lies is not known",
+            parsed.at("outputs.series"), scene.crs.label())};
+    }
     const Extent extent = scene.terrain.elevation().geometry.extent();
     const double cells = extent.width() * extent.height() / (cell * cell);
     const double end = scene.spec.solver.end_time, frames = end / outputs.series_interval + 1;

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "products/writers.hpp"
 #include "products_fixture.hpp"
 
 namespace talus::products {
@@ -41,6 +42,19 @@ TEST_F(Products, KmlIsWellFormedWhateverNamesHold) {
     CPLDestroyXMLNode(root);
     EXPECT_EQ(text.find('\x01'), std::string::npos);
     EXPECT_THAT(text, testing::HasSubstr("a &lt; b &amp; "));
+}
+
+TEST_F(Products, TitlesSayOnceThatTheSceneIsAReconstruction) {
+    scene::Scene scene = *scene_;
+    scene.spec.scene.title = "Valley";
+    EXPECT_EQ(title_of(scene, *result_), "Valley (reconstruction)");
+    scene.spec.scene.title = "Valley 1999 (reconstruction)";
+    EXPECT_EQ(title_of(scene, *result_), "Valley 1999 (reconstruction)");
+    run::RunResult partial = *result_;
+    partial.status = run::RunStatus::interrupted;
+    EXPECT_EQ(title_of(scene, partial), "Valley 1999 (reconstruction) (partial result: interrupted)");
+    scene.spec.scene.reconstruction = false;
+    EXPECT_EQ(title_of(scene, *result_), "Valley 1999 (reconstruction)");
 }
 
 TEST_F(Products, NoKmlWhereThePlaceOnTheGlobeIsNotKnown) {

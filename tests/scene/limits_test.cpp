@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 
+#include "geo/vector.hpp"
 #include "scene/scene_folder.hpp"
 
 namespace talus::scene {
@@ -67,6 +68,20 @@ TEST_F(Limits, TheRunOverTimeHasASizeThatCanBeWritten) {
     EXPECT_THAT(load_error({"solver.model=depth_averaged"}), HasSubstr("12001 frames"));
     EXPECT_THAT(load_error({"outputs.series=[\"netcdf\", \"avi\"]"}),
                 AllOf(HasSubstr("outputs.series: \"avi\" is refused"), HasSubstr("\"netcdf\", \"geotiff\"")));
+}
+
+TEST_F(Limits, TilesOfAPlaceThatNobodyKnowsAreRefused) {
+    write_valley("");
+    EXPECT_EQ(load_error({"outputs.series=[\"3dtiles\"]"}), std::string(loaded));
+    const geo::Crs local{"LOCAL_CS[\"site\",UNIT[\"metre\",1]]", "site", 0};
+    const Grid<float> plain({west, south, cell, columns, rows}, 7);
+    ASSERT_TRUE(geo::write_cog(path("dem.tif"), {&plain, "elevation", "m"}, local));
+    const Polygon area{{{west + 20, south + 90}, {west + 40, south + 90}, {west + 40, south + 110}}, {}};
+    ASSERT_TRUE(geo::write_geopackage_layer(path("release.gpkg"), "release", {}, {{{area}, {}, {}}}, local));
+    write("scene.toml", "[terrain]\nfile = \"dem.tif\"\n[[release]]\nfile = \"release.gpkg\"\nthickness_m = 2\n");
+    EXPECT_EQ(load_error(), std::string(loaded));
+    EXPECT_THAT(load_error({"outputs.series=[\"gltf\", \"3dtiles\"]"}),
+                AllOf(HasSubstr("outputs.series: \"3dtiles\" is refused"), HasSubstr("site")));
 }
 
 TEST_F(Limits, HundredsOfStructuresUponEachOtherAreRefusedBeforeTheirWallsAreCut) {
