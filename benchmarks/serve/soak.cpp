@@ -34,11 +34,7 @@ class Editor {
                      {"value", 0.15 + 0.01 * static_cast<double>(random_() % 20)}});
                 break;
             case 1:
-                if (!barrier_.empty()) return remove_barrier();
-                barrier_ = act({{"action", "put_barrier"},
-                                {"line", {{east + shift(), north}, {east + 12, north + 8}}},
-                                {"height_m", 2},
-                                {"thickness_m", 1}});
+                change_barrier();
                 break;
             case 2:
                 act({{"action", "undo"}});
@@ -59,31 +55,36 @@ class Editor {
     [[nodiscard]] int refused() const { return refused_; }
     [[nodiscard]] const std::string& last_refusal() const { return last_refusal_; }
 
-    /// The id of what was created.
-    std::string act(const nlohmann::json& action) {
+    void act(const nlohmann::json& action) {
         const Answer answer = client_.post("/api/scenarios/A/actions", action);
         if (answer.status == 0) throw std::runtime_error("talus serve does not answer");
-        if (answer.status != 200) {
-            ++refused_;
-            last_refusal_ = action.dump() + ": " + answer.body;
-            return "";
+        if (answer.status == 200) {
+            ++done_;
+            return;
         }
-        ++done_;
-        const auto created = answer.json()["created"];
-        return created.is_string() ? created.get<std::string>() : "";
+        ++refused_;
+        last_refusal_ = action.dump() + ": " + answer.body;
     }
 
   private:
-    void remove_barrier() {
-        act({{"action", "remove_barrier"}, {"id", barrier_}});
-        barrier_.clear();
+    /// Draws a barrier, or removes the one there is, which undo may have brought back: the session has no more in it
+    /// after an hour than after a minute.
+    void change_barrier() {
+        const auto setup = client_.get("/api/scenarios/A/setup").json();
+        for (const auto& barrier : setup["barriers"]) {
+            if (!barrier["from_scene"]) return act({{"action", "remove_barrier"}, {"id", barrier["id"]}});
+        }
+        act({{"action", "put_barrier"},
+             {"line", {{east + shift(), north}, {east + 12, north + 8}}},
+             {"height_m", 2},
+             {"thickness_m", 1}});
     }
     double shift() { return static_cast<double>(random_() % 8); }
 
     static constexpr double east = 824295, north = 825816;
     HttpClient client_{load_port, controller};
     std::mt19937 random_{1};  // NOLINT(cert-msc51-cpp): the same edits in every soak
-    std::string barrier_, last_refusal_;
+    std::string last_refusal_;
     int edits_ = 0, done_ = 0, refused_ = 0;
 };
 

@@ -57,6 +57,13 @@ void release_polygon(const SmallScene& scene, const std::string& wkt) {
     write_vector(scene.input("release.geojson"), {}, {{wkt, {}}});
 }
 
+/// Changes every seventh byte from one on.
+void garble(const std::string& file, std::size_t from) {
+    std::string bytes = read_text(file);
+    for (std::size_t k = from; k < bytes.size(); k += 7) bytes[k] = static_cast<char>(bytes[k] ^ 0x5a);
+    write_text(file, bytes);
+}
+
 const std::vector<BadInput> bad_inputs = {
     // The command line
     {"UnknownCommand", nothing_spoiled, {"fly"}, {"fly"}},
@@ -128,7 +135,7 @@ const std::vector<BadInput> bad_inputs = {
     {"EmptyTerrainFile", [](const SmallScene& s) { write_text(s.input("terrain.tif"), ""); }, {"terrain.tif"}},
     {"TruncatedTerrain",
      [](const SmallScene& s) { std::filesystem::resize_file(s.input("terrain.tif"), 2000); },
-     {"terrain.tif"}},
+     {"terrain.tif: parts of the raster were never written"}},
     {"TerrainWithoutData",
      [](const SmallScene& s) {
          write_raster(s.input("terrain.tif"), SmallScene::terrain(), [](int, int) { return nothing; });
@@ -204,6 +211,20 @@ const std::vector<BadInput> bad_inputs = {
          write_vector(s.input("buildings.geojson"), {}, {{rectangle_wkt(924200, 825090, 924220, 825110), {}}});
      },
      {"buildings.geojson", "outside"}},
+
+    // What a library says of a file stands behind a sentence of ours.
+    {"CutGeoJson",
+     [](const SmallScene& s) { std::filesystem::resize_file(s.input("buildings.geojson"), 300); },
+     {"buildings.geojson: cannot be read as a vector file: "}},
+    {"GarbledGeoPackage",
+     [](const SmallScene& s) {
+         write_vector(s.input("buildings.gpkg"), {.driver = "GPKG"},
+                      {{rectangle_wkt(824150, 825090, 824160, 825110), {}}});
+         garble(s.input("buildings.gpkg"), 5000);
+         s.replace("buildings.geojson", "buildings.gpkg");
+     },
+     {"buildings.gpkg: cannot be read as a vector file: "}},
+    {"CutToml", [](const SmallScene& s) { s.replace("[scene]", "[scene"); }, {"slope.toml:1: not valid TOML: "}},
 
     // Result folder
     {"ResultAlreadyThere",

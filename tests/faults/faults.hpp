@@ -11,6 +11,8 @@
 #include <utility>
 #include <vector>
 
+#include <gtest/gtest.h>
+
 #include "cli/program.hpp"
 #include "cli/small_scene.hpp"
 #include "support/fixtures.hpp"
@@ -50,7 +52,10 @@ class FailingFiles {
                 "FAILING_CALL=" + std::to_string(number), "FAILING_LOG=" + log()};
     }
     /// "write /folder/file", the calls of the program that ran last.
-    [[nodiscard]] std::vector<std::string> calls() const { return lines_of(read_text(log())); }
+    [[nodiscard]] std::vector<std::string> calls() const {
+        EXPECT_TRUE(std::filesystem::exists(log())) << FAILING_FILES << " does not stand before the C library";
+        return lines_of(read_text(log()));
+    }
     /// The one that failed; empty: none.
     [[nodiscard]] std::string failed() const {
         for (const std::string& call : calls()) {

@@ -55,6 +55,24 @@ TEST(Seeding, puts_no_particle_into_a_building_at_the_rim) {
     }
 }
 
+TEST(Seeding, a_release_whose_room_a_building_takes_is_an_error) {
+    const terrain::Terrain pit = testing::terrain_of(
+        30, 30, 1, [](double x, double y) { return std::max(std::abs(x - 15), std::abs(y - 15)) < 2.5 ? 0 : 40; });
+    const auto seeded = [&](double house_width) {
+        std::vector<terrain::Building> houses(1);
+        houses[0].footprint = {rectangle(12, 12, 12 + house_width, 18)};
+        houses[0].height = 60;
+        place_buildings(pit, houses);
+        Model model = make_model({}, {}, 1);
+        return seed_releases(model, Ground(pit, houses, model.support_radius),
+                             {block(pit, rectangle(13, 13, 17, 17), 2)});
+    };
+    EXPECT_TRUE(seeded(1.5).ok());
+    const Result<State> full = seeded(4.6);
+    ASSERT_FALSE(full.ok());
+    EXPECT_NE(full.error().message.find("no room"), std::string::npos) << full.error().message;
+}
+
 TEST(Seeding, too_many_particles_say_how_many_and_which_spacing_fits) {
     const terrain::Terrain terrain = inclined_plane(0, 30, 30);
     params::SolverSpec solver;

@@ -87,6 +87,17 @@ void put_out_of_buildings(const Model& model, const Ground& ground, State& state
     }
 }
 
+/// Debris with walls around it can be pushed out of a building only into other debris.
+Status check_room(const State& state) {
+    constexpr double most = 0.5;
+    if (state.mean_compression <= most) return {};
+    return Error{
+        fmt::format("debris has no room where it is released: it is compressed by {:.2g} on average before it moves "
+                    "(at most {:g}); "
+                    "move or shrink the structures that stand in the release, or the release",
+                    state.mean_compression, most)};
+}
+
 }  // namespace
 
 void find_pressures(const Model& model, const Ground& ground, State& state) {
@@ -212,6 +223,7 @@ Result<State> seed_releases(Model& model, const Ground& ground, const std::vecto
     if (state.count == 0) return state;
     put_out_of_buildings(model, ground, state);
     if (!relax(model, ground, state, overburden, progress)) return ended;
+    TALUS_TRY(check_room(state));
     for (std::uint32_t i = 0; i < state.count; ++i) {
         for (const ReleaseGroup& release : model.releases) {
             const bool own = state.id[i] >= release.first_particle && state.id[i] < release.last_particle;
