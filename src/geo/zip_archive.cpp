@@ -22,9 +22,10 @@ constexpr std::size_t block_size = std::size_t{1} << 20;
 constexpr std::size_t longest_name = 255;
 
 /// Formats of one file, or of files of one name, that name no others.
-constexpr std::array<std::string_view, 18> plain_formats = {
-    "GTiff",  "COG", "AAIGrid", "GPKG", "GeoJSON", "ESRI Shapefile", "FlatGeobuf", "CSV",     "KML",
-    "LIBKML", "HFA", "PNG",     "JPEG", "XYZ",     "netCDF",         "HDF5",       "SRTMHGT", "USGSDEM"};
+constexpr std::array<std::string_view, 26> plain_formats = {
+    "GTiff",  "COG",  "AAIGrid", "GPKG", "GeoJSON", "ESRI Shapefile", "FlatGeobuf",  "CSV",       "KML",
+    "LIBKML", "HFA",  "PNG",     "JPEG", "XYZ",     "netCDF",         "HDF5",        "SRTMHGT",   "USGSDEM",
+    "EHdr",   "ENVI", "SAGA",    "GSAG", "GSBG",    "GS7BG",          "JP2OpenJPEG", "GeoJSONSeq"};
 
 struct CloseFile {
     void operator()(VSILFILE* file) const { VSIFCloseL(file); }

@@ -5,13 +5,16 @@
 #include <fstream>
 #include <numbers>
 #include <system_error>
+#include <utility>
 
 #include <fmt/format.h>
 
 #include "core/input_file.hpp"
 #include "core/try.hpp"
+#include "geo/mesh.hpp"
 #include "geo/vector.hpp"
 #include "params/scene_text.hpp"
+#include "scene/check.hpp"
 #include "scene/load.hpp"
 #include "scene/reach.hpp"
 
@@ -60,11 +63,12 @@ Status check_number(const std::string& section, const std::string& key, const st
 
 Status check_options(const NewSceneOptions& options) {
     std::error_code code;
-    for (const fs::path& input : {options.dem, options.release, options.buildings}) {
+    for (const fs::path& input :
+         {options.dem, options.release, options.thickness_raster, options.buildings, options.orthophoto}) {
         TALUS_TRY(check_input_file(input));
     }
     if (options.folder.empty()) return Error{"the folder for the new scene has no name"};
-    if (fs::exists(fs::symlink_status(options.folder, code))) {
+    if (!options.folder_exists && fs::exists(fs::symlink_status(options.folder, code))) {
         return Error{options.folder.string() + ": is already there; name a folder that is not"};
     }
     if (options.thickness && options.volume) {
@@ -89,14 +93,20 @@ ParsedScene scene_from(const NewSceneOptions& options) {
     ParsedScene parsed;
     parsed.file = options.folder / "scene.toml";
     parsed.spec.terrain.file = absolute_name(options.dem);
+    parsed.spec.terrain.orthophoto = absolute_name(options.orthophoto);
     parsed.spec.buildings.file = absolute_name(options.buildings);
+    parsed.spec.scene.title = options.title;
     params::ReleaseSpec& release = parsed.spec.releases.emplace_back();
     release.file = absolute_name(options.release);
-    release.name = options.release.stem().string();
+    release.thickness_raster = absolute_name(options.thickness_raster);
+    release.name = (options.release.empty() ? options.thickness_raster : options.release).stem().string();
     release.thickness = options.thickness;
     release.volume = options.volume;
     if (options.target_particle_count) parsed.spec.solver.target_particle_count = *options.target_particle_count;
-    parsed.places = {{"terrain.file", "new scene"}, {"release[0].file", "new scene"}, {"buildings.file", "new scene"}};
+    for (const char* key : {"terrain.file", "terrain.orthophoto", "release[0].file", "release[0].thickness_raster",
+                            "release[0].thickness_m", "release[0].volume_m3", "buildings.file"}) {
+        parsed.places[key] = "new scene";
+    }
     return parsed;
 }
 
@@ -147,13 +157,15 @@ Result<NewScene> write_new_scene(const NewSceneOptions& options) {
     Scene whole;
     whole.spec = parsed.spec;
     TALUS_TRY(load_terrain(parsed, whole));
-    const Result<geo::PolygonLayer> layer = read_polygons(parsed.spec.releases[0].file, "", whole.crs);
-    if (!layer) return Error{"new scene: release[0].file: " + layer.error().message};
-    TALUS_TRY(choose_thickness(parsed, *layer));
+    if (!options.release.empty()) {
+        const Result<geo::PolygonLayer> layer = read_polygons(parsed.spec.releases[0].file, "", whole.crs);
+        if (!layer) return Error{"new scene: release[0].file: " + layer.error().message};
+        TALUS_TRY(choose_thickness(parsed, *layer));
+    }
     whole.spec.releases = parsed.spec.releases;
     TALUS_TRY(load_releases(parsed, whole));
     parsed.spec.terrain.extent = choose_extent(whole);
-    if (!options.buildings.empty()) {
+    if (!options.buildings.empty() && !geo::is_mesh_file(options.buildings.string())) {
         const Result<geo::PolygonLayer> buildings = read_polygons(parsed.spec.buildings.file, "", whole.crs);
         if (!buildings) return Error{"new scene: buildings.file: " + buildings.error().message};
         parsed.spec.buildings.height_attribute = find_attribute(*buildings, {"height_m", "height"});
@@ -167,7 +179,9 @@ Result<NewScene> write_new_scene(const NewSceneOptions& options) {
     spec.scene.title = scene.spec.scene.title;
     spec.terrain.file = name_from(options.folder, spec.terrain.file);
     spec.buildings.file = name_from(options.folder, spec.buildings.file);
+    spec.terrain.orthophoto = name_from(options.folder, spec.terrain.orthophoto);
     spec.releases[0].file = name_from(options.folder, spec.releases[0].file);
+    spec.releases[0].thickness_raster = name_from(options.folder, spec.releases[0].thickness_raster);
     const std::string extent_note = fmt::format(
         "terrain: the extent holds all ground below an energy line of {:.0f} degrees from the release, and a margin",
         travel_angle_deg);
@@ -176,7 +190,8 @@ Result<NewScene> write_new_scene(const NewSceneOptions& options) {
         "change it. Paths are relative to this file.\n\nterrain.extent_m holds all ground that lies below an energy "
         "line of " +
         fmt::format("{:.0f}", travel_angle_deg) + " degrees from the release, and a margin.";
-    NewScene made{options.folder / "scene.toml", std::move(scene.notes)};
+    NewScene made{options.folder / "scene.toml", std::exchange(scene.notes, {}), {}};
+    made.summary = describe_scene(scene);
     made.notes.insert(made.notes.begin(), extent_note);
     for (const std::string& assumption : spec.scene.assumptions) made.notes.push_back("assumed: " + assumption);
     TALUS_TRY(write_file(options.folder, made.file, write_scene(spec, header)));

@@ -9,6 +9,7 @@
 #include "geo/orthophoto.hpp"
 #include "serve/api.hpp"
 #include "serve/json_text.hpp"
+#include "serve/thinned.hpp"
 #include "twin/json_keys.hpp"
 
 namespace talus::serve {
@@ -18,39 +19,6 @@ using nlohmann::json;
 
 constexpr double min_cells = 100, most_cells = 16e6, usual_cells = 1e6;
 constexpr int photo_pixels = 4096;  // along the longer edge: what graphics cards take
-
-int reduced(int count, int factor) {
-    return (count + factor - 1) / factor;
-}
-
-/// The whole factor by which columns and rows are thinned so that at most `max_cells` remain.
-int thinning(const GridGeometry& grid, double max_cells) {
-    int factor = 1;
-    while (static_cast<double>(reduced(grid.columns, factor)) * reduced(grid.rows, factor) > max_cells) ++factor;
-    return factor;
-}
-
-/// The middle one of every `factor` x `factor` cells.
-Grid<float> thinned(const Grid<float>& whole, int factor) {
-    const GridGeometry& from = whole.geometry;
-    GridGeometry to = from;
-    to.cell = from.cell * factor;
-    to.columns = reduced(from.columns, factor);
-    to.rows = reduced(from.rows, factor);
-    // A value holds at its cell's centre; for an even factor the chosen one is half a cell off the middle.
-    const int middle = factor / 2;
-    const double shift = (middle + 0.5 - 0.5 * factor) * from.cell;
-    to.x_min += shift;
-    to.y_min += shift;
-    Grid<float> thin(to);
-    for (int row = 0; row < to.rows; ++row) {
-        for (int column = 0; column < to.columns; ++column) {
-            thin.at(column, row) = whole.at(std::min(column * factor + middle, from.columns - 1),
-                                            std::min(row * factor + middle, from.rows - 1));
-        }
-    }
-    return thin;
-}
 
 void add_terrain(Router& router, Session& session) {
     // By thinning factor, so there are only a few. Used by the worker's thread only.
@@ -70,7 +38,7 @@ void add_terrain(Router& router, Session& session) {
                         Bytes& bytes = (*encoded)[factor];
                         if (!bytes) {
                             bytes = std::make_shared<const std::string>(
-                                twin::encode_grid(thinned(scene->terrain.elevation(), factor)));
+                                twin::encode_grid(thinned_by(scene->terrain.elevation(), factor)));
                         }
                         Response response;
                         response.type = "application/octet-stream";

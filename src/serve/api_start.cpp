@@ -21,6 +21,39 @@ Handler on_start(Start* start, Handle handle) {
     };
 }
 
+void add_drafts(Router& router, Start* start) {
+    const auto add = [&](const char* method, const char* pattern, Handle handle) {
+        router.add({method, pattern, Role::controller, on_start(start, handle)});
+    };
+    add("POST", "/api/draft", [](Start& s, const Request&, const Respond& respond) { s.drafts().begin(respond); });
+    add("GET", "/api/draft/{id}", [](Start& s, const Request& request, const Respond& respond) {
+        s.drafts().describe(request.parameters.at("id"), respond);
+    });
+    add("DELETE", "/api/draft/{id}", [](Start& s, const Request& request, const Respond& respond) {
+        s.drafts().discard(request.parameters.at("id"), respond);
+    });
+    add("DELETE", "/api/draft/{id}/files/{role}", [](Start& s, const Request& request, const Respond& respond) {
+        s.drafts().remove(request.parameters.at("id"), request.parameters.at("role"), respond);
+    });
+    add("POST", "/api/draft/{id}/mend",
+        [](Start& s, const Request& request, const Respond& respond) { s.drafts().mend(request, respond); });
+    add("GET", "/api/draft/{id}/relief", [](Start& s, const Request& request, const Respond& respond) {
+        s.drafts().relief(request.parameters.at("id"), respond);
+    });
+    add("POST", "/api/draft/{id}/scene",
+        [](Start& s, const Request& request, const Respond& respond) { s.drafts().make(request, respond); });
+    Route upload{"PUT", "/api/draft/{id}/files/{role}", Role::controller,
+                 on_start(start, [](Start&, const Request&, const Respond& respond) {
+                     respond(error_response(400, "the file is empty"));
+                 })};
+    upload.query = {"name"};
+    if (start != nullptr) {
+        upload.intake = [start](const Request& request) { return start->drafts().intake(request); };
+        upload.largest_body = start->drafts().limits().bytes;
+    }
+    router.add(std::move(upload));
+}
+
 }  // namespace
 
 Router make_start_api(Start* start) {
@@ -48,6 +81,13 @@ Router make_start_api(Start* start) {
     add("DELETE", "/api/sessions/{id}", [](Start& s, const Request& request, const Respond& respond) {
         s.remove_saved(request.parameters.at("id"), respond);
     });
+    add("DELETE", "/api/scenes/{id}", [](Start& s, const Request& request, const Respond& respond) {
+        s.remove_scene(request.parameters.at("id"), respond);
+    });
+    add("GET", "/api/scenes/{id}/bundle", [](Start& s, const Request& request, const Respond& respond) {
+        s.download(request.parameters.at("id"), respond);
+    });
+    add_drafts(router, start);
     add("POST", "/api/quit", [](Start& s, const Request&, const Respond& respond) { s.quit(respond); });
     return router;
 }

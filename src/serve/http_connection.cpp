@@ -1,11 +1,13 @@
 #include <algorithm>
 #include <boost/asio/post.hpp>
+#include <boost/beast/http/buffer_body.hpp>
 #include <boost/beast/http/parser.hpp>
 #include <boost/beast/http/read.hpp>
 #include <boost/beast/http/span_body.hpp>
 #include <boost/beast/http/write.hpp>
 #include <boost/beast/websocket/rfc6455.hpp>
 #include <chrono>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
@@ -26,6 +28,7 @@ using std::chrono::seconds;
 constexpr std::size_t slowest_reader = 16 * 1024;  // bytes per second
 constexpr seconds linger_time{2};
 const std::vector<std::string> websocket_keys = {"token", "name", "person"};
+constexpr std::size_t piece_size = 256 * 1024;
 constexpr std::size_t linger_bytes = 8 * 1024 * 1024;
 
 std::string text_of(beast::string_view text) {
@@ -42,16 +45,24 @@ class HttpConnection : public std::enable_shared_from_this<HttpConnection> {
   private:
     void on_header(beast::error_code error);
     void read_body();
+    void begin_intake();
+    void read_piece();
+    void on_piece(beast::error_code error);
     void on_error(beast::error_code error);
     /// The answer to a request that is refused by its header; empty: continue.
     std::optional<Response> refusal();
     void handle();
+    /// For answers that may come from another thread, and after the client has gone.
+    Respond respond_later();
     void upgrade();
     void give_file();
     void respond(Response response);
     void write(http::response<http::span_body<const char>> message);
     void on_written(beast::error_code error);
     void linger();
+    [[nodiscard]] std::uint64_t body_limit() const {
+        return route_ != nullptr && route_->largest_body > 0 ? route_->largest_body : largest_body;
+    }
     [[nodiscard]] std::string header(http::field name) const { return text_of(parser_->get()[name]); }
 
     ServerContext& context_;
@@ -62,6 +73,10 @@ class HttpConnection : public std::enable_shared_from_this<HttpConnection> {
     Request request_;
     const Route* route_ = nullptr;
     OpenSessionPtr asked_;  // the session that route_ belongs to
+    // Of a body that is taken piece by piece.
+    std::optional<http::request_parser<http::buffer_body>> pieces_;
+    std::shared_ptr<Intake> intake_;
+    std::string piece_;
     // Of the answer that is being written.
     Bytes body_;
     std::optional<http::response<http::span_body<const char>>> message_;
@@ -72,9 +87,12 @@ class HttpConnection : public std::enable_shared_from_this<HttpConnection> {
 void HttpConnection::read_header() {
     parser_.emplace();
     parser_->header_limit(largest_header);
-    parser_->body_limit(largest_body);
+    // The limit depends on the route, and is set before anything of the body is read.
+    parser_->body_limit(std::numeric_limits<std::uint64_t>::max());
     request_ = {};
     route_ = nullptr;
+    pieces_.reset();
+    intake_ = nullptr;
     asked_ = nullptr;
     close_ = false;
     stream_.expires_after(context_.patience);
@@ -90,7 +108,7 @@ void HttpConnection::on_error(beast::error_code error) {
     } else if (error == http::error::header_limit || error == http::error::buffer_overflow) {
         respond(error_response(431, fmt::format("the header is longer than {} bytes", largest_header)));
     } else if (error == http::error::body_limit) {
-        respond(error_response(413, fmt::format("the body is longer than {} bytes", largest_body)));
+        respond(error_response(413, fmt::format("the body is longer than {} bytes", body_limit())));
     } else if (error.category() == http::make_error_code(http::error::bad_method).category() &&
                error != http::error::partial_message) {
         respond(error_response(400, "the request is not valid HTTP"));
@@ -114,7 +132,10 @@ void HttpConnection::on_header(beast::error_code error) {
     }
     if (parser_->is_done()) {
         handle();
+    } else if (route_ != nullptr && route_->intake) {
+        begin_intake();
     } else {
+        parser_->body_limit(body_limit());
         read_body();
     }
 }
@@ -129,17 +150,18 @@ std::optional<Response> HttpConnection::refusal() {
     if (message.count(http::field::origin) > 1 || (!origin.empty() && !context_.access.origin_allowed(origin, host))) {
         return error_response(403, "the request comes from a page of another origin");
     }
-    if (parser_->content_length().value_or(0) > largest_body) {
-        return error_response(413, fmt::format("the body is longer than {} bytes", largest_body));
-    }
     auto target = parse_target({message.target().data(), message.target().size()});
     if (!target) return error_response(400, target.error().message);
     request_.path = std::move(target->path);
     request_.query = std::move(target->query);
 
+    const auto too_long = [&]() -> std::optional<Response> {
+        if (parser_->content_length().value_or(0) <= body_limit()) return {};
+        return error_response(413, fmt::format("the body is longer than {} bytes", body_limit()));
+    };
     const bool websocket = request_.path == "/ws";
     if (!websocket && !request_.path.starts_with("/api/") && request_.path != "/api") {
-        if (request_.method == "GET" || request_.method == "HEAD") return {};
+        if (request_.method == "GET" || request_.method == "HEAD") return too_long();
         Response wrong = error_response(405, "the page's files can only be read");
         wrong.allow = "GET, HEAD";
         return wrong;
@@ -180,7 +202,7 @@ std::optional<Response> HttpConnection::refusal() {
         if (authorization.starts_with(scheme)) token = authorization.substr(scheme.size());
     }
     request_.role = context_.access.role_of(token);
-    if (request_.role >= needs) return {};
+    if (request_.role >= needs) return too_long();
     if (request_.role == Role::nobody) {
         return error_response(
             401, "a token is needed, as header \"Authorization: Bearer TOKEN\"; the server printed it in its links");
@@ -210,17 +232,65 @@ void HttpConnection::handle() {
     } else {
         stream_.expires_never();
         request_.body = std::move(parser_->get().body());
-        // The answer may come from another thread, and after the client has gone. That thread releases the connection
-        // when it answers, so that it always ends on this one.
-        const auto held = std::make_shared<std::shared_ptr<HttpConnection>>(shared_from_this());
-        route_->handler(request_, [held](Response response) {
-            std::shared_ptr<HttpConnection> self = std::move(*held);
-            const auto executor = self->stream_.get_executor();
-            asio::post(executor, [self = std::move(self), response = std::move(response)]() mutable {
-                self->respond(std::move(response));
-            });
-        });
+        route_->handler(request_, respond_later());
     }
+}
+
+Respond HttpConnection::respond_later() {
+    // The thread that answers releases the connection, so that it always ends on this one.
+    const auto held = std::make_shared<std::shared_ptr<HttpConnection>>(shared_from_this());
+    return [held](Response response) {
+        std::shared_ptr<HttpConnection> self = std::move(*held);
+        const auto executor = self->stream_.get_executor();
+        asio::post(executor, [self = std::move(self), response = std::move(response)]() mutable {
+            self->respond(std::move(response));
+        });
+    };
+}
+
+void HttpConnection::begin_intake() {
+    close_ = !parser_->get().keep_alive();
+    pieces_.emplace(std::move(*parser_));
+    pieces_->body_limit(body_limit());
+    intake_ = route_->intake(request_);
+    piece_.resize(piece_size);
+    read_piece();
+}
+
+void HttpConnection::read_piece() {
+    auto& body = pieces_->get().body();
+    body.data = piece_.data();
+    body.size = piece_.size();
+    body.more = true;
+    stream_.expires_after(context_.patience);
+    http::async_read(stream_, buffer_, *pieces_,
+                     [self = shared_from_this()](beast::error_code error, std::size_t) { self->on_piece(error); });
+}
+
+void HttpConnection::on_piece(beast::error_code error) {
+    if (error && error != http::error::need_buffer) {
+        intake_ = nullptr;  // discards what came
+        on_error(error);
+        return;
+    }
+    stream_.expires_never();
+    const std::size_t count = piece_.size() - pieces_->get().body().size;
+    const auto held = std::make_shared<std::shared_ptr<HttpConnection>>(shared_from_this());
+    intake_->take(piece_.substr(0, count), [held](std::optional<Response> refused) {
+        std::shared_ptr<HttpConnection> self = std::move(*held);
+        const auto executor = self->stream_.get_executor();
+        asio::post(executor, [self = std::move(self), refused = std::move(refused)]() mutable {
+            if (refused) {
+                self->intake_ = nullptr;
+                self->close_ = true;  // the rest of the body is not read
+                self->respond(std::move(*refused));
+            } else if (self->pieces_->is_done()) {
+                self->intake_->finish(self->respond_later());
+            } else {
+                self->read_piece();
+            }
+        });
+    });
 }
 
 void HttpConnection::upgrade() {

@@ -39,13 +39,6 @@ json read_json(const fs::path& file, std::uintmax_t longest) {
     return parsed ? std::move(*parsed) : json();
 }
 
-std::string id_of(const fs::path& file) {
-    StateHash hash;
-    const std::string text = file.string();
-    hash.add(text.data(), text.size());
-    return to_hex(hash.value());
-}
-
 std::string title_of(const fs::path& scene) {
     const auto spec = scene::parse_scene(scene);
     if (spec && !spec->scene.title.empty()) return spec->scene.title;
@@ -107,6 +100,13 @@ Result<std::string> read_whole(const fs::path& file, std::uintmax_t longest) {
     std::string text{std::istreambuf_iterator<char>(in), {}};
     if (!in) return Error{fmt::format("{}: cannot be read", file.string())};
     return text;
+}
+
+std::string Library::id_of(const fs::path& file) {
+    StateHash hash;
+    const std::string text = file.string();
+    hash.add(text.data(), text.size());
+    return to_hex(hash.value());
 }
 
 std::vector<KnownScene> Library::scenes() const {
@@ -186,6 +186,18 @@ Status Library::forget(const std::string& id) const {
     }
     if (!before.is_array() || list.size() == before.size()) return Error{"this scene is not among the recent ones"};
     return write_whole(folder_ / "recent.json", to_text(list) + "\n");
+}
+
+Status Library::remove_scene(const std::string& id) const {
+    for (const KnownScene& known : scenes()) {
+        if (known.id != id || known.kind != KnownScene::Kind::own) continue;
+        std::error_code error;
+        fs::remove_all(known.file.parent_path(), error);
+        if (error) return Error{fmt::format("{}: cannot be deleted: {}", known.file.string(), error.message())};
+        (void)forget(id).ok();
+        return {};
+    }
+    return Error{"there is no scene of this id that was made here"};
 }
 
 Result<std::string> Library::save_session(const std::string& name, const std::string& text) const {

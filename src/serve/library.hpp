@@ -35,6 +35,8 @@ class Library {
 
     [[nodiscard]] const std::filesystem::path& folder() const { return folder_; }
     [[nodiscard]] std::filesystem::path scenes_folder() const { return folder_ / "scenes"; }
+    /// Of a scene file.
+    [[nodiscard]] static std::string id_of(const std::filesystem::path& file);
     /// The recent ones first, newest first; then those of the folder, then the built-in one.
     [[nodiscard]] std::vector<KnownScene> scenes() const;
     /// Newest first.
@@ -44,6 +46,8 @@ class Library {
     [[nodiscard]] Status remember(const std::filesystem::path& file, const std::string& title) const;
     /// Takes it out of the recent ones; the file stays.
     [[nodiscard]] Status forget(const std::string& id) const;
+    /// Deletes a scene of the folder `scenes`, with its files.
+    [[nodiscard]] Status remove_scene(const std::string& id) const;
     /// Writes a session under `name`; the same name again replaces it. Returns its id. Errors: no name, disk full.
     [[nodiscard]] Result<std::string> save_session(const std::string& name, const std::string& text) const;
     [[nodiscard]] Status remove_session(const std::string& id) const;

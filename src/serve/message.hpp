@@ -3,6 +3,7 @@
 #include <functional>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include <nlohmann/json.hpp>
@@ -40,6 +41,17 @@ struct Response {
 
 /// Answers a request: once, from any thread.
 using Respond = std::function<void(Response)>;
+
+/// Takes the body of a request piece by piece, so that a large one never is in memory. What came of a body that does
+/// not come to its end is discarded with the object.
+class Intake {
+  public:
+    virtual ~Intake() = default;
+    /// `then` is called once, from any thread: with nothing, and the next piece may come; or with a refusal.
+    virtual void take(std::string piece, std::function<void(std::optional<Response>)> then) = 0;
+    /// The body is whole.
+    virtual void finish(const Respond& respond) = 0;
+};
 
 [[nodiscard]] Response json_response(int status, const nlohmann::json& content);
 /// `{"error": sentence}`

@@ -1,6 +1,8 @@
 #pragma once
 
+#include <cstdint>
 #include <functional>
+#include <memory>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -17,6 +19,9 @@ struct Route {
     Role needs = Role::viewer;            ///< nobody: no token required
     Handler handler;                      ///< called on the server's thread; must not block
     std::vector<std::string> query = {};  ///< keys that the query of a request may have
+    /// Takes the body in place of `handler`, which then answers requests without one.
+    std::function<std::shared_ptr<Intake>(const Request&)> intake = {};
+    std::uint64_t largest_body = 0;  ///< bytes; 0: as usual
 };
 
 /// The table of routes.

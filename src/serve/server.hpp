@@ -12,6 +12,7 @@
 #include "scene/scene.hpp"
 #include "serve/access.hpp"
 #include "serve/calibrations.hpp"
+#include "serve/draft.hpp"
 #include "serve/router.hpp"
 #include "twin/scenario.hpp"
 
@@ -37,6 +38,7 @@ struct StartSettings {
     std::filesystem::path folder;   ///< keeps the list of recent scenes, own scenes and saved sessions
     std::filesystem::path file;     ///< a scene or a saved session to open at once; empty: none
     std::function<void()> on_quit;  ///< the user ends the program in the page
+    UploadLimits uploads{};         ///< of a new scene
 };
 
 /// A session that users and programs access over HTTP and WebSocket, as described in docs/protocol.md. Runs on its own

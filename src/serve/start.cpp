@@ -55,7 +55,8 @@ Start::Start(StartSettings settings, ServerOptions options, Host host)
     : settings_(std::move(settings)),
       options_(std::move(options)),
       host_(std::move(host)),
-      library_(settings_.folder) {}
+      library_(settings_.folder),
+      drafts_(std::make_unique<Drafts>(settings_.folder, settings_.uploads, options_.export_folder)) {}
 
 Start::~Start() {
     close();
@@ -63,6 +64,7 @@ Start::~Start() {
 
 void Start::close() {
     files_.reset();
+    drafts_.reset();
     stop_ = true;
     opener_.reset();
     if (made_) made_->close();
@@ -86,6 +88,8 @@ void Start::describe(Role role, const Respond& respond) {
     }
     files_->post([this, respond, page]() mutable {
         page["folder"] = library_.folder().string();
+        const UploadLimits& limits = settings_.uploads;
+        page["uploads"] = {{"bytes", limits.bytes}, {"files", limits.files}, {"cells", limits.cells}};
         page["scenes"] = page["sessions"] = json::array();
         for (const KnownScene& scene : library_.scenes()) page["scenes"].push_back(to_json(scene));
         for (const SavedSession& saved : library_.sessions()) page["sessions"].push_back(to_json(saved));
@@ -313,6 +317,20 @@ void Start::save(const Request& request, const Respond& respond) {
 
 void Start::remove_saved(const std::string& id, const Respond& respond) {
     files_->post([this, id, respond] { respond(of(library_.remove_session(id), "removed")); });
+}
+
+void Start::remove_scene(const std::string& id, const Respond& respond) {
+    files_->post([this, id, respond] { respond(of(library_.remove_scene(id), "deleted")); });
+}
+
+void Start::download(const std::string& id, const Respond& respond) {
+    files_->post([this, id, respond] {
+        for (const KnownScene& known : library_.scenes()) {
+            if (known.id != id) continue;
+            return drafts_->pack(known.file, known.file.empty(), known.title, respond);
+        }
+        respond(error_response(404, "there is nothing of this id; reload the page"));
+    });
 }
 
 void Start::quit(const Respond& respond) {

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "serve/drafts.hpp"
 #include "serve/library.hpp"
 #include "serve/open_session.hpp"
 #include "serve/server.hpp"
@@ -45,7 +46,13 @@ class Start {
     /// Saves the open session, or a file of one, as `{"name": ..., "file": ...}` says.
     void save(const Request& request, const Respond& respond);
     void remove_saved(const std::string& id, const Respond& respond);
+    /// Deletes a scene that was made on this page, with its files.
+    void remove_scene(const std::string& id, const Respond& respond);
+    /// A scene with all its files as an archive.
+    void download(const std::string& id, const Respond& respond);
     void quit(const Respond& respond);
+    /// New scenes.
+    [[nodiscard]] Drafts& drafts() { return *drafts_; }
 
   private:
     /// What to open.
@@ -86,6 +93,7 @@ class Start {
     OpenSessionPtr made_;  // on its way to its place
     int folders_ = 0;      // of sessions, for their names; used by the opener only
     std::unique_ptr<Worker> files_ = std::make_unique<Worker>("start");
+    std::unique_ptr<Drafts> drafts_;
     std::unique_ptr<Worker> opener_ = std::make_unique<Worker>("opener");
 };
 

@@ -119,6 +119,14 @@ TEST_F(OpenApi, every_route_answers_as_described) {
                                                 {"/api/orthophoto", 404}, {"/api/ensembles/{e}/maps/{name}", 404},
                                                 {"/api/open", 409},       {"/api/recent/{id}", 409},
                                                 {"/api/sessions", 409},   {"/api/sessions/{id}", 409},
+                                                {"/api/draft", 409},
+                                                {"/api/draft/{id}", 409},
+                                                {"/api/draft/{id}/files/{role}", 409},
+                                                {"/api/draft/{id}/mend", 409},
+                                                {"/api/draft/{id}/relief", 409},
+                                                {"/api/draft/{id}/scene", 409},
+                                                {"/api/scenes/{id}", 409},
+                                                {"/api/scenes/{id}/bundle", 409},
                                                 {"/api/quit", 409}};  // this server has no start page
     for (const serve::Route& route : server_->routes()) {
         SCOPED_TRACE(route.method + " " + route.pattern);

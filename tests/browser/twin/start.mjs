@@ -1,6 +1,6 @@
 // The start page: choose a scene, save the session, open it again, go back, end the program.
 import { spawn } from "node:child_process";
-import { mkdtempSync, rmSync } from "node:fs";
+import { existsSync, mkdtempSync, rmSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { createInterface } from "node:readline";
@@ -15,6 +15,23 @@ async function startTalus(program, folder) {
     process_.kill("SIGTERM");
     await ended;
   } };
+}
+
+/** An elevation model as an ASCII grid, which states no reference system: a slope of 60 x 50 cells of 5 m that falls to the west. */
+function asciiGrid() {
+  const row = Array.from({ length: 60 }, (_, i) => (100 + 2 * i).toFixed(1)).join(" ");
+  return ["ncols 60", "nrows 50", "xllcorner 824000", "yllcorner 825000", "cellsize 5", "NODATA_value -9999", ...Array(50).fill(row)].join("\n");
+}
+
+/** Lets a file fall onto an element, as the browser tells it. */
+async function drop(page, selector, name, content) {
+  const data = await page.evaluateHandle(([name, content]) => {
+    const data = new DataTransfer();
+    data.items.add(new File([content], name));
+    return data;
+  }, [name, content]);
+  await page.dispatchEvent(selector, "dragover", { dataTransfer: data });
+  await page.dispatchEvent(selector, "drop", { dataTransfer: data });
 }
 
 export async function testStart(run) {
@@ -61,6 +78,39 @@ export async function testStart(run) {
     assert.equal((await ask("start")).count, 2);
     const state = await ask("scenarios/A/state");
     assert.deepEqual([state.step, state.hash], [3, hash]);
+  });
+
+  await run.check("a new scene is made of a dropped terrain and a drawn scar, is run, and is downloaded", async () => {
+    await page.goto(`http://127.0.0.1:${server.port}/#start`);  // the page loads itself anew
+    await page.click("text=New scene");
+    await drop(page, "[data-role=terrain]", "not_a_raster.tif", "hello");
+    await page.locator(".new-said >> text=not_a_raster.tif: is no raster").waitFor();
+    await drop(page, "[data-role=terrain]", "west_slope.asc", asciiGrid());
+    await page.locator(".new-problem >> text=states no coordinate reference system").waitFor();
+    await page.screenshot({ path: join(run.output, "new-scene-problem.png"), fullPage: true });
+    await page.fill("[aria-label='EPSG code of the terrain']", "2326");
+    await page.click("[data-role=terrain] >> text=Apply");
+    const map = page.locator("canvas.hillshade");
+    await map.waitFor();
+    await map.scrollIntoViewIfNeeded();
+    const { width, height } = await map.boundingBox();
+    for (const [u, v] of [[0.55, 0.4], [0.65, 0.4], [0.65, 0.55], [0.55, 0.55], [0.55, 0.4]]) await map.click({ position: { x: u * width, y: v * height } });
+    await page.locator("text=This can be run").waitFor();
+    assert.equal(await page.inputValue("[aria-label='Title of the scene']"), "west slope");
+    await page.click("text=Volume");
+    await page.fill("[aria-label='Thickness or volume']", "500");
+    await page.keyboard.press("Tab");
+    await page.locator(".new-good pre >> text=500 m3").waitFor();
+    await page.screenshot({ path: join(run.output, "new-scene.png"), fullPage: true });
+    await page.click("text=Create and open");
+    await page.click("dialog .primary");
+    await page.waitForFunction(() => document.querySelector(".topbar h1")?.textContent.includes("west slope") && document.querySelector(".transport"));
+    await page.click("[aria-label='Step']");
+    await until(() => ask("scenarios/A/state"), (s) => s.step === 1, "a step of the new scene");
+    assert.ok(existsSync(join(folder, "scenes", "west-slope", "scene.toml")));
+    await page.click("button.wordmark");
+    const [file] = await Promise.all([page.waitForEvent("download"), page.click("[aria-label^='Download west slope']")]);
+    assert.equal(file.suggestedFilename(), "west-slope.zip");
   });
 
   await run.check("on a phone nothing is wider than the screen, a viewer sees no files, and talus is ended on the page", async () => {

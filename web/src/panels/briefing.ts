@@ -11,7 +11,8 @@ import { webm, type Encoded } from "../state/webm";
 import { button, h } from "../ui/dom";
 import { dialog, openDialog } from "../ui/dialog";
 import { font } from "./legend_strip";
-import { save, type Picture } from "./picture";
+import { save } from "../ui/save";
+import type { Picture } from "./picture";
 
 const speeds: [string, string][] = [["0.5", "half speed"], ["1", "real time"], ["2", "2 × real time"], ["4", "4 × real time"], ["10", "10 × real time"]];
 const bitrate = 8_000_000;

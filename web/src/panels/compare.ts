@@ -9,7 +9,8 @@ import { pressures } from "../state/pressures";
 import type { Probe, Twin } from "../state/twin";
 import { button, h } from "../ui/dom";
 import { comparisonReport } from "./comparison_report";
-import { save, type Picture } from "./picture";
+import { save } from "../ui/save";
+import type { Picture } from "./picture";
 import { statusWords } from "./transport";
 
 const peak = (column: readonly (number | null)[]): number | null => column.reduce<number | null>((most, v) => (v === null ? most : Math.max(most ?? v, v)), null);

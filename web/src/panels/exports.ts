@@ -8,7 +8,8 @@ import { button, h } from "../ui/dom";
 import { dialog, openDialog } from "../ui/dialog";
 import type { Stage } from "../scene/stage";
 import { briefingButton } from "./briefing";
-import { save, type Picture } from "./picture";
+import { save } from "../ui/save";
+import type { Picture } from "./picture";
 
 export function exportButtons(twin: Twin, stage: Stage, picture: Picture): HTMLElement[] {
   const video = button("Record a video", { icon: "video", bare: true, title: "Record a video of the view (WebM)", onclick: () => picture.video(() => {

@@ -5,16 +5,9 @@ import { roundStep } from "../scene/colour";
 import { changesText } from "../state/differences";
 import { fixed, tick } from "../state/format";
 import type { Twin } from "../state/twin";
+import { save } from "../ui/save";
 import { font, LegendStrip } from "./legend_strip";
 import { presentLegends } from "./legends";
-
-export function save(name: string, content: Blob): void {
-  const link = document.createElement("a");
-  link.href = URL.createObjectURL(content);
-  link.download = name;
-  link.click();
-  setTimeout(() => URL.revokeObjectURL(link.href), 10_000);
-}
 
 export class Picture {
   private readonly canvas = document.createElement("canvas");

@@ -2,7 +2,7 @@
 import type { Twin } from "../state/twin";
 import { dialog, openDialog } from "../ui/dialog";
 import { button, h } from "../ui/dom";
-import { save } from "./picture";
+import { save } from "../ui/save";
 
 export function sessionButton(twin: Twin): HTMLElement {
   return button("Save", { icon: "save", title: "Save the session: all scenarios with their edits", onclick: () => open(twin) });

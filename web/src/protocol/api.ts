@@ -2,7 +2,7 @@
 import { decodeFrame, type Frame, type ScenarioName } from "./frame";
 import { decodeGrid, type Grid } from "./grid";
 import type { Action, Done, Ensemble, ExportFile, Figure, Impacts, LayerName, NewScenario, ProbeSeries, Recording, SceneInfo, Series, Session } from "./messages";
-import type { StartPage } from "./start";
+import type { Checked, Draft, DraftRole, MendingOfTerrain, StartPage, WantedScene } from "./start";
 
 /** The server's answer to a request that it refused. */
 export class Refused extends Error {
@@ -23,11 +23,12 @@ export class Api {
 
   private async ask(method: string, path: string, body?: object): Promise<Response> {
     const headers: Record<string, string> = { Authorization: `Bearer ${this.token}` };
-    if (body !== undefined) headers["Content-Type"] = "application/json";
+    const file = body instanceof Blob;
+    if (body !== undefined) headers["Content-Type"] = file ? "application/octet-stream" : "application/json";
     if (method !== "GET" && this.secret !== null) headers["Talus-Person"] = this.secret;
     let response: Response;
     try {
-      response = await fetch(`api/${path}`, { method, headers, ...(body === undefined ? {} : { body: JSON.stringify(body) }) });
+      response = await fetch(`api/${path}`, { method, headers, ...(body === undefined ? {} : { body: file ? body : JSON.stringify(body) }) });
     } catch {
       throw new Refused(0, "The server does not answer.");
     }
@@ -92,6 +93,18 @@ export class Api {
   /** The open session, or the content of a file of one. */
   saveSession = async (name: string, file?: unknown): Promise<void> => void (await this.ask("POST", "sessions", { name, ...(file === undefined ? {} : { file }) }));
   removeSession = async (id: string): Promise<void> => void (await this.ask("DELETE", `sessions/${id}`));
+  beginDraft = async (): Promise<string> => ((await (await this.ask("POST", "draft", {})).json()) as { created: string }).created;
+  uploadToDraft = async (id: string, role: DraftRole, file: File): Promise<Draft> =>
+    (await (await this.ask("PUT", `draft/${id}/files/${role}?name=${encodeURIComponent(file.name)}`, file)).json()) as Draft;
+  removeFromDraft = async (id: string, role: DraftRole): Promise<Draft> => (await (await this.ask("DELETE", `draft/${id}/files/${role}`)).json()) as Draft;
+  mendDraft = async (id: string, mending: MendingOfTerrain): Promise<Draft> => (await (await this.ask("POST", `draft/${id}/mend`, mending)).json()) as Draft;
+  reliefOfDraft = async (id: string): Promise<Grid> => decodeGrid(await this.binary(`draft/${id}/relief`));
+  /** Checks it, or makes it a scene. */
+  makeOfDraft = async (id: string, wanted: WantedScene): Promise<Checked> => (await (await this.ask("POST", `draft/${id}/scene`, wanted)).json()) as Checked;
+  discardDraft = async (id: string): Promise<void> => void (await this.ask("DELETE", `draft/${id}`));
+  removeScene = async (id: string): Promise<void> => void (await this.ask("DELETE", `scenes/${id}`));
+  /** A scene with all its files, as an archive. */
+  sceneBundle = (id: string): Promise<Blob> => this.blob(`scenes/${id}/bundle`);
   sessionFile = (): Promise<Blob> => this.blob("session/file");
   quit = async (): Promise<void> => void (await this.ask("POST", "quit"));
   control = async (what: "request" | "release" | "grant" | "decline"): Promise<void> =>

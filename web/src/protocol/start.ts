@@ -9,6 +9,28 @@ export interface KnownScene {
 }
 export interface SavedSession { id: string; name: string; title: string; saved_at: string; scenarios: number }
 
+export interface UploadLimits { bytes: number; files: number; cells: number }
+export type DraftRole = "terrain" | "release" | "buildings" | "orthophoto" | "bundle";
+export interface MendingOfTerrain { epsg: number | null; metric: boolean; metres_per_unit: number | null; nodata: number | null }
+/** A new scene that is being made. */
+export interface Draft {
+  files: Partial<Record<DraftRole, { name: string; bytes: number; kind: "raster" | "polygons" | "other" }>>;
+  terrain: {
+    problem: string | null;
+    columns: number;
+    rows: number;
+    crs: string;
+    metric_crs: string;
+    value_unit: string;
+    cell_m?: number;
+    nodata_share?: number;
+    mending: MendingOfTerrain;
+  } | null;
+  bytes_left: number;
+}
+export interface Checked { summary: string; notes: string[]; created: string | null }
+export interface WantedScene { title: string; thickness_m: number | null; volume_m3: number | null; scar: [number, number][] | null; check?: boolean }
+
 export interface StartPage {
   /** False: a server of one scene, which has nothing of the following. */
   available: boolean;
@@ -23,6 +45,7 @@ export interface StartPage {
   role: "viewer" | "controller";
   // For controllers.
   folder?: string;
+  uploads?: UploadLimits;
   scenes?: KnownScene[];
   sessions?: SavedSession[];
 }

@@ -5,7 +5,9 @@ import { Refused, type Api } from "../protocol/api";
 import type { KnownScene, SavedSession, StartPage } from "../protocol/start";
 import { askFor } from "../ui/dialog";
 import { button, h, icon } from "../ui/dom";
+import { save } from "../ui/save";
 import { Toasts } from "../ui/toast";
+import { NewScene } from "./new_scene";
 
 const opening_ms = 250;
 const idle_ms = 2000;
@@ -24,12 +26,15 @@ export function toTwin(): void {
 }
 
 const day = new Intl.DateTimeFormat("en-GB", { day: "numeric", month: "short", year: "numeric", hour: "2-digit", minute: "2-digit" });
+const fileName = (title: string): string => title.toLowerCase().replace(/[^a-z0-9]+/g, "-").replace(/^-|-$/g, "").slice(0, 60) || "scene";
 const dateText = (iso: string): string => day.format(new Date(iso));
 
 class Start {
   private readonly toasts = new Toasts();
   private readonly state = h("div", { class: "start-state", "aria-live": "polite" });
   private readonly lists = h("div", { class: "start-lists" });
+  /** A new scene, while one is made. */
+  private readonly making = h("div", {});
   private readonly back = h("div", { class: "start-back" });
   private readonly foot = h("footer", { class: "start-foot muted" });
   /** What the lists show, as text: they are made again only if it is another. */
@@ -39,7 +44,7 @@ class Start {
     const home = h("div", { class: "start-page" },
       h("header", { class: "start-head" }, h("img", { src: mark, alt: "", width: 44, height: 44 }),
         h("div", {}, h("h1", {}, "talus"), h("p", { class: "muted" }, "Landslides and debris flows on real terrain, live in the browser")), this.back),
-      this.state, this.lists, this.foot);
+      this.state, this.making, this.lists, this.foot);
     page.replaceChildren(h("main", { class: "start-scroll" }, home), this.toasts.polite, this.toasts.urgent);
     this.show(now);
     void this.watch();
@@ -91,14 +96,18 @@ class Start {
   }
 
   private scenes(list: KnownScene[], busy: boolean): HTMLElement {
-    return h("section", { "aria-labelledby": "start-scenes" }, h("h2", { id: "start-scenes" }, "Scenes"),
+    return h("section", { "aria-labelledby": "start-scenes" },
+      h("div", { class: "start-title" }, h("h2", { id: "start-scenes" }, "Scenes"), button("New scene", { icon: "plus", class: "primary", disabled: busy, onclick: () => void this.make() })),
       h("ul", { class: "start-list" }, ...list.map((scene) => {
         const where = scene.kind === "builtin" ? "Built in: Hong Kong, 600 m³ through a village" : (scene.file ?? "");
         const open = h("button", { type: "button", class: "start-row", disabled: busy || scene.missing, "data-scene": scene.id, onclick: () => void this.open({ scene: scene.id }, scene.title) },
           icon("layers"), h("span", { class: "grow" }, h("b", {}, scene.title || "Scene without a title"), h("span", { class: "muted path" }, scene.missing ? `${where} is no longer there` : where)),
           scene.opened_at ? h("span", { class: "muted date" }, dateText(scene.opened_at)) : null);
         const forget = scene.kind === "recent" ? button(`Take ${scene.title} off this list`, { icon: "close", bare: true, class: "bare quiet", onclick: () => void this.attempt(() => this.api.forgetScene(scene.id)) }) : null;
-        return h("li", {}, open, forget);
+        const name = scene.title || "this scene";
+        const fetch = scene.missing ? null : button(`Download ${name} with all its files`, { icon: "download", bare: true, class: "bare quiet", onclick: () => void this.attempt(async () => save(`${fileName(name)}.zip`, await this.api.sceneBundle(scene.id))) });
+        const remove = scene.kind === "own" ? button(`Delete ${name}`, { icon: "remove", bare: true, class: "bare quiet", onclick: () => void this.removeScene(scene) }) : null;
+        return h("li", {}, open, fetch, remove, forget);
       })));
   }
 
@@ -130,6 +139,25 @@ class Start {
         }
       }
     });
+  }
+  private async make(): Promise<void> {
+    await this.attempt(async () => {
+      const id = await this.api.beginDraft();
+      const close = (): void => {
+        this.making.replaceChildren();
+        this.lists.hidden = false;
+      };
+      const made = new NewScene(this.api, id, this.now.uploads ?? { bytes: Infinity, files: Infinity, cells: Infinity }, (scene, title) => {
+        close();
+        void this.open({ scene }, title);
+      }, close);
+      this.making.replaceChildren(made.element);
+      this.lists.hidden = true;
+    });
+  }
+  private async removeScene(scene: KnownScene): Promise<void> {
+    const answer = await askFor(`Delete ${scene.title}?`, ["The scene is deleted with its files. Saved sessions of it can no longer be opened."], [["remove", "Delete it"]] as const);
+    if (answer !== null) await this.attempt(() => this.api.removeScene(scene.id));
   }
   private async remove(saved: SavedSession): Promise<void> {
     const answer = await askFor(`Remove ${saved.name}?`, ["The saved session is deleted. Its scene stays."], [["remove", "Remove it"]] as const);

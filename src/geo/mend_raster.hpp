@@ -1,0 +1,41 @@
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "core/result.hpp"
+
+namespace talus::geo {
+
+/// What a file holds, by the formats that GDAL knows.
+enum class FileKind { raster, vector, other };
+
+/// Of a file somebody else may have made. Errors: as files_of, a format that may name other files.
+[[nodiscard]] Result<FileKind> kind_of(const std::string& file);
+
+/// What a raster says about itself, whether or not it can serve as terrain; reads no cells.
+struct RasterFacts {
+    std::string format;  ///< "GTiff"
+    int columns = 0, rows = 0;
+    std::string crs;         ///< with its name; empty: none stated
+    std::string metric_crs;  ///< "EPSG:32650": a metric one that suits its place; empty: the place is not known
+    std::string value_unit;  ///< as stated; empty: none
+};
+[[nodiscard]] Result<RasterFacts> raster_facts(const std::string& file);
+
+/// What is to be mended of a raster, each as its user states it.
+struct Mending {
+    int epsg = 0;                           ///< the system that it is in; 0: as the file says
+    bool metric = false;                    ///< bring it onto square cells of the metric system of its place
+    std::optional<double> metres_per_unit;  ///< of its values
+    std::optional<double> nodata;           ///< the value that marks missing data
+
+    [[nodiscard]] bool any() const { return epsg != 0 || metric || metres_per_unit || nodata; }
+};
+
+/// Writes the first band, mended, as a GeoTIFF. Errors: no such system, no position, more than `most_cells` cells,
+/// cannot be written; then nothing remains.
+[[nodiscard]] Status mend_raster(const std::string& file, const std::string& to, const Mending& mending,
+                                 double most_cells);
+
+}  // namespace talus::geo

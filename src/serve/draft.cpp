@@ -1,0 +1,408 @@
+#include "serve/draft.hpp"
+
+#include <algorithm>
+#include <cctype>
+#include <system_error>
+#include <utility>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "core/try.hpp"
+#include "geo/mesh.hpp"
+#include "geo/vector.hpp"
+#include "geo/zip_archive.hpp"
+#include "scene/bundle.hpp"
+#include "scene/check.hpp"
+#include "serve/json_text.hpp"
+#include "serve/library.hpp"
+
+namespace talus::serve {
+namespace {
+
+using nlohmann::json;
+namespace fs = std::filesystem;
+
+constexpr std::size_t longest_ending = 10;
+constexpr double largest_photo = 1e9;  // pixels; it is read at a fraction of its size
+constexpr int most_scenes_of_a_name = 1000;
+
+/// Files beside another one that say where it lies or hold its parts.
+constexpr std::array<std::string_view, 14> companions = {".shx", ".dbf",  ".prj", ".cpg", ".hdr", ".tfw", ".tifw",
+                                                         ".jgw", ".jpgw", ".pgw", ".wld", ".j2w", ".mtl", ".bin"};
+
+std::string lower_case(std::string text) {
+    for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    return text;
+}
+
+bool is_zip(const std::string& name) {
+    return lower_case(fs::path(name).extension().string()) == ".zip";
+}
+
+bool is_companion(const fs::path& file) {
+    const std::string ending = lower_case(file.extension().string());
+    return std::find(companions.begin(), companions.end(), ending) != companions.end();
+}
+
+/// Of all files below a folder.
+std::uint64_t bytes_in(const fs::path& folder) {
+    std::uint64_t bytes = 0;
+    std::error_code error;
+    for (fs::recursive_directory_iterator it(folder, error), end; !error && it != end; it.increment(error)) {
+        if (it->is_regular_file(error)) bytes += it->file_size(error);
+    }
+    return bytes;
+}
+
+std::vector<fs::path> files_in(const fs::path& folder) {
+    std::vector<fs::path> files;
+    std::error_code error;
+    for (fs::recursive_directory_iterator it(folder, error), end; !error && it != end; it.increment(error)) {
+        if (it->is_regular_file(error)) files.push_back(it->path());
+    }
+    std::sort(files.begin(), files.end());
+    return files;
+}
+
+/// The file of an archive that its user means: the only one that is no companion. What none of both kinds is, such as
+/// a description or a virtual raster beside a raster, is removed.
+Result<fs::path> only_file(const std::string& name, const fs::path& folder) {
+    constexpr std::array<std::string_view, 19> known = {
+        ".tif",  ".tiff", ".asc",  ".img", ".png",     ".jpg",      ".jpeg", ".jp2", ".shp", ".gpkg",
+        ".json", ".obj",  ".gltf", ".glb", ".geojson", ".cityjson", ".flt",  ".bil", ".hgt"};
+    std::vector<fs::path> found;
+    std::error_code ignored;
+    for (const fs::path& file : files_in(folder)) {
+        const std::string ending = lower_case(file.extension().string());
+        if (std::find(known.begin(), known.end(), ending) != known.end()) {
+            found.push_back(file);
+        } else if (!is_companion(file)) {
+            fs::remove(file, ignored);
+        }
+    }
+    if (found.size() == 1) return found.front();
+    if (found.empty()) return Error{name + ": there is no raster, no layer and no mesh in it"};
+    return Error{fmt::format("{}: there are {} files in it, {} and {}; pack one of them with its companions", name,
+                             found.size(), found[0].filename().string(), found[1].filename().string())};
+}
+
+}  // namespace
+
+std::string upload_name_of(const std::string& name) {
+    const std::string lower = lower_case(fs::path(name).filename().string());
+    std::string ending = lower.ends_with(".city.json") ? ".city.json" : fs::path(lower).extension().string();
+    const std::string stem = file_name_of(lower.substr(0, lower.size() - ending.size()));
+    ending = file_name_of(ending.substr(ending.empty() ? 0 : 1));
+    if (ending == "city-json") ending = "city.json";
+    if (ending.size() > longest_ending) ending.resize(longest_ending);
+    return (stem.empty() ? "file" : stem) + (ending.empty() ? "" : "." + ending);
+}
+
+Result<Draft> Draft::make(fs::path folder, const UploadLimits& limits) {
+    std::error_code error;
+    fs::create_directories(folder / "data", error);
+    if (error) return Error{fmt::format("{}: cannot be made: {}", folder.string(), error.message())};
+    return Draft(std::move(folder), limits);
+}
+
+Draft::~Draft() {
+    std::error_code ignored;
+    if (!folder_.empty()) fs::remove_all(folder_, ignored);
+}
+
+Draft::Draft(Draft&& other) noexcept
+    : folder_(std::exchange(other.folder_, {})),
+      limits_(other.limits_),
+      uploads_(std::move(other.uploads_)),
+      mending_(other.mending_),
+      facts_(std::move(other.facts_)),
+      terrain_(std::move(other.terrain_)),
+      problem_(std::move(other.problem_)) {}
+
+std::uint64_t Draft::bytes_left() const {
+    const std::uint64_t there = bytes_in(folder_);
+    return limits_.bytes > there ? limits_.bytes - there : 0;
+}
+
+const Draft::Upload* Draft::find(std::string_view role) const {
+    const auto found = uploads_.find(role);
+    return found == uploads_.end() ? nullptr : &found->second;
+}
+
+Result<Draft::Upload> Draft::unpack(std::string_view role, const std::string& name, const fs::path& upload,
+                                    const fs::path& to) const {
+    Upload made{name, {}, 0, geo::FileKind::other};
+    std::error_code error;
+    if (is_zip(name) || role == "bundle") {
+        const geo::ZipLimits limits{bytes_left(), limits_.files};
+        if (role == "bundle") {
+            TALUS_ASSIGN(made.file, scene::unpack_bundle(upload, to, limits));
+        } else {
+            TALUS_TRY(geo::unpack_zip(upload, to, limits));
+            TALUS_ASSIGN(made.file, only_file(name, to));
+        }
+    } else {
+        if (is_companion(name) || lower_case(fs::path(name).extension().string()) == ".shp") {
+            return Error{name + ": is one of several files that belong together; pack all of them in one ZIP archive"};
+        }
+        made.file = to / upload_name_of(name);
+        fs::create_directories(to, error);
+        if (!error) fs::rename(upload, made.file, error);
+        if (error) return Error{name + ": cannot be kept; is the disk full?"};
+    }
+    made.bytes = bytes_in(to);
+    return made;
+}
+
+Status Draft::check_kind(std::string_view role, Upload& upload) const {
+    if (role == "bundle") return {};
+    const std::string file = upload.file.string();
+    if (role == "buildings" && geo::is_mesh_file(file)) return {};
+    const auto kind = geo::kind_of(file);
+    if (!kind) return kind.error();
+    upload.kind = *kind;
+    if (upload.kind == geo::FileKind::vector && (role == "release" || role == "buildings")) return {};
+    if (role == "buildings") {
+        return Error{upload.name +
+                     ": holds no polygons; buildings are a GeoPackage, GeoJSON, zipped Shapefile, or a mesh"};
+    }
+    const auto facts = geo::raster_facts(file);
+    if (!facts) {
+        return Error{fmt::format("{}: is no raster{}", upload.name,
+                                 role == "release" ? " of thickness and no layer of polygons"
+                                                   : "; a GeoTIFF is one, and other formats that GDAL reads are")};
+    }
+    upload.kind = geo::FileKind::raster;
+    const double cells = static_cast<double>(facts->columns) * facts->rows;
+    const double most = role == "orthophoto" ? largest_photo : limits_.cells;
+    if (cells <= most) return {};
+    return Error{fmt::format("{}: has {} x {} cells, at most {:.6g} million can be; cut it to the part that matters",
+                             upload.name, facts->columns, facts->rows, most / 1e6)};
+}
+
+Status Draft::take(std::string_view role, const std::string& name, const fs::path& upload) {
+    const fs::path place = folder_ / "data" / role, fresh = folder_ / "fresh";
+    std::error_code ignored;
+    const auto without = [&](const Error& error) {
+        fs::remove_all(fresh, ignored);
+        fs::remove(upload, ignored);
+        return Error{plain(error.message)};
+    };
+    auto made = unpack(role, name, upload, fresh);
+    if (!made) return without(made.error());
+    if (const Status good = check_kind(role, *made); !good) return without(good.error());
+    std::error_code error;
+    fs::remove_all(place, ignored);
+    fs::rename(fresh, place, error);
+    if (error) return without(Error{name + ": cannot be kept: " + error.message()});
+    fs::remove(upload, ignored);
+    made->file = place / made->file.lexically_relative(fresh);
+    uploads_[std::string(role)] = std::move(*made);
+    if (role == "terrain") {
+        mending_ = {};
+        fs::remove(folder_ / "data" / "terrain.tif", ignored);
+        read_terrain();
+    }
+    return {};
+}
+
+void Draft::remove(std::string_view role) {
+    std::error_code ignored;
+    const auto found = uploads_.find(role);
+    if (found == uploads_.end()) return;
+    uploads_.erase(found);
+    fs::remove_all(folder_ / "data" / role, ignored);
+    if (role != "terrain") return;
+    fs::remove(folder_ / "data" / "terrain.tif", ignored);
+    mending_ = {};
+    facts_.reset();
+    terrain_.reset();
+    problem_.clear();
+}
+
+fs::path Draft::dem() const {
+    const Upload* upload = find("terrain");
+    return mending_.any() ? folder_ / "data" / "terrain.tif" : upload != nullptr ? upload->file : fs::path();
+}
+
+void Draft::read_terrain() {
+    terrain_.reset();
+    problem_.clear();
+    auto facts = geo::raster_facts(dem().string());
+    facts_ = facts ? std::optional(*facts) : std::nullopt;
+    auto raster = geo::read_terrain_raster(dem().string(), 1, std::nullopt);
+    if (raster) {
+        terrain_ = std::move(*raster);
+    } else {
+        problem_ = plain(raster.error().message);
+    }
+}
+
+Status Draft::mend(const geo::Mending& mending) {
+    const Upload* upload = find("terrain");
+    if (upload == nullptr) return Error{"there is no terrain yet"};
+    const fs::path mended = folder_ / "data" / "terrain.tif", fresh = folder_ / "fresh.tif";
+    std::error_code error;
+    if (mending.any()) {
+        if (Status done = geo::mend_raster(upload->file.string(), fresh.string(), mending, limits_.cells); !done) {
+            return Error{plain(done.error().message)};
+        }
+        fs::rename(fresh, mended, error);
+        if (error) return Error{"the mended terrain cannot be kept: " + error.message()};
+    } else {
+        fs::remove(mended, error);
+    }
+    mending_ = mending;
+    read_terrain();
+    return {};
+}
+
+json Draft::describe() const {
+    json files = json::object();
+    for (const auto& [role, upload] : uploads_) {
+        files[role] = {{"name", upload.name},
+                       {"bytes", upload.bytes},
+                       {"kind", upload.kind == geo::FileKind::raster   ? "raster"
+                                : upload.kind == geo::FileKind::vector ? "polygons"
+                                                                       : "other"}};
+    }
+    json terrain;
+    if (find("terrain") != nullptr) {
+        const geo::RasterFacts facts = facts_.value_or(geo::RasterFacts{});
+        terrain = {{"problem", problem_.empty() ? json() : json(problem_)},
+                   {"columns", facts.columns},
+                   {"rows", facts.rows},
+                   {"crs", facts.crs},
+                   {"metric_crs", facts.metric_crs},
+                   {"value_unit", facts.value_unit},
+                   {"mending",
+                    {{"epsg", mending_.epsg == 0 ? json() : json(mending_.epsg)},
+                     {"metric", mending_.metric},
+                     {"metres_per_unit", mending_.metres_per_unit ? json(*mending_.metres_per_unit) : json()},
+                     {"nodata", mending_.nodata ? json(*mending_.nodata) : json()}}}};
+        if (terrain_) {
+            const GridGeometry& g = terrain_->grid.geometry;
+            terrain["cell_m"] = g.cell;
+            terrain["columns"] = g.columns;
+            terrain["rows"] = g.rows;
+            terrain["crs"] = terrain_->crs.label();
+            terrain["nodata_share"] = terrain_->nodata_share;
+        }
+    }
+    return {{"files", files}, {"terrain", terrain}, {"bytes_left", bytes_left()}};
+}
+
+std::string Draft::plain(std::string message) const {
+    for (const std::string& role :
+         {std::string("/data/terrain"), std::string("/data/release"), std::string("/data/buildings"),
+          std::string("/data/orthophoto"), std::string("/data/drawn"), std::string("/data"), std::string("/fresh"),
+          std::string()}) {
+        const std::string part = folder_.string() + role + "/";
+        for (std::size_t at; (at = message.find(part)) != std::string::npos;) message.erase(at, part.size());
+    }
+    for (const char* command : {": gdal", "new scene: terrain.file: ", "new scene: terrain.orthophoto: ",
+                                "new scene: release[0].file: ", "new scene: buildings.file: "}) {
+        const std::size_t at = message.find(command);
+        if (at == std::string::npos) continue;
+        if (*command == ':') {
+            message.resize(at);
+        } else {
+            message.erase(at, std::string_view(command).size());
+        }
+    }
+    return message;
+}
+
+/// Writes the scene file into the folder. What of the files it does not need stays.
+Result<scene::NewScene> Draft::write_scene(const Wanted& wanted) {
+    const Upload *terrain = find("terrain"), *release = find("release"), *buildings = find("buildings"),
+                 *photo = find("orthophoto");
+    if (terrain == nullptr) return Error{"a terrain is needed"};
+    if (!terrain_) return Error{problem_};
+    if (release == nullptr && wanted.scar.empty()) {
+        return Error{"a release is needed: a file of it, or its outline drawn on the hillshade"};
+    }
+    scene::NewSceneOptions options;
+    options.dem = dem();
+    options.title = wanted.title;
+    options.folder = folder_;
+    options.folder_exists = true;
+    if (buildings != nullptr) options.buildings = buildings->file;
+    if (photo != nullptr) options.orthophoto = photo->file;
+    const bool raster = wanted.scar.empty() && release->kind == geo::FileKind::raster;
+    if (!raster) {
+        options.thickness = wanted.thickness;
+        options.volume = wanted.volume;
+    } else if (wanted.thickness || wanted.volume) {
+        return Error{"the release is a raster, which holds its own thickness; leave thickness and volume out"};
+    }
+    if (!wanted.scar.empty()) {
+        const fs::path drawn = folder_ / "data" / "drawn" / "scar.gpkg";
+        std::error_code error;
+        fs::remove_all(drawn.parent_path(), error);
+        fs::create_directories(drawn.parent_path(), error);
+        geo::OutputFeature scar;
+        scar.polygon.push_back({wanted.scar, {}});
+        scar.values.emplace_back("scar");
+        TALUS_TRY(geo::write_geopackage_layer(drawn.string(), "release", {{"name", true}}, {scar}, terrain_->crs));
+        options.release = drawn;
+    } else if (raster) {
+        options.thickness_raster = release->file;
+    } else {
+        options.release = release->file;
+    }
+    auto made = scene::write_new_scene(options);
+    if (!made) return Error{plain(made.error().message)};
+    for (std::string& note : made->notes) note = plain(note);
+    return made;
+}
+
+Result<scene::NewScene> Draft::check_bundle() const {
+    const fs::path& file = find("bundle")->file;
+    auto loaded = scene::load_scene(file);
+    if (!loaded) return Error{plain(loaded.error().message)};
+    scene::NewScene made{file, std::exchange(loaded->notes, {}), {}};
+    made.summary = scene::describe_scene(*loaded);
+    for (std::string& note : made.notes) note = plain(note);
+    return made;
+}
+
+Result<scene::NewScene> Draft::check(const Wanted& wanted) {
+    if (find("bundle") != nullptr) return check_bundle();
+    auto made = write_scene(wanted);
+    std::error_code ignored;
+    fs::remove(folder_ / "scene.toml", ignored);
+    fs::remove_all(folder_ / "data" / "drawn", ignored);
+    return made;
+}
+
+Result<fs::path> Draft::finish(const Wanted& wanted, const fs::path& scenes) {
+    const Upload* bundle = find("bundle");
+    TALUS_ASSIGN(const auto made, bundle != nullptr ? check_bundle() : write_scene(wanted));
+    std::error_code error;
+    const fs::path from = bundle != nullptr ? made.file.parent_path() : folder_;
+    if (bundle != nullptr) {
+        fs::rename(made.file, from / "scene.toml", error);
+    } else {
+        if (mending_.any()) fs::remove_all(folder_ / "data" / "terrain", error);
+        if (!wanted.scar.empty()) fs::remove_all(folder_ / "data" / "release", error);
+    }
+    fs::create_directories(scenes, error);
+    std::string name =
+        file_name_of(wanted.title.empty() && bundle != nullptr ? fs::path(bundle->name).stem().string() : wanted.title);
+    if (name.empty()) name = "scene";
+    for (int k = 1; k < most_scenes_of_a_name; ++k) {
+        const fs::path to = scenes / (k == 1 ? name : fmt::format("{}-{}", name, k));
+        if (fs::exists(fs::symlink_status(to, error))) continue;
+        fs::rename(from, to, error);
+        if (error) break;
+        fs::remove_all(folder_, error);  // of a bundle: what is around it
+        folder_.clear();
+        return to / "scene.toml";
+    }
+    fs::remove(folder_ / "scene.toml", error);
+    return Error{fmt::format("{}: the scene cannot be kept there; is the disk full?", scenes.string())};
+}
+
+}  // namespace talus::serve

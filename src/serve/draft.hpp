@@ -1,0 +1,104 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+#include "core/grid.hpp"
+#include "core/result.hpp"
+#include "geo/mend_raster.hpp"
+#include "geo/raster.hpp"
+#include "scene/new_scene.hpp"
+
+namespace talus::serve {
+
+/// What may be uploaded for a new scene.
+struct UploadLimits {
+    std::uint64_t bytes = std::uint64_t{2} << 30;  ///< of all its files together, unpacked
+    std::size_t files = 200;                       ///< in an archive
+    double cells = 5e7;                            ///< of a terrain or of a raster of thickness
+};
+
+/// A scene that is being made from uploaded files, in a folder of its own: `data/ROLE/FILE`. It becomes a scene all at
+/// once, by a change of the folder's name. Not for several threads at once; reading a terrain takes seconds.
+class Draft {
+  public:
+    static constexpr std::array<std::string_view, 5> roles = {"terrain", "release", "buildings", "orthophoto",
+                                                              "bundle"};
+
+    /// Makes the folder. Error: it cannot be made.
+    [[nodiscard]] static Result<Draft> make(std::filesystem::path folder, const UploadLimits& limits);
+    /// Removes the folder with all that is in it, unless it has become a scene.
+    ~Draft();
+    Draft(Draft&& other) noexcept;
+    Draft& operator=(Draft&& other) = delete;
+    Draft(const Draft&) = delete;
+    Draft& operator=(const Draft&) = delete;
+
+    [[nodiscard]] const std::filesystem::path& folder() const { return folder_; }
+    /// What may still come.
+    [[nodiscard]] std::uint64_t bytes_left() const;
+
+    /// Takes a file that has come whole, `upload`, which is gone afterwards. `name`: as it was called; of an archive
+    /// the one file of the role's kind in it. Errors: nothing of that kind, beyond the limits; then the former one
+    /// stays.
+    [[nodiscard]] Status take(std::string_view role, const std::string& name, const std::filesystem::path& upload);
+    void remove(std::string_view role);
+    /// Of the terrain; in place of what was to be mended before. Errors: no terrain, as geo::mend_raster; then nothing
+    /// changes.
+    [[nodiscard]] Status mend(const geo::Mending& mending);
+    /// What there is, and what is wrong with the terrain.
+    [[nodiscard]] nlohmann::json describe() const;
+    /// The terrain, if it can be one.
+    [[nodiscard]] const Grid<float>* terrain() const { return terrain_ ? &terrain_->grid : nullptr; }
+
+    /// What its user says beside the files.
+    struct Wanted {
+        std::string title;
+        std::optional<double> thickness, volume;  ///< m; m3
+        std::vector<PlanPoint> scar;              ///< drawn, in place of a release file
+    };
+    /// As `talus scene check` would find it; leaves no scene behind.
+    [[nodiscard]] Result<scene::NewScene> check(const Wanted& wanted);
+    /// Makes it a scene, a folder below `scenes`; returns its scene file. It is of no more use then.
+    [[nodiscard]] Result<std::filesystem::path> finish(const Wanted& wanted, const std::filesystem::path& scenes);
+
+  private:
+    struct Upload {
+        std::string name;            ///< as it was called
+        std::filesystem::path file;  ///< the one to open
+        std::uint64_t bytes = 0;
+        geo::FileKind kind = geo::FileKind::other;
+    };
+    Draft(std::filesystem::path folder, const UploadLimits& limits) : folder_(std::move(folder)), limits_(limits) {}
+    [[nodiscard]] Result<Upload> unpack(std::string_view role, const std::string& name,
+                                        const std::filesystem::path& upload, const std::filesystem::path& to) const;
+    [[nodiscard]] Status check_kind(std::string_view role, Upload& upload) const;
+    void read_terrain();
+    [[nodiscard]] const Upload* find(std::string_view role) const;
+    [[nodiscard]] std::filesystem::path dem() const;
+    [[nodiscard]] Result<scene::NewScene> write_scene(const Wanted& wanted);
+    [[nodiscard]] Result<scene::NewScene> check_bundle() const;
+    /// Without the folder's path and without commands for a shell.
+    [[nodiscard]] std::string plain(std::string message) const;
+
+    std::filesystem::path folder_;  // empty: it has become a scene, or another object's
+    UploadLimits limits_;
+    std::map<std::string, Upload, std::less<>> uploads_;
+    geo::Mending mending_;
+    std::optional<geo::RasterFacts> facts_;  // of the terrain as it came
+    std::optional<geo::Raster> terrain_;
+    std::string problem_;  // why the terrain cannot be one
+};
+
+/// A file's name without anything that leads elsewhere: letters, digits, hyphens, and its ending.
+[[nodiscard]] std::string upload_name_of(const std::string& name);
+
+}  // namespace talus::serve

@@ -1,0 +1,16 @@
+#pragma once
+
+#include "core/grid.hpp"
+
+namespace talus::serve {
+
+/// The grid with every so many columns and rows, so that at most `max_cells` remain: the middle one of as many.
+[[nodiscard]] Grid<float> thinned(const Grid<float>& whole, double max_cells);
+
+/// The whole factor by which columns and rows are thinned so that at most `max_cells` remain.
+[[nodiscard]] int thinning(const GridGeometry& grid, double max_cells);
+
+/// The middle one of every `factor` x `factor` cells.
+[[nodiscard]] Grid<float> thinned_by(const Grid<float>& whole, int factor);
+
+}  // namespace talus::serve

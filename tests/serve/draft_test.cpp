@@ -1,0 +1,311 @@
+#include "serve/draft.hpp"
+
+#include <fstream>
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+
+#include "geo/zip_archive.hpp"
+#include "serve/start_fixture.hpp"
+
+namespace talus::test {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+class NewScenePage : public StartPage {
+  protected:
+    void SetUp() override {
+        StartPage::SetUp();
+        client_ = std::make_unique<HttpClient>(server_->port(), controller);
+        draft_ = "/api/draft/" + begin();
+    }
+    std::string begin() { return client_->ask("POST", "/api/draft", "{}").json()["created"]; }
+    Answer put(const std::string& role, const std::string& name, const std::string& content) {
+        return client_->ask("PUT", draft_ + "/files/" + role + "?name=" + name, content);
+    }
+    Answer put_file(const std::string& role, const std::string& file) {
+        return put(role, fs::path(file).filename().string(), read_text(file));
+    }
+    Answer check(json wanted) {
+        wanted["check"] = true;
+        return client_->post(draft_ + "/scene", wanted);
+    }
+    std::string zip(const std::vector<geo::ZipEntry>& entries) const {
+        const std::string file = scene_.input("packed.zip");
+        EXPECT_TRUE(geo::write_zip(file, entries));
+        return read_text(file);
+    }
+    /// Every file below the drafts and the scenes, without those of the given draft's folder name.
+    [[nodiscard]] std::vector<std::string> kept() const {
+        std::vector<std::string> files;
+        for (const char* name : {"drafts", "scenes"}) {
+            if (!fs::exists(folder() / name)) continue;
+            for (const auto& entry : fs::recursive_directory_iterator(folder() / name)) {
+                if (entry.is_regular_file()) files.push_back(entry.path().filename().string());
+            }
+        }
+        std::sort(files.begin(), files.end());
+        return files;
+    }
+    static json scar() { return {{824200, 825090}, {824220, 825090}, {824220, 825110}, {824200, 825110}}; }
+
+    std::unique_ptr<HttpClient> client_;
+    std::string draft_;
+};
+
+TEST_F(NewScenePage, makes_a_scene_of_a_terrain_and_a_drawn_scar_which_opens_and_is_downloaded) {
+    const Answer terrain = put_file("terrain", scene_.input("terrain.tif"));
+    ASSERT_EQ(terrain.status, 200) << terrain.body;
+    EXPECT_TRUE(terrain.json()["terrain"]["problem"].is_null()) << terrain.body;
+    EXPECT_EQ(terrain.json()["terrain"]["columns"], 60);
+    EXPECT_EQ(client_->get(draft_ + "/relief").body.substr(0, 4), "TLSG");
+    EXPECT_THAT(check({{"title", "My slope"}}).body, HasSubstr("a release is needed"));
+    ASSERT_EQ(put_file("buildings", scene_.input("buildings.geojson")).status, 200);
+
+    const json wanted = {{"title", "My slope"}, {"volume_m3", 200}, {"scar", scar()}};
+    const Answer checked = check(wanted);
+    ASSERT_EQ(checked.status, 200) << checked.body;
+    EXPECT_THAT(checked.json()["summary"].get<std::string>(), HasSubstr("200 m3"));
+    EXPECT_TRUE(checked.json()["created"].is_null());
+    EXPECT_EQ(page()["scenes"].size(), 2U) << "checking makes nothing";
+
+    const Answer made = client_->post(draft_ + "/scene", wanted);
+    ASSERT_EQ(made.status, 200) << made.body;
+    EXPECT_EQ(client_->get(draft_).status, 404);
+    const std::string made_id = made.json()["created"];
+    EXPECT_TRUE(fs::exists(folder() / "scenes/my-slope/scene.toml"));
+    const json after = open({{"scene", made_id}});
+    EXPECT_TRUE(after["error"].is_null()) << after["error"];
+    EXPECT_EQ(after["open"]["title"], "My slope");
+    EXPECT_EQ(client_->get("/api/scene").json()["title"], "My slope");
+
+    // As an archive it makes the same scene again.
+    const Answer bundle = client_->get("/api/scenes/" + made_id + "/bundle");
+    ASSERT_EQ(bundle.status, 200) << bundle.body;
+    EXPECT_EQ(bundle.headers.at("content-disposition"), "attachment; filename=\"my-slope.zip\"");
+    draft_ = "/api/draft/" + begin();
+    ASSERT_EQ(put("bundle", "copy.zip", bundle.body).status, 200);
+    const Answer again = client_->post(draft_ + "/scene", json::object());
+    ASSERT_EQ(again.status, 200) << again.body;
+    EXPECT_TRUE(fs::exists(folder() / "scenes/copy/scene.toml"));
+    EXPECT_EQ(client_->ask("DELETE", "/api/scenes/" + again.json()["created"].get<std::string>()).status, 200);
+    EXPECT_FALSE(fs::exists(folder() / "scenes/copy"));
+    EXPECT_EQ(client_->ask("DELETE", "/api/scenes/sham_tseng").status, 404);
+    EXPECT_TRUE(fs::is_empty(folder() / "drafts"));
+}
+
+TEST_F(NewScenePage, says_what_is_wrong_with_a_terrain_and_mends_it) {
+    RasterOptions options = SmallScene::terrain();
+    options.epsg = 0;
+    const Answer none = put_file("terrain", write_plane(scene_.input("none.tif"), options));
+    ASSERT_EQ(none.status, 200) << none.body;
+    const std::string problem = none.json()["terrain"]["problem"];
+    EXPECT_THAT(problem, HasSubstr("none.tif: states no coordinate reference system"));
+    EXPECT_THAT(problem, Not(HasSubstr("gdal")));
+    EXPECT_THAT(problem, Not(HasSubstr(folder().string())));
+    EXPECT_EQ(client_->get(draft_ + "/relief").status, 409);
+    EXPECT_THAT(check({{"scar", scar()}}).body, HasSubstr("states no coordinate reference system"));
+    EXPECT_EQ(client_->post(draft_ + "/mend", {{"epsg", 999998}}).status, 400);
+    EXPECT_EQ(client_->post(draft_ + "/mend", {{"epsg", "EPSG:2326"}}).status, 400);
+    const Answer mended = client_->post(draft_ + "/mend", {{"epsg", 2326}});
+    EXPECT_TRUE(mended.json()["terrain"]["problem"].is_null()) << mended.body;
+    EXPECT_EQ(check({{"scar", scar()}}).status, 200);
+
+    // Degrees are brought to metres.
+    options.epsg = 4326;
+    options.x_min = 114;
+    options.y_min = 22.3;
+    options.cell = 0.00005;
+    const Answer degrees = put_file("terrain", write_plane(scene_.input("degrees.tif"), options, 0.5 / 0.00005));
+    EXPECT_THAT(degrees.json()["terrain"]["problem"].dump(), HasSubstr("degrees"));
+    EXPECT_EQ(degrees.json()["terrain"]["metric_crs"], "EPSG:32650");
+    const json metric = client_->post(draft_ + "/mend", {{"metric", true}}).json()["terrain"];
+    EXPECT_TRUE(metric["problem"].is_null()) << metric;
+    EXPECT_THAT(metric["crs"].dump(), HasSubstr("EPSG:32650"));
+    EXPECT_NEAR(metric["cell_m"], 5.3, 0.2);
+
+    // Feet become metres, and a number that means no data is taken as such.
+    options = SmallScene::terrain();
+    options.unit = "ft";
+    const std::string feet = write_raster(scene_.input("feet.tif"), options, [](int column, int row) {
+        return column == 0 && row == 0 ? -99999 : 1000 + 8.0 * column;
+    });
+    EXPECT_THAT(put_file("terrain", feet).json()["terrain"]["problem"].dump(), HasSubstr("values are in ft"));
+    const Answer still = client_->post(draft_ + "/mend", {{"metres_per_unit", 0.3048}});
+    EXPECT_THAT(still.json()["terrain"]["problem"].dump(), HasSubstr("no elevation"));
+    const Answer good = client_->post(draft_ + "/mend", {{"metres_per_unit", 0.3048}, {"nodata", -99999}});
+    EXPECT_TRUE(good.json()["terrain"]["problem"].is_null()) << good.body;
+    const Answer checked = check({{"scar", scar()}});
+    EXPECT_THAT(checked.json()["summary"].dump(), HasSubstr("vertical unit: m")) << checked.body;
+    const json made = client_->post(draft_ + "/scene", {{"title", "Feet"}, {"scar", scar()}}).json();
+    open({{"scene", made["created"]}});
+    const json elevation = client_->get("/api/scene").json()["elevation_m"];
+    EXPECT_NEAR(elevation[1], (1000 + 8 * 53) * 0.3048, 0.1) << "of column 53: the extent ends there";
+    EXPECT_THAT(kept(), Not(testing::Contains("feet.tif"))) << "the mended terrain takes its place";
+}
+
+TEST_F(NewScenePage, says_that_a_release_lies_outside_and_takes_a_raster_of_thickness) {
+    put_file("terrain", scene_.input("terrain.tif"));
+    const std::string far =
+        write_vector(scene_.input("far.geojson"), {}, {{rectangle_wkt(834200, 825090, 834220, 825110), {}}});
+    ASSERT_EQ(put_file("release", far).status, 200);
+    const Answer outside = check(json::object());
+    EXPECT_EQ(outside.status, 400);
+    EXPECT_THAT(outside.body, HasSubstr("lies outside the terrain"));
+    RasterOptions options = SmallScene::terrain();
+    const std::string raster = write_raster(scene_.input("thick.tif"), options, [](int column, int row) {
+        return column > 30 && column < 36 && row > 15 && row < 20 ? 2 : 0;
+    });
+    const Answer thick = put_file("release", raster);
+    EXPECT_EQ(thick.json()["files"]["release"]["kind"], "raster") << thick.body;
+    EXPECT_THAT(check({{"volume_m3", 5}}).body, HasSubstr("holds its own thickness"));
+    const Answer good = check(json::object());
+    EXPECT_EQ(good.status, 200) << good.body;
+}
+
+TEST_F(NewScenePage, nothing_remains_of_what_is_refused) {
+    const std::string text =
+        "<VRTDataset rasterXSize=\"2\" rasterYSize=\"2\"><VRTRasterBand dataType=\"Byte\" band=\"1\">"
+        "<SimpleSource><SourceFilename>/etc/passwd</SourceFilename></SimpleSource></VRTRasterBand>"
+        "</VRTDataset>";
+    EXPECT_EQ(put("terrain", "dem.tif", "no raster at all").status, 400);
+    EXPECT_EQ(put("terrain", "dem.tif", "").status, 400);
+    EXPECT_THAT(put("terrain", "dem.tif", text).body, HasSubstr("may name other files"));
+    EXPECT_EQ(put("release", "scar.geojson", "{}").status, 400);
+    EXPECT_EQ(put("buildings", "houses.tif", read_text(scene_.input("terrain.tif"))).status, 400);
+    EXPECT_THAT(put("release", "scar.shp", "x").body, HasSubstr("ZIP"));
+    EXPECT_EQ(put("bundle", "scene.zip", zip({{"readme.txt", {}, "x"}})).status, 400);
+    EXPECT_EQ(put("terrain", "dem.zip", zip({{"a.txt", {}, "x"}})).status, 400);
+    EXPECT_EQ(put("terrain", "dem.zip", "PK").status, 400);
+    EXPECT_EQ(put("nothing", "dem.tif", "x").status, 404);
+    EXPECT_EQ(client_->ask("PUT", draft_ + "/files/terrain", "x").status, 400);
+    EXPECT_EQ(kept(), std::vector<std::string>());
+    // A refused file leaves the one before it.
+    put_file("terrain", scene_.input("terrain.tif"));
+    EXPECT_EQ(put("terrain", "dem.tif", "no raster at all").status, 400);
+    EXPECT_EQ(kept(), std::vector<std::string>{"terrain.tif"});
+    EXPECT_EQ(client_->get(draft_).json()["files"]["terrain"]["name"], "terrain.tif");
+    EXPECT_EQ(client_->ask("DELETE", draft_).status, 200);
+    EXPECT_EQ(kept(), std::vector<std::string>());
+}
+
+TEST_F(NewScenePage, names_lead_nowhere) {
+    const std::string terrain = read_text(scene_.input("terrain.tif"));
+    ASSERT_EQ(put("terrain", "..%2F..%2F..%2Fevil%20%3Bname.TIF", terrain).status, 200);
+    EXPECT_EQ(kept(), std::vector<std::string>{"evil-name.tif"});
+    EXPECT_EQ(put("..%2Fterrain", "dem.tif", terrain).status, 409) << "no route of a page without a session";
+    const std::string packed = zip({{"inner/dem.tif", scene_.input("terrain.tif")}, {"inner/other.vrt", {}, "<VRT"}});
+    ASSERT_EQ(put("terrain", "dem.zip", packed).status, 200);
+    EXPECT_EQ(kept(), std::vector<std::string>{"dem.tif"}) << "a virtual raster beside it does not stay";
+    std::string evil = packed;  // the same length, in the local header and in the directory
+    for (std::size_t at = 0; (at = evil.find("inner/dem.tif", at)) != std::string::npos;)
+        evil.replace(at, 13, "../../dem.tif");
+    const Answer out = put("terrain", "dem.zip", evil);
+    EXPECT_EQ(out.status, 400);
+    EXPECT_EQ(kept(), std::vector<std::string>{"dem.tif"});
+}
+
+TEST_F(NewScenePage, what_is_too_large_is_refused) {
+    limits_ = {200000, 5, 3000};
+    start();
+    SetUp();
+    // By its header, before anything is read, and while it comes.
+    EXPECT_EQ(put("terrain", "dem.tif", std::string(200001, 'x')).status, 413);
+    client_ = std::make_unique<HttpClient>(server_->port(), controller);
+    ASSERT_EQ(put("release", "a.geojson", read_text(scene_.input("release.geojson")) + std::string(120000, ' ')).status,
+              200);
+    EXPECT_EQ(put("terrain", "dem.tif", std::string(90000, 'x')).status, 413);
+    client_ = std::make_unique<HttpClient>(server_->port(), controller);
+    Socket chunks(server_->port());
+    std::string buffer;
+    chunks.send(
+        fmt::format("PUT {}/files/terrain?name=a.tif HTTP/1.1\r\nHost: 127.0.0.1:{}\r\nAuthorization: Bearer {}\r\n"
+                    "Transfer-Encoding: chunked\r\n\r\n",
+                    draft_, server_->port(), controller));
+    for (int i = 0; i < 30; ++i) chunks.send("4000\r\n" + std::string(0x4000, 'x') + "\r\n");
+    EXPECT_EQ(read_answer(chunks, buffer).status, 413);
+    // An archive of a megabyte of zeros has a thousand bytes.
+    const Answer bomb = put("terrain", "dem.zip", zip({{"dem.tif", {}, std::string(1000000, '\0')}}));
+    EXPECT_EQ(bomb.status, 400);
+    EXPECT_THAT(bomb.body, HasSubstr("unpacked"));
+    std::vector<geo::ZipEntry> many;
+    for (int i = 0; i < 6; ++i) many.push_back({fmt::format("{}.txt", i), {}, "x"});
+    EXPECT_THAT(put("terrain", "dem.zip", zip(many)).body, HasSubstr("more than 5 files"));
+    RasterOptions options = SmallScene::terrain();
+    options.columns = 51;
+    options.rows = 59;
+    EXPECT_THAT(put_file("terrain", write_plane(scene_.input("large.tif"), options)).body, HasSubstr("51 x 59 cells"));
+    options.epsg = 0;
+    options.columns = 50;
+    options.creation_options = {"COMPRESS=DEFLATE"};
+    ASSERT_EQ(put_file("terrain", write_plane(scene_.input("large.tif"), options)).status, 200);
+    EXPECT_EQ(kept(), (std::vector<std::string>{"a.geojson", "large.tif"}));
+}
+
+TEST_F(NewScenePage, a_broken_upload_leaves_nothing_and_another_draft_takes_the_place) {
+    const std::string head = fmt::format(
+        "PUT {}/files/terrain?name=a.tif HTTP/1.1\r\nHost: 127.0.0.1:{}\r\n"
+        "Authorization: Bearer {}\r\nContent-Length: 1000000\r\n\r\n",
+        draft_, server_->port(), controller);
+    const auto wait_for = [&](std::size_t files) {
+        for (int i = 0; i < 400 && kept().size() != files; ++i) std::this_thread::sleep_for(Milliseconds(25));
+        return kept().size();
+    };
+    {
+        Socket broken(server_->port());
+        broken.send(head + std::string(600000, 'x'));
+        EXPECT_EQ(wait_for(1), 1U) << "it comes piece by piece";
+        broken.kill();
+    }
+    EXPECT_EQ(wait_for(0), 0U);
+    Socket slow(server_->port());
+    slow.send(head + std::string(600000, 'x'));
+    EXPECT_EQ(wait_for(1), 1U);
+    const std::string former = draft_;
+    draft_ = "/api/draft/" + begin();
+    EXPECT_EQ(wait_for(0), 0U);
+    slow.send(std::string(400000, 'x'));
+    std::string buffer;
+    EXPECT_EQ(read_answer(slow, buffer).status, 404);
+    EXPECT_EQ(client_->get(former).status, 404);
+    put_file("terrain", scene_.input("terrain.tif"));
+    server_.reset();
+    EXPECT_EQ(kept(), std::vector<std::string>()) << "nothing remains when the program ends";
+}
+
+TEST_F(NewScenePage, viewers_upload_nothing_and_what_a_dead_program_left_is_removed) {
+    HttpClient eye(server_->port(), viewer), nobody(server_->port());
+    EXPECT_EQ(eye.ask("POST", "/api/draft", "{}").status, 403);
+    EXPECT_EQ(eye.get(draft_).status, 403);
+    EXPECT_EQ(eye.ask("PUT", draft_ + "/files/terrain?name=a.tif", "x").status, 403);
+    EXPECT_EQ(nobody.ask("PUT", draft_ + "/files/terrain?name=a.tif", "x").status, 401);
+    EXPECT_EQ(eye.post(draft_ + "/scene", json::object()).status, 403);
+    EXPECT_EQ(eye.get("/api/scenes/sham_tseng/bundle").status, 403);
+    EXPECT_EQ(eye.ask("DELETE", "/api/scenes/" + id()).status, 403);
+    EXPECT_EQ(kept(), std::vector<std::string>());
+    server_.reset();
+    fs::create_directories(folder() / "drafts/999999999-x/data");  // no process has this number
+    write_text((folder() / "drafts/999999999-x/data/a.tif").string(), "x");
+    fs::create_directories(folder() / fmt::format("drafts/{}-x", getpid()));
+    start();
+    client_ = std::make_unique<HttpClient>(server_->port(), controller);
+    begin();
+    EXPECT_FALSE(fs::exists(folder() / "drafts/999999999-x"));
+    EXPECT_TRUE(fs::exists(folder() / fmt::format("drafts/{}-x", getpid())));
+}
+
+TEST(Draft, names_of_uploads_are_plain) {
+    EXPECT_EQ(serve::upload_name_of("../../etc/pass wd.TIF"), "pass-wd.tif");
+    EXPECT_EQ(serve::upload_name_of("Häuser.city.json"), "h-user.city.json");
+    EXPECT_EQ(serve::upload_name_of(".tif"), "tif");
+    EXPECT_EQ(serve::upload_name_of("..."), "file");
+    EXPECT_EQ(serve::upload_name_of("a.b/c.tif\n"), "c.tif");
+    EXPECT_EQ(serve::upload_name_of(""), "file");
+}
+
+}  // namespace
+}  // namespace talus::test

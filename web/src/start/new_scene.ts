@@ -1,0 +1,210 @@
+// A new scene from the user's own files: what is missing or odd is said here, and what can be done about it.
+import type { Api } from "../protocol/api";
+import type { Checked, Draft, DraftRole, MendingOfTerrain, UploadLimits } from "../protocol/start";
+import { bytes, fixed } from "../state/format";
+import { choice } from "../ui/choice";
+import { button, h } from "../ui/dom";
+import { Hillshade } from "./hillshade";
+
+const check_ms = 500;
+const foot = 0.3048;
+const surveyFoot = 1200 / 3937;
+
+const slots: readonly (readonly [DraftRole, string, string])[] = [
+  ["terrain", "Terrain", "An elevation model: GeoTIFF, ASCII grid or another raster. Needed."],
+  ["release", "Release", "Polygons, or a raster of thickness in metres. Or draw it on the hillshade."],
+  ["buildings", "Buildings", "Footprints (GeoPackage, GeoJSON, zipped Shapefile) or CityJSON, OBJ, glTF."],
+  ["orthophoto", "Orthophoto", "A picture of the ground from above, with its position."],
+  ["bundle", "A whole scene", "In place of all this: a ZIP archive that talus made."],
+];
+
+export class NewScene {
+  private readonly said = h("div", { class: "new-said", "aria-live": "polite" });
+  private readonly title = h("input", { type: "text", maxlength: 100, "aria-label": "Title of the scene", placeholder: "Title", oninput: () => this.later() });
+  private readonly amount = h("input", { type: "number", step: "any", min: 0, "aria-label": "Thickness or volume", placeholder: "as in the file, or 2", onchange: () => this.later() });
+  private readonly unit = h("span", { class: "muted" }, "m, normal to the slope");
+  private readonly amounts = h("div", { class: "row wrap" }, choice("How much is released", [["thickness", "Thickness"], ["volume", "Volume"]], "thickness", (value) => {
+    this.byVolume = value === "volume";
+    this.unit.textContent = this.byVolume ? "m³" : "m, normal to the slope";
+    this.later();
+  }), this.amount, this.unit);
+  private readonly cards = new Map<DraftRole, { holder: HTMLElement; card: HTMLElement }>();
+  private readonly mendings = h("div", { class: "new-mend" });
+  private readonly hillshade = new Hillshade(() => this.later());
+  private readonly create = button("Create and open", { icon: "run", class: "primary", disabled: true, onclick: () => void this.finish() });
+  readonly element: HTMLElement;
+  private draft: Draft | null = null;
+  private byVolume = false;
+  private mending: MendingOfTerrain = { epsg: null, metric: false, metres_per_unit: null, nodata: null };
+  /** Counts what was asked, so that an answer to an earlier state is not shown. */
+  private asked = 0;
+  private timer = 0;
+  private busy = 0;
+
+  constructor(private readonly api: Api, private readonly id: string, limits: UploadLimits,
+    private readonly ondone: (scene: string, title: string) => void, private readonly onclose: () => void) {
+    const left = h("div", { class: "new-files" }, ...slots.map(([role, name, hint]) => this.slot(role, name, hint)));
+    this.element = h("section", { class: "new-scene", "aria-labelledby": "new-scene" },
+      h("div", { class: "start-title" }, h("h2", { id: "new-scene" }, "New scene"), button("Discard", { class: "quiet", onclick: () => void this.discard() })),
+      h("p", { class: "muted" }, `Drop files here. They stay on the computer that runs talus: up to ${bytes(limits.bytes)} together, ${Math.round(limits.cells / 1e6)} million cells.`),
+      h("div", { class: "new-columns" }, left, h("div", { class: "new-map" }, this.hillshade.element, this.amounts)),
+      this.said, h("div", { class: "row new-last" }, this.title, this.create));
+    this.hillshade.show(null);
+    this.amounts.hidden = true;
+    this.say();
+  }
+
+  private slot(role: DraftRole, name: string, hint: string): HTMLElement {
+    const input = h("input", { type: "file", class: "unseen", tabindex: -1, "aria-label": `File of: ${name}`, onchange: () => {
+      const file = input.files?.[0];
+      input.value = "";
+      if (file) void this.upload(role, file);
+    } });
+    const holder = h("div", { class: "grow" });
+    const card = h("div", { class: "new-slot", "data-role": role,
+      ondragover: (event: DragEvent) => {
+        event.preventDefault();
+        card.classList.add("over");
+      },
+      ondragleave: () => card.classList.remove("over"),
+      ondrop: (event: DragEvent) => {
+        event.preventDefault();
+        card.classList.remove("over");
+        const files = [...(event.dataTransfer?.files ?? [])];
+        if (files.length > 1) return this.complain("Several files were dropped. What belongs together, such as the parts of a Shapefile, is packed in one ZIP archive first.");
+        if (files[0]) void this.upload(role, files[0]);
+      } },
+      h("div", { class: "row" }, holder, input, button("Choose", { class: "small", "aria-label": `Choose a file: ${name}`, onclick: () => input.click() })));
+    if (role === "terrain") card.append(this.mendings);
+    this.cards.set(role, { holder, card });
+    holder.replaceChildren(h("b", {}, name), h("span", { class: "muted" }, hint));
+    return card;
+  }
+
+  private async upload(role: DraftRole, file: File): Promise<void> {
+    if (this.draft && file.size > this.draft.bytes_left) return this.complain(`${file.name} has ${bytes(file.size)}; ${bytes(this.draft.bytes_left)} may still come. Cut it to the part that matters.`);
+    if (file.size === 0) return this.complain(`${file.name} is empty.`);
+    if (role === "terrain") this.mending = { epsg: null, metric: false, metres_per_unit: null, nodata: null };
+    await this.change(`${file.name} is read …`, () => this.api.uploadToDraft(this.id, role, file));
+  }
+  /** Asks for another state of the draft and shows it. */
+  private async change(what: string, ask: () => Promise<Draft>): Promise<void> {
+    const before = this.draft?.terrain ?? null;
+    ++this.asked;
+    ++this.busy;
+    this.create.disabled = true;
+    this.said.replaceChildren(h("p", { class: "card" }, what));
+    try {
+      const draft = await ask();
+      this.draft = draft;
+      --this.busy;
+      if (this.title.value === "" && draft.files.terrain) this.title.value = draft.files.terrain.name.replace(/\.[^.]*$/, "").replace(/[_-]+/g, " ");
+      this.showFiles(draft);
+      if (JSON.stringify(before) !== JSON.stringify(draft.terrain)) this.hillshade.show(draft.terrain && draft.terrain.problem === null ? await this.api.reliefOfDraft(this.id) : null);
+      this.later(0);
+    } catch (error) {
+      this.busy = Math.max(0, this.busy - 1);
+      this.complain(error instanceof Error ? error.message : String(error));
+    }
+  }
+  private showFiles(draft: Draft): void {
+    for (const [role, name, hint] of slots) {
+      const place = this.cards.get(role);
+      const file = draft.files[role];
+      place?.card.classList.toggle("has", file !== undefined);
+      place?.holder.replaceChildren(h("b", {}, name), file === undefined ? h("span", { class: "muted" }, hint)
+        : h("span", { class: "new-file" }, `${file.name} · ${bytes(file.bytes)}`, button(`Take ${file.name} away`, { icon: "close", bare: true, class: "bare quiet small", onclick: () => void this.change("…", () => this.api.removeFromDraft(this.id, role)) })));
+    }
+    this.showMendings(draft);
+    this.showAmounts(draft);
+  }
+  private showAmounts(draft: Draft): void {
+    const raster = draft.files.release?.kind === "raster" && this.hillshade.scar === null;
+    this.amounts.hidden = draft.terrain === null || draft.terrain.problem !== null || raster;
+  }
+  /** What is wrong with the terrain, and what can be done about it. */
+  private showMendings(draft: Draft): void {
+    const terrain = draft.terrain;
+    if (terrain === null) return this.mendings.replaceChildren();
+    const mend = (part: Partial<MendingOfTerrain>): void => {
+      const wanted = { ...this.mending, ...part };
+      void this.change("The terrain is corrected …", async () => {
+        const changed = await this.api.mendDraft(this.id, wanted);
+        this.mending = wanted;
+        return changed;
+      });
+    };
+    const numberOf = (input: HTMLInputElement): number | null => (input.value === "" ? null : Number(input.value));
+    const epsg = h("input", { type: "number", min: 1024, max: 999999, value: this.mending.epsg ?? "", placeholder: "2326", "aria-label": "EPSG code of the terrain" });
+    const nodata = h("input", { type: "number", step: "any", value: this.mending.nodata ?? "", placeholder: "none", "aria-label": "Value that means no data", onchange: () => mend({ nodata: numberOf(nodata) }) });
+    const factor = this.mending.metres_per_unit;
+    const unit = h("select", { "aria-label": "Unit of the heights", onchange: () => mend({ metres_per_unit: unit.value === "" ? null : Number(unit.value) }) },
+      ...[["", terrain.value_unit === "" || factor !== null ? "metres" : `as stated: ${terrain.value_unit}`], [String(foot), "feet"], [String(surveyFoot), "US survey feet"]].map(([value, text]) =>
+        h("option", { value, selected: value === (factor === null ? "" : String(factor)) }, text)));
+    const rows = [
+      terrain.crs === "" || this.mending.epsg !== null ? h("div", { class: "row" }, h("span", {}, "It is in EPSG:"), epsg, button("Apply", { class: "small", onclick: () => mend({ epsg: numberOf(epsg) }) })) : null,
+      this.mending.metric ? button("Leave it as it was", { class: "small", onclick: () => mend({ metric: false }) })
+        : terrain.problem !== null && terrain.metric_crs !== "" ? button(`Bring it onto square cells in metres (${terrain.metric_crs})`, { class: "small", onclick: () => mend({ metric: true }) }) : null,
+      h("div", { class: "row wrap" }, h("label", {}, "Heights are in ", unit), h("label", {}, "no data is ", nodata)),
+    ];
+    this.mendings.replaceChildren(terrain.problem === null
+      ? h("p", { class: "muted" }, [`${terrain.columns} × ${terrain.rows} cells of ${fixed(terrain.cell_m ?? NaN, 2)} m`, terrain.crs, (terrain.nodata_share ?? 0) > 0 ? `${fixed(100 * (terrain.nodata_share ?? 0), 1)} % without data` : ""].filter((part) => part !== "").join(" · "))
+      : h("p", { class: "new-problem", role: "alert" }, terrain.problem), ...rows.filter((row) => row !== null));
+  }
+
+  private complain(sentence: string): void {
+    this.create.disabled = true;
+    const outside = /lies outside|reaches beyond/.test(sentence) ? " Draw it on the hillshade, or take a terrain that reaches as far. A file without the right reference system also lands elsewhere." : "";
+    this.said.replaceChildren(h("div", { class: "card bad", role: "alert" }, h("b", {}, "Not yet a scene"), h("p", {}, sentence + outside)));
+  }
+  private say(): void {
+    const { terrain, files } = this.draft ?? { terrain: null, files: {} as Draft["files"] };
+    const next = terrain === null ? "First of all, a terrain." : terrain.problem !== null ? "The terrain cannot be used as it is: see beside its name." : "Now the release: a file, or its outline drawn on the hillshade.";
+    if (files.bundle === undefined) this.said.replaceChildren(h("p", { class: "card" }, next));
+  }
+  private get wanted(): { title: string; thickness_m: number | null; volume_m3: number | null; scar: [number, number][] | null } {
+    const amount = this.amount.value === "" || this.amounts.hidden ? null : Number(this.amount.value);
+    return { title: this.title.value.trim(), thickness_m: this.byVolume ? null : amount, volume_m3: this.byVolume ? amount : null, scar: this.hillshade.scar };
+  }
+  /** Checks it as soon as nothing is changed for a moment. */
+  private later(wait = check_ms): void {
+    const draft = this.draft;
+    this.create.disabled = true;
+    window.clearTimeout(this.timer);
+    ++this.asked;
+    if (!draft) return;
+    this.showAmounts(draft);
+    const ready = draft.files.bundle !== undefined || (draft.terrain !== null && draft.terrain.problem === null && (draft.files.release !== undefined || this.hillshade.scar !== null));
+    if (!ready) return this.say();
+    this.timer = window.setTimeout(() => void this.check(), wait);
+  }
+  private async check(): Promise<void> {
+    if (this.busy > 0) return;
+    const asked = ++this.asked;
+    this.said.replaceChildren(h("p", { class: "card" }, "It is checked …"));
+    try {
+      const found = await this.api.makeOfDraft(this.id, { ...this.wanted, check: true });
+      if (asked === this.asked) this.showChecked(found);
+    } catch (error) {
+      if (asked === this.asked) this.complain(error instanceof Error ? error.message : String(error));
+    }
+  }
+  private showChecked(found: Checked): void {
+    this.create.disabled = false;
+    this.said.replaceChildren(h("div", { class: "card new-good" }, h("b", {}, "This can be run"), h("pre", {}, found.summary),
+      found.notes.length === 0 ? null : h("ul", {}, ...found.notes.map((note) => h("li", {}, note)))));
+  }
+  private async finish(): Promise<void> {
+    this.create.disabled = true;
+    try {
+      const made = await this.api.makeOfDraft(this.id, this.wanted);
+      if (made.created !== null) this.ondone(made.created, this.title.value.trim() || "the new scene");
+    } catch (error) {
+      this.complain(error instanceof Error ? error.message : String(error));
+    }
+  }
+  private async discard(): Promise<void> {
+    await this.api.discardDraft(this.id).catch(() => undefined);  // another one may have taken its place
+    this.onclose();
+  }
+}
