@@ -137,6 +137,52 @@ std::string write_scene(const SceneSpec& spec, const std::string& header) {
     return out;
 }
 
+const std::vector<std::string>& first_keys() {
+    static const std::vector<std::string> keys = {
+        "scene.title",
+        "scene.description",
+        "scene.assumptions",
+        "scene.sources",
+        "terrain.file",
+        "terrain.extent_m",
+        "release.name",
+        "release.file",
+        "release.thickness_m",
+        "release.volume_m3",
+        "buildings.file",
+        "buildings.default_height_m",
+        "material.friction_coefficient",
+        "material.internal_friction_coefficient",
+        "material.turbulent_friction_mps2",
+        "material.pore_pressure_ratio",
+        "material.rest_density_kgpm3",
+        "solver.target_particle_count",
+        "solver.end_time_s",
+        "solver.model",
+    };
+    return keys;
+}
+
+std::string write_short_scene(const SceneSpec& spec, const std::string& header) {
+    std::string out = header.empty() ? "" : wrapped(header, "# ") + "\n";
+    for (const Section& section : scene_sections()) {
+        for (std::size_t index = 0; index < section.count(spec); ++index) {
+            std::string lines;
+            for (const Parameter& parameter : section.parameters) {
+                const std::string name = section.name + "." + parameter.key;
+                const ParameterValue value = parameter.get(spec, index);
+                const bool first = std::find(first_keys().begin(), first_keys().end(), name) != first_keys().end();
+                if (first || toml_text(value) != toml_text(default_value(section, parameter))) {
+                    lines += parameter_lines(section, parameter, value);
+                }
+            }
+            if (!lines.empty()) out += header_of(section) + "\n" + lines + "\n";
+        }
+    }
+    out.pop_back();
+    return out;
+}
+
 std::string scene_reference_markdown() {
     std::string out =
         "# Scene reference\n\n"

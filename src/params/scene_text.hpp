@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "params/fields.hpp"
 
@@ -10,6 +11,12 @@ namespace talus::params {
 /// A commented scene file. Values that differ from the default are set; every other key is there as a comment with its
 /// default, unit, allowed range and help. `header`: comment lines at the top, without the "# ".
 [[nodiscard]] std::string write_scene(const SceneSpec& spec, const std::string& header = "");
+
+/// The same with no other comments than those of the keys that matter first.
+[[nodiscard]] std::string write_short_scene(const SceneSpec& spec, const std::string& header = "");
+
+/// The twenty keys of a new scene, as "section.key".
+[[nodiscard]] const std::vector<std::string>& first_keys();
 
 /// docs/scene-reference.md.
 [[nodiscard]] std::string scene_reference_markdown();

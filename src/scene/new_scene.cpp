@@ -187,14 +187,16 @@ Result<NewScene> write_new_scene(const NewSceneOptions& options) {
         travel_angle_deg);
     const std::string header =
         "A scene for talus. Lines that begin with # are explanations and default values: remove the # from a value to "
-        "change it. Paths are relative to this file.\n\nterrain.extent_m holds all ground that lies below an energy "
+        "change it. Paths are relative to this file. These are the keys that matter first; talus scene reference has "
+        "all, such as those of barriers, inflows, beds, zones and observations.\n\nterrain.extent_m holds all ground "
+        "that lies below an energy "
         "line of " +
         fmt::format("{:.0f}", travel_angle_deg) + " degrees from the release, and a margin.";
     NewScene made{options.folder / "scene.toml", std::exchange(scene.notes, {}), {}};
     made.summary = describe_scene(scene);
     made.notes.insert(made.notes.begin(), extent_note);
     for (const std::string& assumption : spec.scene.assumptions) made.notes.push_back("assumed: " + assumption);
-    TALUS_TRY(write_file(options.folder, made.file, write_scene(spec, header)));
+    TALUS_TRY(write_file(options.folder, made.file, write_short_scene(spec, header)));
     return made;
 }
 

@@ -1,6 +1,7 @@
 #include "params/scene_text.hpp"
 
 #include <fstream>
+#include <set>
 #include <sstream>
 
 #include <gmock/gmock.h>
@@ -62,6 +63,38 @@ TEST(WriteScene, SetsWhatDiffersAndCommentsTheRest) {
     EXPECT_THAT(text, HasSubstr("\n# friction_coefficient = 0.4\n"));
     EXPECT_THAT(text, HasSubstr("\n# [[observation]]\n"));
     EXPECT_THAT(text, HasSubstr("    \"One \\\"quoted\\\" sentence.\",\n"));
+}
+
+TEST(WriteShortScene, HasTwentyKeysAndWhatDiffers) {
+    SceneSpec spec;
+    spec.terrain.file = "dem.tif";
+    spec.releases.resize(1);
+    spec.releases[0].file = "release.geojson";
+    spec.releases[0].volume = 600;
+    EXPECT_EQ(first_keys().size(), 20U);
+    const auto keys_in = [](const std::string& text) {
+        std::set<std::string> keys;
+        std::string section;
+        std::istringstream lines(text);
+        for (std::string line; std::getline(lines, line);) {
+            if (line.rfind("# ", 0) == 0) line.erase(0, 2);
+            if (line.rfind('[', 0) == 0)
+                section = line.substr(line.find_first_not_of('['), line.find(']') - line.find_first_not_of('['));
+            const std::size_t is = line.find(" = ");
+            if (is != std::string::npos && line.find(' ') == is) keys.insert(section + "." + line.substr(0, is));
+        }
+        return keys;
+    };
+    const std::set<std::string> first(first_keys().begin(), first_keys().end());
+    EXPECT_EQ(keys_in(write_short_scene(spec, "A header.")), first);
+    spec.solver.support_ratio = 2.5;
+    std::set<std::string> more = first;
+    more.insert("solver.support_ratio");
+    const std::string text = write_short_scene(spec);
+    EXPECT_EQ(keys_in(text), more);
+    EXPECT_THAT(text, HasSubstr("\nsupport_ratio = 2.5\n"));
+    EXPECT_THAT(text, HasSubstr("\nvolume_m3 = 600\n"));
+    EXPECT_THAT(text, HasSubstr("\n# friction_coefficient = 0.4\n"));
 }
 
 TEST(WriteScene, LinesStayWithinAPage) {
