@@ -16,6 +16,7 @@
 #include "exit_code.hpp"
 #include "interrupt.hpp"
 #include "scene/builtin.hpp"
+#include "scene/bundle.hpp"
 #include "scene/scene.hpp"
 #include "scene_input.hpp"
 #include "twin/journal.hpp"
@@ -34,7 +35,7 @@ struct ReplayArguments {
 constexpr const char* replay_help = R"(
 A live session saves its journal from the page's menu or with GET /api/scenarios/A/journal: the scene, and all actions
 with the step before which they took effect. The same actions at the same steps give a bit-identical result on any
-number of threads.
+number of threads. The scene may be packed in a bundle (talus bundle).
 
 Exit codes:
     0  the result is the same: the hash of the last step equals that of the session
@@ -70,12 +71,16 @@ int replay_command(const ReplayArguments& arguments) {
     InterruptWatch watch;
     const auto text = read_file(arguments.journal);
     if (!text) return fail(exit_code::bad_input, text.error().message);
-    const auto journal = twin::read_journal(*text);
+    auto journal = twin::read_journal(*text);
     if (!journal) return fail(exit_code::bad_input, arguments.journal + ": " + journal.error().message);
     auto scene = load_scene_of(arguments, *journal, watch);
     if (!scene) {
         return fail(exit_code::bad_input,
                     scene.error().message + " (the scene of this journal; give its present path with --scene)");
+    }
+    // The scene file of a bundle has other paths in it than the one that was packed.
+    if (scene::is_bundle(arguments.scene)) {
+        std::erase_if(journal->inputs, [](const scene::InputFile& input) { return input.role == "scene"; });
     }
     for (const std::string& sentence : twin::changed_inputs(*journal, *scene)) note(sentence);
 

@@ -49,6 +49,28 @@ TEST(Replay, FindsTheSameResultAgain) {
     EXPECT_EQ(quiet.out, "");
 }
 
+TEST(Replay, TakesTheSceneFromABundle) {
+    const SmallScene inputs;
+    json journal = play(inputs);
+    const auto packed = run_program({"bundle", "slope.toml", "-o", "slope.zip"}, {.folder = inputs.folder()});
+    ASSERT_EQ(packed.exit_code, 0) << packed.error;
+    for (const char* name : {"slope.toml", "terrain.tif", "release.geojson", "buildings.geojson"}) {
+        std::filesystem::remove(inputs.input(name));
+    }
+    write_text(inputs.input("session.json"), journal.dump());
+    const auto lost = run_program({"replay", "session.json"}, {.folder = inputs.folder()});
+    EXPECT_EQ(lost.exit_code, 2);
+    const auto named = run_program({"replay", "session.json", "--scene", "slope.zip"}, {.folder = inputs.folder()});
+    EXPECT_EQ(named.exit_code, 0) << named.error;
+    EXPECT_EQ(named.error, "") << "other paths in the scene file are no change";
+    EXPECT_THAT(named.out, HasSubstr("the same result: 2 actions, step 30"));
+    // A session that began from the bundle names it.
+    journal["scene"]["file"] = inputs.input("slope.zip");
+    write_text(inputs.input("session.json"), journal.dump());
+    const auto own = run_program({"replay", "session.json"}, {.folder = inputs.folder()});
+    EXPECT_EQ(own.exit_code, 0) << own.error;
+}
+
 TEST(Replay, SaysWhenTheResultIsAnother) {
     const SmallScene inputs;
     json journal = play(inputs);
