@@ -5,6 +5,7 @@ from __future__ import annotations
 import itertools
 import os
 import sys
+import time
 from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass, field
 from typing import Any, Mapping, Sequence, Union
@@ -54,21 +55,44 @@ class Result:
         return self.maps["peak_depth"].plot(ax)
 
 
+class _Clock:
+    """How far a run is, by the wall time left until it is expected to be over."""
+
+    def __init__(self) -> None:
+        self._marks = [(time.monotonic(), 0.0)]  # wall and simulated time
+        self._share = 0.0
+
+    def line(self, simulation: Simulation, end: float) -> str:
+        state = simulation.json("state")
+        now, simulated = time.monotonic(), simulation.time
+        start = self._marks[0][0]
+        # At the pace of the latest quarter of the wall time.
+        before = max((mark for mark in self._marks if mark[0] - start <= 0.75 * (now - start)), default=self._marks[0])
+        self._marks.append((now, simulated))
+        expected = min(end, state["expected_end_s"] or end)
+        pace = (now - before[0]) / max(simulated - before[1], 1e-9)
+        left = 0.0 if state["status"] != "ready" else max(0.0, expected - simulated) * pace
+        self._share = max(self._share, (now - start) / max(now - start + left, 1e-9))
+        done = "#" * int(40 * self._share)
+        return f"[{done:40}] {simulated:.1f} s, about {int(left) // 60}:{int(left) % 60:02} left"
+
+
 def run(
     scene: Scene = None, settings: Settings | None = None, *, end_time: float | None = None, progress: bool | None = None
 ) -> Result:
-    """Runs a scene until it is over, or until `end_time`, s. `progress`: a bar on stderr; None: where that is a terminal."""
+    """Runs a scene until it is over, or until `end_time`, s. `progress`: a bar on stderr with the wall time left, as
+    `talus run` estimates it; None: where that is a terminal."""
     bar = sys.stderr.isatty() if progress is None else progress
     with Simulation(scene, settings) as simulation:
         end = simulation.json("scene")["end_time_s"]
         if end_time is not None:
             end = min(end, end_time)
         parts = 100
+        clock = _Clock()
         for part in range(1, parts + 1):
             phase = simulation.advance(end * part / parts)
             if bar:
-                done = "#" * (part * 40 // parts)
-                print(f"\r[{done:40}] {simulation.time:.1f} of at most {end:g} s", end="", file=sys.stderr, flush=True)
+                print("\r" + clock.line(simulation, end), end="\x1b[K", file=sys.stderr, flush=True)
             if phase != Phase.READY:
                 break
         if bar:

@@ -11,15 +11,17 @@ namespace talus::twin {
 Result<std::unique_ptr<LiveRun>> LiveRun::start(const scene::Scene& scene, const Setup& setup, double spacing,
                                                 const ScenarioOptions& options, const sim::Progress& progress) {
     TALUS_ASSIGN(auto run, run::Run::start(scene_of(scene, setup), spacing, progress));
-    return std::unique_ptr<LiveRun>(new LiveRun(std::move(run), setup, options));
+    return std::unique_ptr<LiveRun>(new LiveRun(std::move(run), scene.spec.outputs.deposited_speed, setup, options));
 }
 
-LiveRun::LiveRun(std::unique_ptr<run::Run> run, Setup setup, const ScenarioOptions& options)
+LiveRun::LiveRun(std::unique_ptr<run::Run> run, double deposited_speed, Setup setup, const ScenarioOptions& options)
     : run_(std::move(run)),
       begun_with_(std::move(setup)),
       setup_(begun_with_),
       slots_(run_->state().seeded),
-      recording_(options.frame_interval, options.recording_bytes) {
+      recording_(options.frame_interval, options.recording_bytes),
+      clock_(run_->model().solver),
+      deposited_speed_(deposited_speed) {
     for (const ReleaseSetup& release : setup_.releases) groups_.push_back({release.id, false});
     for (const BuildingSetup& building : setup_.buildings) obstacles_.push_back({building.id, building.body});
     for (const BarrierSetup& barrier : setup_.barriers) obstacles_.push_back({barrier.id, barrier.body, true});
@@ -71,6 +73,21 @@ void LiveRun::advance() {
     if (!stepped) return;
     note_failed();
     record();
+    clock_.tick(run_->wall_time(), state().time, [this] { return outlook(); });
+}
+
+run::Outlook LiveRun::outlook() const {
+    run::Outlook outlook = run::outlook_of(run_->simulation(), deposited_speed_);
+    for (const InflowSetup& inflow : begun_with_.inflows) {
+        outlook.wait = std::max(outlook.wait, inflow.body->hydrograph.back().time - state().time);
+    }
+    return outlook;
+}
+
+std::optional<double> LiveRun::expected_end() const {
+    if (phase() != run::RunPhase::ready) return state().time;
+    if (state().step == 0) return {};
+    return std::max(clock_.expected_end(), state().time);
 }
 
 observe::BuildingImpact LiveRun::impact_now(std::size_t obstacle) const {

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/result.hpp"
+#include "run/forecast.hpp"
 #include "run/run.hpp"
 #include "scene/scene.hpp"
 #include "twin/erosion_history.hpp"
@@ -52,6 +53,8 @@ class LiveRun {
     [[nodiscard]] const observe::Observer& observer() const { return run_->observer(); }
     [[nodiscard]] const Recording& recording() const { return recording_; }
     [[nodiscard]] bool too_compressed() const;
+    /// s, when the run is expected to be over; nothing before the first step.
+    [[nodiscard]] std::optional<double> expected_end() const;
     /// What is known about the step that cannot be trusted, at fault.
     [[nodiscard]] const std::optional<run::FaultRecord>& fault() const { return run_->fault(); }
     [[nodiscard]] std::string instruction_set() const {
@@ -93,7 +96,9 @@ class LiveRun {
         std::uint64_t until_step = 0;    ///< of a removed one, like the next
         observe::BuildingImpact last{};  ///< at its removal
     };
-    LiveRun(std::unique_ptr<run::Run> run, Setup setup, const ScenarioOptions& options);
+    LiveRun(std::unique_ptr<run::Run> run, double deposited_speed, Setup setup, const ScenarioOptions& options);
+
+    [[nodiscard]] run::Outlook outlook() const;
 
     [[nodiscard]] Status plan_obstacles(const Setup& next, Change& change) const;
     [[nodiscard]] Status plan_releases(const Setup& next, Change& change, const sim::Progress& progress) const;
@@ -112,6 +117,8 @@ class LiveRun {
     std::vector<Obstacle> obstacles_;
     std::uint32_t slots_ = 0;
     Recording recording_;
+    run::RunClock clock_;
+    double deposited_speed_;
     ImpactHistory impact_history_;
     ErosionHistory erosion_history_;
 };

@@ -217,6 +217,7 @@ json Scenario::state_json(bool with_hash) const {
                    {"message", message()},
                    {"time_s", state.time},
                    {"end_time_s", scene().spec.solver.end_time},
+                   {"expected_end_s", run.expected_end() ? json(*run.expected_end()) : json()},
                    {"step", state.step},
                    {"particles", state.count},
                    {"volume_released_m3", now.volume_released},

@@ -1,5 +1,7 @@
 """The Python package on the library that was built."""
 
+import contextlib
+import io
 import pathlib
 import tempfile
 import unittest
@@ -100,7 +102,15 @@ class StudyTest(unittest.TestCase):
             self.assertEqual([r.settings[key] for r in results], [0.2, 0.5])
             reached = [np.nanmax(r.front.chainage) for r in results]
             self.assertGreater(reached[0], reached[1] + 1)
-            alone = talus.run(folder / "scene.toml", {key: 0.2, **count}, end_time=4, progress=False)
+            said = io.StringIO()
+            with contextlib.redirect_stderr(said):
+                alone = talus.run(folder / "scene.toml", {key: 0.2, **count}, end_time=4, progress=True)
+            lines = [line for line in said.getvalue().replace("\x1b[K", "").split("\r") if line]
+            for line in lines:
+                self.assertRegex(line, r"^\[#* *\] \d+\.\d s, about \d+:\d\d left")
+            done = [line.count("#") for line in lines]
+            self.assertEqual(done, sorted(done))
+            self.assertEqual(done[-1], 40)
             self.assertEqual(alone.hash, results[0].hash)
             self.assertEqual(set(alone.maps), set(talus.UNITS))
 

@@ -25,6 +25,21 @@ TEST(Scenario, without_actions_is_the_run_of_the_scene) {
     EXPECT_EQ(scenario->series_json()["time"]["time_s"].size(), run->observation.timeseries.size());
 }
 
+TEST(Scenario, expects_its_end_from_the_motion_of_the_debris) {
+    scene::Scene scene = channel_scene();
+    scene.spec.material.friction_coefficient = 0.7;  // it hardly moves
+    scene.spec.solver.stop_duration = 1;
+    const auto scenario = open(scene);
+    EXPECT_TRUE(scenario->state_json()["expected_end_s"].is_null());
+    run_until(*scenario, 0.5);
+    ASSERT_EQ(scenario->phase(), run::RunPhase::ready);
+    EXPECT_GE(number(*scenario, "expected_end_s"), scenario->time());
+    EXPECT_LT(number(*scenario, "expected_end_s"), scene.spec.solver.end_time / 2) << "not end_time";
+    run_until(*scenario, 100);
+    ASSERT_EQ(scenario->phase(), run::RunPhase::at_rest);
+    EXPECT_EQ(number(*scenario, "expected_end_s"), number(*scenario, "time_s"));
+}
+
 TEST(Scenario, comes_to_rest_as_the_run_does_and_goes_on_when_something_changes) {
     scene::Scene scene = channel_scene();
     scene.spec.material.friction_coefficient = 0.7;  // steeper than the slope: it hardly moves

@@ -69,6 +69,8 @@ export interface State {
   message: string;
   time_s: number;
   end_time_s: number;
+  /** When the run is expected to be over, from the motion of its debris; null before the first step. */
+  expected_end_s: number | null;
   step: number;
   speed_factor: number | null;
   real_time_factor: number;
