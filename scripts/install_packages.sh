@@ -6,7 +6,7 @@
 set -euo pipefail
 
 packages=(g++ cmake ninja-build pkg-config git libgdal-dev gdal-bin libtbb-dev libhwy-dev libpng-dev libtomlplusplus-dev libcli11-dev
-          nlohmann-json3-dev libfmt-dev libgtest-dev libgmock-dev libboost-dev zlib1g-dev
+          nlohmann-json3-dev libfmt-dev libgtest-dev libgmock-dev libboost-dev libssl-dev zlib1g-dev
           libopenmpi-dev openmpi-bin libnlopt-dev libkainjow-mustache-dev)
 # Node.js builds the page; like the browser of the tests, it also comes from elsewhere than the distribution's packages.
 node_version=$(node --version 2>/dev/null || echo v0)

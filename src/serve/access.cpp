@@ -90,7 +90,13 @@ Access::Access(Tokens tokens, const std::string& bound, std::uint16_t port, cons
 }
 
 bool Access::host_allowed(std::string_view host) const {
-    return std::find(hosts_.begin(), hosts_.end(), lower_case(host)) != hosts_.end();
+    const std::string lower = lower_case(host);
+    if (lower == shared_ && !shared_.empty()) return true;
+    return std::find(hosts_.begin(), hosts_.end(), lower) != hosts_.end();
+}
+
+void Access::share(const std::string& host) {
+    shared_ = lower_case(host);
 }
 
 bool Access::origin_allowed(std::string_view origin, std::string_view host) const {

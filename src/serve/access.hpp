@@ -36,11 +36,14 @@ class Access {
     [[nodiscard]] bool origin_allowed(std::string_view origin, std::string_view host) const;
     /// Takes as long for a wrong token as for a right one.
     [[nodiscard]] Role role_of(std::string_view token) const;
+    /// Allows a further host, with its port, in place of the one allowed so before; empty: none.
+    void share(const std::string& host);
     [[nodiscard]] const Tokens& tokens() const { return tokens_; }
 
   private:
     Tokens tokens_;
     std::vector<std::string> hosts_;  // lower case
+    std::string shared_;              // as well; empty: none
 };
 
 }  // namespace talus::serve

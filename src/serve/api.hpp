@@ -16,6 +16,11 @@ class Start;
 /// The routes that need no open session. nullptr: a server of one scene, without a start page.
 [[nodiscard]] Router make_start_api(Start* start);
 
+class Sharing;
+class Access;
+/// Reaching the server from other computers. For the server's thread, as its arguments.
+void add_share_routes(Router& router, Sharing& sharing, Access& access);
+
 // The parts of it.
 void add_session_file_route(Router& router, Session& session);
 void add_session_routes(Router& router, Session& session);

@@ -126,7 +126,8 @@ void HttpConnection::on_header(beast::error_code error) {
     request_.secret = text_of(message["Talus-Person"]);
     if (auto refused = refusal()) {
         // Its body is not read.
-        close_ = close_ || !parser_->is_done() || parser_->chunked() || parser_->content_length().value_or(0) > 0;
+        close_ = close_ || !message.keep_alive() || !parser_->is_done() || parser_->chunked() ||
+                 parser_->content_length().value_or(0) > 0;
         respond(std::move(*refused));
         return;
     }

@@ -19,6 +19,7 @@
 #include "serve/api.hpp"
 #include "serve/connection.hpp"
 #include "serve/open_session.hpp"
+#include "serve/sharing.hpp"
 #include "serve/start.hpp"
 
 namespace talus::serve {
@@ -67,6 +68,7 @@ struct Server::Parts {
     std::optional<Start> start;
     std::optional<ServerContext> context;
     asio::io_context io{1};
+    std::optional<Sharing> sharing;
     tcp::acceptor acceptor;
     asio::steady_timer retry, ticker;
     asio::executor_work_guard<asio::io_context::executor_type> guard;
@@ -166,6 +168,12 @@ void Server::Parts::listen_for(OpenSessionPtr open) {
         ServerContext{Access(options.tokens, bracketed(bound.address()), bound.port(), options.allowed_hosts),
                       make_start_api(start ? &*start : nullptr), std::move(open), Site(), options.patience,
                       ConnectionCounts(connections, per_address > 0 ? per_address : connections / 3), connections / 2});
+    const auto inner =
+        bound.address().is_unspecified() ? tcp::endpoint(asio::ip::address_v4::loopback(), bound.port()) : bound;
+    sharing.emplace(io, inner, [this](tcp::socket socket) {
+        if (context->connections.has_room(address_of(socket))) serve_http(std::move(socket), *context);
+    });
+    add_share_routes(context->router, *sharing, context->access);
     accept();
     thread = std::thread([this] {
         pthread_setname_np(pthread_self(), "server");

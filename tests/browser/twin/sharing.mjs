@@ -72,6 +72,31 @@ export async function testSharing(run) {
     await ben.context().close();
   });
 
+  await run.check("sharing in the network is off until it is pressed, shows a QR code, lets others in, and ends", async () => {
+    await ada.click("button:has-text('Share')");
+    await ada.locator(".beyond .hint").first().waitFor();
+    if ((await server.ask("share")).addresses.length === 0) {
+      assert.match(await ada.textContent(".beyond"), /no address that others could reach/);
+      return ada.keyboard.press("Escape");
+    }
+    assert.match(await ada.textContent(".beyond"), /Off: only this computer.*Not encrypted/);
+    await ada.click("text=Share in the network");
+    await ada.locator(".qr svg path").waitFor();
+    const url = await ada.inputValue("[aria-label='Link for viewers in the network']");
+    assert.ok(url.endsWith(`/#token=${server.viewerToken}`) && !url.includes("127.0.0.1"), url);
+    await ada.locator(".beyond button").scrollIntoViewIfNeeded();
+    await run.shot(ada, "16-beyond");
+    const context = await run.browser.newContext();
+    const eve = await context.newPage();
+    await eve.goto(url);
+    await eve.waitForFunction(() => document.querySelector(".transport"));
+    await context.close();
+    await ada.click("text=Stop sharing");
+    await ada.locator("text=Off: only this computer").waitFor();
+    await assert.rejects(fetch(url.split("#")[0]));
+    await ada.keyboard.press("Escape");
+  });
+
   for (const [width, height] of [[1280, 720], [1024, 768]]) {
     await run.check(`works at ${width} x ${height}: nothing is cut off, readings can be reached`, async () => {
       await ada.setViewportSize({ width, height });

@@ -5,6 +5,7 @@ import { watchAll } from "../state/cell";
 import type { Twin } from "../state/twin";
 import { dialog, openDialog } from "../ui/dialog";
 import { button, h } from "../ui/dom";
+import { shareBeyond } from "./share_beyond";
 
 const initials = (name: string): string => name.split(/\s+/).map((w) => w[0] ?? "").join("").slice(0, 2).toUpperCase() || "?";
 
@@ -82,7 +83,8 @@ function share(twin: Twin): void {
     link("Link for controllers", "They can ask for control and then change the simulation.", links.controller),
     links.viewer === undefined && links.controller === undefined ? h("p", { class: "hint" }, "The program printed the links when it started.") : null,
     location.hostname === "127.0.0.1" || location.hostname === "localhost"
-      ? h("p", { class: "hint" }, "The server listens on this computer only: the links work in browsers on this computer.") : null);
+      ? h("p", { class: "hint" }, "These links work in browsers on this computer.") : null,
+    links.controller !== undefined ? shareBeyond(twin.api, (sentence, kind) => twin.notice(sentence, kind)) : null);
   box.addEventListener("close", end);
   openDialog(box);
 }

@@ -1,7 +1,7 @@
 // The HTTP half of docs/protocol.md.
 import { decodeFrame, type Frame, type ScenarioName } from "./frame";
 import { decodeGrid, type Grid } from "./grid";
-import type { Action, Done, Ensemble, ExportFile, Figure, Impacts, LayerName, NewScenario, ProbeSeries, Recording, SceneInfo, Series, Session } from "./messages";
+import type { Action, Done, Ensemble, ExportFile, Figure, Impacts, LayerName, NewScenario, ProbeSeries, Recording, SceneInfo, Series, Session, Share, WantedShare } from "./messages";
 import type { Checked, Draft, DraftRole, MendingOfTerrain, StartPage, WantedScene } from "./start";
 
 /** The server's answer to a request that it refused. */
@@ -106,6 +106,9 @@ export class Api {
   /** A scene with all its files, as an archive. */
   sceneBundle = (id: string): Promise<Blob> => this.blob(`scenes/${id}/bundle`);
   sessionFile = (): Promise<Blob> => this.blob("session/file");
+  shared = (): Promise<Share> => this.json("share");
+  share = async (wanted: WantedShare): Promise<Share> => (await (await this.ask("POST", "share", wanted)).json()) as Share;
+  unshare = async (): Promise<Share> => (await (await this.ask("DELETE", "share")).json()) as Share;
   quit = async (): Promise<void> => void (await this.ask("POST", "quit"));
   control = async (what: "request" | "release" | "grant" | "decline"): Promise<void> =>
     void (await this.ask("POST", "control", { do: what }));

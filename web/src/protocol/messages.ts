@@ -302,3 +302,10 @@ export type ServerMessage =
   | { type: "scenarios"; scenarios: ScenarioName[] }
   | { type: "ended" }
   | { type: "done"; scenario: ScenarioName; by: string; done: string };
+
+/** Whether other computers reach the server, and by which addresses they could. */
+export interface Share {
+  shared: { host: string; encrypted: boolean; viewer_url: string; controller_url: string } | null;
+  addresses: string[];
+}
+export interface WantedShare { address: string; port: number; name?: string; certificate?: string; key?: string }
