@@ -73,7 +73,12 @@ void LiveRun::advance() {
     if (!stepped) return;
     note_failed();
     record();
-    clock_.tick(run_->wall_time(), state().time, [this] { return outlook(); });
+    // Where steps wait for real time, looks between them are as cheap as these are slow.
+    const auto now = std::chrono::steady_clock::now();
+    constexpr double longest_step = 1;  // s; what takes longer is a pause
+    going_ += std::min(longest_step, std::chrono::duration<double>(now - stepped_at_).count());
+    stepped_at_ = now;
+    clock_.tick(going_, state().time, [this] { return outlook(); });
 }
 
 run::Outlook LiveRun::outlook() const {
@@ -86,8 +91,8 @@ run::Outlook LiveRun::outlook() const {
 
 std::optional<double> LiveRun::expected_end() const {
     if (phase() != run::RunPhase::ready) return state().time;
-    if (state().step == 0) return {};
-    return std::max(clock_.expected_end(), state().time);
+    if (state().step == 0 || clock_.expected_end() <= state().time) return {};
+    return clock_.expected_end();
 }
 
 observe::BuildingImpact LiveRun::impact_now(std::size_t obstacle) const {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <chrono>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -53,7 +54,7 @@ class LiveRun {
     [[nodiscard]] const observe::Observer& observer() const { return run_->observer(); }
     [[nodiscard]] const Recording& recording() const { return recording_; }
     [[nodiscard]] bool too_compressed() const;
-    /// s, when the run is expected to be over; nothing before the first step.
+    /// s, when the run is expected to be over; nothing before the first step, and while debris outlasts the estimate.
     [[nodiscard]] std::optional<double> expected_end() const;
     /// What is known about the step that cannot be trusted, at fault.
     [[nodiscard]] const std::optional<run::FaultRecord>& fault() const { return run_->fault(); }
@@ -119,6 +120,8 @@ class LiveRun {
     Recording recording_;
     run::RunClock clock_;
     double deposited_speed_;
+    std::chrono::steady_clock::time_point stepped_at_ = std::chrono::steady_clock::now();
+    double going_ = 0;  ///< s of wall time, pauses left out
     ImpactHistory impact_history_;
     ErosionHistory erosion_history_;
 };

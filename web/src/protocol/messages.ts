@@ -69,7 +69,7 @@ export interface State {
   message: string;
   time_s: number;
   end_time_s: number;
-  /** When the run is expected to be over, from the motion of its debris; null before the first step. */
+  /** When the run is expected to be over, from the motion of its debris; null before the first step and while debris outlasts the estimate. */
   expected_end_s: number | null;
   step: number;
   speed_factor: number | null;
