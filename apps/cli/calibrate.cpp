@@ -113,7 +113,8 @@ int run_calibration(const CalibrateArguments& arguments, const calibrate::Calibr
     };
     const auto made = calibrate::calibrate(plan, runs, input.source, input.scene, observed, *folder, options);
     reporter.clear();
-    if (!made) return fail(exit_code::fault, made.error().message);
+    if (!made) return fail(exit_code::failure, made.error().message);
+    if (!made->fault.empty()) return fail(exit_code::fault, made->fault);
     if (made->result.interrupted) return say_interrupted(path);
     reporter.say("writing tables and report");
     const Status written = write_calibration(*made, input.source, input.unpacked != nullptr, path);

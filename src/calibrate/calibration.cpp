@@ -203,8 +203,12 @@ Result<Calibration> calibrate(const CalibrationPlan& plan, ensemble::PlannedRuns
     };
     Result<SearchResult> found = search(priors, observed, model, plan.search, options.on_fit ? on_fit : FitReader());
     if (!found) {
-        const bool failed = !made.records.empty() && !made.records.front().complete();
-        return failed ? Error{found.error().message + "; the first: " + made.records.front().fault} : found.error();
+        const auto complete = [](const ensemble::RunRecord& record) { return record.complete(); };
+        if (made.records.empty() || std::any_of(made.records.begin(), made.records.end(), complete)) {
+            return found.error();
+        }
+        made.fault = found.error().message + "; the first: " + made.records.front().fault;
+        return made;
     }
     made.result = *std::move(found);
     if (made.result.best) {

@@ -47,6 +47,7 @@ struct Calibration {
     std::vector<ensemble::ObservedValue> observed;
     SearchResult result;
     std::vector<ensemble::RunRecord> records;  ///< as result.runs
+    std::string fault;                         ///< why there is no result: no run is complete; empty: there is one
     std::vector<std::string> best_overrides;   ///< "section.key=value" that make the scene that of the best run
     double wall_time = 0;                      ///< s, of this call
 };
@@ -83,7 +84,7 @@ struct CalibrationOptions {
                                        const CalibrationOptions& options, std::vector<ensemble::RunRecord>& records);
 
 /// Computes the runs missing in the folder and finds the values that explain `observed` (as observed_values(base), or
-/// other values of the same). Errors: a record cannot be written, or is of another calibration; no run is complete.
+/// other values of the same). Errors: a record cannot be written, or is of another calibration.
 [[nodiscard]] Result<Calibration> calibrate(const CalibrationPlan& plan, ensemble::PlannedRuns runs,
                                             const run::SceneSource& source, const scene::Scene& base,
                                             const std::vector<ensemble::ObservedValue>& observed,

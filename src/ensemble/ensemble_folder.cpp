@@ -139,8 +139,11 @@ Result<EnsembleFolder> EnsembleFolder::open(const fs::path& path, const Json& de
     if (!fresh && !fs::exists(path / "ensemble.json", error) && !fs::exists(path / "lock", error)) {
         return Error{path.string() + ": exists and contains no ensemble; name another output folder"};
     }
-    fs::create_directories(path / "runs", error);
-    if (error) return Error{fmt::format("{}: cannot be made: {}", path.string(), error.message())};
+    const auto cannot_be_made = [&] {
+        return Error{fmt::format("{}: cannot be made: {}", path.string(), error.message())};
+    };
+    fs::create_directories(path, error);
+    if (error) return cannot_be_made();
 
     EnsembleFolder folder;
     folder.path_ = path;
@@ -154,6 +157,8 @@ Result<EnsembleFolder> EnsembleFolder::open(const fs::path& path, const Json& de
                                        path.string())
                          : fmt::format("{}: cannot be locked: {}", path.string(), std::strerror(errno))};
     }
+    fs::create_directories(path / "runs", error);  // after the lock, by which the folder is known should this fail
+    if (error) return cannot_be_made();
     if (fs::exists(path / "ensemble.json", error)) {
         TALUS_ASSIGN(const Json there, read_definition(path, definition.value("kind", "ensemble")));
         if (const std::string differs = difference(there, definition); !differs.empty()) {

@@ -245,6 +245,7 @@ Calibrations::Ending Calibrations::calibrate_in(const fs::path& path, const cali
     options.on_fit = [this](const calibrate::Calibration& now) { take_fit(now); };
     const auto made = calibrate::calibrate(plan, runs, settings_.source, *scene_, observed_, *folder, options);
     if (!made) return {"failed", made.error().message};
+    if (!made->fault.empty()) return {"failed", made->fault};
     if (made->result.interrupted || stop_) return {"cancelled", ""};
     take_fit(*made);
     take_result(*made);

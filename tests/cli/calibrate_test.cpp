@@ -121,6 +121,17 @@ TEST(Calibrate, RecoversHowFarTheReleaseWasMoved) {
     EXPECT_LT(shift.at("interval_95")[1].get<double>() - shift.at("interval_95")[0].get<double>(), 3);
 }
 
+TEST(Calibrate, WithoutACompleteRunTheExitCodeIsThree) {
+    const FlowingScene scene;
+    const std::vector<std::string> failing = {"--quiet", "--set", "solver.displacement_limit=0.001", "--set",
+                                              "solver.smallest_time_step_s=0.01"};
+    for (int time = 0; time < 2; ++time) {  // the second finds the runs made
+        const auto outcome = run_program(calibrate_command("result", failing), {.folder = scene.folder()});
+        EXPECT_EQ(outcome.exit_code, 3);
+        EXPECT_THAT(outcome.error, HasSubstr("no run of the design is complete"));
+    }
+}
+
 TEST(Calibrate, AnInterruptedOneGoesOnToTheSameResult) {
     const FlowingScene scene;
     const ProgramOptions here{.folder = scene.folder()};
