@@ -42,12 +42,13 @@ Result<std::shared_ptr<ssl::context>> tls_with(const ShareWanted& wanted) {
                              ssl::context::no_tlsv1 | ssl::context::no_tlsv1_1,
                          error);
     context->use_certificate_chain(asio::buffer(wanted.certificate), error);
-    if (error) return Error{"certificate: is none in PEM: " + error.message()};
+    if (error) return Error{"certificate: is not a certificate in PEM format: " + error.message()};
     // Without a callback a key with a password would be asked for at the terminal.
     context->set_password_callback([](std::size_t, ssl::context::password_purpose) { return std::string(); }, error);
     context->use_private_key(asio::buffer(wanted.key), ssl::context::pem, error);
     if (error)
-        return Error{"key: is none in PEM, has a password, or is not that of the certificate: " + error.message()};
+        return Error{"key: is not a key in PEM format, has a password, or is not that of the certificate: " +
+                     error.message()};
     if (SSL_CTX_check_private_key(context->native_handle()) != 1) {
         return Error{"key: is not that of the certificate"};
     }

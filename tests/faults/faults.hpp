@@ -53,7 +53,7 @@ class FailingFiles {
     }
     /// "write /folder/file", the calls of the program that ran last.
     [[nodiscard]] std::vector<std::string> calls() const {
-        EXPECT_TRUE(std::filesystem::exists(log())) << FAILING_FILES << " does not stand before the C library";
+        EXPECT_TRUE(std::filesystem::exists(log())) << FAILING_FILES << " replaces no function of the C library";
         return lines_of(read_text(log()));
     }
     /// The one that failed; empty: none.

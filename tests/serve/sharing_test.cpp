@@ -138,7 +138,7 @@ TEST_F(SharingTest, what_makes_no_sense_is_refused_and_viewers_may_not) {
     const Pair pair = self_signed(), other = self_signed();
     EXPECT_EQ(as_controller().post("/api/share", {{"address", "127.0.0.1"}}).status, 409);
     EXPECT_EQ(as_controller().post("/api/share", {{"address", "0.0.0.0"}}).status, 409);
-    EXPECT_THAT(share({{"certificate", "no"}, {"key", "no"}}).body, HasSubstr("certificate: is none"));
+    EXPECT_THAT(share({{"certificate", "no"}, {"key", "no"}}).body, HasSubstr("certificate: is not a certificate"));
     EXPECT_THAT(share({{"certificate", pair.certificate}, {"key", other.key}}).body, HasSubstr("key: "));
     EXPECT_EQ(share({{"certificate", pair.certificate}}).status, 400);
     EXPECT_EQ(share({{"port", 70000}}).status, 400);
