@@ -101,6 +101,8 @@ int start_command(const StartArguments& arguments) {
     if (folder.path().empty()) return fail(exit_code::failure, "cannot make a temporary folder; set TMPDIR");
     watch.remove_at_once(folder.path());
     start.on_quit = [&watch] { watch.request_stop(); };
+    std::error_code unknown;
+    start.program = fs::read_symlink("/proc/self/exe", unknown);  // without it there are no jobs
 
     std::mutex mutex;  // guards failure, which another thread writes
     std::string failure;

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <chrono>
 #include <cstdio>
 #include <filesystem>
 #include <memory>
@@ -11,6 +12,7 @@
 #include <vector>
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include "command.hpp"
 #include "core/temporary_folder.hpp"
@@ -38,7 +40,8 @@ struct ValidateArguments {
     bool known = false;                         ///< failures announced in the case files do not fail the command
     std::string json, results, html, markdown;  ///< files to write; empty: none
     std::optional<int> threads;
-    std::string data;  ///< value of TALUS_DATA; empty: as in the environment
+    std::string data;            ///< value of TALUS_DATA; empty: as in the environment
+    bool progress_json = false;  ///< for programs, in place of the table
 };
 
 constexpr const char* validate_help = R"(
@@ -98,18 +101,44 @@ Status write_outputs(const ValidateArguments& arguments, const std::vector<CaseR
     return {};
 }
 
+/// The cases left are taken to last as long as those before: an upper bound, for the long ones come first.
+std::string progress_json(std::size_t done, std::size_t count, std::chrono::steady_clock::time_point begun) {
+    const std::chrono::duration<double> so_far = std::chrono::steady_clock::now() - begun;
+    const nlohmann::ordered_json event = {
+        {"event", "progress"},
+        {"cases_done", done},
+        {"cases", count},
+        {"wall_remaining_s", done == 0 ? nlohmann::ordered_json()
+                                       : nlohmann::ordered_json(so_far.count() / static_cast<double>(done) *
+                                                                static_cast<double>(count - done))}};
+    return event.dump();
+}
+
+std::string result_json(const std::vector<CaseResult>& results) {
+    const validate::Tally tally = validate::count(results);
+    const auto skipped =
+        std::count_if(results.begin(), results.end(), [](const CaseResult& r) { return !r.skipped.empty(); });
+    return nlohmann::ordered_json{{"event", "result"},      {"passed", tally.passed},
+                                  {"failed", tally.failed}, {"known_failures", tally.known_failures},
+                                  {"shown", tally.shown},   {"skipped_cases", skipped}}
+        .dump();
+}
+
 /// The results of the cases that were not interrupted, in order. As many cases at once as there are threads for: most
 /// cases are small, and two of them are sooner done beside each other than one after the other.
-std::vector<CaseResult> compute(const std::vector<Case>& cases, std::optional<int> threads, InterruptWatch& watch) {
-    const int most = threads ? *threads : run::Threads().count();
+std::vector<CaseResult> compute(const std::vector<Case>& cases, const ValidateArguments& arguments,
+                                InterruptWatch& watch) {
+    const int most = arguments.threads ? *arguments.threads : run::Threads().count();
     const int at_once = std::min(most, static_cast<int>(cases.size()));
     // The long ones first, so that no thread is left with one at the end.
     std::vector<std::size_t> order(cases.size());
     std::iota(order.begin(), order.end(), std::size_t{0});
     std::stable_partition(order.begin(), order.end(), [&](std::size_t i) { return !cases[i].quick; });
 
-    const ProgressStyle style = progress_style(false, false);
+    const ProgressStyle style = progress_style(false, arguments.progress_json);
     ProgressReporter progress(style);
+    const auto begun = std::chrono::steady_clock::now();
+    std::size_t done = 0;
     std::vector<std::optional<CaseResult>> computed(cases.size());
     std::mutex reporting;
     std::size_t next = 0;
@@ -131,7 +160,11 @@ std::vector<CaseResult> compute(const std::vector<Case>& cases, std::optional<in
                 };
             }
             CaseResult result = validate::run_case(cases[i], told);
-            if (!watch.stop_requested()) computed[i] = std::move(result);
+            if (watch.stop_requested()) return;
+            computed[i] = std::move(result);
+            const std::scoped_lock say(reporting);
+            ++done;
+            if (style == ProgressStyle::json) (void)print(progress_json(done, cases.size(), begun) + "\n");
         }
     };
     {
@@ -165,8 +198,10 @@ int validate_command(const ValidateArguments& arguments) {
         return print_result(list_text(*cases));
     }
 
-    const std::vector<CaseResult> results = compute(*cases, arguments.threads, watch);
-    const int printed = print_result(validate::table_text(results));
+    if (arguments.progress_json) (void)print(progress_json(0, cases->size(), {}) + "\n");
+    const std::vector<CaseResult> results = compute(*cases, arguments, watch);
+    const int printed =
+        print_result(arguments.progress_json ? result_json(results) + "\n" : validate::table_text(results));
     if (Status s = write_outputs(arguments, results); !s) return fail(exit_code::failure, s.error().message);
     if (watch.stop_requested()) return exit_code::interrupted;
     const validate::Tally tally = validate::count(results);
@@ -196,6 +231,8 @@ void add_validate(CLI::App& program, std::vector<Command>& commands) {
         ->type_name("N")
         ->check(CLI::Range(1, 512));
     app->add_option("--data", validate->data, "folder for TALUS_DATA, for cases on real terrain")->type_name("DIR");
+    app->add_flag("--progress-json", validate->progress_json,
+                  "progress and counts as one JSON object per line on stdout, in place of the table");
     app->footer(validate_help);
     commands.push_back({app, [validate] { return validate_command(*validate); }});
 }

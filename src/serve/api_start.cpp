@@ -10,11 +10,13 @@ namespace {
 
 using Handle = void (*)(Start&, const Request&, const Respond&);
 
+constexpr const char* one_scene = "this server shows one scene; talus start has a start page";
+
 /// The routes exist on every server; one of a single scene refuses them.
 Handler on_start(Start* start, Handle handle) {
     return [start, handle](const Request& request, const Respond& respond) {
         if (start == nullptr) {
-            respond(error_response(409, "this server shows one scene; talus start has a start page"));
+            respond(error_response(409, one_scene));
         } else {
             handle(*start, request, respond);
         }
@@ -54,6 +56,52 @@ void add_drafts(Router& router, Start* start) {
     router.add(std::move(upload));
 }
 
+/// Ensembles, calibrations and validations.
+void add_jobs(Router& router, Start* start) {
+    const auto add = [&](const char* method, const char* pattern, Handle handle) {
+        router.add({method, pattern, Role::controller, on_start(start, handle)});
+    };
+    add("POST", "/api/jobs",
+        [](Start& s, const Request& request, const Respond& respond) { s.add_job(request, respond); });
+    add("GET", "/api/jobs/form/{id}", [](Start& s, const Request& request, const Respond& respond) {
+        s.with_scene(request.parameters.at("id"), respond,
+                     [&s, respond](const KnownScene& scene) { s.job_forms().describe(scene, respond); });
+    });
+    add("GET", "/api/jobs/estimate/{id}", [](Start& s, const Request& request, const Respond& respond) {
+        s.with_scene(request.parameters.at("id"), respond,
+                     [&s, respond](const KnownScene& scene) { s.job_forms().estimate(scene, respond); });
+    });
+    add("GET", "/api/jobs/cases",
+        [](Start& s, const Request&, const Respond& respond) { s.job_forms().cases(respond); });
+    const auto answer = [](const Status& status, const char* sentence) {
+        return status ? json_response(200, {{"done", sentence}, {"created", nullptr}})
+                      : error_response(409, status.error().message);
+    };
+    const auto change = [&](const char* method, const char* pattern, Status (Jobs::*act)(const std::string&),
+                            const char* sentence) {
+        Route route{method, pattern, Role::controller,
+                    [start, act, sentence, answer](const Request& request, const Respond& respond) {
+                        if (start == nullptr) return respond(error_response(409, one_scene));
+                        respond(answer((start->jobs().*act)(request.parameters.at("id")), sentence));
+                    }};
+        router.add(std::move(route));
+    };
+    change("POST", "/api/jobs/{id}/cancel", &Jobs::cancel, "it ends soon");
+    change("POST", "/api/jobs/{id}/resume", &Jobs::resume, "the job is in the queue");
+    change("DELETE", "/api/jobs/{id}", &Jobs::remove, "deleted");
+    // A link that a browser follows carries no token; the ticket in it stands for one.
+    router.add({"GET", "/api/reports/{ticket}", Role::nobody, [start](const Request& request, const Respond& respond) {
+                    if (start == nullptr) return respond(error_response(404, one_scene));
+                    auto page = start->jobs().report(request.parameters.at("ticket"));
+                    if (!page) return respond(error_response(404, page.error().message));
+                    Response response;
+                    response.type = "text/html; charset=utf-8";
+                    response.body = std::make_shared<const std::string>(std::move(*page));
+                    response.document = true;
+                    respond(response);
+                }});
+}
+
 }  // namespace
 
 Router make_start_api(Start* start) {
@@ -88,6 +136,7 @@ Router make_start_api(Start* start) {
         s.download(request.parameters.at("id"), respond);
     });
     add_drafts(router, start);
+    add_jobs(router, start);
     add("POST", "/api/quit", [](Start& s, const Request&, const Respond& respond) { s.quit(respond); });
     return router;
 }

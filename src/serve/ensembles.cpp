@@ -29,7 +29,7 @@ Status check_extent(const fs::path& file, const Extent& map, const Extent& terra
                              file.string(), words(map), words(terrain))};
 }
 
-json number_or_null(bool there, double value) {
+json number_if(bool there, double value) {
     return there ? json(value) : json();
 }
 
@@ -87,11 +87,11 @@ json Ensembles::describe() const {
                                                                        : "percentile"},
                             {"of", about.of},
                             {"description", about.style.description},
-                            {"threshold", number_or_null(threshold, about.level)},
+                            {"threshold", number_if(threshold, about.level)},
                             {"threshold_unit", threshold ? json(about.level_unit) : json()},
-                            {"percentile", number_or_null(about.kind == Kind::percentile, about.level)},
+                            {"percentile", number_if(about.kind == Kind::percentile, about.level)},
                             {"categories", categories},
-                            {"greatest", number_or_null(map.greatest > 0, map.greatest)}});
+                            {"greatest", number_if(map.greatest > 0, map.greatest)}});
         }
         list.push_back({{"id", std::to_string(list.size() + 1)},
                         {"name", ensemble.about.name},

@@ -343,7 +343,13 @@ void HttpConnection::respond(Response response) {
     message.result(static_cast<unsigned>(response.status));
     message.set(http::field::content_type, response.type);
     message.set(http::field::cache_control, "no-store");
-    message.set("Content-Security-Policy", "default-src 'none'; frame-ancestors 'none'; sandbox");
+    // As a page of its own it has an origin of its own: it has no part in this one's.
+    message.set("Content-Security-Policy",
+                response.document
+                    ? "default-src 'none'; style-src 'unsafe-inline'; script-src 'unsafe-inline'; img-src "
+                      "data:; font-src data:; base-uri 'none'; form-action 'none'; frame-ancestors 'none'; "
+                      "sandbox allow-scripts"
+                    : "default-src 'none'; frame-ancestors 'none'; sandbox");
     if (response.status == 401) message.set(http::field::www_authenticate, "Bearer");
     if (!response.allow.empty()) message.set(http::field::allow, response.allow);
     if (!response.file_name.empty()) {

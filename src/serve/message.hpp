@@ -37,6 +37,7 @@ struct Response {
     Bytes body;
     std::string file_name;  ///< file name under which a browser saves the body; empty: displayed
     std::string allow;      ///< methods, for status 405
+    bool document = false;  ///< a page with styles, pictures and scripts of its own, which reach nothing else
 };
 
 /// Answers a request: once, from any thread.

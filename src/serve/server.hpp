@@ -39,6 +39,7 @@ struct StartSettings {
     std::filesystem::path file;     ///< a scene or a saved session to open at once; empty: none
     std::function<void()> on_quit;  ///< the user ends the program in the page
     UploadLimits uploads{};         ///< of a new scene
+    std::filesystem::path program;  ///< talus itself, for jobs; empty: there are none
 };
 
 /// A session that users and programs access over HTTP and WebSocket, as described in docs/protocol.md. Runs on its own

@@ -27,10 +27,10 @@ using asio::ip::tcp;
 using Code = boost::system::error_code;
 
 constexpr std::chrono::seconds handshake_time{10}, goodbye_time{2};
-constexpr std::size_t most_relayed = 256, block = 16 * 1024, longest_name = 253;
+constexpr std::size_t most_relayed = 256, block = 16 * 1024, longest_host = 253;
 
 bool plain_name(const std::string& name) {
-    return name.size() <= longest_name && std::all_of(name.begin(), name.end(), [](unsigned char c) {
+    return name.size() <= longest_host && std::all_of(name.begin(), name.end(), [](unsigned char c) {
                return std::isalnum(c) != 0 || c == '-' || c == '.';
            });
 }

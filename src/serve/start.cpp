@@ -56,7 +56,8 @@ Start::Start(StartSettings settings, ServerOptions options, Host host)
       options_(std::move(options)),
       host_(std::move(host)),
       library_(settings_.folder),
-      drafts_(std::make_unique<Drafts>(settings_.folder, settings_.uploads, options_.export_folder)) {}
+      drafts_(std::make_unique<Drafts>(settings_.folder, settings_.uploads, options_.export_folder)),
+      jobs_(std::make_unique<Jobs>(settings_.folder / "jobs", settings_.program)) {}
 
 Start::~Start() {
     close();
@@ -65,6 +66,8 @@ Start::~Start() {
 void Start::close() {
     files_.reset();
     drafts_.reset();
+    job_forms_.reset();
+    jobs_.reset();
     stop_ = true;
     opener_.reset();
     if (made_) made_->close();
@@ -90,6 +93,7 @@ void Start::describe(Role role, const Respond& respond) {
         page["folder"] = library_.folder().string();
         const UploadLimits& limits = settings_.uploads;
         page["uploads"] = {{"bytes", limits.bytes}, {"files", limits.files}, {"cells", limits.cells}};
+        page["jobs"] = jobs_->describe();
         page["scenes"] = page["sessions"] = json::array();
         for (const KnownScene& scene : library_.scenes()) page["scenes"].push_back(to_json(scene));
         for (const SavedSession& saved : library_.sessions()) page["sessions"].push_back(to_json(saved));
@@ -104,12 +108,12 @@ void Start::open(const Request& request, const Respond& respond) {
         return found != wanted->end() && found->is_string() ? found->get<std::string>() : "";
     };
     const Status keys = !wanted               ? Status(wanted.error())
-                        : wanted->is_object() ? twin::check_keys(*wanted, {"scene", "session", "replace"})
-                                              : Status(Error{"the body is an object with scene or session"});
+                        : wanted->is_object() ? twin::check_keys(*wanted, {"scene", "session", "ensemble", "replace"})
+                                              : Status(Error{"the body is an object with scene, session or ensemble"});
     if (!keys) return respond(error_response(400, keys.error().message));
-    const std::string scene = text_of("scene"), session = text_of("session");
-    if (scene.empty() == session.empty()) {
-        return respond(error_response(400, "the body names a scene or a session, one of them, by its id"));
+    const std::string scene = text_of("scene"), session = text_of("session"), ensemble = text_of("ensemble");
+    if (scene.empty() + session.empty() + ensemble.empty() != 2) {
+        return respond(error_response(400, "the body names a scene, a session or an ensemble, one of them, by its id"));
     }
     if (const OpenSessionPtr open = host_.open()) {
         if (wanted->value("replace", json()) != true) {
@@ -120,20 +124,30 @@ void Start::open(const Request& request, const Respond& respond) {
             return respond(error_response(409, allowed.error().message));
         }
     }
-    files_->post([this, scene, session, respond] {
-        Wanted found;
-        for (const KnownScene& known : library_.scenes()) {
-            if (!scene.empty() && known.id == scene) found = {known, {}, false, known.title};
-        }
-        for (const SavedSession& saved : library_.sessions()) {
-            if (!session.empty() && saved.id == session) found = {{}, saved.file, false, saved.name};
-        }
-        if (!found.scene && found.session.empty()) {
-            respond(error_response(404, "there is nothing of this id; reload the page"));
-            return;
-        }
-        begin(std::move(found), respond);
+    files_->post([this, scene, session, ensemble, respond] {
+        auto found = find(scene, session, ensemble);
+        if (!found) return respond(error_response(404, found.error().message));
+        begin(std::move(*found), respond);
     });
+}
+
+Result<Start::Wanted> Start::find(const std::string& scene, const std::string& session,
+                                  const std::string& ensemble) const {
+    std::string wanted = scene;
+    std::vector<fs::path> ensembles;
+    if (!ensemble.empty()) {
+        TALUS_ASSIGN(const auto finished, jobs_->ensemble(ensemble));
+        wanted = finished.scene;
+        ensembles = {finished.folder};
+    }
+    for (const KnownScene& known : library_.scenes()) {
+        if (!wanted.empty() && known.id == wanted) return Wanted{known, {}, false, known.title, std::move(ensembles)};
+    }
+    if (!ensemble.empty()) return Error{"the scene of this ensemble is no longer in the list; open it once"};
+    for (const SavedSession& saved : library_.sessions()) {
+        if (!session.empty() && saved.id == session) return Wanted{{}, saved.file, false, saved.name};
+    }
+    return Error{"there is nothing of this id; reload the page"};
 }
 
 void Start::open_file(const fs::path& file) {
@@ -220,7 +234,11 @@ void Start::put_in_place() {
 }
 
 Result<Start::Loaded> Start::load(const Wanted& wanted) {
-    if (wanted.scene) return load_scene(*wanted.scene, {});
+    if (wanted.scene) {
+        TALUS_ASSIGN(auto loaded, load_scene(*wanted.scene, {}));
+        loaded.options.ensembles = wanted.ensembles;
+        return Result<Loaded>(std::move(loaded));
+    }
     TALUS_ASSIGN(const auto text, read_whole(wanted.session, Library::longest_session));
     const auto file = read_session(text);
     if (!file) return Error{fmt::format("{}: {}", wanted.session.filename().string(), file.error().message)};
@@ -330,6 +348,30 @@ void Start::download(const std::string& id, const Respond& respond) {
             return drafts_->pack(known.file, known.file.empty(), known.title, respond);
         }
         respond(error_response(404, "there is nothing of this id; reload the page"));
+    });
+}
+
+void Start::with_scene(const std::string& id, const Respond& respond, std::function<void(const KnownScene&)> ask) {
+    files_->post([this, id, respond, ask = std::move(ask)] {
+        for (const KnownScene& known : library_.scenes()) {
+            if (known.id == id) return ask(known);
+        }
+        respond(error_response(404, "there is nothing of this id; reload the page"));
+    });
+}
+
+void Start::add_job(const Request& request, const Respond& respond) {
+    const auto body = parse_json(request.body);
+    const auto wanted = body ? read_wanted_job(*body) : Result<WantedJob>(body.error());
+    if (!wanted) return respond(error_response(400, wanted.error().message));
+    const auto add = [this, wanted = *wanted, respond](const std::optional<KnownScene>& scene) {
+        const auto added = jobs_->add(wanted, scene);
+        respond(added ? json_response(202, {{"done", "the job is in the queue"}, {"created", *added}})
+                      : error_response(409, added.error().message));
+    };
+    if (wanted->kind == JobKind::validation) return add({});
+    with_scene(wanted->scene, respond, [this, wanted = *wanted, respond, add](const KnownScene& scene) {
+        job_forms_->check(wanted, scene, respond, [add, scene] { add(scene); });
     });
 }
 

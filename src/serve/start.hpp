@@ -9,6 +9,8 @@
 #include <vector>
 
 #include "serve/drafts.hpp"
+#include "serve/job_forms.hpp"
+#include "serve/jobs.hpp"
 #include "serve/library.hpp"
 #include "serve/open_session.hpp"
 #include "serve/server.hpp"
@@ -35,8 +37,8 @@ class Start {
 
     /// As `GET /api/start`.
     void describe(Role role, const Respond& respond);
-    /// Opens `{"scene": ID}` or `{"session": ID}`; with a session open, `"replace": true` is needed, and that nobody
-    /// else is in control of it.
+    /// Opens `{"scene": ID}`, `{"session": ID}` or `{"ensemble": ID}`, a finished one on its scene; with a session
+    /// open, `"replace": true` is needed, and that nobody else is in control of it.
     void open(const Request& request, const Respond& respond);
     /// A scene file or a saved session, named by the user who started the program.
     void open_file(const std::filesystem::path& file);
@@ -51,16 +53,23 @@ class Start {
     /// A scene with all its files as an archive.
     void download(const std::string& id, const Respond& respond);
     void quit(const Respond& respond);
+    /// Starts a job as the body of `POST /api/jobs` says.
+    void add_job(const Request& request, const Respond& respond);
+    /// Calls `ask` with the scene of this id, or answers that there is none.
+    void with_scene(const std::string& id, const Respond& respond, std::function<void(const KnownScene&)> ask);
+    [[nodiscard]] Jobs& jobs() { return *jobs_; }
+    [[nodiscard]] JobForms& job_forms() { return *job_forms_; }
     /// New scenes.
     [[nodiscard]] Drafts& drafts() { return *drafts_; }
 
   private:
     /// What to open.
     struct Wanted {
-        std::optional<KnownScene> scene;  ///< either this
-        std::filesystem::path session;    ///< or this file
-        bool any_scene = false;           ///< the session's scene need not be known
-        std::string what;                 ///< for people
+        std::optional<KnownScene> scene;                    ///< either this
+        std::filesystem::path session;                      ///< or this file
+        bool any_scene = false;                             ///< the session's scene need not be known
+        std::string what;                                   ///< for people
+        std::vector<std::filesystem::path> ensembles = {};  ///< shown on the scene
     };
     struct Loaded {
         std::shared_ptr<const scene::Scene> scene;
@@ -68,6 +77,9 @@ class Start {
         std::vector<OpeningScenario> scenarios;
         std::vector<std::string> notes;
     };
+    /// What one of the three names is.
+    [[nodiscard]] Result<Wanted> find(const std::string& scene, const std::string& session,
+                                      const std::string& ensemble) const;
     void begin(Wanted wanted, const Respond& respond);
     void work(const Wanted& wanted);
     [[nodiscard]] Result<Loaded> load(const Wanted& wanted);
@@ -94,6 +106,8 @@ class Start {
     int folders_ = 0;      // of sessions, for their names; used by the opener only
     std::unique_ptr<Worker> files_ = std::make_unique<Worker>("start");
     std::unique_ptr<Drafts> drafts_;
+    std::unique_ptr<Jobs> jobs_;
+    std::unique_ptr<JobForms> job_forms_ = std::make_unique<JobForms>();
     std::unique_ptr<Worker> opener_ = std::make_unique<Worker>("opener");
 };
 

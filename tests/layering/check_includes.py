@@ -30,7 +30,7 @@ BELOW = {
     "bench": ["core", "params", "terrain", "simd", "sim", "depth", "geo", "observe", "scene", "run", "report", "products"],
     "twin": ["core", "params", "terrain", "simd", "sim", "depth", "geo", "observe", "scene", "run", "report", "products"],
     "serve": ["core", "params", "terrain", "simd", "sim", "depth", "geo", "observe", "scene", "run", "report", "products", "stats", "ensemble",
-              "calibrate", "twin"],
+              "calibrate", "validate", "twin"],
     "apps": ["core", "params", "terrain", "simd", "sim", "depth", "geo", "observe", "scene", "run", "report", "products", "stats", "ensemble",
              "calibrate", "validate", "bench", "twin", "serve"],
 }

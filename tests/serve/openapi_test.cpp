@@ -132,6 +132,14 @@ TEST_F(OpenApi, every_route_answers_as_described) {
                                                 {"/api/draft/{id}/scene", 409},
                                                 {"/api/scenes/{id}", 409},
                                                 {"/api/scenes/{id}/bundle", 409},
+                                                {"/api/jobs", 409},
+                                                {"/api/jobs/form/{id}", 409},
+                                                {"/api/jobs/estimate/{id}", 409},
+                                                {"/api/jobs/cases", 409},
+                                                {"/api/jobs/{id}", 409},
+                                                {"/api/jobs/{id}/cancel", 409},
+                                                {"/api/jobs/{id}/resume", 409},
+                                                {"/api/reports/{ticket}", 404},
                                                 {"/api/quit", 409}};  // this server has no start page
     for (const serve::Route& route : server_->routes()) {
         SCOPED_TRACE(route.method + " " + route.pattern);

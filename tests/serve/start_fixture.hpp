@@ -34,7 +34,7 @@ class StartPage : public ::testing::Test {
         options.export_folder = scene_.folder() / "exports";
         auto server = serve::Server::listen(std::move(options));
         ASSERT_TRUE(server) << server.error().message;
-        (*server)->start({folder(), file, [this] { quit_ = true; }, limits_});
+        (*server)->start({folder(), file, [this] { quit_ = true; }, limits_, program_});
         server_ = std::move(*server);
     }
     [[nodiscard]] std::filesystem::path folder() const { return scene_.folder() / "data"; }
@@ -60,6 +60,7 @@ class StartPage : public ::testing::Test {
     SmallScene scene_;
     bool quit_ = false;
     serve::UploadLimits limits_;
+    std::filesystem::path program_;  ///< for jobs
     std::unique_ptr<serve::Server> server_;
 };
 

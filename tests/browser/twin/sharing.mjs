@@ -1,6 +1,17 @@
 // Several people in one session, breaks of the connection, sizes of the window, keyboard and names of controls.
 import { testPhone } from "./phone.mjs";
 import { assert, shownTime, until, viewClip } from "./harness.mjs";
+import jsQR from "jsqr";
+
+/** The colours of a PNG file, decoded by the browser. */
+const pixels = (page, png) => page.evaluate(async (content) => {
+  const image = new Image();
+  image.src = `data:image/png;base64,${content}`;
+  await image.decode();
+  const canvas = new OffscreenCanvas(image.width, image.height).getContext("2d");
+  canvas.drawImage(image, 0, 0);
+  return { data: [...canvas.getImageData(0, 0, image.width, image.height).data], width: image.width, height: image.height };
+}, png.toString("base64"));
 
 export async function testSharing(run) {
   const server = await run.start();
@@ -86,6 +97,8 @@ export async function testSharing(run) {
     assert.ok(url.endsWith(`/#token=${server.viewerToken}`) && !url.includes("127.0.0.1"), url);
     await ada.locator(".beyond button").scrollIntoViewIfNeeded();
     await run.shot(ada, "16-beyond");
+    const seen = await pixels(ada, await ada.locator(".qr svg").screenshot());
+    assert.equal(jsQR(Uint8ClampedArray.from(seen.data), seen.width, seen.height)?.data, url, "what a phone's camera reads");
     const context = await run.browser.newContext();
     const eve = await context.newPage();
     await eve.goto(url);

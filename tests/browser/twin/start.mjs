@@ -113,6 +113,70 @@ export async function testStart(run) {
     assert.equal(file.suggestedFilename(), "west-slope.zip");
   });
 
+  await run.check("an ensemble is started on the page, told before and while it runs, reported, and shown on its scene", async () => {
+    await page.goto(`http://127.0.0.1:${server.port}/#start`);
+    await page.locator(".start-list").first().waitFor();
+    await page.click("[aria-label='Ensemble or calibration of west slope']");
+    assert.equal(await page.locator("[aria-label=Scene]").evaluate((e) => e.selectedOptions[0].textContent), "west slope");
+    await page.locator("[data-free='release.volume_m3']").waitFor();
+    assert.deepEqual([await page.inputValue("[aria-label='Lowest release volume']"), await page.inputValue("[aria-label='Highest release volume']")], ["375", "625"]);
+    await page.locator(".job-time >> text=/64 runs with .* particles: about .* on this computer/").waitFor();
+    await page.fill("[aria-label='Lowest friction coefficient']", "0.5");
+    await page.fill("[aria-label='Highest friction coefficient']", "0.3");
+    await page.click(".new-job >> text=Start");
+    await page.locator(".field-note >> text=0.5 must be below 0.3").waitFor();
+    await page.fill("[aria-label='Lowest friction coefficient']", "0.2");
+    await page.fill("[aria-label='Number of runs']", "3");
+    await page.screenshot({ path: join(run.output, "new-job.png"), fullPage: true });
+    await page.click(".new-job >> text=Start");
+    const job = page.locator("[data-job=ensemble-1]");
+    await job.waitFor();
+    await page.locator("[data-job=ensemble-1][data-state=done]").waitFor();
+    assert.match(await job.textContent(), /Ensemble · west slope\s*3 runs/);
+    await job.locator("summary").click();
+    assert.match(await job.textContent(), /talus ensemble .*west-slope.scene\.toml --vary .*--runs 3 --design latin_hypercube --output .*ensemble-1/);
+    const [report] = await Promise.all([context.waitForEvent("page"), job.getByText("Report").click()]);
+    await report.locator("h1").waitFor();
+    assert.match(await report.textContent("body"), /3 runs|3 of 3/);
+    await report.close();
+    await page.screenshot({ path: join(run.output, "jobs-1440.png"), fullPage: true });
+    await job.getByText("Show on the scene").click();
+    await page.click("dialog .primary");
+    await page.waitForFunction(() => location.hash === "" && document.querySelector(".transport"));
+    await until(() => ask("ensembles"), ({ ensembles }) => ensembles?.length === 1 && ensembles[0].runs === 3, "the ensemble is among the maps");
+  });
+
+  await run.check("a calibration and a validation are started, one waits for the other, both are cancelled, and one is deleted", async () => {
+    await page.goto(`http://127.0.0.1:${server.port}/#start`);
+    await page.locator(".start-list").first().waitFor();
+    await page.click("text=New job");
+    await page.selectOption("[aria-label=Scene]", { label: "west slope" });
+    await page.click(".new-job >> text=Calibration");
+    await page.locator(".new-job >> text=no field observations").waitFor();
+    assert.ok(await page.isDisabled(".new-job .primary"), "there is nothing to calibrate against");
+    await page.selectOption("[aria-label=Scene]", "sham_tseng");
+    await page.locator(".new-job >> text=/Observed: Front velocity/").waitFor();
+    await page.click(".new-job .primary");
+    await page.locator("[data-job=calibration-1][data-state=running]").waitFor();
+    await page.click("text=New job");
+    await page.click(".new-job >> text=Validation");
+    await page.locator(".job-time >> text=about 40 minutes").waitFor();
+    await page.click(".new-job >> text=Chosen cases");
+    await page.locator("[data-case=free_fall]").check();
+    await page.click(".new-job .primary");
+    const waiting = page.locator("[data-job=validation-1]");
+    await waiting.locator("text=Waits for the job before it").waitFor();
+    await page.click("[data-job=calibration-1] >> text=Cancel");
+    await page.locator("[data-job=calibration-1][data-state=cancelled]").waitFor();
+    await page.locator("[data-job=validation-1][data-state=done]").waitFor();
+    assert.match(await waiting.textContent(), /values pass, 0 fail/);
+    await waiting.locator("[aria-label^=Delete]").click();
+    await page.click("dialog .primary");
+    await until(() => waiting.count(), (n) => n === 0, "the validation is gone");
+    assert.ok(!existsSync(join(folder, "jobs", "validation-1")));
+    assert.ok(existsSync(join(folder, "jobs", "calibration-1")));
+  });
+
   await run.check("on a phone nothing is wider than the screen, a viewer sees no files, and talus is ended on the page", async () => {
     const eye = await context.newPage();
     await eye.goto(`${server.viewer.replace("#", "?watch#")}`);
@@ -121,7 +185,7 @@ export async function testStart(run) {
     await eye.close();
     await page.setViewportSize({ width: 390, height: 844 });
     await page.goto(`http://127.0.0.1:${server.port}/#start`);  // the page loads itself anew
-    await page.locator(".start-list").first().waitFor();
+    await page.locator("[data-job=ensemble-1]").waitFor();
     assert.ok(await page.evaluate(() => [...document.querySelectorAll("button, p, h1, li")].every((e) => e.getBoundingClientRect().right <= innerWidth + 1)), "nothing is cut off");
     await page.screenshot({ path: join(run.output, "start-390.png") });
     await page.click("text=End talus");

@@ -1,29 +1,14 @@
 // Calibration: finds the values that explain the field observations, while the live run continues.
-import type { CalibrationStatus, Parameter } from "../protocol/messages";
+import type { CalibrationStatus } from "../protocol/messages";
 import { watchAll } from "../state/cell";
 import { number, quantity, unitText } from "../state/format";
-import { firstRange, freeAtFirst, progressText, rangeProblem } from "../state/misfit";
+import { freeAtFirst, progressText } from "../state/misfit";
 import type { Twin } from "../state/twin";
-import { button, freshId, h } from "../ui/dom";
+import { button, h } from "../ui/dom";
+import { capital, rangeRow, rangesOf } from "../ui/range_row";
 import { MisfitMap } from "./misfit_map";
 
 const usualRuns = 40;
-const capital = (text: string): string => text.charAt(0).toUpperCase() + text.slice(1);
-
-/** A parameter that can be free, with its range. */
-interface Choice { parameter: Parameter; element: HTMLElement; free: HTMLInputElement; ends: [HTMLInputElement, HTMLInputElement] }
-
-function choiceOf(twin: Twin, parameter: Parameter): Choice {
-  const id = freshId("free");
-  const [low, high] = firstRange(parameter, twin.now.setup.value?.parameters[parameter.key] ?? null);
-  const end = (what: string, value: number): HTMLInputElement => h("input", { type: "number", step: "any", value, "aria-label": `${capital(what)} ${parameter.label}`, title: `${capital(what)} value that is tried` });
-  const ends: [HTMLInputElement, HTMLInputElement] = [end("lowest", low), end("highest", high)];
-  const free = h("input", { type: "checkbox", id, "data-free": parameter.key });
-  free.checked = freeAtFirst.includes(parameter.key);
-  const element = h("div", { class: "free" }, free, h("label", { for: id, title: parameter.help }, capital(parameter.label)), ends[0], h("span", { class: "muted" }, "to"), ends[1],
-    h("span", { class: "unit muted" }, unitText(parameter.unit)));
-  return { parameter, element, free, ends };
-}
 
 function observationTable(status: CalibrationStatus): HTMLElement {
   const ran = status.observations.some((o) => o.best !== null || o.deviation !== null);
@@ -59,7 +44,7 @@ function warnings(status: CalibrationStatus): HTMLElement | null {
 }
 
 export function calibratePanel(twin: Twin): HTMLElement {
-  const choices = twin.scene.parameters.map((p) => choiceOf(twin, p));
+  const choices = twin.scene.parameters.map((p) => rangeRow(p, twin.now.setup.value?.parameters[p.key] ?? null, freeAtFirst.includes(p.key)));
   const first = choices.filter((c) => c.free.checked);
   const others = choices.filter((c) => !c.free.checked);
   const runs = h("input", { type: "number", min: 8, max: 2000, step: 1, value: usualRuns, "aria-label": "Runs at most" });
@@ -67,11 +52,9 @@ export function calibratePanel(twin: Twin): HTMLElement {
   let successor: HTMLButtonElement | null = null;  // of a pressed button that disappears: it gets the keyboard focus
   const start = button("Start", { class: "primary", onclick: () => void begin() });
   const begin = async (): Promise<void> => {
-    const free = choices.filter((c) => c.free.checked);
-    const ranges = free.map((c) => ({ key: c.parameter.key, low: c.ends[0].valueAsNumber, high: c.ends[1].valueAsNumber }));
-    problem.textContent = free.map((c, i) => rangeProblem(c.parameter, ranges[i].low, ranges[i].high)).find((p) => p !== null)
-      ?? (free.length === 0 ? "Choose at least one free parameter." : "");
-    if (problem.textContent !== "") return;
+    const ranges = rangesOf(choices);
+    problem.textContent = typeof ranges === "string" ? ranges : "";
+    if (typeof ranges === "string") return;
     start.disabled = true;
     successor = cancel;
     if (!await twin.attempt(() => twin.api.calibrate(ranges, runs.valueAsNumber))) successor = null;

@@ -2,7 +2,7 @@
 import { decodeFrame, type Frame, type ScenarioName } from "./frame";
 import { decodeGrid, type Grid } from "./grid";
 import type { Action, Done, Ensemble, ExportFile, Figure, Impacts, LayerName, NewScenario, ProbeSeries, Recording, SceneInfo, Series, Session, Share, WantedShare } from "./messages";
-import type { Checked, Draft, DraftRole, MendingOfTerrain, StartPage, WantedScene } from "./start";
+import type { Checked, Draft, DraftRole, JobEstimate, JobForm, MendingOfTerrain, StartPage, ValidationCase, WantedJob, WantedScene } from "./start";
 
 /** The server's answer to a request that it refused. */
 export class Refused extends Error {
@@ -87,7 +87,7 @@ export class Api {
     void (await this.ask("POST", "calibration", { parameters, runs }));
   cancelCalibration = async (): Promise<void> => void (await this.ask("DELETE", "calibration"));
   start = (): Promise<StartPage> => this.json("start");
-  openScene = async (what: { scene?: string; session?: string; replace: boolean }): Promise<void> => void (await this.ask("POST", "open", what));
+  openScene = async (what: { scene?: string; session?: string; ensemble?: string; replace: boolean }): Promise<void> => void (await this.ask("POST", "open", what));
   cancelOpening = async (): Promise<void> => void (await this.ask("DELETE", "open"));
   forgetScene = async (id: string): Promise<void> => void (await this.ask("DELETE", `recent/${id}`));
   /** The open session, or the content of a file of one. */
@@ -105,6 +105,13 @@ export class Api {
   removeScene = async (id: string): Promise<void> => void (await this.ask("DELETE", `scenes/${id}`));
   /** A scene with all its files, as an archive. */
   sceneBundle = (id: string): Promise<Blob> => this.blob(`scenes/${id}/bundle`);
+  jobForm = (scene: string): Promise<JobForm> => this.json(`jobs/form/${scene}`);
+  jobEstimate = (scene: string): Promise<JobEstimate> => this.json(`jobs/estimate/${scene}`);
+  validationCases = async (): Promise<ValidationCase[]> => (await this.json<{ cases: ValidationCase[] }>("jobs/cases")).cases;
+  addJob = async (wanted: WantedJob): Promise<void> => void (await this.ask("POST", "jobs", wanted));
+  cancelJob = async (id: string): Promise<void> => void (await this.ask("POST", `jobs/${id}/cancel`));
+  resumeJob = async (id: string): Promise<void> => void (await this.ask("POST", `jobs/${id}/resume`));
+  removeJob = async (id: string): Promise<void> => void (await this.ask("DELETE", `jobs/${id}`));
   sessionFile = (): Promise<Blob> => this.blob("session/file");
   shared = (): Promise<Share> => this.json("share");
   share = async (wanted: WantedShare): Promise<Share> => (await (await this.ask("POST", "share", wanted)).json()) as Share;

@@ -1,4 +1,6 @@
 // What the start page and the server tell each other: docs/protocol.md, "The start page".
+import type { Parameter } from "./messages";
+
 export interface KnownScene {
   id: string;
   title: string;
@@ -31,6 +33,41 @@ export interface Draft {
 export interface Checked { summary: string; notes: string[]; created: string | null }
 export interface WantedScene { title: string; thickness_m: number | null; volume_m3: number | null; scar: [number, number][] | null; check?: boolean }
 
+export type JobKind = "ensemble" | "calibration" | "validation";
+/** An ensemble, a calibration or a validation in a process of its own. */
+export interface Job {
+  id: string;
+  kind: JobKind;
+  state: "waiting" | "running" | "cancelling" | "done" | "cancelled" | "interrupted" | "failed";
+  title: string;
+  message: string;
+  begun_at: string;
+  ended_at: string | null;
+  /** Runs, or cases of a validation. */
+  done: number;
+  failed: number;
+  count: number;
+  wall_remaining_s: number | null;
+  command: string;
+  folder: string;
+  report: string | null;
+}
+/** What a job of a scene may vary. */
+export interface JobForm {
+  title: string;
+  parameters: Parameter[];
+  observations: string[];
+  limits: { runs: number; ensemble_factors: number; calibration_factors: number };
+}
+/** Of one run on all cores. */
+export interface JobEstimate { run_s: number | null; particles: number; memory_bytes: number; cores: number }
+export interface ValidationCase { name: string; title: string; quick: boolean }
+export interface Range { key: string; low: number; high: number }
+export type WantedJob =
+  | { kind: "ensemble"; scene: string; factors: Range[]; runs: number; design: string }
+  | { kind: "calibration"; scene: string; factors: Range[]; runs: number }
+  | { kind: "validation"; quick?: boolean; cases?: string[] };
+
 export interface StartPage {
   /** False: a server of one scene, which has nothing of the following. */
   available: boolean;
@@ -48,4 +85,6 @@ export interface StartPage {
   uploads?: UploadLimits;
   scenes?: KnownScene[];
   sessions?: SavedSession[];
+  /** Newest first; null: there are none on this server. */
+  jobs?: Job[] | null;
 }

@@ -2,11 +2,13 @@
 import "../style/start.css";
 import mark from "../style/mark.svg";
 import { Refused, type Api } from "../protocol/api";
-import type { KnownScene, SavedSession, StartPage } from "../protocol/start";
+import type { Job, KnownScene, SavedSession, StartPage } from "../protocol/start";
 import { askFor } from "../ui/dialog";
 import { button, h, icon } from "../ui/dom";
 import { save } from "../ui/save";
 import { Toasts } from "../ui/toast";
+import { JobList } from "./job_list";
+import { NewJob } from "./new_job";
 import { NewScene } from "./new_scene";
 
 const opening_ms = 250;
@@ -37,6 +39,12 @@ class Start {
   private readonly making = h("div", {});
   private readonly back = h("div", { class: "start-back" });
   private readonly foot = h("footer", { class: "start-foot muted" });
+  private readonly jobs = new JobList({
+    cancel: (job) => void this.attempt(() => this.api.cancelJob(job.id)),
+    resume: (job) => void this.attempt(() => this.api.resumeJob(job.id)),
+    remove: (job) => void this.removeJob(job),
+    open: (job) => void this.open({ ensemble: job.id }, job.title),
+  });
   /** What the lists show, as text: they are made again only if it is another. */
   private told = "";
 
@@ -82,7 +90,8 @@ class Start {
     } else if (next.error !== null && next.error !== "cancelled") {
       this.state.replaceChildren(h("div", { class: "card bad", role: "alert" }, h("b", {}, "That could not be opened"), h("p", {}, next.error)));
     } else this.state.replaceChildren();
-    const told = JSON.stringify([next.open, next.scenes, next.sessions, busy]);
+    this.jobs.show(next.jobs ?? []);
+    const told = JSON.stringify([next.open, next.scenes, next.sessions, busy, next.jobs?.length ?? null]);
     if (told === this.told) return;
     this.told = told;
     this.back.replaceChildren(next.open ? button(`Back to ${next.open.title}`, { icon: "run", class: "primary", onclick: toTwin }) : "");
@@ -90,7 +99,7 @@ class Start {
       this.lists.replaceChildren(h("p", { class: "empty" }, next.open ? "You can watch the session that is open." : "No scene is open yet. The session appears here by itself."));
       return;
     }
-    this.lists.replaceChildren(this.scenes(next.scenes ?? [], busy), this.sessions(next.sessions ?? [], busy));
+    this.lists.replaceChildren(this.scenes(next.scenes ?? [], busy), this.sessions(next.sessions ?? [], busy), ...(next.jobs ? [this.jobSection(next.jobs)] : []));
     this.foot.replaceChildren(h("span", {}, `${next.program} · kept in ${next.folder ?? ""}`),
       button("End talus", { class: "quiet", onclick: () => void this.quit() }));
   }
@@ -106,9 +115,29 @@ class Start {
         const forget = scene.kind === "recent" ? button(`Take ${scene.title} off this list`, { icon: "close", bare: true, class: "bare quiet", onclick: () => void this.attempt(() => this.api.forgetScene(scene.id)) }) : null;
         const name = scene.title || "this scene";
         const fetch = scene.missing ? null : button(`Download ${name} with all its files`, { icon: "download", bare: true, class: "bare quiet", onclick: () => void this.attempt(async () => save(`${fileName(name)}.zip`, await this.api.sceneBundle(scene.id))) });
+        const compute = scene.missing || !this.now.jobs ? null : button(`Ensemble or calibration of ${name}`, { icon: "bars", bare: true, class: "bare quiet", onclick: () => this.makeJob(scene.id) });
         const remove = scene.kind === "own" ? button(`Delete ${name}`, { icon: "remove", bare: true, class: "bare quiet", onclick: () => void this.removeScene(scene) }) : null;
-        return h("li", {}, open, fetch, remove, forget);
+        return h("li", {}, open, compute, fetch, remove, forget);
       })));
+  }
+
+  private jobSection(jobs: Job[]): HTMLElement {
+    return h("section", { "aria-labelledby": "start-jobs" },
+      h("div", { class: "start-title" }, h("h2", { id: "start-jobs" }, "Ensembles, calibrations, validation"), button("New job", { icon: "plus", onclick: () => this.makeJob(null) })),
+      jobs.length === 0 ? h("p", { class: "empty" }, "Many runs of a scene, in processes of their own, one job at a time. What is finished stays here.") : null, this.jobs.list);
+  }
+  private makeJob(scene: string | null): void {
+    const made = new NewJob(this.api, this.now.scenes ?? [], scene, () => {
+      this.making.replaceChildren();
+      this.lists.hidden = false;
+      void this.api.start().then((next) => this.show(next), () => undefined);
+    });
+    this.making.replaceChildren(made.element);
+    this.lists.hidden = true;
+  }
+  private async removeJob(job: Job): Promise<void> {
+    const answer = await askFor(`Delete this ${job.kind}?`, [`Its results are deleted: ${job.folder}`], [["remove", "Delete it"]] as const);
+    if (answer !== null) await this.attempt(() => this.api.removeJob(job.id));
   }
 
   private sessions(list: SavedSession[], busy: boolean): HTMLElement {
@@ -123,7 +152,7 @@ class Start {
         button(`Remove ${saved.name}`, { icon: "remove", bare: true, class: "bare quiet", onclick: () => void this.remove(saved) })))));
   }
 
-  private async open(what: { scene: string } | { session: string }, name: string): Promise<void> {
+  private async open(what: { scene: string } | { session: string } | { ensemble: string }, name: string): Promise<void> {
     if (this.now.open) {
       const answer = await askFor(`Open ${name}?`, [`“${this.now.open.title}” is open. It ends for everybody who watches it, and what is not saved is lost.`], [["open", "End it and open this"]] as const);
       if (answer === null) return;

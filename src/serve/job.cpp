@@ -1,0 +1,279 @@
+#include "serve/job.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <iterator>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "core/try.hpp"
+#include "serve/json_text.hpp"
+#include "twin/json_keys.hpp"
+#include "validate/suite.hpp"
+
+namespace talus::serve {
+namespace {
+
+using nlohmann::json;
+
+constexpr std::array kind_names = {"ensemble", "calibration", "validation"};
+constexpr std::array state_names = {"waiting", "running", "cancelling", "done", "cancelled", "interrupted", "failed"};
+constexpr std::size_t most_cases = 200;
+
+/// Position of a name in a list of names.
+template <class Names>
+std::optional<std::size_t> position(const Names& names, const std::string& name) {
+    const auto found = std::find(names.begin(), names.end(), name);
+    if (found == names.end()) return {};
+    return static_cast<std::size_t>(std::distance(names.begin(), found));
+}
+
+Result<std::string> name_in(const json& body, const char* key) {
+    const auto found = body.find(key);
+    if (found == body.end() || !found->is_string() || found->get_ref<const std::string&>().empty()) {
+        return Error{fmt::format("{}: is needed, a name", key)};
+    }
+    return found->get<std::string>();
+}
+
+/// "material.viscosity=0.01:0.6", of an entry of "factors".
+Result<std::string> read_factor(const json& entry) {
+    if (!entry.is_object()) return Error{"factors: each is an object with key, low and high"};
+    TALUS_TRY(twin::check_keys(entry, {"key", "low", "high"}));
+    TALUS_ASSIGN(const std::string key, name_in(entry, "key"));
+    const bool plain = std::all_of(key.begin(), key.end(), [](unsigned char c) {
+        return std::isalnum(c) != 0 || c == '_' || c == '.' || c == '[' || c == ']';
+    });
+    if (!plain) return Error{fmt::format("key = {}: is no key of a scene", twin::shown(entry["key"]))};
+    const auto number = [&](const char* name) {
+        const auto found = entry.find(name);
+        return found != entry.end() && found->is_number() ? found->get<double>() : std::nan("");
+    };
+    const double low = number("low"), high = number("high");
+    if (!std::isfinite(low) || !std::isfinite(high) || !(low < high)) {
+        return Error{fmt::format("{}: low and high must be numbers, low below high", key)};
+    }
+    return fmt::format("{}={:.9g}:{:.9g}", key, low, high);
+}
+
+Status read_factors(const json& body, std::size_t most, WantedJob& wanted) {
+    const auto list = body.find("factors");
+    if (list == body.end() || !list->is_array() || list->empty() || list->size() > most) {
+        return Error{fmt::format("factors: must be a list of 1 to {}, each with key, low and high", most)};
+    }
+    for (const json& entry : *list) {
+        TALUS_ASSIGN(const std::string factor, read_factor(entry));
+        TALUS_TRY(add_factor(wanted.ensemble, factor));
+        wanted.factors.push_back(factor);
+    }
+    if (wanted.ensemble.factors.size() < wanted.factors.size()) return Error{"factors: a key is given twice"};
+    return {};
+}
+
+Result<std::size_t> read_runs(const json& body, std::size_t usual) {
+    const auto runs = body.find("runs");
+    if (runs == body.end()) return usual;
+    if (!runs->is_number_unsigned() || runs->get<std::uint64_t>() < 1 || runs->get<std::uint64_t>() > JobLimits::runs) {
+        return Error{
+            fmt::format("runs = {}: must be a whole number from 1 to {}", twin::shown(*runs), JobLimits::runs)};
+    }
+    return runs->get<std::size_t>();
+}
+
+Status read_design(const json& body, ensemble::EnsemblePlan& plan) {
+    if (!body.contains("design")) return {};
+    TALUS_ASSIGN(const std::string name, name_in(body, "design"));
+    const auto design = stats::design_of(name);
+    if (!design || *design == stats::DesignKind::grid) {
+        return Error{fmt::format("design = {}: must be one of {}, but grid", twin::shown(body["design"]),
+                                 fmt::join(stats::design_names(), ", "))};
+    }
+    plan.design = *design;
+    return {};
+}
+
+Status read_cases(const json& body, WantedJob& wanted) {
+    if (const auto quick = body.find("quick"); quick != body.end()) {
+        if (!quick->is_boolean()) return Error{"quick: is true or false"};
+        wanted.quick = quick->get<bool>();
+    }
+    const auto list = body.find("cases");
+    if (list == body.end()) return {};
+    if (!list->is_array() || list->size() > most_cases) {
+        return Error{fmt::format("cases: must be a list of up to {} names", most_cases)};
+    }
+    const std::vector<std::string> known = validate::builtin_case_names();
+    for (const json& name : *list) {
+        if (!name.is_string() || !position(known, name.get<std::string>()))
+            return Error{fmt::format("cases: {} is no case of the program", twin::shown(name))};
+        wanted.cases.push_back(name.get<std::string>());
+    }
+    return {};
+}
+
+/// For a shell: only what needs quotes has them.
+std::string quoted(const std::string& word) {
+    const bool plain = !word.empty() && std::all_of(word.begin(), word.end(), [](unsigned char c) {
+        return std::isalnum(c) != 0 || std::string_view("_-./=:,+@%").find(static_cast<char>(c)) != std::string::npos;
+    });
+    if (plain) return word;
+    std::string text = "'";
+    for (const char c : word) text += c == '\'' ? std::string("'\\''") : std::string(1, c);
+    return text + "'";
+}
+
+}  // namespace
+
+const char* job_kind_name(JobKind kind) {
+    return kind_names[static_cast<std::size_t>(kind)];
+}
+
+const char* job_state_name(JobState state) {
+    return state_names[static_cast<std::size_t>(state)];
+}
+
+bool is_open(JobState state) {
+    return state == JobState::waiting || state == JobState::running || state == JobState::cancelling;
+}
+
+Result<WantedJob> read_wanted_job(const json& body) {
+    WantedJob wanted;
+    if (!body.is_object()) return Error{"the body is an object with kind"};
+    TALUS_ASSIGN(const std::string kind, name_in(body, "kind"));
+    const auto known = position(kind_names, kind);
+    if (!known) {
+        return Error{fmt::format("kind = {}: must be ensemble, calibration or validation", twin::shown(body["kind"]))};
+    }
+    wanted.kind = static_cast<JobKind>(*known);
+    if (wanted.kind == JobKind::validation) {
+        TALUS_TRY(twin::check_keys(body, {"kind", "quick", "cases"}));
+        TALUS_TRY(read_cases(body, wanted));
+        return Result<WantedJob>(std::move(wanted));
+    }
+    const bool calibration = wanted.kind == JobKind::calibration;
+    TALUS_TRY(calibration ? twin::check_keys(body, {"kind", "scene", "factors", "runs"})
+                          : twin::check_keys(body, {"kind", "scene", "factors", "runs", "design"}));
+    TALUS_ASSIGN(wanted.scene, name_in(body, "scene"));
+    TALUS_TRY(read_factors(body, calibration ? JobLimits::calibration_factors : JobLimits::ensemble_factors, wanted));
+    wanted.calibration.factors = wanted.ensemble.factors;
+    TALUS_ASSIGN(wanted.ensemble.runs, read_runs(body, wanted.ensemble.runs));
+    TALUS_ASSIGN(wanted.calibration.search.runs, read_runs(body, wanted.calibration.search.runs));
+    TALUS_TRY(read_design(body, wanted.ensemble));
+    return Result<WantedJob>(std::move(wanted));
+}
+
+std::vector<std::string> arguments_of(const WantedJob& wanted, const std::filesystem::path& scene,
+                                      const std::filesystem::path& folder) {
+    std::vector<std::string> words;
+    if (wanted.kind == JobKind::validation) {
+        words = {"validate"};
+        words.insert(words.end(), wanted.cases.begin(), wanted.cases.end());
+        if (wanted.quick) words.emplace_back("--quick");
+        for (const auto& [option, file] :
+             {std::pair{"--html", report_of(wanted.kind)}, {"--results", "results.json"}, {"--json", "table.json"}}) {
+            words.insert(words.end(), {option, (folder / file).string()});
+        }
+        words.emplace_back("--known");
+        return words;
+    }
+    words = {wanted.kind == JobKind::ensemble ? "ensemble" : "calibrate"};
+    if (!scene.empty()) words.push_back(scene.string());
+    for (const std::string& factor : wanted.factors) words.insert(words.end(), {"--vary", factor});
+    if (wanted.kind == JobKind::ensemble) {
+        words.insert(words.end(), {"--runs", std::to_string(wanted.ensemble.runs)});
+        words.insert(words.end(), {"--design", stats::design_name(wanted.ensemble.design)});
+    } else {
+        words.insert(words.end(), {"--runs", std::to_string(wanted.calibration.search.runs)});
+    }
+    words.insert(words.end(), {"--output", folder.string()});
+    return words;
+}
+
+std::string command_text(const std::vector<std::string>& arguments) {
+    std::string text = "talus";
+    for (const std::string& word : arguments) text += " " + quoted(word);
+    return text;
+}
+
+void take_progress(Job& job, const json& event) {
+    const auto count_of = [&](const char* key, std::size_t& to) {
+        const auto found = event.find(key);
+        if (found != event.end() && found->is_number_unsigned()) to = found->get<std::size_t>();
+    };
+    const json kind = event.is_object() ? event.value("event", json()) : json();
+    if (kind == "progress") {
+        for (const char* key : {"runs_done", "cases_done"}) count_of(key, job.done);
+        count_of("runs_failed", job.failed);
+        for (const char* key : {"runs", "runs_at_most", "cases"}) count_of(key, job.count);
+        const auto left = event.find("wall_remaining_s");
+        job.wall_remaining =
+            left != event.end() && left->is_number() ? std::optional(left->get<double>()) : std::nullopt;
+    } else if (kind == "result" && job.kind != JobKind::validation) {
+        count_of("complete", job.done);
+        count_of("failed", job.failed);
+        if (const auto failed = event.find("failed"); failed != event.end() && failed->is_array()) {
+            job.failed = failed->size();
+        }
+    } else if (kind == "result") {
+        std::size_t passed = 0, failed = 0, announced = 0, skipped = 0;
+        count_of("passed", passed);
+        count_of("failed", failed);
+        count_of("known_failures", announced);
+        count_of("skipped_cases", skipped);
+        job.message = fmt::format("{} values pass, {} fail, {} fail as announced", passed, failed, announced);
+        if (skipped > 0) job.message += fmt::format("; {} cases were skipped, their data are missing", skipped);
+    }
+}
+
+const char* report_of(JobKind kind) {
+    return kind == JobKind::validation ? "validation.html" : "report.html";
+}
+
+std::string job_text(const Job& job) {
+    return to_text({{"talus_job", 1},
+                    {"id", job.id},
+                    {"kind", job_kind_name(job.kind)},
+                    {"state", job_state_name(job.state)},
+                    {"title", job.title},
+                    {"scene", job.scene},
+                    {"arguments", job.arguments},
+                    {"message", job.message},
+                    {"begun_at", job.begun_at},
+                    {"ended_at", job.ended_at},
+                    {"process", job.process},
+                    {"done", job.done},
+                    {"failed", job.failed},
+                    {"count", job.count}}) +
+           "\n";
+}
+
+Result<Job> read_job(const std::string& text) {
+    TALUS_ASSIGN(const json file, parse_json(text));
+    if (!file.is_object() || file.value("talus_job", json()) != 1) return Error{"this is no job of a start page"};
+    try {
+        Job job;
+        const auto kind = position(kind_names, file.at("kind").get<std::string>());
+        const auto state = position(state_names, file.at("state").get<std::string>());
+        if (!kind || !state) return Error{"this is a job of another version"};
+        job.kind = static_cast<JobKind>(*kind);
+        job.state = static_cast<JobState>(*state);
+        file.at("id").get_to(job.id);
+        file.at("title").get_to(job.title);
+        file.at("scene").get_to(job.scene);
+        file.at("arguments").get_to(job.arguments);
+        file.at("message").get_to(job.message);
+        file.at("begun_at").get_to(job.begun_at);
+        file.at("ended_at").get_to(job.ended_at);
+        file.at("process").get_to(job.process);
+        file.at("done").get_to(job.done);
+        file.at("failed").get_to(job.failed);
+        file.at("count").get_to(job.count);
+        return Result<Job>(std::move(job));
+    } catch (const json::exception&) {
+        return Error{"this is a job of another version"};
+    }
+}
+
+}  // namespace talus::serve

@@ -1,0 +1,189 @@
+#include "serve/job_forms.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <thread>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "core/number_or_null.hpp"
+#include "core/temporary_folder.hpp"
+#include "core/try.hpp"
+#include "ensemble/predict.hpp"
+#include "params/fields.hpp"
+#include "run/cost.hpp"
+#include "scene/builtin.hpp"
+#include "scene/particle_spacing.hpp"
+#include "twin/setup.hpp"
+#include "validate/suite.hpp"
+
+namespace talus::serve {
+namespace {
+
+using nlohmann::json;
+namespace fs = std::filesystem;
+
+/// A scene as a command loads it, and where from.
+struct Loaded {
+    TemporaryFolder folder;  // of the built-in one
+    run::SceneSource source;
+    scene::Scene scene;
+};
+
+Result<std::unique_ptr<Loaded>> load(const KnownScene& known) {
+    auto loaded = std::make_unique<Loaded>();
+    fs::path file = known.file;
+    if (file.empty()) {
+        if (loaded->folder.path().empty()) return Error{"cannot make a temporary folder; set TMPDIR"};
+        TALUS_ASSIGN(file, scene::unpack_builtin_scene(loaded->folder.path()));
+    }
+    TALUS_ASSIGN(loaded->scene, scene::load_scene(file));
+    loaded->source.file = file;
+    return Result<std::unique_ptr<Loaded>>(std::move(loaded));
+}
+
+json parameter_json(const params::Parameter& parameter, const std::string& key, const std::string& label,
+                    std::optional<double> value) {
+    const params::Range& range = parameter.range;
+    return {{"key", key},
+            {"label", label},
+            {"unit", parameter.unit},
+            {"default", value ? json(*value) : json()},
+            {"value", value ? json(*value) : json()},
+            {"range",
+             {{"low", number_or_null<json>(range.low)},
+              {"high", number_or_null<json>(range.high)},
+              {"low_included", range.low_included},
+              {"high_included", range.high_included}}},
+            {"help", parameter.help}};
+}
+
+void add_material(const params::SceneSpec& spec, json& list) {
+    for (const params::Parameter* parameter : twin::live_parameters()) {
+        const double value = twin::value_in_force(spec.material, *parameter, 0);
+        list.push_back(parameter_json(*parameter, "material." + parameter->key, twin::label_of(*parameter),
+                                      std::isfinite(value) ? std::optional(value) : std::nullopt));
+    }
+}
+
+/// Thickness or volume, whichever the scene gives.
+void add_releases(const params::SceneSpec& spec, json& list) {
+    const params::Section& section = *params::find_section("release");
+    for (std::size_t i = 0; i < spec.releases.size(); ++i) {
+        const params::ReleaseSpec& release = spec.releases[i];
+        const bool alone = spec.releases.size() == 1;
+        for (const auto& [key, value] : {std::pair{"thickness_m", release.thickness}, {"volume_m3", release.volume}}) {
+            if (!value) continue;
+            const params::Parameter& parameter = *section.find(key);
+            std::string label = "release " + twin::label_of(parameter);
+            if (!alone) label += " of " + (release.name.empty() ? fmt::format("{}", i + 1) : release.name);
+            list.push_back(parameter_json(
+                parameter, alone ? fmt::format("release.{}", key) : fmt::format("release[{}].{}", i, key), label,
+                value));
+        }
+    }
+}
+
+json form_json(const scene::Scene& scene) {
+    json parameters = json::array(), observations = json::array();
+    add_material(scene.spec, parameters);
+    add_releases(scene.spec, parameters);
+    for (const ensemble::ObservedValue& observed : ensemble::observed_values(scene)) {
+        observations.push_back(observed.name);
+    }
+    return {{"title", scene.spec.scene.title},
+            {"parameters", parameters},
+            {"observations", observations},
+            {"limits",
+             {{"runs", JobLimits::runs},
+              {"ensemble_factors", JobLimits::ensemble_factors},
+              {"calibration_factors", JobLimits::calibration_factors}}}};
+}
+
+/// Of one run on all cores: as many runs on one core each, side by side, take together not longer than one by one.
+json estimate_json(const scene::Scene& scene, const run::Rehearsal& rehearsal) {
+    const run::Cost cost = cost_of(scene, rehearsal, particle_spacing(scene));
+    return {{"run_s", number_or_null<json>(cost.seeding_time + cost.wall_time)},
+            {"particles", std::llround(cost.particles)},
+            {"memory_bytes", std::llround(cost.memory)},
+            {"cores", std::max(1U, std::thread::hardware_concurrency())}};
+}
+
+Result<json> cases_json() {
+    const TemporaryFolder unpacked;
+    if (unpacked.path().empty()) return Error{"cannot make a temporary folder; set TMPDIR"};
+    TALUS_ASSIGN(const fs::path folder, validate::unpack_builtin_cases(unpacked.path()));
+    json list = json::array();
+    for (const std::string& name : validate::builtin_case_names()) {
+        TALUS_ASSIGN(const validate::Case loaded, validate::load_case(folder / name));
+        list.push_back({{"name", name}, {"title", loaded.title}, {"quick", loaded.quick}});
+    }
+    return json{{"cases", list}};
+}
+
+Response of(const Result<json>& content, int refused) {
+    return content ? json_response(200, *content) : error_response(refused, content.error().message);
+}
+
+}  // namespace
+
+JobForms::~JobForms() {
+    ++asked_;
+    worker_.reset();
+}
+
+void JobForms::describe(const KnownScene& scene, const Respond& respond) {
+    worker_->post([scene, respond] {
+        const auto loaded = load(scene);
+        if (!loaded) return respond(error_response(409, loaded.error().message));
+        respond(json_response(200, form_json((*loaded)->scene)));
+    });
+}
+
+void JobForms::estimate(const KnownScene& scene, const Respond& respond) {
+    worker_->post([this, scene, respond, asked = ++asked_] {
+        const auto estimated = [&]() -> Result<json> {
+            if (asked != asked_) return Error{"another estimate was asked for"};
+            TALUS_ASSIGN(const auto loaded, load(scene));
+            if (loaded->scene.spec.solver.model != params::ModelChoice::particles) {
+                return Error{"there is no estimate for the depth-averaged model"};
+            }
+            std::atomic<bool> stop{false};
+            // Looks at the counter for as long as it takes.
+            std::jthread look([&](const std::stop_token& over) {
+                while (!over.stop_requested() && asked == asked_) {
+                    std::this_thread::sleep_for(std::chrono::milliseconds(50));
+                }
+                stop = asked != asked_;
+            });
+            TALUS_ASSIGN(const auto rehearsal, run::rehearse(loaded->scene, particle_spacing(loaded->scene), stop));
+            if (asked != asked_) return Error{"another estimate was asked for"};
+            return estimate_json(loaded->scene, rehearsal);
+        }();
+        respond(of(estimated, 409));
+    });
+}
+
+void JobForms::cases(const Respond& respond) {
+    worker_->post([respond] { respond(of(cases_json(), 500)); });
+}
+
+void JobForms::check(const WantedJob& wanted, const KnownScene& scene, const Respond& respond,
+                     std::function<void()> then) {
+    worker_->post([wanted, scene, respond, then = std::move(then)] {
+        const auto checked = [&]() -> Status {
+            TALUS_ASSIGN(const auto loaded, load(scene));
+            if (wanted.kind == JobKind::ensemble) {
+                TALUS_TRY(ensemble::PlannedRuns::make(wanted.ensemble, loaded->source, loaded->scene));
+            } else {
+                TALUS_TRY(calibrate::plan_calibration(wanted.calibration, loaded->source, loaded->scene));
+            }
+            return {};
+        }();
+        if (!checked) return respond(error_response(400, checked.error().message));
+        then();
+    });
+}
+
+}  // namespace talus::serve

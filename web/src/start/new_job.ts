@@ -1,0 +1,179 @@
+// A new ensemble, calibration or validation: what it varies, how many runs, and how long that takes.
+import type { Api } from "../protocol/api";
+import type { JobEstimate, JobForm, JobKind, KnownScene, ValidationCase, WantedJob } from "../protocol/start";
+import { bytes } from "../state/format";
+import { aboutTime, firstRange, freeAtFirst } from "../state/misfit";
+import { choice } from "../ui/choice";
+import { button, h } from "../ui/dom";
+import { rangeRow, rangesOf, type RangeRow } from "../ui/range_row";
+
+const presets: Record<Exclude<JobKind, "validation">, readonly (readonly [string, number])[]> = {
+  ensemble: [["Quick look", 16], ["Usual", 64], ["Thorough", 256]],
+  calibration: [["Two values", 60], ["Usual", 100], ["Thorough", 200]],
+};
+const designs: readonly (readonly [string, string])[] = [["latin_hypercube", "Latin hypercube"], ["sobol", "Sobol sequence"], ["monte_carlo", "Monte Carlo"],
+  ["saltelli", "Sobol indices (Saltelli)"], ["morris", "Elementary effects (Morris)"]];
+const about: Record<JobKind, string> = {
+  ensemble: "Many runs of a scene with values from these ranges: probability maps, run-out, hits per building, sensitivity.",
+  calibration: "Finds the values that explain the field observations of a scene, with their uncertainty.",
+  validation: "Computes cases with known results and compares.",
+};
+const usualCases = "Quick cases: under two minutes on two cores. All cases: about 40 minutes on two cores.";
+
+export class NewJob {
+  readonly element: HTMLElement;
+  private kind: JobKind = "ensemble";
+  private readonly scene: HTMLSelectElement;
+  private readonly runs = h("input", { type: "number", min: 1, max: 2000, step: 1, "aria-label": "Number of runs", oninput: () => this.showTime() });
+  private readonly design = h("select", { "aria-label": "Design" }, ...designs.map(([value, text]) => h("option", { value }, text)));
+  private readonly factors = h("div", { class: "job-factors" });
+  private readonly body = h("div", { class: "job-body" });
+  private readonly time = h("p", { class: "job-time", role: "status" });
+  private readonly problem = h("p", { class: "field-note", role: "alert" });
+  private readonly begin = button("Start", { icon: "run", class: "primary", onclick: () => void this.start() });
+  private form: JobForm | null = null;
+  private estimate: JobEstimate | string | null = null;
+  private rows: RangeRow[] = [];
+  private cases: { about: ValidationCase; tick: HTMLInputElement }[] = [];
+  private which: "quick" | "all" | "chosen" = "quick";
+  /** Counts what was asked, so that an answer about another scene is not shown. */
+  private asked = 0;
+
+  constructor(private readonly api: Api, scenes: readonly KnownScene[], first: string | null, private readonly onclose: () => void) {
+    this.scene = h("select", { "aria-label": "Scene", onchange: () => void this.load() },
+      ...scenes.filter((scene) => !scene.missing).map((scene) => h("option", { value: scene.id, selected: scene.id === first }, scene.title || "Scene without a title")));
+    this.element = h("section", { class: "new-scene new-job", "aria-labelledby": "new-job" },
+      h("div", { class: "start-title" }, h("h2", { id: "new-job" }, "New job"), button("Discard", { class: "quiet", onclick: onclose })),
+      choice("Kind of job", [["ensemble", "Ensemble"], ["calibration", "Calibration"], ["validation", "Validation"]], this.kind, (kind: JobKind) => {
+        this.kind = kind;
+        this.show();
+      }), this.body, this.problem, this.time, h("div", { class: "row new-last" }, h("span", { class: "spring" }), this.begin));
+    this.show();
+    void this.load();
+  }
+
+  private async load(): Promise<void> {
+    const asked = ++this.asked;
+    this.form = null;
+    this.estimate = null;
+    this.problem.textContent = "";
+    this.show();
+    try {
+      const form = await this.api.jobForm(this.scene.value);
+      if (asked !== this.asked) return;
+      this.form = form;
+      this.show();
+      this.estimate = await this.api.jobEstimate(this.scene.value);
+    } catch (error) {
+      if (asked !== this.asked) return;
+      const sentence = error instanceof Error ? error.message : String(error);
+      if (this.form === null) this.problem.textContent = sentence;
+      else this.estimate = sentence;
+    }
+    if (asked === this.asked) this.showTime();
+  }
+
+  /** The parts of this kind of job. */
+  private show(): void {
+    this.problem.textContent = "";
+    const hint = h("p", { class: "muted" }, about[this.kind]);
+    if (this.kind === "validation") {
+      this.body.replaceChildren(hint, choice("Cases", [["quick", "Quick cases"], ["all", "All cases"], ["chosen", "Chosen cases"]], this.which, (which) => {
+        this.which = which;
+        void this.showCases();
+      }), this.factors);
+      void this.showCases();
+    } else {
+      this.runs.value = String(presets[this.kind][1][1]);
+      this.showFactors();
+      this.body.replaceChildren(hint, h("label", { class: "row wrap" }, "Scene", this.scene), this.factors,
+        h("div", { class: "row wrap" }, h("label", { class: "row" }, this.kind === "ensemble" ? "Runs" : "Runs at most", this.runs),
+          ...presets[this.kind].map(([name, count]) => button(`${name}: ${count}`, { class: "small", onclick: () => {
+            this.runs.value = String(count);
+            this.showTime();
+          } }))), ...(this.kind === "ensemble" ? [h("label", { class: "row wrap" }, "Design", this.design)] : []));
+    }
+    this.showTime();
+  }
+  private showFactors(): void {
+    const { form } = this;
+    this.rows = [];
+    if (form === null) return this.factors.replaceChildren(h("p", { class: "muted" }, "The scene is read …"));
+    if (this.kind === "calibration" && form.observations.length === 0) {
+      return this.factors.replaceChildren(h("p", { class: "empty" }, "This scene has no field observations to calibrate against. Add [[observation]], [[run_up]] or another of the sections in docs/ensembles.md to its file."));
+    }
+    this.rows = form.parameters.map((p) => {
+      // An ensemble asks what the scene's own values are uncertain by; a calibration looks for them in a wide range.
+      const [low, high] = firstRange(p, p.value);
+      const near: [number, number] = p.value !== null && p.value > 0 ? [Math.max(low, Number((0.75 * p.value).toPrecision(3))), Math.min(Math.max(high, 1.25 * p.value), Number((1.25 * p.value).toPrecision(3)))] : [low, high];
+      const chosen = this.kind === "calibration" ? freeAtFirst.includes(p.key) : p.key === "material.friction_coefficient" || p.key.startsWith("release");
+      return rangeRow(p, p.value, chosen, this.kind === "calibration" ? [low, high] : near);
+    });
+    const first = this.rows.filter((row) => row.free.checked);
+    const others = this.rows.filter((row) => !row.free.checked);
+    this.factors.replaceChildren(h("h3", {}, this.kind === "ensemble" ? "Factors and their ranges" : "Free values and their ranges"), ...first.map((row) => row.element),
+      ...(others.length === 0 ? [] : [h("details", {}, h("summary", {}, "More values"), ...others.map((row) => row.element))]),
+      ...(this.kind === "calibration" ? [h("p", { class: "muted" }, `Observed: ${form.observations.join(", ")}`)] : []));
+  }
+  private async showCases(): Promise<void> {
+    this.showTime();
+    if (this.which !== "chosen") return this.factors.replaceChildren();
+    if (this.cases.length === 0) {
+      this.factors.replaceChildren(h("p", { class: "muted" }, "The cases are read …"));
+      try {
+        this.cases = (await this.api.validationCases()).map((about) => ({ about, tick: h("input", { type: "checkbox", "data-case": about.name }) }));
+      } catch (error) {
+        this.problem.textContent = error instanceof Error ? error.message : String(error);
+      }
+      if (this.kind !== "validation" || this.which !== "chosen") return;
+    }
+    this.factors.replaceChildren(h("ul", { class: "job-cases" }, ...this.cases.map(({ about, tick }) => h("li", {}, h("label", { class: "check" }, tick, h("span", {}, about.title, about.quick ? h("span", { class: "muted" }, " · quick") : null))))));
+  }
+  /** How long it takes, before it starts. */
+  private showTime(): void {
+    this.problem.textContent = "";
+    const impossible = this.kind !== "validation" && (this.form === null || this.rows.length === 0);
+    this.begin.disabled = impossible;
+    if (this.kind === "validation") {
+      this.time.textContent = this.which === "chosen" ? "The longest cases take some minutes on two cores." : usualCases;
+      return;
+    }
+    const runs = this.runs.valueAsNumber;
+    const { estimate } = this;
+    if (impossible || !(runs > 0)) this.time.textContent = "";
+    else if (estimate === null) this.time.textContent = "How fast this computer runs the scene is being measured …";
+    else if (typeof estimate === "string") this.time.textContent = estimate;
+    else if (estimate.run_s === null) this.time.textContent = "There is no estimate of the time.";
+    else {
+      const memory = estimate.memory_bytes * Math.min(estimate.cores, runs);
+      this.time.textContent = `${runs} runs with ${estimate.particles.toLocaleString("en-GB")} particles: ${aboutTime(runs * estimate.run_s)} on this computer within a factor of two, ${bytes(memory)} of memory.`;
+    }
+  }
+
+  private wanted(): WantedJob | string {
+    if (this.kind === "validation") {
+      if (this.which !== "chosen") return { kind: this.kind, quick: this.which === "quick" };
+      const cases = this.cases.filter(({ tick }) => tick.checked).map(({ about }) => about.name);
+      return cases.length === 0 ? "Choose at least one case." : { kind: this.kind, cases };
+    }
+    const factors = rangesOf(this.rows);
+    if (typeof factors === "string") return factors;
+    const runs = this.runs.valueAsNumber;
+    if (!Number.isInteger(runs) || runs < 1 || runs > (this.form?.limits.runs ?? Infinity)) return `The number of runs is a whole number from 1 to ${this.form?.limits.runs ?? ""}.`;
+    const common = { scene: this.scene.value, factors, runs };
+    return this.kind === "ensemble" ? { kind: "ensemble", ...common, design: this.design.value } : { kind: "calibration", ...common };
+  }
+  private async start(): Promise<void> {
+    const wanted = this.wanted();
+    this.problem.textContent = typeof wanted === "string" ? wanted : "";
+    if (typeof wanted === "string") return;
+    this.begin.disabled = true;
+    try {
+      await this.api.addJob(wanted);
+      this.onclose();
+    } catch (error) {
+      this.problem.textContent = error instanceof Error ? error.message : String(error);
+      this.begin.disabled = false;
+    }
+  }
+}
