@@ -3,12 +3,13 @@
 add_library(talus_options INTERFACE)
 target_include_directories(talus_options INTERFACE ${PROJECT_SOURCE_DIR}/src)
 # Results must not depend on the optimiser: no -ffast-math, no contraction of a*b+c.
-target_compile_options(talus_options INTERFACE -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor -ffp-contract=off -fno-math-errno
-                       -Wno-psabi  # vectors wider than the baseline's registers never cross an interface
-                       -Wno-restrict)  # g++ 12 warns of std::string concatenation wrongly (GCC bug 105651)
+set(talus_cxx_options -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor -ffp-contract=off -fno-math-errno
+    -Wno-psabi  # vectors wider than the baseline's registers never cross an interface
+    -Wno-restrict)  # g++ 12 warns of std::string concatenation wrongly (GCC bug 105651)
 if(TALUS_WARNINGS_AS_ERRORS)
-  target_compile_options(talus_options INTERFACE -Werror)
+  list(APPEND talus_cxx_options -Werror)
 endif()
+target_compile_options(talus_options INTERFACE "$<$<COMPILE_LANGUAGE:CXX>:${talus_cxx_options}>")
 if(TALUS_SANITIZE)
   # Instrumented code makes g++ warn of std::regex's own variables; GCC documents such false alarms. What is left out takes
   # half the time to compile: null, object-size and vptr find little that the address sanitizer does not, and x86 reads

@@ -89,6 +89,7 @@ struct Plan {
         if (particles.empty()) particles = arguments.full ? full_particles : usual_particles;
         if (threads.empty()) threads = {static_cast<int>(std::max(1U, std::thread::hardware_concurrency()))};
         task.iterations = arguments.iterations;
+        task.backend = backend_of(arguments.backend);
         task.length = {arguments.repeats, arguments.steps, arguments.warm_up};
     }
 
@@ -200,9 +201,9 @@ void add_bench(CLI::App& program, std::vector<Command>& commands) {
     add_list("--threads", bench->threads, "numbers of threads; default: all cores")
         ->type_name("N,N")
         ->check(CLI::Range(1, 512));
-    app->add_option("--backend", bench->backend, "what computes the steps; default: cpu")
+    app->add_option("--backend", bench->backend, "what computes the steps: cpu, cuda, auto or host; default: cpu")
         ->type_name("NAME")
-        ->check(CLI::IsMember(std::vector<std::string>{"cpu"}));
+        ->check(usable_backend());
     app->add_option("--repeats", bench->repeats, "repeats to take the median of; default: 7")
         ->type_name("N")
         ->check(CLI::Range(1, 1000));

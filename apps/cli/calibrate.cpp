@@ -176,6 +176,7 @@ void add_calibrate(CLI::App& program, std::vector<Command>& commands) {
         ->type_name("N")
         ->check(CLI::Range(1, 1000));
     add_overrides(*app, arguments->overrides);
+    add_backend(*app, arguments->overrides);
     add_layers(*app, arguments->layers, false);
     add_data_folder(*app, arguments->data);
     app->add_option("--threads", arguments->threads, "runs in parallel, one thread each; default: all cores")

@@ -11,6 +11,7 @@
 #include <fmt/format.h>
 
 #include "core/visible_text.hpp"
+#include "sim/backend_choice.hpp"
 
 namespace talus::cli {
 
@@ -61,6 +62,35 @@ void add_overrides(CLI::App& command, std::vector<std::string>& overrides) {
 
 void add_data_folder(CLI::App& command, std::string& data) {
     command.add_option("--data", data, "folder for ${TALUS_DATA} in the paths of a scene")->type_name("DIR");
+}
+
+CLI::Validator usable_backend() {
+    const auto problem = [](const std::string& name) -> std::string {
+        std::string names;
+        for (const params::BackendChoice choice : sim::backend_choices) {
+            names += (names.empty() ? "" : ", ") + std::string(sim::backend_name(choice));
+            if (sim::backend_name(choice) != name) continue;
+            const Status usable = sim::check_backend(choice);
+            return usable ? std::string() : usable.error().message;
+        }
+        return fmt::format("\"{}\" is refused; there are {}", name, names);
+    };
+    return CLI::Validator(problem, "");
+}
+
+params::BackendChoice backend_of(const std::string& name) {
+    return *std::find_if(sim::backend_choices.begin(), sim::backend_choices.end(),
+                         [&](params::BackendChoice choice) { return sim::backend_name(choice) == name; });
+}
+
+void add_backend(CLI::App& command, std::vector<std::string>& overrides) {
+    command
+        .add_option_function<std::string>(
+            "--backend", [&overrides](const std::string& name) { overrides.push_back("solver.backend=" + name); },
+            "what moves the particles: cpu, cuda (a graphics card), auto, or host (the card's code on the processor); "
+            "default: as in the scene, else cpu")
+        ->type_name("NAME")
+        ->check(usable_backend());
 }
 
 void set_data_folder(const std::string& folder) {

@@ -8,6 +8,7 @@
 
 #include "core/result.hpp"
 #include "exit_code.hpp"
+#include "params/spec.hpp"
 
 /// The program's commands, one per file. Each declares its options next to its code.
 namespace talus::cli {
@@ -35,6 +36,12 @@ void add_manual(CLI::App& program, std::vector<Command>& commands);  ///< and co
 void add_overrides(CLI::App& command,
                    std::vector<std::string>& overrides);     ///< --set SECTION.KEY=VALUE, --variant NAME
 void add_data_folder(CLI::App& command, std::string& data);  ///< --data DIR
+/// --backend NAME, which this machine must have; as an override. To be called after add_overrides().
+void add_backend(CLI::App& command, std::vector<std::string>& overrides);
+/// The names that --backend takes; refuses one that this machine does not have.
+[[nodiscard]] CLI::Validator usable_backend();
+/// The backend of a name that usable_backend() accepts.
+[[nodiscard]] params::BackendChoice backend_of(const std::string& name);
 
 /// Prints "talus: error: MESSAGE" as exactly one line on stderr and returns `code`.
 int fail(int code, const std::string& message);

@@ -312,6 +312,7 @@ void add_ensemble(CLI::App& program, std::vector<Command>& commands) {
     app->add_option("--seed", ensemble->seed, "of the design; default: 1")->type_name("N");
     add_evaluation(*app, ensemble->evaluation);
     add_overrides(*app, ensemble->overrides);
+    add_backend(*app, ensemble->overrides);
     add_layers(*app, ensemble->layers, false);
     add_data_folder(*app, ensemble->data);
     app->add_option("--threads", ensemble->threads, "runs in parallel, one thread each; default: all cores, 1 per rank")

@@ -17,6 +17,7 @@
 
 #include "command.hpp"
 #include "exit_code.hpp"
+#include "sim/backend_choice.hpp"
 #include "simd/dispatch.hpp"
 #include "start.hpp"
 
@@ -82,8 +83,9 @@ Status check_environment() {
 std::string version_text() {
     const std::vector<std::string> sets = simd::instruction_sets();
     const char* chosen = std::getenv("TALUS_SIMD");
-    return fmt::format("talus {}\ncommit {}\ninstruction set {}, of {}\nbackends cpu", TALUS_VERSION, TALUS_COMMIT,
-                       chosen != nullptr && *chosen != 0 ? chosen : sets.front(), fmt::join(sets, ", "));
+    return fmt::format("talus {}\ncommit {}\ninstruction set {}, of {}\nbackends {}", TALUS_VERSION, TALUS_COMMIT,
+                       chosen != nullptr && *chosen != 0 ? chosen : sets.front(), fmt::join(sets, ", "),
+                       sim::describe_backends());
 }
 
 int talus_main(int argc, char** argv) {

@@ -88,9 +88,12 @@ Result<Job> open_job(const RunArguments& arguments, ProgressReporter& progress, 
     }
     TALUS_ASSIGN(auto input, open_scene(arguments.scene, overrides, arguments.layers, watch));
     if (input.scene.spec.solver.model == params::ModelChoice::depth_averaged) {
-        const char* refused = !arguments.layers.empty() ? "--layers"
-                              : arguments.convergence   ? "--convergence"
-                                                        : nullptr;
+        const params::BackendChoice backend = input.scene.spec.solver.backend;
+        const bool device = backend == params::BackendChoice::cuda || backend == params::BackendChoice::host;
+        const char* refused = device                      ? "a backend other than the processor"
+                              : !arguments.layers.empty() ? "--layers"
+                              : arguments.convergence     ? "--convergence"
+                                                          : nullptr;
         if (refused != nullptr) {
             return Error{fmt::format(
                 "{} is refused; it needs particles, and solver.model = \"depth_averaged\" has none", refused)};
@@ -249,6 +252,7 @@ void add_run(CLI::App& program, std::vector<Command>& commands) {
         ->delimiter(',')
         ->type_name("FORMAT,...");
     add_overrides(*app, run->overrides);
+    add_backend(*app, run->overrides);
     add_layers(*app, run->layers, true);
     app->add_flag("--convergence", run->convergence,
                   "run again with half the time step, double the iterations, three times the particles; compare");

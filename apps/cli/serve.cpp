@@ -210,6 +210,7 @@ void add_serve(CLI::App& program, std::vector<Command>& commands) {
     app->add_option("--threads", serve->threads, "number of threads; default: all cores; does not affect the result")
         ->type_name("N");
     add_overrides(*app, serve->overrides);
+    add_backend(*app, serve->overrides);
     add_layers(*app, serve->layers, true);
     add_data_folder(*app, serve->data);
     CLI::Option* quiet = app->add_flag("--quiet", serve->quiet, "print only errors");

@@ -40,6 +40,7 @@ struct ValidateArguments {
     bool known = false;                         ///< failures announced in the case files do not fail the command
     std::string json, results, html, markdown;  ///< files to write; empty: none
     std::optional<int> threads;
+    std::string backend = "cpu";
     std::string data;            ///< value of TALUS_DATA; empty: as in the environment
     bool progress_json = false;  ///< for programs, in place of the table
 };
@@ -153,6 +154,7 @@ std::vector<CaseResult> compute(const std::vector<Case>& cases, const ValidateAr
             validate::Watch told;
             told.stop_requested = &watch.stop_requested();
             told.thread_count = std::max(1, most / at_once);
+            told.backend = backend_of(arguments.backend);
             if (style == ProgressStyle::bar) {
                 told.on_progress = [&](const std::string& what) {
                     const std::scoped_lock say(reporting);
@@ -230,6 +232,11 @@ void add_validate(CLI::App& program, std::vector<Command>& commands) {
                     "number of threads, and of cases computed at once; default: all cores")
         ->type_name("N")
         ->check(CLI::Range(1, 512));
+    app->add_option("--backend", validate->backend,
+                    "what moves the particles: cpu, cuda (a graphics card), auto, or host (the card's code on the "
+                    "processor); default: cpu")
+        ->type_name("NAME")
+        ->check(usable_backend());
     app->add_option("--data", validate->data, "folder for TALUS_DATA, for cases on real terrain")->type_name("DIR");
     app->add_flag("--progress-json", validate->progress_json,
                   "progress and counts as one JSON object per line on stdout, in place of the table");

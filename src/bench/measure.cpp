@@ -13,6 +13,7 @@
 
 #include "core/try.hpp"
 #include "run/run.hpp"
+#include "sim/backend_choice.hpp"
 
 namespace talus::bench {
 namespace {
@@ -33,14 +34,6 @@ double allocated_bytes() {
 #endif
 }
 
-double mean_neighbours(const sim::Simulation& simulation) {
-    const sim::cpu::NeighbourLists& lists = simulation.backend().neighbours();
-    const std::uint32_t count = simulation.state().count;
-    double pairs = 0;
-    for (std::uint32_t i = 0; i < count; ++i) pairs += lists.count_of(i);
-    return count > 0 ? pairs / count : 0;
-}
-
 /// The start with the task's solver. All requested steps are measured, even if debris comes to rest.
 run::RunStart start_of(const Start& start, const Task& task) {
     run::RunStart changed = start;
@@ -48,6 +41,7 @@ run::RunStart start_of(const Start& start, const Task& task) {
     solver.internal_friction = task.method;
     solver.iteration_count = task.iterations;
     solver.thread_count = task.threads;
+    solver.backend = task.backend;
     changed.endless = true;
     return changed;
 }
@@ -114,14 +108,17 @@ Result<Row> measure_in_arena(const Start& start, const Task& task, Calibration& 
     const double bytes_before = allocated_bytes();
     run::Run run(start_of(start, task));
     Status status = take_steps(run, row.warm_up, stop_requested);
-    row.bytes_per_particle = std::max(0.0, allocated_bytes() - bytes_before) / std::max(1U, row.particles);
+    const auto device_bytes = static_cast<double>(run.simulation().device_bytes());
+    row.bytes_per_particle = (device_bytes > 0 ? device_bytes : std::max(0.0, allocated_bytes() - bytes_before)) /
+                             std::max(1U, row.particles);
     if (status) status = run_repeats(run, row, calibration, stop_requested);
     if (!status) {
         return Error{fmt::format("scene {}, method {}, {} particles: {}", row.scene, row.method, row.particles,
                                  status.error().message)};
     }
-    row.instruction_set = run.simulation().backend().instruction_set();
-    row.neighbours = mean_neighbours(run.simulation());
+    row.backend = sim::backend_name(run.simulation().backend());
+    row.instruction_set = run.simulation().instruction_set();
+    row.neighbours = run.simulation().mean_neighbours();
     row.hash = hash_state(run.state());
     return row;
 }

@@ -28,12 +28,13 @@ struct Task {
     int iterations = 4;
     int threads = 1;
     Length length;
+    params::BackendChoice backend = params::BackendChoice::cpu;
 };
 
 /// Results of a measurement: medians over the repeats.
 struct Row {
     std::string scene, method, instruction_set;
-    std::string backend = "cpu";
+    std::string backend = "cpu";  ///< that took the steps, never "auto"
     std::uint32_t particles = 0;  ///< at the start
     int iterations = 0, threads = 0;
     int warm_up = 0, steps = 0, repeats = 0;  ///< steps per repeat
@@ -43,7 +44,7 @@ struct Row {
     double time_step = 0;  ///< s, mean of the measured steps
     bool fixed_time_step = false;
     double neighbours = 0;          ///< mean per particle, after the last step
-    double bytes_per_particle = 0;  ///< allocated for it in memory; 0 where the system does not report it
+    double bytes_per_particle = 0;  ///< allocated for it, on the card if one takes the steps; 0: not reported
     double calibration_rate = 0;    ///< units per second
     double relative_rate = 0;       ///< particle-iterations per calibration unit
     std::uint64_t hash = 0;         ///< of the state after the last step

@@ -12,26 +12,26 @@ template <class Real>
 struct Vec3 {
     Real x{}, y{}, z{};
 
-    Vec3& operator+=(const Vec3& o) { return *this = *this + o; }
-    Vec3& operator-=(const Vec3& o) { return *this = *this - o; }
-    friend Vec3 operator+(const Vec3& a, const Vec3& b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
-    friend Vec3 operator-(const Vec3& a, const Vec3& b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
-    friend Vec3 operator-(const Vec3& a) { return {-a.x, -a.y, -a.z}; }
-    friend Vec3 operator*(Real s, const Vec3& a) { return {s * a.x, s * a.y, s * a.z}; }
-    friend Vec3 operator*(const Vec3& a, Real s) { return s * a; }
+    TALUS_DEVICE Vec3& operator+=(const Vec3& o) { return *this = *this + o; }
+    TALUS_DEVICE Vec3& operator-=(const Vec3& o) { return *this = *this - o; }
+    TALUS_DEVICE friend Vec3 operator+(const Vec3& a, const Vec3& b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
+    TALUS_DEVICE friend Vec3 operator-(const Vec3& a, const Vec3& b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
+    TALUS_DEVICE friend Vec3 operator-(const Vec3& a) { return {-a.x, -a.y, -a.z}; }
+    TALUS_DEVICE friend Vec3 operator*(Real s, const Vec3& a) { return {s * a.x, s * a.y, s * a.z}; }
+    TALUS_DEVICE friend Vec3 operator*(const Vec3& a, Real s) { return s * a; }
 };
 
 template <class Real>
-Real dot(const Vec3<Real>& a, const Vec3<Real>& b) {
+TALUS_DEVICE Real dot(const Vec3<Real>& a, const Vec3<Real>& b) {
     return a.x * b.x + a.y * b.y + a.z * b.z;
 }
 template <class Real>
-Real length(const Vec3<Real>& a) {
+TALUS_DEVICE Real length(const Vec3<Real>& a) {
     using std::sqrt;
     return sqrt(dot(a, a));
 }
 template <class Mask, class Real>
-Vec3<Real> select(const Mask& mask, const Vec3<Real>& yes, const Vec3<Real>& no) {
+TALUS_DEVICE Vec3<Real> select(const Mask& mask, const Vec3<Real>& yes, const Vec3<Real>& no) {
     return {select(mask, yes.x, no.x), select(mask, yes.y, no.y), select(mask, yes.z, no.z)};
 }
 

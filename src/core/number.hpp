@@ -13,15 +13,24 @@ namespace talus {
 /// For small functions, and for those that pass bare vectors: these are passed in other registers where a wider
 /// instruction set is enabled, so that a call between the two would be wrong. Lanes and masks are safe because they
 /// have copy constructors: they are passed in memory.
+///
+/// TALUS_DEVICE marks what also runs on a graphics card (sim/device); it is empty where no compiler for one reads it.
+/// TALUS_INLINE includes it.
+#if defined(__CUDACC__)
+#define TALUS_DEVICE __host__ __device__
+#define TALUS_INLINE __host__ __device__ __forceinline__
+#else
+#define TALUS_DEVICE
 #define TALUS_INLINE [[gnu::always_inline]] inline
+#endif
 
 /// Four adjacent numbers: a gather of all four is one load.
 struct Quad {
     std::array<float, 4> v{};
 
-    [[nodiscard]] const float* data() const { return v.data(); }
-    float operator[](std::size_t i) const { return v[i]; }
-    float& operator[](std::size_t i) { return v[i]; }
+    [[nodiscard]] TALUS_DEVICE const float* data() const { return v.data(); }
+    TALUS_DEVICE float operator[](std::size_t i) const { return v[i]; }
+    TALUS_DEVICE float& operator[](std::size_t i) { return v[i]; }
 };
 
 /// The numbers of a Quad, of one particle or of many.
@@ -36,21 +45,21 @@ struct Octs {
 };
 
 template <std::floating_point Real>
-Real select(bool condition, Real yes, Real no) {
+TALUS_DEVICE Real select(bool condition, Real yes, Real no) {
     return condition ? yes : no;
 }
-inline bool any(bool condition) {
+TALUS_DEVICE inline bool any(bool condition) {
     return condition;
 }
 /// The same number, of which the compiler knows nothing. Where conditions meet: it takes combined ones, and nested
 /// choices between the same values, apart lane by lane where AVX-512 has one bit per lane (GCC 12).
 template <std::floating_point Real>
-Real opaque(Real a) {
+TALUS_DEVICE Real opaque(Real a) {
     return a;
 }
 /// Towards zero; for values that fit an int.
 template <std::floating_point Real>
-std::int32_t truncated(Real a) {
+TALUS_DEVICE std::int32_t truncated(Real a) {
     return static_cast<std::int32_t>(a);
 }
 template <class Real, class Index>
@@ -73,12 +82,12 @@ TALUS_INLINE Real smaller(const Real& a, const Real& b) {
 }
 
 /// rows[index].
-inline Quads<float> quads_at(const Quad* rows, std::int32_t index) {
+TALUS_DEVICE inline Quads<float> quads_at(const Quad* rows, std::int32_t index) {
     const Quad& row = rows[index];
     return {row[0], row[1], row[2], row[3]};
 }
 /// rows[index] and rows[index + 1].
-inline Octs<float> quad_pairs_at(const Quad* rows, std::int32_t index) {
+TALUS_DEVICE inline Octs<float> quad_pairs_at(const Quad* rows, std::int32_t index) {
     return {quads_at(rows, index), quads_at(rows, index + 1)};
 }
 

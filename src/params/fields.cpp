@@ -153,6 +153,10 @@ Section declare_solver() {
           "Mean over-density (density over rest density, less 1) above which the run stops as a fault.");
     s.key("thread_count", "", &SolverSpec::thread_count, between(0, 512),
           "Threads to compute with; 0 takes all cores. Results do not depend on it.");
+    s.choice("backend", &SolverSpec::backend, {"cpu", "auto", "cuda", "host"},
+             "What moves the particles: the processor (cpu), a graphics card of NVIDIA (cuda), or the card where there "
+             "is one and the particles are many (auto). host computes what the card would on the processor, slowly, to "
+             "test it. Results agree as docs/gpu.md says, not bit for bit.");
     s.choice(
         "model", &SolverSpec::model, {"particles", "depth_averaged"},
         "particles: in three dimensions. depth_averaged: depth and velocity per cell of a grid, in seconds, without "

@@ -208,6 +208,14 @@ enum class ModelChoice {
     depth_averaged,  ///< depth and velocity per cell of a grid (src/depth)
 };
 
+/// What computes the steps of particles.
+enum class BackendChoice {
+    cpu,        ///< vector registers on all cores
+    automatic,  ///< the graphics card where there is one and there are enough particles, else the processor
+    cuda,       ///< the graphics card
+    host,       ///< the card's code as plain loops on the processor: slow, for tests
+};
+
 /// `[solver]`: an absent optional is chosen by the program and reported.
 struct SolverSpec {
     // At most one of the three; none: usual_particle_count.
@@ -234,6 +242,7 @@ struct SolverSpec {
     double rest_duration = 0.5;          ///< s, debris that has hardly moved for this long falls asleep; 0: never
     double compression_limit = 0.5;      ///< mean of max(0, density/rest density - 1) above which the run is a fault
     int thread_count = 0;                ///< 0: all cores
+    BackendChoice backend = BackendChoice::cpu;
     ModelChoice model = ModelChoice::particles;
     std::optional<double> grid_cell = {};  ///< m, of the depth-averaged model
 };

@@ -18,6 +18,8 @@
 #include "products/writers.hpp"
 #include "report/hardware.hpp"
 #include "report/hazard_map.hpp"
+#include "sim/backend_choice.hpp"
+#include "sim/device/card.hpp"
 
 namespace talus::products {
 
@@ -53,6 +55,13 @@ Json parameters(const params::SceneSpec& spec) {
 }
 
 /// Values that the program chose where the scene does not set them.
+/// Null where the processor moved the particles.
+Json graphics_card(const run::RunResult& result) {
+    if (result.backend != sim::backend_name(params::BackendChoice::cuda)) return nullptr;
+    const Result<sim::device::Card>& card = sim::device::card();
+    return {{"name", card->name}, {"driver", card->driver}};
+}
+
 Json resolved(const scene::Scene& scene, const run::RunResult& result) {
     Json releases = Json::array();
     for (const terrain::Release& release : scene.releases) {
@@ -77,7 +86,9 @@ Json resolved(const scene::Scene& scene, const run::RunResult& result) {
             {"smallest_time_step_s", result.smallest_time_step},
             {"largest_time_step_s", result.largest_time_step},
             {"thread_count", result.thread_count},
+            {"backend", result.backend},
             {"instruction_set", result.instruction_set},
+            {"graphics_card", graphics_card(result)},
             {"flow_path", scene.flow_path.empty() ? "none" : origin_text(scene.flow_path_origin)},
             {"flow_path_length_m", scene.flow_path.length()},
             {"releases", releases},

@@ -9,6 +9,7 @@
 #include "core/try.hpp"
 #include "observe/followed_path.hpp"
 #include "scene/particle_spacing.hpp"
+#include "sim/backend_choice.hpp"
 #include "sim/sources/seed.hpp"
 #include "terrain/map_cell.hpp"
 
@@ -25,6 +26,7 @@ Result<std::unique_ptr<Run>> Run::start(const scene::Scene& scene, std::optional
     if (spec.solver.model != params::ModelChoice::particles) {
         return Error{"solver.model = \"depth_averaged\" is refused; this needs particles, talus run has both models"};
     }
+    TALUS_TRY(sim::check_backend(spec.solver.backend));
     const double spacing = particle_spacing.value_or(scene::particle_spacing(scene));
     TALUS_TRY(sim::check_particle_count(scene.releases, scene.inflows, spec.solver, spacing));
     return Threads(spec.solver.thread_count).execute([&]() -> Result<std::unique_ptr<Run>> {
@@ -140,7 +142,8 @@ RunResult Run::result(const std::string& unfinished) const {
     result.viscosity = model().viscosity;
     result.kinematic_viscosity = model().kinematic_viscosity;
     result.thread_count = threads_.count();
-    result.instruction_set = simulation_.backend().instruction_set();
+    result.backend = sim::backend_name(simulation_.backend());
+    result.instruction_set = simulation_.instruction_set();
     return result;
 }
 

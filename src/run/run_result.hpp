@@ -33,7 +33,8 @@ struct RunResult {
     double particle_spacing = 0, support_radius = 0, map_cell = 0;
     double viscosity = 0, kinematic_viscosity = 0;  ///< smoothing per 1/60 s; its equivalent in m2/s
     int thread_count = 0;
-    std::string instruction_set;  ///< used for the sums over neighbours, or the cells
+    std::string backend = "cpu";  ///< what moved the particles, as solver.backend names it
+    std::string instruction_set;  ///< used for the sums over neighbours, or the cells; with a card, its name
 
     // Of the depth-averaged model: no particles then.
     double grid_cell = 0;            ///< m; 0: particles

@@ -30,11 +30,8 @@ struct InertialFriction {
     double grain_size = 0;  ///< m, diameter x sqrt(grain density / bulk density)
 };
 
-/// Parameters and tables that no step changes; only Simulation::change() may change them, between two steps. Besides
-/// its State, a run changes its Ground.
-struct Model {
-    std::vector<ReleaseGroup> releases;
-
+/// The numbers of a Model, without its tables: what the laws need of it on a graphics card too.
+struct ModelValues {
     double particle_spacing = 0;               ///< m
     double support_radius = 0;                 ///< m
     double rest_density = 0;                   ///< kg/m3
@@ -50,21 +47,29 @@ struct Model {
     double pore_pressure_ratio = 0;       ///< r_u, at the start of a release
     double pore_pressure_decay_time = 0;  ///< s; 0: constant
     InertialFriction inertial_friction;   ///< inside
-    terrain::GroundCover cover;           ///< where the ground has its own resistance
     double gravity = 9.80665;             ///< m/s2
 
-    params::SolverSpec solver;
-
-    Kernel kernel;           ///< density and gradient, with the calibrated particle volume folded in
-    BoundaryTable boundary;  ///< density share of a half-space of ground
+    Kernel kernel;  ///< density and gradient, with the calibrated particle volume folded in
 
     /// The distance, m, at which a particle touches ground and walls: half its own size.
-    [[nodiscard]] double contact_distance() const { return particle_spacing / 2; }
+    [[nodiscard]] TALUS_DEVICE double contact_distance() const { return particle_spacing / 2; }
+    [[nodiscard]] TALUS_DEVICE double particle_volume() const {
+        return particle_spacing * particle_spacing * particle_spacing;
+    }
+    /// kg, of a particle at rest density; see density_of().
+    [[nodiscard]] TALUS_DEVICE double particle_mass() const { return rest_density * particle_volume(); }
+};
+
+/// Parameters and tables that no step changes; only Simulation::change() may change them, between two steps. Besides
+/// its State, a run changes its Ground.
+struct Model : ModelValues {
+    std::vector<ReleaseGroup> releases;
+    terrain::GroundCover cover;  ///< where the ground has its own resistance
+    params::SolverSpec solver;
+    BoundaryTable boundary;  ///< density share of a half-space of ground
+
     /// s, upper bound of the adaptive step.
     [[nodiscard]] double largest_time_step() const { return params::largest_time_step(solver, particle_spacing); }
-    [[nodiscard]] double particle_volume() const { return particle_spacing * particle_spacing * particle_spacing; }
-    /// kg, of a particle at rest density; see density_of().
-    [[nodiscard]] double particle_mass() const { return rest_density * particle_volume(); }
 };
 
 }  // namespace talus::sim

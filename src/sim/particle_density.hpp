@@ -11,7 +11,8 @@ namespace talus::sim {
 /// kg/m3, of a particle: its own where a hydrograph sets one, otherwise the material's. Forces, pressures, energies and
 /// masses follow from it. Motion does not: the solver moves volumes, so a denser particle pushes no harder on a lighter
 /// one, and friction is proportional to weight.
-[[nodiscard]] inline double density_of(const Model& model, const State& state, std::size_t particle) {
+template <class AnyModel, class AnyState>
+[[nodiscard]] TALUS_DEVICE double density_of(const AnyModel& model, const AnyState& state, std::size_t particle) {
     if (state.density_of_id.empty()) return model.rest_density;
     const std::uint32_t id = state.id[particle];
     const bool own = id < state.density_of_id.size() && state.density_of_id[id] > 0;

@@ -3,11 +3,13 @@
 #include <algorithm>
 #include <array>
 #include <limits>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
 
 #include "core/hash.hpp"
+#include "sim/backend_choice.hpp"
 #include "sim/change.hpp"
 #include "sim/fault.hpp"
 #include "sim/particle_density.hpp"
@@ -21,18 +23,22 @@ struct Simulation::OwnStages {
     Simulation& self;
     StepWatcher* watcher;
 
-    void inject_inflow() const { self.inject_inflow(watcher); }
+    void inject_inflow() const {
+        self.inject_inflow(watcher);
+        self.hand_over();
+    }
     void choose_time_step() const { self.state_.time_step = cpu::choose_time_step(self.model_, self.state_); }
     [[nodiscard]] Status check_faults() const {
         return find_fault(self.model_, self.state_, self.highest_energy_head_);
     }
     [[nodiscard]] Status entrain_bed() const { return self.entrain_bed(); }
     void observe() const {
-        if (watcher != nullptr) watcher->observe(self.model_, self.ground_, self.state_);
+        if (watcher != nullptr) watcher->observe(self.model_, self.ground_, self.state());
     }
     void remove_failed() const {
         if (watcher == nullptr) return;
         for (const std::size_t building : watcher->failed_buildings()) {
+            self.fetch();
             remove_building(self.model_, self.ground_, self.state_, building);
             self.follow_change();
         }
@@ -46,10 +52,47 @@ Simulation::Simulation(Model model, Ground ground, State state, InflowFeeder inf
       inflow_(std::move(inflow)),
       expected_(inflow_.remaining()),
       capacity_(state_.count + expected_),
+      backend_(settled_backend(model_.solver.backend, capacity_)),
       highest_energy_head_(std::numeric_limits<double>::lowest()) {
     if (expected_ > 0) state_.resize(capacity_);
-    backend_.emplace(model_, capacity_);
+    switch (backend_) {
+        case params::BackendChoice::cuda:
+            device_ = device::make_cuda_backend();
+            break;
+        case params::BackendChoice::host:
+            device_ = device::make_host_backend();
+            break;
+        default:
+            processor_.emplace(model_, capacity_);
+    }
     measure_energy_and_speed();
+}
+
+/// Copies the particles back if a step has moved them on a device.
+void Simulation::fetch() const {
+    if (std::exchange(device_is_newer_, false)) device_->fetch(state_);
+}
+
+/// Before the stages of a step.
+void Simulation::hand_over() {
+    if (device_ == nullptr) return;
+    if (std::exchange(device_is_older_, false)) device_->follow(model_, ground_, state_);
+    device_is_newer_ = true;
+}
+
+std::string Simulation::instruction_set() const {
+    return device_ != nullptr ? device_->name() : std::string(processor_->instruction_set());
+}
+
+double Simulation::mean_neighbours() const {
+    if (device_ != nullptr) return device_->mean_neighbours();
+    double pairs = 0;
+    for (std::uint32_t i = 0; i < state_.count; ++i) pairs += processor_->neighbours().count_of(i);
+    return state_.count > 0 ? pairs / state_.count : 0;
+}
+
+std::size_t Simulation::device_bytes() const {
+    return device_ != nullptr ? device_->bytes() : 0;
 }
 
 void Simulation::measure_energy_and_speed() {
@@ -62,11 +105,19 @@ void Simulation::measure_energy_and_speed() {
 }
 
 Status Simulation::advance(StepWatcher* watcher) {
-    return step(*backend_, model_, ground_, state_, times_, OwnStages{*this, watcher});
+    const OwnStages own{*this, watcher};
+    if (device_ == nullptr) return step(*processor_, model_, ground_, state_, times_, own);
+    try {
+        return step(*device_, model_, ground_, state_, times_, own);
+    } catch (const device::DeviceFailure& failure) {
+        device_is_newer_ = false;  // what it holds is lost; the state is as it was last read
+        return Error{fmt::format("at t = {:.4g} s {}", state_.time, failure.what())};
+    }
 }
 
 void Simulation::inject_inflow(StepWatcher* watcher) {
     if (!inflow_.due(state_.time)) return;
+    fetch();
     const std::uint32_t first = state_.seeded;
     inflow_.inject(model_, ground_, state_);
     follow_change();
@@ -75,6 +126,7 @@ void Simulation::inject_inflow(StepWatcher* watcher) {
 
 Status Simulation::entrain_bed() {
     if (ground_.bed.empty()) return {};
+    fetch();
     const std::size_t loose = entrainment_.find(model_, ground_, state_);
     if (loose == 0) return {};
     const std::size_t count = state_.count + loose, limit = static_cast<std::size_t>(model_.solver.particle_limit);
@@ -87,6 +139,7 @@ Status Simulation::entrain_bed() {
     // With spare capacity: growing reallocates everything.
     if (count > capacity_) make_room(static_cast<std::uint32_t>(std::min(limit, count + count / 2)));
     entrainment_.apply(model_, ground_, state_);
+    device_is_older_ = true;
     return {};
 }
 
@@ -95,15 +148,17 @@ void Simulation::make_room(std::uint32_t count) {
     capacity_ = count;
     state_.resize(capacity_);
     state_.building_contacts.reserve((face_count - 1) * capacity_);
-    backend_.emplace(model_, capacity_);
+    if (device_ == nullptr) processor_.emplace(model_, capacity_);
 }
 
 void Simulation::change(const std::function<void(Model&, Ground&, State&)>& edit) {
+    fetch();
     edit(model_, ground_, state_);
     follow_change();
 }
 
 void Simulation::follow_change() {
+    device_is_older_ = true;
     state_.building_contacts.clear();
     if (state_.count > capacity_) make_room(state_.count + expected_);
     measure_energy_and_speed();

@@ -2,10 +2,13 @@
 
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <optional>
+#include <string>
 
 #include "core/result.hpp"
 #include "sim/cpu/backend.hpp"
+#include "sim/device/backend.hpp"
 #include "sim/ground.hpp"
 #include "sim/model.hpp"
 #include "sim/sources/entrainment.hpp"
@@ -19,7 +22,8 @@ namespace talus::sim {
 /// A model, its ground and state, its inflows, and the backend that advances it.
 class Simulation {
   public:
-    /// Memory for all particles of `inflow` is allocated at once.
+    /// Memory for all particles of `inflow` is allocated at once. The backend is that of model.solver, which must be
+    /// usable (see check_backend()).
     Simulation(Model model, Ground ground, State state, InflowFeeder inflow = {});
 
     /// Takes one step, calling `watcher` if there is one. Returns why the step cannot be trusted, if it cannot; the
@@ -35,26 +39,44 @@ class Simulation {
 
     [[nodiscard]] const Model& model() const { return model_; }
     [[nodiscard]] const Ground& ground() const { return ground_; }
-    [[nodiscard]] const State& state() const { return state_; }
+    /// After steps on a device its particles are copied back first, so not from several threads at once. Throws a
+    /// DeviceFailure if that fails.
+    [[nodiscard]] const State& state() const {
+        fetch();
+        return state_;
+    }
     [[nodiscard]] const InflowFeeder& inflow() const { return inflow_; }
     [[nodiscard]] const StageTimes& stage_times() const { return times_; }
-    [[nodiscard]] const cpu::Backend& backend() const { return *backend_; }
+    /// What moves the particles; never `automatic`.
+    [[nodiscard]] params::BackendChoice backend() const { return backend_; }
+    /// The same by its own name: the instruction set of the processor, or the device.
+    [[nodiscard]] std::string instruction_set() const;
+    /// Mean number of neighbours of the particles that the last step moved.
+    [[nodiscard]] double mean_neighbours() const;
+    /// Allocated on the device; 0 for the processor.
+    [[nodiscard]] std::size_t device_bytes() const;
 
   private:
     struct OwnStages;
 
     void follow_change();
+    void fetch() const;
+    void hand_over();
     void measure_energy_and_speed();
     void make_room(std::uint32_t count);
     [[nodiscard]] Status entrain_bed();
 
     Model model_;  // const except to change()
     Ground ground_;
-    State state_;
+    mutable State state_;                   // its arrays follow the device when somebody reads them
+    mutable bool device_is_newer_ = false;  // than the arrays of the state
+    bool device_is_older_ = true;           // than model, ground and state
     InflowFeeder inflow_;
-    std::uint32_t expected_ = 0;           // total number of particles from inflows
-    std::uint32_t capacity_ = 0;           // particles that the backend has memory for
-    std::optional<cpu::Backend> backend_;  // replaced when there are more
+    std::uint32_t expected_ = 0;  // total number of particles from inflows
+    std::uint32_t capacity_ = 0;  // particles that the backend has memory for
+    params::BackendChoice backend_;
+    std::optional<cpu::Backend> processor_;    // replaced when there are more
+    std::unique_ptr<device::Backend> device_;  // in place of the processor
     Entrainment entrainment_;
     StageTimes times_;
     double highest_energy_head_;

@@ -3,15 +3,13 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <span>
 #include <utility>
 
 namespace talus::terrain {
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
-constexpr double touching = 1e-6;        ///< m, walls closer than this touch
-constexpr double on_the_surface = 1e-9;  ///< m, closer than this the direction to the surface is noise
+constexpr double touching = 1e-6;  ///< m, walls closer than this touch
 
 double signed_area(const Ring& ring) {
     double twice = 0;
@@ -204,7 +202,7 @@ void BuildingSolids::split_walls() {
                         !(hides_as_net && other.passing_share > piece.net_share)) {
                         continue;  // adds nothing
                     }
-                    if (!in_plan(other, outside_x, outside_y)) continue;
+                    if (!walls().in_plan(other, outside_x, outside_y)) continue;
                     if (other.floor > solid.floor && solid.floor == -infinity) continue;  // open below it
                     if (hides_as_net) {
                         piece.hidden_by_nets = std::max(piece.hidden_by_nets, other.roof);
@@ -230,119 +228,20 @@ void BuildingSolids::fill_bins() {
     bins_ = PlanBins(extents, std::max(range_, 2.0));
 }
 
-bool BuildingSolids::in_plan(const Solid& solid, double x, double y) const {
-    if (x < solid.x_min || x > solid.x_max || y < solid.y_min || y > solid.y_max) return false;
-    bool in = false;
-    for (std::uint32_t i = solid.first_edge; i < solid.last_edge; ++i) {
-        const Edge& e = edges_[i];
-        if ((e.ay > y) != (e.by > y) && x < (e.bx - e.ax) * (y - e.ay) / (e.by - e.ay) + e.ax) in = !in;
-    }
-    return in;
-}
-
 template <class Real>
 SolidSample<Real> BuildingSolids::nearest(const Vec3<Real>& p, float grain_rank) const {
-    // In double throughout, which represents a float position exactly, so that normals are correct down to a nanometre
-    // from a wall.
-    const double x = p.x, y = p.y, z = p.z;
-    const std::span<const std::uint32_t> candidates = bins_.near(x, y);
-    if (candidates.empty()) return {};
-
-    // Above or below the highest roof at this plan position; below it, and above the floor, the position is inside.
-    int roof_building = -1, floor_building = -1;
-    double roof = -infinity, floor = -infinity, below = infinity;
-    for (const std::uint32_t k : candidates) {
-        const Solid& solid = solids_[k];
-        if (z < solid.floor) {
-            if (solid.floor - z < below && solid.stops(grain_rank) && in_plan(solid, x, y))
-                below = solid.floor - z, floor_building = solid.building;
-            continue;
-        }
-        if (solid.roof > roof && solid.stops(grain_rank) && in_plan(solid, x, y))
-            roof = solid.roof, floor = solid.floor, roof_building = solid.building;
-    }
-    const bool inside = z < roof;
-    int building = roof_building;
-    double best = roof_building < 0 ? infinity : std::abs(z - roof);
-    Vec3<double> normal{0, 0, 1};
-    if (inside ? z - floor < best : below < best) {
-        best = inside ? z - floor : below;
-        building = inside ? roof_building : floor_building;
-        normal.z = -1;
-    }
-
-    for (const std::uint32_t k : candidates) {
-        const Solid& solid = solids_[k];
-        if (!solid.stops(grain_rank)) continue;
-        for (std::uint32_t i = solid.first_edge; i < solid.last_edge; ++i) {
-            const Edge& e = edges_[i];
-            // From inside, only walls not hidden by other solids are a way out. From outside, hidden walls are never
-            // nearer.
-            const double bottom = inside ? std::max(e.hidden_for(grain_rank), solid.floor) : solid.floor;
-            if (bottom >= solid.roof) continue;
-            const double dx = e.bx - e.ax, dy = e.by - e.ay, length_squared = dx * dx + dy * dy;
-            const double t = std::clamp(((x - e.ax) * dx + (y - e.ay) * dy) / length_squared, 0.0, 1.0);
-            const Vec3<double> to{e.ax + t * dx - x, e.ay + t * dy - y, std::clamp(z, bottom, solid.roof) - z};
-            const double distance = length(to);
-            if (distance >= best) continue;
-            best = distance;
-            building = solid.building;
-            const double edge_length = std::sqrt(length_squared);
-            normal = distance > on_the_surface ? (inside ? 1 / distance : -1 / distance) * to
-                                               : Vec3<double>{dy / edge_length, -dx / edge_length, 0};
-        }
-    }
-    if (building < 0 || (!inside && best > range_)) return {};
-    return {building,
-            static_cast<Real>(inside ? -best : best),
-            {static_cast<Real>(normal.x), static_cast<Real>(normal.y), static_cast<Real>(normal.z)}};
+    return walls().nearest(p, grain_rank);
 }
 
 template <class Real>
-SolidSample<Real> BuildingSolids::second_nearest(const Vec3<Real>& p, const SolidSample<Real>& nearest,
+SolidSample<Real> BuildingSolids::second_nearest(const Vec3<Real>& p, const SolidSample<Real>& first,
                                                  float grain_rank) const {
-    if (nearest.building < 0 || nearest.distance < 0) return {};
-    constexpr double same_direction = 0.5;  // cosine
-    const double x = p.x, y = p.y, z = p.z;
-    const auto turned_away = [&](double nx, double ny, double nz) {
-        return nx * nearest.normal.x + ny * nearest.normal.y + nz * nearest.normal.z < same_direction;
-    };
-    SolidSample<Real> second;
-    double best = range_;
-    const auto take = [&](int building, double distance, double nx, double ny, double nz) {
-        best = distance;
-        second = {building,
-                  static_cast<Real>(distance),
-                  {static_cast<Real>(nx), static_cast<Real>(ny), static_cast<Real>(nz)}};
-    };
-    const std::span<const std::uint32_t> candidates = bins_.near(x, y);
-    for (const std::uint32_t k : candidates) {
-        const Solid& solid = solids_[k];
-        if (!solid.stops(grain_rank) || z < solid.floor) continue;
-        if (z >= solid.roof) {
-            if (z - solid.roof < best && turned_away(0, 0, 1) && in_plan(solid, x, y)) {
-                take(solid.building, z - solid.roof, 0, 0, 1);
-            }
-            continue;
-        }
-        for (std::uint32_t i = solid.first_edge; i < solid.last_edge; ++i) {
-            const Edge& e = edges_[i];
-            const double dx = e.bx - e.ax, dy = e.by - e.ay, length_squared = dx * dx + dy * dy;
-            const double t = ((x - e.ax) * dx + (y - e.ay) * dy) / length_squared;
-            if (t < 0 || t > 1 || z < e.hidden_for(grain_rank)) continue;
-            const double length = std::sqrt(length_squared), nx = dy / length, ny = -dx / length;
-            const double distance = (x - e.ax) * nx + (y - e.ay) * ny;
-            if (distance < 0 || distance >= best || !turned_away(nx, ny, 0)) continue;
-            take(solid.building, distance, nx, ny, 0);
-        }
-    }
-    return second;
+    return walls().second_nearest(p, first, grain_rank);
 }
 
 template <class Real>
 bool BuildingSolids::inside(const Vec3<Real>& p, float grain_rank) const {
-    const SolidSample<Real> sample = nearest(p, grain_rank);
-    return sample.building >= 0 && sample.distance < 0;
+    return walls().inside(p, grain_rank);
 }
 
 template SolidSample<float> BuildingSolids::nearest(const Vec3<float>&, float) const;

@@ -9,6 +9,7 @@
 #include "core/geometry.hpp"
 #include "params/spec.hpp"
 #include "terrain/plan_bins.hpp"
+#include "terrain/solid_walls.hpp"
 #include "terrain/terrain.hpp"
 
 namespace talus::terrain {
@@ -45,17 +46,6 @@ struct Building : params::BuildingSpec {
 /// Sets every roof to the mean ground elevation of its footprint plus its height; NaN where the ground is not known.
 void place_buildings(const Terrain& terrain, std::vector<Building>& buildings);
 
-/// The nearest face of a building.
-template <class Real>
-struct SolidSample {
-    int building = -1;    ///< index, or -1: none within range
-    Real distance{};      ///< to the surface, m; negative inside
-    Vec3<Real> normal{};  ///< unit, out of the solid
-};
-
-/// The rank of a grain that no mesh lets through.
-inline constexpr float largest_grain = 1;
-
 /// Distance of a local position from the buildings. Cost away from all buildings: one table look-up. Buildings that
 /// touch or overlap act as one solid: a wall between two of them is not a surface. A barrier with a clearance has a
 /// lower face: below it there is no solid. A net is not a solid for grains whose rank by size, 0 to 1, is below its
@@ -87,38 +77,25 @@ class BuildingSolids {
     template <class Real>
     [[nodiscard]] bool inside(const Vec3<Real>& p, float grain_rank = largest_grain) const;
 
+    /// For whoever computes elsewhere: valid as long as this, and until it changes.
+    [[nodiscard]] SolidWalls walls() const {
+        return {edges_.data(), solids_.data(), static_cast<std::uint32_t>(edges_.size()), range_, bins_.view()};
+    }
+    [[nodiscard]] const std::vector<WallEdge>& edges() const { return edges_; }
+    [[nodiscard]] const std::vector<WallSolid>& solids() const { return solids_; }
+    [[nodiscard]] const PlanBins& bins() const { return bins_; }
+
     /// Turns nets into walls.
     void close_nets() {
         for (Solid& solid : solids_) solid.passing_share = 0;
     }
 
   private:
-    /// A piece of a footprint's outline in local plan coordinates, the solid to its left.
-    struct Edge {
-        double ax = 0, ay = 0, bx = 0, by = 0;
-        double hidden_below = 0;  ///< local z: up to here the wall lies against or within another solid
-        /// The same for nets that pass some grains that this wall stops, for grains that all of them stop.
-        double hidden_by_nets = -std::numeric_limits<double>::infinity();
-        float net_share = 0;
-
-        [[nodiscard]] double hidden_for(float grain_rank) const {
-            return grain_rank < net_share || hidden_by_nets < hidden_below ? hidden_below : hidden_by_nets;
-        }
-    };
-    /// A part of a building's footprint.
-    struct Solid {
-        std::uint32_t first_edge, last_edge;
-        int building;
-        double x_min, y_min, x_max, y_max;  ///< local, not grown
-        double floor, roof;                 ///< local z; -infinity: from below the ground
-        float passing_share;                ///< no obstacle for grains of a lower rank
-
-        [[nodiscard]] bool stops(float grain_rank) const { return grain_rank >= passing_share; }
-    };
+    using Edge = WallEdge;
+    using Solid = WallSolid;
 
     void split_walls();
     void fill_bins();
-    [[nodiscard]] bool in_plan(const Solid& solid, double x, double y) const;
 
     std::vector<Edge> edges_;
     std::vector<Solid> solids_;

@@ -14,6 +14,23 @@ struct CoverCell {
     float stem_drag;                                                   ///< deceleration over v^2, 1/m; 0: no stems
 };
 
+/// The zones of a GroundCover by pointers: see there. It owns nothing.
+struct CoverField {
+    const Quad* cells = nullptr;  ///< each a CoverCell
+    int last_column = 0, last_row = 0;
+    float x_west = 0, y_south = 0, inverse_cell = 0;  ///< local m, 1/m
+
+    [[nodiscard]] TALUS_DEVICE bool empty() const { return cells == nullptr; }
+    /// See GroundCover::at().
+    template <class Real>
+    [[nodiscard]] TALUS_INLINE auto at(Real x, Real y) const {
+        const Real u = (x - Real(x_west)) * Real(inverse_cell), v = (y - Real(y_south)) * Real(inverse_cell);
+        const auto column = truncated(larger(Real(0), smaller(Real(last_column), u)));
+        const auto row = truncated(larger(Real(0), smaller(Real(last_row), v)));
+        return quads_at(cells, decltype(column)(row * (last_column + 1) + column));
+    }
+};
+
 /// Zones of the ground on the cells of the terrain: the values at a place need one look-up. Empty: no zones.
 class GroundCover {
   public:
@@ -29,11 +46,13 @@ class GroundCover {
     /// cell.
     template <class Real>
     [[nodiscard]] TALUS_INLINE auto at(Real x, Real y) const {
-        const Real u = (x - Real(x_west_)) * Real(inverse_cell_), v = (y - Real(y_south_)) * Real(inverse_cell_);
-        const auto column = truncated(larger(Real(0), smaller(Real(last_column_), u)));
-        const auto row = truncated(larger(Real(0), smaller(Real(last_row_), v)));
-        return quads_at(cells_.data(), decltype(column)(row * (last_column_ + 1) + column));
+        return field().at(x, y);
     }
+    /// For whoever computes elsewhere: valid as long as this, and until it changes.
+    [[nodiscard]] TALUS_INLINE CoverField field() const {
+        return {cells_.empty() ? nullptr : cells_.data(), last_column_, last_row_, x_west_, y_south_, inverse_cell_};
+    }
+    [[nodiscard]] const std::vector<Quad>& cells() const { return cells_; }
 
   private:
     std::vector<Quad> cells_;

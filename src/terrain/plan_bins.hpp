@@ -9,6 +9,24 @@
 
 namespace talus::terrain {
 
+/// The bins of PlanBins by pointers: see there. It owns nothing.
+struct PlanBinItems {
+    double x_min = 0, y_min = 0, edge = 1;
+    int columns = 0, rows = 0;
+    const std::uint32_t *start = nullptr, *items = nullptr;
+
+    [[nodiscard]] TALUS_DEVICE std::size_t index(int column, int row) const {
+        return static_cast<std::size_t>(row) * static_cast<std::size_t>(columns) + static_cast<std::size_t>(column);
+    }
+    /// Items whose extents contain a local plan position, and others near it, ascending. One table look-up.
+    [[nodiscard]] TALUS_DEVICE std::span<const std::uint32_t> near(double x, double y) const {
+        const double u = (x - x_min) / edge, v = (y - y_min) / edge;
+        if (!(u >= 0 && v >= 0 && u < columns && v < rows)) return {};  // also for NaN
+        const std::size_t bin = index(static_cast<int>(u), static_cast<int>(v));
+        return {items + start[bin], items + start[bin + 1]};
+    }
+};
+
 /// Items by where they lie in plan: square bins, each with the indices of the items whose extents reach into it.
 class PlanBins {
   public:
@@ -16,21 +34,20 @@ class PlanBins {
     /// `extents` of the items, local. `smallest`: edge of a bin, m; larger where there would be over a million bins.
     PlanBins(std::span<const Extent> extents, double smallest);
 
-    /// Items whose extents contain a local plan position, and others near it, ascending. One table look-up.
-    [[nodiscard]] std::span<const std::uint32_t> near(double x, double y) const {
-        const double u = (x - x_min_) / edge_, v = (y - y_min_) / edge_;
-        if (!(u >= 0 && v >= 0 && u < columns_ && v < rows_)) return {};  // also for NaN
-        const std::size_t bin = index(static_cast<int>(u), static_cast<int>(v));
-        return {items_.data() + start_[bin], items_.data() + start_[bin + 1]};
+    /// See PlanBinItems.
+    [[nodiscard]] std::span<const std::uint32_t> near(double x, double y) const { return view().near(x, y); }
+    /// For whoever computes elsewhere: valid as long as the bins.
+    [[nodiscard]] PlanBinItems view() const {
+        PlanBinItems result = box_;
+        result.start = start_.data();
+        result.items = items_.data();
+        return result;
     }
+    [[nodiscard]] const std::vector<std::uint32_t>& starts() const { return start_; }
+    [[nodiscard]] const std::vector<std::uint32_t>& items() const { return items_; }
 
   private:
-    [[nodiscard]] std::size_t index(int column, int row) const {
-        return static_cast<std::size_t>(row) * static_cast<std::size_t>(columns_) + static_cast<std::size_t>(column);
-    }
-
-    double x_min_ = 0, y_min_ = 0, edge_ = 1;
-    int columns_ = 0, rows_ = 0;
+    PlanBinItems box_;                          // without its pointers
     std::vector<std::uint32_t> start_, items_;  // start_ has one entry more than there are bins
 };
 

@@ -34,15 +34,16 @@ Terrain::Terrain(Grid<float> elevation) : elevation_(std::make_shared<Grid<float
     frame_.origin = {(extent.x_min + extent.x_max) / 2, (extent.y_min + extent.y_max) / 2,
                      std::isfinite(lowest) ? lowest : 0.0};
 
-    stride_ = g.columns;
-    last_column_ = g.columns - 1;
-    last_row_ = g.rows - 1;
+    field_.stride = g.columns;
+    field_.last_column = g.columns - 1;
+    field_.last_row = g.rows - 1;
     // From the cell counts and not from the world origin: exact in float for the usual cell sizes.
-    x_first_ = static_cast<float>(-0.5 * last_column_ * g.cell);
-    y_first_ = static_cast<float>(-0.5 * last_row_ * g.cell);
-    inverse_cell_ = static_cast<float>(1 / g.cell);
+    field_.x_first = static_cast<float>(-0.5 * field_.last_column * g.cell);
+    field_.y_first = static_cast<float>(-0.5 * field_.last_row * g.cell);
+    field_.inverse_cell = static_cast<float>(1 / g.cell);
 
     nodes_ = std::make_shared<Quad[]>(heights.size());
+    field_.nodes = nodes_.get();
     for (int row = 0; row < g.rows; ++row) {
         for (int column = 0; column < g.columns; ++column) nodes_[g.index(column, row)] = make_node(column, row);
     }
@@ -52,7 +53,7 @@ Terrain::Terrain(Grid<float> elevation) : elevation_(std::make_shared<Grid<float
 Quad Terrain::make_node(int column, int row) const {
     constexpr float none = std::numeric_limits<float>::quiet_NaN();
     const auto local = [&](int c, int r) {
-        if (c < 0 || r < 0 || c > last_column_ || r > last_row_) return none;
+        if (c < 0 || r < 0 || c > field_.last_column || r > field_.last_row) return none;
         return static_cast<float>(elevation_->at(c, r) - frame_.origin.z);
     };
     const float here = local(column, row);
@@ -69,9 +70,9 @@ void Terrain::continue_into_nodata() {
         const auto columns = static_cast<std::size_t>(g.columns);
         const int column = static_cast<int>(cell % columns), row = static_cast<int>(cell / columns);
         if (column > 0) f(cell - 1, 1, 0);
-        if (column < last_column_) f(cell + 1, -1, 0);
+        if (column < field_.last_column) f(cell + 1, -1, 0);
         if (row > 0) f(cell - columns, 0, 1);
-        if (row < last_row_) f(cell + columns, 0, -1);
+        if (row < field_.last_row) f(cell + columns, 0, -1);
     };
     std::vector<std::size_t> ring, next;
     const auto add_unreached = [&](std::size_t cell) {
@@ -109,13 +110,14 @@ void Terrain::continue_into_nodata() {
 
 std::size_t Terrain::cell_at(float x, float y) const {
     const auto nearest = [this](float along, float first, int last) {
-        return std::clamp(static_cast<int>(std::lround((along - first) * inverse_cell_)), 0, last);
+        return std::clamp(static_cast<int>(std::lround((along - first) * field_.inverse_cell)), 0, last);
     };
-    return elevation_->geometry.index(nearest(x, x_first_, last_column_), nearest(y, y_first_, last_row_));
+    return elevation_->geometry.index(nearest(x, field_.x_first, field_.last_column),
+                                      nearest(y, field_.y_first, field_.last_row));
 }
 
 double Terrain::slope_cosine_of(std::size_t cell) const {
-    const double east = nodes_[cell][1] * inverse_cell_, north = nodes_[cell][2] * inverse_cell_;
+    const double east = nodes_[cell][1] * field_.inverse_cell, north = nodes_[cell][2] * field_.inverse_cell;
     return 1 / std::sqrt(1 + east * east + north * north);
 }
 
@@ -126,12 +128,13 @@ void Terrain::set_elevation(std::size_t cell, float elevation) {
         const auto nodes = std::make_shared<Quad[]>(cells);
         std::copy_n(nodes_.get(), cells, nodes.get());
         nodes_ = nodes;
+        field_.nodes = nodes_.get();
     }
     elevation_->values[cell] = elevation;
     const auto columns = static_cast<std::size_t>(elevation_->geometry.columns);
     const int column = static_cast<int>(cell % columns), row = static_cast<int>(cell / columns);
     const auto renew = [&](int c, int r) {
-        if (c < 0 || r < 0 || c > last_column_ || r > last_row_ || std::isnan(elevation_->at(c, r))) return;
+        if (c < 0 || r < 0 || c > field_.last_column || r > field_.last_row || std::isnan(elevation_->at(c, r))) return;
         nodes_[elevation_->geometry.index(c, r)] = make_node(c, r);
     };
     renew(column, row);

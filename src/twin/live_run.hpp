@@ -58,9 +58,7 @@ class LiveRun {
     [[nodiscard]] std::optional<double> expected_end() const;
     /// What is known about the step that cannot be trusted, at fault.
     [[nodiscard]] const std::optional<run::FaultRecord>& fault() const { return run_->fault(); }
-    [[nodiscard]] std::string instruction_set() const {
-        return std::string(run_->simulation().backend().instruction_set());
-    }
+    [[nodiscard]] std::string instruction_set() const { return run_->simulation().instruction_set(); }
     [[nodiscard]] FramePtr frame(unsigned stride, unsigned flags) const;
 
     /// Impact on an obstacle of the setup, until now or until a time of the recording.

@@ -73,6 +73,7 @@ struct Watch {
     std::function<void(const std::string&)> on_progress;  ///< called with the current computation
     const std::atomic<bool>* stop_requested = nullptr;
     int thread_count = 0;  ///< 0: all cores
+    params::BackendChoice backend = params::BackendChoice::cpu;
 
     void say(const std::string& what) const {
         if (on_progress) on_progress(what);

@@ -110,6 +110,7 @@ namespace {
 
 run::RunStart endless(run::RunStart start, const Watch& watch) {
     start.model.solver.thread_count = watch.thread_count;
+    start.model.solver.backend = watch.backend;
     start.endless = true;
     return start;
 }

@@ -76,9 +76,23 @@ TEST_F(Bench, ChoosesAndRepeatsItself) {
     EXPECT_EQ(hashes[0], hashes[1]);
 }
 
+TEST_F(Bench, MeasuresTheCodeOfACardOnTheProcessor) {
+    std::vector<std::string> arguments = short_;
+    for (const char* more : {"--scene", "slab", "--method", "stress", "--backend", "host", "--json", "host.json"}) {
+        arguments.emplace_back(more);
+    }
+    ASSERT_EQ(run(arguments).exit_code, 0);
+    const auto list = rows("host.json");
+    ASSERT_EQ(list.size(), 1U);
+    EXPECT_EQ(list[0]["backend"], "host");
+    EXPECT_EQ(list[0]["instruction_set"], "host");
+    EXPECT_GT(list[0]["neighbours_per_particle"], 10);
+    EXPECT_GT(list[0]["bytes_per_particle"], 100);
+}
+
 TEST_F(Bench, BadInputIsRefusedInOneLineBeforeAnythingRuns) {
     const std::vector<std::pair<std::vector<std::string>, std::vector<std::string>>> refused = {
-        {{"--backend", "abacus"}, {"--backend", "abacus", "cpu"}},
+        {{"--backend", "abacus"}, {"--backend", "abacus", "cpu, cuda, auto, host"}},
         {{"--scene", "slab,wedge"}, {"--scene", "wedge", "slab", "column", "sham_tseng"}},
         {{"--method", "magic"}, {"--method", "magic", "pair", "stress"}},
         {{"--particles", "20000,5"}, {"--particles", "5", "500", "4000000"}},

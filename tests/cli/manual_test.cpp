@@ -76,7 +76,8 @@ TEST(Version, NamesCommitInstructionSetAndBackends) {
         const auto outcome = run_program({flag}, {.environment = {"TALUS_SIMD=SSE4"}});
         EXPECT_EQ(outcome.exit_code, 0);
         EXPECT_THAT(outcome.out, AllOf(ContainsRegex("^talus [0-9]+\\.[0-9]+\\.[0-9]+\n"), HasSubstr("\ncommit "),
-                                       HasSubstr("\ninstruction set SSE4, of "), HasSubstr("\nbackends cpu")));
+                                       HasSubstr("\ninstruction set SSE4, of "),
+                                       ContainsRegex("\nbackends cpu, (cuda \\(|host; no cuda: )")));
     }
 }
 

@@ -46,6 +46,20 @@ TEST(Run, WritesEveryProductAndSaysWhereTheReportIs) {
     EXPECT_THAT(outcome.error, Not(HasSubstr("\r"))) << "no bar where stderr is no terminal";
 }
 
+TEST(Run, OnTheCodeOfACardSaysSoInTheManifest) {
+    const SmallScene scene;
+    for (const char* backend : {"host", "auto"}) {
+        const auto outcome = run_program({"run", "slope.toml", "--quiet", "--backend", backend, "-o", backend},
+                                         {.folder = scene.folder(), .environment = {"CUDA_VISIBLE_DEVICES=-1"}});
+        ASSERT_EQ(outcome.exit_code, 0) << outcome.error;
+        const auto manifest = nlohmann::json::parse(read_text(scene.folder() / backend / "manifest.json"));
+        const auto& resolved = manifest["resolved"];
+        EXPECT_EQ(resolved["backend"], std::string(backend) == "auto" ? "cpu" : backend) << "without a card";
+        EXPECT_TRUE(resolved["graphics_card"].is_null());
+        EXPECT_EQ(resolved["instruction_set"] == "host", std::string(backend) == "host");
+    }
+}
+
 TEST(Run, QuietPrintsNothing) {
     const SmallScene scene;
     const auto outcome = run_program({"run", "slope.toml", "--quiet", "-o", "result"}, {.folder = scene.folder()});

@@ -7,7 +7,9 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include "sim/backend_choice.hpp"
 #include "sim/cpu/backend.hpp"
+#include "sim/device/backend.hpp"
 #include "sim/reference/reference.hpp"
 #include "sim/step.hpp"
 #include "sim_fixtures.hpp"
@@ -62,15 +64,27 @@ TEST(DensityConstraint, gradient_agrees_with_finite_differences) {
     }
 }
 
+/// Takes a step of the processor, or of the kernels of a device run by plain loops.
+void take_step(params::BackendChoice choice, const Model& model, const Ground& ground, State& state) {
+    StageTimes times;
+    if (choice == params::BackendChoice::cpu) {
+        cpu::Backend backend(model, state.count);
+        step(backend, model, ground, state, times);
+        return;
+    }
+    const auto backend = device::make_host_backend();
+    backend->follow(model, ground, state);
+    step(*backend, model, ground, state, times);
+    backend->fetch(state);
+}
+
 /// Momentum of compressed, shearing debris in free space before and after some steps, per particle.
-void expect_momentum_kept(params::InternalFriction friction) {
+void expect_momentum_kept(params::InternalFriction friction, params::BackendChoice choice) {
     Model model = free_space(params::KernelChoice::wendland_c2, friction);
     const Ground ground = level_ground();
     const auto points = random_points(800, {-1.7F, -1.7F, 8}, {1.7F, 1.7F, 11.4F}, 6);
     const auto velocities = random_points(800, {-1, -1, -1}, {3, 1, 1}, 7);
     State state = state_of(points, velocities);
-    cpu::Backend backend(model, state.count);
-    StageTimes times;
     state.time_step = 1.0 / 120;
     const auto momentum = [&] {
         Vec3<double> sum{};
@@ -82,7 +96,7 @@ void expect_momentum_kept(params::InternalFriction friction) {
     const Vec3<double> before = momentum();
     double compression = 0;
     for (int i = 0; i < 10; ++i) {
-        step(backend, model, ground, state, times);
+        take_step(choice, model, ground, state);
         compression = std::max(compression, state.mean_compression);
     }
     const Vec3<double> change = momentum() - before;
@@ -92,11 +106,13 @@ void expect_momentum_kept(params::InternalFriction friction) {
 }
 
 TEST(ParticleCorrections, conserve_momentum_with_stresses) {
-    expect_momentum_kept(params::InternalFriction::stress);
+    expect_momentum_kept(params::InternalFriction::stress, params::BackendChoice::cpu);
+    expect_momentum_kept(params::InternalFriction::stress, params::BackendChoice::host);
 }
 
 TEST(ParticleCorrections, conserve_momentum_with_pair_friction) {
-    expect_momentum_kept(params::InternalFriction::pair);
+    expect_momentum_kept(params::InternalFriction::pair, params::BackendChoice::cpu);
+    expect_momentum_kept(params::InternalFriction::pair, params::BackendChoice::host);
 }
 
 /// Forest on rough ground in the south, as elsewhere in the north.
@@ -129,10 +145,12 @@ terrain::Building net_on(const terrain::Terrain& terrain) {
     return *net;
 }
 
-/// Runs the fast backend and the reference side by side over debris that falls onto a slope beside a building.
-void expect_agreement(params::InternalFriction friction, params::KernelChoice kernel, int steps, double tolerance,
-                      const params::MaterialSpec& material = {}, bool zones = false, bool net = false) {
+/// Runs a fast backend and the reference side by side over debris that falls onto a slope beside a building.
+void expect_agreement(params::BackendChoice choice, params::InternalFriction friction, params::KernelChoice kernel,
+                      int steps, double tolerance, const params::MaterialSpec& material = {}, bool zones = false,
+                      bool net = false) {
     params::SolverSpec solver;
+    solver.backend = choice;
     solver.internal_friction = friction;
     solver.kernel = kernel;
     solver.largest_time_step = 1.0 / 60;  // rounding errors grow with the step where iterations do not converge
@@ -165,6 +183,7 @@ void expect_agreement(params::InternalFriction friction, params::KernelChoice ke
         const LocalPoint q = state.position.at(i);
         worst = std::max(worst, length(Vector{q.x - p.x, q.y - p.y, q.z - p.z}));
     }
+    EXPECT_EQ(simulation.backend(), choice);
     EXPECT_LT(worst, tolerance) << "m";
     EXPECT_FALSE(state.building_contacts.empty()) << "the building was never touched";
     if (!net) return;
@@ -173,37 +192,49 @@ void expect_agreement(params::InternalFriction friction, params::KernelChoice ke
         << "the net was never touched";
 }
 
+/// An instruction set of the processor; or the kernels of a device, run by plain loops ("host") or by a graphics card
+/// ("cuda"), if there is one.
 class InstructionSet : public ::testing::TestWithParam<const char*> {
   protected:
     void SetUp() override {
+        const std::string name = GetParam();
+        if (name == "host") backend = params::BackendChoice::host;
+        if (name == "cuda") backend = params::BackendChoice::cuda;
+        if (const Status usable = check_backend(backend); !usable) GTEST_SKIP() << usable.error().message;
+        if (backend != params::BackendChoice::cpu) return;
         const Status chosen = simd::choose_instruction_set(GetParam());
         if (!chosen) GTEST_SKIP() << chosen.error().message;
         const Model model = make_model({}, {}, 0.4);
         ASSERT_EQ(cpu::Backend(model, 1).instruction_set(), GetParam());
     }
+    params::BackendChoice backend = params::BackendChoice::cpu;
+
     void TearDown() override { ASSERT_TRUE(simd::choose_instruction_set(simd::instruction_sets().front())); }
 };
 
 TEST_P(InstructionSet, agrees_with_the_double_precision_reference) {
-    expect_agreement(params::InternalFriction::stress, params::KernelChoice::wendland_c2, 12, 2e-4);
+    expect_agreement(backend, params::InternalFriction::stress, params::KernelChoice::wendland_c2, 12, 2e-4);
 }
 
 TEST_P(InstructionSet, agrees_with_the_reference_for_the_published_model) {
-    expect_agreement(params::InternalFriction::pair, params::KernelChoice::poly6_spiky, 4, 2e-4);
+    expect_agreement(backend, params::InternalFriction::pair, params::KernelChoice::poly6_spiky, 4, 2e-4);
 }
 
 TEST_P(InstructionSet, agrees_with_the_reference_for_the_other_kernels) {
-    expect_agreement(params::InternalFriction::stress, params::KernelChoice::cubic_spline, 4, 2e-4);
-    expect_agreement(params::InternalFriction::stress, params::KernelChoice::spiky, 4, 2e-4);
+    expect_agreement(backend, params::InternalFriction::stress, params::KernelChoice::cubic_spline, 4, 2e-4);
+    expect_agreement(backend, params::InternalFriction::stress, params::KernelChoice::spiky, 4, 2e-4);
 }
 
 TEST_P(InstructionSet, agrees_with_the_reference_for_every_resistance) {
-    expect_agreement(params::InternalFriction::stress, params::KernelChoice::wendland_c2, 12, 2e-4, everything(), true);
+    expect_agreement(backend, params::InternalFriction::stress, params::KernelChoice::wendland_c2, 12, 2e-4,
+                     everything(), true);
 }
 
 TEST_P(InstructionSet, agrees_with_the_reference_for_a_net) {
-    expect_agreement(params::InternalFriction::stress, params::KernelChoice::wendland_c2, 12, 2e-4, {}, false, true);
-    expect_agreement(params::InternalFriction::pair, params::KernelChoice::poly6_spiky, 4, 2e-4, {}, false, true);
+    expect_agreement(backend, params::InternalFriction::stress, params::KernelChoice::wendland_c2, 12, 2e-4, {}, false,
+                     true);
+    expect_agreement(backend, params::InternalFriction::pair, params::KernelChoice::poly6_spiky, 4, 2e-4, {}, false,
+                     true);
 }
 
 /// Beyond that which every build has and every processor can.
@@ -229,7 +260,7 @@ TEST_P(FasterInstructionSet, gives_the_same_bits_as_the_baseline) {
         Result<State> seeded =
             seed_releases(model, ground, {testing::block(terrain, testing::rectangle(17.5, 18.5, 20.5, 21.5), 1.2)});
         Simulation simulation(std::move(model), std::move(ground), *std::move(seeded));
-        EXPECT_EQ(simulation.backend().instruction_set(), set);
+        EXPECT_EQ(simulation.instruction_set(), set);
         for (int i = 0; i < 30; ++i) EXPECT_TRUE(simulation.advance());
         return hash_state(simulation.state());
     };
@@ -245,6 +276,7 @@ TEST_P(FasterInstructionSet, gives_the_same_bits_as_the_baseline) {
 
 const auto name_of_set = [](const auto& set) { return std::string(set.param); };
 INSTANTIATE_TEST_SUITE_P(CpuBackend, InstructionSet, ::testing::Values("SCALAR", "SSE4", "AVX2", "AVX3"), name_of_set);
+INSTANTIATE_TEST_SUITE_P(DeviceBackend, InstructionSet, ::testing::Values("host", "cuda"), name_of_set);
 INSTANTIATE_TEST_SUITE_P(CpuBackend, FasterInstructionSet, ::testing::Values("SSE4", "AVX2", "AVX3"), name_of_set);
 
 TEST(InstructionSets, that_are_not_there_are_refused_by_name) {

@@ -6,19 +6,12 @@
 #include "sim/compression.hpp"
 #include "sim/particle_density.hpp"
 #include "sim/physics/contact.hpp"
+#include "sim/physics/resistance.hpp"
 #include "sim/physics/viscosity.hpp"
 #include "simd/parallel.hpp"
 
 namespace talus::sim::cpu {
 namespace {
-
-/// Start time of the release that a particle belongs to.
-double start_time_of(const Model& model, std::uint32_t id) {
-    for (const ReleaseGroup& release : model.releases) {
-        if (id >= release.first_particle && id < release.last_particle) return release.start_time;
-    }
-    return 0;
-}
 
 /// The greater of two speeds; NaN takes precedence, or it would be missed.
 float greater_or_unknown(float a, float b) {

@@ -6,12 +6,12 @@
 #include <cmath>
 #include <limits>
 
+#include "sim/physics/columns.hpp"
 #include "simd/parallel.hpp"
 
 namespace talus::sim::cpu {
 namespace {
 
-constexpr float one = 65536;  // a whole particle
 constexpr std::size_t nowhere = std::numeric_limits<std::size_t>::max();
 constexpr std::size_t grain = 2048;               // particles per task
 constexpr std::size_t columns_per_particle = 16;  // of the box; with more of them, columns are hashed
@@ -20,12 +20,6 @@ constexpr std::size_t columns_per_particle = 16;  // of the box; with more of th
 std::uint64_t key_of(std::int64_t column, std::int64_t row) {
     constexpr std::int64_t outside = std::int64_t{1} << 31;
     return (static_cast<std::uint64_t>(row + outside) << 32) | static_cast<std::uint64_t>(column + outside);
-}
-
-/// As std::floor, which is a call without SSE4.1.
-std::int64_t floor_of(double x) {
-    const auto whole = static_cast<std::int64_t>(x);
-    return whole - (static_cast<double>(whole) > x ? 1 : 0);
 }
 
 template <class Array>
@@ -55,26 +49,19 @@ std::array<float, 2> range_of(const std::vector<float>& values, std::size_t coun
 
 }  // namespace
 
-/// The four columns whose centres surround a place, each with its share by bilinear interpolation.
 template <class F>
 void Columns::for_each_column(float x, float y, const F& f) const {
-    const double u = x * inverse_width_ - 0.5, v = y * inverse_width_ - 0.5;
-    const std::int64_t column = floor_of(u), row = floor_of(v);
-    const auto right = static_cast<float>(u - static_cast<double>(column)),
-               upper = static_cast<float>(v - static_cast<double>(row));
-    for (int dy = 0; dy < 2; ++dy) {
-        for (int dx = 0; dx < 2; ++dx) {
-            f(Place{column + dx, row + dy}, (dx == 1 ? right : 1 - right) * (dy == 1 ? upper : 1 - upper));
-        }
-    }
+    sim::for_each_column(x, y, inverse_width_, [&](std::int64_t column, std::int64_t row, float share) {
+        f(Place{column, row}, share);
+    });
 }
 
 /// Chooses between box and hash, and empties the columns.
 void Columns::frame(const VectorArray& points, std::size_t count) {
     const auto along = [&](const std::vector<float>& values, std::int64_t& first, std::int64_t& size) {
         const auto [low, high] = range_of(values, count);
-        first = floor_of(low * inverse_width_ - 0.5);
-        size = floor_of(high * inverse_width_ - 0.5) + 2 - first;
+        first = whole_below(low * inverse_width_ - 0.5);
+        size = whole_below(high * inverse_width_ - 0.5) + 2 - first;
     };
     along(points.x, first_.column, size_.column);
     along(points.y, first_.row, size_.row);
@@ -95,7 +82,7 @@ void Columns::count(const VectorArray& points, std::size_t count, double width) 
     simd::parallel_ranges(count, grain, [&](std::size_t first, std::size_t last) {
         for (std::size_t i = first; i < last; ++i) {
             for_each_column(points.x[i], points.y[i], [&](Place place, float share) {
-                const auto units = static_cast<std::uint32_t>(std::lround(static_cast<double>(share * one)));
+                const std::uint32_t units = column_units(share);
                 if (units != 0) sums_[find_or_keep(place)].fetch_add(units, std::memory_order_relaxed);
             });
         }
@@ -107,7 +94,7 @@ float Columns::particles_at(float x, float y) const {
     for_each_column(x, y, [&](Place place, float share) {
         const std::size_t at = find(place);
         const std::uint32_t units = at == nowhere ? 0 : sums_[at].load(std::memory_order_relaxed);
-        sum += share * static_cast<float>(units) * (1 / one);
+        sum += share * static_cast<float>(units) * (1 / units_per_particle);
     });
     return sum;
 }

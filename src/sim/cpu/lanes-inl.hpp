@@ -154,21 +154,6 @@ struct LaneLists {
     }
 };
 
-/// A kernel's constants as every pair needs them: V W = value_scale * W r^3, V grad W = -gradient_scale * slope_over_q
-/// x.
-struct PairScale {
-    float inverse_radius, value_scale, gradient_scale;
-
-    explicit PairScale(const Kernel& kernel) {
-        const double r = kernel.support_radius;
-        inverse_radius = static_cast<float>(1 / r);
-        value_scale = static_cast<float>(kernel.particle_volume / (r * r * r));
-        gradient_scale = static_cast<float>(kernel.particle_volume / (r * r * r * r * r));
-    }
-    /// distance / r, at most 1, where every kernel vanishes
-    HWY_INLINE L quotient(const L& distance) const { return smaller(L(1), distance * L(inverse_radius)); }
-};
-
 /// The share of ground and walls in a particle's density.
 struct BoundaryShare {
     L density;

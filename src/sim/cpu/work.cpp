@@ -1,7 +1,5 @@
 #include "sim/cpu/work.hpp"
 
-#include <cmath>
-
 namespace talus::sim::cpu {
 
 Work::Work(std::size_t capacity) {
@@ -50,19 +48,13 @@ Vec3<float> undo_overlap_near_walls(const Model& model, const Ground& ground, co
 
 void enforce_particle(const Model& model, const Ground& ground, const State& state, Work& work, std::size_t i) {
     std::array<float, 8>& displaced = work.displaced[i].v;
-    const Vec3<float> start = state.position.at(i), displacement{displaced[4], displaced[5], displaced[6]};
-    const Vec3<float> wanted = start + displacement;
-    const float rank = grain_rank(state.id[i]);
-    const Vec3<float> end = free_end(model, ground, start, displacement, rank);
-    work.end.set(i, free_end(model, ground, end, work.shift.at(i), rank));
-    if (end.x == wanted.x && end.y == wanted.y && end.z == wanted.z) return;
-    // Lifting a particle back above ground must not speed it up.
-    const Vec3<float> reached = end - start;
-    const float before = dot(displacement, displacement), after = dot(reached, reached);
-    const Vec3<float> slowed = after > before ? reached * std::sqrt(before / after) : reached;
-    displaced[4] = slowed.x;
-    displaced[5] = slowed.y;
-    displaced[6] = slowed.z;
+    const auto [end, kept] =
+        end_of_step(model, ground, state.position.at(i), Vec3<float>{displaced[4], displaced[5], displaced[6]},
+                    work.shift.at(i), grain_rank(state.id[i]));
+    work.end.set(i, end);
+    displaced[4] = kept.x;
+    displaced[5] = kept.y;
+    displaced[6] = kept.z;
 }
 
 }  // namespace talus::sim::cpu

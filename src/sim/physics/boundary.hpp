@@ -36,8 +36,8 @@ struct GroundFace {
     Real density{}, slope{};  ///< its share of a particle's density, and the derivative by the distance
 };
 
-template <class Real>
-GroundFace<Real> sample_ground(const Model& model, const terrain::Terrain& terrain, const Vec3<Real>& p) {
+template <class Real, class AnyModel, class AnyTerrain>
+TALUS_DEVICE GroundFace<Real> sample_ground(const AnyModel& model, const AnyTerrain& terrain, const Vec3<Real>& p) {
     const terrain::GroundSample<Real> below = terrain.sample(p.x, p.y);
     const Real distance = (p.z - below.height) * below.normal.z;  // exact for a plane
     const auto share = model.boundary.at(distance);
@@ -46,9 +46,9 @@ GroundFace<Real> sample_ground(const Model& model, const terrain::Terrain& terra
 
 /// Where faces meet, their shares overlap. For a kernel close to a Gaussian and faces at right angles the shared part
 /// is the product of the shares. `grain_rank` decides which nets are walls (see net.hpp).
-template <class Real>
-Boundary<Real> sample_boundary(const Model& model, const Ground& ground, const Vec3<Real>& p,
-                               float grain_rank = terrain::largest_grain) {
+template <class Real, class AnyModel, class AnyGround>
+TALUS_DEVICE Boundary<Real> sample_boundary(const AnyModel& model, const AnyGround& ground, const Vec3<Real>& p,
+                                            float grain_rank = terrain::largest_grain) {
     Boundary<Real> result;
     auto& [base, wall, second_wall] = result.faces;
     const GroundFace<Real> ground_share = sample_ground(model, ground.terrain, p);
@@ -78,19 +78,19 @@ inline constexpr double boundary_mirror_share = 1.5;
 /// How a displacement changes the density that the constraint sees at a boundary of this gradient. The constraint and
 /// the correction use the same share; otherwise the boundary would add energy.
 template <class Real>
-Real boundary_change(const Vec3<Real>& gradient, const Vec3<Real>& displacement) {
+TALUS_DEVICE Real boundary_change(const Vec3<Real>& gradient, const Vec3<Real>& displacement) {
     return Real(boundary_mirror_share) * dot(gradient, displacement);
 }
 
 /// The correction, m, that a multiplier causes at a boundary whose density has this gradient.
 template <class Real>
-Vec3<Real> boundary_correction(const Vec3<Real>& gradient, Real multiplier) {
+TALUS_DEVICE Vec3<Real> boundary_correction(const Vec3<Real>& gradient, Real multiplier) {
     return gradient * (Real(boundary_mirror_share) * multiplier);
 }
 
 /// The normal correction, m, that `multiplier` (<= 0) stands for at a face whose density has this slope.
 template <class Real>
-Real boundary_push(Real slope, Real multiplier) {
+TALUS_DEVICE Real boundary_push(Real slope, Real multiplier) {
     return Real(boundary_mirror_share) * multiplier * slope;
 }
 

@@ -25,8 +25,9 @@ struct ContactMemory {
 /// constraint) together, plus `strength`, m, which needs no normal correction. Returns the change of displacement;
 /// updates `memory`.
 template <class Real>
-Vec3<Real> resolve_contact(Real overlap, const Vec3<Real>& normal, const Vec3<Real>& displacement, Real density_push,
-                           Real friction_coefficient, Real strength, ContactMemory<Real>& memory) {
+TALUS_DEVICE Vec3<Real> resolve_contact(Real overlap, const Vec3<Real>& normal, const Vec3<Real>& displacement,
+                                        Real density_push, Real friction_coefficient, Real strength,
+                                        ContactMemory<Real>& memory) {
     const Real push = smaller(overlap, -dot(displacement, normal));
     const Real accumulated = larger(Real(0), memory.normal + push);
     Vec3<Real> change = normal * (accumulated - memory.normal);
@@ -44,9 +45,10 @@ using ContactMemories = std::array<ContactMemory<Real>, face_count>;
 
 /// Resolves the contact with a face, plane and at `distance` from the displaced particle. Returns the change of
 /// displacement; updates `memory`.
-template <class Real>
-Vec3<Real> resolve_face(const Model& model, Real distance, const Vec3<Real>& normal, const Vec3<Real>& displacement,
-                        Real density_push, Real friction_coefficient, Real strength, ContactMemory<Real>& memory) {
+template <class Real, class AnyModel>
+TALUS_DEVICE Vec3<Real> resolve_face(const AnyModel& model, Real distance, const Vec3<Real>& normal,
+                                     const Vec3<Real>& displacement, Real density_push, Real friction_coefficient,
+                                     Real strength, ContactMemory<Real>& memory) {
     return resolve_contact(Real(model.contact_distance()) - distance, normal, displacement, density_push,
                            friction_coefficient, strength, memory);
 }
@@ -58,18 +60,18 @@ struct Grip {
     Real ground_strength{};                   ///< m, of a particle in contact: see strength_per_pascal()
 };
 
-template <class Real>
-Grip<Real> uniform_grip(const Model& model) {
+template <class Real, class AnyModel>
+TALUS_DEVICE Grip<Real> uniform_grip(const AnyModel& model) {
     return {Real(model.friction_coefficient), Real(model.building_friction_coefficient), Real(0)};
 }
 
 /// Resolves the contacts with ground and walls of a particle displaced by `displacement`; `boundary` was sampled at the
 /// displacement `sampled_at` and is taken to be plane. `multiplier` is that of its density constraint. Returns the new
 /// displacement.
-template <class Real>
-Vec3<Real> resolve_contacts(const Model& model, const Boundary<Real>& boundary, const Vec3<Real>& sampled_at,
-                            Vec3<Real> displacement, Real multiplier, const Grip<Real>& grip,
-                            ContactMemories<Real>& memories) {
+template <class Real, class AnyModel>
+TALUS_DEVICE Vec3<Real> resolve_contacts(const AnyModel& model, const Boundary<Real>& boundary,
+                                         const Vec3<Real>& sampled_at, Vec3<Real> displacement, Real multiplier,
+                                         const Grip<Real>& grip, ContactMemories<Real>& memories) {
     for (std::size_t f = 0; f < face_count; ++f) {
         const BoundaryFace<Real>& face = boundary.faces[f];
         if (f > 0 && face.building < 0) break;
@@ -82,9 +84,9 @@ Vec3<Real> resolve_contacts(const Model& model, const Boundary<Real>& boundary, 
 }
 
 /// The shift that brings a particle overlapping ground or a wall back to touching it, at most `max_shift` metres.
-template <class Real>
-Vec3<Real> undo_overlap(const Model& model, const Ground& ground, const Vec3<Real>& p, Real max_shift,
-                        float grain_rank = terrain::largest_grain) {
+template <class Real, class AnyModel, class AnyGround>
+TALUS_DEVICE Vec3<Real> undo_overlap(const AnyModel& model, const AnyGround& ground, const Vec3<Real>& p,
+                                     Real max_shift, float grain_rank = terrain::largest_grain) {
     const Real touching = Real(model.contact_distance());
     const Boundary<Real> now = sample_boundary(model, ground, p, grain_rank);
     Vec3<Real> shift{};
@@ -98,8 +100,8 @@ Vec3<Real> undo_overlap(const Model& model, const Ground& ground, const Vec3<Rea
 }
 
 /// Whether a position is free: not below ground, not inside a building, or a net that stops the grain.
-template <class Real>
-bool is_free(const Ground& ground, const Vec3<Real>& p, float grain_rank = terrain::largest_grain) {
+template <class Real, class AnyGround>
+TALUS_DEVICE bool is_free(const AnyGround& ground, const Vec3<Real>& p, float grain_rank = terrain::largest_grain) {
     if (p.z < ground.terrain.sample(p.x, p.y).height) return false;
     return ground.solids.empty() || !ground.solids.inside(p, grain_rank);
 }
@@ -107,9 +109,9 @@ bool is_free(const Ground& ground, const Vec3<Real>& p, float grain_rank = terra
 /// The position at which a particle may end its step: `start + displacement` if the path is free, otherwise a place in
 /// front of the obstacle. Swept in parts of at most a quarter spacing, so it is safe at any speed and time step.
 /// `start` must be free; so is the result.
-template <class Real>
-Vec3<Real> free_end(const Model& model, const Ground& ground, const Vec3<Real>& start, const Vec3<Real>& displacement,
-                    float grain_rank = terrain::largest_grain) {
+template <class Real, class AnyModel, class AnyGround>
+TALUS_DEVICE Vec3<Real> free_end(const AnyModel& model, const AnyGround& ground, const Vec3<Real>& start,
+                                 const Vec3<Real>& displacement, float grain_rank = terrain::largest_grain) {
     const Vec3<Real> end = start + displacement;
     const Real max_part = Real(model.particle_spacing / 4);
     const Real distance = length(displacement);
@@ -146,6 +148,27 @@ Vec3<Real> free_end(const Model& model, const Ground& ground, const Vec3<Real>& 
         }
     }
     return clear > 0 ? reached : start;
+}
+
+/// Where a particle is after its step, and the displacement that becomes velocity.
+template <class Real>
+struct StepEnd {
+    Vec3<Real> position, displacement;
+};
+
+/// The end of a step of `displacement` and of a `shift` that becomes no velocity, both swept (see free_end). Lifting a
+/// particle back above ground does not speed it up.
+template <class Real, class AnyModel, class AnyGround>
+TALUS_DEVICE StepEnd<Real> end_of_step(const AnyModel& model, const AnyGround& ground, const Vec3<Real>& start,
+                                       const Vec3<Real>& displacement, const Vec3<Real>& shift, float grain_rank) {
+    using std::sqrt;
+    const Vec3<Real> wanted = start + displacement;
+    const Vec3<Real> end = free_end(model, ground, start, displacement, grain_rank);
+    const Vec3<Real> shifted = free_end(model, ground, end, shift, grain_rank);
+    if (end.x == wanted.x && end.y == wanted.y && end.z == wanted.z) return {shifted, displacement};
+    const Vec3<Real> reached = end - start;
+    const Real before = dot(displacement, displacement), after = dot(reached, reached);
+    return {shifted, after > before ? reached * sqrt(before / after) : reached};
 }
 
 }  // namespace talus::sim

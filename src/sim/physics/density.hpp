@@ -24,7 +24,7 @@ struct DensityConstraint {
 
 /// How fast the multiplier changes the constraint: -d G / d lambda, softened, 1/m2.
 template <class Real, class Sums, class Share>
-Real gradient_square(const Sums& sums, const Share& boundary, Real softness) {
+TALUS_DEVICE Real gradient_square(const Sums& sums, const Share& boundary, Real softness) {
     const Vec3<Real> pushed = sums.gradient + boundary.gradient * Real(boundary_mirror_share);
     return sums.square + softness + dot(pushed, pushed);
 }
@@ -35,9 +35,9 @@ Real gradient_square(const Sums& sums, const Share& boundary, Real softness) {
 /// At a free surface a particle lacks neighbours on one side. Left alone, it would bear no pressure before the debris
 /// below had packed closer; so, as with the ghost air of Schechter & Bridson (2012), the lattice is assumed to
 /// continue beyond the surface: as a half-space, at the distance given by the gradient of the density.
-template <class Real, class Sums, class Share>
-DensityConstraint<Real> linearise_density(const Model& model, const Sums& sums, const Share& boundary,
-                                          const Vec3<Real>& displacement, Real softness) {
+template <class Real, class Sums, class Share, class AnyModel>
+TALUS_DEVICE DensityConstraint<Real> linearise_density(const AnyModel& model, const Sums& sums, const Share& boundary,
+                                                       const Vec3<Real>& displacement, Real softness) {
     DensityConstraint<Real> result;
     result.surface_share = model.boundary.density_at_slope(length(sums.gradient + boundary.gradient));
     result.start = sums.density + boundary.density + result.surface_share - 1 + sums.divergence -
@@ -50,7 +50,7 @@ DensityConstraint<Real> linearise_density(const Model& model, const Sums& sums, 
 /// Eq. (2) for the linearised constraint, accumulated and unilateral: debris resists compression only. `violation` is
 /// the G to undo.
 template <class Real>
-Real next_multiplier(Real before, Real violation, Real gradient_square, Real under_relaxation) {
+TALUS_DEVICE Real next_multiplier(Real before, Real violation, Real gradient_square, Real under_relaxation) {
     const Real after = smaller(Real(0), before - under_relaxation * violation / gradient_square);
     return select(gradient_square > Real(0), after, before);
 }
@@ -63,7 +63,7 @@ inline double spreading_share(double time_step) {
 
 /// The part of a violation that a step spreads: a share of slight compression, and all beyond it.
 template <class Real>
-Real spread_in_step(Real compression, Real share) {
+TALUS_DEVICE Real spread_in_step(Real compression, Real share) {
     constexpr double slight = 0.01;
     const Real beyond = larger(Real(0), compression - Real(slight));
     return beyond + (compression - beyond) * share;

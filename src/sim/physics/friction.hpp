@@ -12,7 +12,8 @@ namespace talus::sim {
 /// independent of the number of iterations.
 /// Returns the change to apply now; `accumulated` is what the step has applied so far.
 template <class Real>
-Vec3<Real> friction_change(const Vec3<Real>& tangential_displacement, Real limit, Vec3<Real>& accumulated) {
+TALUS_DEVICE Vec3<Real> friction_change(const Vec3<Real>& tangential_displacement, Real limit,
+                                        Vec3<Real>& accumulated) {
     Vec3<Real> wanted = accumulated - tangential_displacement;
     const Real size = length(wanted);
     wanted = wanted * select(size > limit, limit / size, Real(1));
@@ -32,8 +33,8 @@ inline double pair_friction_cap(double internal_friction_coefficient) {
 /// to about one, so that simultaneous corrections do not overshoot. Returns the correction of the first particle; the
 /// second gets its opposite.
 template <class Real>
-Vec3<Real> pair_friction(const Vec3<Real>& separation, Real square_distance, const Vec3<Real>& relative_displacement,
-                         Real limit, Real weight) {
+TALUS_DEVICE Vec3<Real> pair_friction(const Vec3<Real>& separation, Real square_distance,
+                                      const Vec3<Real>& relative_displacement, Real limit, Real weight) {
     const Real along = dot(relative_displacement, separation) / (square_distance + Real(1e-12));
     const Vec3<Real> tangential = relative_displacement - separation * along;
     const Real size = length(tangential);

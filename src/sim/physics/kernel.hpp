@@ -15,12 +15,12 @@ namespace kernels {
 /// Wendland (1995) C2 in 3-D, as used for SPH by Dehnen & Aly (2012).
 struct WendlandC2 {
     template <class Real>
-    static Real value(Real q) {
+    TALUS_DEVICE static Real value(Real q) {
         const Real t = 1 - q, t2 = t * t;
         return Real(21.0 / (2 * std::numbers::pi)) * t2 * t2 * (4 * q + 1);
     }
     template <class Real>
-    static Real slope_over_q(Real q) {
+    TALUS_DEVICE static Real slope_over_q(Real q) {
         const Real t = 1 - q;
         return Real(210 / std::numbers::pi) * t * t * t;
     }
@@ -29,12 +29,12 @@ struct WendlandC2 {
 /// Cubic spline, Monaghan (1992), with its support at q = 1.
 struct CubicSpline {
     template <class Real>
-    static Real value(Real q) {
+    TALUS_DEVICE static Real value(Real q) {
         const Real t = 1 - q, c = Real(8 / std::numbers::pi);
         return select(q <= Real(0.5), c * (6 * q * q * (q - 1) + 1), c * 2 * t * t * t);
     }
     template <class Real>
-    static Real slope_over_q(Real q) {
+    TALUS_DEVICE static Real slope_over_q(Real q) {
         const Real t = 1 - q, c = Real(48 / std::numbers::pi);
         return select(q <= Real(0.5), c * (2 - 3 * q), c * t * t / q);
     }
@@ -43,12 +43,12 @@ struct CubicSpline {
 /// Spiky, Desbrun & Gascuel (1996).
 struct Spiky {
     template <class Real>
-    static Real value(Real q) {
+    TALUS_DEVICE static Real value(Real q) {
         const Real t = 1 - q;
         return Real(15 / std::numbers::pi) * t * t * t;
     }
     template <class Real>
-    static Real slope_over_q(Real q) {
+    TALUS_DEVICE static Real slope_over_q(Real q) {
         const Real t = 1 - q;
         // The slope is finite at q = 0; two particles at one place have no direction in which to separate and stay.
         return Real(45 / std::numbers::pi) * t * t / larger(q, Real(1e-6));
@@ -58,12 +58,12 @@ struct Spiky {
 /// Poly6, Mueller et al. (2003).
 struct Poly6 {
     template <class Real>
-    static Real value(Real q) {
+    TALUS_DEVICE static Real value(Real q) {
         const Real t = 1 - q * q;
         return Real(315 / (64 * std::numbers::pi)) * t * t * t;
     }
     template <class Real>
-    static Real slope_over_q(Real q) {
+    TALUS_DEVICE static Real slope_over_q(Real q) {
         const Real t = 1 - q * q;
         return Real(315 / (64 * std::numbers::pi)) * 6 * t * t;
     }
@@ -72,11 +72,11 @@ struct Poly6 {
 /// The pair of Macklin & Mueller (2013): density from Poly6, gradient from Spiky. Not the gradient of any energy.
 struct Poly6Spiky {
     template <class Real>
-    static Real value(Real q) {
+    TALUS_DEVICE static Real value(Real q) {
         return Poly6::value(q);
     }
     template <class Real>
-    static Real slope_over_q(Real q) {
+    TALUS_DEVICE static Real slope_over_q(Real q) {
         return Spiky::slope_over_q(q);
     }
 };
@@ -112,6 +112,24 @@ struct Kernel {
     /// transmits.
     double gradient_moment = 1;
     double second_moment = 0;  ///< sum of x^2 V W over the lattice, m2: links XSPH smoothing to a kinematic viscosity
+};
+
+/// A kernel's constants as every pair needs them: V W = value_scale * W r^3, V grad W = -gradient_scale * slope_over_q
+/// x.
+struct PairScale {
+    float inverse_radius, value_scale, gradient_scale;
+
+    explicit PairScale(const Kernel& kernel) {
+        const double r = kernel.support_radius;
+        inverse_radius = static_cast<float>(1 / r);
+        value_scale = static_cast<float>(kernel.particle_volume / (r * r * r));
+        gradient_scale = static_cast<float>(kernel.particle_volume / (r * r * r * r * r));
+    }
+    /// distance / r, at most 1, where every kernel vanishes
+    template <class Real>
+    [[nodiscard]] TALUS_INLINE Real quotient(const Real& distance) const {
+        return smaller(Real(1), distance * Real(inverse_radius));
+    }
 };
 
 /// Calibrates on the cubic lattice of the spacing.

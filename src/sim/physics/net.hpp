@@ -8,7 +8,7 @@ namespace talus::sim {
 /// lets particles of rank below p through and is a wall for the others: debris that passes one net passes every wider
 /// one. The rank is a hash of the particle's id (the finalizer of MurmurHash3, Appleby 2011), so that neighbours
 /// differ, the shares hold on average wherever debris comes from, and nothing has to be stored.
-inline float grain_rank(std::uint32_t id) {
+TALUS_DEVICE inline float grain_rank(std::uint32_t id) {
     std::uint32_t hash = id + 0x9e3779b9U;  // 0 would stay 0
     hash = (hash ^ (hash >> 16U)) * 0x85ebca6bU;
     hash = (hash ^ (hash >> 13U)) * 0xc2b2ae35U;

@@ -28,12 +28,22 @@ inline bool resists_by_particle(const Model& model) {
     return !model.cover.empty() || model.cohesion > 0 || has_pore_pressure(model) || model.inertial_friction.on;
 }
 
+/// When the release that a particle belongs to starts, s; 0: it came in another way.
+template <class AnyModel>
+TALUS_DEVICE double start_time_of(const AnyModel& model, std::uint32_t id) {
+    for (const auto& release : model.releases) {
+        if (id >= release.first_particle && id < release.last_particle) return release.start_time;
+    }
+    return 0;
+}
+
 /// The share of the normal stress that the grains of a particle's release bear, 1 - r_u(t) (Hutchinson 1986, "A
 /// sliding-consolidation model for flow slides", whose excess pressure falls as the first mode of consolidation does,
 /// exponentially). `id`: of the particle.
-inline double effective_share(const Model& model, std::size_t id, double time) {
+template <class AnyModel>
+TALUS_DEVICE double effective_share(const AnyModel& model, std::size_t id, double time) {
     double ratio = model.pore_pressure_ratio, since = time;
-    for (const ReleaseGroup& release : model.releases) {
+    for (const auto& release : model.releases) {
         if (id < release.first_particle || id >= release.last_particle) continue;
         ratio = release.pore_pressure_ratio.value_or(ratio);
         since = std::max(0.0, time - release.start_time);
@@ -51,8 +61,8 @@ struct GroundResistance {
     Real stem_drag{};                   ///< deceleration over v^2, 1/m
 };
 
-template <class Real>
-GroundResistance<Real> ground_resistance(const Model& model, const Vec3<Real>& p) {
+template <class Real, class AnyModel>
+TALUS_DEVICE GroundResistance<Real> ground_resistance(const AnyModel& model, const Vec3<Real>& p) {
     GroundResistance<Real> result{Real(model.friction_coefficient), Real(model.cohesion),
                                   Real(model.turbulent_friction > 0 ? 1 / model.turbulent_friction : 0), Real(0)};
     if (model.cover.empty()) return result;
@@ -66,8 +76,9 @@ GroundResistance<Real> ground_resistance(const Model& model, const Vec3<Real>& p
 /// sheared between the ground, at rest, and the centre of a particle. Otherwise the lowest particles would stick to
 /// rough ground, and the flow would start half a spacing too high. `speed`: along the ground, m/s; `pressure`: of the
 /// grains, over density, m2/s2.
-template <class Real>
-Real friction_beside_ground(const Model& model, Real friction, Real speed, Real distance, Real pressure) {
+template <class Real, class AnyModel>
+TALUS_DEVICE Real friction_beside_ground(const AnyModel& model, Real friction, Real speed, Real distance,
+                                         Real pressure) {
     const InertialFriction& inertial = model.inertial_friction;
     if (!inertial.on) return friction;
     Deviator<Real> shear;
@@ -80,8 +91,8 @@ Real friction_beside_ground(const Model& model, Real friction, Real speed, Real 
 /// The factor on a particle's displacement by which the ground shears debris with the mu(I) law: zero if the ground is
 /// smoother than the debris. On rougher ground uniform shear continues below the surface, moving backwards: the factor
 /// lets the lowest layer of a rest lattice see its full shear, as a layer inside does.
-template <class Real>
-Real shear_beside_ground(const Model& model, Real friction) {
+template <class Real, class AnyModel>
+TALUS_DEVICE Real shear_beside_ground(const AnyModel& model, Real friction) {
     const double touching = model.contact_distance(), slope = model.boundary.at(touching).slope;
     return select(friction > Real(model.internal_friction_coefficient),
                   Real(model.kernel.gradient_moment / (-2 * touching * slope)), Real(0));
@@ -90,42 +101,42 @@ Real shear_beside_ground(const Model& model, Real friction) {
 /// The ground's part of the gradient of a displacement `moved` beside it (see shear_beside_ground). `slope`: of the
 /// ground's share of the density.
 template <class Real>
-void add_ground_shear(DisplacementGradient<Real>& deformation, const Vec3<Real>& moved, const Vec3<Real>& normal,
-                      Real slope, Real ground_shear) {
+TALUS_DEVICE void add_ground_shear(DisplacementGradient<Real>& deformation, const Vec3<Real>& moved,
+                                   const Vec3<Real>& normal, Real slope, Real ground_shear) {
     const Vec3<Real> along = moved - normal * dot(moved, normal);
     deformation.add(along * (Real(0) - ground_shear), normal * slope);
 }
 
 /// A shear strength, Pa, as a correction, m, of a particle that stands for a spacing squared of the ground.
-inline double strength_per_pascal(const Model& model, double time_step) {
+TALUS_DEVICE inline double strength_per_pascal(const ModelValues& model, double time_step) {
     return time_step * time_step / (model.rest_density * model.particle_spacing);
 }
 
 /// The shear strength that cohesion gives debris inside, in the units of lambda. The iteration makes pressure, and
 /// friction with it, as large as needed to carry the weight through the sums over neighbours; cohesion is given, and is
 /// raised by the shortfall of these sums.
-inline double internal_strength(const Model& model, double time_step) {
+TALUS_DEVICE inline double internal_strength(const ModelValues& model, double time_step) {
     return model.cohesion * time_step * time_step / (model.rest_density * model.kernel.gradient_moment);
 }
 
 /// The share of a particle in the layer that touches the ground: 1 where it touches, 0 a spacing higher.
-template <class Real>
-Real basal_share(const Model& model, Real distance) {
+template <class Real, class AnyModel>
+TALUS_DEVICE Real basal_share(const AnyModel& model, Real distance) {
     const Real above = (distance - Real(model.contact_distance())) * Real(1 / model.particle_spacing);
     return larger(Real(0), smaller(Real(1), Real(1) - above));
 }
 
 /// Width of the columns in which the thickness of the flow is counted, m: each holds several particles of a layer, and
 /// is still narrow beside the flow.
-inline double column_width(const Model& model) {
+TALUS_DEVICE inline double column_width(const ModelValues& model) {
     return 2 * model.particle_spacing;
 }
 
 /// The share of the columns around a particle that is not cut off by walls. Distribution to columns and interpolation
 /// between them weight the surroundings with a cubic B-spline, two column widths to either side; a wall cuts off the
 /// part beyond it.
-template <class Real>
-Real open_share(const Model& model, const Ground& ground, const Vec3<Real>& p, float grain_rank) {
+template <class Real, class AnyModel, class AnyGround>
+TALUS_DEVICE Real open_share(const AnyModel& model, const AnyGround& ground, const Vec3<Real>& p, float grain_rank) {
     if (ground.solids.empty()) return 1;
     const auto beyond = [&](const terrain::SolidSample<Real>& wall) {
         if (wall.building < 0 || wall.normal.z > Real(0.5)) return Real(0);
@@ -141,8 +152,8 @@ Real open_share(const Model& model, const Ground& ground, const Vec3<Real>& p, f
 /// Thickness of the flow at right angles to the ground, m, for a number of particles in a column. It is the depth of
 /// depth-averaged laws, volume over area. Pressure would also give it, but debris only a few particles thick bears none
 /// most of the time. A single particle counts as a quarter of its width.
-template <class Real>
-Real flow_thickness(const Model& model, const terrain::GroundSample<Real>& below, Real particles) {
+template <class Real, class AnyModel>
+TALUS_DEVICE Real flow_thickness(const AnyModel& model, const terrain::GroundSample<Real>& below, Real particles) {
     const double width = column_width(model);
     return larger(Real(model.particle_spacing / 4),
                   particles * Real(model.particle_volume() / (width * width)) * below.normal.z);
@@ -151,7 +162,7 @@ Real flow_thickness(const Model& model, const terrain::GroundSample<Real>& below
 /// Cube root of a positive number, to 1e-4 between exp(-6) and exp(6). Square roots alone, which every instruction set
 /// rounds in the same way: 1/3 = 1/4 + 1/16 + 1/64 + ..., and the rest is near 1.
 template <class Real>
-Real cube_root(Real x) {
+TALUS_DEVICE Real cube_root(Real x) {
     using std::sqrt;
     const Real a = sqrt(sqrt(x)), b = sqrt(sqrt(a)), c = sqrt(sqrt(b)), rest = c - Real(1);
     return a * b * c * (Real(1) + rest * (Real(1.0 / 3) - rest * Real(1.0 / 9)));
@@ -159,8 +170,8 @@ Real cube_root(Real x) {
 
 /// 1 / xi relative to the given value: Manning's law (1891), v = h^(2/3) S^(1/2) / n, is Voellmy's with xi = h^(1/3) /
 /// n^2.
-template <class Real>
-Real turbulence_at(const Model& model, Real thickness) {
+template <class Real, class AnyModel>
+TALUS_DEVICE Real turbulence_at(const AnyModel& model, Real thickness) {
     if (!(model.turbulent_thickness > 0)) return 1;
     return cube_root(Real(model.turbulent_thickness) / thickness);
 }
@@ -177,10 +188,10 @@ Real turbulence_at(const Model& model, Real thickness) {
 ///
 /// Uses the exact solution of dv/dt = -k v^2 over a step, which never reverses the motion. `thickness`: of the flow, at
 /// right angles to the ground (see flow_thickness).
-template <class Real>
-Vec3<Real> slowed_by_drag(const Model& model, const GroundResistance<Real>& ground,
-                          const terrain::GroundSample<Real>& below, Real distance, Real thickness,
-                          const Vec3<Real>& velocity, Real time_step) {
+template <class Real, class AnyModel>
+TALUS_DEVICE Vec3<Real> slowed_by_drag(const AnyModel& model, const GroundResistance<Real>& ground,
+                                       const terrain::GroundSample<Real>& below, Real distance, Real thickness,
+                                       const Vec3<Real>& velocity, Real time_step) {
     const Real turbulence = ground.inverse_turbulent_friction * turbulence_at(model, thickness);
     const Real turbulent = select(distance <= thickness + Real(model.particle_spacing),
                                   turbulence * Real(model.gravity) / thickness, Real(0));

@@ -36,9 +36,9 @@ inline double shortest_viscous_step(double largest_time_step) {
 /// with reversed velocity, so that the velocity is zero at the surface (Morris, Fox & Zhu 1997, "Modeling low Reynolds
 /// number incompressible flows using SPH", section 3.4). Implicit: it never reverses the motion. Tangential only:
 /// contact handles motion into the ground.
-template <class Real>
-Vec3<Real> slowed_by_ground(const Model& model, const terrain::GroundSample<Real>& below, Real distance,
-                            const Vec3<Real>& velocity, Real smoothing) {
+template <class Real, class AnyModel>
+TALUS_DEVICE Vec3<Real> slowed_by_ground(const AnyModel& model, const terrain::GroundSample<Real>& below, Real distance,
+                                         const Vec3<Real>& velocity, Real smoothing) {
     const Real loss = smoothing * model.boundary.sticking_at(distance);
     const Vec3<Real> along = velocity - below.normal * dot(velocity, below.normal);
     return velocity - along * (loss / (Real(1) + loss));

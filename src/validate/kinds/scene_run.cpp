@@ -8,6 +8,7 @@
 #include "report/results.hpp"
 #include "run/run_scene.hpp"
 #include "scene/scene.hpp"
+#include "sim/backend_choice.hpp"
 #include "validate/kinds/kinds.hpp"
 #include "validate/suite.hpp"
 
@@ -94,6 +95,9 @@ Result<Outcome> compute(const std::filesystem::path& file, const std::string& va
     if (!variant.empty()) overrides.push_back("variant=" + variant);
     overrides.insert(overrides.end(), setting.overrides.begin(), setting.overrides.end());
     if (watch.thread_count > 0) overrides.push_back(fmt::format("solver.thread_count={}", watch.thread_count));
+    if (watch.backend != params::BackendChoice::cpu) {
+        overrides.push_back(fmt::format("solver.backend={}", sim::backend_name(watch.backend)));
+    }
     TALUS_ASSIGN(const scene::Scene scene, scene::load_scene(file, overrides));
     run::RunOptions options;
     options.stop_requested = watch.stop_requested;
