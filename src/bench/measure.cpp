@@ -46,17 +46,20 @@ run::RunStart start_of(const Start& start, const Task& task) {
     return changed;
 }
 
-Status take_steps(run::Run& run, int steps, const std::atomic<bool>* stop_requested) {
+/// Returns the iterations that the steps took.
+Result<int> take_steps(run::Run& run, int steps, const std::atomic<bool>* stop_requested) {
+    int iterations = 0;
     for (int i = 0; i < steps; ++i) {
         if (stop_requested && stop_requested->load()) return Error{"stopped by the user"};
         if (!run.advance()) return Error{run.stop_reason()};
+        iterations += run.state().iterations;
     }
-    return {};
+    return iterations;
 }
 
 /// Times of the repeats, each with the calibration before and after it.
 struct Repeats {
-    std::vector<double> step_seconds, calibration_rate, relative_rate;
+    std::vector<double> step_seconds, iterations, calibration_rate, relative_rate;
     std::array<std::vector<double>, sim::stage_count> stage_seconds;
 };
 
@@ -69,20 +72,22 @@ Status run_repeats(run::Run& run, Row& row, Calibration& calibration, const std:
     for (int repeat = 0; repeat < row.repeats; ++repeat) {
         const sim::StageTimes before = simulation.stage_times();
         const Clock::time_point start = Clock::now();
-        TALUS_TRY(take_steps(run, row.steps, stop_requested));
+        TALUS_ASSIGN(const int iterations, take_steps(run, row.steps, stop_requested));
         const double step_seconds = seconds_since(start) / row.steps;
         const double rate_after = calibration.measure();
         const double rate = (rate_before + rate_after) / 2;
         rate_before = rate_after;
         repeats.step_seconds.push_back(step_seconds);
         repeats.calibration_rate.push_back(rate);
-        repeats.relative_rate.push_back(row.particle_iterations() / step_seconds / rate);
+        repeats.iterations.push_back(static_cast<double>(iterations) / row.steps);
+        repeats.relative_rate.push_back(row.particles * repeats.iterations.back() / step_seconds / rate);
         for (std::size_t stage = 0; stage < sim::stage_count; ++stage) {
             const double spent = simulation.stage_times().seconds[stage] - before.seconds[stage];
             repeats.stage_seconds[stage].push_back(spent / row.steps);
         }
     }
     row.step_seconds = median(repeats.step_seconds);
+    row.mean_iterations = median(repeats.iterations);
     row.calibration_rate = median(repeats.calibration_rate);
     row.relative_rate = median(repeats.relative_rate);
     for (std::size_t stage = 0; stage < sim::stage_count; ++stage) {
@@ -107,11 +112,11 @@ Result<Row> measure_in_arena(const Start& start, const Task& task, Calibration& 
 
     const double bytes_before = allocated_bytes();
     run::Run run(start_of(start, task));
-    Status status = take_steps(run, row.warm_up, stop_requested);
+    const Result<int> warmed_up = take_steps(run, row.warm_up, stop_requested);
     const auto device_bytes = static_cast<double>(run.simulation().device_bytes());
     row.bytes_per_particle = (device_bytes > 0 ? device_bytes : std::max(0.0, allocated_bytes() - bytes_before)) /
                              std::max(1U, row.particles);
-    if (status) status = run_repeats(run, row, calibration, stop_requested);
+    const Status status = !warmed_up ? warmed_up.error() : run_repeats(run, row, calibration, stop_requested);
     if (!status) {
         return Error{fmt::format("scene {}, method {}, {} particles: {}", row.scene, row.method, row.particles,
                                  status.error().message)};

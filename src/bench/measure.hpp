@@ -46,10 +46,11 @@ struct Row {
     double neighbours = 0;          ///< mean per particle, after the last step
     double bytes_per_particle = 0;  ///< allocated for it, on the card if one takes the steps; 0: not reported
     double calibration_rate = 0;    ///< units per second
+    double mean_iterations = 0;     ///< that a step took: more than `iterations` where debris was squeezed
     double relative_rate = 0;       ///< particle-iterations per calibration unit
     std::uint64_t hash = 0;         ///< of the state after the last step
 
-    [[nodiscard]] double particle_iterations() const { return static_cast<double>(particles) * iterations; }
+    [[nodiscard]] double particle_iterations() const { return particles * mean_iterations; }
     [[nodiscard]] double particle_iterations_per_second() const { return particle_iterations() / step_seconds; }
     [[nodiscard]] double steps_per_second() const { return 1 / step_seconds; }
     [[nodiscard]] double real_time_factor() const { return time_step / step_seconds; }

@@ -108,6 +108,7 @@ std::string table_json(const std::vector<Row>& rows) {
             {"method", row.method},
             {"particles", row.particles},
             {"iterations", row.iterations},
+            {"mean_iterations", row.mean_iterations},
             {"threads", row.threads},
             {"backend", row.backend},
             {"instruction_set", row.instruction_set},

@@ -134,7 +134,8 @@ struct State {
 
     // Measured by the last step.
     double mean_compression = 0, max_compression = 0;  ///< of max(0, density / rest density - 1)
-    double squeezed_share = 0;                         ///< of the particles; see compression.hpp
+    double mean_added_compression = 0;                 ///< by the step, to what it started with
+    double squeezed_share = 0, squeezing_share = 0;    ///< of the particles; see compression.hpp
     int iterations = 0;                                ///< of the step
     double max_speed = 0;                              ///< m/s
     std::vector<BuildingContact> building_contacts;

@@ -141,6 +141,7 @@ Row sample_row() {
     row.instruction_set = "AVX2";
     row.particles = 1000;
     row.iterations = 4;
+    row.mean_iterations = 4;
     row.threads = 2;
     row.repeats = 7;
     row.step_seconds = 0.002;

@@ -72,14 +72,15 @@ TEST(Step, brings_inflow_in_tells_its_watcher_and_removes_what_failed) {
     }
 }
 
-/// A cube of debris in the air whose upper half falls onto the lower one at `speed`, m/s.
-Simulation cube(float speed, int extra_iterations) {
+/// A cube of debris in the air whose upper half falls onto the lower one at `speed`, m/s; compressed where `spacing` is
+/// less than the model's.
+Simulation cube(float speed, int extra_iterations, double spacing = testing::fine_spacing) {
     params::SolverSpec solver;
     solver.extra_iteration_count = extra_iterations;
     Model model = make_model({}, solver, testing::fine_spacing);
     std::vector<LocalPoint> points, velocities;
     for (int k = 0; k < 1728; ++k) {
-        const auto at = [&](int cell) { return static_cast<float>(testing::fine_spacing * cell); };
+        const auto at = [&](int cell) { return static_cast<float>(spacing * cell); };
         points.push_back({at(k % 12), at(k / 12 % 12), 20 + at(k / 144)});
         velocities.push_back({0, 0, k < 864 ? 0 : -speed});
     }
@@ -102,6 +103,13 @@ TEST(Step, takes_extra_iterations_where_debris_is_squeezed_and_only_there) {
     if (squeezed.state().iterations < 16) {
         EXPECT_FALSE(needs_iteration(squeezed.state()));
     }
+}
+
+TEST(Step, takes_no_extra_iterations_for_the_compression_that_it_starts_with) {
+    Simulation compressed = cube(0, 12, 0.97 * testing::fine_spacing);
+    ASSERT_TRUE(compressed.advance());
+    EXPECT_TRUE(too_compressed(compressed.state()));
+    EXPECT_EQ(compressed.state().iterations, 4);
 }
 
 TEST(Step, takes_the_same_extra_iterations_on_any_number_of_threads) {

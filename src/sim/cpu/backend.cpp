@@ -161,27 +161,14 @@ void Backend::enforce_boundaries(const Model& model, const Ground& ground, State
 }
 
 void Backend::measure_compression(const Model&, State& state) const {
-    struct Sum {
-        double sum = 0;
-        float max = 0;
-        std::uint32_t squeezed = 0;
-    };
-    const Sum compression = simd::reduce_ranges(
-        state.awake, 4096, Sum{},
-        [&](std::size_t first, std::size_t last, Sum s) {
-            for (std::size_t i = first; i < last; ++i) {
-                s.sum += work_.compression[i];
-                s.max = std::max(s.max, work_.compression[i]);
-                s.squeezed += work_.compression[i] > static_cast<float>(squeezed_compression) ? 1 : 0;
-            }
-            return s;
+    const CompressionSum compression = simd::reduce_ranges(
+        state.awake, 4096, CompressionSum{},
+        [&](std::size_t first, std::size_t last, CompressionSum sum) {
+            for (std::size_t i = first; i < last; ++i) sum.add(work_.compression[i], work_.tolerated_compression[i]);
+            return sum;
         },
-        [](const Sum& a, const Sum& b) {
-            return Sum{a.sum + b.sum, std::max(a.max, b.max), a.squeezed + b.squeezed};
-        });
-    state.mean_compression = state.count > 0 ? compression.sum / state.count : 0;
-    state.max_compression = compression.max;
-    state.squeezed_share = state.count > 0 ? static_cast<double>(compression.squeezed) / state.count : 0;
+        [](const CompressionSum& a, const CompressionSum& b) { return a + b; });
+    compression.write(state, state.count);
 }
 
 void Backend::update_velocities(const Model& model, const Ground& ground, State& state) {

@@ -95,6 +95,7 @@ TALUS_STAGE void linearise(const StageData& data, std::size_t first, std::size_t
         const DensityConstraint<L> constraint = linearise_density(model, sums, boundary, moved, softness);
         store(constraint.start, work.constraint_start, i);
         store(constraint.surface_share, work.surface_share, i);
+        store(compression_before(constraint), work.tolerated_compression, i);
         store(constraint.gradient_square, work.gradient_square, i);
         store(constraint.pair_square, work.pair_square, i);
         warm_start(state, work, i, scale_of_multipliers);

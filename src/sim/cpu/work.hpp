@@ -42,7 +42,7 @@ struct MotionRow : simd::Oct {};     ///< as in State: position x, y, z, 0; velo
     X(std::vector<float>, gradient_square)                                                                             \
     X(std::vector<float>, pair_square)                                                                                 \
     X(std::vector<float>, compression)           /* max(0, G) */                                                       \
-    X(std::vector<float>, tolerated_compression) /* of what the step started with; pair friction only */               \
+    X(std::vector<float>, tolerated_compression) /* that the step started with */                                     \
     /* How a particle is held, where that is not the same for all (see resists_by_particle). */                        \
     X(std::vector<float>, ground_friction)   /* coefficient, lowered by pore pressure */                               \
     X(std::vector<float>, ground_strength)   /* m, where it touches (see Grip) */                                      \

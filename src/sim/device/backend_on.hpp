@@ -19,24 +19,17 @@
 
 namespace talus::sim::device {
 
-/// Particles of a compression, for a sum over all.
-struct Compression {
-    double sum = 0;
-    float max = 0;
-    std::uint32_t squeezed = 0;
-};
 struct CompressionOf {
-    const float* compression;
+    const float *compression, *before;
 
-    TALUS_DEVICE Compression operator()(std::uint32_t i) const {
-        const float c = compression[i];
-        return {c, c, c > static_cast<float>(squeezed_compression) ? 1U : 0U};
+    TALUS_DEVICE CompressionSum operator()(std::uint32_t i) const {
+        CompressionSum own;
+        own.add(compression[i], before[i]);
+        return own;
     }
 };
 struct JoinCompression {
-    TALUS_DEVICE Compression operator()(const Compression& a, const Compression& b) const {
-        return {a.sum + b.sum, larger(a.max, b.max), a.squeezed + b.squeezed};
-    }
+    TALUS_DEVICE CompressionSum operator()(const CompressionSum& a, const CompressionSum& b) const { return a + b; }
 };
 struct IsAwake {
     const std::uint8_t* asleep;
@@ -173,11 +166,8 @@ class BackendOn final : public Backend {
     }
 
     void measure_compression(const Model&, State& state) override {
-        const auto all = executor_.template reduce<Compression>(state.awake, {}, CompressionOf{data_.work.compression},
-                                                                JoinCompression{});
-        state.mean_compression = state.count > 0 ? all.sum / state.count : 0;
-        state.max_compression = all.max;
-        state.squeezed_share = state.count > 0 ? static_cast<double>(all.squeezed) / state.count : 0;
+        const CompressionOf of{data_.work.compression, data_.work.tolerated_compression};
+        executor_.template reduce<CompressionSum>(state.awake, {}, of, JoinCompression{}).write(state, state.count);
     }
 
     void undo_overlaps(const Model& model, const Ground&, State& state) override {

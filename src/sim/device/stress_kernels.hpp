@@ -49,7 +49,9 @@ struct Linearise {
             sums.divergence += dot(d.work.moved[j].vector() - moved, gradient);
         });
         const BoundaryShare boundary = sample_boundary_of(d, i, p, moved);
-        d.work.constraint[i] = linearise_density(d.model, sums, boundary, moved, softness);
+        const auto constraint = linearise_density(d.model, sums, boundary, moved, softness);
+        d.work.constraint[i] = constraint;
+        d.work.tolerated_compression[i] = compression_before(constraint);
         start_warm(d, i, warm_scale);
     }
 };

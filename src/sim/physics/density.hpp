@@ -29,6 +29,12 @@ TALUS_DEVICE Real gradient_square(const Sums& sums, const Share& boundary, Real 
     return sums.square + softness + dot(pushed, pushed);
 }
 
+/// The compression that a step starts with, without the surface's share. Its iterations do not undo it.
+template <class Real>
+TALUS_DEVICE Real compression_before(const DensityConstraint<Real>& constraint) {
+    return larger(Real(0), constraint.start - constraint.surface_share);
+}
+
 /// `boundary` has the `density` and `gradient` of a Boundary; `density`, `square`, `gradient` and `divergence` as the
 /// pair sums give them at the predicted positions; `softness` in 1/m2.
 ///

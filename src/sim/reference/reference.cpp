@@ -285,6 +285,7 @@ void Backend::warm_start(const Model& model, const Ground& ground, State& state)
             Particle& p = state.particles[i];
             p.constraint =
                 linearise_density(model, sums_at(model, state, point, i), p.boundary, p.displacement, softness);
+            p.tolerated_compression = compression_before(p.constraint);
             p.multiplier *= scale;
             p.stress = p.stress * scale;
             p.stress_change = p.held ? Deviator<double>{} : p.stress;
@@ -320,14 +321,11 @@ void Backend::solve_contacts(const Model& model, const Ground&, State& state) {
 }
 
 void Backend::measure_compression(const Model&, State& state) {
-    double sum = 0, squeezed = 0;
+    CompressionSum sum;
     for (const Particle& p : state.particles) {
-        sum += p.compression;
-        squeezed += p.compression > squeezed_compression ? 1 : 0;
+        sum.add(static_cast<float>(p.compression), static_cast<float>(p.tolerated_compression));
     }
-    const auto count = static_cast<double>(std::max<std::size_t>(1, state.particles.size()));
-    state.mean_compression = sum / count;
-    state.squeezed_share = squeezed / count;
+    sum.write(state, static_cast<double>(state.particles.size()));
 }
 
 void Backend::undo_overlaps(const Model& model, const Ground& ground, State& state) {

@@ -36,8 +36,10 @@ struct State {
     double time = 0, time_step = 0, previous_time_step = 0;
     std::uint64_t step = 0;
     std::vector<Particle> particles;
-    double mean_compression = 0, squeezed_share = 0;  ///< of the last step; see compression.hpp
-    int iterations = 0;                               ///< that the step took
+    // Of the last step; see compression.hpp.
+    double mean_compression = 0, max_compression = 0, mean_added_compression = 0, squeezed_share = 0,
+           squeezing_share = 0;
+    int iterations = 0;  ///< that the step took
 
     State() = default;
     explicit State(const sim::State& state);
