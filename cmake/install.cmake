@@ -62,7 +62,6 @@ set(CPACK_PACKAGE_DESCRIPTION
     "talus simulates landslides and debris flows with position-based dynamics. It writes hazard maps, tables and a report, shows a run live in the browser, and comes with a C library.")
 set(CPACK_RESOURCE_FILE_LICENSE ${PROJECT_SOURCE_DIR}/LICENSE)
 set(CPACK_STRIP_FILES ON)
-set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_PACKAGE_SECTION science)
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
