@@ -34,7 +34,10 @@ add_custom_command(
 add_custom_target(manuals ALL DEPENDS ${shared}/made)
 install(DIRECTORY ${shared}/man/ DESTINATION ${CMAKE_INSTALL_MANDIR}/man1)
 install(FILES ${shared}/bash/talus DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions)
-install(FILES ${shared}/zsh/_talus DESTINATION ${CMAKE_INSTALL_DATADIR}/zsh/site-functions)
+# Debian's zsh looks into the second folder, others into the first.
+foreach(folder site-functions vendor-completions)
+  install(FILES ${shared}/zsh/_talus DESTINATION ${CMAKE_INSTALL_DATADIR}/zsh/${folder})
+endforeach()
 
 # Where Debian's Python looks; elsewhere PYTHONPATH names it. The package finds the library from where it lies itself.
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/python/talus DESTINATION lib/python3/dist-packages PATTERN "__pycache__" EXCLUDE)

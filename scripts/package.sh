@@ -22,7 +22,7 @@ archive=$(realpath build/package/*.tar.gz)
 if ! command -v debootstrap >/dev/null; then apt-get install --yes --no-install-recommends debootstrap; fi
 root=$(mktemp --directory)
 leave() {
-    umount "$root/proc" 2>/dev/null || true
+    umount "$root/proc" "$root/dev/pts" 2>/dev/null || true
     rm -rf "$root"
 }
 trap leave EXIT
@@ -30,6 +30,7 @@ trap leave EXIT
 mirror=$(apt-cache policy base-files | awk '/ https?:/ && !found { print $2; found = 1 }')
 debootstrap --variant=minbase bookworm "$root" "$mirror"
 mount -t proc proc "$root/proc"
+mount --bind /dev/pts "$root/dev/pts" # zsh completes in a terminal
 # minbase leaves out the manual pages and documentation of packages only where it is told to; here they are looked at.
 rm -f "$root"/etc/dpkg/dpkg.cfg.d/*doc*
 inside() {
@@ -97,7 +98,7 @@ check "zsh completes commands" zsh -f -c '
     zpty -w -n shell "talus ense"$'"'\t'"'
     for try in {1..50}; do
         zpty -r -t shell more && seen+=$more
-        [[ $seen == *"talus ensemble"* ]] && exit 0
+        [[ $seen == *ense*mble* ]] && exit 0 # the bell rings between them
         sleep 0.1
     done
     print -r -- "$seen"; exit 1'
