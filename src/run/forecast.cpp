@@ -219,7 +219,9 @@ RunClock::Course RunClock::course_after(const Outlook& now, double time) const {
     const double most = std::max(0.0, solver_.end_time - time);
     if (solver_.stop_moving_share <= 0) return {most, 0};
     Course course;
-    if (now.moving_share >= straggling_share) {
+    const bool speeds_up =
+        std::all_of(marks_.begin(), marks_.end(), [&](const Mark& m) { return m.energy <= now.energy; });
+    if (now.moving_share >= straggling_share || speeds_up) {
         course.coasting = now.wait + now.coasting;
         const double unevenness = now.coasting / std::max(now.half_stopped, 0.1) - even_stop;
         course.straggling = (time + now.coasting) / 2 * std::clamp(unevenness, 0.0, 1.0);
@@ -249,7 +251,8 @@ void RunClock::tick(double wall_time, double time, const std::function<Outlook()
     ++steps_;
     longest_step_ = std::max(longest_step_, time - last_time_);
     last_time_ = time;
-    if (wall_time >= next_look_) {
+    const bool halfway = time - course_from_ > (course_.coasting + course_.straggling) / 2;
+    if (wall_time >= (halfway ? next_look_if_halfway_ : next_look_)) {
         const auto start = Clock::now();
         const Outlook now = look();
         marks_.push_back({wall_time, time, steps_, now.moving_share, now.awake_share, now.energy});
@@ -259,6 +262,7 @@ void RunClock::tick(double wall_time, double time, const std::function<Outlook()
         end_ = time + course_.coasting + course_.straggling;
         const double cost = std::chrono::duration<double>(Clock::now() - start).count();
         next_look_ = std::max(1.03 * wall_time, wall_time + 20 * cost);
+        next_look_if_halfway_ = std::max(1.03 * wall_time, wall_time + 5 * cost);
     }
     const double passed = time - course_from_, straggled = std::max(0.0, passed - course_.coasting);
     remaining_ = wall_time_of({std::max(0.0, course_.coasting - passed), std::max(0.0, course_.straggling - straggled)},

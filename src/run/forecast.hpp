@@ -50,7 +50,8 @@ class RunClock {
   public:
     explicit RunClock(const params::SolverSpec& solver) : solver_(solver), end_(solver.end_time) {}
 
-    /// After a step. Calls `look` now and then, for at most a twentieth of the wall time.
+    /// After a step. Calls `look` now and then, for at most a twentieth of the wall time; for more, a few times, where
+    /// a run is short.
     void tick(double wall_time, double time, const std::function<Outlook()>& look);
     [[nodiscard]] double expected_end() const { return end_; }          ///< s, simulated
     [[nodiscard]] double wall_remaining() const { return remaining_; }  ///< s
@@ -76,7 +77,7 @@ class RunClock {
     double course_from_ = 0;      ///< s, simulated
     double longest_step_ = 1e-9;  ///< s, so far
     double cost_asleep_ = 1;
-    double steps_ = 0, last_time_ = 0, next_look_ = 0, end_, remaining_ = 0, share_done_ = 0;
+    double steps_ = 0, last_time_ = 0, next_look_ = 0, next_look_if_halfway_ = 0, end_, remaining_ = 0, share_done_ = 0;
 };
 
 }  // namespace talus::run

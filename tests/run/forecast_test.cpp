@@ -106,6 +106,9 @@ TEST(TheClock, WaitsForWhatIsStillToCome) {
 TEST(TheClock, WhatSleepsCostsLess) {
     RunClock awake(solver()), asleep(solver());
     Outlook outlook{.coasting = 20, .moving_share = 0.1, .enough_share = 0.001, .energy = 1};
+    const auto fastest = [] { return coasting(25); };
+    for (RunClock* clock : {&awake, &asleep}) clock->tick(0.5, 5, fastest);
+    outlook.energy = 0.5;
     awake.tick(1, 10, [&] { return outlook; });
     outlook.cost_asleep = 0.25;
     asleep.tick(1, 10, [&] { return outlook; });
