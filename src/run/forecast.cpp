@@ -19,7 +19,7 @@ constexpr double pace_window = 0.25;  // of the wall time so far
 constexpr double straggling_share = 0.8;  // of the debris: so much of it moves while it coasts together
 constexpr double decay_window = 0.4;      // of the simulated time so far
 constexpr double falls_before_decay = 2;  // in times that it took to become fastest
-constexpr double decay_weight = 0.6;      // beside that of the blocks, while debris straggles
+constexpr double decay_weight = 0.9;      // beside that of the blocks, once nearly all of it has come to rest
 constexpr double even_stop = 1.25;        // time until the last block stops over that until half of them have
 constexpr double still_awake = 0.2;       // of what is awake now: the mean of what is later, while debris straggles
 constexpr double cost_asleep = 0.5;       // of particles
@@ -212,7 +212,8 @@ double RunClock::straggling(const Outlook& now, double time) const {
     const double long_decay = (time + falls_before_decay * fastest) / -std::log(now.moving_share);
     const double decay = (time - before.time + long_decay) / (fallen + 1);
     const double by_decay = decay * std::log(now.moving_share / now.enough_share);
-    return std::pow(std::max(now.coasting, 0.1), 1 - decay_weight) * std::pow(by_decay, decay_weight);
+    const double weight = decay_weight * std::sqrt(1 - now.moving_share);
+    return std::pow(std::max(now.coasting, 0.1), 1 - weight) * std::pow(by_decay, weight);
 }
 
 RunClock::Course RunClock::course_after(const Outlook& now, double time) const {

@@ -43,7 +43,7 @@ struct Outlook {
 /// Wall time left of a run. Its end is that of the stop rule, or solver.end_time. While all debris moves, it coasts to
 /// a stop as blocks do that slide alone; where some of these stop much later than others, the ground holds debris up,
 /// and it straggles for a while after that. Once a part has come to rest, the rest of it straggles, stopped and pushed
-/// by what lies there, and the moving share falls about exponentially: its trend counts as much as the blocks. Wall
+/// by what lies there, and the moving share falls about exponentially: the less moves, the more its trend counts. Wall
 /// time starts from the pace of the latest steps, and follows the time step, which is longest at rest, and the debris
 /// that is awake.
 class RunClock {

@@ -134,7 +134,7 @@ TEST(TheClock, FollowsTheDecayOfAStragglingTail) {
     for (double time = 1; time < 90; time += 1) {
         const double share = std::exp2(-time / 10);
         clock.tick(time / 10, time, [&] {
-            return Outlook{.coasting = 15, .moving_share = share, .enough_share = 0.001, .energy = std::exp(-time)};
+            return Outlook{.coasting = 5, .moving_share = share, .enough_share = 0.001, .energy = std::exp(-time)};
         });
         if (time < end / 10 || time > end - 10) continue;
         EXPECT_GT(clock.wall_remaining(), (end - time) / 20) << time;
