@@ -34,7 +34,10 @@ add_custom_command(
 add_custom_target(manuals ALL DEPENDS ${shared}/made)
 install(DIRECTORY ${shared}/man/ DESTINATION ${CMAKE_INSTALL_MANDIR}/man1)
 install(FILES ${shared}/bash/talus DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions)
-install(FILES ${shared}/zsh/_talus DESTINATION ${CMAKE_INSTALL_DATADIR}/zsh/site-functions)
+# Debian's zsh looks into the second folder, others into the first.
+foreach(folder site-functions vendor-completions)
+  install(FILES ${shared}/zsh/_talus DESTINATION ${CMAKE_INSTALL_DATADIR}/zsh/${folder})
+endforeach()
 
 # Where Debian's Python looks; elsewhere PYTHONPATH names it. The package finds the library from where it lies itself.
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/python/talus DESTINATION lib/python3/dist-packages PATTERN "__pycache__" EXCLUDE)
@@ -62,7 +65,6 @@ set(CPACK_PACKAGE_DESCRIPTION
     "talus simulates landslides and debris flows with position-based dynamics. It writes hazard maps, tables and a report, shows a run live in the browser, and comes with a C library.")
 set(CPACK_RESOURCE_FILE_LICENSE ${PROJECT_SOURCE_DIR}/LICENSE)
 set(CPACK_STRIP_FILES ON)
-set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_PACKAGE_SECTION science)
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)

@@ -18,10 +18,11 @@ ls -l build/package
 [[ ${1:-} == --test ]] || exit 0
 
 package=$(realpath build/package/*.deb)
+archive=$(realpath build/package/*.tar.gz)
 if ! command -v debootstrap >/dev/null; then apt-get install --yes --no-install-recommends debootstrap; fi
 root=$(mktemp --directory)
 leave() {
-    umount "$root/proc" 2>/dev/null || true
+    umount "$root/proc" "$root/dev/pts" 2>/dev/null || true
     rm -rf "$root"
 }
 trap leave EXIT
@@ -29,26 +30,114 @@ trap leave EXIT
 mirror=$(apt-cache policy base-files | awk '/ https?:/ && !found { print $2; found = 1 }')
 debootstrap --variant=minbase bookworm "$root" "$mirror"
 mount -t proc proc "$root/proc"
-cp "$package" "$root/talus.deb"
-cp examples/embed.c "$root/embed.c"
+mount --bind /dev/pts "$root/dev/pts" # zsh completes in a terminal
+# minbase leaves out the manual pages and documentation of packages only where it is told to; here they are looked at.
+rm -f "$root"/etc/dpkg/dpkg.cfg.d/*doc*
 inside() {
-    chroot "$root" env DEBIAN_FRONTEND=noninteractive LC_ALL=C.UTF-8 "$@"
+    chroot "$root" env DEBIAN_FRONTEND=noninteractive LC_ALL=C.UTF-8 HOME=/root TERM=xterm "$@"
 }
-inside apt-get install --yes --no-install-recommends /talus.deb
-inside talus --version
-inside talus run --quiet -o /result --set solver.target_particle_count=1000 --set solver.end_time_s=5
-inside test -s /result/report.html
-inside talus scene check /usr/share/talus/scenes/sham_tseng/scene.toml >/dev/null
-inside test -s /usr/share/qgis/python/plugins/talus_processing/icon.svg
-inside test -s /usr/share/man/man1/talus-run.1.gz -o -s /usr/share/man/man1/talus-run.1
+install_inside() {
+    inside apt-get install --yes --no-install-recommends "$@"
+}
+# $1 says what must hold: a command inside the fresh Debian.
+check() {
+    local what=$1
+    shift
+    if ! inside "$@"; then
+        echo "scripts/package.sh: $what: failed" >&2
+        exit 1
+    fi
+    echo "ok: $what"
+}
+
+# The archive first, where nothing else of talus is: unpacked, then moved.
+mkdir "$root/unpacked"
+tar --extract --file "$archive" --directory "$root/unpacked"
+mv "$root"/unpacked/talus-* "$root/opt/moved"
+cp "$package" "$root/talus.deb"
+# What the package depends on, without the package.
+inside sh -c 'apt-get install --yes --no-install-recommends --download-only /talus.deb && apt-get install --yes --no-install-recommends $(dpkg --info /talus.deb | sed -n "s/^ Depends: //p" | tr "," "\n" | sed "s/(.*//; s/|.*//")'
+check "the archive runs where it was unpacked" /opt/moved/bin/talus --version
+check "the archive runs a scene" /opt/moved/bin/talus run --quiet -o /result_of_archive \
+    --set solver.target_particle_count=500 --set solver.end_time_s=5
+install_inside python3-numpy
+check "the archive's Python package" env PYTHONPATH=/opt/moved/lib/python3/dist-packages python3 -c '
+import talus
+assert talus.__file__.startswith("/opt/moved/"), talus.__file__
+simulation = talus.Simulation(settings={"solver.target_particle_count": 500})
+simulation.advance(1)'
+inside apt-get purge --yes python3-numpy >/dev/null
+
+install_inside /talus.deb
+check "talus --version says version, commit, instruction set, backends" sh -c \
+    'talus --version | tr "\n" " " | grep -E "^talus [0-9.]+ commit [0-9a-f]+ instruction set [A-Z0-9]+, of .* backends cpu"'
+check "talus -V says the same" sh -c '[ "$(talus -V)" = "$(talus --version)" ]'
+check "talus run" talus run --quiet -o /result --set solver.target_particle_count=1000 --set solver.end_time_s=5
+check "its report" test -s /result/report.html
+check "a scene that was installed" talus scene check /usr/share/talus/scenes/sham_tseng/scene.toml
+check "the plugin for QGIS" test -s /usr/share/qgis/python/plugins/talus_processing/icon.svg
+
+# Manual pages, completion, menu entry: in what reads them.
+install_inside man-db bash-completion zsh desktop-file-utils
+inside mandb --quiet
+check "man talus" sh -c 'man talus | grep -q "talus run"'
+check "man talus-run" sh -c 'man talus-run | grep -q -e --convergence'
+check "apropos" sh -c 'apropos talus-run | grep -q "talus-run (1)"'
+check "bash completes commands" bash -c '
+    . /usr/share/bash-completion/bash_completion
+    _completion_loader talus
+    COMP_WORDS=(talus ense) COMP_CWORD=1 COMP_LINE="talus ense" COMP_POINT=10
+    $(complete -p talus | sed "s/.* -F \([^ ]*\).*/\1/") talus ense talus
+    [[ " ${COMPREPLY[*]} " == *" ensemble"* ]]'
+# zsh completes in a terminal only: one of its own, in which the tab key is pressed.
+check "zsh completes commands" zsh -f -c '
+    zmodload zsh/zpty
+    zpty shell "zsh -f -i"
+    zpty -w shell "PS1=; autoload -Uz compinit; compinit -u -D; print rea\"\"dy"
+    zpty -r -t shell seen "*ready*" || { sleep 2; zpty -r -t shell seen "*ready*"; }
+    zpty -w -n shell "talus ense"$'"'\t'"'
+    for try in {1..50}; do
+        zpty -r -t shell more && seen+=$more
+        [[ $seen == *ense*mble* ]] && exit 0 # the bell rings between them
+        sleep 0.1
+    done
+    print -r -- "$seen"; exit 1'
+check "the menu entry" desktop-file-validate /usr/share/applications/talus.desktop
+check "its icon" test -s /usr/share/icons/hicolor/scalable/apps/talus.svg
+
 # The library, for a program in C.
-inside apt-get install --yes --no-install-recommends gcc libc6-dev pkg-config
-inside sh -c 'gcc -std=c11 -o /embed /embed.c $(pkg-config --cflags --libs talus) -lm && /embed'
-inside apt-get install --yes --no-install-recommends python3-numpy
-inside python3 -c 'import talus; s = talus.Simulation(settings={"solver.target_particle_count": 500}); s.advance(2); print("Python:", talus.__version__, s.hash)'
+install_inside gcc g++ make libc6-dev pkg-config cmake
+mkdir "$root/embed"
+inside cp /usr/share/doc/talus/examples/embed.c /embed/
+check "a program in C with pkg-config" sh -c 'cd /embed && gcc -std=c11 -o with_pkg_config embed.c $(pkg-config --cflags --libs talus) -lm && ./with_pkg_config'
+cat >"$root/embed/CMakeLists.txt" <<'PROJECT'
+cmake_minimum_required(VERSION 3.20)
+project(embed C)
+find_package(talus 0.1 REQUIRED)
+add_executable(with_cmake embed.c)
+target_link_libraries(with_cmake PRIVATE talus::talus m)
+PROJECT
+check "a program in C with CMake" sh -c 'cd /embed && cmake -S . -B build >/dev/null && cmake --build build >/dev/null && build/with_cmake'
+check "a program in C with CMake, on the archive" sh -c \
+    'cd /embed && cmake -S . -B moved -D CMAKE_PREFIX_PATH=/opt/moved >/dev/null && grep -q "talus_DIR:PATH=/opt/moved" moved/CMakeCache.txt && cmake --build moved >/dev/null && moved/with_cmake'
+check "only talus.h is visible in the library" sh -c \
+    '! nm --dynamic --defined-only /usr/lib/*/libtalus.so.*.* | grep -v -E " [TA] (talus_|TALUS_)"'
+
+install_inside python3-numpy
+check "import talus" python3 -c '
+import talus
+simulation = talus.Simulation(settings={"solver.target_particle_count": 500})
+simulation.advance(2)
+print("Python:", talus.__version__, simulation.hash)'
+# The tests of the Python package, on the one that is installed, with the notebooks that are.
+mkdir -p "$root/python/tests" "$root/python/examples"
+cp -r tests/python "$root/python/tests/"
+inside ln -s /usr/share/doc/talus/examples/notebooks /python/examples/notebooks
+check "the tests of the Python package" python3 -m unittest discover --start-directory /python/tests/python
+
 inside apt-get remove --yes talus
-if inside sh -c 'command -v talus'; then
-    echo "scripts/package.sh: the package leaves talus behind when it is removed" >&2
+if inside sh -c 'command -v talus || ls /usr/share/talus /usr/lib/*/libtalus*' 2>/dev/null; then
+    echo "scripts/package.sh: the package leaves files behind when it is removed" >&2
     exit 1
 fi
 echo "the package installs, runs and goes in a fresh Debian 12"

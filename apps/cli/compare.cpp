@@ -21,6 +21,7 @@
 #include "report/second_opinion.hpp"
 #include "run/run_scene.hpp"
 #include "run/second_opinion.hpp"
+#include "run/variants.hpp"
 #include "scene/builtin.hpp"
 #include "scene_input.hpp"
 #include "summary.hpp"
@@ -36,6 +37,9 @@ holds one page, report.html, with maps of both and their difference, front and r
 area, the structures hit and where the models differ; results.json has the same as data. The folders particles and
 depth_averaged hold the whole result of each run.
 )";
+
+/// Wall time of the depth-averaged run over that of the particles, before it is known: that of the built-in scene.
+constexpr double depth_averaged_effort = 0.3;
 
 struct CompareArguments {
     std::string scene, output, layers, data;
@@ -128,10 +132,16 @@ int compare_command(const CompareArguments& arguments) {
     }
     run::RunOptions options;
     options.stop_requested = &watch.stop_requested();
-    options.on_progress = [&](const run::Progress& now) { progress.report(now); };
+    run::SeriesClock clock({{.name = "depth-averaged", .overrides = {}, .effort = depth_averaged_effort}});
+    options.on_progress = [&](const run::Progress& now) {
+        run::SeriesProgress both = clock.at(now);
+        if (both.run == 1) both.name = "particles";
+        progress.report(now, both);
+    };
     const auto particles = run_scene(job->input.scene, options);
     progress.clear();
     if (!particles) return fail(exit_code::bad_input, particles.error().message);
+    clock.base_ended(*particles);
     // Chainages of both are along one path.
     take_followed_path(job->input.scene, *particles);
     job->grid_scene.flow_path = job->input.scene.flow_path;

@@ -58,10 +58,12 @@ class Map:
         return self.y_min + (np.arange(self.values.shape[0]) + 0.5) * self.cell
 
     def to_xarray(self) -> Any:
-        """An xarray.DataArray with coordinates x and y. Needs xarray."""
+        """An xarray.DataArray with coordinates x and y, and its unit as attribute. Needs xarray."""
         import xarray
 
-        return xarray.DataArray(self.values, coords={"y": self.y, "x": self.x}, dims=("y", "x"), name=self.name)
+        return xarray.DataArray(
+            self.values, {"y": self.y, "x": self.x}, ("y", "x"), name=self.name, attrs={"units": UNITS[self.name]}
+        )
 
     def plot(self, ax: Any = None) -> Any:
         """Draws the map on matplotlib axes and returns them. Needs matplotlib."""
@@ -220,6 +222,7 @@ class Simulation:
 
     @property
     def phase(self) -> Phase:
+        """Whether it goes on; `message` says why not."""
         return Phase(lib.library.talus_get_phase(self._handle))
 
     @property
@@ -229,11 +232,12 @@ class Simulation:
 
     @property
     def time(self) -> float:
-        """s"""
+        """Simulated time, s."""
         return lib.library.talus_time(self._handle)
 
     @property
     def steps(self) -> int:
+        """Time steps taken so far."""
         return lib.library.talus_steps(self._handle)
 
     @property
@@ -250,7 +254,7 @@ class Simulation:
 
     @property
     def particle_volume(self) -> float:
-        """m3"""
+        """Volume that a particle stands for, m3."""
         return lib.library.talus_particle_volume(self._handle)
 
     def _views(self, *names: str) -> Iterator[npt.NDArray[Any]]:
@@ -285,6 +289,7 @@ class Simulation:
 
     @property
     def front(self) -> Front:
+        """The front along the flow path so far; empty before debris reaches it."""
         front = lib.library.talus_get_front(self._handle)
         if front.count == 0:
             return Front(np.zeros(0), np.zeros(0), np.zeros(0))

@@ -24,6 +24,7 @@ class Result:
     message: str  #: why it ended
     time: float  #: s, simulated
     hash: str
+    crs: str  #: of the terrain, "EPSG:2326" or WKT
     front: Front = field(repr=False)
     structures: list[Structure] = field(repr=False)
     maps: dict[str, Map] = field(repr=False)  #: by name, see UNITS
@@ -34,11 +35,11 @@ class Result:
         import xarray
 
         filled = {name: found for name, found in self.maps.items() if np.isfinite(found.values).any()}
-        return xarray.Dataset({name: found.to_xarray() for name, found in filled.items()})
+        return xarray.Dataset({name: found.to_xarray() for name, found in filled.items()}, attrs={"crs": self.crs})
 
-    def to_geopandas(self, crs: str, threshold: float = 0.1) -> Any:
+    def to_geopandas(self, threshold: float = 0.1) -> Any:
         """The cells where debris was deeper than `threshold`, m, as a geopandas.GeoDataFrame of squares with their
-        values. Needs geopandas."""
+        values, in the terrain's reference system. Needs geopandas."""
         import geopandas
         import numpy as np
         from shapely.geometry import box
@@ -48,7 +49,8 @@ class Result:
         half = depth.cell / 2
         squares = [box(x - half, y - half, x + half, y + half) for x, y in zip(depth.x[columns], depth.y[rows])]
         alike = {n: m for n, m in self.maps.items() if m.values.shape == depth.values.shape}
-        return geopandas.GeoDataFrame({n: m.values[rows, columns] for n, m in alike.items()}, geometry=squares, crs=crs)
+        values = {n: m.values[rows, columns] for n, m in alike.items()}
+        return geopandas.GeoDataFrame(values, geometry=squares, crs=self.crs)
 
     def plot(self, ax: Any = None) -> Any:
         """Peak depth on matplotlib axes. Needs matplotlib."""
@@ -84,7 +86,8 @@ def run(
     `talus run` estimates it; None: where that is a terminal."""
     bar = sys.stderr.isatty() if progress is None else progress
     with Simulation(scene, settings) as simulation:
-        end = simulation.json("scene")["end_time_s"]
+        loaded = simulation.json("scene")
+        end = loaded["end_time_s"]
         if end_time is not None:
             end = min(end, end_time)
         parts = 100
@@ -99,7 +102,7 @@ def run(
             print(file=sys.stderr)
         maps = {name: simulation.map(name) for name in UNITS}
         return Result(
-            dict(settings or {}), simulation.phase, simulation.message, simulation.time, simulation.hash,
+            dict(settings or {}), simulation.phase, simulation.message, simulation.time, simulation.hash, loaded["crs"],
             simulation.front, simulation.structures, maps,
         )  # fmt: skip
 

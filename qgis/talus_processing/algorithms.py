@@ -51,11 +51,39 @@ class Run(TalusAlgorithm):
         # talus replaces no folder but one of its own results.
         run_program(["run", *arguments, "--json", "--force", "-o", folder], feedback)
         if self.parameterAsBool(parameters, "LOAD", context):
-            self.definition = os.path.join(folder, "results.qlr")
+            self.definitions = {"": os.path.join(folder, "results.qlr")}
         results = {"OUTPUT": folder, "REPORT": os.path.join(folder, "report.html")}
         for name in self.MAPS:
             results[name.upper()] = os.path.join(folder, name + ".tif")
         results["BUILDING_IMPACT"] = os.path.join(folder, "results.gpkg") + "|layername=buildings"
+        return results
+
+
+class SecondOpinion(TalusAlgorithm):
+    NAME, TITLE = "secondopinion", "Second opinion"
+    HELP = (
+        "Runs a scene with particles and with the depth-averaged model, and opens the maps of both as a group each. The "
+        "report sets them side by side: affected area, front, run-out, buildings, and where they differ.\n\n" + SCENE_HELP
+    )
+    MODELS = {"particles": "particles", "depth_averaged": "depth-averaged"}  #: folder, and what its group is called
+
+    def initAlgorithm(self, configuration=None):
+        self.add_scene()
+        self.add_output("Results")
+        for model, title in self.MODELS.items():
+            self.addOutput(QgsProcessingOutputRasterLayer("PEAK_DEPTH_" + model.upper(), "Peak depth, " + title))
+        self.addOutput(QgsProcessingOutputFile("COMPARISON", "Comparison as JSON"))
+
+    def processAlgorithm(self, parameters, context, feedback):
+        arguments = self.scene_arguments(parameters, context, feedback)
+        folder = self.output_folder(parameters, context)
+        run_program(["compare", *arguments, "--json", "--force", "-o", folder], feedback)
+        if self.parameterAsBool(parameters, "LOAD", context):
+            self.definitions = {title: os.path.join(folder, model, "results.qlr") for model, title in self.MODELS.items()}
+        results = {"OUTPUT": folder, "REPORT": os.path.join(folder, "report.html")}
+        for model in self.MODELS:
+            results["PEAK_DEPTH_" + model.upper()] = os.path.join(folder, model, "peak_depth.tif")
+        results["COMPARISON"] = os.path.join(folder, "results.json")
         return results
 
 
@@ -135,7 +163,7 @@ class Ensemble(ManyRuns):
         folder = self.output_folder(parameters, context)
         results = self.run_many("ensemble", arguments, folder, feedback)
         if self.parameterAsBool(parameters, "LOAD", context):
-            self.definition = os.path.join(folder, "results.qlr")
+            self.definitions = {"": os.path.join(folder, "results.qlr")}
         return results
 
 

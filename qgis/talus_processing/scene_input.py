@@ -167,16 +167,22 @@ class TalusAlgorithm(QgsProcessingAlgorithm):
         return folder
 
     def postProcessAlgorithm(self, context, feedback):
-        """Opens the results of the folder as a group, on top of the layers that are there."""
-        definition = getattr(self, "definition", None)
-        if definition is None or context.project() is None or not os.path.exists(definition):
-            return {}
+        """Opens the results as groups, on top of the layers that are there."""
+        for title, definition in reversed(getattr(self, "definitions", {}).items()):
+            self.open_group(definition, title, context, feedback)
+        return {}
+
+    def open_group(self, definition, title, context, feedback):
+        """`title`: added to the name of the group; "": nothing is."""
+        if context.project() is None or not os.path.exists(definition):
+            return
         root = context.project().layerTreeRoot()
         loaded, message = QgsLayerDefinition.loadLayerDefinition(definition, context.project(), root)
         if not loaded:
             feedback.reportError(f"{definition}: {message}")
-            return {}
+            return
         group = root.children()[-1]
+        if title:
+            group.setName(f"{group.name()}, {title}")
         root.insertChildNode(0, group.clone())
         root.removeChildNode(group)
-        return {}

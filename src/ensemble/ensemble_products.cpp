@@ -181,7 +181,7 @@ Status write_zone_polygons(const EnsembleResult& result, const fs::path& folder,
         drawn.push_back({zone.name, zone.name, {false, zone.colour, zone.colour, 170, 0.1}});
     }
     const std::string style = report::qgis_vector_style("name", drawn);
-    layers.add_vector("Hazard zones", "hazard_zones.gpkg", "hazard_zones", style, false);
+    layers.add_vector("Hazard zones, polygons", "hazard_zones.gpkg", "hazard_zones", style, false);
     return geo::write_geopackage_styles(file.string(), {{"hazard_zones", style}});
 }
 

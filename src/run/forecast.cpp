@@ -14,11 +14,15 @@ namespace {
 constexpr std::size_t sample_size = 100;
 constexpr double longest_step = 0.1;  // s
 constexpr double pace_window = 0.25;  // of the wall time so far
-// Measured on hillsides, valleys, bowls and both scenes of Sham Tseng, with both models.
-constexpr double straggling_share = 0.9;  // of the debris: so much of it moves while it coasts together
+// Fitted to the looks at 26 runs: hillsides, valleys, bowls, heaps, inflows, Sham Tseng on both terrains with the
+// values of five authors, with both models (docs/performance.md).
+constexpr double straggling_share = 0.8;  // of the debris: so much of it moves while it coasts together
 constexpr double decay_window = 0.4;      // of the simulated time so far
-constexpr double falls_before_decay = 3;  // in times that it took to become fastest
-constexpr double straggling_weight = 0.8;
+constexpr double falls_before_decay = 2;  // in times that it took to become fastest
+constexpr double decay_weight = 0.9;      // beside that of the blocks, once nearly all of it has come to rest
+constexpr double even_stop = 1.25;        // time until the last block stops over that until half of them have
+constexpr double still_awake = 0.2;       // of what is awake now: the mean of what is later, while debris straggles
+constexpr double cost_asleep = 0.5;       // of particles
 
 /// Takes a step along the ground; returns the new speed. No step passes more than a cell.
 double slide(const sim::Model& model, const sim::Ground& ground, SlidingBlock& block, double effective_share,
@@ -62,6 +66,10 @@ double rest_time(const std::vector<double>& stops, double moving, double enough)
     if (stops.empty() || moving <= enough) return 0;
     const double last = static_cast<double>(stops.size()) * (1 - enough / moving);
     return stops[std::min(stops.size() - 1, static_cast<std::size_t>(last))];
+}
+
+double half_of(const std::vector<double>& stops) {
+    return stops.empty() ? 0 : stops[stops.size() / 2];
 }
 
 double start_of(const sim::Model& model, std::uint32_t id) {
@@ -139,6 +147,9 @@ Outlook outlook_of(const sim::Simulation& simulation, double deposited_speed) {
     const auto stops =
         stop_times(model, simulation.ground(), std::move(blocks), deposited_speed, model.solver.end_time - state.time);
     outlook.coasting = rest_time(stops, state.awake, outlook.enough_share * debris);
+    outlook.half_stopped = half_of(stops);
+    outlook.awake_share = state.awake / debris;
+    outlook.cost_asleep = cost_asleep;
     return outlook;
 }
 
@@ -181,6 +192,7 @@ Outlook outlook_of(const depth::Solver& solver, const sim::Model& model, const s
     const auto stops =
         stop_times(model, ground, std::move(blocks), deposited_speed, model.solver.end_time - solver.time());
     outlook.coasting = rest_time(stops, awake, outlook.enough_share * debris);
+    outlook.half_stopped = half_of(stops);
     return outlook;
 }
 
@@ -190,37 +202,72 @@ RunClock::Mark RunClock::latest_mark(const Accepts& accepts) const {
     return found == marks_.rend() ? Mark{} : *found;
 }
 
-double RunClock::end_after(const Outlook& now, double time) const {
-    if (solver_.stop_moving_share <= 0) return solver_.end_time;
-    double left = now.coasting;
-    if (now.moving_share < straggling_share && now.moving_share > now.enough_share) {
-        // The decay of the moving share over the latest part of the run, and that since debris was fastest.
-        const Mark before = latest_mark([&](const Mark& mark) { return mark.time <= (1 - decay_window) * time; });
-        const double fallen = std::max(0.0, std::log(std::max(before.moving_share, 1e-9) / now.moving_share));
-        const double fastest = std::max_element(marks_.begin(), marks_.end(), [](const Mark& x, const Mark& y) {
-                                   return x.energy < y.energy;
-                               })->time;
-        const double long_decay = (time + falls_before_decay * fastest) / -std::log(now.moving_share);
-        const double decay = (time - before.time + long_decay) / (fallen + 1);
-        const double straggling = decay * std::log(now.moving_share / now.enough_share);
-        left = std::pow(std::max(left, 0.1), 1 - straggling_weight) * std::pow(straggling, straggling_weight);
+double RunClock::straggling(const Outlook& now, double time) const {
+    // The decay of the moving share over the latest part of the run, and that since debris was fastest.
+    const Mark before = latest_mark([&](const Mark& mark) { return mark.time <= (1 - decay_window) * time; });
+    const double fallen = std::max(0.0, std::log(std::max(before.moving_share, 1e-9) / now.moving_share));
+    const double fastest = std::max_element(marks_.begin(), marks_.end(), [](const Mark& x, const Mark& y) {
+                               return x.energy < y.energy;
+                           })->time;
+    const double long_decay = (time + falls_before_decay * fastest) / -std::log(now.moving_share);
+    const double decay = (time - before.time + long_decay) / (fallen + 1);
+    const double by_decay = decay * std::log(now.moving_share / now.enough_share);
+    const double weight = decay_weight * std::sqrt(1 - now.moving_share);
+    return std::pow(std::max(now.coasting, 0.1), 1 - weight) * std::pow(by_decay, weight);
+}
+
+RunClock::Course RunClock::course_after(const Outlook& now, double time) const {
+    const double most = std::max(0.0, solver_.end_time - time);
+    if (solver_.stop_moving_share <= 0) return {most, 0};
+    Course course;
+    const bool speeds_up =
+        std::all_of(marks_.begin(), marks_.end(), [&](const Mark& m) { return m.energy <= now.energy; });
+    if (now.moving_share >= straggling_share || speeds_up) {
+        course.coasting = now.wait + now.coasting;
+        const double unevenness = now.coasting / std::max(now.half_stopped, 0.1) - even_stop;
+        course.straggling = (time + now.coasting) / 2 * std::clamp(unevenness, 0.0, 1.0);
+    } else {
+        course.straggling = now.wait + (now.moving_share > now.enough_share ? straggling(now, time) : now.coasting);
     }
-    return std::min(solver_.end_time, time + now.wait + left + solver_.stop_duration);
+    course.coasting = std::min(course.coasting, most);
+    course.straggling = std::min(course.straggling + solver_.stop_duration, most - course.coasting);
+    return course;
+}
+
+double RunClock::wall_time_of(const Course& course, double wall_time, double time) const {
+    const Mark before = latest_mark([&](const Mark& mark) { return mark.wall_time <= (1 - pace_window) * wall_time; });
+    if (time <= before.time || marks_.empty()) return remaining_;
+    const double pace = (wall_time - before.wall_time) / (time - before.time);
+    const double step = (time - before.time) / std::max(1.0, steps_ - before.steps);
+    // Between the latest steps and the longest, as far as runs have shown.
+    const double longer_steps = std::sqrt(std::min(1.0, step / longest_step_));
+    const auto cost = [&](double awake) { return cost_asleep_ + (1 - cost_asleep_) * awake; };
+    const double awake = marks_.back().awake_share;
+    const double straggling = longer_steps * cost(still_awake * awake) / cost((awake + before.awake_share) / 2);
+    return pace * (course.coasting * (1 + longer_steps) / 2 + course.straggling * straggling);
 }
 
 void RunClock::tick(double wall_time, double time, const std::function<Outlook()>& look) {
     using Clock = std::chrono::steady_clock;
-    if (wall_time >= next_look_) {
+    ++steps_;
+    longest_step_ = std::max(longest_step_, time - last_time_);
+    last_time_ = time;
+    const bool halfway = time - course_from_ > (course_.coasting + course_.straggling) / 2;
+    if (wall_time >= (halfway ? next_look_if_halfway_ : next_look_)) {
         const auto start = Clock::now();
         const Outlook now = look();
-        marks_.push_back({wall_time, time, now.moving_share, now.energy});
-        end_ = end_after(now, time);
+        marks_.push_back({wall_time, time, steps_, now.moving_share, now.awake_share, now.energy});
+        cost_asleep_ = now.cost_asleep;
+        course_ = course_after(now, time);
+        course_from_ = time;
+        end_ = time + course_.coasting + course_.straggling;
         const double cost = std::chrono::duration<double>(Clock::now() - start).count();
         next_look_ = std::max(1.03 * wall_time, wall_time + 20 * cost);
+        next_look_if_halfway_ = std::max(1.03 * wall_time, wall_time + 5 * cost);
     }
-    const Mark before = latest_mark([&](const Mark& mark) { return mark.wall_time <= (1 - pace_window) * wall_time; });
-    if (time <= before.time) return;
-    remaining_ = std::max(0.0, end_ - time) * (wall_time - before.wall_time) / (time - before.time);
+    const double passed = time - course_from_, straggled = std::max(0.0, passed - course_.coasting);
+    remaining_ = wall_time_of({std::max(0.0, course_.coasting - passed), std::max(0.0, course_.straggling - straggled)},
+                              wall_time, time);
     share_done_ = std::max(share_done_, wall_time / std::max(wall_time + remaining_, 1e-9));
 }
 

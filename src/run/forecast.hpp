@@ -27,8 +27,11 @@ struct SlidingBlock {
 /// What of the debris still moves, and for how long it would if it slid on alone.
 struct Outlook {
     double coasting = 0;      ///< s, until less of it moves than the stop rule allows
+    double half_stopped = 0;  ///< s, until half of what is awake has stopped
     double moving_share = 0;  ///< faster than outputs.deposited_speed, of the debris
     double enough_share = 0;  ///< so much of it must move for the run to go on
+    double awake_share = 1;   ///< of the debris
+    double cost_asleep = 1;   ///< of a step, with all debris asleep, over one with all of it awake
     double energy = 0;        ///< kinetic, in any unit
     double wait = 0;          ///< s, until the last inflow ends or, on the grid, the last release starts
 };
@@ -38,14 +41,17 @@ struct Outlook {
                                  double deposited_speed);
 
 /// Wall time left of a run. Its end is that of the stop rule, or solver.end_time. While all debris moves, it coasts to
-/// a stop together: its end is that of blocks that slide alone. Once a part has come to rest, the rest of it straggles,
-/// stopped and pushed by what lies there, and the moving share falls about exponentially: its trend counts more. Wall
-/// time goes on at the pace of the latest steps.
+/// a stop as blocks do that slide alone; where some of these stop much later than others, the ground holds debris up,
+/// and it straggles for a while after that. Once a part has come to rest, the rest of it straggles, stopped and pushed
+/// by what lies there, and the moving share falls about exponentially: the less moves, the more its trend counts. Wall
+/// time starts from the pace of the latest steps, and follows the time step, which is longest at rest, and the debris
+/// that is awake.
 class RunClock {
   public:
     explicit RunClock(const params::SolverSpec& solver) : solver_(solver), end_(solver.end_time) {}
 
-    /// After a step. Calls `look` now and then, for at most a twentieth of the wall time.
+    /// After a step. Calls `look` now and then, for at most a twentieth of the wall time; for more, a few times, where
+    /// a run is short.
     void tick(double wall_time, double time, const std::function<Outlook()>& look);
     [[nodiscard]] double expected_end() const { return end_; }          ///< s, simulated
     [[nodiscard]] double wall_remaining() const { return remaining_; }  ///< s
@@ -53,15 +59,25 @@ class RunClock {
 
   private:
     struct Mark {
-        double wall_time = 0, time = 0, moving_share = 1, energy = 0;
+        double wall_time = 0, time = 0, steps = 0, moving_share = 1, awake_share = 1, energy = 0;
+    };
+    /// What is left of the run, s of simulated time.
+    struct Course {
+        double coasting = 0, straggling = 0;
     };
     template <class Accepts>
     [[nodiscard]] Mark latest_mark(const Accepts& accepts) const;
-    [[nodiscard]] double end_after(const Outlook& now, double time) const;
+    [[nodiscard]] Course course_after(const Outlook& now, double time) const;
+    [[nodiscard]] double straggling(const Outlook& now, double time) const;
+    [[nodiscard]] double wall_time_of(const Course& course, double wall_time, double time) const;
 
     params::SolverSpec solver_;
-    std::vector<Mark> marks_;  ///< at every look
-    double next_look_ = 0, end_, remaining_ = 0, share_done_ = 0;
+    std::vector<Mark> marks_;     ///< at every look
+    Course course_;               ///< from course_from_ on
+    double course_from_ = 0;      ///< s, simulated
+    double longest_step_ = 1e-9;  ///< s, so far
+    double cost_asleep_ = 1;
+    double steps_ = 0, last_time_ = 0, next_look_ = 0, next_look_if_halfway_ = 0, end_, remaining_ = 0, share_done_ = 0;
 };
 
 }  // namespace talus::run

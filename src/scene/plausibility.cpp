@@ -67,6 +67,11 @@ double mean_slope(const Scene& scene, const terrain::Release& release) {
     return on_slope > 0 ? std::acos(std::min(1.0, plan / on_slope)) * degrees_per_radian : 0;
 }
 
+std::string count_text(double particles) {
+    const std::string number = fmt::format("{:.2g}", particles);
+    return number + (number == "1" ? " particle" : " particles");
+}
+
 }  // namespace
 
 void note_implausible_terrain(Scene& scene) {
@@ -123,8 +128,8 @@ void note_coarse_particles(Scene& scene) {
                       "as single grains, whose compression looks perfect and whose depths, speeds and forces "
                       "mean little; {}",
                       release.name, spacing, thickness, needed)
-                : fmt::format("release \"{}\": it is {:.2g} particles thick ({:.3g} m); {}", release.name,
-                              thickness / spacing, thickness, needed));
+                : fmt::format("release \"{}\": it is {} thick ({:.3g} m); {}", release.name,
+                              count_text(thickness / spacing), thickness, needed));
     }
 }
 

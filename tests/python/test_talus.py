@@ -1,6 +1,10 @@
 """The Python package on the library that was built."""
 
 import contextlib
+import dataclasses
+import enum
+import importlib.util
+import inspect
 import io
 import pathlib
 import tempfile
@@ -90,6 +94,90 @@ class SimulationTest(unittest.TestCase):
                     self.assertEqual(again.hash, simulation.hash)
                 simulation.write_results(folder / "results")
             self.assertTrue((folder / "results" / "report.html").exists())
+
+
+def needs(library):
+    try:
+        found = importlib.util.find_spec(library) is not None
+    except ValueError:
+        found = False  # what stands in for it in test_notebooks.py
+    return unittest.skipUnless(found, f"{library} is not installed")
+
+
+class OtherLibrariesTest(unittest.TestCase):
+    """Results in the hands of other packages, where those are installed."""
+
+    @classmethod
+    def setUpClass(cls):
+        settings = {"solver.target_particle_count": 400, "solver.thread_count": 1}
+        cls.result = talus.run(settings=settings, end_time=15, progress=False)
+        cls.depth = cls.result.maps["peak_depth"]
+
+    @needs("xarray")
+    def test_xarray(self):
+        maps = self.result.to_xarray()
+        self.assertIn("peak_speed", maps)
+        self.assertNotIn("erosion_depth", maps)  # no value anywhere
+        self.assertEqual(maps.peak_depth.attrs["units"], "m")
+        self.assertEqual(maps.attrs["crs"], "EPSG:2326")
+        np.testing.assert_array_equal(maps.peak_depth.values, self.depth.values)
+        deepest = maps.peak_depth.where(maps.peak_depth == maps.peak_depth.max(), drop=True)
+        row, column = np.unravel_index(np.nanargmax(self.depth.values), self.depth.values.shape)
+        self.assertEqual((float(deepest.x[0]), float(deepest.y[0])), (self.depth.x[column], self.depth.y[row]))
+
+    @needs("geopandas")
+    def test_geopandas(self):
+        cells = self.result.to_geopandas(threshold=0.2)
+        self.assertEqual(len(cells), np.count_nonzero(self.depth.values > 0.2))
+        self.assertEqual(cells.crs.to_epsg(), 2326)
+        self.assertTrue((cells.peak_depth > 0.2).all())
+        self.assertAlmostEqual(cells.area.sum(), len(cells) * self.depth.cell**2, places=3)
+        first = cells.iloc[0]
+        column = int((first.geometry.centroid.x - self.depth.x_min) / self.depth.cell)
+        row = int((first.geometry.centroid.y - self.depth.y_min) / self.depth.cell)
+        self.assertEqual(first.peak_depth, self.depth.values[row, column])
+
+    @needs("matplotlib")
+    def test_plot(self):
+        import matplotlib
+
+        matplotlib.use("Agg")
+        import matplotlib.pyplot as plt
+
+        figure, axes = plt.subplots()
+        self.addCleanup(plt.close, figure)
+        self.assertIs(self.result.plot(axes), axes)
+        (image,) = axes.get_images()
+        np.testing.assert_array_equal(image.get_array().filled(np.nan), self.depth.values)
+        self.assertEqual(image.get_extent()[0], self.depth.x_min)
+        self.assertEqual(figure.axes[1].get_ylabel(), "peak depth, m")
+
+
+class InterfaceTest(unittest.TestCase):
+    def test_everything_public_has_a_docstring_and_type_hints(self):
+        for name in talus.__all__:
+            thing = getattr(talus, name)
+            if not callable(thing):
+                continue
+            self.assertTrue(inspect.getdoc(thing), name)
+            functions = [(name, thing)]
+            if inspect.isclass(thing):
+                if issubclass(thing, (enum.Enum, Exception)):
+                    continue
+                functions = [(f"{name}.{n}", f) for n, f in vars(thing).items() if not n.startswith("_")]
+                if dataclasses.is_dataclass(thing):
+                    self.assertTrue(thing.__annotations__, name)
+                    functions = [(n, f) for n, f in functions if inspect.isfunction(f)]
+            for label, function in functions:
+                function = getattr(function, "fget", None) or getattr(function, "__func__", function)
+                if not inspect.isfunction(function):
+                    continue
+                self.assertTrue(inspect.getdoc(function), label)
+                hints = inspect.signature(function)
+                self.assertIsNot(hints.return_annotation, inspect.Signature.empty, label)
+                for parameter in list(hints.parameters.values()):
+                    if parameter.name not in ("self", "cls"):
+                        self.assertIsNot(parameter.annotation, inspect.Parameter.empty, f"{label}({parameter.name})")
 
 
 class StudyTest(unittest.TestCase):

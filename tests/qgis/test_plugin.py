@@ -201,6 +201,22 @@ class Plugin(unittest.TestCase):
         self.assertLess(max(log.shares), 90)
         self.assertTrue(os.path.exists(output + "/PARTIAL.txt"))
 
+    def test_second_opinion_opens_a_group_for_each_model(self):
+        project, log = QgsProject(), Log()
+        results = run("secondopinion", layers(OUTPUT=new_output("both")), project, log)
+        groups = project.layerTreeRoot().children()
+        self.assertEqual([group.name() for group in groups], ["scars, particles", "scars, depth-averaged"])
+        for group in groups:
+            opened = {node.name(): node.layer() for node in group.children()}
+            self.assertTrue(all(layer.isValid() for layer in opened.values()))
+            self.assertEqual(opened["Peak depth"].renderer().type(), "singlebandpseudocolor")
+        for name in ("PEAK_DEPTH_PARTICLES", "PEAK_DEPTH_DEPTH_AVERAGED"):
+            self.assertTrue(QgsRasterLayer(results[name]).isValid())
+        agreement = json.loads(pathlib.Path(results["COMPARISON"]).read_text())["agreement"]
+        self.assertGreater(agreement["intersection_over_union"], 0.2)
+        self.assertTrue(os.path.getsize(results["REPORT"]) > 0)
+        self.assertEqual(log.shares, sorted(log.shares))
+
     def test_makes_a_scene_to_keep_and_checks_it(self):
         scene = run("newscene", {**layers(), "OUTPUT": new_output("scene")})["SCENE"]
         self.assertIn("buildings   1", run("check", {"SCENE": scene})["SUMMARY"])
@@ -216,8 +232,14 @@ class Plugin(unittest.TestCase):
         opened = {layer.name(): layer for layer in project.mapLayers().values()}
         self.assertTrue(all(layer.isValid() for layer in opened.values()))
         self.assertEqual(opened["Buildings, probability of a hit"].renderer().classAttribute(), "probability_class")
-        zones = {layer.renderer().type() for layer in project.mapLayers().values() if layer.name() == "Hazard zones"}
-        self.assertEqual(zones, {"paletted", "categorizedSymbol"})  # cells, and their outlines
+        self.assertEqual(len(opened), len(project.mapLayers()), "two layers have one name")
+        self.assertEqual(opened["Hazard zones"].renderer().type(), "paletted")
+        self.assertEqual(opened["Hazard zones, polygons"].renderer().type(), "categorizedSymbol")
+        odds = QgsVectorLayer(output + "/buildings.gpkg|layername=buildings")
+        self.assertTrue(odds.isValid())
+        (house,) = odds.getFeatures()
+        self.assertTrue(0 <= house["probability_hit"] <= 1)
+        self.assertEqual(odds.renderer().classAttribute(), "probability_class")  # the style in the GeoPackage
         self.assertTrue(os.path.getsize(results["REPORT"]) > 0)
 
     def test_calibrates_and_writes_the_best_fit(self):

@@ -210,6 +210,7 @@ TEST_F(LoadScene, ParticlesAsThickAsTheReleaseAreNoted) {
     };
     EXPECT_THAT(note_at(3), HasSubstr("particles are 3 m apart, more than it is thick (1.5 m)"));
     EXPECT_THAT(note_at(0.75), HasSubstr("it is 2 particles thick (1.5 m)"));
+    EXPECT_THAT(note_at(1.5), HasSubstr("it is 1 particle thick (1.5 m)"));
     EXPECT_EQ(note_at(0.29), "");
 }
 

@@ -53,7 +53,11 @@ export async function testControls(run) {
     await until(state, (s) => s.status === "running" && s.time_s > 1, "running");
     await until(() => shownTime(page), (t) => t > 1, "time on the page");
     await until(async () => (await run.colours(page, clip)).hash, (hash) => hash !== before.hash, "another picture");
+    const left = () => page.textContent(".timeline-ends");
+    const end = (await state()).end_time_s;
+    await until(left, (t) => new RegExp(`\\d+\\s(s|min|h) left · ${end} s$`).test(t), "the wall time left");
     await pause(page, state);
+    await until(left, (t) => !/left/.test(t) && t.endsWith(`${end} s`), "no wall time left while paused");
     assert.equal((await state()).status, "paused");
     await until(() => page.textContent(".status"), (t) => /Paused/.test(t), "paused on the page");
     const held = await run.still(page, clip);
