@@ -15,14 +15,25 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
+/// How the two models relate for one observation.
+std::string model_line(const ensemble::ObservedValue& observed, const calibrate::ObservationResult& o) {
+    if (o.pairs == 0) return fmt::format("{:<38}no pair of runs has a value\n", observed.name);
+    return fmt::format("{:<38}{:+.3g} +- {:.2g} {} in {} pairs; rho {:.2f}\n", observed.name, o.model_difference,
+                       o.model_spread, observed.unit, o.pairs, o.rho);
+}
+
 }  // namespace
 
 std::string calibration_text(const calibrate::Calibration& c, const std::filesystem::path& folder) {
     const calibrate::CalibrationSummary s = summarise(c);
     const calibrate::SearchResult& r = c.result;
-    std::string text = fmt::format("{} runs, {} failed; {}\nleast misfit {:.3g} in run {}\n\n", r.runs.size(), s.failed,
-                                   r.settled ? "no further gain expected" : "stopped at the maximum number of runs",
-                                   r.runs[*r.best].misfit, *r.best);
+    const calibrate::FastRuns& fast = s.fast;
+    const bool two = fast.made > 0;
+    std::string text = fmt::format("{} runs{}, {} failed", r.runs.size(), two ? " of particles" : "", s.failed);
+    if (two) text += fmt::format("; {} of the depth-averaged model, {} failed", fast.made, fast.failed);
+    text += fmt::format("; {}\nleast misfit {:.3g} in run {}\n\n",
+                        r.settled ? "no further gain expected" : "stopped at the maximum number of runs",
+                        r.runs[*r.best].misfit, *r.best);
     text += fmt::format("{:<38}{:>11}{:>11}{:>11}{:>11}{:>12}\n", "factor", "best fit", "median", "95 % from", "to",
                         "width left");
     for (std::size_t k = 0; k < s.factors.size(); ++k) {
@@ -39,6 +50,8 @@ std::string calibration_text(const calibrate::Calibration& c, const std::filesys
                             std::isfinite(o.best) ? fmt::format("{:.4g}", o.best) : "none", o.deviation, o.left_out,
                             c.observed[j].unit);
     }
+    if (two) text += "\nparticles less depth-averaged, where both ran\n";
+    for (std::size_t j = 0; two && j < s.observations.size(); ++j) text += model_line(c.observed[j], s.observations[j]);
     if (!s.warnings.empty()) text += "\n";
     for (const std::string& warning : s.warnings) text += "! " + warning + "\n";
     return text +
@@ -52,7 +65,8 @@ std::string calibration_line(const calibrate::Calibration& c, const std::filesys
 }
 
 std::string progress_text(const calibrate::CalibrationProgress& p) {
-    std::string text = fmt::format("{}: {} of at most {} runs", search_phase_name(p.phase), p.done + p.failed, p.most);
+    std::string text = fmt::format("{}: {} of at most {} {}runs", search_phase_name(p.phase), p.done + p.failed, p.most,
+                                   p.fast ? "fast " : "");
     if (p.failed > 0) text += fmt::format(", {} failed", p.failed);
     if (std::isfinite(p.least_misfit)) text += fmt::format(", least misfit {:.3g}", p.least_misfit);
     return text + fmt::format(", at most about {} left", clock_text(p.wall_remaining));
@@ -61,6 +75,7 @@ std::string progress_text(const calibrate::CalibrationProgress& p) {
 std::string progress_json(const calibrate::CalibrationProgress& p) {
     const Json json = {{"event", "progress"},
                        {"phase", search_phase_name(p.phase)},
+                       {"fast", p.fast},
                        {"runs_done", p.done},
                        {"runs_failed", p.failed},
                        {"runs_at_most", p.most},
