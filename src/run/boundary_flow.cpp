@@ -184,9 +184,10 @@ std::vector<BoundaryFlow::Piece> BoundaryFlow::merged(double least_length) const
         std::size_t last = first;
         while (last < pieces_.size() && pieces_[last].edge == pieces_[first].edge) ++last;
         const double length = pieces_[first].length;
-        const auto count = std::max<std::size_t>(
-            1, static_cast<std::size_t>(std::floor(static_cast<double>(last - first) * length / least_length)));
-        for (std::size_t part = 0; part < std::min(count, last - first); ++part) {
+        const auto count = std::clamp<std::size_t>(
+            static_cast<std::size_t>(std::floor(static_cast<double>(last - first) * length / least_length)), 1,
+            last - first);
+        for (std::size_t part = 0; part < count; ++part) {
             const std::size_t from = first + part * (last - first) / count;
             const std::size_t to = first + (part + 1) * (last - first) / count;
             all.push_back(joined(from, to));

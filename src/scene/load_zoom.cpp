@@ -12,13 +12,16 @@
 namespace talus::scene {
 namespace {
 
-/// The rectangle around a structure.
+/// The rectangle around a structure, as far as there is terrain.
 Result<Polygon> area_around(const std::string& at, const Scene& scene) {
     const params::ZoomSpec& spec = scene.spec.zoom;
     std::vector<std::string> names;
     for (const terrain::Building& building : scene.buildings) {
         if (building.name == spec.structure) {
-            const Extent e = extent_of(building).grown(spec.margin);
+            Extent e = extent_of(building).grown(spec.margin);
+            const Extent known = covered_extent(scene.terrain);  // nothing comes from beyond its edge
+            e = {std::max(e.x_min, known.x_min), std::max(e.y_min, known.y_min), std::min(e.x_max, known.x_max),
+                 std::min(e.y_max, known.y_max)};
             return Polygon{{{e.x_min, e.y_min}, {e.x_max, e.y_min}, {e.x_max, e.y_max}, {e.x_min, e.y_max}}, {}};
         }
         names.push_back(building.name);

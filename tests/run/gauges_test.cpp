@@ -16,7 +16,7 @@ class Gauges : public scene::SceneFolder {
             fmt::format("[[gauge]]\nname = \"in the valley\"\nx_m = {}\ny_m = {}\n"
                         "[[gauge]]\nchainage_m = 40\n"
                         "[[gauge]]\nname = \"on the bank\"\nx_m = {}\ny_m = {}\n",
-                        west + 92.5, south + 102.5, west + 92.5, south + 12.5));
+                        west + 57.5, south + 102.5, west + 92.5, south + 12.5));
         std::vector<std::string> all{"solver.end_time_s=8", "solver.target_particle_count=1000"};
         all.insert(all.end(), overrides.begin(), overrides.end());
         const auto scene = scene::load_scene(folder / "scene.toml", all);

@@ -169,7 +169,7 @@ TEST_F(ZoomedRun, removes_particles_beyond_the_surroundings) {
                 if (depth.at(column, row) > 0) east = std::max(east, depth.geometry.centre(column, row).x - west);
             }
         }
-        EXPECT_GT(result->observation.timeseries.back().volume_left, 0.8 * result->zoom->volumes.in);
+        EXPECT_GT(result->observation.timeseries.back().volume_left, 0.5 * result->zoom->volumes.in);
         return east;
     };
     EXPECT_LT(farthest(5), 130 + 5 + 2 * 5 + 5) << "two cells of the terrain, one of the map";

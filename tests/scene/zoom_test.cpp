@@ -54,7 +54,7 @@ TEST_F(ZoomOfScene, is_refused_where_it_cannot_be) {
     EXPECT_THAT(error_of("structure = \"dan\""),
                 HasSubstr("zoom.structure = \"dan\" is no building and no barrier of the "
                           "scene; nearest name: dam"));
-    EXPECT_THAT(error_of("structure = \"dam\"\nmargin_m = 500"), HasSubstr("where the ground is not known"));
+    EXPECT_THAT(error_of("structure = \"dam\"\nmargin_m = 500"), HasSubstr("release \"scarp\" lies in the area"));
     EXPECT_THAT(error_of("structure = \"dam\"\nmargin_m = 60"), Not(HasSubstr("lies in the area")));
     EXPECT_THAT(error_of("polygon_m = [[0, 0], [10, 0], [10, 10]]"), HasSubstr("where the ground is not known"));
     EXPECT_THAT(error_of("polygon_m = [[0, 0], [10, 0]]"), HasSubstr("zoom.polygon_m: has 2 corners"));
