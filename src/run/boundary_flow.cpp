@@ -146,6 +146,21 @@ void BoundaryFlow::record(const depth::Solver& solver) {
     gained_ = volume_inside(solver);
 }
 
+void BoundaryFlow::bring(const PlanPoint& place, double time, double volume, double u, double v) {
+    const auto distance = [&](const Piece& piece) {
+        return std::hypot(piece.centre.x - place.x, piece.centre.y - place.y);
+    };
+    Piece& piece = *std::min_element(pieces_.begin(), pieces_.end(),
+                                     [&](const Piece& a, const Piece& b) { return distance(a) < distance(b); });
+    const auto at = static_cast<std::size_t>(std::max(0.0, time) / interval);
+    if (piece.intervals.size() <= at) piece.intervals.resize(at + 1);
+    piece.intervals[at].volume += volume;
+    piece.intervals[at].momentum_x += volume * u;
+    piece.intervals[at].momentum_y += volume * v;
+    in_ += volume;
+    gained_ += volume;
+}
+
 BoundaryFlow::Volumes BoundaryFlow::volumes() const {
     const double lacks = in_ + out_ > 0 ? (gained_ - (in_ - out_)) / (in_ + out_) : 0;
     return {in_ * (1 + lacks), out_ * (1 - lacks), in_, out_};

@@ -21,6 +21,9 @@ class BoundaryFlow {
     /// Call after every step of the solver.
     void record(const depth::Solver& solver);
 
+    /// Adds debris that came in at a place of the boundary from elsewhere: m3, and its velocity in plan, m/s.
+    void bring(const PlanPoint& place, double time, double volume, double u, double v);
+
     /// Totals, m3, of the volumes that came in and left, such that the difference is what the area gained: flow is
     /// sampled along the boundary, and the error of that is spread over both.
     struct Volumes {
