@@ -61,7 +61,7 @@ struct Job {
     products::OutputFolder output;
 };
 
-/// What --zoom and its kin set.
+/// What the options of a zoom set.
 std::vector<std::string> zoom_overrides(const RunArguments& arguments) {
     const auto text = [](const std::string& value) { return params::toml_text(params::ParameterValue(value)); };
     std::vector<std::string> all;
