@@ -366,6 +366,7 @@ TEST(Report, SaysWhatAZoomWasAndItsBalance) {
     zoom.particle_spacing = 0.3;
     zoom.mean_thickness = 1.2;
     zoom.grid_cell = 2.5;
+    zoom.simulated_time = 60;
     zoom.volumes = {.in = 161, .out = 113.5, .sampled_in = 166.8, .sampled_out = 109.7};
     zoom.pieces = 4;
     zoom.brought_volume = 160.9;
@@ -387,6 +388,8 @@ TEST(Results, HoldAllThatTheReportShows) {
     s.result.observation.gauges = {{.gauge = {"mill", {824210, 825560}}}};
     s.result.zoom.emplace();
     s.result.zoom->particle_spacing = 0.3;
+    s.result.zoom->simulated_time = 60;
+    s.result.zoom->area = {{{824100, 825500}, {824140, 825500}, {824140, 825530}}, {}};
     const report::Json results = report::run_results(s.scene, s.result, test::sample_comparisons(s.scene, s.result));
     EXPECT_EQ(results["format"], "talus results");
     EXPECT_EQ(results["version"], report::results_version);
