@@ -16,14 +16,13 @@
 #include "exit_code.hpp"
 #include "interrupt.hpp"
 #include "layers.hpp"
+#include "params/fields.hpp"
 #include "params/scene_text.hpp"
 #include "products/products.hpp"
 #include "products/series.hpp"
 #include "progress.hpp"
 #include "run/run_scene.hpp"
-#include "run/zoom.hpp"
 #include "scene/builtin.hpp"
-#include "scene/particle_spacing.hpp"
 #include "scene/scene.hpp"
 #include "scene_input.hpp"
 #include "summary.hpp"
@@ -49,8 +48,8 @@ and --json. --convergence passes if none changes by more than its limit: 5 % of 
 the deposit, 15 % of force and pressure, and the same buildings.
 
 --zoom NAME runs the event with the depth-averaged model, and with particles only what comes near a building or barrier:
-what crosses a rectangle --zoom-margin metres around it becomes inflow there. With a finer solver.particle_spacing_m it
-costs a fraction of the whole event. What leaves the rectangle is not fed back.
+what crosses a rectangle --zoom-margin metres around it becomes inflow there. --zoom-polygon FILE takes another area. The
+section [zoom] of a scene is the same, and has the spacing of its particles. What leaves the area is not fed back.
 )";
 
 /// Everything that is checked before a run: the scene, its variants, the output folder.
@@ -62,20 +61,27 @@ struct Job {
     products::OutputFolder output;
 };
 
-/// Errors: a zoom beside what it cannot be together with.
-Status check_zoom_options(const RunArguments& arguments, const scene::Scene& scene) {
-    if (arguments.zoom.empty()) return {};
-    const char* refused = scene.spec.solver.model == params::ModelChoice::depth_averaged ? "--model depth_averaged"
-                          : arguments.layers == "real-time"                              ? "--layers real-time"
-                          : arguments.convergence                                        ? "--convergence"
-                          : arguments.named_variants                                     ? "--variants"
-                          : !arguments.variations.empty()                                ? "--vary"
-                                                                                         : nullptr;
-    if (refused != nullptr) return Error{fmt::format("{} is refused beside --zoom", refused)};
-    if (!(arguments.zoom_margin > 0 && arguments.zoom_margin <= 1e4)) {
-        return Error{fmt::format("--zoom-margin = {:.4g} is refused; it must be above 0 and at most 10000 (m)",
-                                 arguments.zoom_margin)};
+/// What the options of a zoom set.
+std::vector<std::string> zoom_overrides(const RunArguments& arguments) {
+    const auto text = [](const std::string& value) { return params::toml_text(params::ParameterValue(value)); };
+    std::vector<std::string> all;
+    if (!arguments.zoom.empty()) all.push_back("zoom.structure=" + text(arguments.zoom));
+    if (!arguments.zoom_polygon.empty()) {  // from here, not from the scene's folder
+        all.push_back("zoom.polygon_file=" + text(fs::absolute(arguments.zoom_polygon).string()));
     }
+    if (arguments.zoom_margin) all.push_back(fmt::format("zoom.margin_m={}", *arguments.zoom_margin));
+    return all;
+}
+
+/// Errors: options that a zoom cannot be together with.
+Status check_zoom_options(const RunArguments& arguments, const scene::Scene& scene) {
+    if (!scene.zoom) {
+        const bool asked = !arguments.zoom.empty() || !arguments.zoom_polygon.empty();
+        if (asked) return Error{"--model depth_averaged is refused beside a zoom, which is of particles"};
+        return {};
+    }
+    if (!arguments.layers.empty()) return Error{"--layers is refused beside a zoom; give zoom.target_layers"};
+    if (arguments.convergence) return Error{"--convergence is refused beside a zoom"};
     return {};
 }
 
@@ -83,6 +89,7 @@ Result<Job> open_job(const RunArguments& arguments, ProgressReporter& progress, 
     std::vector<std::string> overrides = arguments.overrides;
     if (!arguments.model.empty()) overrides.push_back("solver.model=" + arguments.model);
     if (arguments.threads) overrides.push_back(fmt::format("solver.thread_count={}", *arguments.threads));
+    for (const std::string& zoom : zoom_overrides(arguments)) overrides.push_back(zoom);
     if (!arguments.series.empty()) {
         overrides.push_back(fmt::format("outputs.series=[\"{}\"]", fmt::join(arguments.series, "\", \"")));
     }
@@ -169,23 +176,6 @@ Status write_report(Job& job, const run::RunResult& result, const std::vector<ru
     return job.output.commit();
 }
 
-/// The event by the depth-averaged model, up to the boundary of the zoom. False: the user interrupted it.
-Result<bool> zoom_in(const RunArguments& arguments, Job& job, ProgressReporter& progress, InterruptWatch& watch) {
-    std::vector<std::string> overrides = job.input.source.overrides;
-    overrides.emplace_back("solver.model=depth_averaged");
-    TALUS_ASSIGN(const auto grid_scene, scene::load_scene(job.input.source.file, overrides));
-    TALUS_ASSIGN(const auto area, run::zoom_around(grid_scene, arguments.zoom, arguments.zoom_margin));
-    const double spacing = scene::particle_spacing(job.input.scene);
-    run::RunOptions options;
-    options.stop_requested = &watch.stop_requested();
-    options.on_progress = [&](const run::Progress& now) { progress.report(now); };
-    TALUS_ASSIGN(const auto zoom, run::record_zoom(grid_scene, area, spacing, options));
-    progress.clear();
-    if (zoom.interrupted) return false;
-    run::zoom_in(job.input.scene, zoom, spacing);
-    return true;
-}
-
 /// From scene file to report.
 int run_command(const RunArguments& arguments) {
     if (!arguments.data.empty()) set_data_folder(arguments.data);
@@ -196,17 +186,12 @@ int run_command(const RunArguments& arguments) {
     progress.clear();
     if (!job) return fail(exit_code::bad_input, job.error().message);
     if (watch.stop_requested()) return fail(exit_code::interrupted, "interrupted before the run began");
-    if (!arguments.zoom.empty()) {
-        const auto zoomed = zoom_in(arguments, *job, progress, watch);
-        progress.clear();
-        if (!zoomed) return fail(exit_code::bad_input, zoomed.error().message);
-        if (!*zoomed) return fail(exit_code::interrupted, "interrupted before the particles began");
-    }
     const scene::Scene& scene = job->input.scene;
 
     RunCallbacks callbacks(arguments, *job, progress, watch);
     const auto result = run_scene(scene, callbacks.options());  // run; its observer measures every step
     progress.clear();
+    if (!result && watch.stop_requested()) return fail(exit_code::interrupted, result.error().message);
     if (!result) return fail(exit_code::bad_input, result.error().message);
     if (Status s = callbacks.finish(*result); !s) return fail(exit_code::failure, s.error().message);
 
@@ -261,9 +246,13 @@ void add_run(CLI::App& program, std::vector<Command>& commands) {
     app->add_option("--vary", run->variations, "run again with each of the values; compare; may be repeated")
         ->type_name("SECTION.KEY=VALUE,VALUE")
         ->allow_extra_args(false);
-    app->add_option("--zoom", run->zoom, "particles around one building or barrier, the rest depth-averaged")
-        ->type_name("NAME");
-    app->add_option("--zoom-margin", run->zoom_margin, "m, from it to the boundary of the zoom; default: 15")
+    CLI::Option* zoom =
+        app->add_option("--zoom", run->zoom, "particles around one building or barrier, the rest depth-averaged")
+            ->type_name("NAME");
+    app->add_option("--zoom-polygon", run->zoom_polygon, "the same in the area of a polygon")
+        ->type_name("FILE")
+        ->excludes(zoom);
+    app->add_option("--zoom-margin", run->zoom_margin, "m, from the structure to the boundary of the zoom; default: 15")
         ->type_name("M");
     add_data_folder(*app, run->data);
     CLI::Option* quiet = app->add_flag("--quiet", run->quiet, "print only errors");

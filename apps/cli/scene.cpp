@@ -16,6 +16,7 @@
 #include "scene/check.hpp"
 #include "scene/new_scene.hpp"
 #include "scene_input.hpp"
+#include "zoom_text.hpp"
 
 namespace talus::cli {
 namespace {
@@ -44,7 +45,15 @@ int check_command(const CheckArguments& arguments) {
     const auto say = [](const std::string& what) { (void)std::fputs((what + "\n").c_str(), stderr); };
     const auto settled = settle_layers(found->file, *overrides, arguments.layers, *scene, say, watch.stop_requested());
     if (!settled) return fail(exit_code::bad_input, settled.error().message);
-    return print_result(describe_scene(*scene) + (*settled ? "cost        " + cost_text(**settled) + "\n" : ""));
+    std::string text = describe_scene(*scene) + (*settled ? "cost        " + cost_text(**settled) + "\n" : "");
+    if (scene->zoom) {
+        say("running the event with the depth-averaged model, up to the zoom");
+        const auto zoom = zoom_cost_text(*scene, watch.stop_requested());
+        if (watch.stop_requested()) return fail(exit_code::interrupted, "interrupted");
+        if (!zoom) return fail(exit_code::bad_input, zoom.error().message);
+        text += *zoom;
+    }
+    return print_result(text);
 }
 
 int new_command(const scene::NewSceneOptions& options) {

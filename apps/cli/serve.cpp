@@ -112,6 +112,7 @@ int serve_command(const ServeArguments& arguments) {
     if (arguments.threads) overrides->push_back(fmt::format("solver.thread_count={}", *arguments.threads));
     auto loaded = load_layered(file, *overrides, arguments.layers);
     if (!loaded) return fail(exit_code::bad_input, loaded.error().message);
+    leave_out_zoom(*loaded, "the live twin");
     std::function<void(const std::string&)> say;
     if (!arguments.quiet) say = [](const std::string& what) { (void)std::fputs((what + "\n").c_str(), stderr); };
     const auto settled = settle_layers(file, *overrides, arguments.layers, *loaded, say, watch.stop_requested());

@@ -13,6 +13,7 @@
 #include "products/results_json.hpp"
 #include "sim/compression.hpp"
 #include "variant_plan.hpp"
+#include "zoom_text.hpp"
 
 namespace talus::cli {
 namespace {
@@ -116,6 +117,11 @@ std::string summary_text(const scene::Scene& scene, const run::RunResult& result
                                       result.grid_cells, result.grid_cell,
                                       static_cast<double>(result.cell_updates) / 1e6 / std::max(result.wall_time, 1e-9))
                         : fmt::format("{} particles of {:.3g} m", result.particles, result.particle_spacing)));
+    if (result.zoom) {
+        text += line("zoom", zoom_text(*result.zoom));
+        text += line(
+            "", fmt::format("all results are of this area; {:.1f} s depth-averaged before", result.zoom->wall_time));
+    }
     for (const params::ObservationSpec& observed : scene.spec.observations) {
         const observe::FrontSample front = front_at(seen, observed.chainage);
         const std::string computed = std::isnan(front.arrival_time)

@@ -16,13 +16,14 @@ struct RunArguments {
     std::string output;  ///< a folder; empty: talus_out/<scene name>
     bool force = false;
     std::optional<int> threads;
-    std::vector<std::string> overrides;  ///< "section.key=value"
-    std::string layers;                  ///< of --layers; empty: not given
-    std::string model{};                 ///< of --model; empty: the scene's
-    std::vector<std::string> series{};   ///< of --series; empty: the scene's
-    std::string zoom{};                  ///< of --zoom: a structure; empty: not given
-    double zoom_margin = 15;             ///< m
-    std::string data;                    ///< value of TALUS_DATA; empty: as in the environment
+    std::vector<std::string> overrides;   ///< "section.key=value"
+    std::string layers;                   ///< of --layers; empty: not given
+    std::string model{};                  ///< of --model; empty: the scene's
+    std::vector<std::string> series{};    ///< of --series; empty: the scene's
+    std::string zoom{};                   ///< of --zoom: a structure; empty: not given
+    std::string zoom_polygon{};           ///< of --zoom-polygon: a file; empty: not given
+    std::optional<double> zoom_margin{};  ///< m
+    std::string data;                     ///< value of TALUS_DATA; empty: as in the environment
     bool quiet = false, json = false;
     bool convergence = false;             ///< run three refinements too and compare
     bool named_variants = false;          ///< run every [[variant]] of the scene too and compare

@@ -88,6 +88,7 @@ Status give(std::unique_ptr<Scenario> scenario, bool can_be_saved, talus_simulat
 
 Status open_scene(talus::scene::Scene loaded, std::vector<std::string> settings, bool can_be_saved,
                   talus_simulation** simulation) {
+    leave_out_zoom(loaded, "a simulation step by step");
     const auto scene = std::make_shared<const talus::scene::Scene>(std::move(loaded));
     TALUS_ASSIGN(auto scenario, Scenario::open(scene, {std::move(settings), no_frames, 0}));
     return give(std::move(scenario), can_be_saved, simulation);

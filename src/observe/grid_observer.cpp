@@ -99,6 +99,24 @@ void GridObserver::note_release(const depth::Solver& solver, const Grid<float>& 
     timeseries_.back() = sample(solver, timeseries_.back().volume_held, timeseries_.back().steps_per_second);
 }
 
+void GridObserver::watch(const depth::Solver& solver, const std::vector<terrain::Gauge>& gauges) {
+    gauges_ = GaugeRecorder(gauges, outputs_.arrival_depth);
+    read_gauges(solver, true);
+}
+
+void GridObserver::read_gauges(const depth::Solver& solver, bool row) {
+    const GridGeometry& g = solver.geometry();
+    gauges_.after_step(solver.time(), row, [&](const PlanPoint& place) -> FlowAt {
+        const double east = std::floor((place.x - g.x_min) / g.cell), north = std::floor((place.y - g.y_min) / g.cell);
+        if (!(east >= 0 && north >= 0 && east < g.columns && north < g.rows)) return {};
+        const int c = static_cast<int>(east), r = static_cast<int>(north);
+        FlowAt flow{solver.depth_at(c, r)};
+        if (flow.depth < thinnest_depth()) return flow;
+        flow.speed = speed_of(solver.u_at(c, r), solver.v_at(c, r), solver.slope_x_at(c, r), solver.slope_y_at(c, r));
+        return flow;
+    });
+}
+
 void GridObserver::measure_cells(const depth::Solver& solver) {
     const auto thinnest = static_cast<float>(thinnest_depth());
     const auto arrives = static_cast<float>(outputs_.arrival_depth);
@@ -169,8 +187,9 @@ void GridObserver::measure_structures(const depth::Solver& solver) {
 void GridObserver::after_step(const depth::Solver& solver, double held, double steps_per_second) {
     measure_cells(solver);
     measure_structures(solver);
-    const double next = timeseries_.back().time + outputs_.sample_interval;
-    if (solver.time() < next - 1e-9) return;
+    const bool row = solver.time() >= timeseries_.back().time + outputs_.sample_interval - 1e-9;
+    read_gauges(solver, row);
+    if (!row) return;
     const GridGeometry& g = solver.geometry();
     for (std::size_t cell = 0; cell < g.size(); ++cell) {
         if (!std::isnan(arrival_time_.values[cell]) && !(chainage_[cell] <= front_)) {
@@ -333,6 +352,7 @@ Observation GridObserver::finish(const depth::Solver& solver, const sim::Ground&
     o.front = front.samples();
     o.timeseries = timeseries_;
     if (o.timeseries.back().time < solver.time()) o.timeseries.push_back(sample(solver, held, 0));
+    o.gauges = gauges_.records();
     for (const Structure& structure : structures_) o.buildings.push_back(structure.impact);
     o.volume_released = volume_released_ + held;
     o.erosion = measure_erosion(ground, flow_path_, outputs_.chainage_interval);

@@ -7,6 +7,7 @@
 #include "core/grid.hpp"
 #include "depth/solver.hpp"
 #include "observe/front_tracker.hpp"
+#include "observe/gauges.hpp"
 #include "observe/map_accumulator.hpp"
 #include "observe/observation.hpp"
 #include "params/spec.hpp"
@@ -34,6 +35,8 @@ class GridObserver {
     /// What came in or was entrained in the last step, m3; call it before after_step().
     void note_inflow(double volume) { volume_released_ += volume; }
     void note_entrainment(double volume) { volume_entrained_ += volume; }
+    /// Records the flow at these places from now on.
+    void watch(const depth::Solver& solver, const std::vector<terrain::Gauge>& gauges);
     /// `held`: volume in releases that are still to start, m3.
     void after_step(const depth::Solver& solver, double held, double steps_per_second);
 
@@ -57,6 +60,7 @@ class GridObserver {
 
     void measure_cells(const depth::Solver& solver);
     void measure_structures(const depth::Solver& solver);
+    void read_gauges(const depth::Solver& solver, bool row);
     [[nodiscard]] TimeSample sample(const depth::Solver& solver, double held, double steps_per_second) const;
     [[nodiscard]] FrontRecord front_record() const;
     [[nodiscard]] HazardMaps maps(const depth::Solver& solver) const;
@@ -68,6 +72,7 @@ class GridObserver {
     Grid<float> released_;                                                ///< m, by cell
     std::vector<float> chainage_;                                         ///< by cell; NaN: not on the path
     std::vector<Structure> structures_;
+    GaugeRecorder gauges_;
     std::vector<TimeSample> timeseries_;
     double volume_released_ = 0, volume_entrained_ = 0, front_ = never;
 };

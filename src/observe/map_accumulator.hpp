@@ -50,6 +50,8 @@ class MapAccumulator {
         Grid<float> density;                  ///< depth-averaged, kg/m3; empty: that of the material everywhere
     };
     [[nodiscard]] Present present() const;
+    /// At the last `add`, in the cell that a place lies in; nothing outside the map.
+    [[nodiscard]] FlowAt at(const PlanPoint& place) const;
 
     /// Of the whole map.
     [[nodiscard]] const GridGeometry& geometry() const { return geometry_; }

@@ -20,6 +20,22 @@ double MapAccumulator::volume() const {
     return sum / map_units::particle * particle_volume_;
 }
 
+FlowAt MapAccumulator::at(const PlanPoint& place) const {
+    const double column = std::floor((place.x - geometry_.x_min) * inverse_cell_);
+    const double row = std::floor((place.y - geometry_.y_min) * inverse_cell_);
+    if (!(column >= 0 && row >= 0 && column < geometry_.columns && row < geometry_.rows)) return {};
+    const auto c = static_cast<unsigned>(column) + 1,
+               r = static_cast<unsigned>(row) + 1;  // tiles begin one cell before
+    const Tile* tile = tile_at_[std::size_t{r / tile_size} * tile_columns_ + c / tile_size];
+    if (tile == nullptr) return {};
+    const CellSum sum = sum_of(*tile, std::size_t{r % tile_size} * tile_size + c % tile_size);
+    FlowAt flow{depth(sum.volume())};
+    if (sum.volume() > 0 && flow.depth >= thinnest_depth_) {
+        flow.speed = sum.momentum() / sum.volume() / map_units::speed;
+    }
+    return flow;
+}
+
 MapAccumulator::Present MapAccumulator::present() const {
     int first_column = geometry_.columns, first_row = geometry_.rows, last_column = -1, last_row = -1;
     const auto edge = static_cast<int>(tile_size);

@@ -9,6 +9,7 @@
 #include "core/geometry.hpp"
 #include "core/grid.hpp"
 #include "terrain/flow_path.hpp"
+#include "terrain/gauge.hpp"
 #include "terrain/terrain.hpp"
 
 /// The measurements of a run: plain results in SI units.
@@ -125,6 +126,27 @@ struct TimeSample {
     double steps_per_second = 0;  ///< of wall time
 };
 
+/// The flow at a place.
+struct FlowAt {
+    double depth = 0;  ///< m, vertical
+    double speed = 0;  ///< m/s, depth-averaged; 0 where debris is too thin
+};
+
+struct GaugeSample {
+    double time = 0;   ///< s
+    double depth = 0;  ///< m, as in FlowAt
+    double speed = 0;  ///< m/s
+};
+
+/// What passed a gauge: the flow in the cell of the maps that it lies in.
+struct GaugeRecord {
+    terrain::Gauge gauge;
+    double arrival_time = never;                     ///< s, first time deeper than the arrival depth
+    double peak_depth = 0, peak_depth_time = never;  ///< m, s, of all steps
+    double peak_speed = 0, peak_speed_time = never;  ///< m/s, s
+    std::vector<GaugeSample> rows{};                 ///< at the times of the time series
+};
+
 /// Erosion of the bed by debris.
 struct Erosion {
     Grid<float> depth;  ///< m, vertical, on the terrain's cells around what was eroded; NaN: none. Empty: no bed
@@ -174,6 +196,7 @@ struct Observation {
     std::optional<terrain::FlowPath> followed_path;
     std::vector<BuildingImpact> buildings;  ///< as in Ground::buildings
     std::vector<TimeSample> timeseries;
+    std::vector<GaugeRecord> gauges;
     double volume_released = 0;  ///< m3, less the removed volume
     Compression compression;
     /// Share of the volume that rounding may gain or lose: depths in single precision do, whole particles do not.

@@ -7,6 +7,7 @@
 #include "observe/building_impact.hpp"
 #include "observe/erosion.hpp"
 #include "observe/front_tracker.hpp"
+#include "observe/gauges.hpp"
 #include "observe/map_accumulator.hpp"
 #include "observe/run_out.hpp"
 #include "observe/step_rate.hpp"
@@ -128,8 +129,13 @@ struct Observer::Parts {
         impact.add_row(state);
     }
 
+    void read_gauges(double time, bool row) {
+        gauges.after_step(time, row, [&](const PlanPoint& place) { return maps.at(place); });
+    }
+
     params::OutputSpec outputs;
     MapAccumulator maps;
+    GaugeRecorder gauges;
     FrontTracker front;
     ImpactRecorder impact;
     ReleasedMass released;
@@ -167,7 +173,9 @@ void Observer::after_step(const sim::Model& model, const sim::Ground& ground, co
     p.steps_per_second = steps_per_second;
     // Rows at multiples of the interval, or just after one where a step is longer; a millionth of it absorbs rounding.
     const double intervals = state.time / p.outputs.sample_interval + 1e-6;
-    if (intervals >= static_cast<double>(p.next_row)) {
+    const bool row = intervals >= static_cast<double>(p.next_row);
+    p.read_gauges(state.time, row);
+    if (row) {
         p.add_row(model, state);
         p.next_row = static_cast<std::uint64_t>(intervals) + 1;
     }
@@ -196,6 +204,11 @@ void Observer::follow_inflow(const sim::State& state, std::uint32_t first_new_id
     p.maps.make_room(state.count);
     p.front.follow(state);
     p.impact.follow_inflow(state);
+}
+
+void Observer::watch(const std::vector<terrain::Gauge>& gauges) {
+    parts_->gauges = GaugeRecorder(gauges, parts_->outputs.arrival_depth);
+    parts_->read_gauges(parts_->timeseries.back().time, true);
 }
 
 void Observer::expect(std::uint32_t particles) {
@@ -262,6 +275,7 @@ Observation Observer::finish(const sim::Model& model, const sim::Ground& ground,
     observation.run_out = measure_run_out(ground, state, observation.maps.peak_depth, released, p.front.farthest());
     observation.buildings = p.impact.complete(state);
     observation.timeseries = p.timeseries;
+    observation.gauges = p.gauges.records();
     if (p.timeseries.back().time != state.time) observation.timeseries.push_back(sample(model, state));
     observation.erosion = measure_erosion(ground, p.front.flow_path(), p.outputs.chainage_interval);
     observation.volume_released = state.released() * model.particle_volume();

@@ -38,6 +38,8 @@ class Observer final : public sim::StepWatcher {
     /// Call when model, ground or state were changed between two steps: particles with ids from `first_new_id` are new.
     void follow(const sim::Model& model, const sim::Ground& ground, const sim::State& state,
                 std::uint32_t first_new_id);
+    /// Records the flow at these places from now on.
+    void watch(const std::vector<terrain::Gauge>& gauges);
     /// Reserves memory for this number of particles, so that injecting them allocates nothing.
     void expect(std::uint32_t particles);
     /// Resets the record of a building, for example after it was moved.

@@ -55,6 +55,8 @@ template <class Member>
 Member from_value(const ParameterValue& value) {
     if constexpr (std::is_same_v<Member, int>) {
         return static_cast<int>(std::get<std::int64_t>(value));
+    } else if constexpr (std::is_same_v<Member, std::vector<PlanPoint>>) {
+        return std::holds_alternative<std::monostate>(value) ? Member{} : std::get<Member>(value);  // none are none
     } else {
         return std::get<Member>(value);
     }
@@ -208,6 +210,10 @@ class Declaration {
 /// Material, and ground that differs.
 [[nodiscard]] Section declare_material();
 [[nodiscard]] Section declare_zone();
+
+/// What is recorded at places, and particles in one area only.
+[[nodiscard]] Section declare_gauge();
+[[nodiscard]] Section declare_zoom();
 
 /// The sections of field observations.
 [[nodiscard]] std::vector<Section> declare_observations();

@@ -249,9 +249,10 @@ Section declare_variant() {
 const std::vector<Section>& scene_sections() {
     static const std::vector<Section> sections = [] {
         std::vector<Section> all = {
-            declare_scene(),    declare_report(),    declare_terrain(), declare_release(),         declare_inflow(),
-            declare_bed(),      declare_buildings(), declare_barrier(), declare_barrier_opening(), declare_flow_path(),
-            declare_material(), declare_zone(),      declare_solver(),  declare_outputs()};
+            declare_scene(),           declare_report(),    declare_terrain(),   declare_release(),
+            declare_inflow(),          declare_bed(),       declare_buildings(), declare_barrier(),
+            declare_barrier_opening(), declare_flow_path(), declare_material(),  declare_zone(),
+            declare_solver(),          declare_outputs(),   declare_gauge(),     declare_zoom()};
         for (Section& section : declare_observations()) all.push_back(std::move(section));
         all.push_back(declare_variant());
         return all;

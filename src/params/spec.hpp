@@ -270,6 +270,26 @@ struct OutputSpec {
     bool peak_thickness = false;  ///< also a map of the peak thickness normal to the slope
 };
 
+/// `[[gauge]]`: a place where depth and speed are recorded over time; at a place, or at a chainage.
+struct GaugeSpec {
+    std::string name;
+    std::optional<double> x = {}, y = {};  ///< m, in the terrain's reference system
+    std::optional<double> chainage = {};   ///< m along the flow path
+};
+
+/// `[zoom]`: the depth-averaged model runs the event, particles what crosses the boundary of an area. No area: no zoom.
+struct ZoomSpec {
+    std::string structure;           ///< name of a building or barrier
+    double margin = 15;              ///< m, from it to the boundary
+    std::vector<PlanPoint> polygon;  ///< three places or more
+    std::string polygon_file, layer;
+    // At most one of the two; none: as in `[solver]`.
+    std::optional<double> particle_spacing = {};  ///< m
+    std::optional<double> target_layers = {};     ///< over the mean thickness of what crosses the boundary
+    double surroundings = 5;                      ///< m beyond the boundary, after which particles are removed
+    [[nodiscard]] bool wanted() const { return !structure.empty() || !polygon.empty() || !polygon_file.empty(); }
+};
+
 /// `[[observation]]`: a front velocity measured in the field.
 struct ObservationSpec {
     std::string name;
@@ -379,6 +399,8 @@ struct SceneSpec {
     std::vector<ZoneSpec> zones;
     SolverSpec solver;
     OutputSpec outputs;
+    std::vector<GaugeSpec> gauges;
+    ZoomSpec zoom;
     std::vector<ObservationSpec> observations;
     std::vector<SuperelevationSpec> superelevations;
     std::vector<ArrivalSpec> arrivals;

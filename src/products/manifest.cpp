@@ -118,6 +118,39 @@ Json inputs(const scene::Scene& scene) {
     return all;
 }
 
+Json gauges_json(const observe::Observation& observation) {
+    Json all = Json::array();
+    for (const observe::GaugeRecord& record : observation.gauges) {
+        all.push_back({{"name", record.gauge.name},
+                       {"x_m", record.gauge.at.x},
+                       {"y_m", record.gauge.at.y},
+                       {"chainage_m", record.gauge.chainage},
+                       {"arrival_time_s", record.arrival_time},
+                       {"peak_depth_m", record.peak_depth},
+                       {"peak_speed_mps", record.peak_speed}});
+    }
+    return all;
+}
+
+Json zoom_json(const run::RunResult& result) {
+    if (!result.zoom) return nullptr;
+    const run::ZoomRecord& zoom = *result.zoom;
+    Json corners = Json::array();
+    for (const PlanPoint& p : zoom.area.outer) corners.push_back({p.x, p.y});
+    return {{"around", zoom.around},
+            {"polygon_m", std::move(corners)},
+            {"surroundings_m", zoom.surroundings},
+            {"grid_cell_m", zoom.grid_cell},
+            {"depth_averaged_wall_time_s", zoom.wall_time},
+            {"event_volume_m3", zoom.event_volume},
+            {"volume_in_m3", zoom.volumes.in},
+            {"volume_out_m3", zoom.volumes.out},
+            {"particle_volume_in_m3", zoom.brought_volume},
+            {"momentum_in_Ns", {zoom.momentum.x, zoom.momentum.y}},
+            {"particle_momentum_in_Ns", {zoom.brought_momentum.x, zoom.brought_momentum.y}},
+            {"mean_thickness_m", zoom.mean_thickness}};
+}
+
 Json results(const run::RunResult& result) {
     const observe::Observation& o = result.observation;
     Json greatest_values = Json::object();
@@ -148,6 +181,8 @@ Json results(const run::RunResult& result) {
             {"barriers", barriers.all},
             {"barriers_hit", barriers.hit},
             {"structures", structures_json(o)},
+            {"gauges", gauges_json(o)},
+            {"zoom", zoom_json(result)},
             {"compression", result.depth_averaged() ? Json() : compression_json(o)}};
 }
 

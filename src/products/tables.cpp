@@ -108,6 +108,17 @@ std::string erosion_table(const observe::Erosion& erosion, std::string_view chan
     return csv.text();
 }
 
+std::string gauge_table(const observe::Observation& observation, std::string_view changed) {
+    Csv csv("name,time_s,depth_m,speed_mps", changed);
+    for (const observe::GaugeRecord& record : observation.gauges) {
+        for (const observe::GaugeSample& s : record.rows) {
+            csv.word(record.gauge.name).number(s.time).number(s.depth).number(s.speed);
+            csv.end_row();
+        }
+    }
+    return csv.text();
+}
+
 }  // namespace
 
 Status write_tables(const scene::Scene& scene, const run::RunResult& result, const std::filesystem::path& folder,
@@ -118,6 +129,9 @@ Status write_tables(const scene::Scene& scene, const run::RunResult& result, con
     TALUS_TRY(write_text_file(folder / "buildings.csv", building_table(scene, observation, changed)));
     if (!observation.erosion.chainage.empty()) {
         TALUS_TRY(write_text_file(folder / "erosion.csv", erosion_table(observation.erosion, changed)));
+    }
+    if (!observation.gauges.empty()) {
+        TALUS_TRY(write_text_file(folder / "gauges.csv", gauge_table(observation, changed)));
     }
     TALUS_TRY(write_text_file(folder / "structures_over_time.csv", structure_table(observation, changed)));
     return write_text_file(folder / "timeseries.csv", time_table(observation, changed));

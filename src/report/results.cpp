@@ -134,8 +134,9 @@ Json key_figures(const scene::Scene& scene, const run::RunResult& result) {
         all.push_back(key_figure(key, name, std::move(value), format, unit, note, alert));
     };
     add("released_volume_m3", "Released volume", o.volume_released, o.volume_released < 100 ? "f1" : "f0", "m³",
-        plural(scene.releases.size(), "release") +
-            (scene.inflows.empty() ? "" : ", " + plural(scene.inflows.size(), "inflow")));
+        result.zoom ? fmt::format("of the event's {} m³ came into the zoom", fixed(result.zoom->event_volume, 0))
+                    : plural(scene.releases.size(), "release") +
+                          (scene.inflows.empty() ? "" : ", " + plural(scene.inflows.size(), "inflow")));
     if (!scene.bed.empty()) {
         add("entrained_volume_m3", "Entrained from the bed", mass.entrained, mass.entrained < 100 ? "f1" : "f0", "m³",
             fmt::format("{} × the released volume, deepest {} m", fixed(mass.entrained / o.volume_released, 2),
@@ -344,6 +345,8 @@ Json run_results(const scene::Scene& scene, const run::RunResult& result,
                 {"front", front_chart(scene, result)},
                 {"front_velocity_window_m", scene.spec.outputs.front_velocity_window},
                 {"time", time_chart(result)},
+                {"gauges", gauges({{"", &result}})},
+                {"zoom", zoom(result)},
                 {"zones", zones(scene)},
                 {"inflow", inflow(scene, result)},
                 {"erosion", erosion(scene, result)},

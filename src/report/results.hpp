@@ -55,6 +55,10 @@ struct NamedRun {
 };
 /// Front velocity and arrival time against chainage, all runs in one plot: the first as a broad line.
 [[nodiscard]] Json fronts_chart(const scene::Scene& scene, const std::vector<NamedRun>& runs);
+/// Depth and speed over time at the gauges of a scene, of one run or several of them. Null: there are none.
+[[nodiscard]] Json gauges(const std::vector<NamedRun>& runs);
+/// What was zoomed, and the balance of volume and momentum across its boundary.
+[[nodiscard]] Json zoom(const run::RunResult& result);
 /// Which laws the scene uses.
 [[nodiscard]] Json method(const scene::Scene& scene);
 [[nodiscard]] Json chosen_values(const scene::Scene& scene, const run::RunResult& result);

@@ -9,7 +9,7 @@
 #include "report/hardware.hpp"
 #include "report/number_text.hpp"
 #include "report/results.hpp"
-#include "scene/grid_cell.hpp"
+#include "scene/depth_averaged_keys.hpp"
 #include "sim/stage_times.hpp"
 
 namespace talus::report {

@@ -38,6 +38,7 @@ class GridRun {
           clock_(scene.spec.solver) {
         for (const terrain::Release& release : scene.releases) held_ += release.volume;
         release_due();
+        observer_.watch(solver_, scene.gauges);
     }
 
     /// Errors: an inflow that no cell takes.

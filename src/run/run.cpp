@@ -34,8 +34,8 @@ Result<std::unique_ptr<Run>> Run::start(const scene::Scene& scene, std::optional
         sim::Ground ground(scene.terrain, scene.buildings, model.support_radius, scene.bed);
         TALUS_ASSIGN(sim::State state, seed_releases(model, ground, scene.releases, progress));
         sim::InflowFeeder inflow(model, ground.terrain.frame(), scene.inflows);
-        RunStart start{std::move(model),  std::move(ground), std::move(state),
-                       std::move(inflow), scene.flow_path,   spec.outputs};
+        RunStart start{std::move(model), std::move(ground), std::move(state), std::move(inflow),
+                       scene.flow_path,  spec.outputs,      scene.gauges};
         if (follows_debris(scene)) start.followed_corridor_width = spec.flow_path.corridor_width;
         return std::make_unique<Run>(std::move(start));
     });
@@ -52,6 +52,7 @@ Run::Run(RunStart start)
       followed_corridor_width_(start.followed_corridor_width),
       endless_(start.endless),
       smallest_time_step_(model().solver.end_time) {
+    observer_.watch(start.gauges);
     observer_.expect(state().seeded + simulation_.inflow().remaining());
     if (no_debris()) stop(RunPhase::at_rest, "there is no debris");
 }

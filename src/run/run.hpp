@@ -27,6 +27,7 @@ struct RunStart {
     sim::InflowFeeder inflow = {};
     terrain::FlowPath flow_path = {};  ///< empty: no front against chainage
     params::OutputSpec outputs = {};
+    std::vector<terrain::Gauge> gauges = {};
     /// Continues at rest, beyond solver.end_time and after a fault: the caller decides when it ends.
     bool endless = false;
     /// m: the flow path is a first guess, and the result is along the path that debris followed. 0: it stays.
@@ -40,7 +41,7 @@ class Run {
     /// With the threads of `start.model.solver`.
     explicit Run(RunStart start);
 
-    /// A run of a loaded scene, with its releases seeded. `particle_spacing`, m: absent, the scene's own. Errors: a
+    /// A run of a loaded scene, with its releases seeded; of all of it: a zoom is for run_scene(). `particle_spacing`, m: absent, the scene's own. Errors: a
     /// release smaller than a particle, more particles than solver.particle_limit, including those of inflows;
     /// `progress` ended it.
     [[nodiscard]] static Result<std::unique_ptr<Run>> start(const scene::Scene& scene,

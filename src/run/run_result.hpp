@@ -6,6 +6,7 @@
 
 #include "observe/observation.hpp"
 #include "run/fault_record.hpp"
+#include "run/zoom_record.hpp"
 #include "sim/stage_times.hpp"
 
 namespace talus::run {
@@ -40,6 +41,8 @@ struct RunResult {
     double grid_cell = 0;            ///< m; 0: particles
     std::uint64_t grid_cells = 0;    ///< of the grid
     std::uint64_t cell_updates = 0;  ///< by all steps
+
+    std::optional<ZoomRecord> zoom;  ///< particles were run in one area only: all results are of that
 
     [[nodiscard]] bool depth_averaged() const { return grid_cell > 0; }
     [[nodiscard]] double real_time_factor() const { return wall_time > 0 ? simulated_time / wall_time : 0; }

@@ -4,9 +4,11 @@
 
 #include <fmt/format.h>
 
+#include "core/try.hpp"
 #include "run/depth_run.hpp"
 #include "run/forecast.hpp"
 #include "run/run.hpp"
+#include "run/zoom.hpp"
 
 namespace talus::run {
 namespace {
@@ -33,10 +35,18 @@ Progress progress_of(const Run& run, const RunClock& clock) {
     return progress;
 }
 
+Result<RunResult> run_zoomed(const scene::Scene& scene, const RunOptions& options) {
+    TALUS_ASSIGN(ZoomedScene zoomed, zoom_in(scene, options));
+    TALUS_ASSIGN(RunResult result, run_scene(zoomed.scene, options));
+    result.zoom = std::move(zoomed.record);
+    return Result<RunResult>(std::move(result));
+}
+
 }  // namespace
 
 Result<RunResult> run_scene(const scene::Scene& scene, const RunOptions& options) {
     if (scene.spec.solver.model == params::ModelChoice::depth_averaged) return run_depth_averaged(scene, options);
+    if (scene.zoom) return run_zoomed(scene, options);
     const auto started = Run::start(scene);
     if (!started) return Error{scene.file.string() + ": " + started.error().message};
     Run& run = **started;

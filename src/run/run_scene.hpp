@@ -61,7 +61,8 @@ class FrameClock {
     bool wanted_;
 };
 
-/// Runs a scene from beginning to end: until debris rests, end_time, a fault, or stop_requested.
+/// Runs a scene from beginning to end: until debris rests, end_time, a fault, or stop_requested. With a zoom: the
+/// depth-averaged model first, then particles in its area.
 /// Errors (before anything ran): as Run::start(), with the scene's file.
 [[nodiscard]] Result<RunResult> run_scene(const scene::Scene& scene, const RunOptions& options);
 

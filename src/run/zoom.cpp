@@ -2,290 +2,161 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
+#include <utility>
 
 #include <fmt/format.h>
 
 #include "core/try.hpp"
+#include "params/fields.hpp"
+#include "run/depth_run.hpp"
+#include "scene/particle_spacing.hpp"
+#include "scene/viscosity_limit.hpp"
 
 namespace talus::run {
 namespace {
 
-constexpr double interval = 0.1;          // s, over which flow across the boundary is averaged
-constexpr double coarsest_piece = 2;      // m
-constexpr int spacings_of_piece = 8;      // at least
-constexpr double part_of_volume = 0.999;  // of a piece; the rest trickles in for minutes and comes with it
-
-double dot(const PlanPoint& a, const PlanPoint& b) {
-    return a.x * b.x + a.y * b.y;
-}
-
-double signed_area(const Ring& ring) {
-    double sum = 0;
+double distance_to(const Ring& ring, const PlanPoint& p) {
+    double nearest = std::numeric_limits<double>::infinity();
     for (std::size_t k = 0; k < ring.size(); ++k) {
         const PlanPoint &a = ring[k], &b = ring[(k + 1) % ring.size()];
-        sum += (a.x * b.y - b.x * a.y) / 2;
+        const double dx = b.x - a.x, dy = b.y - a.y, squared = dx * dx + dy * dy;
+        const double share = squared > 0 ? std::clamp(((p.x - a.x) * dx + (p.y - a.y) * dy) / squared, 0.0, 1.0) : 0.0;
+        nearest = std::min(nearest, std::hypot(p.x - a.x - share * dx, p.y - a.y - share * dy));
+    }
+    return nearest;
+}
+
+/// The terrain without what lies farther from the area: particles that get there have left it and are removed.
+terrain::Terrain cut_to(const terrain::Terrain& terrain, const Polygon& area, double surroundings) {
+    Grid<float> elevation = terrain.elevation();
+    const GridGeometry& g = elevation.geometry;
+    const double reach = surroundings + g.cell;
+    const Extent near = extent_of(area).grown(reach);
+    for (int row = 0; row < g.rows; ++row) {
+        for (int column = 0; column < g.columns; ++column) {
+            const PlanPoint centre = g.centre(column, row);
+            if (near.contains(centre) && (contains(area, centre) || distance_to(area.outer, centre) <= reach)) continue;
+            elevation.at(column, row) = std::numeric_limits<float>::quiet_NaN();
+        }
+    }
+    return terrain::Terrain(std::move(elevation));
+}
+
+/// The momentum of inflows, per density, m4/s: the integral of discharge times velocity in plan.
+PlanPoint momentum_of(const std::vector<terrain::Inflow>& inflows, const terrain::Terrain& terrain) {
+    PlanPoint sum{0, 0};
+    for (const terrain::Inflow& inflow : inflows) {
+        double momentum = 0;
+        for (std::size_t k = 0; k + 1 < inflow.hydrograph.size(); ++k) {
+            const params::InflowSample &a = inflow.hydrograph[k], &b = inflow.hydrograph[k + 1];
+            momentum += (b.time - a.time) *
+                        (2 * a.discharge * a.velocity + 2 * b.discharge * b.velocity + a.discharge * b.velocity +
+                         b.discharge * a.velocity) /
+                        6;
+        }
+        const double dx = inflow.to.x - inflow.from.x, dy = inflow.to.y - inflow.from.y, width = std::hypot(dx, dy);
+        const PlanPoint towards{dy / width, -dx / width};
+        const PlanPoint middle{(inflow.from.x + inflow.to.x) / 2, (inflow.from.y + inflow.to.y) / 2};
+        const LocalPoint at = terrain.frame().to_local({middle.x, middle.y, 0});
+        const auto normal = terrain.sample(double{at.x}, double{at.y}).normal;
+        // Along the ground to plan: the horizontal part of the unit vector in the direction of flow.
+        const double rise = -(normal.x * towards.x + normal.y * towards.y) / normal.z;
+        const double in_plan = momentum / std::sqrt(1 + rise * rise);
+        sum.x += in_plan * towards.x;
+        sum.y += in_plan * towards.y;
     }
     return sum;
 }
 
-struct CellIndex {
-    int column = 0, row = 0;
-};
-std::optional<CellIndex> cell_at(const GridGeometry& g, const PlanPoint& p) {
-    const double column = std::floor((p.x - g.x_min) / g.cell), row = std::floor((p.y - g.y_min) / g.cell);
-    if (!(column >= 0 && row >= 0 && column < g.columns && row < g.rows)) return {};
-    return CellIndex{static_cast<int>(column), static_cast<int>(row)};
-}
-
-/// Rows of a hydrograph in the middles of intervals, whose integral over time is `volume`.
-std::vector<params::InflowSample> hydrograph_of(const std::vector<params::InflowSample>& flow, double volume) {
-    double sum = 0;
-    for (const params::InflowSample& row : flow) sum += row.discharge * interval;
-    std::vector<params::InflowSample> rows;
-    double before = 0;
-    for (std::size_t k = 0; k < flow.size() && before <= part_of_volume * sum; ++k) {
-        before += flow[k].discharge * interval;
-        if (rows.empty() && flow[k].discharge <= 0) continue;
-        if (rows.empty()) rows.push_back({std::max(0.0, flow[k].time - interval), 0, flow[k].velocity, 0});
-        rows.push_back(flow[k]);
+Result<double> spacing_of(const scene::Scene& scene, double mean_thickness) {
+    const params::ZoomSpec& zoom = scene.spec.zoom;
+    const double spacing = zoom.particle_spacing ? *zoom.particle_spacing
+                           : zoom.target_layers  ? scene::spacing_of_layers(mean_thickness, *zoom.target_layers)
+                                                 : particle_spacing(scene);
+    const params::Parameter& key = params::parameter_of("zoom", "particle_spacing_m");
+    if (!key.range.contains(spacing)) {
+        return Error{
+            fmt::format("zoom.target_layers = {:.6g} is refused; over {:.3g} m, the mean thickness of what crosses the "
+                        "boundary, it "
+                        "puts particles {:.4g} m apart, which must be {} m",
+                        zoom.target_layers.value_or(0), mean_thickness, spacing, key.range.text())};
     }
-    rows.push_back({rows.back().time + interval, 0, rows.back().velocity, 0});
-    terrain::Inflow whole;
-    whole.hydrograph = rows;
-    const double scale = volume / whole.volume();
-    for (params::InflowSample& row : rows) row.discharge *= scale;
-    return rows;
+    return spacing;
 }
 
 }  // namespace
 
-BoundaryFlow::BoundaryFlow(const depth::Solver& solver, const Polygon& area, double piece) : cells_(solver.geometry()) {
-    const GridGeometry& cells = cells_;
-    const Ring& ring = area.outer;
-    const double turn = signed_area(ring) > 0 ? 1 : -1;  // inward is to the left of a ring against the clock
-    for (std::size_t k = 0; k < ring.size(); ++k) {
-        const PlanPoint &a = ring[k], &b = ring[(k + 1) % ring.size()];
-        const double length = std::hypot(b.x - a.x, b.y - a.y);
-        if (!(length > 0)) continue;
-        const PlanPoint along{(b.x - a.x) / length, (b.y - a.y) / length};
-        const int count = std::max(1, static_cast<int>(std::lround(length / piece)));
-        for (int part = 0; part < count; ++part) {
-            const double at = (part + 0.5) * length / count;
-            Piece one;
-            one.centre = {a.x + at * along.x, a.y + at * along.y};
-            one.along = along;
-            one.inward = {-turn * along.y, turn * along.x};
-            one.length = length / count;
-            if (const auto cell = cell_at(cells, one.centre)) {
-                one.slope_x = solver.slope_x_at(cell->column, cell->row);
-                one.slope_y = solver.slope_y_at(cell->column, cell->row);
-            }
-            pieces_.push_back(std::move(one));
-        }
-    }
-    constexpr int parts = 8;
-    const Extent e = extent_of(area).grown(cells.cell);
-    for (int row = 0; row < cells.rows; ++row) {
-        for (int column = 0; column < cells.columns; ++column) {
-            const PlanPoint centre = cells.centre(column, row);
-            if (!e.contains(centre)) continue;
-            int count = 0;
-            for (int k = 0; k < parts * parts; ++k) {
-                const int east = k % parts, north = k / parts;
-                count += contains(area, {centre.x + ((east + 0.5) / parts - 0.5) * cells.cell,
-                                         centre.y + ((north + 0.5) / parts - 0.5) * cells.cell})
-                             ? 1
-                             : 0;
-            }
-            if (count > 0) inside_.emplace_back(cells.index(column, row), static_cast<float>(count) / (parts * parts));
-        }
-    }
+double ZoomRecord::first_time() const {
+    const auto first = std::find_if(discharge.begin(), discharge.end(), [](double q) { return q > 0; });
+    return static_cast<double>(first - discharge.begin()) * BoundaryFlow::interval;
 }
 
-double BoundaryFlow::volume_inside(const depth::Solver& solver) const {
-    double sum = 0;
-    for (const auto& [cell, share] : inside_) {
-        const auto columns = static_cast<std::size_t>(cells_.columns);
-        sum += double{share} * solver.depth_at(static_cast<int>(cell % columns), static_cast<int>(cell / columns));
-    }
-    return sum * cells_.cell * cells_.cell;
-}
-
-void BoundaryFlow::record(const depth::Solver& solver) {
-    const double step = solver.time_step();
-    const auto at = static_cast<std::size_t>(std::max(0.0, solver.time() - step / 2) / interval);
-    for (Piece& piece : pieces_) {
-        constexpr int samples = 4;
-        for (int k = 0; k < samples; ++k) {
-            const double off = ((k + 0.5) / samples - 0.5) * piece.length;
-            // Debris that comes in is seen half a cell before the boundary, and that which leaves half a cell within.
-            for (const double side : {-0.5, 0.5}) {
-                const double inwards = side * cells_.cell;
-                const auto cell = cell_at(cells_, {piece.centre.x + off * piece.along.x + inwards * piece.inward.x,
-                                                   piece.centre.y + off * piece.along.y + inwards * piece.inward.y});
-                if (!cell) continue;
-                const double depth = solver.depth_at(cell->column, cell->row);
-                const double u = solver.u_at(cell->column, cell->row), v = solver.v_at(cell->column, cell->row);
-                const double crosses = u * piece.inward.x + v * piece.inward.y;
-                const double volume = depth * std::abs(crosses) * piece.length / samples * step;
-                if (side > 0 && crosses < 0) out_ += volume;
-                if (side > 0 || !(volume > 0) || crosses < 0) continue;
-                in_ += volume;
-                if (piece.intervals.size() <= at) piece.intervals.resize(at + 1);
-                Interval& now = piece.intervals[at];
-                now.volume += volume;
-                now.momentum_x += volume * u;
-                now.momentum_y += volume * v;
-            }
-        }
-    }
-    gained_ = volume_inside(solver);
-}
-
-BoundaryFlow::Volumes BoundaryFlow::volumes() const {
-    const double lacks = in_ + out_ > 0 ? (gained_ - (in_ - out_)) / (in_ + out_) : 0;
-    return {in_ * (1 + lacks), out_ * (1 - lacks), in_, out_};
-}
-
-std::vector<terrain::Inflow> BoundaryFlow::inflows(double particle_spacing) const {
-    const double particle = std::pow(particle_spacing, 3);
-    const double scale = in_ > 0 ? volumes().in / in_ : 0;
-    std::vector<terrain::Inflow> inflows;
-    double came = 0;
-    long brought = 0;
-    for (const Piece& piece : pieces_) {
-        Interval all;
-        for (const Interval& one : piece.intervals) {
-            all.volume += one.volume;
-            all.momentum_x += one.momentum_x;
-            all.momentum_y += one.momentum_y;
-        }
-        came += all.volume * scale;
-        const long count = std::lround(came / particle) - brought;
-        const double momentum = std::hypot(all.momentum_x, all.momentum_y);
-        if (count <= 0 || !(momentum > 0)) continue;
-        brought += count;
-        const PlanPoint towards{all.momentum_x / momentum, all.momentum_y / momentum};
-        const double rise = towards.x * piece.slope_x + towards.y * piece.slope_y;
-        std::vector<params::InflowSample> flow;
-        double velocity = 0;
-        for (const Interval& one : piece.intervals) {
-            const double along = one.momentum_x * towards.x + one.momentum_y * towards.y;
-            if (one.volume > 0) velocity = std::max(0.0, along / one.volume) * std::sqrt(1 + rise * rise);
-            flow.push_back({(static_cast<double>(flow.size()) + 0.5) * interval, one.volume / interval, velocity, 0});
-        }
-        terrain::Inflow inflow;
-        inflow.name = fmt::format("boundary of the zoom {}", inflows.size() + 1);
-        const double half = std::max(particle_spacing, piece.length * std::abs(dot(piece.inward, towards))) / 2;
-        // Its right is the direction of flow.
-        inflow.from = {piece.centre.x + half * towards.y, piece.centre.y - half * towards.x};
-        inflow.to = {piece.centre.x - half * towards.y, piece.centre.y + half * towards.x};
-        inflow.hydrograph = hydrograph_of(flow, static_cast<double>(count) * particle);
-        inflow.spec.name = inflow.name;
-        inflow.spec.line = {inflow.from, inflow.to};
-        inflows.push_back(std::move(inflow));
-    }
-    return inflows;
-}
-
-Result<Polygon> zoom_around(const scene::Scene& scene, const std::string& structure, double margin) {
-    for (const terrain::Building& building : scene.buildings) {
-        if (building.name != structure) continue;
-        const Extent e = extent_of(building).grown(margin);
-        return Polygon{{{e.x_min, e.y_min}, {e.x_max, e.y_min}, {e.x_max, e.y_max}, {e.x_min, e.y_max}}, {}};
-    }
-    return Error{fmt::format("{}: --zoom \"{}\" is refused; no building and no barrier has that name",
-                             scene.file.string(), structure)};
-}
-
-namespace {
-
-Status check_zoom(const scene::Scene& scene, const Polygon& area) {
-    const std::string refused = scene.file.string() + ": the zoom is refused; ";
-    if (!scene.bed.empty()) return Error{refused + "debris entrains its bed, whose state it does not take over"};
-    constexpr int parts = 64;
-    const Extent e = extent_of(area);
-    for (int k = 0; k < parts * parts; ++k) {
-        const int column = k % parts, row = k / parts;
-        const PlanPoint p{e.x_min + (column + 0.5) / parts * e.width(), e.y_min + (row + 0.5) / parts * e.height()};
-        if (!contains(area, p)) continue;
-        for (const terrain::Release& release : scene.releases) {
-            if (!(release.depth_at(scene.terrain, p) > 0)) continue;
-            return Error{fmt::format("{}release \"{}\" lies in its area", refused, release.name)};
-        }
-        for (const terrain::Inflow& inflow : scene.inflows) {
-            const bool within =
-                std::any_of(inflow.area.begin(), inflow.area.end(), [&](const Polygon& a) { return contains(a, p); });
-            if (within) return Error{fmt::format("{}inflow \"{}\" lies in its area", refused, inflow.name)};
-        }
-    }
-    for (const terrain::Inflow& inflow : scene.inflows) {
-        for (int k = 0; k <= parts && !inflow.over_area(); ++k) {
-            const double s = static_cast<double>(k) / parts;
-            if (contains(area, {inflow.from.x + s * (inflow.to.x - inflow.from.x),
-                                inflow.from.y + s * (inflow.to.y - inflow.from.y)})) {
-                return Error{fmt::format("{}inflow \"{}\" lies in its area", refused, inflow.name)};
-            }
-        }
-    }
-    return {};
-}
-
-}  // namespace
-
-Result<Zoom> record_zoom(const scene::Scene& grid_scene, const Polygon& area, double particle_spacing,
-                         const RunOptions& options) {
-    TALUS_TRY(check_zoom(grid_scene, area));
+Result<ZoomedScene> zoom_in(const scene::Scene& scene, const RunOptions& options) {
+    const std::string file = scene.file.string();
+    scene::Scene event = scene;
+    event.zoom.reset();
+    event.spec.solver.model = params::ModelChoice::depth_averaged;
     std::optional<BoundaryFlow> flow;
     RunOptions recording = options;
+    recording.on_frame = nullptr;
     recording.on_grid_step = [&](const depth::Solver& solver) {
-        if (!flow) {
-            const double piece =
-                std::max({coarsest_piece, spacings_of_piece * particle_spacing, solver.geometry().cell});
-            flow.emplace(solver, area, piece);
-        }
+        if (!flow) flow.emplace(solver, *scene.zoom);
         flow->record(solver);
     };
-    TALUS_ASSIGN(const RunResult run, run_scene(grid_scene, recording));
-    if (run.status == RunStatus::fault) return Error{run.stop_reason};
-    Zoom zoom;
-    zoom.area = area;
-    if (flow) {
-        zoom.inflows = flow->inflows(particle_spacing);
-        zoom.volumes = flow->volumes();
+    TALUS_ASSIGN(const RunResult run, run_depth_averaged(event, recording));
+    if (run.status == RunStatus::fault) return Error{fmt::format("{}: zoom: {}", file, run.stop_reason)};
+    if (run.status == RunStatus::interrupted) {
+        return Error{file + ": interrupted before the particles of the zoom began"};
     }
-    zoom.wall_time = run.wall_time;
-    zoom.grid_cell = run.grid_cell;
-    zoom.interrupted = run.status == RunStatus::interrupted;
-    if (zoom.inflows.empty() && !zoom.interrupted) {
-        return Error{fmt::format("{}: the zoom is refused; no debris of the depth-averaged model reaches its area",
-                                 grid_scene.file.string())};
+    const BoundaryFlow::Volumes volumes = flow ? flow->volumes() : BoundaryFlow::Volumes{};
+    const double thickness = flow ? flow->mean_thickness() : 0;
+    if (!(volumes.in > 0)) {
+        return Error{file + ": the zoom is refused; no debris of the depth-averaged model crosses its boundary"};
     }
-    return zoom;
-}
+    const Result<double> spacing = spacing_of(scene, thickness);
+    if (!spacing) return Error{file + ": " + spacing.error().message};
+    if (const auto broken = scene::too_viscous(scene.spec.material, scene.spec.solver, *spacing)) {
+        return Error{file + ": zoom: material." + broken->key + broken->text};
+    }
+    ZoomedScene zoomed{std::move(event), {}};
+    ZoomRecord& record = zoomed.record;
+    record.around = scene.spec.zoom.structure;
+    record.area = *scene.zoom;
+    record.surroundings = scene.spec.zoom.surroundings;
+    record.event_volume = total_volume(scene);
+    record.particle_spacing = *spacing;
+    record.mean_thickness = thickness;
+    record.grid_cell = run.grid_cell;
+    record.simulated_time = run.simulated_time;
+    record.wall_time = run.wall_time;
+    record.volumes = volumes;
+    record.discharge = flow->discharge();
 
-void zoom_in(scene::Scene& scene, const Zoom& zoom, double particle_spacing) {
-    scene.releases.clear();
-    scene.spec.releases.clear();
-    scene.inflows = zoom.inflows;
-    scene.spec.inflows.clear();
-    for (const terrain::Inflow& inflow : scene.inflows) scene.spec.inflows.push_back(inflow.spec);
-    scene.spec.solver.particle_spacing = particle_spacing;
-    scene.spec.solver.target_layers.reset();
-    scene.spec.solver.target_particle_count.reset();
-    scene.thinnest.reset();
-    scene.flow_path_origin = scene::PathOrigin::file;  // of the whole event
-    const Extent e = extent_of(zoom.area);
-    scene.notes.push_back(fmt::format(
-        "zoom: the depth-averaged model ran the event on cells of {:.3g} m; what crosses the boundary of {:.0f} x "
-        "{:.0f} "
-        "m becomes inflow of particles of {:.3g} m, {:.1f} m3 with its momentum, in {} pieces. What leaves is not fed "
-        "back to the depth-averaged model, and what comes back there comes in a second time: {:.1f} m3 leave in the "
-        "depth-averaged model. Sampled along the boundary are {:.1f} m3 in and {:.1f} m3 out; the error is spread "
-        "over both",
-        zoom.grid_cell, e.width(), e.height(), particle_spacing, zoom.volumes.in, zoom.inflows.size(), zoom.volumes.out,
-        zoom.volumes.sampled_in, zoom.volumes.sampled_out));
+    scene::Scene& particles = zoomed.scene;
+    particles.spec.solver = scene.spec.solver;
+    particles.spec.solver.particle_spacing = *spacing;
+    particles.spec.solver.target_layers.reset();
+    particles.spec.solver.target_particle_count.reset();
+    particles.releases.clear();
+    particles.inflows = flow->inflows(*spacing);
+    if (particles.inflows.empty()) {
+        return Error{
+            fmt::format("{}: the zoom is refused; {:.3g} m3 cross its boundary, less than a particle of "
+                        "{:.3g} m",
+                        file, volumes.in, *spacing)};
+    }
+    particles.flow_path_origin = scene::PathOrigin::file;  // chainages are along that of the whole event
+    particles.terrain = cut_to(scene.terrain, *scene.zoom, record.surroundings);
+
+    const double density = scene.spec.material.rest_density;
+    const PlanPoint crossed = flow->momentum(), brought = momentum_of(particles.inflows, scene.terrain);
+    record.pieces = particles.inflows.size();
+    record.brought_volume = total_volume(particles);
+    record.momentum = {density * crossed.x, density * crossed.y};
+    record.brought_momentum = {density * brought.x, density * brought.y};
+    return Result<ZoomedScene>(std::move(zoomed));
 }
 
 }  // namespace talus::run

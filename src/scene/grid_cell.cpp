@@ -1,13 +1,13 @@
 #include "scene/grid_cell.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include "core/try.hpp"
+#include "scene/depth_averaged_keys.hpp"
 #include "scene/limits.hpp"
 
 namespace talus::scene {
@@ -17,53 +17,30 @@ namespace {
 constexpr double coarsest_default_cell = 2.5;
 constexpr double most_cells = 1e8;
 
-Status refuse(const ParsedScene& parsed, const std::string& key, const std::string& why) {
-    return Error{fmt::format("{}: the depth-averaged model {}; remove it, or use solver.model = \"particles\"",
-                             parsed.at(key), why)};
-}
+/// What a scene has that the model lacks; the reasons stand beside its keys.
+struct Refusal {
+    const ParsedScene& parsed;
+    const std::string& otherwise;
 
-/// Keys that mean something to particles only: all others of their sections are used.
-constexpr std::array particle_keys = {"material.building_friction_coefficient",
-                                      "material.internal_friction_coefficient",
-                                      "material.viscosity",
-                                      "material.inertial_friction_coefficient",
-                                      "material.inertial_number",
-                                      "material.grain_diameter_m",
-                                      "material.grain_density_kgpm3",
-                                      "solver.particle_spacing_m",
-                                      "solver.target_layers",
-                                      "solver.target_particle_count",
-                                      "solver.particle_limit",
-                                      "solver.time_step_s",
-                                      "solver.displacement_limit",
-                                      "solver.largest_time_step_s",
-                                      "solver.smallest_time_step_s",
-                                      "solver.iteration_count",
-                                      "solver.extra_iteration_count",
-                                      "solver.kernel",
-                                      "solver.internal_friction",
-                                      "solver.support_ratio",
-                                      "solver.under_relaxation",
-                                      "solver.constraint_relaxation",
-                                      "solver.depenetration_speed_mps",
-                                      "solver.rest_duration_s",
-                                      "solver.compression_limit",
-                                      "outputs.map_cell_m",
-                                      "outputs.impact_filter_window_s",
-                                      "outputs.impact_patch_edge_m"};
+    [[nodiscard]] Status operator()(const std::string& place, std::string_view key, const std::string& which) const {
+        return Error{fmt::format("{}: the depth-averaged model {}{}; remove it, or {}", parsed.at(place),
+                                 depth_averaged_key(key)->why, which, otherwise)};
+    }
+};
 
-Status check_structures(const ParsedScene& parsed, const Scene& scene) {
+Status check_structures(const Refusal& refuse, const Scene& scene) {
     for (const terrain::Building& building : scene.buildings) {
-        const std::string key = building.barrier ? "barrier" : "buildings.file";
-        const std::string name = fmt::format("\"{}\" ", building.name);
+        const std::string place = building.barrier ? "barrier" : "buildings.file";
+        const std::string which = fmt::format(", and \"{}\" ", building.name);
         if (building.barrier && building.barrier->passing_share) {
-            return refuse(parsed, key, "has no nets, and " + name + "is one");
+            return refuse(place, "barrier.passing_share", which + "is one");
         }
         if (building.barrier && building.barrier->clearance) {
-            return refuse(parsed, key, "has nothing below a structure, and " + name + "has a clearance");
+            return refuse(place, "barrier.clearance_m", which + "has a clearance");
         }
         if (building.resistance != terrain::Resistance{}) {
-            return refuse(parsed, key, "has no structures that fail, and " + name + "has a resistance");
+            return refuse(place, building.barrier ? "barrier.resistance_Pa" : "buildings.resistance_Pa",
+                          which + "has a resistance");
         }
     }
     return {};
@@ -71,23 +48,18 @@ Status check_structures(const ParsedScene& parsed, const Scene& scene) {
 
 }  // namespace
 
-bool for_particles_only(std::string_view key) {
-    return std::find(particle_keys.begin(), particle_keys.end(), key) != particle_keys.end();
-}
-
 double grid_cell(const Scene& scene) {
     const double cell = scene.terrain.cell();
     return scene.spec.solver.grid_cell.value_or(cell / std::ceil(cell / coarsest_default_cell - 1e-9));
 }
 
-Status check_depth_averaged(const ParsedScene& parsed, Scene& scene) {
-    const params::SceneSpec& spec = scene.spec;
-    for (std::size_t k = 0; k < spec.releases.size(); ++k) {
-        if (!spec.releases[k].pore_pressure_ratio) continue;
-        return refuse(parsed, fmt::format("release[{}].pore_pressure_ratio", k),
-                      "has one pore pressure for all debris, that of the material");
+Status refuse_for_depth_averaged(const ParsedScene& parsed, const Scene& scene, const std::string& otherwise) {
+    const Refusal refuse{parsed, otherwise};
+    for (std::size_t k = 0; k < scene.spec.releases.size(); ++k) {
+        if (!scene.spec.releases[k].pore_pressure_ratio) continue;
+        return refuse(fmt::format("release[{}].pore_pressure_ratio", k), "release.pore_pressure_ratio", "");
     }
-    TALUS_TRY(check_structures(parsed, scene));
+    TALUS_TRY(check_structures(refuse, scene));
     const Extent e = scene.terrain.elevation().geometry.extent();
     const double cell = grid_cell(scene), cells = e.width() * e.height() / (cell * cell);
     if (cells > most_cells) {
@@ -97,14 +69,22 @@ Status check_depth_averaged(const ParsedScene& parsed, Scene& scene) {
                         parsed.at("solver.grid_cell_m"), cell, cells, most_cells,
                         std::ceil(1e3 * std::sqrt(e.width() * e.height() / most_cells)) / 1e3)};
     }
+    return {};
+}
+
+Status check_depth_averaged(const ParsedScene& parsed, Scene& scene) {
+    TALUS_TRY(refuse_for_depth_averaged(parsed, scene, "use solver.model = \"particles\""));
+    const params::SceneSpec& spec = scene.spec;
+    const double cell = grid_cell(scene);
     TALUS_TRY(check_series(parsed, scene, cell, 0));
     std::vector<std::string> unused;
     const auto dense = [](const terrain::Inflow& inflow) { return inflow.has_density(); };
     if (std::any_of(scene.inflows.begin(), scene.inflows.end(), dense)) {
         unused.emplace_back("the density of hydrographs");
     }
-    for (const char* key : particle_keys) {
-        if (scene.given_keys.contains(key)) unused.emplace_back(key);
+    for (const DepthAveragedKey& entry : depth_averaged_keys()) {
+        const std::string key(entry.key);
+        if (entry.use == KeyUse::noted && scene.given_keys.contains(key)) unused.push_back(key);
     }
     if (spec.material.kinematic_viscosity && !spec.material.viscosity_on_ground) {
         unused.emplace_back("material.kinematic_viscosity_m2ps without viscosity_on_ground");

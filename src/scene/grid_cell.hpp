@@ -1,6 +1,6 @@
 #pragma once
 
-#include <string_view>
+#include <string>
 
 #include "core/result.hpp"
 #include "scene/parse.hpp"
@@ -12,10 +12,12 @@ namespace talus::scene {
 /// The cell of its grid, m: a whole fraction of the terrain's where the scene does not give it.
 [[nodiscard]] double grid_cell(const Scene& scene);
 
-/// Whether a key ("solver.kernel") means something to particles only: the depth-averaged model has no use for it.
-[[nodiscard]] bool for_particles_only(std::string_view key);
+/// Refuses what this model does not have, and too many cells. `otherwise`: what can be done but to remove it, "use
+/// solver.model = "particles"".
+[[nodiscard]] Status refuse_for_depth_averaged(const ParsedScene& parsed, const Scene& scene,
+                                               const std::string& otherwise);
 
-/// Refuses what this model does not have, and notes given keys that mean nothing to it. The scene is loaded.
+/// The same, and notes given keys that mean nothing to this model. The scene is loaded.
 [[nodiscard]] Status check_depth_averaged(const ParsedScene& parsed, Scene& scene);
 
 }  // namespace talus::scene

@@ -75,7 +75,8 @@ Status add_depths(const ParsedScene& parsed, const std::string& key, const std::
 bool follows_debris(const Scene& scene) {
     const params::SceneSpec& s = scene.spec;
     return scene.flow_path_origin == PathOrigin::traced && s.observations.empty() && s.superelevations.empty() &&
-           s.arrivals.empty() && s.observed_run_outs.empty();
+           s.arrivals.empty() && s.observed_run_outs.empty() &&
+           std::all_of(s.gauges.begin(), s.gauges.end(), [](const auto& gauge) { return !gauge.chainage; });
 }
 
 double total_volume(const Scene& scene) {
@@ -167,6 +168,8 @@ Result<Scene> assemble_scene(const ParsedScene& parsed) {
     TALUS_TRY(load_barriers(parsed, scene));
     TALUS_TRY(load_flow_path(parsed, scene));
     TALUS_TRY(load_observations(parsed, scene));
+    TALUS_TRY(load_gauges(parsed, scene));
+    TALUS_TRY(load_zoom(parsed, scene));
     const bool particles = scene.spec.solver.model == params::ModelChoice::particles;
     TALUS_TRY(particles ? check_limits(parsed, scene) : check_depth_averaged(parsed, scene));
     note_implausible_terrain(scene);

@@ -44,6 +44,13 @@ namespace talus::scene {
 /// note: it is only drawn.
 [[nodiscard]] Status load_observations(const ParsedScene& parsed, Scene& scene);
 
+/// Fills scene.gauges. Terrain and flow path must be loaded.
+[[nodiscard]] Status load_gauges(const ParsedScene& parsed, Scene& scene);
+
+/// Fills scene.zoom where particles are run. All else must be loaded. Errors: an area that reaches beyond known ground
+/// or holds a release or an inflow, a bed, what the depth-averaged model does not have.
+[[nodiscard]] Status load_zoom(const ParsedScene& parsed, Scene& scene);
+
 /// Adds the file, and for a Shapefile the files that belong to it, to scene.inputs.
 void record_input(const std::string& role, const std::string& path, Scene& scene);
 

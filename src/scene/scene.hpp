@@ -15,6 +15,7 @@
 #include "terrain/bed.hpp"
 #include "terrain/buildings.hpp"
 #include "terrain/flow_path.hpp"
+#include "terrain/gauge.hpp"
 #include "terrain/ground_cover.hpp"
 #include "terrain/inflow.hpp"
 #include "terrain/release.hpp"
@@ -59,6 +60,8 @@ struct Scene {
     std::vector<terrain::Building> buildings;
     terrain::FlowPath flow_path;
     PathOrigin flow_path_origin = PathOrigin::file;
+    std::vector<terrain::Gauge> gauges;
+    std::optional<Polygon> zoom;                         ///< its area, with particles; nothing: no zoom
     std::vector<std::vector<Polygon>> deposit_outlines;  ///< as in SceneSpec::deposit_outlines
     std::vector<std::vector<Polygon>> affected_areas;    ///< as in SceneSpec::affected_areas
     std::vector<Grid<float>> elevation_changes;          ///< m; as in SceneSpec::elevation_changes
@@ -69,6 +72,9 @@ struct Scene {
 /// Whether a run takes the path that debris followed in place of a traced one. Not if the chainages of observations
 /// refer to that.
 [[nodiscard]] bool follows_debris(const Scene& scene);
+
+/// Takes the zoom out of a scene for a command that has none, with a note. `who`: "the live twin".
+void leave_out_zoom(Scene& scene, const std::string& who);
 
 /// Total volume of all releases and inflows, m3.
 [[nodiscard]] double total_volume(const Scene& scene);

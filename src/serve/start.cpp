@@ -278,6 +278,7 @@ Result<Start::Loaded> Start::load_scene(const KnownScene& known, const std::vect
         TALUS_ASSIGN(file, scene::unpack_builtin_scene(unpacked));
     }
     TALUS_ASSIGN(auto scene, scene::load_scene(file, overrides));
+    leave_out_zoom(scene, "the live twin");
     if (builtin)
         scene::name_unpacked_files(scene, unpacked, fmt::format("{}{}", builtin_prefix, scene::builtin_scene_name));
     options.scenario.overrides = overrides;

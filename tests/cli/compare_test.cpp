@@ -57,6 +57,34 @@ TEST(Compare, RefusesASceneThatTheDepthAveragedModelCannotHave) {
     EXPECT_FALSE(fs::exists(scene.folder() / "talus_out"));
 }
 
+TEST(Compare, PutsTheGaugesOfBothModelsSideBySideAndLeavesOutAZoom) {
+    const SmallScene scene;
+    scene.replace("end_time_s = 1\n", "end_time_s = 8\n");
+    scene.write(read_text(scene.scene_file()) +
+                "[[gauge]]\nname = \"below the scar\"\nx_m = 824190\ny_m = 825100\n"
+                "[zoom]\npolygon_m = [[824120, 825060], [824180, 825060], [824180, 825140], [824120, 825140]]\n");
+    const auto outcome = run_program({"compare", "slope.toml", "-o", "both"}, {.folder = scene.folder()});
+    ASSERT_EQ(outcome.exit_code, 0) << outcome.error;
+    const auto results = nlohmann::json::parse(read_text(scene.folder() / "both/results.json"));
+    const auto& rows = results.at("gauges").at("table").at("rows");
+    ASSERT_EQ(rows.size(), 2U);
+    for (const auto& row : rows) {
+        EXPECT_EQ(row.at("gauge"), "below the scar");
+        EXPECT_GT(row.at("peak_depth_m"), 0.05) << row;
+        EXPECT_GT(row.at("peak_speed_mps"), 0.5) << row;
+    }
+    const auto& curves = results.at("gauges").at("chart").at("plots").at(0).at("curves");
+    ASSERT_EQ(curves.size(), 2U);
+    EXPECT_NE(curves.at(0).at("y"), curves.at(1).at("y"));
+    for (const char* model : {"particles", "depth_averaged"}) {
+        EXPECT_THAT(read_text(scene.folder() / "both" / model / "gauges.csv"),
+                    testing::StartsWith("name,time_s,depth_m,speed_mps\nbelow the scar,0,0,0\n"));
+    }
+    EXPECT_THAT(read_text(scene.folder() / "both/particles/report.html"),
+                HasSubstr("[zoom] is left out: talus compare runs the whole event"));
+    EXPECT_NE(read_text(scene.folder() / "both/report.html").find("<h2>Gauges</h2>"), std::string::npos);
+}
+
 TEST(Compare, IgnoresTheModelOfTheScene) {
     const SmallScene scene;
     scene.replace("[solver]\n", "[solver]\nmodel = \"depth_averaged\"\n");

@@ -326,8 +326,70 @@ TEST(Report, RendersARunInWhichNothingMoved) {
     for (const char* nan : {">nan", " nan", "\"nan", "Lnan", "Mnan"}) EXPECT_FALSE(has(html, nan)) << nan;
 }
 
+TEST(Report, DrawsDepthAndSpeedAtGaugesOverTime) {
+    Sample s;
+    EXPECT_FALSE(has(s.html(), "<h2>Gauges</h2>"));
+    observe::GaugeRecord gully{.gauge = {"gully", {824200, 825550}, 121}};
+    gully.arrival_time = 12.5;
+    gully.peak_depth = 1.75;
+    gully.peak_depth_time = 14;
+    gully.peak_speed = 6.5;
+    gully.peak_speed_time = 13;
+    gully.rows = {{0, 0, 0}, {12.5, 0.5, 6.5}, {14, 1.75, 4}, {20, 0.2, 0.1}};
+    s.result.observation.gauges = {gully, {.gauge = {"mill", {824210, 825560}}}};
+    const std::string html = s.html(), words = words_of(html);
+    for (const char* part : {"<h2>Gauges</h2>", "chainage 121 m", "824210.0 E 825560.0 N", "not reached"}) {
+        EXPECT_TRUE(has(html, part)) << part;
+    }
+    for (const char* part : {"1.75", "14.0", "6.5", "Depth and speed at gauges over time"}) {
+        EXPECT_TRUE(has(words, part)) << part;
+    }
+    const report::Json results = report::run_results(s.scene, s.result, {});
+    const auto& plots = results["gauges"]["chart"]["plots"];
+    ASSERT_EQ(plots.size(), 4U) << "depth and speed of two gauges";
+    EXPECT_EQ(plots[0]["curves"][0]["y"].size(), 4U);
+    const report::Json both = report::gauges({{"particles", &s.result}, {"depth-averaged", &s.result}});
+    EXPECT_EQ(both["table"]["rows"].size(), 4U);
+    EXPECT_EQ(both["table"]["rows"][1]["model"], "depth-averaged");
+    EXPECT_EQ(both["chart"]["plots"][0]["curves"].size(), 2U);
+    EXPECT_EQ(both["chart"]["plots"][0]["curves"][1]["name"], "depth-averaged");
+}
+
+TEST(Report, SaysWhatAZoomWasAndItsBalance) {
+    Sample s;
+    EXPECT_FALSE(has(s.html(), "<h2>Zoom</h2>"));
+    run::ZoomRecord zoom;
+    zoom.around = "House 1";
+    zoom.area = {{{824100, 825500}, {824140, 825500}, {824140, 825530}, {824100, 825530}}, {}};
+    zoom.surroundings = 5;
+    zoom.event_volume = 600;
+    zoom.particle_spacing = 0.3;
+    zoom.mean_thickness = 1.2;
+    zoom.grid_cell = 2.5;
+    zoom.simulated_time = 60;
+    zoom.volumes = {.in = 161, .out = 113.5, .sampled_in = 166.8, .sampled_out = 109.7};
+    zoom.pieces = 4;
+    zoom.brought_volume = 160.9;
+    zoom.momentum = {-3e6, 4e6};
+    zoom.brought_momentum = {-3e6, 4.1e6};
+    zoom.discharge.assign(400, 0);
+    std::fill(zoom.discharge.begin() + 300, zoom.discharge.end(), 16.1);
+    s.result.zoom = zoom;
+    const std::string words = words_of(s.html());
+    for (const char* part :
+         {"the surroundings of House 1 only", "40 × 30 m around House 1", "from 30.0 s on", "4.0 particles",
+          "not fed back", "161.0", "160.9", "5000.0", "166.8 m³ in", "of the event's 600 m³ came into the zoom"}) {
+        EXPECT_TRUE(has(words, part)) << part;
+    }
+}
+
 TEST(Results, HoldAllThatTheReportShows) {
     Sample s;
+    s.result.observation.gauges = {{.gauge = {"mill", {824210, 825560}}}};
+    s.result.zoom.emplace();
+    s.result.zoom->particle_spacing = 0.3;
+    s.result.zoom->simulated_time = 60;
+    s.result.zoom->area = {{{824100, 825500}, {824140, 825500}, {824140, 825530}}, {}};
     const report::Json results = report::run_results(s.scene, s.result, test::sample_comparisons(s.scene, s.result));
     EXPECT_EQ(results["format"], "talus results");
     EXPECT_EQ(results["version"], report::results_version);

@@ -1,6 +1,8 @@
 #include "run/zoom.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 #include <stdexcept>
 
 #include <gmock/gmock.h>
@@ -39,7 +41,7 @@ TEST(BoundaryFlow, has_the_mass_and_momentum_of_a_stream_that_crosses_it_oblique
     depth::Inflows inflows(solver, {source});
     // A square on its corner, all in the way of the stream, which leaves it at the other side.
     const Polygon area{{{30, 10}, {45, -5}, {60, 10}, {45, 25}}, {}};
-    BoundaryFlow flow(solver, area, 1);
+    BoundaryFlow flow(solver, area);
     Grid<float> added(bed.geometry);
     while (solver.time() < 20) {
         ASSERT_TRUE(inflows.advance(solver, 20 - solver.time(), added));
@@ -65,6 +67,42 @@ TEST(BoundaryFlow, has_the_mass_and_momentum_of_a_stream_that_crosses_it_oblique
     EXPECT_NEAR(volume, volumes.in, 0.51 * std::pow(spacing, 3));
     EXPECT_NEAR(east, 6 * volumes.in, 0.01 * 6 * volumes.in);
     EXPECT_NEAR(north, 0, 0.01 * 6 * volumes.in);
+    EXPECT_NEAR(flow.momentum().x, east, 0.005 * east);
+    EXPECT_NEAR(flow.momentum().y, 0, 0.01 * east);
+    EXPECT_NEAR(flow.mean_thickness(), 0.5, 0.1) << "30 m3/s at 6 m/s, 10 m wide";
+    double came = 0;
+    for (const double discharge : flow.discharge()) came += discharge * BoundaryFlow::interval;
+    EXPECT_NEAR(came, volumes.in, 1e-9 * volumes.in);
+}
+
+TEST(BoundaryFlow, comes_in_longer_pieces_where_particles_are_larger) {
+    const Grid<double> bed({0, 0, 0.5, 120, 60});
+    depth::Material material;
+    material.gravity = 0.01;
+    depth::Solver solver(bed, material);
+    terrain::Inflow source;
+    source.from = {5, 5};
+    source.to = {5, 25};
+    source.hydrograph = {{0, 60, 6}, {4, 60, 6}};
+    depth::Inflows inflows(solver, {source});
+    BoundaryFlow flow(solver, {{{20, 2}, {50, 2}, {50, 28}, {20, 28}}, {}});
+    Grid<float> added(bed.geometry);
+    while (solver.time() < 8) {
+        ASSERT_TRUE(inflows.advance(solver, 8 - solver.time(), added));
+        flow.record(solver);
+    }
+    const auto longest = [&](double spacing) {
+        double length = 0, volume = 0;
+        for (const terrain::Inflow& piece : flow.inflows(spacing)) {
+            length = std::max(length, std::hypot(piece.to.x - piece.from.x, piece.to.y - piece.from.y));
+            volume += piece.volume();
+        }
+        EXPECT_NEAR(volume, flow.volumes().in, 0.51 * std::pow(spacing, 3));
+        return length;
+    };
+    EXPECT_NEAR(longest(0.1), 2, 0.1);
+    EXPECT_GE(longest(1), 8 * 0.99);
+    EXPECT_LT(longest(1), 16);
 }
 
 class ZoomedRun : public scene::SceneFolder {
@@ -85,31 +123,63 @@ class ZoomedRun : public scene::SceneFolder {
 };
 
 TEST_F(ZoomedRun, brings_what_crosses_the_boundary_to_the_structure) {
-    scene::Scene scene = loaded(dam(150), {"solver.particle_spacing_m=1"});
-    const scene::Scene grid = loaded(dam(150), {"solver.model=depth_averaged"});
-    const auto area = zoom_around(grid, "dam", 20);
-    ASSERT_TRUE(area);
-    const auto zoom = record_zoom(grid, *area, 1, {});
-    ASSERT_TRUE(zoom) << zoom.error().message;
-    EXPECT_EQ(zoom->volumes.out, 0) << "the dam holds all";
-    zoom_in(scene, *zoom, 1);
-    scene.spec.solver.end_time = 20;  // until the last row is in
+    const scene::Scene scene = loaded(
+        dam(150), {"solver.end_time_s=20", "zoom.structure=dam", "zoom.margin_m=20", "zoom.particle_spacing_m=1"});
     const auto result = run_scene(scene, {});
     ASSERT_TRUE(result) << result.error().message;
-    EXPECT_NEAR(result->observation.volume_released, zoom->volumes.in, 0.51);
+    ASSERT_TRUE(result->zoom);
+    const ZoomRecord& zoom = *result->zoom;
+    EXPECT_EQ(zoom.volumes.out, 0) << "the dam holds all";
+    EXPECT_NEAR(result->observation.volume_released, zoom.volumes.in, 0.51);
+    EXPECT_NEAR(zoom.brought_volume, zoom.volumes.in, 0.51);
+    const double momentum = std::hypot(zoom.momentum.x, zoom.momentum.y);
+    EXPECT_GT(momentum, 0);
+    EXPECT_NEAR(std::hypot(zoom.brought_momentum.x, zoom.brought_momentum.y), momentum, 0.02 * momentum);
+    EXPECT_EQ(result->particle_spacing, 1);
+    EXPECT_NEAR(zoom.event_volume, scene.releases[0].volume, 1e-9);
     ASSERT_EQ(result->observation.buildings.size(), 1U);
     EXPECT_TRUE(result->observation.buildings[0].hit);
-    EXPECT_LT(result->particles, 1.001 * grid.releases[0].volume);
-    EXPECT_THAT(scene.notes.back(), HasSubstr("not fed back"));
+    EXPECT_GE(result->observation.buildings[0].first_hit_time, zoom.first_time());
+    EXPECT_LT(result->particles, 1.001 * scene.releases[0].volume);
 }
 
-TEST_F(ZoomedRun, is_refused_where_nothing_arrives_or_debris_starts) {
-    const auto far = loaded(dam(190), {"solver.model=depth_averaged", "material.friction_coefficient=2"});
-    EXPECT_THAT(record_zoom(far, zoom_around(far, "dam", 5).value(), 1, {}).error().message,
-                HasSubstr("no debris of the depth-averaged model reaches its area"));
-    EXPECT_THAT(record_zoom(far, zoom_around(far, "dam", 300).value(), 1, {}).error().message,
-                HasSubstr("lies in its area"));
-    EXPECT_THAT(zoom_around(far, "mill", 5).error().message, HasSubstr("--zoom \"mill\" is refused"));
+TEST_F(ZoomedRun, has_so_many_layers_over_what_crosses_the_boundary) {
+    const scene::Scene scene = loaded(dam(150), {"zoom.structure=dam", "zoom.margin_m=20", "zoom.target_layers=2"});
+    const auto zoomed = zoom_in(scene, {});
+    ASSERT_TRUE(zoomed) << zoomed.error().message;
+    EXPECT_NEAR(zoomed->record.layers(), 2, 0.01);
+    EXPECT_GT(zoomed->record.mean_thickness, 0.1);
+    EXPECT_LT(zoomed->record.mean_thickness, 2);
+}
+
+TEST_F(ZoomedRun, removes_particles_beyond_the_surroundings) {
+    // Half-way down the valley without anything in the way.
+    const std::vector<std::string> area{"solver.end_time_s=20", "zoom.particle_spacing_m=1",
+                                        fmt::format("zoom.polygon_m=[[{0}, {2}], [{1}, {2}], [{1}, {3}], [{0}, {3}]]",
+                                                    west + 100, west + 130, south + 60, south + 140)};
+    const auto farthest = [&](double surroundings) {
+        auto overrides = area;
+        overrides.push_back(fmt::format("zoom.surroundings_m={}", surroundings));
+        const auto result = run_scene(loaded("", overrides), {});
+        if (!result) throw std::runtime_error(result.error().message);
+        const Grid<float>& depth = result->observation.maps.peak_depth;
+        double east = 0;
+        for (int row = 0; row < depth.geometry.rows; ++row) {
+            for (int column = 0; column < depth.geometry.columns; ++column) {
+                if (depth.at(column, row) > 0) east = std::max(east, depth.geometry.centre(column, row).x - west);
+            }
+        }
+        EXPECT_GT(result->observation.timeseries.back().volume_left, 0.5 * result->zoom->volumes.in);
+        return east;
+    };
+    EXPECT_LT(farthest(5), 130 + 5 + 2 * 5 + 5) << "two cells of the terrain, one of the map";
+    EXPECT_GT(farthest(40), 165);
+}
+
+TEST_F(ZoomedRun, is_refused_where_nothing_arrives) {
+    const auto far = loaded(dam(190), {"material.friction_coefficient=2", "zoom.structure=dam", "zoom.margin_m=5"});
+    EXPECT_THAT(run_scene(far, {}).error().message,
+                HasSubstr("no debris of the depth-averaged model crosses its boundary"));
 }
 
 }  // namespace
