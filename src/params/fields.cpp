@@ -255,6 +255,8 @@ const std::vector<Section>& scene_sections() {
             declare_solver(),          declare_outputs(),   declare_gauge(),     declare_zoom()};
         for (Section& section : declare_observations()) all.push_back(std::move(section));
         all.push_back(declare_variant());
+        all.push_back(declare_trigger());
+        all.push_back(declare_alarm());
         return all;
     }();
     return sections;
